@@ -1,0 +1,224 @@
+// The Python module mpm3dpp._core: translates between Python and the core, and nothing else.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include "mpm/run/bandwidth.hpp"
+#include "mpm/run/drive_material.hpp"
+#include "mpm/run/simulation.hpp"
+
+#if defined(__clang__)
+#define MPM_COMPILER "clang++ " __clang_version__
+#else
+#define MPM_COMPILER "g++ " __VERSION__
+#endif
+
+namespace nb = nanobind;
+using namespace mpm;
+
+namespace {
+
+using Input = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+using Output = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
+
+std::span<const double> span_of(const Input& array) { return {array.data(), array.size()}; }
+
+Output to_numpy(std::vector<double>&& values, std::size_t columns) {
+  auto* owned = new std::vector<double>(std::move(values));
+  nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  return Output(owned->data(), {owned->size() / columns, columns}, owner);
+}
+
+struct CatalogueParameter {
+  std::string name, unit, meaning, rule;
+  std::optional<double> start;
+};
+struct CatalogueModel {
+  std::string kind, name, doc, source;
+  std::vector<CatalogueParameter> parameters;
+  std::vector<std::string> state;
+};
+
+std::vector<CatalogueModel> catalogue() {
+  std::vector<CatalogueModel> models;
+  StrengthModels::for_each([&](const auto& model) {
+    CatalogueModel m{"strength", std::string(model.name), std::string(model.doc), std::string(model.source), {}, {}};
+    for (const auto& p : model.params)
+      m.parameters.push_back({std::string(p.name), std::string(p.unit), std::string(p.meaning), std::string(rule_text(p.rule)),
+                              std::isnan(p.start) ? std::nullopt : std::optional<double>(p.start)});
+    for (const auto& s : model.state_columns) m.state.push_back(std::string(s.name));
+    models.push_back(std::move(m));
+  });
+  return models;
+}
+
+}  // namespace
+
+NB_MODULE(_core, m) {
+  m.doc() = "The compiled core of MPM3Dpp. SI units throughout; see mpm3dpp.Case for defaults and units.";
+
+  nb::enum_<Scheme>(m, "Scheme").value("usf", Scheme::usf).value("usl", Scheme::usl).value("musl", Scheme::musl);
+  nb::enum_<Wall>(m, "Wall").value("free", Wall::free).value("slip", Wall::slip).value("fixed", Wall::fixed);
+  nb::enum_<Detection>(m, "Detection").value("gap", Detection::gap).value("velocity", Detection::velocity);
+  nb::enum_<NormalRule>(m, "NormalRule")
+      .value("pair", NormalRule::pair)
+      .value("first", NormalRule::first)
+      .value("second", NormalRule::second)
+      .value("stiffer", NormalRule::stiffer);
+
+  nb::class_<Settings>(m, "Settings")
+      .def(nb::init<>())
+      .def_rw("dimension", &Settings::dimension)
+      .def_rw("cell_size", &Settings::cell_size)
+      .def_rw("origin", &Settings::origin)
+      .def_rw("box_cells", &Settings::box_cells)
+      .def_rw("walls", &Settings::walls)
+      .def_rw("scheme", &Settings::scheme)
+      .def_rw("time_step_factor", &Settings::time_step_factor)
+      .def_rw("gravity", &Settings::gravity)
+      .def_rw("viscosity_quadratic", &Settings::viscosity_quadratic)
+      .def_rw("viscosity_linear", &Settings::viscosity_linear)
+      .def_rw("contact", &Settings::contact)
+      .def_rw("detection", &Settings::detection)
+      .def_rw("normal_rule", &Settings::normal_rule)
+      .def_rw("gap_distance", &Settings::gap_distance)
+      .def_rw("friction", &Settings::friction)
+      .def_rw("threads", &Settings::threads)
+      .def_rw("energy_growth_limit", &Settings::energy_growth_limit);
+
+  nb::class_<Failure>(m, "Failure")
+      .def_ro("kind", &Failure::kind)
+      .def_ro("body", &Failure::body)
+      .def_ro("particle", &Failure::particle)
+      .def_ro("step", &Failure::step)
+      .def_ro("time", &Failure::time)
+      .def_ro("position", &Failure::position)
+      .def_ro("message", &Failure::message);
+  nb::class_<Limiter>(m, "Limiter")
+      .def_ro("body", &Limiter::body)
+      .def_ro("particle", &Limiter::particle)
+      .def_ro("sound_speed", &Limiter::sound_speed)
+      .def_ro("speed", &Limiter::speed);
+  nb::class_<ColumnInfo>(m, "Column")
+      .def_ro("name", &ColumnInfo::name)
+      .def_ro("components", &ColumnInfo::components)
+      .def_ro("unit", &ColumnInfo::unit);
+  nb::class_<PairRecord>(m, "ContactPair")
+      .def_prop_ro("bodies", [](const PairRecord& p) { return std::pair(p.a, p.b); })
+      .def_ro("first_time", &PairRecord::first_time)
+      .def_ro("first_gap", &PairRecord::first_gap)
+      .def_ro("first_step", &PairRecord::first_step)
+      .def_prop_ro("force", [](const PairRecord& p) { return std::to_array(p.force); })
+      .def_prop_ro("impulse", [](const PairRecord& p) { return std::to_array(p.impulse); })
+      .def_ro("friction_work", &PairRecord::friction_work);
+
+  nb::class_<CatalogueParameter>(m, "Parameter")
+      .def_ro("name", &CatalogueParameter::name)
+      .def_ro("unit", &CatalogueParameter::unit)
+      .def_ro("meaning", &CatalogueParameter::meaning)
+      .def_ro("rule", &CatalogueParameter::rule)
+      .def_ro("default", &CatalogueParameter::start);
+  nb::class_<CatalogueModel>(m, "Model")
+      .def_ro("kind", &CatalogueModel::kind)
+      .def_ro("name", &CatalogueModel::name)
+      .def_ro("doc", &CatalogueModel::doc)
+      .def_ro("source", &CatalogueModel::source)
+      .def_ro("parameters", &CatalogueModel::parameters)
+      .def_ro("state", &CatalogueModel::state);
+
+  nb::class_<Simulation>(m, "Simulation")
+      .def(nb::new_([](const Settings& settings) { return make_simulation(settings); }), nb::arg("settings"))
+      .def("add_material", &Simulation::add_material, nb::arg("density"), nb::arg("strength"), nb::arg("parameters"))
+      .def(
+          "add_body",
+          [](Simulation& s, const std::string& name, int material, const Input& positions, const Input& velocities,
+             const Input& volumes) {
+            return s.add_body(name, material, span_of(positions), span_of(velocities), span_of(volumes));
+          },
+          nb::arg("name"), nb::arg("material"), nb::arg("positions"), nb::arg("velocities"), nb::arg("volumes"))
+      .def("set_friction", &Simulation::set_pair_friction, nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"))
+      .def("prepare", &Simulation::prepare, nb::call_guard<nb::gil_scoped_release>())
+      .def("advance", &Simulation::advance, nb::arg("max_steps"), nb::arg("end_time"),
+           nb::call_guard<nb::gil_scoped_release>())
+      .def_prop_ro("time", &Simulation::time)
+      .def_prop_ro("dt", &Simulation::next_time_step)
+      .def_prop_ro("step", &Simulation::step)
+      .def_prop_ro("body_count", &Simulation::body_count)
+      .def("body_particle_count", &Simulation::particle_count, nb::arg("body"))
+      .def_prop_ro("particle_count",
+                   [](const Simulation& s) {
+                     std::size_t n = 0;
+                     for (int b = 0; b < s.body_count(); ++b) n += s.particle_count(b);
+                     return n;
+                   })
+      .def_prop_ro("total_mass", &Simulation::total_mass)
+      .def_prop_ro("failure", &Simulation::failure)
+      .def("limiter", &Simulation::limiter)
+      .def("set_threads", &Simulation::set_threads, nb::arg("count"))
+      .def("columns", &Simulation::columns, nb::arg("body"))
+      .def(
+          "column",
+          [](const Simulation& s, int body, const std::string& name) {
+            const auto width = static_cast<std::size_t>(s.column_components(body, name));
+            std::vector<double> values(s.particle_count(body) * width);
+            s.copy_column(body, name, values);
+            return to_numpy(std::move(values), width);
+          },
+          nb::arg("body"), nb::arg("name"))
+      .def(
+          "set_velocity", [](Simulation& s, int body, const Input& velocities) { s.set_velocity(body, span_of(velocities)); },
+          nb::arg("body"), nb::arg("velocities"))
+      .def("history", [](Simulation& s) { return to_numpy(s.take_history(), Simulation::history_columns().size()); })
+      .def_prop_ro_static("history_columns", [](nb::handle) { return Simulation::history_columns(); })
+      .def_ro_static("history_capacity", &Simulation::history_capacity)
+      .def("contact_pairs", &Simulation::pairs)
+      .def("contact_summary",
+           [](const Simulation& s) {
+             nb::dict d;
+             d["overlapped_nodes"] = s.overlapped_nodes();
+             d["overlapped_nodes_max"] = s.overlapped_nodes_max();
+             d["bodies_per_node_max"] = s.bodies_per_node_max();
+             d["bytes"] = s.bytes().contact;
+             return d;
+           })
+      .def("timers",
+           [](const Simulation& s) {
+             nb::dict d;
+             for (const auto& [name, seconds] : s.stage_seconds()) d[nb::str(name.data(), name.size())] = seconds;
+             return d;
+           })
+      .def("reset_timers", &Simulation::reset_timers)
+      .def("bytes", [](const Simulation& s) {
+        const Bytes b = s.bytes();
+        nb::dict d;
+        d["particles"] = b.particles;
+        d["grid"] = b.grid;
+        d["contact"] = b.contact;
+        d["other"] = b.other;
+        return d;
+      });
+
+  m.def("catalogue", &catalogue);
+  m.def(
+      "drive_material",
+      [](double density, const std::string& strength, const std::map<std::string, double>& parameters,
+         const Input& increments, bool lanes) {
+        return to_numpy(drive_material(density, strength, parameters, span_of(increments), lanes), 6);
+      },
+      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("increments"), nb::arg("lanes"));
+  m.def("measure_bandwidth", &measure_bandwidth, nb::arg("threads"), nb::call_guard<nb::gil_scoped_release>());
+  m.def("build_info", [] {
+    nb::dict d;
+    d["compiler"] = MPM_COMPILER;
+    d["flags"] = MPM_BUILD_FLAGS;
+    d["isa"] = native_lanes == 8 ? "AVX-512" : native_lanes == 4 ? "AVX" : "SSE2 or NEON";
+    d["lanes"] = native_lanes;
+    return d;
+  });
+}

@@ -1,0 +1,41 @@
+# Compiler flags of our own code, as one interface target: mpm_flags.
+include(CheckCXXCompilerFlag)
+
+# Contraction to fused multiply-add is asked for: strict C++ mode may switch it off.
+set(flags -Wall -Wextra -Wconversion -Wno-psabi)
+# No -ffast-math: NaN and infinity are tested for, and the order of sums is fixed. These two change
+# no result; they let sqrt and select become plain vector instructions.
+list(APPEND flags -ffp-contract=fast -fno-math-errno -fno-trapping-math)
+if(MPM_WERROR)
+  list(APPEND flags -Werror)
+endif()
+if(MPM_NATIVE)
+  check_cxx_compiler_flag(-march=native MPM_HAS_MARCH_NATIVE)
+  if(MPM_HAS_MARCH_NATIVE)
+    list(APPEND flags -march=native)
+  else()
+    message(WARNING "this compiler has no -march=native: building for its default processor")
+  endif()
+endif()
+if(MPM_SAME_BITS)
+  list(APPEND flags -ffp-contract=off)
+endif()
+if(MPM_SANITIZE)
+  list(APPEND flags -fsanitize=${MPM_SANITIZE} -fno-omit-frame-pointer)
+endif()
+
+string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+string(JOIN " " build_flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}} ${flags})
+string(REGEX REPLACE " +" " " build_flags "${build_flags}")
+message(STATUS "MPM3Dpp ${MPM_VERSION}: ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} "
+               "${build_flags}")
+
+add_library(mpm_flags INTERFACE)
+target_compile_features(mpm_flags INTERFACE cxx_std_20)
+target_compile_options(mpm_flags INTERFACE ${flags})
+# For build_info(): a result names what made it.
+target_compile_definitions(mpm_flags INTERFACE MPM_BUILD_FLAGS="${build_flags}"
+                                               MPM_VERSION="${MPM_VERSION}")
+if(MPM_SANITIZE)
+  target_link_options(mpm_flags INTERFACE -fsanitize=${MPM_SANITIZE})
+endif()

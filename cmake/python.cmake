@@ -1,0 +1,31 @@
+# The Python module _core, and where it goes.
+find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module)
+if(NOT SKBUILD)   # a build by preset: nanobind is asked for its folder
+  execute_process(COMMAND "${Python_EXECUTABLE}" -m nanobind --cmake_dir
+                  OUTPUT_STRIP_TRAILING_WHITESPACE OUTPUT_VARIABLE nanobind_ROOT)
+endif()
+find_package(nanobind CONFIG REQUIRED)
+
+# Add the module `name` of the package; `ARGN` are its sources.
+function(mpm_add_module name)
+  nanobind_add_module(${name} NB_STATIC NOMINSIZE ${ARGN})
+  target_link_libraries(${name} PRIVATE mpm_core)
+  install(TARGETS ${name} LIBRARY DESTINATION mpm3dpp)
+  if(NOT SKBUILD)
+    set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY
+                                             "${CMAKE_BINARY_DIR}/python/mpm3dpp")
+  endif()
+endfunction()
+
+file(GLOB_RECURSE binding_sources CONFIGURE_DEPENDS bindings/*.cpp)
+mpm_add_module(_core ${binding_sources})
+
+# A build by preset makes an importable package: links to the Python files, modules beside them.
+if(NOT SKBUILD)
+  file(MAKE_DIRECTORY "${CMAKE_BINARY_DIR}/python/mpm3dpp")
+  file(GLOB package_entries CONFIGURE_DEPENDS python/mpm3dpp/*)
+  foreach(entry IN LISTS package_entries)
+    cmake_path(GET entry FILENAME entry_name)
+    file(CREATE_LINK "${entry}" "${CMAKE_BINARY_DIR}/python/mpm3dpp/${entry_name}" SYMBOLIC)
+  endforeach()
+endif()

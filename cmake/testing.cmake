@@ -1,0 +1,22 @@
+# The C++ unit tests: compiled once, run from pytest (module _testing) or without Python (unit_tests).
+file(GLOB_RECURSE unit_sources CONFIGURE_DEPENDS tests/unit/*.cpp)
+list(REMOVE_ITEM unit_sources "${CMAKE_CURRENT_SOURCE_DIR}/tests/unit/module.cpp"
+     "${CMAKE_CURRENT_SOURCE_DIR}/tests/unit/main.cpp")
+add_library(mpm_unit OBJECT ${unit_sources})
+target_include_directories(mpm_unit PUBLIC tests/unit)
+target_link_libraries(mpm_unit PUBLIC mpm_core)
+
+mpm_add_module(_testing tests/unit/module.cpp)
+target_link_libraries(_testing PRIVATE mpm_unit)
+
+if(NOT SKBUILD)
+  enable_testing()
+  add_executable(unit_tests tests/unit/main.cpp)
+  target_link_libraries(unit_tests PRIVATE mpm_unit)
+  add_test(NAME unit COMMAND unit_tests)
+  if(NOT MPM_SANITIZE)   # Python itself is not built with a sanitizer
+    add_test(NAME pytest COMMAND "${Python_EXECUTABLE}" -m pytest
+             WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
+    set_tests_properties(pytest PROPERTIES ENVIRONMENT "PYTHONPATH=${CMAKE_BINARY_DIR}/python")
+  endif()
+endif()

@@ -1,0 +1,272 @@
+#include "mpm/contact/contact_grid.hpp"
+
+#include <algorithm>
+
+#include "mpm/contact/surface.hpp"
+
+namespace mpm {
+
+template <int D>
+void ContactGrid<D>::connect(const TileGrid<D>& grid) {
+  holders_.clear();
+  tiles_.clear();
+  auto tile_of = [&](const TileHolder& h) {
+    Index<D> t = grid.patches[static_cast<std::size_t>(h.patch)].tile;
+    for (int a = 0; a < D; ++a) t[a] += h.corner >> a & 1;
+    return t;
+  };
+  for (std::size_t p = 0; p < grid.patches.size(); ++p)
+    for (int k = 0; k < Tile<D>::corners; ++k)
+      holders_.push_back({grid.patches[p].body, static_cast<std::int32_t>(p), static_cast<std::uint8_t>(k)});
+  std::sort(holders_.begin(), holders_.end(), [&](const TileHolder& x, const TileHolder& y) {
+    const Index<D> tx = tile_of(x), ty = tile_of(y);
+    if (tx != ty) return tile_less<D>(tx, ty);
+    return x.patch < y.patch;  // by body, then in the order of the tiles
+  });
+  std::uint32_t kept = 0;
+  for (std::size_t begin = 0, end = 0; begin < holders_.size(); begin = end) {
+    const Index<D> tile = tile_of(holders_[begin]);
+    bool several = false;
+    for (end = begin; end < holders_.size() && tile_of(holders_[end]) == tile; ++end)
+      several = several || holders_[end].body != holders_[begin].body;
+    if (!several) continue;
+    tiles_.push_back({tile, kept, static_cast<std::uint32_t>(end - begin)});
+    for (std::size_t k = begin; k < end; ++k) holders_[kept++] = holders_[k];
+  }
+  holders_.resize(kept);
+}
+
+template <int D>
+std::uint32_t ContactGrid<D>::sides_at(TileGrid<D>& grid, const ContactTile<D>& tile, const Index<D>& node, Side<D>* sides) {
+  std::uint32_t count = 0;
+  const std::uint32_t end = tile.first_holder + tile.holders;
+  for (std::uint32_t first = tile.first_holder, next = first; first < end; first = next) {
+    const int body = holders_[first].body;
+    bool found = false;
+    for (next = first; next < end && holders_[next].body == body; ++next) {
+      if (found || !holds_node<D>(holders_[next], node)) continue;
+      found = true;
+      const NodeBlock<D> block = grid.block(static_cast<std::size_t>(holders_[next].patch));
+      const int at = node_in_holder<D>(holders_[next], node);
+      if (!(block.mass()[at] > 0.0)) continue;
+      if (sides) {
+        Side<D>& side = sides[count];
+        side.body = body;
+        side.first_copy = first;
+        side.mass = block.mass()[at];
+        for (int a = 0; a < D; ++a) side.mapped[a] = block.velocity(a)[at];
+        side.velocity = side.mapped;
+      }
+      ++count;
+    }
+    if (sides && found && count > 0 && sides[count - 1].body == body) sides[count - 1].copies = next - first;
+  }
+  return count;
+}
+
+template <int D>
+void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const std::vector<double>& stiffness,
+                          const ContactSettings& settings, Threads& threads) {
+  counts_.assign(tiles_.size() + 1, {0, 0, 0});
+  threads.for_each(tiles_.size(), [&](std::size_t t) {
+    TileCounts c{0, 0, 0};
+    for_each_tile_node<D>([&](const Index<D>& node) {
+      const std::uint32_t sides = sides_at(grid, tiles_[t], node, nullptr);
+      if (sides < 2) return;
+      ++c.nodes;
+      c.sides += sides;
+      c.pairs += pair_count(sides);
+    });
+    counts_[t + 1] = c;
+  });
+  for (std::size_t t = 1; t < counts_.size(); ++t) {
+    counts_[t].nodes += counts_[t - 1].nodes;
+    counts_[t].sides += counts_[t - 1].sides;
+    counts_[t].pairs += counts_[t - 1].pairs;
+  }
+  nodes_.resize(counts_.back().nodes);
+  sides_.resize(counts_.back().sides);
+  pairs_.resize(counts_.back().pairs);
+  nodes_max_ = std::max(nodes_max_, nodes_.size());
+
+  threads.for_each(tiles_.size(), [&](std::size_t t) {
+    TileCounts c = counts_[t];
+    if (counts_[t + 1].nodes == c.nodes) return;
+    for_each_tile_node<D>([&](const Index<D>& index) {
+      if (counts_[t + 1].nodes == c.nodes) return;
+      const std::uint32_t count = sides_at(grid, tiles_[t], index, nullptr);
+      if (count < 2) return;
+      sides_at(grid, tiles_[t], index, &sides_[c.sides]);
+      ContactNode& node = nodes_[c.nodes];
+      node.tile = static_cast<std::uint32_t>(t);
+      node.node = static_cast<std::uint16_t>(Tile<D>::node(index));
+      node.sides = static_cast<std::uint16_t>(count);
+      node.first_side = c.sides;
+      node.first_pair = c.pairs;
+      Index<D> global = grid.first_cell(tiles_[t].tile);
+      for (int a = 0; a < D; ++a) global[a] += index[a];
+      node.held = grid.walls.held(global);
+      node.energy = node.force_work = 0.0;
+      for (std::uint32_t k = 0; k < count; ++k) find_normal(grid, bodies, node, sides_[c.sides + k]);
+      std::uint32_t at = c.pairs;
+      for (std::uint16_t r = 0; r < count; ++r)
+        for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < count; ++s) {
+          const Side<D>& side_r = sides_[c.sides + r];
+          const Side<D>& side_s = sides_[c.sides + s];
+          SidePair<D>& pair = pairs_[at++];
+          pair = {};
+          pair.r = r;
+          pair.s = s;
+          pair.friction = friction(settings, side_r.body, side_s.body);
+          const bool stiffer = stiffness[static_cast<std::size_t>(side_r.body)] >= stiffness[static_cast<std::size_t>(side_s.body)];
+          pair.normal = pair_normal<D>(side_r.normal, side_s.normal, settings.normal, stiffer);
+          const bool opposed = dot(pair.normal, pair.normal) > 0.0;
+          // Eq. (5): D_rs = D_r + D_s, each D the distance from the node to the body's surface along the pair's normal.
+          pair.gap = opposed ? -reach(grid, bodies, node, side_r, pair.normal) -
+                                   reach(grid, bodies, node, side_s, -1.0 * pair.normal)
+                             : std::numeric_limits<double>::infinity();
+          pair.closed = opposed && (settings.detection == Detection::velocity || pair.gap < settings.gap_distance);
+        }
+      ++c.nodes;
+      c.sides += count;
+      c.pairs += pair_count(count);
+    });
+  });
+  for (const ContactNode& node : nodes_) bodies_max_ = std::max(bodies_max_, static_cast<int>(node.sides));
+}
+
+template <int D>
+void ContactGrid<D>::find_normal(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const ContactNode& node,
+                                 Side<D>& side) const {
+  Vec<double, D> gradient = Vec<double, D>::zero();
+  for_each_copy(node, side, [&](std::size_t p, int at) {
+    gradient += mass_gradient(grid, bodies[static_cast<std::size_t>(side.body)], grid.patches[p], at);
+  });
+  // A wall mirrors the body, so its surface is normal to the wall there.
+  for (int a = 0; a < D; ++a)
+    if (node.held >> a & 1u) gradient[a] = 0.0;
+  side.normal = normalised(gradient);
+}
+
+template <int D>
+double ContactGrid<D>::reach(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const ContactNode& node,
+                             const Side<D>& side, const Vec<double, D>& normal) const {
+  double furthest = -std::numeric_limits<double>::infinity();
+  for_each_copy(node, side, [&](std::size_t p, int at) {
+    furthest = std::max(furthest, surface_distance(grid, bodies[static_cast<std::size_t>(side.body)], grid.patches[p], at, normal));
+  });
+  return furthest;
+}
+
+template <int D>
+template <class F>
+void ContactGrid<D>::for_each_copy(const ContactNode& node, const Side<D>& side, F&& f) const {
+  const Index<D> index = Tile<D>::node_index(node.node);
+  for (std::uint32_t h = side.first_copy; h < side.first_copy + side.copies; ++h)
+    if (holds_node<D>(holders_[h], index))
+      f(static_cast<std::size_t>(holders_[h].patch), node_in_holder<D>(holders_[h], index));
+}
+
+template <int D>
+void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
+  threads.for_each(nodes_.size(), [&](std::size_t n) {
+    const ContactNode& node = nodes_[n];
+    Side<D>* sides = &sides_[node.first_side];
+    SidePair<D>* pairs = &pairs_[node.first_pair];
+    const std::uint32_t count = pair_count(node.sides);
+    for (std::uint32_t k = 0; k < node.sides; ++k) sides[k].momentum = sides[k].mass * sides[k].mapped;
+    solve_node<D, false>(sides, pairs, count, [](const SidePair<D>& pair) { return pair.closed; });
+    for (std::uint32_t k = 0; k < node.sides; ++k) {
+      Side<D>& side = sides[k];
+      side.velocity = (1.0 / side.mass) * side.momentum;
+      for_each_copy(node, side, [&](std::size_t p, int at) {
+        for (int a = 0; a < D; ++a) grid.block(p).velocity(a)[at] = side.velocity[a];
+      });
+    }
+    for (std::uint32_t k = 0; k < count; ++k) {
+      SidePair<D>& pair = pairs[k];
+      const Side<D>& r = sides[pair.r];
+      const Side<D>& s = sides[pair.s];
+      // Rounding of the velocities decides whether two bodies that now move together count as touching: let it.
+      const double rounding = 1e-13 * (norm(r.mapped) + norm(s.mapped));
+      pair.touching = pair.closed && dot(r.velocity - s.velocity, pair.normal) >= -rounding;
+      pair.acted = pair.normal_impulse > 0.0;
+    }
+  });
+}
+
+template <int D>
+void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity, double time_step, Threads& threads) {
+  threads.for_each(nodes_.size(), [&](std::size_t n) {
+    ContactNode& node = nodes_[n];
+    Side<D>* sides = &sides_[node.first_side];
+    SidePair<D>* pairs = &pairs_[node.first_pair];
+    const std::uint32_t count = pair_count(node.sides);
+    auto force_of = [&](const Side<D>& side) {
+      Vec<double, D> f = Vec<double, D>::zero();
+      bool read = false;
+      for_each_copy(node, side, [&](std::size_t p, int at) {
+        if (read) return;
+        for (int a = 0; a < D; ++a)
+          f[a] = node.held >> a & 1u ? 0.0 : grid.block(p).force(a)[at] + side.mass * gravity[a];
+        read = true;
+      });
+      return f;
+    };
+    for (std::uint32_t k = 0; k < node.sides; ++k)
+      sides[k].momentum = sides[k].mass * sides[k].velocity + time_step * force_of(sides[k]);
+    solve_node<D, true>(sides, pairs, count, [](const SidePair<D>& pair) { return pair.touching; });
+
+    double force_work = 0.0, correction = 0.0;
+    for (std::uint32_t k = 0; k < node.sides; ++k) {
+      const Side<D>& side = sides[k];
+      const Vec<double, D> change = side.momentum - side.mass * side.velocity;  // impulse of all forces
+      const Vec<double, D> contact = change - time_step * force_of(side);
+      force_work += dot(contact, side.velocity);
+      correction -= dot(change, side.velocity - side.mapped);
+      for_each_copy(node, side, [&](std::size_t p, int at) {
+        for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] += (1.0 / time_step) * contact[a];
+      });
+    }
+    double friction_first = 0.0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      SidePair<D>& pair = pairs[k];
+      const Side<D>& r = sides[pair.r];
+      const Side<D>& s = sides[pair.s];
+      const Vec<double, D> end = (1.0 / r.mass) * r.momentum - (1.0 / s.mass) * s.momentum;
+      pair.friction_first = dot(pair.friction_impulse, r.velocity - s.velocity);
+      pair.acted = pair.acted || pair.normal_impulse > 0.0;
+      pair.impulse = -pair.normal_impulse * pair.normal - pair.friction_impulse;
+      pair.friction_work = 0.5 * (pair.friction_first + dot(pair.friction_impulse, end));
+      friction_first += pair.friction_first;
+    }
+    node.force_work = force_work;
+    node.energy = -(force_work + correction) - friction_first;
+  });
+}
+
+template <int D>
+void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
+  threads.for_each(nodes_.size(), [&](std::size_t n) {
+    const ContactNode& node = nodes_[n];
+    Side<D>* sides = &sides_[node.first_side];
+    for (std::uint32_t k = 0; k < node.sides; ++k) {
+      Side<D>& side = sides[k];
+      for_each_copy(node, side, [&](std::size_t p, int at) {
+        for (int a = 0; a < D; ++a) side.momentum[a] = side.mass * grid.block(p).force(a)[at];
+      });
+    }
+    // The impulses of this solution act on the velocities that strain the material only; they are not contact forces.
+    SidePair<D>* pairs = &pairs_[node.first_pair];
+    solve_node<D, false>(sides, pairs, pair_count(node.sides), [](const SidePair<D>& pair) { return pair.closed; });
+    for (std::uint32_t k = 0; k < node.sides; ++k)
+      for_each_copy(node, sides[k], [&](std::size_t p, int at) {
+        for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] = sides[k].momentum[a] / sides[k].mass;
+      });
+  });
+}
+
+template class ContactGrid<2>;
+template class ContactGrid<3>;
+
+}  // namespace mpm

@@ -1,0 +1,93 @@
+#pragma once
+// Where bodies overlap: the tiles whose nodes two or more bodies touch, and, anew in every step, the overlapped nodes.
+#include <cstdint>
+#include <limits>
+
+#include "mpm/contact/node_contact.hpp"
+#include "mpm/grid/tile_grid.hpp"
+#include "mpm/particles/body.hpp"
+
+namespace mpm {
+
+/// A patch that holds nodes of a tile: the tile's own patch of a body, or one below it that shares its first nodes.
+struct TileHolder {
+  std::int32_t body;
+  std::int32_t patch;
+  std::uint8_t corner;  // bit a: the patch's tile is one lower along axis a
+};
+
+template <int D>
+struct ContactTile {
+  Index<D> tile;
+  std::uint32_t first_holder, holders;
+};
+
+/// What has passed between two bodies since the start.
+struct PairRecord {
+  int a = 0, b = 0;  // bodies, a < b
+  double first_time = std::numeric_limits<double>::quiet_NaN();  // [s]
+  double first_gap = std::numeric_limits<double>::quiet_NaN();   // smallest gap of the nodes in contact then [m]
+  std::int64_t first_step = -1;
+  double force[3] = {};    // on a, in the last step [N]
+  double impulse[3] = {};  // on a [N s]
+  double friction_work = 0.0;  // [J]
+};
+
+/// Sums over all contacts of one step, for the ledger [J].
+struct ContactSums {
+  double friction = 0.0;       // lost to friction
+  double friction_first = 0.0; // the same with the slip at the start of the step
+  double energy = 0.0;         // lost in normal contact
+  double force_work = 0.0;     // work of contact forces at the velocities that the nodal forces work on
+};
+
+template <int D>
+class ContactGrid {
+ public:
+  /// Find the tiles where bodies may meet. Call when patches were added or removed.
+  void connect(const TileGrid<D>& grid);
+
+  /// Find the overlapped nodes with their normals, pairs and gaps, eq. (5). Needs mass and velocity at the nodes.
+  void find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const std::vector<double>& stiffness,
+            const ContactSettings& settings, Threads& threads);
+
+  /// Remove approaching momentum, eqs. (6)-(7), from the nodal velocities.
+  void adjust_momentum(TileGrid<D>& grid, Threads& threads);
+  /// Add the contact forces, eqs. (11)-(15), to the nodal forces; `gravity` is the body force per mass.
+  void add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity, double time_step, Threads& threads);
+  /// Remove the approach from the remapped velocities (3.6, step 10).
+  void adjust_remapped(TileGrid<D>& grid, Threads& threads);
+
+  /// Add this step's impulses and work to the records of the pairs and give the sums for the ledger.
+  ContactSums record(double time, double time_step, std::int64_t step);
+
+  const std::vector<PairRecord>& pairs() const { return records_; }
+  std::size_t overlapped_nodes() const { return nodes_.size(); }
+  std::size_t overlapped_nodes_max() const { return nodes_max_; }
+  int bodies_per_node_max() const { return bodies_max_; }
+  std::size_t bytes() const;
+
+ private:
+  std::uint32_t sides_at(TileGrid<D>& grid, const ContactTile<D>& tile, const Index<D>& node, Side<D>* sides);
+  template <class F>
+  void for_each_copy(const ContactNode& node, const Side<D>& side, F&& f) const;
+  void find_normal(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const ContactNode& node, Side<D>& side) const;
+  double reach(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const ContactNode& node, const Side<D>& side,
+               const Vec<double, D>& normal) const;
+  PairRecord& record_of(int a, int b);
+
+  std::vector<TileHolder> holders_;
+  std::vector<ContactTile<D>> tiles_;
+  struct TileCounts {
+    std::uint32_t nodes, sides, pairs;
+  };
+  std::vector<TileCounts> counts_;  // per tile, then their running sums
+  std::vector<ContactNode> nodes_;
+  std::vector<Side<D>> sides_;
+  std::vector<SidePair<D>> pairs_;
+  std::vector<PairRecord> records_;  // sorted by (a, b)
+  std::size_t nodes_max_ = 0;
+  int bodies_max_ = 0;
+};
+
+}  // namespace mpm

@@ -1,0 +1,50 @@
+#pragma once
+// Everything a step works on. Data, no behaviour.
+#include <cstdint>
+#include <vector>
+
+#include "mpm/contact/contact_grid.hpp"
+#include "mpm/grid/tile_grid.hpp"
+#include "mpm/materials/strength_block.hpp"
+#include "mpm/parallel/threads.hpp"
+#include "mpm/particles/lists.hpp"
+
+namespace mpm {
+
+/// What the ledger needs from one patch in one step. Every patch has its own, and they are added in the order of the
+/// patches, so that no sum depends on the number of threads.
+template <int D>
+struct PatchSums {
+  StressSums stress;
+  double kinetic = 0.0;         // of the particles after the step [J]
+  double second_order = 0.0;    // half sum of m_p (change of v_p)^2 [J]
+  double momentum[D] = {};      // of the particles after the step [kg m/s]
+  double force_work = 0.0;      // time step x sum over nodes of internal and contact force . velocity [J]
+  double gravity_first = 0.0;   // time step x sum over nodes of gravity . velocity [J]
+  double gravity_second = 0.0;  // the part of second_order that is the work of gravity [J]
+};
+
+template <int D>
+struct Domain {
+  TileGrid<D> grid;
+  std::vector<Body<D>> bodies;
+  std::vector<Material> materials;
+  ContactSettings contact_settings;
+  ContactGrid<D> contact;
+  std::vector<double> stiffness;  // rho c^2 of each body [Pa]
+  Vec<double, D> gravity = Vec<double, D>::zero();
+  BulkViscosity viscosity;
+  Threads threads;
+
+  double time = 0.0;       // [s]
+  double time_step = 0.0;  // of the step being made [s]
+  std::int64_t step = 0;   // steps made
+
+  std::vector<PatchSums<D>> sums;  // one per patch
+  ListScratch<D> list_scratch;
+
+  Body<D>& body_of(const Patch<D>& patch) { return bodies[static_cast<std::size_t>(patch.body)]; }
+  bool has_contact() const { return contact_settings.enabled && bodies.size() > 1; }
+};
+
+}  // namespace mpm

@@ -1,0 +1,77 @@
+#pragma once
+// Structure of arrays: named columns of doubles, each of one or more components; a column exists only if it was asked for.
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "mpm/fields/aligned.hpp"
+
+namespace mpm {
+
+struct ColumnInfo {
+  std::string name;
+  std::string unit;
+  int components = 1;
+  int first = 0;  // index of its first component among all components
+};
+
+/// All columns of one body, in one allocation: component c of row i is `component(c)[i]`.
+class Columns {
+ public:
+  /// Declare a column before `allocate`; returns the index of its first component.
+  int add(std::string name, std::string unit, int components) {
+    const int first = component_count();
+    infos_.push_back({std::move(name), std::move(unit), components, first});
+    return first;
+  }
+
+  void allocate(std::size_t rows) {
+    rows_ = rows;
+    // One spare component lets a permutation gather into it and then swap pointers, without copying back.
+    const auto slots = static_cast<std::size_t>(component_count()) + 1;
+    stride_ = padded(rows);
+    memory_.release_and_allocate(slots * stride_);
+    components_.resize(slots);
+    for (std::size_t c = 0; c < slots; ++c) components_[c] = memory_.data() + c * stride_;
+  }
+
+  std::size_t rows() const { return rows_; }
+  std::size_t bytes() const { return memory_.bytes(); }
+  const std::vector<ColumnInfo>& infos() const { return infos_; }
+  double* component(int c) { return components_[static_cast<std::size_t>(c)]; }
+  const double* component(int c) const { return components_[static_cast<std::size_t>(c)]; }
+
+  /// The column's description; throws std::invalid_argument for an unknown name.
+  const ColumnInfo& info(std::string_view name) const {
+    for (const auto& i : infos_)
+      if (i.name == name) return i;
+    throw std::invalid_argument("no column named " + std::string(name));
+  }
+
+  /// One component of room, to gather a permuted component into before `swap_with_spare` puts it in place.
+  double* spare() { return components_.back(); }
+  void swap_with_spare(int c) { std::swap(components_.back(), components_[static_cast<std::size_t>(c)]); }
+
+  int component_count() const {
+    return infos_.empty() ? 0 : infos_.back().first + infos_.back().components;
+  }
+
+ private:
+  // Columns a multiple of 4096 bytes apart would all fall into the same cache sets: stagger them by three lines.
+  static std::size_t padded(std::size_t rows) {
+    constexpr std::size_t page = 4096 / sizeof(double), stagger = 3 * cache_line / sizeof(double);
+    const std::size_t lines = (rows + 15) / 8 * 8;
+    if (lines < page) return lines;
+    return (lines - stagger + page - 1) / page * page + stagger;
+  }
+
+  std::vector<ColumnInfo> infos_;
+  std::vector<double*> components_;
+  AlignedArray<double> memory_;
+  std::size_t rows_ = 0, stride_ = 0;
+};
+
+}  // namespace mpm

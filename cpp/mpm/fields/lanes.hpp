@@ -1,0 +1,41 @@
+#pragma once
+// Rows of a column into SIMD lanes and back, through an index: neighbours in memory move as one vector, others one by one.
+#include <cstdint>
+
+#include "mpm/math/scalar.hpp"
+
+namespace mpm {
+
+/// Up to W rows of a column. Lanes from `count` on repeat the last row when read and are never written.
+template <int W>
+struct LaneRows {
+  std::uint32_t row[W];
+  int count;
+  bool contiguous;  // W rows in sequence
+
+  LaneRows(const std::uint32_t* rows, std::size_t available) {
+    count = available < W ? static_cast<int>(available) : W;
+    for (int k = 0; k < W; ++k) row[k] = rows[k < count ? k : count - 1];
+    contiguous = count == W;
+    for (int k = 1; k < W; ++k) contiguous = contiguous && row[k] == row[0] + static_cast<std::uint32_t>(k);
+  }
+};
+
+template <int W>
+Batch<W> load(const double* column, const LaneRows<W>& rows) {
+  if (rows.contiguous) return Batch<W>::load(column + rows.row[0]);
+  Batch<W> b;
+  for (int k = 0; k < W; ++k) b.v[k] = column[rows.row[k]];
+  return b;
+}
+
+template <int W>
+void store(double* column, const LaneRows<W>& rows, Batch<W> value) {
+  if (rows.contiguous) {
+    value.store(column + rows.row[0]);
+    return;
+  }
+  for (int k = 0; k < rows.count; ++k) column[rows.row[k]] = value.v[k];
+}
+
+}  // namespace mpm

@@ -1,0 +1,145 @@
+#pragma once
+// SIMD lanes: W doubles in one register, written like a scalar. The width follows the instruction set the file is compiled for.
+#include <cstdint>
+#include <cstring>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace mpm {
+
+#if defined(__AVX512F__)
+inline constexpr int native_lanes = 8;
+#elif defined(__AVX__)
+inline constexpr int native_lanes = 4;
+#else
+inline constexpr int native_lanes = 2;
+#endif
+
+/// The compiler's vector types of W numbers.
+template <int W>
+struct Vectors;
+template <>
+struct Vectors<2> {
+  typedef double Real __attribute__((vector_size(16)));
+  typedef std::int64_t Bits __attribute__((vector_size(16)));
+};
+template <>
+struct Vectors<4> {
+  typedef double Real __attribute__((vector_size(32)));
+  typedef std::int64_t Bits __attribute__((vector_size(32)));
+};
+template <>
+struct Vectors<8> {
+  typedef double Real __attribute__((vector_size(64)));
+  typedef std::int64_t Bits __attribute__((vector_size(64)));
+};
+
+/// True or false in each of W lanes (all bits set or none).
+template <int W>
+struct Mask {
+  using Vector = typename Vectors<W>::Bits;
+  Vector v;
+  friend Mask operator&(Mask a, Mask b) { return {a.v & b.v}; }
+  friend Mask operator|(Mask a, Mask b) { return {a.v | b.v}; }
+  friend Mask operator!(Mask a) { return {~a.v}; }
+};
+
+/// W doubles, with the arithmetic of one.
+template <int W>
+struct Batch {
+  static constexpr int lanes = W;
+  using Vector = typename Vectors<W>::Real;
+  Vector v;
+
+  Batch() = default;
+  Batch(double s) : v(Vector{} + s) {}  // NOLINT: a number stands for itself in every lane
+  explicit Batch(Vector value) : v(value) {}
+
+  static Batch load(const double* from) {
+    Batch b;
+    std::memcpy(&b.v, from, sizeof(Vector));
+    return b;
+  }
+  void store(double* to) const { std::memcpy(to, &v, sizeof(Vector)); }
+  double operator[](int lane) const { return v[lane]; }
+
+  friend Batch operator+(Batch a, Batch b) { return Batch(a.v + b.v); }
+  friend Batch operator-(Batch a, Batch b) { return Batch(a.v - b.v); }
+  friend Batch operator*(Batch a, Batch b) { return Batch(a.v * b.v); }
+  friend Batch operator/(Batch a, Batch b) { return Batch(a.v / b.v); }
+  friend Batch operator-(Batch a) { return Batch(-a.v); }
+  Batch& operator+=(Batch b) { return *this = *this + b; }
+  Batch& operator-=(Batch b) { return *this = *this - b; }
+  Batch& operator*=(Batch b) { return *this = *this * b; }
+  friend Mask<W> operator<(Batch a, Batch b) { return {a.v < b.v}; }
+  friend Mask<W> operator>(Batch a, Batch b) { return {a.v > b.v}; }
+  friend Mask<W> operator<=(Batch a, Batch b) { return {a.v <= b.v}; }
+  friend Mask<W> operator>=(Batch a, Batch b) { return {a.v >= b.v}; }
+};
+
+template <int W>
+Batch<W> select(Mask<W> condition, Batch<W> yes, Batch<W> no) {
+  return Batch<W>(condition.v ? yes.v : no.v);
+}
+template <int W>
+Batch<W> min(Batch<W> a, Batch<W> b) {
+  return Batch<W>(a.v < b.v ? a.v : b.v);
+}
+template <int W>
+Batch<W> max(Batch<W> a, Batch<W> b) {
+  return Batch<W>(a.v > b.v ? a.v : b.v);
+}
+
+template <int W>
+Batch<W> sqrt(Batch<W> a) {
+#if defined(__AVX512F__)
+  if constexpr (W == 8) return Batch<W>(_mm512_sqrt_pd(a.v));
+#endif
+#if defined(__AVX__)
+  if constexpr (W == 4) return Batch<W>(_mm256_sqrt_pd(a.v));
+#endif
+#if defined(__SSE2__)
+  if constexpr (W == 2) return Batch<W>(_mm_sqrt_pd(a.v));
+#endif
+  Batch<W> r;
+  for (int k = 0; k < W; ++k) r.v[k] = __builtin_sqrt(a.v[k]);
+  return r;
+}
+
+/// True if the condition holds in any lane.
+template <int W>
+bool any(Mask<W> m) {
+#if defined(__AVX__)
+  if constexpr (W == 4) return _mm256_movemask_pd(reinterpret_cast<__m256d>(m.v)) != 0;
+#endif
+  std::int64_t bits = 0;
+  for (int k = 0; k < W; ++k) bits |= m.v[k];
+  return bits != 0;
+}
+
+/// The lanes before `count`.
+template <int W>
+Mask<W> first_lanes(int count) {
+  Mask<W> m;
+  for (int k = 0; k < W; ++k) m.v[k] = k < count ? -1 : 0;
+  return m;
+}
+
+/// Sum over the lanes, in the order of the lanes.
+template <int W>
+double sum(Batch<W> a) {
+  double s = a.v[0];
+  for (int k = 1; k < W; ++k) s += a.v[k];
+  return s;
+}
+
+/// Largest lane.
+template <int W>
+double largest(Batch<W> a) {
+  double s = a.v[0];
+  for (int k = 1; k < W; ++k) s = a.v[k] > s ? a.v[k] : s;
+  return s;
+}
+
+}  // namespace mpm

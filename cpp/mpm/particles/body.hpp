@@ -1,0 +1,43 @@
+#pragma once
+// A body: its particles as columns, and the list that keeps the particles of one cell together.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mpm/fields/columns.hpp"
+#include "mpm/materials/strength_block.hpp"
+
+namespace mpm {
+
+template <int D>
+struct Body {
+  std::string name;
+  int material = 0;
+  Columns columns;
+  int position = 0;          // first component of each column; position [m], D components
+  StrengthColumns at{};      // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; state; viscosity_pressure [Pa]
+  std::vector<std::uint32_t> id;          // place of each particle in the order in which the user gave them
+  std::vector<std::uint32_t> order;       // particles by patch, then by cell, then by row
+  std::vector<std::uint32_t> next_order;  // the list being made
+  std::vector<std::uint8_t> cell;         // scratch: cell in its tile of each entry of `order`
+  double mean_edge = 0.0;    // edge of a square or cube of the mean initial particle volume [m]
+  std::size_t moved = 0;                  // changes of cell since the columns were last sorted
+
+  std::size_t count() const { return columns.rows(); }
+  double* x(int a) { return columns.component(position + a); }
+  double* v(int a) { return columns.component(at.velocity + a); }
+  const double* x(int a) const { return columns.component(position + a); }
+  const double* v(int a) const { return columns.component(at.velocity + a); }
+  double* mass() { return columns.component(at.mass); }
+  const double* mass() const { return columns.component(at.mass); }
+  double* volume() { return columns.component(at.volume); }
+  const double* volume() const { return columns.component(at.volume); }
+  const double* stress(int k) const { return columns.component(at.stress + k); }
+
+  std::size_t bytes() const {
+    return columns.bytes() + (id.capacity() + order.capacity() + next_order.capacity()) * sizeof(std::uint32_t) +
+           cell.capacity();
+  }
+};
+
+}  // namespace mpm

@@ -1,0 +1,47 @@
+#pragma once
+// Which particles lie in which cell: made once, then mended where particles have moved. Columns are put back in order
+// only when that pays; correctness never depends on it.
+#include "mpm/grid/tile_grid.hpp"
+#include "mpm/particles/body.hpp"
+
+namespace mpm {
+
+/// A particle that has left its tile.
+template <int D>
+struct Leaver {
+  int body;
+  Index<D> tile;
+  std::uint32_t row;
+  std::uint8_t cell;
+};
+
+/// Reused from step to step, so that a step allocates nothing.
+template <int D>
+struct ListScratch {
+  struct Change {
+    std::uint32_t kept, arrival_begin, arrival_count, begin;
+  };
+  std::vector<Leaver<D>> leavers;
+  std::vector<Change> changes;     // one per patch
+  std::vector<Patch<D>> merged;
+  std::vector<std::size_t> moved;  // one per patch
+};
+
+/// Sort every body's columns by tile and cell, and make patches and lists from nothing. Sets the grid's anchor.
+/// Throws std::out_of_range if a particle lies more than 2^20 cells from the anchor.
+template <int D>
+void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads, bool set_anchor);
+
+/// Mend the lists of patches that particles have left; true if patches were added or removed.
+template <int D>
+bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads, ListScratch<D>& scratch);
+
+/// Put the columns of a body into the order of its list.
+template <int D>
+void sort_columns(Body<D>& body, Threads& threads);
+
+/// The same for the bodies whose particles have moved about so much that it pays.
+template <int D>
+void sort_disordered(std::vector<Body<D>>& bodies, Threads& threads);
+
+}  // namespace mpm

@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "mpm/particles/lists.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::uint8_t outside = 255;  // mark of a particle that has left its tile
+
+template <int D>
+Index<D> cell_of_row(const TileGrid<D>& grid, const Body<D>& body, std::uint32_t row) {
+  Vec<double, D> x;
+  for (int a = 0; a < D; ++a) x[a] = body.x(a)[row];
+  return grid.cell_of(x);
+}
+
+/// Note the cell of each particle of a patch, or that it is outside; returns how many have changed cell.
+template <int D>
+std::size_t classify(const TileGrid<D>& grid, Body<D>& body, const Patch<D>& patch) {
+  const Index<D> first = grid.first_cell(patch.tile);
+  std::size_t changed = 0;
+  patch.for_each_cell([&](int old_cell, std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const Index<D> cell = cell_of_row(grid, body, body.order[k]);
+      Index<D> local;
+      bool inside = true;
+      for (int a = 0; a < D; ++a) {
+        local[a] = cell[a] - first[a];
+        inside = inside && local[a] >= 0 && local[a] < Tile<D>::cells;
+      }
+      const int now = inside ? Tile<D>::cell(local) : outside;
+      body.cell[k] = static_cast<std::uint8_t>(now);
+      changed += now != old_cell;
+    }
+  });
+  return changed;
+}
+
+template <int D>
+void find_leavers(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, std::vector<Leaver<D>>& leavers) {
+  leavers.clear();
+  for (const Patch<D>& patch : grid.patches) {
+    if (!patch.left_cell) continue;
+    const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
+    for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
+      if (body.cell[k] != outside) continue;
+      const Index<D> cell = cell_of_row(grid, body, body.order[k]);
+      const Index<D> tile = grid.tile_of(cell);
+      const Index<D> first = grid.first_cell(tile);
+      Index<D> local;
+      for (int a = 0; a < D; ++a) local[a] = cell[a] - first[a];
+      leavers.push_back({patch.body, tile, body.order[k], static_cast<std::uint8_t>(Tile<D>::cell(local))});
+    }
+  }
+  std::sort(leavers.begin(), leavers.end(), [](const Leaver<D>& x, const Leaver<D>& y) {
+    if (x.body != y.body || x.tile != y.tile) return patch_less<D>(x.body, x.tile, y.body, y.tile);
+    return x.row < y.row;
+  });
+}
+
+/// Add patches for tiles that a body enters, and drop the empty ones; true if the set of patches has changed.
+template <int D>
+bool merge_new_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
+  const auto& leavers = scratch.leavers;
+  bool missing = false;
+  for (std::size_t k = 0; k < leavers.size() && !missing; ++k) missing = grid.find(leavers[k].body, leavers[k].tile) < 0;
+  if (!missing) return false;
+  auto& merged = scratch.merged;
+  merged.clear();
+  std::size_t k = 0;
+  auto add_before = [&](const Patch<D>* patch) {
+    for (; k < leavers.size(); ++k) {
+      const auto& l = leavers[k];
+      if (patch && !patch_less<D>(l.body, l.tile, patch->body, patch->tile)) return;
+      if (!merged.empty() && merged.back().body == l.body && merged.back().tile == l.tile) continue;
+      Patch<D> p;
+      p.body = l.body;
+      p.tile = l.tile;
+      merged.push_back(p);
+    }
+  };
+  for (const Patch<D>& patch : grid.patches) {
+    add_before(&patch);
+    bool entered = false;
+    for (; k < leavers.size() && leavers[k].body == patch.body && leavers[k].tile == patch.tile; ++k) entered = true;
+    if (patch.count > 0 || entered) merged.push_back(patch);
+  }
+  add_before(nullptr);
+  std::swap(grid.patches, merged);
+  grid.connect();
+  return true;
+}
+
+/// Write a patch's new list: the particles it keeps and those that come, by cell, then by row.
+template <int D>
+void write_list(Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::Change& change,
+                const std::vector<Leaver<D>>& leavers) {
+  std::uint32_t* to = body.next_order.data() + change.begin;
+  if (!patch.left_cell && change.arrival_count == 0) {
+    std::memcpy(to, body.order.data() + patch.begin, patch.count * sizeof(std::uint32_t));
+    patch.begin = change.begin;
+    return;
+  }
+  if (!patch.left_cell)
+    patch.for_each_cell([&](int c, std::uint32_t begin, std::uint32_t end) {
+      std::memset(body.cell.data() + begin, c, end - begin);
+    });
+  const Leaver<D>* arrival = leavers.data() + change.arrival_begin;
+  constexpr int cells = Tile<D>::cell_count;
+  std::array<std::uint32_t, cells + 1> begin{};
+  for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
+    if (body.cell[k] != outside) ++begin[body.cell[k] + std::size_t{1}];
+  for (std::uint32_t k = 0; k < change.arrival_count; ++k) ++begin[arrival[k].cell + std::size_t{1}];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  auto next = begin;
+  auto put = [&](std::uint8_t cell, std::uint32_t row) {
+    std::uint32_t at = next[cell]++;
+    for (; at > begin[cell] && to[at - 1] > row; --at) to[at] = to[at - 1];
+    to[at] = row;
+  };
+  for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
+    if (body.cell[k] != outside) put(body.cell[k], body.order[k]);
+  for (std::uint32_t k = 0; k < change.arrival_count; ++k) put(arrival[k].cell, arrival[k].row);
+
+  patch.begin = change.begin;
+  patch.count = change.kept + change.arrival_count;
+  patch.cell_begin = begin;
+  patch.occupied = 0;
+  for (int c = 0; c < cells; ++c)
+    if (begin[static_cast<std::size_t>(c) + 1] > begin[static_cast<std::size_t>(c)])
+      patch.occupied |= std::uint64_t{1} << c;
+  patch.left_cell = false;
+}
+
+}  // namespace
+
+template <int D>
+bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads, ListScratch<D>& scratch) {
+  bool any_left = false;
+  for (const auto& p : grid.patches) any_left = any_left || p.left_cell;
+  if (!any_left) return false;
+
+  scratch.moved.assign(grid.patches.size(), 0);
+  threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const Patch<D>& patch = grid.patches[p];
+    if (patch.left_cell) scratch.moved[p] = classify(grid, bodies[static_cast<std::size_t>(patch.body)], patch);
+  });
+  for (std::size_t p = 0; p < grid.patches.size(); ++p)
+    bodies[static_cast<std::size_t>(grid.patches[p].body)].moved += scratch.moved[p];
+  find_leavers(grid, bodies, scratch.leavers);
+  const bool changed = merge_new_patches(grid, scratch);
+
+  auto& changes = scratch.changes;
+  changes.assign(grid.patches.size(), {});
+  std::uint32_t arrival = 0, begin = 0;
+  const auto total = static_cast<std::uint32_t>(scratch.leavers.size());
+  for (std::size_t p = 0; p < grid.patches.size(); ++p) {
+    const Patch<D>& patch = grid.patches[p];
+    if (p == 0 || grid.patches[p - 1].body != patch.body) begin = 0;
+    auto& c = changes[p];
+    c.kept = patch.count;
+    if (patch.left_cell) {
+      const auto& cell = bodies[static_cast<std::size_t>(patch.body)].cell;
+      for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) c.kept -= cell[k] == outside;
+    }
+    c.arrival_begin = arrival;
+    while (arrival < total && scratch.leavers[arrival].body == patch.body && scratch.leavers[arrival].tile == patch.tile)
+      ++arrival;
+    c.arrival_count = arrival - c.arrival_begin;
+    c.begin = begin;
+    begin += c.kept + c.arrival_count;
+  }
+  threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    Patch<D>& patch = grid.patches[p];
+    write_list(bodies[static_cast<std::size_t>(patch.body)], patch, changes[p], scratch.leavers);
+  });
+  for (auto& body : bodies) std::swap(body.order, body.next_order);
+  return changed;
+}
+
+template bool mend_lists<2>(TileGrid<2>&, std::vector<Body<2>>&, Threads&, ListScratch<2>&);
+template bool mend_lists<3>(TileGrid<3>&, std::vector<Body<3>>&, Threads&, ListScratch<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,215 @@
+// The part of a simulation that takes bodies in and gives their columns out.
+#include <cmath>
+#include <stdexcept>
+
+#include "mpm/run/simulation_of.hpp"
+
+namespace mpm {
+namespace {
+
+double start_value(const StateColumn& column, int component) {
+  switch (column.start) {
+    case Start::one:
+      return 1.0;
+    case Start::identity:
+      return component < 3 ? 1.0 : 0.0;
+    case Start::zero:
+      break;
+  }
+  return 0.0;
+}
+
+void check_finite(std::span<const double> values, const std::string& what) {
+  for (const double v : values)
+    if (!std::isfinite(v)) throw std::invalid_argument(what + " must be finite numbers");
+}
+
+}  // namespace
+
+template <int D>
+int SimulationOf<D>::add_material(double density, const std::string& strength, const std::map<std::string, double>& parameters) {
+  domain_.materials.push_back(make_material(density, strength, parameters));
+  return static_cast<int>(domain_.materials.size()) - 1;
+}
+
+template <int D>
+int SimulationOf<D>::add_body(const std::string& name, int material_number, std::span<const double> positions,
+                              std::span<const double> velocities, std::span<const double> volumes) {
+  if (prepared_) throw std::invalid_argument("bodies must be added before prepare()");
+  const Material& material = domain_.materials.at(static_cast<std::size_t>(material_number));
+  const std::size_t n = positions.size() / D;
+  if (n == 0 || n * D != positions.size()) throw std::invalid_argument(name + ": positions must be (n, D) with n > 0");
+  if (velocities.size() != D && velocities.size() != n * D)
+    throw std::invalid_argument(name + ": velocities must be (n, D) or (1, D)");
+  if (volumes.size() != 1 && volumes.size() != n) throw std::invalid_argument(name + ": volumes must be (n,) or (1,)");
+  check_finite(positions, name + ": positions");
+  check_finite(velocities, name + ": velocities");
+  check_finite(volumes, name + ": volumes");
+  for (const double v : volumes)
+    if (!(v > 0.0)) throw std::invalid_argument(name + ": volumes must be > 0");
+
+  Body<D> body;
+  body.name = name;
+  body.material = material_number;
+  Columns& c = body.columns;
+  body.position = c.add("position", "m", D);
+  body.at.velocity = c.add("velocity", "m/s", D);
+  body.at.mass = c.add("mass", "kg", 1);
+  body.at.volume = c.add("volume", "m^3", 1);
+  body.at.stress = c.add("stress", "Pa", Sym<double, D>::size);
+  body.at.state = -1;
+  std::visit(
+      [&](const auto& model) {
+        for (const StateColumn& s : model.state_columns) {
+          const int first = c.add(std::string(s.name), std::string(s.unit), s.components(D));
+          if (body.at.state < 0) body.at.state = first;
+        }
+      },
+      material.strength);
+  body.at.viscosity_pressure = domain_.viscosity.active() ? c.add("viscosity_pressure", "Pa", 1) : -1;
+  c.allocate(n);
+
+  const bool one_velocity = velocities.size() == D, one_volume = volumes.size() == 1;
+  double total = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t a = 0; a < D; ++a) {
+      body.x(static_cast<int>(a))[i] = positions[i * D + a];
+      body.v(static_cast<int>(a))[i] = velocities[one_velocity ? a : i * D + a];
+    }
+    const double volume = volumes[one_volume ? 0 : i];
+    total += volume;
+    body.volume()[i] = volume;
+    body.mass()[i] = material.density * volume;
+  }
+  for (int k = body.at.stress; k < c.component_count(); ++k) std::fill_n(c.component(k), n, 0.0);
+  std::visit(
+      [&](const auto& model) {
+        int at = body.at.state;
+        for (const StateColumn& s : model.state_columns)
+          for (int k = 0; k < s.components(D); ++k) std::fill_n(c.component(at++), n, start_value(s, k));
+        Sym<double, D> stress = Sym<double, D>::zero();
+        typename std::remove_cvref_t<decltype(model)>::template State<double, D> state{};
+        double* flat = reinterpret_cast<double*>(&state);
+        for (int k = body.at.state; k >= 0 && k < at; ++k) flat[k - body.at.state] = c.component(k)[0];
+        const double speed = model.sound_speed(stress, state, 1.0);
+        domain_.stiffness.push_back(material.density * speed * speed);
+      },
+      material.strength);
+  body.mean_edge = std::pow(total / static_cast<double>(n), 1.0 / D);
+  body.id.resize(n);
+  for (std::size_t i = 0; i < n; ++i) body.id[i] = static_cast<std::uint32_t>(i);
+  domain_.bodies.push_back(std::move(body));
+  return static_cast<int>(domain_.bodies.size()) - 1;
+}
+
+template <int D>
+void SimulationOf<D>::set_pair_friction(int a, int b, double mu) {
+  if (!(mu >= 0.0)) throw std::invalid_argument("friction must be >= 0");
+  set_friction(domain_.contact_settings, a, b, mu);
+}
+
+template <int D>
+double SimulationOf<D>::total_mass() const {
+  double total = 0.0;
+  for (const Body<D>& b : domain_.bodies)
+    for (std::size_t i = 0; i < b.count(); ++i) total += b.mass()[i];
+  return total;
+}
+
+template <int D>
+double SimulationOf<D>::kinetic_energy() const {
+  double total = 0.0;
+  for (const Body<D>& b : domain_.bodies)
+    for (std::size_t i = 0; i < b.count(); ++i)
+      for (int a = 0; a < D; ++a) total += 0.5 * b.mass()[i] * b.v(a)[i] * b.v(a)[i];
+  return total;
+}
+
+template <int D>
+std::array<double, 3> SimulationOf<D>::momentum() const {
+  std::array<double, 3> total{};
+  for (const Body<D>& b : domain_.bodies)
+    for (std::size_t i = 0; i < b.count(); ++i)
+      for (std::size_t a = 0; a < D; ++a) total[a] += b.mass()[i] * b.v(static_cast<int>(a))[i];
+  return total;
+}
+
+template <int D>
+Limiter SimulationOf<D>::limiter() const {
+  Limiter result;
+  if (domain_.sums.size() != domain_.grid.patches.size()) return result;
+  std::size_t fastest = 0;
+  for (std::size_t p = 1; p < domain_.sums.size(); ++p)
+    if (domain_.sums[p].stress.fastest > domain_.sums[fastest].stress.fastest) fastest = p;
+  const Patch<D>& patch = domain_.grid.patches[fastest];
+  const Body<D>& b = body(patch.body);
+  const Material& material = domain_.materials[static_cast<std::size_t>(b.material)];
+  std::visit(
+      [&](const auto& model) {
+        using Model = std::remove_cvref_t<decltype(model)>;
+        for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
+          const std::size_t i = b.order[k];
+          const auto state = load_state<Model, double, D>(b.columns, b.at.state, [&](const double* c) { return c[i]; });
+          Sym<double, D> stress;
+          for (int c = 0; c < Sym<double, D>::size; ++c) stress.c[c] = b.stress(c)[i];
+          double speed = 0.0;
+          for (int a = 0; a < D; ++a) speed += b.v(a)[i] * b.v(a)[i];
+          speed = std::sqrt(speed);
+          const double c = model.sound_speed(stress, state, b.volume()[i] * material.density / b.mass()[i]);
+          if (c + speed > result.sound_speed + result.speed || result.body < 0)
+            result = {patch.body, static_cast<std::int64_t>(b.id[i]), c, speed};
+        }
+      },
+      material.strength);
+  return result;
+}
+
+template <int D>
+Bytes SimulationOf<D>::bytes() const {
+  Bytes r;
+  for (const Body<D>& b : domain_.bodies) r.particles += b.bytes();
+  r.grid = domain_.grid.node_bytes();
+  if (domain_.has_contact()) r.contact = domain_.contact.bytes();
+  r.other = domain_.sums.capacity() * sizeof(PatchSums<D>) + history_.capacity() * sizeof(double);
+  return r;
+}
+
+template <int D>
+int SimulationOf<D>::column_components(int b, const std::string& name) const {
+  return name == "stress" ? 6 : body(b).columns.info(name).components;
+}
+
+template <int D>
+void SimulationOf<D>::copy_column(int number, const std::string& name, std::span<double> to) const {
+  const Body<D>& b = body(number);
+  const ColumnInfo& info = b.columns.info(name);
+  const auto width = static_cast<std::size_t>(column_components(number, name));
+  if (to.size() != b.count() * width) throw std::invalid_argument("copy_column: wrong size");
+  std::fill(to.begin(), to.end(), 0.0);
+  for (int c = 0; c < info.components; ++c) {
+    const double* from = b.columns.component(info.first + c);
+    // Plane strain keeps xx yy zz xy; the fourth becomes the sixth of xx yy zz yz xz xy.
+    const auto place = static_cast<std::size_t>(name == "stress" && D == 2 && c == 3 ? 5 : c);
+    for (std::size_t k = 0; k < b.count(); ++k) to[b.id[k] * width + place] = from[k];
+  }
+}
+
+template <int D>
+void SimulationOf<D>::set_velocity(int number, std::span<const double> velocities) {
+  Body<D>& b = domain_.bodies.at(static_cast<std::size_t>(number));
+  if (velocities.size() != b.count() * D) throw std::invalid_argument("velocities must be (n, D)");
+  check_finite(velocities, "velocities");
+  const double before = kinetic_energy();
+  for (std::size_t k = 0; k < b.count(); ++k)
+    for (std::size_t a = 0; a < D; ++a) b.v(static_cast<int>(a))[k] = velocities[b.id[k] * D + a];
+  if (!prepared_) return;
+  ledger_.external += kinetic_energy() - before;
+  ledger_.kinetic = kinetic_energy();
+  ledger_.momentum = momentum();
+  probe_speeds();
+}
+
+template class SimulationOf<2>;
+template class SimulationOf<3>;
+
+}  // namespace mpm

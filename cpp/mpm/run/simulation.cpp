@@ -1,0 +1,200 @@
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "mpm/run/simulation_of.hpp"
+
+namespace mpm {
+namespace {
+
+void check(bool condition, const std::string& sentence) {
+  if (!condition) throw std::invalid_argument(sentence);
+}
+
+void check(const Settings& s) {
+  check(s.dimension == 2 || s.dimension == 3, "dimension must be 2 or 3");
+  check(s.cell_size > 0.0 && std::isfinite(s.cell_size), "cell_size must be > 0");
+  check(s.time_step_factor > 0.0 && s.time_step_factor <= 1.0, "time_step_factor must lie in (0, 1]");
+  check(s.threads >= 1, "threads must be >= 1");
+  check(s.friction >= 0.0, "friction must be >= 0");
+  check(s.energy_growth_limit > 0.0, "energy_growth_limit must be > 0");
+  check(s.viscosity_quadratic >= 0.0 && s.viscosity_linear >= 0.0, "viscosity factors must be >= 0");
+}
+
+}  // namespace
+
+const std::vector<std::string>& Simulation::history_columns() {
+  static const std::vector<std::string> names = {
+      "step",     "time",   "dt",        "kinetic",  "internal",   "plastic",    "viscous",    "friction",          "contact",
+      "external", "eroded", "numerical", "residual", "momentum_x", "momentum_y", "momentum_z", "numerical_mapping", "numerical_time"};
+  return names;
+}
+
+std::unique_ptr<Simulation> make_simulation(const Settings& settings) {
+  check(settings);
+  if (settings.dimension == 2) return std::make_unique<SimulationOf<2>>(settings);
+  return std::make_unique<SimulationOf<3>>(settings);
+}
+
+template <int D>
+SimulationOf<D>::SimulationOf(const Settings& settings) : settings_(settings), stages_(stages_of<D>(settings.scheme)) {
+  TileGrid<D>& grid = domain_.grid;
+  grid.cell_size = settings.cell_size;
+  grid.walls.exist = settings.box_cells[0] > 0;
+  for (std::size_t a = 0; a < D; ++a) {
+    const int axis = static_cast<int>(a);
+    grid.origin[axis] = settings.origin[a];
+    domain_.gravity[axis] = settings.gravity[a];
+    grid.walls.cells[a] = settings.box_cells[a];
+    grid.walls.face[a][0] = settings.walls[2 * a];
+    grid.walls.face[a][1] = settings.walls[2 * a + 1];
+  }
+  domain_.viscosity = {settings.viscosity_quadratic, settings.viscosity_linear};
+  domain_.contact_settings.enabled = settings.contact;
+  domain_.contact_settings.detection = settings.detection;
+  domain_.contact_settings.normal = settings.normal_rule;
+  domain_.contact_settings.gap_distance = settings.gap_distance;
+  domain_.contact_settings.friction = settings.friction;
+  domain_.threads.resize(settings.threads);
+  for (std::size_t k = 0; k < stages_.size(); ++k) timers_.name(k, stages_[k].name);
+  history_.reserve(history_capacity * history_columns().size());
+}
+
+template <int D>
+void SimulationOf<D>::prepare() {
+  check(!prepared_, "prepare() has been called already");
+  check(!domain_.bodies.empty(), "there is no body");
+  make_lists(domain_.grid, domain_.bodies, domain_.threads, true);
+  if (domain_.has_contact()) domain_.contact.connect(domain_.grid);
+  probe_speeds();
+  ledger_.start = ledger_.kinetic = kinetic_energy();
+  ledger_.momentum = momentum();
+  domain_.time_step = 0.0;
+  write_history_row();  // the state at the start
+  prepared_ = true;
+}
+
+template <int D>
+void SimulationOf<D>::probe_speeds() {
+  // Without motion the stress stage leaves everything as it is and gives the speeds that the time step needs.
+  domain_.sums.assign(domain_.grid.patches.size(), {});
+  for (std::size_t p = 0; p < domain_.grid.patches.size(); ++p) {
+    const NodeBlock<D> block = domain_.grid.block(p);
+    std::fill(block.data, block.data + TileGrid<D>::block_size, 0.0);
+  }
+  domain_.time_step = 1.0;
+  update_stress_last(domain_);
+  choose_time_step();
+}
+
+template <int D>
+std::int64_t SimulationOf<D>::advance(std::int64_t max_steps, double end_time) {
+  check(prepared_, "call prepare() before advance()");
+  check(std::isfinite(end_time), "end_time must be a finite number");
+  std::int64_t made = 0;
+  while (made < max_steps && domain_.time < end_time && !failure_) {
+    const double left = end_time - domain_.time;
+    const bool last = next_time_step_ >= left;
+    domain_.time_step = last ? left : next_time_step_;
+    make_step();
+    if (last) domain_.time = end_time;
+    ++made;
+  }
+  return made;
+}
+
+template <int D>
+void SimulationOf<D>::make_step() {
+  for (std::size_t k = 0; k < stages_.size(); ++k) timers_.time(k, [&] { stages_[k].run(domain_); });
+  domain_.time += domain_.time_step;
+  ++domain_.step;
+  ContactSums contacts;
+  if (domain_.has_contact()) contacts = domain_.contact.record(domain_.time, domain_.time_step, domain_.step);
+  ledger_.add(domain_.sums, contacts, settings_.scheme == Scheme::usf);
+  write_history_row();
+  find_failure();
+  if (!failure_) choose_time_step();
+}
+
+template <int D>
+void SimulationOf<D>::choose_time_step() {
+  double fastest = 0.0;
+  for (const PatchSums<D>& s : domain_.sums) fastest = std::max(fastest, s.stress.fastest);
+  next_time_step_ = settings_.time_step_factor * settings_.cell_size / fastest;
+}
+
+template <int D>
+void SimulationOf<D>::write_history_row() {
+  if (history_.size() >= history_capacity * history_columns().size()) history_.clear();
+  const Ledger& l = ledger_;
+  for (const double value :
+       {static_cast<double>(domain_.step), domain_.time, domain_.time_step, l.kinetic, l.internal, l.plastic, l.viscous,
+        l.friction, l.contact, l.external, l.eroded, l.numerical(), l.residual(), l.momentum[0], l.momentum[1],
+        l.momentum[2], l.mapping, l.time_integration})
+    history_.push_back(value);
+}
+
+template <int D>
+std::vector<double> SimulationOf<D>::take_history() {
+  std::vector<double> rows = history_;
+  history_.clear();
+  return rows;
+}
+
+template <int D>
+void SimulationOf<D>::find_failure() {
+  bool negative = false;
+  for (const PatchSums<D>& s : domain_.sums) negative = negative || s.stress.negative_volume;
+  if (!negative && std::isfinite(ledger_.kinetic) && std::isfinite(ledger_.residual())) {
+    if (ledger_.growth() <= settings_.energy_growth_limit) return;
+    const Limiter fastest = limiter();
+    const Body<D>& b = body(fastest.body);
+    std::size_t row = 0;
+    while (static_cast<std::int64_t>(b.id[row]) != fastest.particle) ++row;
+    std::ostringstream text;
+    text << "the numerical terms have made " << ledger_.growth() << " of the largest energy brought in";
+    failure_ = failure_at("energy growth", static_cast<std::size_t>(fastest.body), row, text.str());
+    return;
+  }
+  for (std::size_t b = 0; b < domain_.bodies.size(); ++b) {
+    const Body<D>& body = domain_.bodies[b];
+    for (std::size_t i = 0; i < body.count(); ++i) {
+      bool finite = true;
+      for (int c = 0; c < body.columns.component_count(); ++c) finite = finite && std::isfinite(body.columns.component(c)[i]);
+      if (!finite) {
+        failure_ = failure_at("non-finite", b, i, "a value of the particle is not a finite number");
+        return;
+      }
+      if (!(body.volume()[i] > 0.0)) {
+        failure_ = failure_at("negative volume", b, i, "the particle has been turned inside out");
+        return;
+      }
+    }
+  }
+  failure_ = failure_at("non-finite", 0, 0, "the energy is not a finite number");
+}
+
+template <int D>
+Failure SimulationOf<D>::failure_at(const std::string& kind, std::size_t b, std::size_t row, const std::string& what) const {
+  const Body<D>& body = domain_.bodies[b];
+  Failure f;
+  f.kind = kind;
+  f.body = static_cast<int>(b);
+  f.particle = body.id[row];
+  f.step = domain_.step;
+  f.time = domain_.time;
+  for (int a = 0; a < D; ++a) f.position[static_cast<std::size_t>(a)] = body.x(a)[row];
+  std::ostringstream text;
+  text << kind << " at step " << f.step << ", t = " << f.time << " s: " << what << " (body \"" << body.name
+       << "\", particle " << f.particle << ", at";
+  for (int a = 0; a < D; ++a) text << ' ' << body.x(a)[row];
+  text << " m)";
+  f.message = text.str();
+  return f;
+}
+
+template class SimulationOf<2>;
+template class SimulationOf<3>;
+
+}  // namespace mpm

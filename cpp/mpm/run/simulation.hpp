@@ -1,0 +1,109 @@
+#pragma once
+// The time loop, behind an interface that does not show the dimension.
+#include <array>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mpm/contact/contact_grid.hpp"
+#include "mpm/fields/columns.hpp"
+#include "mpm/materials/strength_block.hpp"
+#include "mpm/step/scheme.hpp"
+
+namespace mpm {
+
+/// What is fixed before the bodies are added. SI units. There are no defaults here: they live in the Python case.
+struct Settings {
+  int dimension = 3;                    // 2 (plane strain, 1 m thick) or 3
+  double cell_size = 0.0;               // [m]
+  std::array<double, 3> origin{};       // position of a node, and of the box's lower corner [m]
+  std::array<int, 3> box_cells{};       // cells of the box; 0, 0, 0 for no box
+  std::array<Wall, 6> walls{};          // of the box's faces: x-, x+, y-, y+, z-, z+
+  Scheme scheme = Scheme::musl;
+  double time_step_factor = 0.0;        // of the critical time step h / (c + |v|)
+  std::array<double, 3> gravity{};      // [m/s^2]
+  double viscosity_quadratic = 0.0, viscosity_linear = 0.0;
+  bool contact = false;
+  Detection detection = Detection::gap;
+  NormalRule normal_rule = NormalRule::pair;
+  double gap_distance = 0.0;            // [m]
+  double friction = 0.0;
+  int threads = 1;
+  double energy_growth_limit = 0.0;     // fraction of the largest energy brought in
+};
+
+/// Why a run had to stop.
+struct Failure {
+  std::string kind;  // "non-finite", "negative volume" or "energy growth"
+  int body = -1;
+  std::int64_t particle = -1;  // in the order in which the user gave them
+  std::int64_t step = 0;
+  double time = 0.0;
+  std::array<double, 3> position{};
+  std::string message;
+};
+
+/// The particle that limits the time step.
+struct Limiter {
+  int body = -1;
+  std::int64_t particle = -1;
+  double sound_speed = 0.0, speed = 0.0;  // [m/s]
+};
+
+struct Bytes {
+  std::size_t particles = 0, grid = 0, contact = 0, other = 0;
+};
+
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+
+  virtual int add_material(double density, const std::string& strength, const std::map<std::string, double>& parameters) = 0;
+  /// Positions and velocities are (n, D) row by row, or one row of velocities for all; volumes n values, or one for all.
+  virtual int add_body(const std::string& name, int material, std::span<const double> positions,
+                       std::span<const double> velocities, std::span<const double> volumes) = 0;
+  virtual void set_pair_friction(int a, int b, double mu) = 0;
+  /// Sort the particles, make the grid, find the first time step. Once, after the last body.
+  virtual void prepare() = 0;
+  /// Make up to `max_steps` steps, to `end_time` at most; returns how many. Stops early at a failure.
+  virtual std::int64_t advance(std::int64_t max_steps, double end_time) = 0;
+
+  virtual double time() const = 0;
+  virtual double next_time_step() const = 0;
+  virtual std::int64_t step() const = 0;
+  virtual int body_count() const = 0;
+  virtual std::size_t particle_count(int body) const = 0;
+  virtual double total_mass() const = 0;
+  virtual const std::optional<Failure>& failure() const = 0;
+  virtual Limiter limiter() const = 0;
+  virtual Bytes bytes() const = 0;
+  virtual const std::vector<std::pair<std::string_view, double>>& stage_seconds() const = 0;
+  virtual void reset_timers() = 0;
+  virtual void set_threads(int count) = 0;
+
+  virtual const std::vector<ColumnInfo>& columns(int body) const = 0;
+  /// A column in the order in which the user gave the particles, (n, components) row by row. Stress has six components
+  /// in 2D too.
+  virtual int column_components(int body, const std::string& name) const = 0;
+  virtual void copy_column(int body, const std::string& name, std::span<double> to) const = 0;
+  virtual void set_velocity(int body, std::span<const double> velocities) = 0;
+
+  static constexpr std::size_t history_capacity = 4096;
+  static const std::vector<std::string>& history_columns();
+  /// Rows of the steps since the last call, at most history_capacity.
+  virtual std::vector<double> take_history() = 0;
+
+  virtual const std::vector<PairRecord>& pairs() const = 0;
+  virtual std::size_t overlapped_nodes() const = 0;
+  virtual std::size_t overlapped_nodes_max() const = 0;
+  virtual int bodies_per_node_max() const = 0;
+};
+
+/// Throws std::invalid_argument, in one sentence, for a setting out of range.
+std::unique_ptr<Simulation> make_simulation(const Settings& settings);
+
+}  // namespace mpm

@@ -1,0 +1,70 @@
+#pragma once
+// The simulation in D dimensions.
+#include "mpm/run/ledger.hpp"
+#include "mpm/run/simulation.hpp"
+#include "mpm/run/timers.hpp"
+
+namespace mpm {
+
+template <int D>
+class SimulationOf final : public Simulation {
+ public:
+  explicit SimulationOf(const Settings& settings);
+
+  int add_material(double density, const std::string& strength, const std::map<std::string, double>& parameters) override;
+  int add_body(const std::string& name, int material, std::span<const double> positions,
+               std::span<const double> velocities, std::span<const double> volumes) override;
+  void set_pair_friction(int a, int b, double mu) override;
+  void prepare() override;
+  std::int64_t advance(std::int64_t max_steps, double end_time) override;
+
+  double time() const override { return domain_.time; }
+  double next_time_step() const override { return next_time_step_; }
+  std::int64_t step() const override { return domain_.step; }
+  int body_count() const override { return static_cast<int>(domain_.bodies.size()); }
+  std::size_t particle_count(int body) const override { return this->body(body).count(); }
+  double total_mass() const override;
+  const std::optional<Failure>& failure() const override { return failure_; }
+  Limiter limiter() const override;
+  Bytes bytes() const override;
+  const std::vector<std::pair<std::string_view, double>>& stage_seconds() const override { return timers_.seconds(); }
+  void reset_timers() override { timers_.reset(); }
+  void set_threads(int count) override { domain_.threads.resize(count); }
+
+  const std::vector<ColumnInfo>& columns(int body) const override { return this->body(body).columns.infos(); }
+  int column_components(int body, const std::string& name) const override;
+  void copy_column(int body, const std::string& name, std::span<double> to) const override;
+  void set_velocity(int body, std::span<const double> velocities) override;
+
+  std::vector<double> take_history() override;
+  const std::vector<PairRecord>& pairs() const override { return domain_.contact.pairs(); }
+  std::size_t overlapped_nodes() const override { return domain_.contact.overlapped_nodes(); }
+  std::size_t overlapped_nodes_max() const override { return domain_.contact.overlapped_nodes_max(); }
+  int bodies_per_node_max() const override { return domain_.contact.bodies_per_node_max(); }
+
+ private:
+  const Body<D>& body(int b) const { return domain_.bodies.at(static_cast<std::size_t>(b)); }
+  double kinetic_energy() const;
+  std::array<double, 3> momentum() const;
+  void probe_speeds();
+  void make_step();
+  void choose_time_step();
+  void write_history_row();
+  void find_failure();
+  Failure failure_at(const std::string& kind, std::size_t body, std::size_t row, const std::string& what) const;
+
+  Settings settings_;
+  Domain<D> domain_;
+  std::span<const Stage<D>> stages_;
+  StageTimers timers_;
+  Ledger ledger_;
+  double next_time_step_ = 0.0;
+  bool prepared_ = false;
+  std::optional<Failure> failure_;
+  std::vector<double> history_;  // rows not yet taken; room for history_capacity is made once
+};
+
+extern template class SimulationOf<2>;
+extern template class SimulationOf<3>;
+
+}  // namespace mpm

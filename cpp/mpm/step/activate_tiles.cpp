@@ -1,0 +1,16 @@
+#include "mpm/step/stages.hpp"
+
+namespace mpm {
+
+template <int D>
+void activate_tiles(Domain<D>& domain) {
+  const bool changed = mend_lists(domain.grid, domain.bodies, domain.threads, domain.list_scratch);
+  sort_disordered(domain.bodies, domain.threads);
+  domain.sums.assign(domain.grid.patches.size(), {});
+  if (changed && domain.has_contact()) domain.contact.connect(domain.grid);
+}
+
+template void activate_tiles<2>(Domain<2>&);
+template void activate_tiles<3>(Domain<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,59 @@
+#include "mpm/step/cell_loop.hpp"
+#include "mpm/step/stages.hpp"
+
+namespace mpm {
+namespace {
+
+/// 1 at the nodes that a patch owns, 0 at those that another patch counts.
+template <int D>
+void ownership(const Patch<D>& patch, double* own) {
+  for (int n = 0; n < Tile<D>::node_stride; ++n) own[n] = 0.0;
+  for (int n = 0; n < Tile<D>::node_count; ++n) {
+    const int region = region_of_node<D>[static_cast<std::size_t>(n)];
+    own[n] = region == Tile<D>::self ? 1.0 : static_cast<double>(patch.owned >> region & 1u);
+  }
+}
+
+}  // namespace
+
+template <int D>
+void advance_nodes(Domain<D>& domain) {
+  auto& grid = domain.grid;
+  const double dt = domain.time_step;
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    using T = Batch<native_lanes>;
+    const Patch<D>& patch = grid.patches[p];
+    const NodeBlock<D> block = grid.block(p);
+    // Walls take up the force along the axes they hold; gravity there is cancelled below with the increment.
+    for_each_held_node(grid, patch, [&](int node, unsigned held) {
+      for (int a = 0; a < D; ++a)
+        if (held >> a & 1u) block.force(a)[node] = -block.mass()[node] * domain.gravity[a];
+    });
+    alignas(cache_line) double own[Tile<D>::node_stride];
+    ownership(patch, own);
+    T work(0.0), gravity_first(0.0), gravity_second(0.0);
+    for (int n = 0; n < Tile<D>::node_stride; n += native_lanes) {
+      const T m = T::load(block.mass() + n), owned = T::load(own + n);
+      const T impulse = select(m > T(0.0), T(dt) / m, T(0.0));
+      for (int a = 0; a < D; ++a) {
+        const T g(domain.gravity[a]);
+        const T v = T::load(block.velocity(a) + n), f = T::load(block.force(a) + n);
+        const T dv = impulse * (f + m * g);
+        work += owned * f * v;
+        gravity_first += owned * m * g * v;
+        gravity_second += owned * m * g * dv;
+        (v + dv).store(block.velocity(a) + n);
+        dv.store(block.force(a) + n);
+      }
+    }
+    PatchSums<D>& sums = domain.sums[p];
+    sums.force_work = dt * sum(work);
+    sums.gravity_first = dt * sum(gravity_first);
+    sums.gravity_second = 0.5 * dt * sum(gravity_second);
+  });
+}
+
+template void advance_nodes<2>(Domain<2>&);
+template void advance_nodes<3>(Domain<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,89 @@
+#pragma once
+// The two loops every particle stage is made of: over the cells of a patch, and over a cell's particles in lanes.
+#include "mpm/basis/linear.hpp"
+#include "mpm/domain.hpp"
+
+namespace mpm {
+
+/// A cell of a patch being worked on: its coordinates, its first node in the block, its particles.
+template <int D>
+struct CellRange {
+  Index<D> cell;        // grid coordinates
+  int first_node;       // in the patch's block
+  const std::uint32_t* rows;
+  std::uint32_t count;
+};
+
+/// f(CellRange) for every occupied cell of a patch.
+template <int D, class F>
+void for_each_cell(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch, F&& f) {
+  const Index<D> first = grid.first_cell(patch.tile);
+  patch.for_each_cell([&](int c, std::uint32_t begin, std::uint32_t end) {
+    const Index<D> local = Tile<D>::cell_index(c);
+    CellRange<D> range{first, Tile<D>::node(local), body.order.data() + begin, end - begin};
+    for (int a = 0; a < D; ++a) range.cell[a] += local[a];
+    f(range);
+  });
+}
+
+/// f(rows) for the particles of a cell, W at a time.
+template <int D, class F>
+void for_each_group(const CellRange<D>& cell, F&& f) {
+  for (std::uint32_t k = 0; k < cell.count; k += native_lanes)
+    f(LaneRows<native_lanes>(cell.rows + k, cell.count - k));
+}
+
+/// Position of the particles in their cell, in [0, 1].
+template <int D>
+Vec<Batch<native_lanes>, D> local_position(const TileGrid<D>& grid, const Body<D>& body, const CellRange<D>& cell,
+                                           const LaneRows<native_lanes>& rows) {
+  Vec<Batch<native_lanes>, D> xi;
+  for (int a = 0; a < D; ++a) xi[a] = Linear<D>::local(grid.in_cells(load(body.x(a), rows), a), cell.cell[a]);
+  return xi;
+}
+
+/// Add what a cell's particles give to its nodes to one field of a block.
+template <int D>
+void add_to_nodes(double* field, int first_node, const CellNodes<D>& value) {
+  static constexpr auto offset = Tile<D>::corner_offsets();
+  double v[CellNodes<D>::count];
+  for (int k = 0; k < CellNodes<D>::parts; ++k) value.part[k].store(v + k * CellNodes<D>::width);
+  for (int k = 0; k < CellNodes<D>::count; ++k) field[first_node + offset[static_cast<std::size_t>(k)]] += v[k];
+}
+
+/// Set fields [first, last) of a block to zero.
+template <int D>
+void clear_fields(const NodeBlock<D>& block, int first, int last) {
+  std::fill(block.data + first * Tile<D>::node_stride, block.data + last * Tile<D>::node_stride, 0.0);
+}
+
+/// f(node, held axes) for the nodes of a patch that walls hold.
+template <int D, class F>
+void for_each_held_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
+  if (!patch.at_wall) return;
+  const Index<D> first = grid.first_cell(patch.tile);
+  for (int n = 0; n < Tile<D>::node_count; ++n) {
+    Index<D> node = Tile<D>::node_index(n);
+    for (int a = 0; a < D; ++a) node[a] += first[a];
+    if (const unsigned held = grid.walls.held(node)) f(n, held);
+  }
+}
+
+/// Turn a field of momenta [kg m/s] into velocities [m/s]: zero without mass, and along axes held by walls.
+template <int D, class Field>
+void momentum_to_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block, Field&& field) {
+  constexpr int n = Tile<D>::node_stride;
+  alignas(cache_line) double inverse[n];
+  const double* mass = block.mass();
+  for (int i = 0; i < n; ++i) inverse[i] = mass[i] > 0.0 ? 1.0 / mass[i] : 0.0;
+  for (int a = 0; a < D; ++a) {
+    double* v = field(a);
+    for (int i = 0; i < n; ++i) v[i] *= inverse[i];
+  }
+  for_each_held_node(grid, patch, [&](int node, unsigned held) {
+    for (int a = 0; a < D; ++a)
+      if (held >> a & 1u) field(a)[node] = 0.0;
+  });
+}
+
+}  // namespace mpm

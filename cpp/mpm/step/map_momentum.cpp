@@ -1,0 +1,25 @@
+#include "mpm/step/scatter_momentum.hpp"
+#include "mpm/step/stages.hpp"
+
+namespace mpm {
+
+template <int D>
+void map_momentum(Domain<D>& domain) {
+  auto& grid = domain.grid;
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const Patch<D>& patch = grid.patches[p];
+    const NodeBlock<D> block = grid.block(p);
+    clear_fields(block, 0, 1 + D);
+    scatter_momentum<true>(grid, domain.body_of(patch), patch, block.mass(), [&](int a) { return block.velocity(a); });
+  });
+  grid.sum_shared_nodes(domain.threads, 0, 1 + D);
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const NodeBlock<D> block = grid.block(p);
+    momentum_to_velocity(grid, grid.patches[p], block, [&](int a) { return block.velocity(a); });
+  });
+}
+
+template void map_momentum<2>(Domain<2>&);
+template void map_momentum<3>(Domain<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,25 @@
+#include "mpm/step/scatter_momentum.hpp"
+#include "mpm/step/stages.hpp"
+
+namespace mpm {
+
+template <int D>
+void remap_momentum(Domain<D>& domain) {
+  auto& grid = domain.grid;
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const Patch<D>& patch = grid.patches[p];
+    const NodeBlock<D> block = grid.block(p);
+    clear_fields(block, 1 + D, 1 + 2 * D);
+    scatter_momentum<false>(grid, domain.body_of(patch), patch, nullptr, [&](int a) { return block.force(a); });
+  });
+  grid.sum_shared_nodes(domain.threads, 1 + D, 1 + 2 * D);
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const NodeBlock<D> block = grid.block(p);
+    momentum_to_velocity(grid, grid.patches[p], block, [&](int a) { return block.force(a); });
+  });
+}
+
+template void remap_momentum<2>(Domain<2>&);
+template void remap_momentum<3>(Domain<3>&);
+
+}  // namespace mpm

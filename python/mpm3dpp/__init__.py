@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""MPM3Dpp: impact and frictional contact of any number of deformable bodies.
+
+>>> import mpm3dpp
+>>> case = mpm3dpp.load_case("case.toml")
+>>> mpm3dpp.run_case(case, "results/rings")
+>>> results = mpm3dpp.open_results("results/rings")
+
+What is named in `__all__` is loaded at first use, so that `import mpm3dpp` stays fast.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from . import shapes
+    from .case import Body, Case, Material, load_case
+    from .case_parts import Contact, ContactPair, Grid, GridBox, Output, Run, Viscosity, Walls
+    from .errors import CaseError, RunError
+    from .io import open_results
+    from .materials import Strength
+    from .simulation import Simulation, run_case
+
+    __version__: str
+
+_HOMES = {
+    "case": ("Body", "Case", "Material", "load_case"),
+    "case_parts": (
+        "Contact",
+        "ContactPair",
+        "Grid",
+        "GridBox",
+        "Output",
+        "Run",
+        "Viscosity",
+        "Walls",
+    ),
+    "errors": ("CaseError", "RunError"),
+    "io": ("open_results",),
+    "materials": ("Strength",),
+    "simulation": ("Simulation", "run_case"),
+}
+_HOME = {name: home for home, names in _HOMES.items() for name in names}
+
+__all__ = [
+    "Body",
+    "Case",
+    "CaseError",
+    "Contact",
+    "ContactPair",
+    "Grid",
+    "GridBox",
+    "Material",
+    "Output",
+    "Run",
+    "RunError",
+    "Simulation",
+    "Strength",
+    "Viscosity",
+    "Walls",
+    "__version__",
+    "load_case",
+    "open_results",
+    "run_case",
+    "shapes",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            return version("mpm3dpp")
+        except PackageNotFoundError:
+            return "0+unknown"
+    if name == "shapes":
+        return importlib.import_module(".shapes", __name__)
+    if name in _HOME:
+        return getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The typed case: what a TOML file, the Python API and importers all become. SI units throughout.
+
+>>> case = load_case("case.toml")
+>>> case.grid.cell_size, case.body["left"].velocity
+(0.0008, (30.0, 0.0))
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
+
+from . import case_file
+from .case_checks import check_case
+from .case_parts import Contact, Grid, Output, Run
+from .errors import CaseError, from_validation, key_text, violation
+from .errors import Path as KeyPath
+from .materials import AnyStrength
+from .model import CaseModel, Count, Text
+from .shapes.base import KINDS, AnyShape
+from .units import Density, PositiveLength, Spin, VelocityVector
+
+
+class Material(CaseModel):
+    """What bodies are made of.
+
+    Attributes:
+        density: initial density [kg/m^3].
+        strength: one strength model with its parameters, `{"elastic": {"E": ..., "nu": ...}}`.
+    """
+
+    density: Density
+    strength: AnyStrength
+
+
+class Body(CaseModel):
+    """A body: a shape filled with particles of one material.
+
+    Attributes:
+        material: name of its material.
+        shape: any shape of `mpm3dpp.shapes`.
+        particles_per_cell: particles per cell along each direction; default 2.
+        spacing: distance of the particles [m], in place of `particles_per_cell`. Either way they
+            stand on a lattice that is aligned with the grid's origin.
+        velocity: initial velocity [m/s], D numbers; default zero.
+        angular_velocity: initial spin about the mass centre [rad/s]: one number in 2D, three in
+            3D; default zero. Stored as a tuple.
+    """
+
+    material: Text
+    shape: AnyShape
+    particles_per_cell: Count | None = None
+    spacing: PositiveLength | None = None
+    velocity: VelocityVector = ()
+    angular_velocity: Spin = ()
+
+    @model_validator(mode="after")
+    def _one_spacing(self) -> Body:
+        if self.particles_per_cell is not None and self.spacing is not None:
+            rule = "must not be given together with particles_per_cell"
+            raise violation(rule, "keep one of the two", path=("spacing",))
+        if self.particles_per_cell is None and self.spacing is None:
+            self.__dict__["particles_per_cell"] = 2
+        return self
+
+    def particle_spacing(self, grid: Grid) -> float:
+        """Return the distance of neighbouring particles [m]."""
+        if self.spacing is not None:
+            return self.spacing
+        return grid.cell_size / (self.particles_per_cell or 2)
+
+
+class Case(CaseModel):
+    """A whole problem, checked. See `Grid`, `Run`, `Output`, `Contact`, `Material`, `Body`.
+
+    Attributes:
+        title: one line for pictures and results.
+        material, body: by name, in the order of the file.
+        text: the file's text, empty for a case built in Python.
+        source: the file's path, None for a case built in Python.
+    """
+
+    title: Text = ""
+    grid: Grid
+    run: Run
+    output: Output = Field(default_factory=Output)
+    contact: Contact = Field(default_factory=Contact)
+    material: Annotated[dict[str, Material], Field()]
+    body: Annotated[dict[str, Body], Field()]
+
+    _text: str = PrivateAttr("")
+    _source: Path | None = PrivateAttr(None)
+    _lines: dict[KeyPath, int] = PrivateAttr(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _whole(self) -> Case:
+        check_case(self)
+        return self
+
+    @property
+    def text(self) -> str:
+        """Text of the case file; empty for a case built in Python."""
+        return self._text
+
+    @property
+    def source(self) -> Path | None:
+        """Path of the case file; None for a case built in Python."""
+        return self._source
+
+    @classmethod
+    def from_file(cls, path: str | Path) -> Case:
+        """Read and check a case file.
+
+        Args:
+            path: a TOML file.
+
+        Returns:
+            The case, in SI units.
+
+        Raises:
+            CaseError: the file cannot be read or breaks a rule; the sentence says where.
+        """
+        case = cls.from_text(case_file.read_text(Path(path)), str(path))
+        case._source = Path(path)
+        return case
+
+    @classmethod
+    def from_text(cls, text: str, name: str = "case.toml") -> Case:
+        """Read and check a case from TOML text; `name` stands in the messages."""
+        tables = case_file.parse(text, name)
+        lines = case_file.locate_keys(text)
+        try:
+            case = cls.model_validate(tables)
+        except ValidationError as error:
+            raise from_validation(error, case_file.locator(lines, name)) from None
+        case._text, case._lines, case._source = text, lines, Path(name)
+        return case
+
+    @property
+    def case_hash(self) -> str:
+        """SHA-256 (hexadecimal) of the case in SI units, numbers to 12 digits, keys sorted.
+
+        So it depends neither on formatting nor on the units that the file uses.
+        """
+        text = json.dumps(_rounded(self.table()), sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    @property
+    def contact_enabled(self) -> bool:
+        """Whether contact is computed: not switched off, and at least two bodies."""
+        return self.contact.enabled and len(self.body) > 1
+
+    def frictions(self) -> list[tuple[int, int, float]]:
+        """Return (body, body, coefficient) of the pairs listed in `contact.pair`, a < b."""
+        names, found = list(self.body), {}
+        for pair in sorted(self.contact.pair, key=lambda p: p.bodies is not None):
+            for b in range(len(names)):
+                for a in range(b):
+                    ends = [names[a], names[b]]
+                    if pair.bodies is None:
+                        ends = [self.body[name].material for name in ends]
+                    if sorted(ends) == sorted(pair.bodies or pair.materials or []):
+                        found[a, b] = pair.friction
+        return [(a, b, friction) for (a, b), friction in sorted(found.items())]
+
+    def frame_times(self) -> list[float]:
+        """Return the times of the frames [s], the first 0 and the last the end time."""
+        end = self.run.end_time
+        if self.output.interval is None:
+            count = self.output.frames or 50
+            return [end * k / count for k in range(count)] + [end]
+        count = int(end / self.output.interval * (1 - 1e-9))
+        return [k * self.output.interval for k in range(count + 1)] + [end]
+
+    def error(self, path: KeyPath, rule: str, remedy: str = "", **value: Any) -> CaseError:
+        """Return a `CaseError` about a key of this case, with its line where it has one.
+
+        Args:
+            path: for example `("body", "left", "shape")`.
+            rule: what must hold.
+            remedy: what the user can do.
+            value: `value=...`, the value at fault.
+        """
+        place = ""
+        if self._lines:
+            place = case_file.locator(self._lines, str(self._source))(path)
+        return CaseError(rule, remedy, key=key_text(path), place=place, **value)
+
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """Return the JSON schema of case files, for editors that complete and check TOML."""
+        schema = cls.model_json_schema()
+        definitions = schema.setdefault("$defs", {})
+        definitions["shape"] = {
+            "type": "object",
+            "additionalProperties": False,
+            "minProperties": 1,
+            "maxProperties": 1,
+            "properties": {kind: shape.model_json_schema() for kind, shape in KINDS.items()},
+        }
+        definitions["Body"]["properties"]["shape"] = {"$ref": "#/$defs/shape"}
+        return schema
+
+
+def _rounded(value: Any) -> Any:
+    """Return plain data with every float rounded to 12 significant digits."""
+    if isinstance(value, float):
+        return float(f"{value:.12g}")
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    return [_rounded(item) for item in value] if isinstance(value, list) else value
+
+
+def load_case(path: str | Path) -> Case:
+    """Read and check a case file; the same as `Case.from_file`."""
+    return Case.from_file(path)

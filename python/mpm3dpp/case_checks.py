@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Checks of a case across its tables: names that must exist, numbers per vector, defaults by D."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .case_parts import STANDARD_FIELDS
+from .errors import Path, nearest, violation
+from .materials import state_columns
+
+if TYPE_CHECKING:
+    from .case import Body, Case
+
+
+def check_case(case: Case) -> None:
+    """Check a whole case and fill in the defaults that depend on the dimension.
+
+    Raises:
+        PydanticCustomError: a violation, with its path in the case.
+    """
+    for name, what in (("material", case.material), ("body", case.body)):
+        if not what:
+            raise violation("must not be empty", f"add a table [{name}.NAME]", path=(name,))
+        if "" in what:
+            raise violation("must have a name", "write [body.left]", path=(name, ""))
+    dimension = case.grid.dimension
+    _check_vector(case.run, "gravity", dimension, ("run",))
+    for name, body in case.body.items():
+        _check_body(case, body, ("body", name))
+    for index, pair in enumerate(case.contact.pair):
+        key = "bodies" if pair.bodies is not None else "materials"
+        known = case.body if pair.bodies is not None else case.material
+        for position, word in enumerate(pair.bodies or pair.materials or []):
+            if word not in known:
+                rule = f"is not a {'body' if key == 'bodies' else 'material'} of this case"
+                path: Path = ("contact", "pair", index, key, position)
+                raise violation(rule, nearest(word, known), value=word, path=path)
+    _check_output(case)
+
+
+def _check_vector(owner: object, name: str, dimension: int, path: Path) -> None:
+    """Check the number of components of a vector and replace an absent one by zero."""
+    vector = getattr(owner, name)
+    if vector and len(vector) != dimension:
+        rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
+        remedy = f"it has {len(vector)}, give {dimension}"
+        raise violation(rule, remedy, value=list(vector), path=(*path, name))
+    owner.__dict__[name] = vector or (0.0,) * dimension
+
+
+def _check_body(case: Case, body: Body, path: Path) -> None:
+    dimension = case.grid.dimension
+    if body.material not in case.material:
+        rule, remedy = "is not a material of this case", nearest(body.material, case.material)
+        raise violation(rule, remedy, value=body.material, path=(*path, "material"))
+    wrong = body.shape.wrong_dimension(dimension, (*path, "shape"))
+    if wrong is not None:
+        raise violation(wrong[1], wrong[2], path=wrong[0])
+    _check_vector(body, "velocity", dimension, path)
+    spin, wanted = body.angular_velocity, 1 if dimension == 2 else 3
+    if spin and len(spin) != wanted:
+        numbers = "one number" if wanted == 1 else "three numbers"
+        rule = f"must be {numbers}, as grid.dimension = {dimension}"
+        example = '"10 rad/s"' if wanted == 1 else '[0, 0, "10 rad/s"]'
+        remedy = f"for example {example}"
+        raise violation(rule, remedy, value=list(spin), path=(*path, "angular_velocity"))
+    body.__dict__["angular_velocity"] = spin or (0.0,) * wanted
+
+
+def _check_output(case: Case) -> None:
+    used = {body.material for body in case.body.values()}
+    models = {case.material[name].strength.model for name in used}
+    extra = ["volume", "mass", *state_columns(models)]
+    if case.run.viscosity is not None:
+        extra.append("viscosity_pressure")
+    extra = list(dict.fromkeys(extra))
+    for index, word in enumerate(case.output.fields):
+        if word not in (*STANDARD_FIELDS, *extra):
+            rule = "is not a column that this case stores"
+            remedy = nearest(word, extra)
+            raise violation(rule, remedy, value=word, path=("output", "fields", index))
+    colours = picture_names(case)
+    if case.output.picture not in colours:
+        remedy = nearest(case.output.picture, colours)
+        rule = "is not a column that colours a picture of this case"
+        raise violation(rule, remedy, value=case.output.picture, path=("output", "picture"))
+    interval = case.output.interval
+    if interval is not None and case.run.end_time / interval > 100_000:
+        rule = "gives more than 100000 frames"
+        raise violation(rule, "give a longer interval", value=interval, path=("output", "interval"))
+
+
+def picture_names(case: Case) -> list[str]:
+    """Return what `output.picture` may be: stored columns, speed, and components of vectors."""
+    axes = ("x", "y", "z")[: case.grid.dimension]
+    stress = ("xx", "yy", "zz", "yz", "xz", "xy") if len(axes) == 3 else ("xx", "yy", "zz", "xy")
+    names = [name for name in STANDARD_FIELDS if name not in ("position", "velocity", "stress")]
+    names += ["speed", *(f"velocity_{a}" for a in axes), *(f"stress_{s}" for s in stress)]
+    return list(dict.fromkeys([*names, "velocity", "stress", *case.output.fields]))

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command line: `mpm3dpp run | check | preview | plot | bench | materials`.
+
+Exit codes: 0 done, 1 the run had to stop, 2 a mistake in the case or on the command line.
+Heavy modules are imported by the command that needs them, so that `--help` is fast.
+"""
+
+from __future__ import annotations
+
+import enum
+import os
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .errors import CaseError, RunError
+
+app = typer.Typer(
+    name="mpm3dpp",
+    help="Material point method: impact and frictional contact of any number of bodies.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
+Threads = Annotated[
+    int | None,
+    typer.Option(min=1, help="Threads; default OMP_NUM_THREADS, else all cores."),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+
+
+class Scheme(str, enum.Enum):
+    """When the stress is updated; see `Run.scheme`."""
+
+    usf = "usf"
+    usl = "usl"
+    musl = "musl"
+
+
+def _version(wanted: bool) -> None:
+    if not wanted:
+        return
+    from . import __version__
+
+    typer.echo(f"mpm3dpp {__version__}")
+    try:
+        from . import _core
+    except ImportError:
+        typer.echo("core: not built")
+    else:
+        for name, value in _core.build_info().items():
+            typer.echo(f"{name}: {value}")
+    raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Version and build."),
+    ] = False,
+) -> None:
+    """Options before the command."""
+
+
+@app.command()
+def run(
+    case: CaseFile,
+    out: Annotated[Path | None, typer.Option(help="Folder; default results/NAME.")] = None,
+    threads: Threads = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    json: Json = False,
+) -> None:
+    """Run a case: frames, history, manifest and pictures in the output folder."""
+    from .case import load_case
+    from .folders import default_folder, thread_count, writable_folder
+
+    loaded = load_case(case)
+    folder = writable_folder(out if out is not None else default_folder(case))
+    from .simulation import run_case  # The slowest import: after the mistakes.
+
+    run_case(loaded, folder, threads=thread_count(threads), quiet=quiet, json=json)
+
+
+@app.command()
+def check(case: CaseFile) -> None:
+    """Check a case and say what it amounts to, without running it."""
+    from .build import build
+    from .case import load_case
+    from .echo import echo
+
+    loaded = load_case(case)
+    typer.echo(echo(loaded, build(loaded)))
+
+
+@app.command()
+def preview(
+    case: CaseFile,
+    out: Annotated[Path | None, typer.Option(help="Picture; default in results/NAME.")] = None,
+) -> None:
+    """Draw the particles of a case before it runs."""
+    from .case import load_case
+    from .folders import default_folder, writable_folder
+    from .plots import preview as draw
+
+    loaded = load_case(case)
+    target = out if out is not None else writable_folder(default_folder(case)) / "preview.png"
+    typer.echo(draw(loaded, target))
+
+
+@app.command()
+def plot(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of a run.")],
+    frame: Annotated[int, typer.Option(help="Frame; negative counts from the end.")] = -1,
+    animation: Annotated[bool, typer.Option("--animation", help="Also animation.gif.")] = False,
+    colour: Annotated[str | None, typer.Option(help="Column that colours particles.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the pictures.")] = None,
+) -> None:
+    """Make the pictures of a run again."""
+    from .plots import plot_results
+
+    if not folder.is_dir():
+        raise CaseError("there is no such folder", "give the --out of a run", place=str(folder))
+    for picture in plot_results(folder, frame=frame, animation=animation, colour=colour, out=out):
+        typer.echo(picture)
+
+
+@app.command()
+def bench(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="elastic3d, two_cubes, ...")],
+    size: Annotated[int | None, typer.Option(min=1, help="Cells along an edge.")] = None,
+    threads: Annotated[int, typer.Option(min=1, help="Threads.")] = 1,
+    scheme: Annotated[Scheme, typer.Option(help="Scheme.")] = Scheme.musl,
+    steps: Annotated[int | None, typer.Option(min=1, help="Steps that are timed.")] = None,
+    json: Json = False,
+) -> None:
+    """Measure the speed: time per particle-step and stage, memory, bandwidth."""
+    from .bench import main as measure
+
+    measure(name, size=size, threads=threads, scheme=scheme.value, steps=steps, json=json)
+
+
+@app.command()
+def materials(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="One model only.")] = None,
+) -> None:
+    """List the material models: parameters, units, rules, sources."""
+    from .materials import listing
+
+    typer.echo(listing(name))
+
+
+def main() -> None:
+    """Run the command line and exit with 0, 1 or 2; a mistake is one sentence, no traceback."""
+    try:
+        app()
+    except CaseError as error:
+        _stop(str(error), 2)
+    except RunError as error:
+        _stop(str(error), 1)
+    except KeyboardInterrupt:
+        _stop("stopped by the user", 130)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(1)
+    except MemoryError:
+        _stop("there is not enough memory; give a larger grid.cell_size", 1)
+
+
+def _stop(sentence: str, code: int) -> None:
+    typer.echo(f"mpm3dpp: error: {sentence}", err=True)
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    main()

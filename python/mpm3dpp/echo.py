@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The short echo of a case before it runs: what `mpm3dpp check` prints."""
+
+from __future__ import annotations
+
+import importlib
+import math
+
+import numpy as np
+
+from .build import FilledBody, warnings
+from .case import Case, Material
+
+# Estimates for the echo [bytes]: particle columns without and with a state tensor, one grid cell.
+_PARTICLE_BYTES, _CELL_BYTES = 200, 150
+
+
+def sound_speed(material: Material) -> float:
+    """Return the speed of pressure waves in a material at rest [m/s].
+
+    It is sqrt(M / density), M the stress per strain of a tiny uniaxial stretch of the core's model.
+
+    Raises:
+        CaseError: the core refuses the parameters.
+    """
+    core = importlib.import_module("mpm3dpp._core")
+    strain = 1e-6
+    stretch = np.zeros((1, 3, 3))
+    stretch[0, 0, 0] = strain
+    strength = material.strength
+    stress = core.drive_material(
+        material.density, strength.model, strength.parameters, stretch, False
+    )
+    return math.sqrt(max(float(stress[1][0]), 0.0) / strain / material.density)
+
+
+def time_step(case: Case, bodies: list[FilledBody]) -> float:
+    """Return the expected first time step f h / max(c + |v|) [s]."""
+    fastest = max(
+        sound_speed(case.material[body.material])
+        + float(np.sqrt(np.einsum("ij,ij->i", body.velocities, body.velocities).max()))
+        for body in bodies
+    )
+    return case.run.time_step_factor * case.grid.cell_size / fastest
+
+
+def occupied_cells(case: Case, bodies: list[FilledBody]) -> int:
+    """Return the number of grid cells that hold particles, each body counted by itself."""
+    total = 0
+    for body in bodies:
+        cells = np.floor((body.positions - np.asarray(case.grid.lower)) / case.grid.cell_size)
+        cells -= cells.min(axis=0)
+        extent = cells.max(axis=0) + 1
+        keys = cells @ np.cumprod([1.0, *extent[:-1]])
+        total += len(np.unique(keys))
+    return total
+
+
+def echo(case: Case, bodies: list[FilledBody]) -> str:
+    """Return what the case amounts to: bodies, masses, memory, cells, time step, steps."""
+    per_metre = " per metre" if case.grid.dimension == 2 else ""
+    lines = [case.title] if case.title else []
+    for body in bodies:
+        against = "exact" if body.volume_is_exact else "measured on a fine lattice"
+        lines.append(
+            f"body {body.name}: {len(body.positions):,} particles {body.spacing:.4g} m apart, "
+            f"{body.material}, mass {body.mass:.6g} kg{per_metre}, "
+            f"{body.mass_error:+.3%} of the shape's ({against})"
+        )
+    particles = sum(len(body.positions) for body in bodies)
+    cells = occupied_cells(case, bodies)
+    memory = particles * _PARTICLE_BYTES + cells * _CELL_BYTES
+    dt = time_step(case, bodies)
+    box = case.grid.box_cells
+    bounds = " x ".join(str(n) for n in box) + " cells" if box else "no bounds"
+    contact = "none"
+    if case.contact_enabled:
+        contact = f"{case.contact.detection} detection, friction {case.contact.friction:g}"
+    lines += [
+        f"total: {particles:,} particles, mass {sum(b.mass for b in bodies):.6g} kg{per_metre}, "
+        f"about {memory / 2**20:,.1f} MiB",
+        f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
+        f"{bounds}",
+        f"contact: {contact}",
+        f"time: {case.run.scheme}, end {case.run.end_time:.6g} s, step about {dt:.3g} s, "
+        f"about {math.ceil(case.run.end_time / dt):,} steps, {len(case.frame_times())} frames",
+    ]
+    return "\n".join([*lines, *(f"warning: {sentence}" for sentence in warnings(bodies))])

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where results go, and how many threads a run takes when the user does not say."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+from .errors import CaseError
+from .io.disk import cannot_write, make_folder
+
+
+def default_folder(case_file: Path) -> Path:
+    """Return `results/NAME` beside the current directory.
+
+    NAME is the folder of a file called `case.toml`, that folder and NAME for `case_NAME.toml`
+    (`01_two_rings_velocity`), else the file's name without its ending.
+    """
+    stem, folder = case_file.stem, case_file.resolve().parent.name
+    if folder and stem == "case":
+        return Path("results") / folder
+    if folder and stem.startswith("case_"):
+        return Path("results") / f"{folder}_{stem.removeprefix('case_')}"
+    return Path("results") / stem
+
+
+def writable_folder(path: Path) -> Path:
+    """Make a folder, prove that files can be written in it, and return it.
+
+    Raises:
+        CaseError: it cannot be made or written.
+    """
+    make_folder(path)
+    try:
+        with tempfile.TemporaryFile(dir=path):
+            return path
+    except OSError as error:
+        raise cannot_write(path, error) from error
+
+
+def thread_count(wanted: int | None) -> int:
+    """Return the number of threads: what is wanted, else OMP_NUM_THREADS, else all cores.
+
+    Raises:
+        CaseError: OMP_NUM_THREADS is set to something that is no number of threads.
+    """
+    if wanted is not None:
+        return wanted
+    setting = os.environ.get("OMP_NUM_THREADS", "").split(",")[0].strip()
+    if setting:
+        if not setting.isdigit() or int(setting) < 1:
+            remedy = "unset it or give a whole number >= 1"
+            raise CaseError("must be >= 1", remedy, key="OMP_NUM_THREADS", value=setting)
+        return int(setting)
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reading and writing of results: `results.vtkhdf`, `history.csv`, `manifest.json`.
+
+Nothing heavy is imported here; h5py is loaded when a file is opened, vtk never.
+"""
+
+from mpm3dpp.io.fields import frame_arrays, pressure, von_mises
+from mpm3dpp.io.history import HistoryWriter, read_history
+from mpm3dpp.io.manifest import Manifest, build_manifest, read_manifest
+from mpm3dpp.io.result_hash import result_hash
+from mpm3dpp.io.results import Results, open_results
+from mpm3dpp.io.vtkhdf import ResultsWriter
+
+__all__ = [
+    "HistoryWriter",
+    "Manifest",
+    "Results",
+    "ResultsWriter",
+    "build_manifest",
+    "frame_arrays",
+    "open_results",
+    "pressure",
+    "read_history",
+    "read_manifest",
+    "result_hash",
+    "von_mises",
+]

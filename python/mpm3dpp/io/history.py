@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`history.csv`: one row per step with energies, ledger, momenta and contact per pair."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+
+from mpm3dpp.errors import CaseError
+from mpm3dpp.io.disk import make_folder, writing
+
+COLUMNS = (
+    *("step", "time", "dt", "kinetic", "internal", "plastic", "viscous", "friction", "contact"),
+    *("external", "eroded", "numerical", "residual", "momentum_x", "momentum_y", "momentum_z"),
+)
+"""First columns of the table, in this order; 0 where a term does not exist."""
+
+NUMERICAL = ("numerical_mapping", "numerical_time")
+"""The named parts of `numerical`, which follow."""
+
+PAIR_LIMIT = 66
+"""Most pairs that get columns of their own (12 bodies); more go to `contact_pairs.csv`."""
+
+_AXES = ("x", "y", "z")
+
+
+class HistoryWriter:
+    """Writes `history.csv` and, with very many bodies, `contact_pairs.csv` beside it.
+
+    The pairs' columns are `contact_force_<a>_<b>_x/y/z` [N] and `contact_impulse_<a>_<b>_x/y/z`
+    [N s], both on the first body (per metre of thickness in 2D). They stand in the last row
+    of each block given to `append`; cells of the rows before it stay empty (unknown).
+
+    Args:
+        path: the file; its folder is made, an old file replaced.
+        columns: the core's `history_columns`.
+        bodies: name of each body.
+        contact: whether the run has contact; without it there are no pairs' columns.
+        every: keep the rows whose step is a multiple of this, and the last of each block.
+
+    Raises:
+        CaseError: the file cannot be written; the rows written before stay readable.
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        *,
+        columns: Sequence[str],
+        bodies: Sequence[str],
+        contact: bool = True,
+        every: int = 1,
+    ) -> None:
+        self.path = Path(path)
+        self._every = max(1, every)
+        self._bodies = list(bodies)
+        own = [*COLUMNS, *NUMERICAL]
+        extra = [name for name in columns if name not in own]
+        self._where = [columns.index(n) if n in columns else -1 for n in (*own, *extra)]
+        count = len(self._bodies)
+        pairs = [(a, b) for a in range(count) for b in range(a + 1, count)] if contact else []
+        self._pairs = {pair: k for k, pair in enumerate(pairs)} if len(pairs) <= PAIR_LIMIT else {}
+        header = [*own, *extra]
+        for a, b in self._pairs:
+            for kind in ("force", "impulse"):
+                names = f"{self._bodies[a]}_{self._bodies[b]}"
+                header += [f"contact_{kind}_{names}_{x}" for x in _AXES]
+        make_folder(self.path.parent)
+        self._table = _Table(self.path, header)
+        self._long: _Table | None = None
+        if len(pairs) > PAIR_LIMIT:
+            values = [f"contact_{kind}_{x}" for kind in ("force", "impulse") for x in _AXES]
+            path = self.path.with_name("contact_pairs.csv")
+            self._long = _Table(path, ["step", "time", "body_a", "body_b", *values])
+        self._index = {name: k for k, name in enumerate(own)}
+        self._summary: dict[str, Any] = {}
+
+    def append(self, rows: np.ndarray, pairs: Sequence[Any] = ()) -> None:
+        """Write the rows of the steps made since the last call, and flush.
+
+        Args:
+            rows: the core's `history()`, shape (steps, columns).
+            pairs: the core's `contact_pairs()` after the last of these steps.
+        """
+        if len(rows) == 0:
+            return
+        table = self._reorder(np.asarray(rows, dtype=float))
+        self._note(table)
+        empty = [""] * (6 * len(self._pairs))
+        lines = []
+        for k, row in enumerate(table.tolist()):
+            last = k == len(table) - 1
+            if not last and int(row[0]) % self._every:
+                continue
+            cells = [repr(int(row[0])), *map(repr, row[1:])]
+            lines.append(cells + (self._pair_cells(pairs) if last else empty))
+        self._table.append(lines)
+        if self._long is not None:
+            self._long.append(self._pair_lines(table[-1], pairs))
+
+    def summary(self) -> dict[str, Any]:
+        """Energies of the whole run for the manifest [J], J per metre in 2D.
+
+        `initial` and `final` hold every energy of the first and last step,
+        `kinetic_min`, `residual_max` and `numerical_max` the extremes over all steps (absolute
+        values for the last two), `momentum_drift` the largest change of total momentum [N s].
+        """
+        return dict(self._summary)
+
+    def close(self) -> None:
+        """Close the files."""
+        self._table.close()
+        if self._long is not None:
+            self._long.close()
+
+    def __enter__(self) -> HistoryWriter:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _reorder(self, rows: np.ndarray) -> np.ndarray:
+        table = np.zeros((len(rows), len(self._where)))
+        for k, source in enumerate(self._where):
+            if source >= 0:
+                table[:, k] = rows[:, source]
+        return table
+
+    def _pair_cells(self, pairs: Sequence[Any]) -> list[str]:
+        values = np.zeros((len(self._pairs), 6))
+        for pair in pairs:
+            a, b = pair.bodies
+            sign = 1.0 if a < b else -1.0
+            k = self._pairs.get((min(a, b), max(a, b)))
+            if k is not None:
+                values[k, :3] = sign * np.asarray(_three(pair.force))
+                values[k, 3:] = sign * np.asarray(_three(pair.impulse))
+        return [repr(v) for v in values.ravel().tolist()]
+
+    def _pair_lines(self, row: np.ndarray, pairs: Sequence[Any]) -> list[list[str]]:
+        lines = []
+        for pair in pairs:
+            if any(pair.force):
+                names = [self._bodies[b] for b in pair.bodies]
+                values = [*_three(pair.force), *_three(pair.impulse)]
+                lines.append([repr(int(row[0])), repr(float(row[1])), *names, *map(repr, values)])
+        return lines
+
+    def _note(self, table: np.ndarray) -> None:
+        column = {name: table[:, k] for name, k in self._index.items()}
+        momentum = table[:, [self._index[f"momentum_{x}"] for x in _AXES]]
+        energies = COLUMNS[3:13]
+        new = self._summary
+        if not new:
+            new["initial"] = {name: float(column[name][0]) for name in energies}
+            new["kinetic_min"] = float("inf")
+            new["residual_max"] = new["numerical_max"] = new["momentum_drift"] = 0.0
+            self._momentum = momentum[0].copy()
+        new["final"] = {name: float(column[name][-1]) for name in energies}
+        new["kinetic_min"] = min(new["kinetic_min"], float(column["kinetic"].min()))
+        for name in ("residual", "numerical"):
+            new[f"{name}_max"] = max(new[f"{name}_max"], float(np.abs(column[name]).max()))
+        drift = np.linalg.norm(momentum - self._momentum, axis=1).max()
+        new["momentum_drift"] = max(new["momentum_drift"], float(drift))
+
+
+class _Table:
+    """A CSV file that only ever holds whole rows, even when the disk runs full."""
+
+    def __init__(self, path: Path, header: list[str]) -> None:
+        self._path = path
+        with writing(path):
+            self._file = open(path, "w", newline="", encoding="utf-8")  # noqa: SIM115
+            csv.writer(self._file, lineterminator="\n").writerow(header)
+            self._file.flush()
+            self._size = self._file.tell()
+
+    def append(self, lines: list[list[str]]) -> None:
+        text = "".join(",".join(cells) + "\n" for cells in lines)
+        try:
+            with writing(self._path):
+                self._file.write(text)
+                self._file.flush()
+                self._size = self._file.tell()
+        except CaseError:
+            with open(self._path, "r+b") as file:
+                file.truncate(self._size)
+            raise
+
+    def close(self) -> None:
+        with writing(self._path):
+            self._file.close()
+
+
+def _three(vector: Sequence[float]) -> list[float]:
+    """A vector of two or three components as three Python floats."""
+    values = [float(v) for v in vector]
+    return values + [0.0] * (3 - len(values))
+
+
+def read_history(path: str | Path) -> dict[str, np.ndarray]:
+    """The table as column name -> array (rows,), float64; empty cells are NaN.
+
+    A last row that a killed run left unfinished is dropped.
+
+    Args:
+        path: `history.csv` or the output folder that holds it.
+
+    Raises:
+        CaseError: the file is missing or is not a history table.
+    """
+    path = Path(path)
+    if path.is_dir():
+        path = path / "history.csv"
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            lines = file.read().split("\n")[:-1]  # a whole row ends with a newline
+        rows = list(csv.reader(lines))
+        header = rows[0]
+        table = [[float(cell or "nan") for cell in row] for row in rows[1:]]
+        columns = np.array(table, dtype=float).reshape(len(table), len(header))
+    except FileNotFoundError as error:
+        raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
+    except (OSError, ValueError, IndexError) as error:
+        raise CaseError(f"'{path}' is not a history table of mpm3dpp: {error}") from error
+    return {name: columns[:, k] for k, name in enumerate(header)}

@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`manifest.json`: what was run, with what, how fast, and what came out of it. SI units."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import math
+import platform
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from mpm3dpp.errors import CaseError
+from mpm3dpp.io.disk import write_atomically
+from mpm3dpp.io.result_hash import result_hash
+
+Status = Literal["completed", "interrupted", "failed"]
+
+
+@dataclasses.dataclass
+class PairRecord:
+    """Contact of two bodies over the whole run.
+
+    Attributes:
+        bodies: their names.
+        first_time: time of the first contact force [s]; None when they never touched.
+        first_gap: distance of the two surfaces at that time [m]; None when never.
+        impulse: impulse on the first body until the end [N s] (per metre in 2D).
+        friction_work: energy lost by friction [J] (per metre in 2D).
+    """
+
+    bodies: list[str]
+    first_time: float | None
+    first_gap: float | None
+    impulse: list[float]
+    friction_work: float
+
+
+@dataclasses.dataclass
+class ContactRecord:
+    """Contact of the whole run: most overlapped nodes, most bodies at a node, pairs, bytes."""
+
+    overlapped_nodes_max: int = 0
+    bodies_per_node_max: int = 0
+    peak_bytes: int = 0
+    pairs: list[PairRecord] = dataclasses.field(default_factory=list)
+
+
+@dataclasses.dataclass
+class Manifest:
+    """The record of one run; the names are the keys of the file.
+
+    Attributes:
+        version: of mpm3dpp.          case_hash: SHA-256 of the case.
+        mass: of all particles [kg] (per metre in 2D).          cell_size: [m].
+        particles, threads, steps: counts.          wall_time: of the run [s].
+        ns_per_particle_step, stages: time in the steps and in each stage [ns].
+        peak_memory_bytes: largest resident size of the process [bytes].
+        bytes: of the core: particles, grid, contact, other.
+        result_hash: see `mpm3dpp.io.result_hash`.
+        contact: see `ContactRecord`.          end_time: time reached [s].
+        status, reason: "completed", "interrupted" or "failed", and why.
+        limiter: who limits the time step: body, particle, sound_speed and speed [m/s].
+        energies: see `HistoryWriter.summary`.
+        compiler, flags, isa, platform, python: how it was built and where it ran.
+        case, case_text: the whole case as data, and the text of its file.
+    """
+
+    version: str
+    case_hash: str
+    status: Status
+    reason: str | None
+    mass: float
+    cell_size: float
+    particles: int
+    threads: int
+    steps: int
+    end_time: float
+    wall_time: float
+    ns_per_particle_step: float
+    stages: dict[str, float]
+    peak_memory_bytes: int
+    bytes: dict[str, int]
+    result_hash: str
+    contact: ContactRecord
+    limiter: dict[str, Any] | None
+    energies: dict[str, Any]
+    compiler: str
+    flags: str
+    isa: str
+    platform: str
+    python: str
+    case: dict[str, Any]
+    case_text: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data that is strictly valid JSON: NaN and infinity become None."""
+        return dict(_plain(dataclasses.asdict(self)))
+
+    def write(self, path: str | Path) -> Path:
+        """Write the file in one step. Raises `CaseError` when the folder cannot be written."""
+        path = Path(path)
+        if path.is_dir():
+            path = path / "manifest.json"
+        text = json.dumps(self.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
+        write_atomically(path, text + "\n")
+        return path
+
+
+def build_manifest(
+    simulation: Any,
+    *,
+    version: str,
+    case: Mapping[str, Any],
+    case_text: str,
+    bodies: Sequence[str],
+    cell_size: float,
+    threads: int,
+    wall_time: float,
+    status: Status,
+    reason: str | None = None,
+    energies: Mapping[str, Any] | None = None,
+    case_hash: str | None = None,
+    build: Mapping[str, Any] | None = None,
+) -> Manifest:
+    """Collect the record of a run from the core's `Simulation`.
+
+    Args:
+        simulation: after its last step.
+        version: of mpm3dpp.
+        case: the whole case as plain data, SI units.
+        case_text: text of the case file.
+        bodies: name of each body.
+        cell_size: [m].
+        threads: used.
+        wall_time: of the whole run [s].
+        status: how the run ended.
+        reason: one sentence, for "interrupted" and "failed".
+        energies: `HistoryWriter.summary()`.
+        case_hash: when the case has its own; else SHA-256 of the canonical JSON of `case`.
+        build: the core's `build_info()`.
+    """
+    build = build or {}
+    work = max(1, int(simulation.particle_count) * int(simulation.step))
+    stages = {name: 1e9 * t / work for name, t in simulation.timers().items()}
+    return Manifest(
+        version=version,
+        case_hash=case_hash or hash_case(case),
+        status=status,
+        reason=reason,
+        mass=float(simulation.total_mass),
+        cell_size=float(cell_size),
+        particles=int(simulation.particle_count),
+        threads=int(threads),
+        steps=int(simulation.step),
+        end_time=float(simulation.time),
+        wall_time=float(wall_time),
+        ns_per_particle_step=sum(stages.values()),
+        stages=stages,
+        peak_memory_bytes=peak_memory_bytes(),
+        bytes={k: int(v) for k, v in simulation.bytes().items()},
+        result_hash=result_hash(simulation),
+        contact=_contact(simulation, bodies),
+        limiter=_limiter(simulation, bodies),
+        energies=dict(energies or {}),
+        compiler=str(build.get("compiler", "unknown")),
+        flags=str(build.get("flags", "unknown")),
+        isa=str(build.get("isa", "unknown")),
+        platform=platform.platform(),
+        python=platform.python_version(),
+        case=dict(case),
+        case_text=case_text,
+    )
+
+
+def hash_case(case: Mapping[str, Any]) -> str:
+    """SHA-256 (hexadecimal) of the case as JSON with sorted keys and no white space."""
+    text = json.dumps(_plain(dict(case)), sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def peak_memory_bytes() -> int:
+    """Largest resident size of this process so far [bytes]; 0 where the system does not say."""
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return 0
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if platform.system() == "Darwin" else 1024 * peak  # Linux counts in KiB
+
+
+def read_manifest(path: str | Path) -> dict[str, Any]:
+    """The record of a run as plain data.
+
+    Args:
+        path: `manifest.json` or the output folder that holds it.
+
+    Raises:
+        CaseError: the file is missing or is not JSON.
+    """
+    path = Path(path)
+    if path.is_dir():
+        path = path / "manifest.json"
+    try:
+        return dict(json.loads(path.read_text(encoding="utf-8")))
+    except FileNotFoundError as error:
+        raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
+    except (OSError, ValueError) as error:
+        raise CaseError(f"'{path}' is not a manifest of mpm3dpp: {error}") from error
+
+
+def _contact(simulation: Any, bodies: Sequence[str]) -> ContactRecord:
+    summary = simulation.contact_summary()
+    pairs = [
+        PairRecord(
+            bodies=[bodies[b] for b in pair.bodies],
+            first_time=float(pair.first_time),
+            first_gap=float(pair.first_gap),
+            impulse=[float(v) for v in pair.impulse],
+            friction_work=float(pair.friction_work),
+        )
+        for pair in simulation.contact_pairs()
+    ]
+    return ContactRecord(
+        overlapped_nodes_max=int(summary.get("overlapped_nodes_max", 0)),
+        bodies_per_node_max=int(summary.get("bodies_per_node_max", 0)),
+        peak_bytes=int(summary.get("bytes", 0)),
+        pairs=pairs,
+    )
+
+
+def _limiter(simulation: Any, bodies: Sequence[str]) -> dict[str, Any] | None:
+    who = simulation.limiter()
+    if who is None or not 0 <= int(who.body) < len(bodies):
+        return None
+    return {
+        "body": bodies[int(who.body)],
+        "particle": int(who.particle),
+        "sound_speed": float(who.sound_speed),
+        "speed": float(who.speed),
+    }
+
+
+def _plain(value: Any) -> Any:
+    """Numbers, text, lists and dictionaries only; numbers that JSON cannot hold become None."""
+    if isinstance(value, Mapping):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple, set, np.ndarray)):
+        return [_plain(v) for v in value]
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if value is None or isinstance(value, (bool, int, str)):
+        return value
+    return str(value)

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reading `results.vtkhdf` back: times, frames as numpy arrays or as PyVista objects."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mpm3dpp.errors import CaseError
+
+if TYPE_CHECKING:
+    import pyvista
+
+FROM_VTK = (0, 1, 2, 4, 5, 3)
+"""Our order of symmetric tensors (xx yy zz yz xz xy) taken from VTK's (xx yy zz xy yz xz)."""
+
+
+class Results:
+    """The frames of one run; `results[k]` is a `pyvista.PolyData`, `arrays(k)` plain numpy.
+
+    Attributes:
+        path: the file.
+        times: time of each frame [s], shape (frames,).
+        steps: steps made until each frame, shape (frames,).
+        bodies, materials: names; the arrays `body` and `material` count in this order.
+        dimension: 2 or 3.
+        cell_size: edge of a grid cell [m].
+        origin: a corner of the grid [m], shape (3,).
+        units: name -> unit of each array.
+        title, case_hash: of the case.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        import h5py
+
+        path = Path(path)
+        if path.is_dir():
+            path = path / "results.vtkhdf"
+        self.path = path
+        if not path.is_file():
+            raise CaseError(f"there is no file '{path}': give the output folder of a run")
+        try:
+            self._file = h5py.File(path, "r", locking=False)
+            root = self._file["VTKHDF"]
+            count = int(root["Steps"].attrs["NSteps"])
+            run = json.loads(self._file["mpm3dpp"].attrs["run"])
+        except (OSError, KeyError, ValueError) as error:
+            raise CaseError(
+                f"'{path}' is not a results file of mpm3dpp: give the results.vtkhdf of a run"
+            ) from error
+        self._root = root
+        self.times: np.ndarray = root["Steps/Values"][:count]
+        self.steps: np.ndarray = (
+            root["FieldData/step"][:count] if count else np.zeros(0, dtype=np.int64)
+        )
+        self.title: str = run["title"]
+        self.case_hash: str = run["case_hash"]
+        self.bodies: list[str] = run["bodies"]
+        self.materials: list[str] = run["materials"]
+        self.dimension: int = run["dimension"]
+        self.cell_size: float = run["cell_size"]
+        self.origin = np.array(run["origin"])
+        self.units: dict[str, str] = run["units"]
+
+    @property
+    def fields(self) -> list[str]:
+        """Names of the arrays of every frame, "position" first."""
+        return ["position", *self._root["PointData"]]
+
+    def arrays(self, frame: int) -> dict[str, np.ndarray]:
+        """All arrays of a frame, float32 (integers int32), SI units.
+
+        Args:
+            frame: number of the frame; negative numbers count from the end.
+
+        Returns:
+            name -> (n,) or (n, c); symmetric tensors (n, 6) in the order xx yy zz yz xz xy.
+
+        Raises:
+            IndexError: there is no such frame.
+        """
+        frame = self._number(frame)
+        steps = self._root["Steps"]
+        part = int(steps["PartOffsets"][frame])
+        count = int(self._root["NumberOfPoints"][part])
+        first = int(steps["PointOffsets"][frame])
+        arrays = {"position": self._root["Points"][first : first + count]}
+        for name, data in self._root["PointData"].items():
+            first = int(steps["PointDataOffsets"][name][frame])
+            values = data[first : first + count]
+            arrays[name] = values[:, FROM_VTK] if _is_tensor(values) else values
+        return arrays
+
+    def nearest(self, time: float) -> int:
+        """Number of the frame nearest to `time` [s]."""
+        return int(np.argmin(np.abs(self.times - time)))
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __getitem__(self, frame: int) -> pyvista.PolyData:
+        """Frame as PyVista points with all arrays; tensors in VTK's order xx yy zz xy yz xz.
+
+        Raises:
+            IndexError: there is no such frame.
+            CaseError: PyVista is not installed.
+        """
+        try:
+            import pyvista
+        except ImportError as error:
+            raise CaseError(
+                "results[k] needs PyVista: pip install 'mpm3dpp[viz]', or use results.arrays(k)"
+            ) from error
+        arrays = self.arrays(frame)
+        cloud = pyvista.PolyData(arrays.pop("position"))
+        for name, values in arrays.items():
+            cloud.point_data[name] = (
+                values[:, np.argsort(FROM_VTK)] if _is_tensor(values) else values
+            )
+        cloud.field_data["time"] = [float(self.times[frame])]
+        cloud.field_data["step"] = [int(self.steps[frame])]
+        return cloud
+
+    def __iter__(self) -> Iterator[Any]:
+        return (self[k] for k in range(len(self)))
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def __enter__(self) -> Results:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _number(self, frame: int) -> int:
+        if not -len(self) <= frame < len(self):
+            raise IndexError(f"frame {frame} of '{self.path}': it has {len(self)} frames")
+        return frame % len(self)
+
+
+def open_results(path: str | Path) -> Results:
+    """Open the results of a run.
+
+    Args:
+        path: `results.vtkhdf` or the output folder that holds it.
+
+    Raises:
+        CaseError: the file is missing or is not one of ours.
+    """
+    return Results(path)
+
+
+def _is_tensor(values: np.ndarray) -> bool:
+    return values.ndim == 2 and values.shape[1] == 6

@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writer of `results.vtkhdf`: one growing file with every frame, for ParaView and PyVista.
+
+Format: VTKHDF 2.0 (VTK file formats, "VTKHDF"), temporal PolyData, one vertex per particle,
+float32, uncompressed chunks. Arrays that do not change (cells, body, material, size) are stored
+once and referred to by every frame. A frame counts only after all its bytes are in the file:
+the number of frames is raised last, so that a killed run leaves every finished frame readable.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mpm3dpp.errors import CaseError
+from mpm3dpp.io.disk import cannot_write, make_folder, reserve
+from mpm3dpp.io.fields import column_units, frame_arrays, particle_sizes
+
+if TYPE_CHECKING:
+    import h5py
+
+TO_VTK = (0, 1, 2, 5, 3, 4)
+"""Order of VTK's symmetric tensors (xx yy zz xy yz xz) taken from ours (xx yy zz yz xz xy)."""
+
+_TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
+_CHUNK_ROWS = 131072
+_SLACK = 1 << 20  # bytes reserved beyond the arrays of a frame: indices and chunk tables
+
+
+class ResultsWriter:
+    """Appends frames to one temporal VTKHDF file.
+
+    Six-component arrays are given in the order xx yy zz yz xz xy and stored in VTK's order
+    xx yy zz xy yz xz, because ParaView names the components by their place.
+
+    Args:
+        path: the file, usually `results.vtkhdf`; its folder is made, an old file replaced.
+        bodies: name of each body; the array `body` counts in this order.
+        materials: name of the material of each body.
+        dimension: 2 or 3.
+        cell_size: edge of a grid cell [m].
+        origin: a corner of the grid [m].
+        fields: further columns of the core to store.
+        title: title of the case.
+        case_hash: hash of the case, so that a file can be traced to its run.
+
+    Raises:
+        CaseError: the file cannot be written; what it held before stays readable.
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        *,
+        bodies: Sequence[str],
+        materials: Sequence[str],
+        dimension: int,
+        cell_size: float,
+        origin: Sequence[float] = (),
+        fields: Sequence[str] = (),
+        title: str = "",
+        case_hash: str = "",
+    ) -> None:
+        import h5py
+
+        self.path = Path(path)
+        self.frames = 0
+        self._fields = tuple(fields)
+        names = list(dict.fromkeys(materials))
+        self._materials = [names.index(name) for name in materials]
+        self._dimension = dimension
+        self._constant: dict[str, tuple[np.ndarray, int]] = {}
+        self._sizes: np.ndarray | None = None
+        self._parts: list[tuple[int, int, int]] = []  # particles, first cell, first index
+        self._meta: dict[str, Any] = {
+            "title": title,
+            "case_hash": case_hash,
+            "bodies": list(bodies),
+            "materials": names,
+            "dimension": dimension,
+            "cell_size": float(cell_size),
+            "origin": [*map(float, origin), 0.0, 0.0, 0.0][:3],
+            "units": {},
+        }
+        make_folder(self.path.parent)
+        try:
+            # An old superblock has no "open for writing" mark, which a killed run would leave
+            # behind; without locks ParaView can look at a run while it goes on.
+            self._file: h5py.File | None = h5py.File(
+                self.path, "w", libver=("earliest", "v108"), locking=False
+            )
+            _hold_metadata(self._file)
+            self._lay_out(self._file)
+            self._file.flush()
+        except (OSError, RuntimeError) as error:
+            raise cannot_write(self.path, error) from error
+
+    def write(self, simulation: Any) -> None:
+        """Append the present state of the core's `Simulation` as a frame."""
+        arrays = frame_arrays(simulation, self._materials, self._fields)
+        if self._sizes is None:
+            self._sizes = particle_sizes(simulation, self._dimension)
+            self._meta["units"] = column_units(simulation)
+        arrays["size"] = self._sizes
+        self.append(float(simulation.time), int(simulation.step), arrays)
+
+    def append(self, time: float, step: int, arrays: Mapping[str, np.ndarray]) -> None:
+        """Append one frame.
+
+        Args:
+            time: time of the frame [s].
+            step: number of steps made until then.
+            arrays: name -> array with one row per particle, SI units; "position" (n, 3) is
+                needed. Every frame must bring the same names as the first.
+
+        Raises:
+            CaseError: no room on the disk; the frames written before stay readable.
+        """
+        if self._file is None:
+            raise CaseError(f"'{self.path}' is closed: no frame can be added to it any more")
+        columns = {name: _column(array) for name, array in arrays.items()}
+        need = sum(c.nbytes for c in columns.values()) + _SLACK
+        try:
+            reserve(self.path, self._file.id.get_filesize() + need)
+        except OSError as error:
+            raise cannot_write(self.path, error) from error  # nothing was touched
+        try:
+            self._append(self._file["VTKHDF"], time, step, columns)
+            self._file.flush()
+            # only now does the frame exist for a reader
+            self._file["VTKHDF/Steps"].attrs.modify("NSteps", np.int64(self.frames + 1))
+            self._file.flush()
+        except (OSError, RuntimeError) as error:
+            with contextlib.suppress(CaseError):
+                self.close()
+            raise cannot_write(self.path, error) from error
+        self.frames += 1
+
+    def close(self) -> None:
+        """Close the file; it keeps all frames. Closing twice does nothing."""
+        file, self._file = self._file, None
+        if file is not None:
+            try:
+                file.flush()
+                size = file.id.get_filesize()
+                file.close()
+                os.truncate(self.path, size)  # gives back what was reserved and not used
+            except (OSError, RuntimeError) as error:
+                raise cannot_write(self.path, error) from error
+
+    def __enter__(self) -> ResultsWriter:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _lay_out(self, file: h5py.File) -> None:
+        """The groups and the index arrays of the format, without any frame."""
+        root = file.create_group("VTKHDF")
+        root.attrs["Version"] = np.array([2, 0], dtype=np.int64)
+        root.attrs.create("Type", np.bytes_("PolyData"))
+        _extend(root, "NumberOfPoints", (), np.int64, 256)
+        for name in _TOPOLOGIES:
+            group = root.create_group(name)
+            for index in ("NumberOfCells", "NumberOfConnectivityIds"):
+                _extend(group, index, (), np.int64, 256)
+        for name in ("PointData", "CellData", "FieldData"):
+            root.create_group(name)
+        steps = root.create_group("Steps")
+        steps.attrs["NSteps"] = np.int64(0)
+        _extend(steps, "Values", (), np.float64, 256)
+        for name in ("PartOffsets", "NumberOfParts", "PointOffsets"):
+            _extend(steps, name, (), np.int64, 256)
+        for name in ("CellOffsets", "ConnectivityIdOffsets"):
+            _extend(steps, name, (len(_TOPOLOGIES),), np.int64, 64)
+        for name in ("PointDataOffsets", "CellDataOffsets", "FieldDataOffsets"):
+            steps.create_group(name)
+        file.create_group("mpm3dpp").attrs["run"] = json.dumps(self._meta)
+
+    def _append(
+        self, root: h5py.Group, time: float, step: int, columns: Mapping[str, np.ndarray]
+    ) -> None:
+        if self.frames == 0:
+            root.file["mpm3dpp"].attrs["run"] = json.dumps(self._meta)
+        steps = root["Steps"]
+        part, cell, index = self._part(root, len(columns["position"]))
+        first = _put(root, "Points", columns["position"])
+        for name, values in (
+            ("PartOffsets", part),
+            ("NumberOfParts", 1),
+            ("PointOffsets", first),
+            ("CellOffsets", [cell, 0, 0, 0]),
+            ("ConnectivityIdOffsets", [index, 0, 0, 0]),
+        ):
+            _put(steps, name, np.array([values], dtype=np.int64))
+        for name, column in columns.items():
+            if name == "position":
+                continue
+            offset = self._constant_offset(name, column)
+            if offset is None:
+                offset = _put(root["PointData"], name, column)
+                if name in ("body", "material", "size"):
+                    self._constant[name] = (column.copy(), offset)
+            _put(steps["PointDataOffsets"], name, np.array([offset], dtype=np.int64))
+        row = _put(root["FieldData"], "step", np.array([step], dtype=np.int64))
+        _put(steps["FieldDataOffsets"], "step", np.array([row], dtype=np.int64))
+        _put(steps, "Values", np.array([time]))
+
+    def _constant_offset(self, name: str, column: np.ndarray) -> int | None:
+        """Where the same values already stand in the file, if they do."""
+        before = self._constant.get(name)
+        return before[1] if before and np.array_equal(before[0], column) else None
+
+    def _part(self, root: h5py.Group, particles: int) -> tuple[int, int, int]:
+        """The cells of a frame (one vertex a particle): an earlier set or a new one.
+
+        Returns the number of the part and its first entries in Offsets and Connectivity.
+        """
+        for part, (count, cell, index) in enumerate(self._parts):
+            if count == particles:
+                return part, cell, index
+        _put(root, "NumberOfPoints", np.array([particles], dtype=np.int64))
+        cell = sum(count for count, _, _ in self._parts)
+        for name in _TOPOLOGIES:
+            cells = particles if name == "Vertices" else 0
+            group = root[name]
+            _put(group, "NumberOfCells", np.array([cells], dtype=np.int64))
+            _put(group, "NumberOfConnectivityIds", np.array([cells], dtype=np.int64))
+            _put(group, "Offsets", np.arange(cells + 1, dtype=np.int64))
+            _put(group, "Connectivity", np.arange(cells, dtype=np.int64))
+        self._parts.append((particles, cell, cell))
+        return len(self._parts) - 1, cell, cell
+
+
+def _column(array: np.ndarray) -> np.ndarray:
+    """As stored: float32 (integers int32), two components padded to three, tensors in VTK order."""
+    array = np.asarray(array)
+    if array.ndim == 2 and array.shape[1] == 6:
+        array = array[:, TO_VTK]
+    if array.ndim == 2 and array.shape[1] == 2:
+        array = np.column_stack([array, np.zeros(len(array))])
+    kind = np.int32 if np.issubdtype(array.dtype, np.integer) else np.float32
+    with np.errstate(over="ignore"):  # beyond float32 means a run that blew up: stored as inf
+        return np.ascontiguousarray(array, dtype=kind)
+
+
+def _extend(group: h5py.Group, name: str, shape: tuple[int, ...], kind: Any, rows: int) -> Any:
+    """An empty data set that grows along its first axis, stored in chunks of `rows` rows."""
+    return group.create_dataset(
+        name, (0, *shape), maxshape=(None, *shape), chunks=(max(rows, 1), *shape), dtype=kind
+    )
+
+
+def _put(group: h5py.Group, name: str, values: np.ndarray) -> int:
+    """Append rows to a data set (made at the first call); returns the row where they start."""
+    if name not in group:
+        chunks = max(1, -(-len(values) // _CHUNK_ROWS))
+        rows = -(-len(values) // chunks) if len(values) > 1 else 256
+        _extend(group, name, values.shape[1:], values.dtype, rows)
+    data = group[name]
+    first = int(data.shape[0])
+    data.resize(first + len(values), axis=0)
+    data[first:] = values
+    return first
+
+
+def _hold_metadata(file: h5py.File) -> None:
+    """Let HDF5 write its tables at a flush only, so that the file on disk is whole between."""
+    config = file.id.get_mdc_config()
+    config.evictions_enabled = False
+    config.incr_mode = 0
+    config.flash_incr_mode = 0
+    config.decr_mode = 0
+    file.id.set_mdc_config(config)

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The base of every object of a case: pydantic models whose mistakes are `CaseError` sentences."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+
+from .errors import from_validation, nearest, violation
+
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
+
+
+class _CaseMeta(ModelMetaclass):
+    """Turns pydantic's error into ours when a user makes an object; nested checks pass by here."""
+
+    def __call__(cls, *args: Any, **kwargs: Any) -> Any:
+        try:
+            return super().__call__(*args, **kwargs)
+        except ValidationError as error:
+            raise from_validation(error, prefix=(_table_name(cls.__name__),)) from None
+
+
+class CaseModel(BaseModel, metaclass=_CaseMeta):
+    """Base of the objects of a case. Unknown keys are errors; assignments are checked.
+
+    Raises:
+        CaseError: at construction or assignment, when a value breaks a rule.
+    """
+
+    model_config = ConfigDict(extra="forbid", validate_assignment=True, protected_namespaces=())
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, data: Any) -> Any:
+        if isinstance(data, cls):
+            return data
+        if not isinstance(data, dict):
+            remedy = "write it as { key = value, ... }"
+            raise violation("must be a table", remedy, value=data)
+        for key in data:
+            if key not in cls.model_fields:
+                rule = "is not a known key"
+                raise violation(rule, nearest(str(key), cls.model_fields), path=(str(key),))
+        return data
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        try:
+            super().__setattr__(name, value)
+        except ValidationError as error:
+            raise from_validation(error, prefix=(_table_name(type(self).__name__),)) from None
+
+    def table(self) -> dict[str, Any]:
+        """Return the object as a table of a case file, in SI units, without absent keys."""
+        pairs = ((name, getattr(self, name)) for name in type(self).model_fields)
+        return {name: plain(value) for name, value in pairs if value is not None}
+
+
+def plain(value: Any) -> Any:
+    """Return a value of a case as tables, lists, numbers and text."""
+    if isinstance(value, CaseModel):
+        return value.table()
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    return value
+
+
+def _table_name(name: str) -> str:
+    """Return a class name as a table name: `GridBox` is `grid_box`."""
+    return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Annotation of a field: one of a few words. `aliases` maps other words to these."""
+
+    words: tuple[str, ...]
+    aliases: tuple[tuple[str, str], ...] = ()
+
+    def parse(self, value: Any) -> str:
+        """Return the word, or raise the violation that pydantic collects."""
+        word = dict(self.aliases).get(value, value) if isinstance(value, str) else value
+        if word in self.words:
+            return str(word)
+        if isinstance(value, str):
+            known = [*self.words, *dict(self.aliases)]
+            raise violation("is not a known choice", nearest(value, known), value=value)
+        raise violation("must be a word", f"valid here: {', '.join(self.words)}", value=value)
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(self.parse)
+
+    def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
+        return {"type": "string", "enum": [*self.words, *dict(self.aliases)]}
+
+
+@dataclass(frozen=True)
+class Exactly:
+    """Annotation of a field of one plain type: whole numbers, text or true/false, never mixed."""
+
+    kind: type
+    least: int | None = None
+    most: int | None = None
+
+    def parse(self, value: Any) -> Any:
+        """Return the value, or raise the violation that pydantic collects."""
+        names = {int: "a whole number", str: "text", bool: "true or false"}
+        examples = {int: str(self.least or 1), str: '"steel"', bool: "true"}
+        give = f"give {names[self.kind]} such as {examples[self.kind]}"
+        if self.kind is int and hasattr(value, "__index__") and not isinstance(value, bool):
+            value = int(value)
+        if type(value) is not self.kind:
+            raise violation(f"must be {names[self.kind]}", give, value=value)
+        checked: Any = value
+        if self.least is not None and checked < self.least:
+            raise violation(f"must be >= {self.least}", give, value=value)
+        if self.most is not None and checked > self.most:
+            raise violation(f"must be <= {self.most}", f"give at most {self.most}", value=value)
+        return checked
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(self.parse)
+
+    def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
+        limits = {"minimum": self.least, "maximum": self.most}
+        name = {int: "integer", str: "string", bool: "boolean"}[self.kind]
+        return {"type": name, **{key: value for key, value in limits.items() if value is not None}}
+
+
+Text = Annotated[str, Exactly(str)]
+Flag = Annotated[bool, Exactly(bool)]
+Count = Annotated[int, Exactly(int, 1)]

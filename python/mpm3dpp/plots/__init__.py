@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures of a run: frames, energies, animation, first contact, and a case before it runs.
+
+Every function writes a PNG (or GIF) and returns its path; matplotlib is loaded when one is called.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+
+def plot_results(
+    folder: str | Path,
+    frame: int = -1,
+    animation: bool = False,
+    colour: str | None = None,
+    out: str | Path | None = None,
+) -> list[Path]:
+    """Make the pictures of a run: one frame, the energies, and the animation if wanted.
+
+    Args:
+        folder: output folder of the run.
+        frame: number of the frame; negative numbers count from the end.
+        animation: also write `animation.gif` with all frames.
+        colour: array that colours the particles ("von_mises", "pressure", "speed", "body",
+            "velocity_x", "stress_xy", ... or any stored field); default the case's
+            `output.picture`, else "von_mises".
+        out: folder for the pictures; default `folder`.
+
+    Returns:
+        paths of the pictures: `frame.png` (the last frame) or `frame_0012.png`,
+        `energies.png` when there is a history, `animation.gif`.
+
+    Raises:
+        CaseError: there are no results, no such frame or no such array.
+    """
+    from mpm3dpp.plots.run import plot_results as make
+
+    return make(Path(folder), frame, animation, colour, Path(out) if out else None)
+
+
+def first_contact(folder: str | Path, out: str | Path | None = None) -> Path | None:
+    """Picture of the moment of first contact force, with the true gap between the surfaces.
+
+    Args:
+        folder: output folder of the run.
+        out: the picture; default `first_contact.png` in `folder`.
+
+    Returns:
+        path of the picture; None when no bodies touched.
+    """
+    from mpm3dpp.plots.contact import first_contact as make
+
+    return make(Path(folder), Path(out) if out else None)
+
+
+def preview(case: Any, out: str | Path) -> Path:
+    """Picture of the particles of a case before it runs, coloured by body, with box and cells.
+
+    Args:
+        case: a checked `mpm3dpp.case.Case`.
+        out: the picture, or a folder for `preview.png`.
+    """
+    from mpm3dpp.plots.case_view import preview as make
+
+    return make(case, Path(out))
+
+
+__all__ = ["first_contact", "plot_results", "preview"]

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""All frames of a run as an animated GIF."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mpm3dpp.io.disk import make_folder, writing
+from mpm3dpp.plots.frames import draw_frame, view_of
+from mpm3dpp.plots.style import styled
+
+if TYPE_CHECKING:
+    from mpm3dpp.io.results import Results
+
+_DPI = 110
+_LENGTH = 6.0  # seconds that the animation lasts, within the limits of the frame rate
+_MOST_FRAMES = 150
+
+
+def save_animation(results: Results, path: Path, colour: str = "von_mises") -> Path:
+    """Write the frames, evenly spaced in time, with one view and one range of colours.
+
+    Args:
+        results: of `open_results`.
+        path: the GIF.
+        colour: array that colours the particles, see `labels.choose`.
+
+    Raises:
+        CaseError: there is no such array, or the file cannot be written.
+    """
+    frames = _evenly(results.times)
+    view = view_of(results, frames, colour)
+    pictures = _without_margins([_pixels(results, frame, colour, view) for frame in frames])
+    palette = _palette(pictures)
+    shown = [picture.quantize(palette=palette, dither=0) for picture in pictures]
+    milliseconds = int(np.clip(1e3 * _LENGTH / len(shown), 40, 250))
+    durations = [milliseconds] * len(shown)
+    durations[-1] = 1200
+    make_folder(path.parent)
+    with writing(path):
+        shown[0].save(path, save_all=True, append_images=shown[1:], duration=durations, loop=0)
+    return path
+
+
+def _evenly(times: np.ndarray) -> list[int]:
+    """Frames nearest to evenly spaced times: extra frames must not make the motion falter."""
+    count = min(len(times), _MOST_FRAMES)
+    wanted = np.linspace(times[0], times[-1], count)
+    nearest = [int(np.argmin(np.abs(times - time))) for time in wanted]
+    return list(dict.fromkeys(nearest))
+
+
+def _pixels(results: Results, frame: int, colour: str, view: Any) -> Any:
+    from PIL import Image
+
+    figure = draw_frame(results, frame, colour, view, _DPI)
+    with styled():
+        figure.canvas.draw()
+    pixels = np.asarray(figure.canvas.buffer_rgba())  # type: ignore[attr-defined]
+    return Image.fromarray(pixels[..., :3].copy())
+
+
+def _palette(pictures: list[Any]) -> Any:
+    """One set of colours for the whole animation, from a few of its pictures side by side."""
+    from PIL import Image
+
+    chosen = [pictures[k] for k in np.linspace(0, len(pictures) - 1, 4).astype(int)]
+    width, height = chosen[0].size
+    sheet = Image.new("RGB", (width * len(chosen), height))
+    for k, picture in enumerate(chosen):
+        sheet.paste(picture, (k * width, 0))
+    colours = sheet.quantize(colors=254, method=Image.Quantize.MEDIANCUT)
+    table = np.array(colours.getpalette() or [], dtype=np.uint8).reshape(-1, 3)[:254]
+    table[(table >= 246).all(axis=1)] = 255  # the paper stays white
+    colours.putpalette([*table.ravel().tolist(), 0, 0, 0, 255, 255, 255])
+    return colours
+
+
+def _without_margins(pictures: list[Any]) -> list[Any]:
+    """All pictures cut alike, so that only a thin white margin remains."""
+    from PIL import Image, ImageChops
+
+    white = Image.new("RGB", pictures[0].size, "white")
+    boxes = [ImageChops.difference(p, white).getbbox() for p in pictures]
+    used = np.array([box for box in boxes if box])
+    width, height = pictures[0].size
+    left, top = np.maximum(used[:, :2].min(axis=0) - 8, 0).tolist()
+    right, low = np.minimum(used[:, 2:].max(axis=0) + 8, [width, height]).tolist()
+    return [picture.crop((left, top, right, low)) for picture in pictures]

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Energies, ledger, momentum and contact force of a run over time, in one picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mpm3dpp.plots.labels import prefix
+from mpm3dpp.plots.style import PALETTE, new_figure, save, styled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_MAIN = {"kinetic": "kinetic", "internal": "internal"}
+_LOST = {
+    "plastic": "plastic work",
+    "viscous": "viscosity",
+    "friction": "friction",
+    "contact": "contact",
+    "eroded": "eroded",
+    "external": "external work",
+}
+_NUMERICAL = {
+    "numerical": "numerical, sum",
+    "numerical_mapping": "numerical, mapping",
+    "numerical_time": "numerical, time",
+}
+_MOST_PAIRS = 8
+
+
+def draw_energies(history: dict[str, np.ndarray], dimension: int = 3) -> Figure:
+    """Draw the curves; the caller saves them.
+
+    Args:
+        history: of `read_history`.
+        dimension: 2 (per metre of thickness) or 3.
+    """
+    per = "/m" if dimension == 2 else ""
+    forces = _forces(history)
+    with styled():
+        figure = new_figure(10.0, 5.6)
+        grid = figure.subplots(2, 2, sharex=True)
+        factor, unit = prefix(float(np.nanmax(history["time"], initial=0.0)), "s")
+        time = history["time"] * factor
+        _energies(grid[0, 0], time, history, f"J{per}")
+        _ledger(grid[0, 1], time, history)
+        _momentum(grid[1, 0], time, history, f"N s{per}", dimension)
+        if forces:
+            _contact(grid[1, 1], time, forces, f"N{per}")
+        else:
+            _steps(grid[1, 1], time, history)
+        for axes in grid.flat:
+            axes.grid(True)
+            axes.margins(x=0.0)
+        for axes in grid[1]:
+            axes.set_xlabel(f"time [{unit}]")
+        figure.align_ylabels()
+    return figure
+
+
+def save_energies(history: dict[str, np.ndarray], path: Path, dimension: int = 3) -> Path:
+    """Draw the curves and write them as PNG; arguments of `draw_energies`."""
+    figure = draw_energies(history, dimension)
+    with styled():
+        return save(figure, path)
+
+
+def _energies(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray], unit: str) -> None:
+    scale = _scale(history)
+    curves = {label: history[name] for name, label in _MAIN.items()}
+    for name, label in _LOST.items():
+        if np.abs(history[name]).max(initial=0.0) > 1e-4 * scale:
+            curves[label] = history[name]
+    factor, unit = prefix(max(np.abs(c).max(initial=0.0) for c in curves.values()), unit)
+    for colour, (label, curve) in zip(PALETTE, curves.items(), strict=False):
+        axes.plot(time, factor * curve, color=colour, label=label)
+    total = factor * (history["kinetic"] + history["internal"])
+    axes.plot(time, total, color="black", lw=1.0, ls=(0, (4, 2)), label="kinetic + internal")
+    axes.set_ylabel(f"energy [{unit}]")
+    axes.set_title("Energies", loc="left")
+    _key(axes)
+
+
+def _ledger(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray]) -> None:
+    """Size of every term that is not kinetic or internal, as a share of the largest energy."""
+    scale = _scale(history)
+    least = 1e-18
+    k = 0
+    for name, label in {**_LOST, **_NUMERICAL}.items():
+        curve = np.abs(history[name]) / scale
+        if curve.max(initial=0.0) > least:
+            style = "-" if name in _LOST or name == "numerical" else (0, (1, 1))
+            axes.plot(time, _positive(curve), color=PALETTE[k], ls=style, label=label)
+            k += 1
+    residual = np.abs(history["residual"]) / scale
+    if residual.max(initial=0.0) > least:
+        axes.plot(time, _positive(residual), color="black", lw=0.7, label="residual")
+    if axes.lines:
+        axes.set_yscale("log")
+        low, high = axes.get_ylim()
+        axes.set_ylim(max(low, 1e-18), min(high, 10.0))
+        _key(axes)
+    else:
+        axes.text(0.5, 0.5, "all terms are zero", transform=axes.transAxes, ha="center")
+    axes.set_ylabel("share of the largest energy")
+    axes.set_title("Ledger: where energy went", loc="left")
+
+
+def _momentum(
+    axes: Axes, time: np.ndarray, history: dict[str, np.ndarray], unit: str, dimension: int
+) -> None:
+    parts = {x: history[f"momentum_{x}"] for x in "xyz"[:dimension]}
+    changes = {x: part - part[0] if len(part) else part for x, part in parts.items()}
+    factor, unit = prefix(max(np.abs(c).max(initial=0.0) for c in changes.values()), unit)
+    if factor >= 1e12:  # rounding: no prefix, the axis shows the power of ten
+        factor, unit = 1.0, unit[1:]
+    for colour, (x, change) in zip(PALETTE, changes.items(), strict=False):
+        axes.plot(time, factor * change, color=colour, lw=0.8, label=x)
+    axes.set_ylabel(f"change of momentum [{unit}]")
+    axes.set_title("Total momentum", loc="left")
+    _key(axes)
+
+
+def _contact(axes: Axes, time: np.ndarray, forces: dict[str, np.ndarray], unit: str) -> None:
+    factor, unit = prefix(max(float(np.nanmax(f)) for f in forces.values()), unit)
+    order = sorted(forces, key=lambda name: -np.nansum(forces[name]))
+    for colour, name in zip(PALETTE, order[:_MOST_PAIRS], strict=False):
+        known = np.isfinite(forces[name])
+        axes.plot(time[known], factor * forces[name][known], color=colour, lw=1.0, label=name)
+    axes.set_ylabel(f"force [{unit}]")
+    axes.set_title("Contact force of each pair", loc="left")
+    if len(order) > _MOST_PAIRS:
+        axes.set_title(f"largest {_MOST_PAIRS} of {len(order)}", loc="right", fontsize=8)
+    _key(axes)
+
+
+def _steps(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray]) -> None:
+    factor, unit = prefix(float(history["dt"].max(initial=0.0)), "s")
+    axes.plot(time, factor * history["dt"], color=PALETTE[0])
+    axes.set_ylabel(f"step [{unit}]")
+    axes.set_ylim(bottom=0.0)
+    axes.set_title("Time step", loc="left")
+
+
+def _key(axes: Axes) -> None:
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02), handlelength=1.4, labelspacing=0.4)
+
+
+def _scale(history: dict[str, np.ndarray]) -> float:
+    largest = float(np.abs(history["kinetic"] + history["internal"]).max(initial=0.0))
+    return largest or 1.0
+
+
+def _positive(curve: np.ndarray) -> np.ndarray:
+    """Zeros as gaps, because a logarithmic axis has no place for them."""
+    return np.where(curve > 0.0, curve, np.nan)
+
+
+def _forces(history: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Size of the contact force of each pair that ever touched, "a - b" -> (rows,)."""
+    forces = {}
+    head = "contact_force_"
+    for name in history:
+        if name.startswith(head) and name.endswith("_x"):
+            pair = name[len(head) : -2]
+            parts = [history[f"{head}{pair}_{x}"] for x in "xyz"]
+            size = np.sqrt(sum(part**2 for part in parts))
+            if np.nansum(size) > 0.0:
+                forces[pair.replace("_", " – ", 1) if pair.count("_") == 1 else pair] = size
+    return forces

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Picture of one frame of a run."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mpm3dpp.plots.flat import draw_particles, set_view
+from mpm3dpp.plots.labels import at_time, choose, length_unit, prefix
+from mpm3dpp.plots.style import (
+    DPI,
+    body_colours,
+    colour_scale,
+    legend_of_bodies,
+    new_figure,
+    save,
+    styled,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from mpm3dpp.io.results import Results
+
+
+@dataclasses.dataclass
+class View:
+    """What stays the same from picture to picture of one run (an animation must not jump).
+
+    Attributes:
+        lower, upper: corners of the visible region [m], shape (3,).
+        low, high: range of the coloured array, SI.
+    """
+
+    lower: np.ndarray
+    upper: np.ndarray
+    low: float
+    high: float
+
+
+def view_of(results: Results, frames: list[int], colour: str) -> View:
+    """The view that holds all particles of some frames, with a margin, and all their values."""
+    lower, upper = np.full(3, np.inf), np.full(3, -np.inf)
+    low, high = np.inf, -np.inf
+    for frame in frames:
+        arrays = results.arrays(frame)
+        position = arrays["position"][np.isfinite(arrays["position"]).all(axis=1)]
+        if len(position) == 0:
+            continue
+        half = 0.5 * sizes_of(arrays, results).max()
+        lower = np.minimum(lower, position.min(axis=0) - half)
+        upper = np.maximum(upper, position.max(axis=0) + half)
+        values = choose(arrays, results.units, colour)[0]
+        values = values[np.isfinite(values)]
+        if len(values):
+            bottom, top = _range(values)
+            low, high = min(low, bottom), max(high, top)
+    margin = 0.03 * float(np.max(upper - lower))
+    return View(lower - margin, upper + margin, low, high)
+
+
+def draw_frame(
+    results: Results,
+    frame: int,
+    colour: str = "von_mises",
+    view: View | None = None,
+    dpi: float = DPI,
+) -> Figure:
+    """Draw one frame; the caller saves it.
+
+    Args:
+        results: of `open_results`.
+        frame: its number; negative numbers count from the end.
+        colour: array that colours the particles, see `labels.choose`.
+        view: region and range of values; default those of this frame.
+        dpi: pixels per inch.
+
+    Raises:
+        CaseError: the frame has no such array.
+    """
+    view = view or view_of(results, [frame], colour)
+    arrays = results.arrays(frame)
+    with styled():
+        if results.dimension == 2:
+            figure = _draw_flat(results, arrays, colour, view, dpi)
+        else:
+            figure = _draw_space(results, arrays, colour, view, dpi)
+        end = float(results.times[-1])
+        figure.axes[0].set_title(at_time(float(results.times[frame]), end), loc="left")
+    return figure
+
+
+def _draw_flat(
+    results: Results, arrays: dict[str, np.ndarray], colour: str, view: View, dpi: float
+) -> Figure:
+    width, height = (view.upper - view.lower)[:2]
+    factor, unit = length_unit(max(width, height))
+    figure = new_figure(*paper(width / height), dpi)
+    axes = figure.add_subplot()
+    set_view(axes, factor * view.lower, factor * view.upper, unit)
+    colours, mappable = paint(arrays, results, colour, view)
+    _key(axes, results, colour, mappable)
+    points = factor * arrays["position"][:, :2].astype(float)
+    sizes = factor * sizes_of(arrays, results)
+    draw_particles(axes, points, sizes, arrays["body"], colours)
+    return figure
+
+
+def _draw_space(
+    results: Results, arrays: dict[str, np.ndarray], colour: str, view: View, dpi: float
+) -> Figure:
+    from mpm3dpp.plots.space import draw_box_axes, render
+
+    colours, mappable = paint(arrays, results, colour, view)
+    image, camera = render(
+        arrays["position"].astype(float),
+        sizes_of(arrays, results),
+        colours,
+        view.lower,
+        view.upper,
+    )
+    height, width = image.shape[:2]
+    figure = new_figure(*paper(width / height), dpi)
+    axes = figure.add_subplot()
+    draw_box_axes(axes, image, camera, view.lower, view.upper)
+    _key(axes, results, colour, mappable)
+    return figure
+
+
+def _key(axes: Axes, results: Results, colour: str, bar: ColourBar | None) -> None:
+    """The colour bar, as high as the axes, or the legend of the bodies or materials."""
+    figure: Any = axes.figure
+    if bar is not None:
+        place = axes.inset_axes((1.025, 0.0, 0.022, 1.0))
+        figure.colorbar(bar.mappable, cax=place, label=bar.label, extend=bar.extend)
+        place.yaxis.label.set_fontsize(9)
+        place.spines["outline"].set_linewidth(0.6)
+        return
+    names = results.bodies if colour == "body" else results.materials
+    if len(names) > 1:
+        legend_of_bodies(axes, names, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=6)
+
+
+@dataclasses.dataclass
+class ColourBar:
+    """What a colour bar shows: colours with their range, label with unit, pointed ends."""
+
+    mappable: Any
+    label: str
+    extend: str
+
+
+def paint(
+    arrays: dict[str, np.ndarray], results: Any, colour: str, view: View
+) -> tuple[np.ndarray, ColourBar | None]:
+    """Colours of the particles (n, 3), and the colour bar (None: colours of bodies)."""
+    from matplotlib.cm import ScalarMappable
+
+    values, name, unit = choose(arrays, results.units, colour)
+    if colour in ("body", "material"):
+        return body_colours(values), None
+    values = values.astype(float)
+    colours, norm = colour_scale(colour, view.low, view.high)
+    factor, unit = prefix(max(abs(norm.vmin), abs(norm.vmax)), unit)
+    shown = type(norm)(norm.vmin * factor, norm.vmax * factor)
+    rgb = colours(norm(np.nan_to_num(values, nan=norm.vmin)))[:, :3]
+    rgb[~np.isfinite(values)] = 0.75  # no such value there: grey
+    slack = 0.01 * (norm.vmax - norm.vmin)
+    below, above = (values < norm.vmin - slack).any(), (values > norm.vmax + slack).any()
+    extend = "both" if below and above else "min" if below else "max" if above else "neither"
+    label = f"{name} [{unit}]" if unit else name
+    return rgb, ColourBar(ScalarMappable(shown, colours), label, extend)
+
+
+def _range(values: np.ndarray) -> tuple[float, float]:
+    """Range for the colours: all values, without a few that lie far outside the others."""
+    low, high = float(values.min()), float(values.max())
+    bottom, top = np.percentile(values, [0.1, 99.9])
+    reach = 1.3 * (top - bottom)
+    return (
+        float(bottom) if top - low > reach else low,
+        float(top) if high - bottom > reach else high,
+    )
+
+
+def save_frame(
+    results: Results, frame: int, path: Path, colour: str = "von_mises", view: View | None = None
+) -> Path:
+    """Draw one frame and write it as PNG; arguments of `draw_frame`."""
+    figure = draw_frame(results, frame, colour, view)
+    with styled():
+        return save(figure, path)
+
+
+def sizes_of(arrays: dict[str, np.ndarray], results: Any) -> np.ndarray:
+    """Edge of each particle's square or cube [m]; half a cell where the file does not say."""
+    if "size" in arrays:
+        return arrays["size"].astype(float)
+    return np.full(len(arrays["position"]), 0.5 * results.cell_size)
+
+
+def paper(aspect: float) -> tuple[float, float]:
+    """Width and height in inches of a picture whose region has this width over height."""
+    aspect = min(max(aspect, 0.25), 5.0)
+    width = 7.0 if aspect >= 1.2 else 5.2
+    height = width / aspect + 0.7
+    return (width, height) if height <= 8.0 else (width * 8.0 / height + 1.0, 8.0)

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The look of all pictures: fonts, lines, colours of bodies, saving."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mpm3dpp.io.disk import make_folder, writing
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+DPI = 200
+
+# Colours that colour-blind readers can tell apart (Okabe & Ito, 2008), darkest contrasts first.
+PALETTE = (
+    *("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#8C6BB1"),
+    *("#B2A300", "#7F7F7F"),
+)
+
+MAPS = {"speed": "plasma", "velocity": "plasma"}
+"""Colour maps of some arrays; signed arrays get a map that is white at zero, others viridis."""
+
+_NOISE = 0.02  # a range that passes zero by less than this share counts as one-sided
+
+_SETTINGS: Any = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 9,
+    "axes.titlesize": 10,
+    "axes.labelsize": 9,
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "axes.formatter.limits": (-3, 4),
+    "axes.formatter.use_mathtext": True,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "xtick.direction": "out",
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+    "lines.linewidth": 1.4,
+    "grid.color": "#e3e3e3",
+    "grid.linewidth": 0.6,
+    "mathtext.default": "regular",
+    "savefig.facecolor": "white",
+}
+
+
+@contextlib.contextmanager
+def styled() -> Iterator[None]:
+    """Our settings of matplotlib inside the block; the user's own stay untouched."""
+    import matplotlib
+
+    with matplotlib.rc_context(_SETTINGS):
+        yield
+
+
+def new_figure(width: float, height: float, dpi: float = DPI) -> Figure:
+    """A figure of a size in inches that draws to a file and never opens a window."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), dpi=dpi, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def save(figure: Figure, path: Path) -> Path:
+    """Write a picture, the white margin cut off. Raises `CaseError` when that fails."""
+    make_folder(path.parent)
+    with writing(path):
+        figure.savefig(path, bbox_inches="tight", pad_inches=0.06)
+    return path
+
+
+def body_colours(bodies: np.ndarray) -> np.ndarray:
+    """Colour of each particle by its body, shape (n, 3), values 0 to 1."""
+    from matplotlib.colors import to_rgb
+
+    table = np.array([to_rgb(colour) for colour in PALETTE])
+    return table[np.asarray(bodies, dtype=int) % len(PALETTE)]
+
+
+def colour_scale(name: str, low: float, high: float) -> tuple[Any, Any]:
+    """Colour map and norm for an array and its range.
+
+    Signed ranges are made symmetric about zero, with white there. A range from near zero
+    starts at zero.
+    """
+    import matplotlib
+    from matplotlib.colors import Normalize
+
+    if not (np.isfinite(low) and np.isfinite(high)):
+        low, high = 0.0, 1.0
+    most = max(abs(low), abs(high))
+    if low < -_NOISE * most and high > _NOISE * most:
+        return matplotlib.colormaps["RdBu_r"], Normalize(-most, most)
+    if -_NOISE * most <= low < 0.5 * high:
+        low = 0.0
+    if high <= _NOISE * most:
+        high = 0.0
+    if high <= low:
+        high = low + (abs(low) * 1e-3 or 1.0)
+    return matplotlib.colormaps[MAPS.get(name, "viridis")], Normalize(low, high)
+
+
+def legend_of_bodies(axes: Axes, names: list[str], **options: Any) -> None:
+    """A legend with one coloured square per body; nothing when there are too many bodies."""
+    from matplotlib.patches import Patch
+
+    if len(names) > 12:
+        return
+    patches = [
+        Patch(facecolor=PALETTE[k % len(PALETTE)], label=name) for k, name in enumerate(names)
+    ]
+    axes.legend(handles=patches, handlelength=1.0, handleheight=1.0, **options)

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a finished run prints: contact, speed, memory."""
+
+from __future__ import annotations
+
+from .io.manifest import Manifest
+
+_PAIRS_SHOWN = 10
+
+
+def contact_table(manifest: Manifest) -> list[str]:
+    """Return the lines about contact: overlapped nodes, pairs, bytes, share of the step's time."""
+    contact = manifest.contact
+    if not contact.overlapped_nodes_max:
+        return []
+    total = sum(manifest.stages.values()) or 1.0
+    share = sum(ns for name, ns in manifest.stages.items() if name.startswith("contact")) / total
+    lines = [
+        f"contact: {contact.overlapped_nodes_max:,} overlapped nodes at most, "
+        f"{len(contact.pairs)} pairs, {contact.bodies_per_node_max} bodies at a node at most, "
+        f"{contact.peak_bytes / 2**20:.2f} MiB, {share:.1%} of the step's time"
+    ]
+    for pair in contact.pairs[:_PAIRS_SHOWN]:
+        if pair.first_time is None or pair.first_gap is None:
+            continue
+        lines.append(
+            f"  {pair.bodies[0]} - {pair.bodies[1]}: first contact at {pair.first_time:.6g} s, "
+            f"surfaces {pair.first_gap / manifest.cell_size:+.2f} cells apart, "
+            f"friction work {pair.friction_work:.4g} J"
+        )
+    if len(contact.pairs) > _PAIRS_SHOWN:
+        lines.append(f"  ... and {len(contact.pairs) - _PAIRS_SHOWN} more, in manifest.json")
+    return lines
+
+
+def speed_line(manifest: Manifest) -> str:
+    """Return the line about speed and memory."""
+    used = sum(manifest.bytes.values()) / max(1, manifest.particles)
+    return (
+        f"{manifest.status}: {manifest.steps:,} steps of {manifest.particles:,} particles in "
+        f"{manifest.wall_time:.1f} s, {manifest.ns_per_particle_step:.1f} ns per particle-step on "
+        f"{manifest.threads} threads, {used:.0f} bytes per particle"
+    )

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Shapes of bodies, and their filling with particles."""
+
+from .base import KINDS, AnyShape, Shape, parse_shape
+from .booleans import Difference, Intersection, Union
+from .filling import fill, reference_volume
+from .primitives import Box, Cylinder, Disc, Ring, Sphere, Tube
+from .transforms import Rotate, Translate
+
+__all__ = [
+    "KINDS",
+    "AnyShape",
+    "Box",
+    "Cylinder",
+    "Difference",
+    "Disc",
+    "Intersection",
+    "Ring",
+    "Rotate",
+    "Shape",
+    "Sphere",
+    "Translate",
+    "Tube",
+    "Union",
+    "fill",
+    "parse_shape",
+    "reference_volume",
+]

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Filling a shape with particles on a regular lattice, and its volume when no formula exists."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import CaseError
+from .base import SURFACE_TOLERANCE, Points, Shape
+
+_CHUNK = 1 << 18  # Points looked at together: some 20 MB of temporary arrays.
+_MOST = 4_000_000_000  # Lattice points in the bounds of one shape.
+_QUADRATURE = {2: 1 << 21, 3: 1 << 22}  # Lattice points for a volume without a formula.
+
+
+class _Lattice:
+    """The lattice points origin + (k + 1/2) spacing within the bounds of a shape."""
+
+    def __init__(self, shape: Shape, origin: Points, spacing: Points) -> None:
+        lower, upper = shape.bounds()
+        first = np.floor((lower - origin) / spacing - 0.5)
+        count = np.ceil((upper - origin) / spacing - 0.5) - first + 1
+        if not np.prod(np.maximum(count, 0.0)) < _MOST:
+            remedy = "give a larger grid.cell_size or fewer particles per cell"
+            rule = f"would need more than {_MOST:.0e} particles"
+            raise CaseError(rule, remedy, key="shape")
+        self.axes = [
+            origin[d] + (first[d] + np.arange(int(count[d])) + 0.5) * spacing[d]
+            for d in range(len(lower))
+        ]
+        reach = max(float(np.abs(axis).max(initial=0.0)) for axis in self.axes)
+        self.tolerance = max(SURFACE_TOLERANCE * spacing.min(), 8 * np.finfo(float).eps * reach)
+        self.shape = shape
+
+    def slabs(self) -> Iterator[tuple[list[Points], NDArray[np.bool_]]]:
+        """Yield (axes of a slab, which of its points are strictly inside), about _CHUNK each."""
+        layer = max(1, int(np.prod([len(axis) for axis in self.axes[1:]])))
+        step = max(1, _CHUNK // layer)
+        for start in range(0, len(self.axes[0]), step):
+            axes = [self.axes[0][start : start + step], *self.axes[1:]]
+            if layer > 4 * _CHUNK:  # a layer alone is too large: cut it too
+                wide = max(1, _CHUNK // max(1, layer // len(axes[1])))
+                parts = [axes[1][i : i + wide] for i in range(0, len(axes[1]), wide)]
+            else:
+                parts = [axes[1]]
+            for part in parts:
+                slab = [axes[0], part, *axes[2:]]
+                mesh = np.meshgrid(*slab, indexing="ij", copy=False)
+                points = np.stack([x.ravel() for x in mesh], axis=1)
+                yield slab, self.shape.inside(points, -self.tolerance)
+
+
+def fill_shape(shape: Shape, origin: Any, spacing: float) -> Points:
+    """Return the lattice points inside a shape, in lexicographic order.
+
+    A point on the surface (to 1e-9 of the spacing) is outside: mirror images fill alike and
+    bodies that touch share no point. The masks are kept as bits, so that the memory needed beyond
+    the result stays small.
+
+    Args:
+        shape: what to fill.
+        origin: a corner of the grid [m], D numbers; the points are at origin + (k + 1/2) spacing.
+        spacing: distance of the points [m].
+
+    Returns:
+        Positions [m], shape (n, D).
+
+    Raises:
+        CaseError: the lattice would have more than 4e9 points.
+    """
+    start = np.asarray(origin, dtype=np.float64)
+    lattice = _Lattice(shape, start, np.full(len(start), float(spacing)))
+    kept = [(slab, np.packbits(mask), len(mask)) for slab, mask in lattice.slabs()]
+    counts = [int(np.unpackbits(bits, count=size).sum()) for _, bits, size in kept]
+    positions = np.empty((sum(counts), len(start)))
+    at = 0
+    for (slab, bits, size), count in zip(kept, counts, strict=True):
+        chosen = np.flatnonzero(np.unpackbits(bits, count=size))
+        indices = np.unravel_index(chosen, tuple(len(axis) for axis in slab))
+        for d, axis in enumerate(slab):
+            positions[at : at + count, d] = axis[indices[d]]
+        at += count
+    return positions
+
+
+def fill(body: Any, grid: Any) -> tuple[Points, Points]:
+    """Return the particles of a body.
+
+    Args:
+        body: a `case.Body`: its shape, and `particles_per_cell` or `spacing`.
+        grid: a `case.Grid`: its dimension, origin and cell size.
+
+    Returns:
+        Positions [m], shape (n, D), and volumes [m^3; in 2D m^2 times 1 m], shape (n,) (all
+        equal: a read-only view of one number).
+
+    Raises:
+        CaseError: the shape does not suit the dimension, or holds no particle.
+    """
+    wrong = body.shape.wrong_dimension(grid.dimension, ("shape",))
+    if wrong is not None:
+        from ..errors import key_text
+
+        raise CaseError(wrong[1], wrong[2], key=key_text(wrong[0]))
+    spacing = body.particle_spacing(grid)
+    positions = fill_shape(body.shape, grid.origin, spacing)
+    if len(positions) == 0:
+        lower, upper = body.shape.bounds()
+        edges = " x ".join(f"{edge:.4g}" for edge in upper - lower)
+        rule = f"holds no particle: it measures {edges} m and particles are {spacing:.4g} m apart"
+        remedy = "give a smaller grid.cell_size, more particles_per_cell, or a larger shape"
+        raise CaseError(rule, remedy, key="shape")
+    return positions, np.broadcast_to(spacing**grid.dimension, (len(positions),))
+
+
+def reference_volume(shape: Shape) -> tuple[float, bool]:
+    """Return the volume of a shape [m^3; 2D: m^2] and whether it is exact.
+
+    Without a formula it is the share of a fine lattice over the bounds (two million points in 2D,
+    four million in 3D) that lies inside; its relative error is then about 1e-4 in 2D and 1e-3 in
+    3D for a compact shape.
+    """
+    exact = shape.volume()
+    if exact is not None:
+        return exact, True
+    lower, upper = shape.bounds()
+    edges = upper - lower
+    if not np.all(edges > 0):
+        return 0.0, True
+    points = _QUADRATURE[len(edges)]
+    counts = np.maximum(8, np.round(edges * (points / np.prod(edges)) ** (1 / len(edges))))
+    spacing = edges / np.minimum(counts, points // 64)
+    inside = sum(int(mask.sum()) for _, mask in _Lattice(shape, lower, spacing).slabs())
+    return inside * float(np.prod(spacing)), False

@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Quantities with units: the only place where units are converted; everything inside is SI.
+
+A quantity is a plain number in SI units or text such as `"30 mm"`. The commonest units are in a
+table, so that pint (half a second to import) is loaded for the others only; a test holds the table
+against pint. Numbers are converted in decimal arithmetic, so `"30 mm"`, `"3 cm"` and `0.03` are
+the same float.
+"""
+
+from __future__ import annotations
+
+import math
+import numbers
+import re
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import lru_cache
+from typing import Annotated, Any
+
+from .errors import NO_VALUE, CaseError, violation
+from .rules import holds, requirement
+
+# What a quantity of an SI unit is called, and an example of it.
+DIMENSIONS: dict[str, tuple[str, str]] = {
+    "m": ("a length", '"30 mm"'),
+    "s": ("a time", '"3.5 ms"'),
+    "m/s": ("a velocity", '"30 m/s"'),
+    "kg/m^3": ("a density", '"1000 kg/m^3"'),
+    "Pa": ("a pressure", '"26 MPa"'),
+    "m/s^2": ("an acceleration", '"-9.81 m/s^2"'),
+    "rad/s": ("an angular velocity", '"10 rad/s"'),
+    "rad": ("an angle", '"30 deg"'),
+    "": ("a plain number", "0.3"),
+    "kg": ("a mass", '"2 kg"'),
+    "K": ("a temperature", '"293 K"'),
+    "N": ("a force", '"5 N"'),
+    "J": ("an energy", '"5 J"'),
+    "J/kg": ("a specific energy", '"5 kJ/kg"'),
+    "J/kg/K": ("a specific heat", '"383 J/kg/K"'),
+    "1/s": ("a rate", '"1 1/s"'),
+    "m^2": ("an area", '"5 mm^2"'),
+    "m^3": ("a volume", '"5 mm^3"'),
+}
+
+# Factor to SI and SI unit of the commonest units.
+COMMON: dict[str, tuple[Decimal, str]] = {
+    name: (Decimal(factor), unit)
+    for unit, factors in {
+        "m": {"m": "1", "cm": "1e-2", "mm": "1e-3", "um": "1e-6", "km": "1e3"},
+        "s": {"s": "1", "ms": "1e-3", "us": "1e-6", "ns": "1e-9"},
+        "m/s": {"m/s": "1", "mm/s": "1e-3", "cm/s": "1e-2", "km/s": "1e3", "mm/ms": "1"},
+        "kg/m^3": {"kg/m^3": "1", "g/cm^3": "1e3", "kg/m3": "1"},
+        "Pa": {"Pa": "1", "kPa": "1e3", "MPa": "1e6", "GPa": "1e9"},
+        "m/s^2": {"m/s^2": "1", "mm/s^2": "1e-3"},
+        "rad/s": {"rad/s": "1"},
+        "rad": {"rad": "1"},
+        "kg": {"kg": "1", "g": "1e-3"},
+        "K": {"K": "1"},
+    }.items()
+    for name, factor in factors.items()
+}
+
+# Sizes that no case needs; products of such numbers would overflow in double precision.
+_LEAST = 1e-100
+
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf))(.*)", re.S)
+
+
+def to_si(value: Any, unit: str) -> float:
+    """Return a quantity in SI units.
+
+    Args:
+        value: a plain number (already SI), text such as `"30 mm"`, or a pint quantity.
+        unit: the SI unit wanted, for example `m`, `kg/m^3`, or empty for a plain number.
+
+    Returns:
+        The finite number in `unit`.
+
+    Raises:
+        CaseError: the value is not a number, not finite, or of another dimension.
+    """
+    if isinstance(value, str):
+        number = _from_text(value, unit)
+    elif isinstance(value, numbers.Real) and not isinstance(value, bool):
+        number = float(value)
+    elif hasattr(value, "to_base_units"):
+        number = _from_text(f"{value.magnitude:.17g} {value.units}", unit)
+    else:
+        raise CaseError(f"must be {_name(unit)}", _give(unit), value=value)
+    if not math.isfinite(number):
+        raise CaseError("must be finite", _give(unit), value=value)
+    if number != 0 and not _LEAST < abs(number) < 1 / _LEAST:
+        rule = f"must be zero or between {_LEAST:g} and {1 / _LEAST:g} in SI units"
+        raise CaseError(rule, _give(unit), value=value)
+    return number
+
+
+@lru_cache(maxsize=4096)
+def _from_text(text: str, unit: str) -> float:
+    """Return the SI number of text such as `30 mm`."""
+    match = _NUMBER.fullmatch(text)
+    if match is None:
+        raise CaseError(f"must be {_name(unit)}", _give(unit), value=text)
+    number, name = match.group(1), match.group(2).strip()
+    if name == "" and unit != "":
+        raise CaseError(f"has no unit but must be {_name(unit)}", _give(unit), value=text)
+    if name == "":
+        return float(number)
+    if name in COMMON and COMMON[name][1] == unit:
+        return float(Decimal(number) * COMMON[name][0])
+    return _by_pint(text, number, name, unit)
+
+
+@lru_cache(maxsize=1)
+def registry() -> Any:
+    """Return pint's registry, made at the first call (it takes half a second)."""
+    import pint
+
+    return pint.UnitRegistry(non_int_type=Decimal)
+
+
+def _by_pint(text: str, number: str, name: str, unit: str) -> float:
+    """Return the SI number as pint converts it."""
+    import pint
+
+    try:
+        given = registry().Quantity(
+            Decimal(number), registry().parse_units(name.replace("m3", "m^3"))
+        )
+    except Exception as error:  # pint's parser raises many kinds for text that is no unit
+        rule = f'has the unit "{name}", which is not known'
+        raise CaseError(rule, _give(unit), value=text) from error
+    try:
+        return float(given.to(unit or "dimensionless").magnitude)
+    except pint.DimensionalityError:
+        what = next((f" ({_name(u)})" for u in DIMENSIONS if u and given.check(_dimension(u))), "")
+        rule = f'has the unit "{name}"{what} but must be {_name(unit)}'
+        raise CaseError(rule, _give(unit), value=text) from None
+
+
+def _dimension(unit: str) -> Any:
+    return registry().get_dimensionality(registry().parse_units(unit))
+
+
+def _name(unit: str) -> str:
+    return DIMENSIONS[unit][0] if unit in DIMENSIONS else f"a quantity in {unit}"
+
+
+def _give(unit: str) -> str:
+    if unit == "":
+        return "give a number without a unit"
+    if unit in DIMENSIONS:
+        return f"give {_name(unit)} such as {DIMENSIONS[unit][1]}, or a plain number in {unit}"
+    return f"give a number in {unit}"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Annotation of a model's field: a number in an SI unit under a rule such as `> 0`.
+
+    Attributes:
+        unit: SI unit of the stored number.
+        rule: what the number must obey (see `rules.holds`); empty for no rule.
+    """
+
+    unit: str
+    rule: str = ""
+
+    def parse(self, value: Any) -> float:
+        """Return the number in SI units, or raise the violation that pydantic collects."""
+        try:
+            number = to_si(value, self.unit)
+        except CaseError as error:
+            raise violation(error.rule, error.remedy, value=value) from None
+        if not holds(self.rule, number):
+            raise violation(requirement(self.rule), _give(self.unit), value=value)
+        return number
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(self.parse)
+
+    def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
+        text = f"{_name(self.unit)} [{self.unit or '1'}] {self.rule}".strip()
+        return {"anyOf": [{"type": "number"}, {"type": "string"}], "description": text}
+
+
+@dataclass(frozen=True)
+class Vector(Quantity):
+    """Annotation of a model's field: two (2D) or three (3D) quantities, stored as a tuple.
+
+    With `scalar`, one quantity alone is taken too, as a tuple of one.
+    """
+
+    scalar: bool = False
+
+    def parse(self, value: Any) -> tuple[float, ...]:  # type: ignore[override]
+        """Return the numbers in SI units, or raise the violation that pydantic collects."""
+        if isinstance(value, str) or not hasattr(value, "__len__"):
+            if self.scalar:
+                return (super().parse(value),)
+            raise violation("must be a list of numbers", _give_vector(self.unit), value=value)
+        if not (len(value) in (2, 3) or (self.scalar and len(value) in (0, 1))) or isinstance(
+            value, dict
+        ):
+            rule = "must have two numbers in 2D and three in 3D"
+            raise violation(rule, _give_vector(self.unit), value=value)
+        numbers_found = []
+        for index, item in enumerate(value):
+            try:
+                numbers_found.append(to_si(item, self.unit))
+            except CaseError as error:
+                shown = NO_VALUE if isinstance(item, dict) else item
+                raise violation(error.rule, error.remedy, value=shown, path=(index,)) from None
+        return tuple(numbers_found)
+
+    def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
+        item = super().__get_pydantic_json_schema__(_schema, _handler)
+        vector = {"type": "array", "items": item, "minItems": 2, "maxItems": 3}
+        return {"anyOf": [item, vector]} if self.scalar else vector
+
+
+def _give_vector(unit: str) -> str:
+    example = DIMENSIONS.get(unit, ("", "1.0"))[1]
+    return f"give a list such as [{example}, {example}]"
+
+
+Length = Annotated[float, Quantity("m")]
+PositiveLength = Annotated[float, Quantity("m", "> 0")]
+Time = Annotated[float, Quantity("s", "> 0")]
+Velocity = Annotated[float, Quantity("m/s")]
+Density = Annotated[float, Quantity("kg/m^3", "> 0")]
+Pressure = Annotated[float, Quantity("Pa")]
+Acceleration = Annotated[float, Quantity("m/s^2")]
+AngularVelocity = Annotated[float, Quantity("rad/s")]
+Angle = Annotated[float, Quantity("rad")]
+Number = Annotated[float, Quantity("")]
+NonNegative = Annotated[float, Quantity("", ">= 0")]
+Point = Annotated[tuple[float, ...], Vector("m")]
+VelocityVector = Annotated[tuple[float, ...], Vector("m/s")]
+AccelerationVector = Annotated[tuple[float, ...], Vector("m/s^2")]
+Direction = Annotated[tuple[float, ...], Vector("")]
+Spin = Annotated[tuple[float, ...], Vector("rad/s", scalar=True)]

@@ -1,0 +1,280 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The case: SI values, defaults, both doors (file and Python), hash, and what build makes of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mpm3dpp
+from mpm3dpp.build import build, warnings
+from mpm3dpp.case import Body, Case, Material, load_case
+from mpm3dpp.case_file import locate_keys, parse
+from mpm3dpp.case_parts import Contact, ContactPair, Grid, GridBox, Output, Run
+from mpm3dpp.echo import echo, occupied_cells, sound_speed, time_step
+from mpm3dpp.errors import CaseError
+from mpm3dpp.folders import default_folder, thread_count
+from mpm3dpp.materials import Strength, catalogue, listing
+from mpm3dpp.shapes import Box, Disc, Sphere
+
+RINGS = """\
+title = "Rings"
+[grid]
+dimension = 2
+cell_size = "2 mm"
+box.lower = ["0 mm", "0 mm"]
+box.upper = ["200 mm", "100 mm"]
+box.walls = { x_min = "symmetry" }
+[run]
+end_time = "3.5 ms"
+viscosity = {}
+[[contact.pair]]
+materials = ["rubber", "rubber"]
+friction = 0.2
+[[contact.pair]]
+bodies = ["right", "left"]
+friction = 0.3
+[material.rubber]
+density = "1010 kg/m^3"
+strength = { neo_hookean = { K = "121.7 MPa", G = "26.1 MPa" } }
+[body.left]
+material = "rubber"
+shape.ring = { centre = ["50 mm", "50 mm"], inner_radius = "30 mm", outer_radius = "40 mm" }
+velocity = ["30 m/s", 0]
+[body.right]
+material = "rubber"
+shape.ring = { centre = ["150 mm", "50 mm"], inner_radius = "30 mm", outer_radius = "40 mm" }
+velocity = ["-30 m/s", 0]
+angular_velocity = "2 rad/s"
+[body.third]
+material = "rubber"
+shape = { disc = { centre = ["100 mm", "10 mm"], radius = "6 mm" } }
+"""
+
+
+def cube(**keys: object) -> Case:
+    parts: dict[str, object] = {
+        "grid": Grid(dimension=3, cell_size=0.1),
+        "run": Run(end_time="1 s"),
+        "material": {"any": Material(density=2000, strength={"elastic": {"E": 1e6, "nu": 0.25}})},
+        "body": {"cube": Body(material="any", shape=Box(lower=(0, 0, 0), upper=(1, 1, 1)))},
+    }
+    return Case(**(parts | keys))
+
+
+def test_si_values_and_defaults() -> None:
+    case = Case.from_text(RINGS)
+    assert case.grid.cell_size == 0.002
+    assert case.grid.origin == case.grid.lower == (0.0, 0.0)
+    assert case.grid.box_cells == (100, 50)
+    assert case.grid.walls == ("slip", "free", "free", "free", "free", "free")
+    assert (case.run.scheme, case.run.time_step_factor, case.run.end_time) == ("musl", 0.5, 0.0035)
+    assert case.run.gravity == (0.0, 0.0)
+    assert case.run.viscosity is not None
+    assert (case.run.viscosity.quadratic, case.run.viscosity.linear) == (1.5, 0.06)
+    assert (case.output.frames, case.output.history_every) == (50, 1)
+    assert (case.contact.detection, case.contact.normal) == ("gap", "pair")
+    assert case.material["rubber"].strength.model == "neo_hookean"
+    assert case.material["rubber"].strength.parameters == {"K": 121.7e6, "G": 26.1e6}
+    left = case.body["left"]
+    assert (left.velocity, left.angular_velocity, left.particles_per_cell) == (
+        (30.0, 0.0),
+        (0.0,),
+        2,
+    )
+    assert case.text == RINGS
+
+
+def test_frictions_of_pairs() -> None:
+    # left-right by name; the others by material, though that entry stands first.
+    assert Case.from_text(RINGS).frictions() == [(0, 1, 0.3), (0, 2, 0.2), (1, 2, 0.2)]
+
+
+def test_frame_times() -> None:
+    case = Case.from_text(RINGS)
+    times = case.frame_times()
+    assert (times[0], times[-1], len(times)) == (0.0, 0.0035, 51)
+    case.output = Output(interval="1 ms")
+    assert case.frame_times() == [0.0, 0.001, 0.002, 0.003, 0.0035]
+    case.output = Output(interval="0.5 ms")
+    assert len(case.frame_times()) == 8  # The last multiple of the interval is the end itself.
+
+
+def test_hash_does_not_depend_on_spelling() -> None:
+    case = Case.from_text(RINGS)
+    spelled = RINGS.replace('"3.5 ms"', "0.0035   # s").replace('"40 mm"', '"4 cm"')
+    spelled = spelled.replace('"1010 kg/m^3"', '"1.01 g/cm^3"')
+    assert Case.from_text(spelled).case_hash == case.case_hash
+    assert Case.model_validate(case.table()).case_hash == case.case_hash
+    assert Case.from_text(RINGS.replace('"3.5 ms"', '"3.6 ms"')).case_hash != case.case_hash
+
+
+def test_hash_does_not_depend_on_the_last_digits() -> None:
+    assert 0.1 + 0.2 != 0.3
+    assert cube(run=Run(end_time=0.1 + 0.2)).case_hash == cube(run=Run(end_time=0.3)).case_hash
+
+
+def test_python_objects_make_the_same_case() -> None:
+    text = """
+    grid = { dimension = 3, cell_size = "100 mm" }
+    run = { end_time = 1 }
+    material.any = { density = 2000, strength.elastic = { E = "1 MPa", nu = 0.25 } }
+    body.cube = { material = "any", shape.box = { lower = [0, 0, 0], upper = [1, 1, 1] } }
+    """
+    assert Case.from_text(text).case_hash == cube().case_hash
+
+
+def test_assignments_are_checked() -> None:
+    case = cube()
+    case.run.end_time = "2 ms"
+    assert case.run.end_time == 0.002
+    with pytest.raises(CaseError, match=r"run.end_time = -1 must be > 0"):
+        case.run.end_time = -1
+    assert case.run.end_time == 0.002
+    case.body["cube"].material = "steel"
+    with pytest.raises(CaseError, match=r'body.cube.material = "steel" is not a material'):
+        build(case)
+
+
+def test_build_of_a_cube() -> None:
+    [body] = build(cube())
+    assert body.positions.shape == (8000, 3)
+    assert body.velocities.shape == (1, 3)
+    assert body.volumes.shape == (8000,)
+    assert body.mass == pytest.approx(2000, rel=1e-12)  # 8000 terms, one multiplication
+    assert body.mass_error == pytest.approx(0, abs=1e-12)
+    assert body.volume_is_exact
+
+
+def test_spin_is_about_the_mass_centre() -> None:
+    case = Case.from_text(RINGS)
+    right = build(case)[1]
+    arm = right.positions - np.array([0.15, 0.05])
+    wanted = np.array([-30, 0]) + 2 * np.column_stack([-arm[:, 1], arm[:, 0]])
+    assert right.velocities == pytest.approx(wanted, rel=1e-12, abs=1e-12)
+    turned = cube(
+        body={"cube": cube().body["cube"].model_copy(update={"angular_velocity": (1.0, 2.0, 3.0)})}
+    )
+    [body] = build(turned)
+    arm = body.positions - 0.5
+    assert body.velocities == pytest.approx(np.cross([1, 2, 3], arm), abs=1e-12)
+
+
+def test_coarse_filling_warns() -> None:
+    shape = Disc(centre=(0.05, 0.05), radius=0.09)
+    case = cube(
+        grid=Grid(dimension=2, cell_size=0.1),
+        body={"disc": Body(material="any", shape=shape)},
+    )
+    bodies = build(case)
+    assert abs(bodies[0].mass_error) > 0.05
+    [sentence] = warnings(bodies)
+    assert "body.disc" in sentence
+    assert f"warning: {sentence}" in echo(case, bodies)
+
+
+def test_echo_names_time_step_and_cells() -> None:
+    case = cube()
+    bodies = build(case)
+    # E = 1e6, nu = 0.25: M = 1.2e6 Pa, c = sqrt(600) m/s; 1e-6 of strain, so 1e-5 of c.
+    assert sound_speed(case.material["any"]) == pytest.approx(600**0.5, rel=1e-5)
+    assert time_step(case, bodies) == pytest.approx(0.05 / 600**0.5, rel=1e-5)
+    assert occupied_cells(case, bodies) == 1000
+    assert "8,000 particles" in echo(case, bodies)
+
+
+def test_lines_of_keys() -> None:
+    toml = (
+        "# comment [a]\n"  # 1
+        'a = """x = 1\n'  # 2
+        '[no.table]\n"""\n'  # 3 and 4
+        "b.c = [1, [2,\n"  # 5
+        " 3], { d = 4 }]   # ]\n"  # 6
+        "[e.'f g'.\"h\"]\n"  # 7
+        "i = 1979-05-27T07:32:00Z\n"  # 8
+        "[[j]]\n"  # 9
+        "k = { l.m = -1.5e3, n = 'it' }\n"  # 10
+        "[[j]]\n"  # 11
+        "[j.o]\n"  # 12
+        'p = "\\"q = 1"\n'  # 13
+    )
+    tables = parse(toml, "case.toml")
+    lines = locate_keys(toml)
+    assert lines["a",] == 2
+    assert lines["b", "c"] == 5
+    assert lines["b", "c", 1, 0] == 5
+    assert lines["b", "c", 1, 1] == 6
+    assert lines["b", "c", 2, "d"] == 6
+    assert lines["e", "f g", "h", "i"] == 8
+    assert lines["j", 0, "k", "l", "m"] == 10
+    assert lines["j", 1, "o", "p"] == 13
+    assert lines["j", 1] == 11
+
+    def paths(value: object, path: tuple[str | int, ...] = ()) -> set[tuple[str | int, ...]]:
+        below = value.items() if isinstance(value, dict) else ()
+        below = enumerate(value) if isinstance(value, list) else below
+        return {path}.union(*(paths(item, (*path, key)) for key, item in below))
+
+    assert paths(tables) - set(lines) <= {()}
+
+
+def test_strength_from_the_catalogue() -> None:
+    assert Strength(model="elastic", parameters={"E": "1 MPa", "nu": 0.2}).parameters["E"] == 1e6
+    with pytest.raises(CaseError, match=r"strength.nu is missing"):
+        Strength(model="elastic", parameters={"E": 1})
+    for name, model in catalogue().items():
+        assert f"{name} (strength)" in listing()
+        assert all(f" {p.name} " in listing(name) for p in model.parameters)
+
+
+def test_contact_needs_two_bodies() -> None:
+    assert not cube().contact_enabled
+    assert Case.from_text(RINGS).contact_enabled
+    assert not Case.from_text(
+        RINGS.replace("[[contact", "[contact]\nenabled = false\n[[contact", 1)
+    ).contact_enabled
+
+
+def test_a_box_in_python() -> None:
+    box = GridBox(lower=(0, 0, 0), upper=(1, 1, 1), walls="fixed")
+    grid = Grid(dimension=3, cell_size=0.1, box=box)
+    assert grid.walls == ("fixed",) * 6
+    assert grid.box_cells == (10, 10, 10)
+    ball = Body(material="any", shape=Sphere(centre=(0.5, 0.5, 0.95), radius=0.2))
+    with pytest.raises(CaseError, match=r"body.ball.shape reaches out of grid.box: .* z > 1 m"):
+        build(cube(grid=grid, body={"ball": ball}))
+
+
+def test_contact_pair_in_python() -> None:
+    pair = ContactPair(bodies=["cube", "other"], friction=0.1)
+    with pytest.raises(CaseError, match=r'contact.pair\[0\].bodies\[1\] = "other" is not a body'):
+        cube(contact=Contact(pair=[pair]))
+
+
+def test_json_schema_lists_every_shape() -> None:
+    schema = Case.json_schema()
+    assert "ring" in schema["$defs"]["shape"]["properties"]
+    assert schema["additionalProperties"] is False
+
+
+def test_names_of_the_package() -> None:
+    assert mpm3dpp.load_case is load_case
+    assert mpm3dpp.shapes.Disc is Disc
+    assert mpm3dpp.__version__
+    with pytest.raises(AttributeError):
+        _ = mpm3dpp.nothing
+
+
+def test_default_folder_and_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = Path("examples/01_two_rings")
+    assert default_folder(folder / "case.toml") == Path("results/01_two_rings")
+    assert default_folder(folder / "case_velocity.toml") == Path("results/01_two_rings_velocity")
+    assert default_folder(folder / "rings.toml") == Path("results/rings")
+    monkeypatch.setenv("OMP_NUM_THREADS", "3,1")
+    assert thread_count(None) == 3
+    assert thread_count(2) == 2
+    monkeypatch.setenv("OMP_NUM_THREADS", "many")
+    with pytest.raises(CaseError, match="OMP_NUM_THREADS"):
+        thread_count(None)

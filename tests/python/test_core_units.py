@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The C++ unit tests (tests/unit), one pytest test each."""
+
+import pytest
+
+try:
+    from mpm3dpp import _testing
+except ImportError as error:
+    TESTS, MISSING = {}, str(error)
+else:
+    TESTS, MISSING = _testing.tests, ""
+
+
+def test_module_is_built():
+    assert not MISSING, (
+        f"the C++ unit tests are not built ({MISSING}): install with "
+        "pip install '.[test]' --config-settings=cmake.define.MPM_TESTING=ON"
+    )
+
+
+@pytest.mark.parametrize("name", sorted(TESTS))
+def test_unit(name):
+    checks, failures = TESTS[name]()
+    assert not failures, "\n" + "\n".join(failures)
+    assert checks > 0, f"test_{name} checked nothing"

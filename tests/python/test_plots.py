@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures: they are made, they show what they claim, and they need no graphics driver."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fake_core import COLUMNS, SIZE, FakeSimulation
+from mpm3dpp import plots
+from mpm3dpp.errors import CaseError
+from mpm3dpp.io import HistoryWriter, ResultsWriter, build_manifest
+from mpm3dpp.plots import contact, labels, raster, space
+
+matplotlib_image = pytest.importorskip("matplotlib.image")
+
+
+def make_run(path: Path, dimension: int = 2, manifest: bool = True) -> Path:
+    simulation = FakeSimulation(dimension)
+    bodies = ["left", "right"]
+    results = ResultsWriter(
+        path / "results.vtkhdf",
+        bodies=bodies,
+        materials=["m", "m"],
+        dimension=dimension,
+        cell_size=2 * SIZE,
+    )
+    with results, HistoryWriter(path / "history.csv", columns=COLUMNS, bodies=bodies) as history:
+        for _ in range(4):
+            results.write(simulation)
+            simulation.advance(5)
+            history.append(simulation.history(), simulation.contact_pairs())
+    if manifest:
+        build_manifest(
+            simulation,
+            version="0",
+            case={"output": {"picture": "pressure"}},
+            case_text="",
+            bodies=bodies,
+            cell_size=2 * SIZE,
+            threads=1,
+            wall_time=1.0,
+            status="completed",
+        ).write(path)
+    return path
+
+
+def pixels(path: Path) -> np.ndarray:
+    image = matplotlib_image.imread(path)
+    assert image.shape[0] > 200
+    assert image.shape[1] > 300
+    assert image[..., :3].std() > 0.01
+    return image
+
+
+@pytest.fixture
+def without_pyvista(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(space, "_pyvista_works", lambda: False)
+
+
+def test_pictures_of_a_run(tmp_path: Path) -> None:
+    made = plots.plot_results(make_run(tmp_path), animation=True)
+    assert [p.name for p in made] == ["frame.png", "energies.png", "animation.gif"]
+    for path in made[:2]:
+        pixels(path)
+    from PIL import Image
+
+    with Image.open(made[2]) as animation:
+        assert animation.n_frames == 4
+
+
+@pytest.mark.parametrize("colour", ["body", "speed", "velocity_y", "stress_xy", "von_mises"])
+def test_colours(tmp_path: Path, colour: str) -> None:
+    made = plots.plot_results(make_run(tmp_path), frame=1, colour=colour, out=tmp_path / "new")
+    assert made[0] == tmp_path / "new" / "frame_0001.png"
+    pixels(made[0])
+
+
+def test_wrong_colour_frame_and_folder(tmp_path: Path) -> None:
+    with pytest.raises(CaseError, match="output folder"):
+        plots.plot_results(tmp_path)
+    make_run(tmp_path)
+    with pytest.raises(CaseError, match="von_mises"):
+        plots.plot_results(tmp_path, colour="von_misses")
+    with pytest.raises(CaseError, match="give 0 to 3"):
+        plots.plot_results(tmp_path, frame=9)
+
+
+@pytest.mark.usefixtures("without_pyvista")
+def test_three_dimensions_without_pyvista(tmp_path: Path) -> None:
+    made = plots.plot_results(make_run(tmp_path, dimension=3), colour="body")
+    image = pixels(made[0])
+    blue = (image[..., 2] > image[..., 0] + 0.3).mean()
+    orange = (image[..., 0] > image[..., 2] + 0.3).mean()
+    assert min(blue, orange) > 0.02  # both bodies are seen
+
+
+def test_three_dimensions_with_pyvista() -> None:
+    if not space._pyvista_works():
+        pytest.skip("PyVista cannot draw here")
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    lower, upper = np.array([-0.5, -0.5, -0.5]), np.array([1.5, 0.5, 0.5])
+    colours = np.array([[1.0, 0, 0], [0, 0, 1.0]])
+    image, _ = space.render(points, np.full(2, 0.5), colours, lower, upper)
+    red, blue = image[..., 0] > image[..., 2] + 0.2, image[..., 2] > image[..., 0] + 0.2
+    assert np.nonzero(red)[1].mean() < np.nonzero(blue)[1].mean()  # x goes to the right
+
+
+@pytest.mark.parametrize("manifest", [True, False])
+@pytest.mark.usefixtures("without_pyvista")
+def test_first_contact_picture(tmp_path: Path, manifest: bool) -> None:
+    path = plots.first_contact(make_run(tmp_path, manifest=manifest))
+    assert path == tmp_path / "first_contact.png"
+    pixels(path)
+
+
+@pytest.mark.usefixtures("without_pyvista")
+def test_first_contact_picture_in_space(tmp_path: Path) -> None:
+    path = plots.first_contact(make_run(tmp_path, dimension=3), out=tmp_path / "touch.png")
+    assert path == tmp_path / "touch.png"
+    pixels(path)
+
+
+@pytest.mark.parametrize("gap", [-0.2, 0.0, 1.3])
+def test_gap_of_two_lattices_is_exact(gap: float) -> None:
+    """Faces of two turned lattices: the gap is known from how they are placed."""
+    axis = np.arange(8) + 0.5
+    block = np.stack(np.meshgrid(axis, axis, [0.0], indexing="ij"), -1).reshape(-1, 3)
+    other = block + np.array([8.0 + gap, 0.0, 0.0])
+    turn = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
+    halves = np.full(len(block), 0.5)
+    found = contact.measure_gap(block @ turn.T, other @ turn.T, halves, halves, 2.0)
+    assert found.value == pytest.approx(gap, abs=1e-12)
+    assert found.normal == pytest.approx(turn[:, 0], abs=1e-12)
+    assert found.place == pytest.approx(turn @ [8.0 + gap / 2, 4.0, 0.0], abs=1e-9)
+
+
+def test_nearest_pairs_against_all_pairs() -> None:
+    random = np.random.default_rng(1)
+    first = random.normal(size=(300, 3))
+    second = random.normal(size=(200, 3)) + np.array([2.0, 0, 0])
+    every = np.linalg.norm(first[:, None] - second[None], axis=2)
+    _, _, distance = contact.nearest_pairs(first, second)
+    assert distance.min() == pytest.approx(every.min(), rel=1e-12)
+
+
+def test_squares_tile_and_slits_close() -> None:
+    """A lattice stretched by half its spacing still makes one body, with the gap to the next."""
+    x, y = np.meshgrid(np.arange(10), np.arange(10))
+    centres = np.column_stack([x.ravel() * 12.0, y.ravel() * 8.0]) + 20.0
+    sizes, red = np.full(100, 8.0), np.tile([1.0, 0, 0], (100, 1))
+    image = raster.tile(centres, sizes, np.zeros(100, int), red, (120, 160), 0)
+    assert (image[20:90, 20:126, 3] == 1.0).all()  # no slits inside
+    assert (image[:, :14, 3] == 0.0).all()  # nothing outside
+    two = np.array([[20.0, 20.0], [31.0, 20.0]])
+    image = raster.tile(two, np.full(2, 8.0), np.array([0, 1]), red[:2], (40, 60), 0)
+    assert (image[20, 25:27, 3] == 0.0).all()  # the gap between two bodies stays open
+
+
+def test_nearer_balls_hide_farther_ones() -> None:
+    centres = np.array([[20.0, 20.0], [20.0, 20.0]])
+    colours = np.array([[1.0, 0, 0], [0, 0, 1.0]])
+    for near in (0, 1):
+        depths = np.array([0.0, 0.0])
+        depths[near] = 30.0
+        image = raster.balls(centres, depths, np.full(2, 8.0), colours, (40, 40))
+        assert image[20, 20, :3].argmax() == (0 if near == 0 else 2)
+
+
+def test_labels() -> None:
+    assert labels.scaled(1.25e-3, "s") == "1.25 ms"
+    assert labels.scaled(0.0, "s") == "0 s"
+    assert labels.prefix(26.1e6, "Pa") == (pytest.approx(1e-6), "MPa")
+    assert labels.prefix(1e-3, "s")[1] == "ms"
+    assert labels.prefix(5.0, "m/s") == (1.0, "m/s")
+    assert labels.length_unit(0.2) == (1e3, "mm")
+
+
+@pytest.mark.usefixtures("without_pyvista")
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_preview(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dimension: int) -> None:
+    """The filling is the shapes' business; here a body is the positions it fills."""
+    import mpm3dpp.shapes
+
+    block = FakeSimulation(dimension)._start
+    size = np.full(len(block[0]), SIZE**dimension)
+    monkeypatch.setattr(mpm3dpp.shapes, "fill", lambda body, grid: (body, size))
+    box = SimpleNamespace(lower=(0.0,) * dimension, upper=(0.03,) * dimension)
+    grid = SimpleNamespace(
+        dimension=dimension, cell_size=2 * SIZE, origin=(0.0,) * dimension, box=box
+    )
+    case = SimpleNamespace(grid=grid, body=dict(zip(["left", "right"], block, strict=True)))
+    path = plots.preview(case, tmp_path)
+    assert path == tmp_path / "preview.png"
+    pixels(path)

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each style check of tools/ finds what it is for, and leaves good text alone."""
+
+import importlib
+import sys
+from pathlib import Path
+
+import pytest
+
+TOOLS = Path(__file__).parents[2] / "tools"
+UNFINISHED = "TO" + "DO"  # in two parts, so that the check does not find it here
+
+
+@pytest.fixture
+def tool(monkeypatch):
+    """Import a script of tools/ by name."""
+    monkeypatch.syspath_prepend(TOOLS)
+    yield importlib.import_module
+    for name in ("check_layers", "check_sizes", "check_words", "files"):
+        sys.modules.pop(name, None)
+
+
+@pytest.mark.parametrize(
+    ("file", "include", "why"),
+    [
+        ("math/a.hpp", '"mpm/grid/tile.hpp"', "not lower"),
+        ("grid/a.hpp", '"mpm/materials/model.hpp"', "not lower"),
+        ("grid/a.hpp", '"../step/scheme.hpp"', "not lower"),
+        ("grid/a.hpp", '"mpm/utils/x.hpp"', "has no layer"),
+        ("run/a.cpp", "<nanobind/nanobind.h>", "must not know Python"),
+        ("utils/a.hpp", "<vector>", "has no layer"),
+        ("step/a.hpp", '"mpm/domain.hpp"', None),
+        ("materials/strength/a.hpp", '"mpm/materials/model.hpp"', None),
+    ],
+)
+def test_layers(tool, tmp_path, file, include, why):
+    source = tmp_path / "cpp" / "mpm" / file
+    source.parent.mkdir(parents=True)
+    source.write_text(f"#include {include}\n")
+    found = tool("check_layers").check(tmp_path)
+    assert [why in text for text in found] == [True] if why else found == []
+
+
+@pytest.mark.parametrize(("lines", "errors", "warnings"), [(300, 0, 0), (301, 0, 1), (501, 1, 0)])
+def test_sizes(tool, tmp_path, lines, errors, warnings):
+    names = [Path("long.cpp"), Path("a.py"), Path("b.py")]
+    for name in names:
+        (tmp_path / name).write_text("x\n" * (lines if name.stem == "long" else 3))
+    found = tool("check_sizes").check(tmp_path, names)
+    assert [len(each) for each in found] == [errors, warnings]
+
+
+@pytest.mark.parametrize(
+    ("suffix", "line", "bad"),
+    [
+        (".cpp", f"// {UNFINISHED}: later", True),
+        (".cpp", f"// {UNFINISHED}(#12): later", False),
+        (".py", 'path = "' + "/".join(["", "home", "me", "case.toml"]), True),
+        (".cpp", "  // mass += p.m;", True),
+        (".cpp", "  // if (x) {", True),
+        (".cpp", "  // sum the blocks in tile order; the result must not depend on threads", False),
+        (".py", "# mass = total(p)", True),
+        (".py", "# mass of the particle", False),
+    ],
+)
+def test_words(tool, suffix, line, bad):
+    assert bool(tool("check_words").problem(line, suffix)) is bad

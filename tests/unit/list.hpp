@@ -1,0 +1,34 @@
+#pragma once
+// The unit tests. A new one is a file that defines `void test_name(mpm::testing::Report& report)`
+// and one line here: its name, in front of the backslash.
+#include <array>
+#include <string_view>
+
+#include "check.hpp"
+
+// clang-format off
+#define MPM_UNIT_TESTS(X) \
+  X(check) \
+  /* end */
+// clang-format on
+
+namespace mpm::testing {
+
+struct UnitTest {
+  std::string_view name;
+  void (*run)(Report&);
+};
+
+}  // namespace mpm::testing
+
+#define MPM_DECLARE(name) void test_##name(mpm::testing::Report& report);
+#define MPM_ENTRY(name) mpm::testing::UnitTest{#name, &test_##name},
+
+MPM_UNIT_TESTS(MPM_DECLARE)
+
+namespace mpm::testing {
+inline constexpr auto unit_tests = std::array{MPM_UNIT_TESTS(MPM_ENTRY)};
+}  // namespace mpm::testing
+
+#undef MPM_DECLARE
+#undef MPM_ENTRY

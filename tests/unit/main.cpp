@@ -1,0 +1,44 @@
+// The C++ unit tests without Python, for sanitizers and debuggers:  unit_tests [NAME ...]
+#include <cstdio>
+#include <exception>
+#include <span>
+
+#include "list.hpp"
+
+namespace {
+
+bool selected(std::string_view name, std::span<char*> wanted) {
+  for (const char* each : wanted) {
+    if (name == each) return true;
+  }
+  return wanted.empty();
+}
+
+/// Run one test, print what failed; true if it checked something and nothing failed.
+bool passes(const mpm::testing::UnitTest& test) {
+  mpm::testing::Report report;
+  try {
+    test.run(report);
+  } catch (const std::exception& error) {
+    std::printf("%s: threw: %s\n", test.name.data(), error.what());
+    return false;
+  }
+  for (const auto& failure : report.failures()) {
+    std::printf("%s: %s\n", test.name.data(), failure.c_str());
+  }
+  if (report.check_count() == 0) std::printf("%s: checked nothing\n", test.name.data());
+  return report.check_count() > 0 && report.failures().empty();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::span<char*> wanted(argv + 1, argv + argc);
+  int passed = 0;
+  int failed = 0;
+  for (const auto& test : mpm::testing::unit_tests) {
+    if (selected(test.name, wanted)) ++(passes(test) ? passed : failed);
+  }
+  std::printf("%d passed, %d failed\n", passed, failed);
+  return failed > 0 || passed == 0 ? 1 : 0;
+}
