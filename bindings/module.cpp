@@ -48,9 +48,12 @@ struct CatalogueModel {
 std::vector<CatalogueModel> catalogue() {
   std::vector<CatalogueModel> models;
   StrengthModels::for_each([&](const auto& model) {
-    CatalogueModel m{"strength", std::string(model.name), std::string(model.doc), std::string(model.source), {}, {}};
+    CatalogueModel m{
+        "strength", std::string(model.name), std::string(model.doc), std::string(model.source), {},
+        {}};
     for (const auto& p : model.params)
-      m.parameters.push_back({std::string(p.name), std::string(p.unit), std::string(p.meaning), std::string(rule_text(p.rule)),
+      m.parameters.push_back({std::string(p.name), std::string(p.unit), std::string(p.meaning),
+                              std::string(rule_text(p.rule)),
                               std::isnan(p.start) ? std::nullopt : std::optional<double>(p.start)});
     for (const auto& s : model.state_columns) m.state.push_back(std::string(s.name));
     models.push_back(std::move(m));
@@ -61,11 +64,21 @@ std::vector<CatalogueModel> catalogue() {
 }  // namespace
 
 NB_MODULE(_core, m) {
-  m.doc() = "The compiled core of MPM3Dpp. SI units throughout; see mpm3dpp.Case for defaults and units.";
+  m.doc() =
+      "The compiled core of MPM3Dpp. SI units throughout; see mpm3dpp.Case for defaults and units.";
 
-  nb::enum_<Scheme>(m, "Scheme").value("usf", Scheme::usf).value("usl", Scheme::usl).value("musl", Scheme::musl);
-  nb::enum_<Wall>(m, "Wall").value("free", Wall::free).value("slip", Wall::slip).value("fixed", Wall::fixed);
-  nb::enum_<Detection>(m, "Detection").value("gap", Detection::gap).value("velocity", Detection::velocity);
+  nb::enum_<Scheme>(m, "Scheme")
+      .value("usf", Scheme::usf)
+      .value("usl", Scheme::usl)
+      .value("musl", Scheme::musl);
+  nb::enum_<Basis>(m, "Basis").value("linear", Basis::linear).value("gimp", Basis::gimp);
+  nb::enum_<Wall>(m, "Wall")
+      .value("free", Wall::free)
+      .value("slip", Wall::slip)
+      .value("fixed", Wall::fixed);
+  nb::enum_<Detection>(m, "Detection")
+      .value("gap", Detection::gap)
+      .value("velocity", Detection::velocity);
   nb::enum_<NormalRule>(m, "NormalRule")
       .value("pair", NormalRule::pair)
       .value("first", NormalRule::first)
@@ -79,6 +92,7 @@ NB_MODULE(_core, m) {
       .def_rw("origin", &Settings::origin)
       .def_rw("box_cells", &Settings::box_cells)
       .def_rw("walls", &Settings::walls)
+      .def_rw("basis", &Settings::basis)
       .def_rw("scheme", &Settings::scheme)
       .def_rw("time_step_factor", &Settings::time_step_factor)
       .def_rw("gravity", &Settings::gravity)
@@ -133,16 +147,21 @@ NB_MODULE(_core, m) {
       .def_ro("state", &CatalogueModel::state);
 
   nb::class_<Simulation>(m, "Simulation")
-      .def(nb::new_([](const Settings& settings) { return make_simulation(settings); }), nb::arg("settings"))
-      .def("add_material", &Simulation::add_material, nb::arg("density"), nb::arg("strength"), nb::arg("parameters"))
+      .def(nb::new_([](const Settings& settings) { return make_simulation(settings); }),
+           nb::arg("settings"))
+      .def("add_material", &Simulation::add_material, nb::arg("density"), nb::arg("strength"),
+           nb::arg("parameters"))
       .def(
           "add_body",
-          [](Simulation& s, const std::string& name, int material, const Input& positions, const Input& velocities,
-             const Input& volumes) {
-            return s.add_body(name, material, span_of(positions), span_of(velocities), span_of(volumes));
+          [](Simulation& s, const std::string& name, int material, const Input& positions,
+             const Input& velocities, const Input& volumes) {
+            return s.add_body(name, material, span_of(positions), span_of(velocities),
+                              span_of(volumes));
           },
-          nb::arg("name"), nb::arg("material"), nb::arg("positions"), nb::arg("velocities"), nb::arg("volumes"))
-      .def("set_friction", &Simulation::set_pair_friction, nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"))
+          nb::arg("name"), nb::arg("material"), nb::arg("positions"), nb::arg("velocities"),
+          nb::arg("volumes"))
+      .def("set_friction", &Simulation::set_pair_friction, nb::arg("body_a"), nb::arg("body_b"),
+           nb::arg("mu"))
       .def("prepare", &Simulation::prepare, nb::call_guard<nb::gil_scoped_release>())
       .def("advance", &Simulation::advance, nb::arg("max_steps"), nb::arg("end_time"),
            nb::call_guard<nb::gil_scoped_release>())
@@ -172,10 +191,18 @@ NB_MODULE(_core, m) {
           },
           nb::arg("body"), nb::arg("name"))
       .def(
-          "set_velocity", [](Simulation& s, int body, const Input& velocities) { s.set_velocity(body, span_of(velocities)); },
+          "set_velocity",
+          [](Simulation& s, int body, const Input& velocities) {
+            s.set_velocity(body, span_of(velocities));
+          },
           nb::arg("body"), nb::arg("velocities"))
-      .def("history", [](Simulation& s) { return to_numpy(s.take_history(), Simulation::history_columns().size()); })
-      .def_prop_ro_static("history_columns", [](nb::handle) { return Simulation::history_columns(); })
+      .def("set_gravity", &Simulation::set_gravity, nb::arg("gravity"))
+      .def("history",
+           [](Simulation& s) {
+             return to_numpy(s.take_history(), Simulation::history_columns().size());
+           })
+      .def_prop_ro_static("history_columns",
+                          [](nb::handle) { return Simulation::history_columns(); })
       .def_ro_static("history_capacity", &Simulation::history_capacity)
       .def("contact_pairs", &Simulation::pairs)
       .def("contact_summary",
@@ -190,7 +217,8 @@ NB_MODULE(_core, m) {
       .def("timers",
            [](const Simulation& s) {
              nb::dict d;
-             for (const auto& [name, seconds] : s.stage_seconds()) d[nb::str(name.data(), name.size())] = seconds;
+             for (const auto& [name, seconds] : s.stage_seconds())
+               d[nb::str(name.data(), name.size())] = seconds;
              return d;
            })
       .def("reset_timers", &Simulation::reset_timers)
@@ -207,12 +235,15 @@ NB_MODULE(_core, m) {
   m.def("catalogue", &catalogue);
   m.def(
       "drive_material",
-      [](double density, const std::string& strength, const std::map<std::string, double>& parameters,
-         const Input& increments, bool lanes) {
-        return to_numpy(drive_material(density, strength, parameters, span_of(increments), lanes), 6);
+      [](double density, const std::string& strength,
+         const std::map<std::string, double>& parameters, const Input& increments, bool lanes) {
+        return to_numpy(drive_material(density, strength, parameters, span_of(increments), lanes),
+                        6);
       },
-      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("increments"), nb::arg("lanes"));
-  m.def("measure_bandwidth", &measure_bandwidth, nb::arg("threads"), nb::call_guard<nb::gil_scoped_release>());
+      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("increments"),
+      nb::arg("lanes"));
+  m.def("measure_bandwidth", &measure_bandwidth, nb::arg("threads"),
+        nb::call_guard<nb::gil_scoped_release>());
   m.def("build_info", [] {
     nb::dict d;
     d["compiler"] = MPM_COMPILER;

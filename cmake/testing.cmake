@@ -6,6 +6,15 @@ add_library(mpm_unit OBJECT ${unit_sources})
 target_include_directories(mpm_unit PUBLIC tests/unit)
 target_link_libraries(mpm_unit PUBLIC mpm_core)
 
+# Allocations are counted (tests/unit/run/count_allocations.cpp): every allocating function is called
+# through a wrapper, also from inside the C++ library, which is linked in for that.
+foreach(name IN ITEMS malloc calloc realloc aligned_alloc posix_memalign _Znwm _ZnwmSt11align_val_t)
+  target_link_options(mpm_unit INTERFACE LINKER:--wrap=${name})
+endforeach()
+if(NOT MPM_SANITIZE)
+  target_link_options(mpm_unit INTERFACE -static-libstdc++)
+endif()
+
 mpm_add_module(_testing tests/unit/module.cpp)
 target_link_libraries(_testing PRIVATE mpm_unit)
 

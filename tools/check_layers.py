@@ -11,13 +11,13 @@ LAYERS = {
     "parallel": 0,
     "fields": 1,
     "basis": 1,
-    "particles": 2,
     "grid": 2,
     "materials": 2,
-    "contact": 3,
-    "domain.hpp": 4,
-    "step": 5,
-    "run": 6,
+    "particles": 3,
+    "contact": 4,
+    "domain.hpp": 5,
+    "step": 6,
+    "run": 7,
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"][^>"]+)[>"]')
 PYTHON = re.compile(r'^[<"](nanobind/|pybind11/|Python\.h|numpy/)')

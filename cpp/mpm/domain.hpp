@@ -11,15 +11,16 @@
 
 namespace mpm {
 
-/// What the ledger needs from one patch in one step. Every patch has its own, and they are added in the order of the
-/// patches, so that no sum depends on the number of threads.
+/// What the ledger needs from one patch in one step. Every patch has its own, and they are added in
+/// the order of the patches, so that no sum depends on the number of threads.
 template <int D>
 struct PatchSums {
   StressSums stress;
-  double kinetic = 0.0;         // of the particles after the step [J]
-  double second_order = 0.0;    // half sum of m_p (change of v_p)^2 [J]
-  double momentum[D] = {};      // of the particles after the step [kg m/s]
-  double force_work = 0.0;      // time step x sum over nodes of internal and contact force . velocity [J]
+  double kinetic = 0.0;       // of the particles after the step [J]
+  double second_order = 0.0;  // half sum of m_p (change of v_p)^2 [J]
+  double momentum[D] = {};    // of the particles after the step [kg m/s]
+  double force_work =
+      0.0;  // time step x sum over nodes of internal and contact force . velocity [J]
   double gravity_first = 0.0;   // time step x sum over nodes of gravity . velocity [J]
   double gravity_second = 0.0;  // the part of second_order that is the work of gravity [J]
 };

@@ -80,7 +80,7 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         f"total: {particles:,} particles, mass {sum(b.mass for b in bodies):.6g} kg{per_metre}, "
         f"about {memory / 2**20:,.1f} MiB",
         f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
-        f"{bounds}",
+        f"{bounds}, {case.grid.basis} basis",
         f"contact: {contact}",
         f"time: {case.run.scheme}, end {case.run.end_time:.6g} s, step about {dt:.3g} s, "
         f"about {math.ceil(case.run.end_time / dt):,} steps, {len(case.frame_times())} frames",

@@ -291,6 +291,7 @@ def _settings(case: Case, threads: int) -> _core.Settings:
     settings.box_cells = three(grid.box_cells, 0) if grid.box_cells else [0, 0, 0]
     names = ["slip" if wall == "symmetry" else wall for wall in grid.walls]
     settings.walls = [_core.Wall[name] for name in [*names, *["free"] * 6][:6]]
+    settings.basis = _core.Basis[grid.basis]
     settings.scheme = _core.Scheme[run.scheme]
     settings.time_step_factor = run.time_step_factor
     settings.gravity = three(run.gravity, 0.0)

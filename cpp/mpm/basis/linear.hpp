@@ -1,95 +1,40 @@
 #pragma once
-// Multilinear shape functions on a cell: N_ip = product over the axes of (1 - xi) or xi, with xi in [0, 1].
-#include "mpm/grid/tile.hpp"
+// Multilinear shape functions on a cell: N_ip = product over the axes of (1 - xi) or xi, with xi in
+// [0, 1].
+#include "mpm/basis/block_shape.hpp"
+#include "mpm/basis/node_lanes.hpp"
 #include "mpm/math/vec.hpp"
 
 namespace mpm {
 
-/// Lanes over the 2^D nodes of a cell (x fastest), in as many registers as that takes.
-template <int D>
-struct CellNodes {
-  static constexpr int count = 1 << D;
-  static constexpr int width = count < native_lanes ? count : native_lanes;
-  static constexpr int parts = count / width;
-  using Part = Batch<width>;
-  Part part[parts];
-
-  static CellNodes zero() {
-    CellNodes r;
-    for (auto& p : r.part) p = Part(0.0);
-    return r;
-  }
-  static CellNodes load(const std::array<double, count>& values) {
-    CellNodes r;
-    for (int k = 0; k < parts; ++k) r.part[k] = Part::load(values.data() + k * width);
-    return r;
-  }
-  /// this += s * w
-  void add(double s, const CellNodes& w) {
-    for (int k = 0; k < parts; ++k) part[k] += Part(s) * w.part[k];
-  }
-};
-
 namespace linear_detail {
-/// 1 - bit, or 2 bit - 1, of axis a over the nodes: N along the axis is base + slope xi.
+/// 1 - bit, or 2 bit - 1, of an axis over the nodes: N along the axis is base + slope xi.
 template <int D>
-constexpr std::array<double, 1 << D> pattern(int axis, bool slope) {
-  std::array<double, 1 << D> r{};
-  for (int k = 0; k < 1 << D; ++k) {
-    const double bit = (k >> axis) & 1;
-    r[static_cast<std::size_t>(k)] = slope ? 2.0 * bit - 1.0 : 1.0 - bit;
-  }
+constexpr auto pattern(bool slope) {
+  std::array<std::array<double, 1 << D>, D> r{};
+  for (std::size_t a = 0; a < D; ++a)
+    for (std::size_t k = 0; k < 1 << D; ++k) {
+      const double bit = static_cast<double>((k >> a) & 1);
+      r[a][k] = slope ? 2.0 * bit - 1.0 : 1.0 - bit;
+    }
   return r;
 }
+template <int D>
+inline constexpr auto base = pattern<D>(false);
+template <int D>
+inline constexpr auto slope = pattern<D>(true);
 }  // namespace linear_detail
 
+/// A nodal field on one cell as a polynomial: f = sum over corners k of c_k xi^(bits of k), so that
+/// particles in the lanes evaluate it, and its gradient, by Horner's rule without touching the
+/// nodes again.
 template <int D>
-struct Linear {
-  // A particle exactly on a cell's face would give force to nodes to which it gives no mass; it is held this far away.
-  static constexpr double margin = 1e-12;
-
-  /// Position within the cell, in [margin, 1 - margin], from the position in cells and the cell's coordinate.
-  template <class T>
-  static T local(T cells, double cell) {
-    return min(max(cells - T(cell), T(margin)), T(1.0 - margin));
-  }
-
-  /// The one-axis factors of the shape function over the cell's nodes.
-  static CellNodes<D> factor(int axis, double xi) {
-    static constexpr std::array<std::array<double, 1 << D>, 3> base = {
-        linear_detail::pattern<D>(0, false), linear_detail::pattern<D>(1, false), linear_detail::pattern<D>(2, false)};
-    static constexpr std::array<std::array<double, 1 << D>, 3> slope = {
-        linear_detail::pattern<D>(0, true), linear_detail::pattern<D>(1, true), linear_detail::pattern<D>(2, true)};
-    const auto a = static_cast<std::size_t>(axis);
-    CellNodes<D> r = CellNodes<D>::load(base[a]);
-    r.add(xi, CellNodes<D>::load(slope[a]));
-    return r;
-  }
-  /// d factor / d xi, which does not depend on xi.
-  static CellNodes<D> slope(int axis) {
-    static constexpr std::array<std::array<double, 1 << D>, 3> slope = {
-        linear_detail::pattern<D>(0, true), linear_detail::pattern<D>(1, true), linear_detail::pattern<D>(2, true)};
-    return CellNodes<D>::load(slope[static_cast<std::size_t>(axis)]);
-  }
-};
-
-template <int D>
-CellNodes<D> operator*(const CellNodes<D>& x, const CellNodes<D>& y) {
-  CellNodes<D> r;
-  for (int k = 0; k < CellNodes<D>::parts; ++k) r.part[k] = x.part[k] * y.part[k];
-  return r;
-}
-
-/// A nodal field on one cell as a polynomial: f = sum over corners k of c_k xi^(bits of k), so that particles in the
-/// lanes evaluate it, and its gradient, by Horner's rule without touching the nodes again.
-template <int D>
-struct CellField {
+struct LinearField {
   double c[1 << D];
 
   /// `first` is the cell's first node in the field of a block.
-  explicit CellField(const double* first) {
-    static constexpr auto offset = Tile<D>::corner_offsets();
-    for (int k = 0; k < 1 << D; ++k) c[k] = first[offset[static_cast<std::size_t>(k)]];
+  LinearField(const double* first, const BlockShape<D>& shape) {
+    for (int k = 0; k < 1 << D; ++k) c[k] = first[shape.corner_offset[static_cast<std::size_t>(k)]];
     for (int axis = 0; axis < D; ++axis)
       for (int k = 0; k < 1 << D; ++k)
         if ((k >> axis) & 1) c[k] -= c[k ^ (1 << axis)];
@@ -117,6 +62,61 @@ struct CellField {
       const T z = (T(c[4]) + T(c[5]) * xi[0]) + xi[1] * (T(c[6]) + T(c[7]) * xi[0]);
       return {x, y, z};
     }
+  }
+};
+
+template <int D>
+struct Linear {
+  const BlockShape<D>& shape;
+  static constexpr int margin = 0;  // nodes that a particle reaches beyond its cell
+  using Nodes = NodeLanes<(1 << D)>;
+  using Field = LinearField<D>;
+
+  /// What `Field` wants to know of the particles in the lanes: their position in the cell.
+  template <class T>
+  static const Vec<T, D>& weights(const Vec<T, D>& xi) {
+    return xi;
+  }
+  Field field(const double* first_node) const { return Field(first_node, shape); }
+
+  /// N_ip over the cell's nodes.
+  static Nodes functions(const double* xi) {
+    Nodes N = axis(0, xi);
+    for (int a = 1; a < D; ++a) N = N * axis(a, xi);
+    return N;
+  }
+  /// dN_ip / d xi over the cell's nodes, along each axis.
+  static void gradients(const double* xi, Nodes* G) {
+    Nodes N[D];
+    for (int a = 0; a < D; ++a) N[a] = axis(a, xi);
+    for (int a = 0; a < D; ++a) {
+      G[a] = Nodes::load(linear_detail::slope<D>[static_cast<std::size_t>(a)].data());
+      for (int b = 0; b < D; ++b)
+        if (b != a) G[a] = G[a] * N[b];
+    }
+  }
+  void add_to_nodes(double* first_node, const Nodes& value) const {
+    double v[Nodes::count];
+    value.store(v);
+    for (int k = 0; k < Nodes::count; ++k)
+      first_node[shape.corner_offset[static_cast<std::size_t>(k)]] += v[k];
+  }
+
+  /// One-axis factor of the node at place e (0 or 1) of the cell, and its derivative.
+  template <class T>
+  static T factor(int e, T xi) {
+    return e ? xi : T(1.0) - xi;
+  }
+  template <class T>
+  static T slope(int e, T) {
+    return T(e ? 1.0 : -1.0);
+  }
+
+ private:
+  static Nodes axis(int a, const double* xi) {
+    Nodes N = Nodes::load(linear_detail::base<D>[static_cast<std::size_t>(a)].data());
+    N.add(xi[a], Nodes::load(linear_detail::slope<D>[static_cast<std::size_t>(a)].data()));
+    return N;
   }
 };
 

@@ -12,12 +12,15 @@ void ContactGrid<D>::connect(const TileGrid<D>& grid) {
   tiles_.clear();
   auto tile_of = [&](const TileHolder& h) {
     Index<D> t = grid.patches[static_cast<std::size_t>(h.patch)].tile;
-    for (int a = 0; a < D; ++a) t[a] += h.corner >> a & 1;
+    const Index<D> o = Tile<D>::offset(h.neighbour);
+    for (int a = 0; a < D; ++a) t[a] += o[a];
     return t;
   };
   for (std::size_t p = 0; p < grid.patches.size(); ++p)
-    for (int k = 0; k < Tile<D>::corners; ++k)
-      holders_.push_back({grid.patches[p].body, static_cast<std::int32_t>(p), static_cast<std::uint8_t>(k)});
+    for (int k = 0; k < Tile<D>::neighbours; ++k)
+      if (reaches<D>(grid.shape, k))
+        holders_.push_back(
+            {grid.patches[p].body, static_cast<std::int32_t>(p), static_cast<std::uint8_t>(k)});
   std::sort(holders_.begin(), holders_.end(), [&](const TileHolder& x, const TileHolder& y) {
     const Index<D> tx = tile_of(x), ty = tile_of(y);
     if (tx != ty) return tile_less<D>(tx, ty);
@@ -37,17 +40,18 @@ void ContactGrid<D>::connect(const TileGrid<D>& grid) {
 }
 
 template <int D>
-std::uint32_t ContactGrid<D>::sides_at(TileGrid<D>& grid, const ContactTile<D>& tile, const Index<D>& node, Side<D>* sides) {
+std::uint32_t ContactGrid<D>::sides_at(TileGrid<D>& grid, const ContactTile<D>& tile,
+                                       const Index<D>& node, Side<D>* sides) {
   std::uint32_t count = 0;
   const std::uint32_t end = tile.first_holder + tile.holders;
   for (std::uint32_t first = tile.first_holder, next = first; first < end; first = next) {
     const int body = holders_[first].body;
     bool found = false;
     for (next = first; next < end && holders_[next].body == body; ++next) {
-      if (found || !holds_node<D>(holders_[next], node)) continue;
+      if (found || !holds_node<D>(grid.shape, holders_[next], node)) continue;
       found = true;
       const NodeBlock<D> block = grid.block(static_cast<std::size_t>(holders_[next].patch));
-      const int at = node_in_holder<D>(holders_[next], node);
+      const int at = node_in_holder<D>(grid.shape, holders_[next], node);
       if (!(block.mass()[at] > 0.0)) continue;
       if (sides) {
         Side<D>& side = sides[count];
@@ -59,14 +63,16 @@ std::uint32_t ContactGrid<D>::sides_at(TileGrid<D>& grid, const ContactTile<D>& 
       }
       ++count;
     }
-    if (sides && found && count > 0 && sides[count - 1].body == body) sides[count - 1].copies = next - first;
+    if (sides && found && count > 0 && sides[count - 1].body == body)
+      sides[count - 1].copies = next - first;
   }
   return count;
 }
 
 template <int D>
-void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const std::vector<double>& stiffness,
-                          const ContactSettings& settings, Threads& threads) {
+void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                          const std::vector<double>& stiffness, const ContactSettings& settings,
+                          Threads& threads) {
   counts_.assign(tiles_.size() + 1, {0, 0, 0});
   threads.for_each(tiles_.size(), [&](std::size_t t) {
     TileCounts c{0, 0, 0};
@@ -99,7 +105,7 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       sides_at(grid, tiles_[t], index, &sides_[c.sides]);
       ContactNode& node = nodes_[c.nodes];
       node.tile = static_cast<std::uint32_t>(t);
-      node.node = static_cast<std::uint16_t>(Tile<D>::node(index));
+      node.cell = static_cast<std::uint16_t>(Tile<D>::cell(index));
       node.sides = static_cast<std::uint16_t>(count);
       node.first_side = c.sides;
       node.first_pair = c.pairs;
@@ -107,7 +113,8 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       for (int a = 0; a < D; ++a) global[a] += index[a];
       node.held = grid.walls.held(global);
       node.energy = node.force_work = 0.0;
-      for (std::uint32_t k = 0; k < count; ++k) find_normal(grid, bodies, node, sides_[c.sides + k]);
+      for (std::uint32_t k = 0; k < count; ++k)
+        find_normal(grid, bodies, node, sides_[c.sides + k]);
       std::uint32_t at = c.pairs;
       for (std::uint16_t r = 0; r < count; ++r)
         for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < count; ++s) {
@@ -118,53 +125,63 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
           pair.r = r;
           pair.s = s;
           pair.friction = friction(settings, side_r.body, side_s.body);
-          const bool stiffer = stiffness[static_cast<std::size_t>(side_r.body)] >= stiffness[static_cast<std::size_t>(side_s.body)];
+          const bool stiffer = stiffness[static_cast<std::size_t>(side_r.body)] >=
+                               stiffness[static_cast<std::size_t>(side_s.body)];
           pair.normal = pair_normal<D>(side_r.normal, side_s.normal, settings.normal, stiffer);
           const bool opposed = dot(pair.normal, pair.normal) > 0.0;
-          // Eq. (5): D_rs = D_r + D_s, each D the distance from the node to the body's surface along the pair's normal.
+          // Eq. (5): D_rs = D_r + D_s, each D the distance from the node to the body's surface
+          // along the pair's normal.
           pair.gap = opposed ? -reach(grid, bodies, node, side_r, pair.normal) -
                                    reach(grid, bodies, node, side_s, -1.0 * pair.normal)
                              : std::numeric_limits<double>::infinity();
-          pair.closed = opposed && (settings.detection == Detection::velocity || pair.gap < settings.gap_distance);
+          pair.closed = opposed && (settings.detection == Detection::velocity ||
+                                    pair.gap < settings.gap_distance);
         }
       ++c.nodes;
       c.sides += count;
       c.pairs += pair_count(count);
     });
   });
-  for (const ContactNode& node : nodes_) bodies_max_ = std::max(bodies_max_, static_cast<int>(node.sides));
+  for (const ContactNode& node : nodes_)
+    bodies_max_ = std::max(bodies_max_, static_cast<int>(node.sides));
 }
 
 template <int D>
-void ContactGrid<D>::find_normal(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const ContactNode& node,
-                                 Side<D>& side) const {
+void ContactGrid<D>::find_normal(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                                 const ContactNode& node, Side<D>& side) const {
   Vec<double, D> gradient = Vec<double, D>::zero();
-  for_each_copy(node, side, [&](std::size_t p, int at) {
-    gradient += mass_gradient(grid, bodies[static_cast<std::size_t>(side.body)], grid.patches[p], at);
+  for_each_copy(grid, node, side, [&](std::size_t p, int at) {
+    gradient +=
+        mass_gradient(grid, bodies[static_cast<std::size_t>(side.body)], grid.patches[p], at);
   });
   // A wall mirrors the body, so its surface is normal to the wall there.
   for (int a = 0; a < D; ++a)
     if (node.held >> a & 1u) gradient[a] = 0.0;
-  side.normal = normalised(gradient);
+  side.normal = weighted_normal(gradient, side.mass, grid.cell_size);
 }
 
 template <int D>
-double ContactGrid<D>::reach(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const ContactNode& node,
-                             const Side<D>& side, const Vec<double, D>& normal) const {
+double ContactGrid<D>::reach(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                             const ContactNode& node, const Side<D>& side,
+                             const Vec<double, D>& normal) const {
   double furthest = -std::numeric_limits<double>::infinity();
-  for_each_copy(node, side, [&](std::size_t p, int at) {
-    furthest = std::max(furthest, surface_distance(grid, bodies[static_cast<std::size_t>(side.body)], grid.patches[p], at, normal));
+  for_each_copy(grid, node, side, [&](std::size_t p, int at) {
+    furthest =
+        std::max(furthest, surface_distance(grid, bodies[static_cast<std::size_t>(side.body)],
+                                            grid.patches[p], at, normal));
   });
   return furthest;
 }
 
 template <int D>
 template <class F>
-void ContactGrid<D>::for_each_copy(const ContactNode& node, const Side<D>& side, F&& f) const {
-  const Index<D> index = Tile<D>::node_index(node.node);
+void ContactGrid<D>::for_each_copy(const TileGrid<D>& grid, const ContactNode& node,
+                                   const Side<D>& side, F&& f) const {
+  const Index<D> index = Tile<D>::cell_index(node.cell);
   for (std::uint32_t h = side.first_copy; h < side.first_copy + side.copies; ++h)
-    if (holds_node<D>(holders_[h], index))
-      f(static_cast<std::size_t>(holders_[h].patch), node_in_holder<D>(holders_[h], index));
+    if (holds_node<D>(grid.shape, holders_[h], index))
+      f(static_cast<std::size_t>(holders_[h].patch),
+        node_in_holder<D>(grid.shape, holders_[h], index));
 }
 
 template <int D>
@@ -174,12 +191,13 @@ void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
     Side<D>* sides = &sides_[node.first_side];
     SidePair<D>* pairs = &pairs_[node.first_pair];
     const std::uint32_t count = pair_count(node.sides);
-    for (std::uint32_t k = 0; k < node.sides; ++k) sides[k].momentum = sides[k].mass * sides[k].mapped;
+    for (std::uint32_t k = 0; k < node.sides; ++k)
+      sides[k].momentum = sides[k].mass * sides[k].mapped;
     solve_node<D, false>(sides, pairs, count, [](const SidePair<D>& pair) { return pair.closed; });
     for (std::uint32_t k = 0; k < node.sides; ++k) {
       Side<D>& side = sides[k];
       side.velocity = (1.0 / side.mass) * side.momentum;
-      for_each_copy(node, side, [&](std::size_t p, int at) {
+      for_each_copy(grid, node, side, [&](std::size_t p, int at) {
         for (int a = 0; a < D; ++a) grid.block(p).velocity(a)[at] = side.velocity[a];
       });
     }
@@ -187,7 +205,8 @@ void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
       SidePair<D>& pair = pairs[k];
       const Side<D>& r = sides[pair.r];
       const Side<D>& s = sides[pair.s];
-      // Rounding of the velocities decides whether two bodies that now move together count as touching: let it.
+      // Rounding of the velocities decides whether two bodies that now move together count as
+      // touching: let it.
       const double rounding = 1e-13 * (norm(r.mapped) + norm(s.mapped));
       pair.touching = pair.closed && dot(r.velocity - s.velocity, pair.normal) >= -rounding;
       pair.acted = pair.normal_impulse > 0.0;
@@ -196,7 +215,8 @@ void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
 }
 
 template <int D>
-void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity, double time_step, Threads& threads) {
+void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity, double time_step,
+                                Threads& threads) {
   threads.for_each(nodes_.size(), [&](std::size_t n) {
     ContactNode& node = nodes_[n];
     Side<D>* sides = &sides_[node.first_side];
@@ -205,7 +225,7 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity
     auto force_of = [&](const Side<D>& side) {
       Vec<double, D> f = Vec<double, D>::zero();
       bool read = false;
-      for_each_copy(node, side, [&](std::size_t p, int at) {
+      for_each_copy(grid, node, side, [&](std::size_t p, int at) {
         if (read) return;
         for (int a = 0; a < D; ++a)
           f[a] = node.held >> a & 1u ? 0.0 : grid.block(p).force(a)[at] + side.mass * gravity[a];
@@ -220,11 +240,12 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity
     double force_work = 0.0, correction = 0.0;
     for (std::uint32_t k = 0; k < node.sides; ++k) {
       const Side<D>& side = sides[k];
-      const Vec<double, D> change = side.momentum - side.mass * side.velocity;  // impulse of all forces
+      const Vec<double, D> change =
+          side.momentum - side.mass * side.velocity;  // impulse of all forces
       const Vec<double, D> contact = change - time_step * force_of(side);
       force_work += dot(contact, side.velocity);
       correction -= dot(change, side.velocity - side.mapped);
-      for_each_copy(node, side, [&](std::size_t p, int at) {
+      for_each_copy(grid, node, side, [&](std::size_t p, int at) {
         for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] += (1.0 / time_step) * contact[a];
       });
     }
@@ -252,16 +273,19 @@ void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
     Side<D>* sides = &sides_[node.first_side];
     for (std::uint32_t k = 0; k < node.sides; ++k) {
       Side<D>& side = sides[k];
-      for_each_copy(node, side, [&](std::size_t p, int at) {
+      for_each_copy(grid, node, side, [&](std::size_t p, int at) {
         for (int a = 0; a < D; ++a) side.momentum[a] = side.mass * grid.block(p).force(a)[at];
       });
     }
-    // The impulses of this solution act on the velocities that strain the material only; they are not contact forces.
+    // The impulses of this solution act on the velocities that strain the material only; they are
+    // not contact forces.
     SidePair<D>* pairs = &pairs_[node.first_pair];
-    solve_node<D, false>(sides, pairs, pair_count(node.sides), [](const SidePair<D>& pair) { return pair.closed; });
+    solve_node<D, false>(sides, pairs, pair_count(node.sides),
+                         [](const SidePair<D>& pair) { return pair.closed; });
     for (std::uint32_t k = 0; k < node.sides; ++k)
-      for_each_copy(node, sides[k], [&](std::size_t p, int at) {
-        for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] = sides[k].momentum[a] / sides[k].mass;
+      for_each_copy(grid, node, sides[k], [&](std::size_t p, int at) {
+        for (int a = 0; a < D; ++a)
+          grid.block(p).force(a)[at] = sides[k].momentum[a] / sides[k].mass;
       });
   });
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Where bodies overlap: the tiles whose nodes two or more bodies touch, and, anew in every step, the overlapped nodes.
+// Where bodies overlap: the tiles whose nodes two or more bodies touch, and, anew in every step,
+// the overlapped nodes.
 #include <cstdint>
 #include <limits>
 
@@ -9,11 +10,13 @@
 
 namespace mpm {
 
-/// A patch that holds nodes of a tile: the tile's own patch of a body, or one below it that shares its first nodes.
+/// A patch whose block has nodes that belong to a tile: the tile's own patch of a body, or one
+/// beside it. (A tile's own nodes are all but those at its upper ends, which are the next tile's
+/// first.)
 struct TileHolder {
   std::int32_t body;
   std::int32_t patch;
-  std::uint8_t corner;  // bit a: the patch's tile is one lower along axis a
+  std::uint8_t neighbour;  // where the tile lies as seen from the patch: Tile<D>::offset
 };
 
 template <int D>
@@ -24,21 +27,23 @@ struct ContactTile {
 
 /// What has passed between two bodies since the start.
 struct PairRecord {
-  int a = 0, b = 0;  // bodies, a < b
+  int a = 0, b = 0;                                              // bodies, a < b
   double first_time = std::numeric_limits<double>::quiet_NaN();  // [s]
-  double first_gap = std::numeric_limits<double>::quiet_NaN();   // smallest gap of the nodes in contact then [m]
+  double first_gap =
+      std::numeric_limits<double>::quiet_NaN();  // smallest gap of the nodes in contact then [m]
   std::int64_t first_step = -1;
-  double force[3] = {};    // on a, in the last step [N]
-  double impulse[3] = {};  // on a [N s]
+  double force[3] = {};        // on a, in the last step [N]
+  double impulse[3] = {};      // on a [N s]
   double friction_work = 0.0;  // [J]
 };
 
 /// Sums over all contacts of one step, for the ledger [J].
 struct ContactSums {
-  double friction = 0.0;       // lost to friction
-  double friction_first = 0.0; // the same with the slip at the start of the step
-  double energy = 0.0;         // lost in normal contact
-  double force_work = 0.0;     // work of contact forces at the velocities that the nodal forces work on
+  double friction = 0.0;        // lost to friction
+  double friction_first = 0.0;  // the same with the slip at the start of the step
+  double energy = 0.0;          // lost in normal contact
+  double force_work =
+      0.0;  // work of contact forces at the velocities that the nodal forces work on
 };
 
 template <int D>
@@ -47,18 +52,23 @@ class ContactGrid {
   /// Find the tiles where bodies may meet. Call when patches were added or removed.
   void connect(const TileGrid<D>& grid);
 
-  /// Find the overlapped nodes with their normals, pairs and gaps, eq. (5). Needs mass and velocity at the nodes.
-  void find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const std::vector<double>& stiffness,
-            const ContactSettings& settings, Threads& threads);
+  /// Find the overlapped nodes with their normals, pairs and gaps, eq. (5). Needs mass and velocity
+  /// at the nodes.
+  void find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+            const std::vector<double>& stiffness, const ContactSettings& settings,
+            Threads& threads);
 
   /// Remove approaching momentum, eqs. (6)-(7), from the nodal velocities.
   void adjust_momentum(TileGrid<D>& grid, Threads& threads);
-  /// Add the contact forces, eqs. (11)-(15), to the nodal forces; `gravity` is the body force per mass.
-  void add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity, double time_step, Threads& threads);
+  /// Add the contact forces, eqs. (11)-(15), to the nodal forces; `gravity` is the body force per
+  /// mass.
+  void add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity, double time_step,
+                  Threads& threads);
   /// Remove the approach from the remapped velocities (3.6, step 10).
   void adjust_remapped(TileGrid<D>& grid, Threads& threads);
 
-  /// Add this step's impulses and work to the records of the pairs and give the sums for the ledger.
+  /// Add this step's impulses and work to the records of the pairs and give the sums for the
+  /// ledger.
   ContactSums record(double time, double time_step, std::int64_t step);
 
   const std::vector<PairRecord>& pairs() const { return records_; }
@@ -68,12 +78,15 @@ class ContactGrid {
   std::size_t bytes() const;
 
  private:
-  std::uint32_t sides_at(TileGrid<D>& grid, const ContactTile<D>& tile, const Index<D>& node, Side<D>* sides);
+  std::uint32_t sides_at(TileGrid<D>& grid, const ContactTile<D>& tile, const Index<D>& node,
+                         Side<D>* sides);
   template <class F>
-  void for_each_copy(const ContactNode& node, const Side<D>& side, F&& f) const;
-  void find_normal(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const ContactNode& node, Side<D>& side) const;
-  double reach(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const ContactNode& node, const Side<D>& side,
-               const Vec<double, D>& normal) const;
+  void for_each_copy(const TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
+                     F&& f) const;
+  void find_normal(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                   const ContactNode& node, Side<D>& side) const;
+  double reach(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const ContactNode& node,
+               const Side<D>& side, const Vec<double, D>& normal) const;
   PairRecord& record_of(int a, int b);
 
   std::vector<TileHolder> holders_;

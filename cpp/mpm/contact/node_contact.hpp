@@ -1,5 +1,6 @@
 #pragma once
-// The contact of any number of bodies at one node: who is there, along which normals, and the impulses between them.
+// The contact of any number of bodies at one node: who is there, along which normals, and the
+// impulses between them.
 #include <cstdint>
 #include <vector>
 
@@ -12,48 +13,50 @@ namespace mpm {
 template <int D>
 struct Side {
   int body;
-  std::uint32_t first_copy, copies;  // the patches that hold the node for this body (ContactGrid::entries)
-  double mass;                       // [kg]
-  Vec<double, D> normal;             // outward unit normal
-  Vec<double, D> mapped;             // velocity mapped from the particles [m/s]
-  Vec<double, D> velocity;           // after the contact of eqs. (6)-(7) [m/s]
-  Vec<double, D> momentum;           // working momentum of the solver [kg m/s]
+  std::uint32_t first_copy,
+      copies;               // the patches that hold the node for this body (ContactGrid::entries)
+  double mass;              // [kg]
+  Vec<double, D> normal;    // outward, of length <= 1 (weighted_normal)
+  Vec<double, D> mapped;    // velocity mapped from the particles [m/s]
+  Vec<double, D> velocity;  // after the contact of eqs. (6)-(7) [m/s]
+  Vec<double, D> momentum;  // working momentum of the solver [kg m/s]
 };
 
 /// Two bodies at an overlapped node.
 template <int D>
 struct SidePair {
-  std::uint16_t r, s;       // sides of the node, by number
-  bool closed;              // the gap test, eq. (5), has passed
-  bool touching;            // closed, and approaching or at rest: forces may act
-  bool acted;               // an impulse of eqs. (6)-(7) or (11)-(15) has acted in this step
-  double friction;          // coefficient of friction
-  double gap;               // distance of the two surfaces along the normal [m]
-  double normal_impulse;    // of the last solution [N s]
-  Vec<double, D> normal;    // from r to s
+  std::uint16_t r, s;     // sides of the node, by number
+  bool closed;            // the gap test, eq. (5), has passed
+  bool touching;          // closed, and approaching or at rest: forces may act
+  bool acted;             // an impulse of eqs. (6)-(7) or (11)-(15) has acted in this step
+  double friction;        // coefficient of friction
+  double gap;             // distance of the two surfaces along the normal [m]
+  double normal_impulse;  // of the last solution [N s]
+  Vec<double, D> normal;  // from r to s
   Vec<double, D> friction_impulse;  // of the last solution, on s [N s]
-  Vec<double, D> impulse;   // on r, over this step [N s]
-  double friction_work;     // over this step, with the mean slip [J]
-  double friction_first;    // the same with the slip at its start [J]
+  Vec<double, D> impulse;           // on r, over this step [N s]
+  double friction_work;             // over this step, with the mean slip [J]
+  double friction_first;            // the same with the slip at its start [J]
 };
 
 /// An overlapped node: its sides and its pairs.
 struct ContactNode {
-  std::uint32_t tile;        // ContactGrid::tiles
-  std::uint16_t node;        // number of the node in the block of that tile
+  std::uint32_t tile;  // ContactGrid::tiles
+  std::uint16_t cell;  // the node's place in that tile, as the cell whose first node it is
   std::uint16_t sides;
   std::uint32_t first_side, first_pair;
-  unsigned held;             // axes held by walls
-  double energy;             // work of the contact beyond friction, over this step [J]
-  double force_work;         // work of the contact forces at the velocities of the force mapping [J]
+  unsigned held;      // axes held by walls
+  double energy;      // work of the contact beyond friction, over this step [J]
+  double force_work;  // work of the contact forces at the velocities of the force mapping [J]
 };
 
 constexpr std::uint32_t pair_count(std::uint32_t sides) { return sides * (sides - 1) / 2; }
 
-/// Remove the approach of every closed pair, eqs. (6)-(7), working on Side::momentum; with friction, hold the tangential
-/// motion as far as Coulomb's law allows, eqs. (14)-(15). For two bodies this is the paper's formula; more are solved
-/// together by projected Gauss-Seidel in a fixed order, to 1e-12 of the largest impulse.
-/// `takes_part(pair)` chooses the pairs. Sets normal_impulse and friction_impulse of every pair (0 for the others).
+/// Remove the approach of every closed pair, eqs. (6)-(7), working on Side::momentum; with
+/// friction, hold the tangential motion as far as Coulomb's law allows, eqs. (14)-(15). For two
+/// bodies this is the paper's formula; more are solved together by projected Gauss-Seidel in a
+/// fixed order, to 1e-12 of the largest impulse. `takes_part(pair)` chooses the pairs. Sets
+/// normal_impulse and friction_impulse of every pair (0 for the others).
 template <int D, bool with_friction, class Choose>
 void solve_node(Side<D>* sides, SidePair<D>* pairs, std::uint32_t count, Choose&& takes_part) {
   constexpr int most_sweeps = 2000;
@@ -71,7 +74,8 @@ void solve_node(Side<D>* sides, SidePair<D>* pairs, std::uint32_t count, Choose&
       Side<D>& s = sides[pair.s];
       const double reduced_mass = r.mass * s.mass / (r.mass + s.mass);
       Vec<double, D> relative = (1.0 / r.mass) * r.momentum - (1.0 / s.mass) * s.momentum;
-      const double normal = std::max(pair.normal_impulse + reduced_mass * dot(relative, pair.normal), 0.0);
+      const double normal =
+          std::max(pair.normal_impulse + reduced_mass * dot(relative, pair.normal), 0.0);
       Vec<double, D> impulse = (normal - pair.normal_impulse) * pair.normal;
       change = std::max(change, std::abs(normal - pair.normal_impulse));
       scale = std::max(scale, normal);

@@ -6,9 +6,9 @@ namespace mpm {
 
 template <int D>
 PairRecord& ContactGrid<D>::record_of(int a, int b) {
-  const auto at = std::lower_bound(records_.begin(), records_.end(), std::pair(a, b), [](const PairRecord& x, const auto& y) {
-    return std::pair(x.a, x.b) < y;
-  });
+  const auto at =
+      std::lower_bound(records_.begin(), records_.end(), std::pair(a, b),
+                       [](const PairRecord& x, const auto& y) { return std::pair(x.a, x.b) < y; });
   if (at != records_.end() && at->a == a && at->b == b) return *at;
   PairRecord record;
   record.a = a;
@@ -26,7 +26,8 @@ ContactSums ContactGrid<D>::record(double time, double time_step, std::int64_t s
     for (std::uint32_t k = 0; k < pair_count(node.sides); ++k) {
       const SidePair<D>& pair = pairs_[node.first_pair + k];
       if (!pair.acted) continue;
-      PairRecord& r = record_of(sides_[node.first_side + pair.r].body, sides_[node.first_side + pair.s].body);
+      PairRecord& r =
+          record_of(sides_[node.first_side + pair.r].body, sides_[node.first_side + pair.s].body);
       if (r.first_step < 0) {
         r.first_step = step;
         r.first_time = time;

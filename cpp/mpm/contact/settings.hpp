@@ -7,31 +7,35 @@
 
 namespace mpm {
 
-/// gap: bodies touch when they approach and their distance, eq. (5), is below `gap_distance`. velocity: when they approach.
+/// gap: bodies touch when they approach and their distance, eq. (5), is below `gap_distance`.
+/// velocity: when they approach.
 enum class Detection { gap, velocity };
 
-/// Whose normal a pair uses: both (n_r - n_s), the first body's, the second's, or that of the stiffer material.
+/// Whose normal a pair uses: both (n_r - n_s), the first body's, the second's, or that of the
+/// stiffer material.
 enum class NormalRule { pair, first, second, stiffer };
 
 struct ContactSettings {
   bool enabled = false;
   Detection detection = Detection::gap;
   NormalRule normal = NormalRule::pair;
-  double gap_distance = 0.0;  // D of eq. (5) [m]
-  double friction = 0.0;      // default coefficient
+  double gap_distance = 0.0;                                    // D of eq. (5) [m]
+  double friction = 0.0;                                        // default coefficient
   std::vector<std::pair<std::uint64_t, double>> pair_friction;  // by pair_key, sorted
 };
 
 /// One number for an unordered pair of bodies.
 inline std::uint64_t pair_key(int a, int b) {
-  const auto low = static_cast<std::uint64_t>(std::min(a, b)), high = static_cast<std::uint64_t>(std::max(a, b));
+  const auto low = static_cast<std::uint64_t>(std::min(a, b)),
+             high = static_cast<std::uint64_t>(std::max(a, b));
   return low << 32 | high;
 }
 
 inline void set_friction(ContactSettings& settings, int a, int b, double mu) {
   const std::uint64_t key = pair_key(a, b);
   auto& list = settings.pair_friction;
-  const auto at = std::lower_bound(list.begin(), list.end(), key, [](const auto& x, std::uint64_t k) { return x.first < k; });
+  const auto at = std::lower_bound(list.begin(), list.end(), key,
+                                   [](const auto& x, std::uint64_t k) { return x.first < k; });
   if (at != list.end() && at->first == key) {
     at->second = mu;
   } else {
@@ -42,7 +46,8 @@ inline void set_friction(ContactSettings& settings, int a, int b, double mu) {
 inline double friction(const ContactSettings& settings, int a, int b) {
   const std::uint64_t key = pair_key(a, b);
   const auto& list = settings.pair_friction;
-  const auto at = std::lower_bound(list.begin(), list.end(), key, [](const auto& x, std::uint64_t k) { return x.first < k; });
+  const auto at = std::lower_bound(list.begin(), list.end(), key,
+                                   [](const auto& x, std::uint64_t k) { return x.first < k; });
   return at != list.end() && at->first == key ? at->second : settings.friction;
 }
 

@@ -1,46 +1,62 @@
 #pragma once
-// A body's surface as seen from a node: outward normal from the gradient of mass, and how far the body reaches.
-#include "mpm/basis/linear.hpp"
+// A body's surface as seen from a node: outward normal from the gradient of mass, and how far the
+// body reaches.
+#include "mpm/basis/basis.hpp"
 #include "mpm/contact/contact_grid.hpp"
 #include "mpm/fields/lanes.hpp"
 
 namespace mpm {
 
-/// Does a holder's patch have this node (numbered from the tile's first) in its block?
+/// Coordinate in a holder's block of a node of the tile.
 template <int D>
-bool holds_node(const TileHolder& holder, const Index<D>& node) {
-  for (int a = 0; a < D; ++a)
-    if ((holder.corner >> a & 1) && node[a] != 0) return false;
-  return true;
+Index<D> seen_from(const TileHolder& holder, Index<D> node) {
+  const Index<D> o = Tile<D>::offset(holder.neighbour);
+  for (int a = 0; a < D; ++a) node[a] += Tile<D>::cells * o[a];
+  return node;
+}
+/// Does a holder's patch have this node (counted from the tile's first) in its block?
+template <int D>
+bool holds_node(const BlockShape<D>& shape, const TileHolder& holder, const Index<D>& node) {
+  return shape.holds(seen_from<D>(holder, node));
 }
 /// The node's number in the holder's block.
 template <int D>
-int node_in_holder(const TileHolder& holder, Index<D> node) {
-  for (int a = 0; a < D; ++a)
-    if (holder.corner >> a & 1) node[a] += Tile<D>::cells;
-  return Tile<D>::node(node);
+int node_in_holder(const BlockShape<D>& shape, const TileHolder& holder, const Index<D>& node) {
+  return shape.node(seen_from<D>(holder, node));
+}
+/// Does a block reach any node that belongs to neighbour k?
+template <int D>
+bool reaches(const BlockShape<D>& shape, int k) {
+  bool any = true;
+  const Index<D> o = Tile<D>::offset(k);
+  for (int a = 0; a < D; ++a) any = any && (o[a] >= 0 || shape.margin > 0);
+  return any;
 }
 
-/// f(node) for the nodes that belong to a tile: all but those at its upper ends, which are the next tile's first.
+/// f(node) for the nodes that belong to a tile: all but those at its upper ends, which are the next
+/// tile's first.
 template <int D, class F>
 void for_each_tile_node(F&& f) {
   for (int c = 0; c < Tile<D>::cell_count; ++c) f(Tile<D>::cell_index(c));
 }
 
-/// f(corner, xi, rows) for the particles, in lanes, of the cells of a patch around a node; `corner` is the node's place
-/// in the cell and xi the position in it.
+/// f(place, xi, rows) for the particles, in lanes, of the cells of a patch from which a node is in
+/// reach; `place` is the node's coordinate in the cell (0 or 1 at its corners) and xi the position
+/// in it.
 template <int D, class F>
-void for_particles_around(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch, int node, F&& f) {
+void for_particles_around(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
+                          int node, F&& f) {
   constexpr int W = native_lanes;
   using T = Batch<W>;
-  const Index<D> at = Tile<D>::node_index(node);
+  const int margin = grid.shape.margin, width = 2 + 2 * margin;
+  const Index<D> at = grid.shape.index(node);
   const Index<D> first = grid.first_cell(patch.tile);
-  for (int k = Tile<D>::corners - 1; k >= 0; --k) {
-    const Index<D> corner = Tile<D>::corner(k);
-    Index<D> cell;
+  for (int k = power(width, D) - 1; k >= 0; --k) {
+    Index<D> cell, place;
     bool inside = true;
-    for (int a = 0; a < D; ++a) {
-      cell[a] = at[a] - corner[a];
+    for (int a = 0, left = k; a < D; ++a, left /= width) {
+      place[a] = left % width - margin;
+      cell[a] = at[a] - place[a];
       inside = inside && cell[a] >= 0 && cell[a] < Tile<D>::cells;
     }
     if (!inside) continue;
@@ -50,33 +66,40 @@ void for_particles_around(const TileGrid<D>& grid, const Body<D>& body, const Pa
       const LaneRows<W> rows(body.order.data() + patch.begin + i, end - i);
       Vec<T, D> xi;
       for (int a = 0; a < D; ++a)
-        xi[a] = Linear<D>::local(grid.in_cells(load(body.x(a), rows), a), first[a] + cell[a]);
-      f(corner, xi, rows);
+        xi[a] = local_coordinate(grid.in_cells(load(body.x(a), rows), a), first[a] + cell[a]);
+      f(place, xi, rows);
     }
   }
 }
 
-/// Sum of m_p grad N_ip [kg/m] over the particles of a patch around one of its nodes; it points out of the body.
+/// Sum of m_p grad N_ip [kg/m] over the particles of a patch around one of its nodes; it points out
+/// of the body.
 template <int D>
-Vec<double, D> mass_gradient(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch, int node) {
+Vec<double, D> mass_gradient(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
+                             int node) {
   using T = Batch<native_lanes>;
   Vec<T, D> total = Vec<T, D>::zero();
-  for_particles_around(grid, body, patch, node, [&](const Index<D>& corner, const Vec<T, D>& xi, const auto& rows) {
-    const T mass = select(first_lanes<native_lanes>(rows.count), load(body.mass(), rows), T(0.0));
-    for (int a = 0; a < D; ++a) {
-      T g = corner[a] ? mass : -mass;
-      for (int b = 0; b < D; ++b)
-        if (b != a) g = g * (corner[b] ? xi[b] : T(1.0) - xi[b]);
-      total[a] += g;
-    }
+  with_basis(grid.basis, grid.shape, body.mean_edge / grid.cell_size, [&](const auto& basis) {
+    for_particles_around(
+        grid, body, patch, node, [&](const Index<D>& place, const Vec<T, D>& xi, const auto& rows) {
+          const T mass =
+              select(first_lanes<native_lanes>(rows.count), load(body.mass(), rows), T(0.0));
+          for (int a = 0; a < D; ++a) {
+            T g = mass;
+            for (int b = 0; b < D; ++b)
+              g = g * (b == a ? basis.slope(place[b], xi[b]) : basis.factor(place[b], xi[b]));
+            total[a] += g;
+          }
+        });
   });
   Vec<double, D> r;
   for (int a = 0; a < D; ++a) r[a] = sum(total[a]) / grid.cell_size;
   return r;
 }
 
-/// Edge length of a particle from its volume: the square root in 2D (unit thickness), the cube root in 3D by Halley's
-/// iteration from the body's mean, to 1e-6 for volumes within a factor of ten of it.
+/// Edge length of a particle from its volume: the square root in 2D (unit thickness), the cube root
+/// in 3D by Halley's iteration from the body's mean, to 1e-6 for volumes within a factor of ten of
+/// it.
 template <int D, class T>
 T particle_edge(T volume, double mean_edge) {
   if constexpr (D == 2) {
@@ -92,28 +115,43 @@ T particle_edge(T volume, double mean_edge) {
   }
 }
 
-/// max over the particles of a patch near a node of (x_p - x_i) . n + l_p [m], eq. (5), with l_p half the edge of a cube
-/// of the particle's present volume; -infinity if there are none.
+/// max over the particles of a patch near a node of (x_p - x_i) . n + l_p [m], eq. (5), with l_p
+/// half the edge of a cube of the particle's present volume; -infinity if there are none.
 template <int D>
-double surface_distance(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch, int node,
-                        const Vec<double, D>& normal) {
+double surface_distance(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
+                        int node, const Vec<double, D>& normal) {
   using T = Batch<native_lanes>;
   T furthest(-std::numeric_limits<double>::infinity());
-  for_particles_around(grid, body, patch, node, [&](const Index<D>& corner, const Vec<T, D>& xi, const auto& rows) {
-    // Lanes past the end repeat the last particle, which changes no maximum.
-    T distance = T(0.5) * particle_edge<D>(load(body.volume(), rows), body.mean_edge);
-    for (int a = 0; a < D; ++a) distance += T(normal[a] * grid.cell_size) * (xi[a] - T(corner[a]));
-    furthest = max(furthest, distance);
-  });
+  for_particles_around(
+      grid, body, patch, node, [&](const Index<D>& place, const Vec<T, D>& xi, const auto& rows) {
+        // Lanes past the end repeat the last particle, which changes no maximum.
+        T distance = T(0.5) * particle_edge<D>(load(body.volume(), rows), body.mean_edge);
+        for (int a = 0; a < D; ++a)
+          distance += T(normal[a] * grid.cell_size) * (xi[a] - T(place[a]));
+        furthest = max(furthest, distance);
+      });
   return largest(furthest);
 }
 
-/// The unit normal from body r to body s of a pair from the bodies' own outward normals; zero if they do not oppose.
+/// The outward unit normal of a body at a node, times min(1, |gradient| h / mass): one where the
+/// body ends at the node, near zero where the body surrounds it and the direction of its gradient
+/// is chance.
 template <int D>
-Vec<double, D> pair_normal(const Vec<double, D>& r, const Vec<double, D>& s, NormalRule rule, bool r_is_stiffer) {
-  if (rule == NormalRule::first || (rule == NormalRule::stiffer && r_is_stiffer)) return r;
-  if (rule == NormalRule::second || rule == NormalRule::stiffer) return -1.0 * s;
+Vec<double, D> weighted_normal(const Vec<double, D>& gradient, double mass, double cell_size) {
+  const double length = norm(gradient);
+  return length > 0.0 ? (std::min(1.0, length * cell_size / mass) / length) * gradient
+                      : Vec<double, D>::zero();
+}
+
+/// The unit normal from body r to body s of a pair from the bodies' own weighted normals; zero if
+/// they do not oppose.
+template <int D>
+Vec<double, D> pair_normal(const Vec<double, D>& r, const Vec<double, D>& s, NormalRule rule,
+                           bool r_is_stiffer) {
   constexpr double parallel = 1e-6;  // normals that differ by less give no direction
+  if (rule == NormalRule::first || (rule == NormalRule::stiffer && r_is_stiffer))
+    return normalised(r);
+  if (rule == NormalRule::second || rule == NormalRule::stiffer) return normalised(-1.0 * s);
   return normalised(r - s, parallel);
 }
 

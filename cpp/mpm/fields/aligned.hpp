@@ -1,5 +1,6 @@
 #pragma once
-// Memory on cache-line boundaries that grows by whole allocations and is never initialised behind one's back.
+// Memory on cache-line boundaries that grows by whole allocations and is never initialised behind
+// one's back.
 #include <cstddef>
 #include <cstdlib>
 #include <memory>

@@ -1,5 +1,6 @@
 #pragma once
-// Structure of arrays: named columns of doubles, each of one or more components; a column exists only if it was asked for.
+// Structure of arrays: named columns of doubles, each of one or more components; a column exists
+// only if it was asked for.
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -30,7 +31,8 @@ class Columns {
 
   void allocate(std::size_t rows) {
     rows_ = rows;
-    // One spare component lets a permutation gather into it and then swap pointers, without copying back.
+    // One spare component lets a permutation gather into it and then swap pointers, without copying
+    // back.
     const auto slots = static_cast<std::size_t>(component_count()) + 1;
     stride_ = padded(rows);
     memory_.release_and_allocate(slots * stride_);
@@ -51,16 +53,20 @@ class Columns {
     throw std::invalid_argument("no column named " + std::string(name));
   }
 
-  /// One component of room, to gather a permuted component into before `swap_with_spare` puts it in place.
+  /// One component of room, to gather a permuted component into before `swap_with_spare` puts it in
+  /// place.
   double* spare() { return components_.back(); }
-  void swap_with_spare(int c) { std::swap(components_.back(), components_[static_cast<std::size_t>(c)]); }
+  void swap_with_spare(int c) {
+    std::swap(components_.back(), components_[static_cast<std::size_t>(c)]);
+  }
 
   int component_count() const {
     return infos_.empty() ? 0 : infos_.back().first + infos_.back().components;
   }
 
  private:
-  // Columns a multiple of 4096 bytes apart would all fall into the same cache sets: stagger them by three lines.
+  // Columns a multiple of 4096 bytes apart would all fall into the same cache sets: stagger them by
+  // three lines.
   static std::size_t padded(std::size_t rows) {
     constexpr std::size_t page = 4096 / sizeof(double), stagger = 3 * cache_line / sizeof(double);
     const std::size_t lines = (rows + 15) / 8 * 8;

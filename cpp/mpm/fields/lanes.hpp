@@ -1,12 +1,14 @@
 #pragma once
-// Rows of a column into SIMD lanes and back, through an index: neighbours in memory move as one vector, others one by one.
+// Rows of a column into SIMD lanes and back, through an index: neighbours in memory move as one
+// vector, others one by one.
 #include <cstdint>
 
 #include "mpm/math/scalar.hpp"
 
 namespace mpm {
 
-/// Up to W rows of a column. Lanes from `count` on repeat the last row when read and are never written.
+/// Up to W rows of a column. Lanes from `count` on repeat the last row when read and are never
+/// written.
 template <int W>
 struct LaneRows {
   std::uint32_t row[W];
@@ -17,7 +19,8 @@ struct LaneRows {
     count = available < W ? static_cast<int>(available) : W;
     for (int k = 0; k < W; ++k) row[k] = rows[k < count ? k : count - 1];
     contiguous = count == W;
-    for (int k = 1; k < W; ++k) contiguous = contiguous && row[k] == row[0] + static_cast<std::uint32_t>(k);
+    for (int k = 1; k < W; ++k)
+      contiguous = contiguous && row[k] == row[0] + static_cast<std::uint32_t>(k);
   }
 };
 

@@ -1,37 +1,42 @@
 #pragma once
-// The patch: one body's particles in one tile, with that body's nodal block. The unit of work of every stage.
+// The patch: one body's particles in one tile, with that body's nodal block. The unit of work of
+// every stage.
 #include <bit>
 #include <cstdint>
 
-#include "mpm/grid/tile.hpp"
+#include "mpm/basis/basis.hpp"
 
 namespace mpm {
 
-/// Fields of a nodal block, each Tile<D>::node_stride doubles long. Units: kg, m/s, N.
-/// `velocity` holds momentum [kg m/s] until the shared nodes are summed; `force` holds the velocity increment of the
-/// step [m/s] once the nodes are advanced, and the remapped velocity [m/s] after the MUSL remap.
+/// Fields of a nodal block, each BlockShape::node_stride doubles long. Units: kg, m/s, N.
+/// `velocity` holds momentum [kg m/s] until the shared nodes are summed; `force` holds the velocity
+/// increment of the step [m/s] once the nodes are advanced, and the remapped velocity [m/s] after
+/// the MUSL remap.
 template <int D>
 struct NodeBlock {
   double* data;
+  int stride;
   static constexpr int fields = 1 + 2 * D;
   double* mass() const { return data; }
-  double* velocity(int a) const { return data + (1 + a) * Tile<D>::node_stride; }
-  double* force(int a) const { return data + (1 + D + a) * Tile<D>::node_stride; }
+  double* velocity(int a) const { return data + (1 + a) * stride; }
+  double* force(int a) const { return data + (1 + D + a) * stride; }
 };
 
 template <int D>
 struct Patch {
   int body = 0;
-  Index<D> tile{};                // coordinates of the tile
-  std::uint32_t begin = 0;        // its particles: positions begin .. begin + count of the body's order list
+  Index<D> tile{};  // coordinates of the tile
+  std::uint32_t begin =
+      0;  // its particles: positions begin .. begin + count of the body's order list
   std::uint32_t count = 0;
-  std::uint64_t occupied = 0;     // bit c: cell c holds a particle
+  std::uint64_t occupied = 0;  // bit c: cell c holds a particle
   std::array<std::uint32_t, Tile<D>::cell_count + 1> cell_begin{};  // relative to `begin`
-  std::array<std::int32_t, Tile<D>::neighbours> neighbour{};        // patches of the same body around it, -1 if none
-  std::uint32_t owned = 0;        // bit r: this patch owns the nodes of region r (see tile_grid.hpp)
-  bool at_wall = false;           // its block has nodes on a wall
-  bool left_cell = false;         // a particle has left its cell since the lists were made
-  bool received = false;          // a particle has come in
+  std::array<std::int32_t, Tile<D>::neighbours>
+      neighbour{};          // patches of the same body around it, -1 if none
+  std::uint32_t owned = 0;  // bit r: this patch owns the nodes of region r of the block's shape
+  bool at_wall = false;     // its block has nodes on a wall
+  bool left_cell = false;   // a particle has left its cell since the lists were made
+  bool received = false;    // a particle has come in
 
   /// f(cell, first, last): every occupied cell with its range in the body's order list.
   template <class F>

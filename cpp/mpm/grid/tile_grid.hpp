@@ -1,12 +1,12 @@
 #pragma once
-// The sparse, unbounded grid: patches sorted by body and tile, who their neighbours are, and the memory of their nodes.
+// The sparse, unbounded grid: patches sorted by body and tile, who their neighbours are, and the
+// memory of their nodes.
 #include <cmath>
 #include <span>
 #include <vector>
 
 #include "mpm/fields/aligned.hpp"
 #include "mpm/grid/patch.hpp"
-#include "mpm/grid/regions.hpp"
 #include "mpm/grid/walls.hpp"
 #include "mpm/math/vec.hpp"
 #include "mpm/parallel/threads.hpp"
@@ -18,13 +18,16 @@ class TileGrid {
  public:
   Vec<double, D> origin = Vec<double, D>::zero();  // position of node 0 [m]
   double cell_size = 0.0;                          // [m]
-  // Cell at the lower corner of tile 0. Tied to the particles' first place, so that a problem shifted by whole cells is
-  // cut into the same tiles and gives the same bits.
+  Basis basis = Basis::linear;                     // set by `use`
+  BlockShape<D> shape;                             // of every patch's block
+  // Cell at the lower corner of tile 0. Tied to the particles' first place, so that a problem
+  // shifted by whole cells is cut into the same tiles and gives the same bits.
   Index<D> anchor{};
   Walls<D> walls;
   std::vector<Patch<D>> patches;  // by body, then by tile
 
-  /// Position along an axis in cells from the origin. Every kernel uses this one expression, so that all agree on cells.
+  /// Position along an axis in cells from the origin. Every kernel uses this one expression, so
+  /// that all agree on cells.
   template <class T>
   T in_cells(T x, int axis) const {
     return (x - T(origin[axis])) * T(1.0 / cell_size);
@@ -50,20 +53,30 @@ class TileGrid {
     return c;
   }
 
-  NodeBlock<D> block(std::size_t patch) { return {node_memory_.data() + patch * block_size}; }
-  std::size_t node_bytes() const { return node_memory_.bytes() + patches.capacity() * sizeof(Patch<D>); }
+  void use(Basis chosen) {
+    basis = chosen;
+    shape = BlockShape<D>(margin_of(chosen));
+  }
+  std::size_t block_size() const {
+    return static_cast<std::size_t>(NodeBlock<D>::fields) *
+           static_cast<std::size_t>(shape.node_stride);
+  }
+  NodeBlock<D> block(std::size_t patch) {
+    return {node_memory_.data() + patch * block_size(), shape.node_stride};
+  }
+  std::size_t node_bytes() const {
+    return node_memory_.bytes() + patches.capacity() * sizeof(Patch<D>);
+  }
 
-  /// Find neighbours, owners of shared nodes, walls; make room for the nodes. Call when patches were added or removed.
+  /// Find neighbours, owners of shared nodes, walls; make room for the nodes. Call when patches
+  /// were added or removed.
   void connect();
   /// The patch of a body in a tile, or -1.
   int find(int body, const Index<D>& tile) const;
 
-  /// Add up what the patches sharing a node have put there, for fields [first, last) of the blocks, always in the order
-  /// of the tiles; then every patch holds the sum.
+  /// Add up what the patches sharing a node have put there, for fields [first, last) of the blocks,
+  /// always in the order of the tiles; then every patch holds the sum.
   void sum_shared_nodes(Threads& threads, int first, int last);
-
-  static constexpr std::size_t block_size =
-      static_cast<std::size_t>(NodeBlock<D>::fields) * static_cast<std::size_t>(Tile<D>::node_stride);
 
  private:
   AlignedArray<double> node_memory_;

@@ -1,6 +1,6 @@
 #pragma once
 // Walls on the faces of an optional box. Node indices count from the box's lower corner.
-#include "mpm/grid/tile.hpp"
+#include "mpm/basis/tile.hpp"
 
 namespace mpm {
 
@@ -9,11 +9,12 @@ enum class Wall { free, slip, fixed };
 
 template <int D>
 struct Walls {
-  bool exist = false;        // is there a box at all
-  Index<D> cells{};          // cells of the box along each axis
-  Wall face[D][2] = {};      // [axis][lower, upper]
+  bool exist = false;    // is there a box at all
+  Index<D> cells{};      // cells of the box along each axis
+  Wall face[D][2] = {};  // [axis][lower, upper]
 
-  /// Bit a is set if a node may not move along axis a. Nodes beyond a face are held like those on it.
+  /// Bit a is set if a node may not move along axis a. Nodes beyond a face are held like those on
+  /// it.
   unsigned held(const Index<D>& node) const {
     unsigned axes = 0;
     if (!exist) return axes;

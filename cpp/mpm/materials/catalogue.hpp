@@ -1,5 +1,6 @@
 #pragma once
-// Every material model, one line per kind. From it come the case keys, checks, documentation, columns and law tests.
+// Every material model, one line per kind. From it come the case keys, checks, documentation,
+// columns and law tests.
 #include <variant>
 
 #include "mpm/materials/strength/elastic.hpp"

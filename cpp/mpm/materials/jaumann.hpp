@@ -4,7 +4,8 @@
 
 namespace mpm {
 
-/// The stress carried to the end of the step by its rotation, and the strain increment seen from there.
+/// The stress carried to the end of the step by its rotation, and the strain increment seen from
+/// there.
 template <class T, int D>
 struct Corotated {
   Sym<T, D> stress;
@@ -27,13 +28,16 @@ Mat<T, 3> cayley(const Mat<T, 3>& w) {
   const T xx = s * ax * ax, yy = s * ay * ay, zz = s * az * az;
   const T xy = s * ax * ay, xz = s * ax * az, yz = s * ay * az;
   const T x = s * ax, y = s * ay, z = s * az;
-  return {{{T(1.0) - yy - zz, xy - z, xz + y}, {xy + z, T(1.0) - xx - zz, yz - x}, {xz - y, yz + x, T(1.0) - xx - yy}}};
+  return {{{T(1.0) - yy - zz, xy - z, xz + y},
+           {xy + z, T(1.0) - xx - zz, yz - x},
+           {xz - y, yz + x, T(1.0) - xx - yy}}};
 }
 
-/// Eqs. (18)-(19) with the gradient referred to the middle of the step, L_mid = L (1 + L/2)^-1 = L - L^2/2 + O(L^3):
-/// a finite rotation then strains nothing to second order, and the trace matches the change of volume.
-/// The strain increment acts half a rotation earlier, so it is turned by D + (w D - D w)/2; that makes the update
-/// second-order in simple shear, where a strain applied at the end is first-order.
+/// Eqs. (18)-(19) with the gradient referred to the middle of the step, L_mid = L (1 + L/2)^-1 = L
+/// - L^2/2 + O(L^3): a finite rotation then strains nothing to second order, and the trace matches
+/// the change of volume. The strain increment acts half a rotation earlier, so it is turned by D +
+/// (w D - D w)/2; that makes the update second-order in simple shear, where a strain applied at the
+/// end is first-order.
 template <class T, int D>
 Corotated<T, D> corotate(const Motion<T, D>& motion, const Sym<T, D>& stress) {
   const Mat<T, D>& g = motion.gradient;

@@ -65,7 +65,8 @@ bool satisfies(Rule rule, double value) {
   return true;
 }
 
-Material make_material(double density, const std::string& strength, const std::map<std::string, double>& parameters) {
+Material make_material(double density, const std::string& strength,
+                       const std::map<std::string, double>& parameters) {
   if (!satisfies(Rule::positive, density)) refuse("density", density, rule_text(Rule::positive));
   Material material;
   material.density = density;

@@ -12,9 +12,10 @@ struct Material {
   StrengthModels::Any strength;
 };
 
-/// A material from names and numbers in SI units; throws std::invalid_argument, in one sentence, for an unknown model
-/// or parameter, one that is missing, or a value its rule forbids.
-Material make_material(double density, const std::string& strength, const std::map<std::string, double>& parameters);
+/// A material from names and numbers in SI units; throws std::invalid_argument, in one sentence,
+/// for an unknown model or parameter, one that is missing, or a value its rule forbids.
+Material make_material(double density, const std::string& strength,
+                       const std::map<std::string, double>& parameters);
 
 /// What a rule demands, in words: "must be > 0".
 std::string_view rule_text(Rule rule);

@@ -1,5 +1,6 @@
 #pragma once
-// What a material model is: a small struct with named parameters and state, and its physics as templates over the number.
+// What a material model is: a small struct with named parameters and state, and its physics as
+// templates over the number.
 #include <concepts>
 #include <limits>
 #include <string_view>
@@ -13,11 +14,12 @@ enum class Rule { positive, not_negative, poisson_ratio, any };
 
 inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
 
-/// A parameter as the user sees it. `start` is its default; NaN (`required`) means it must be given.
+/// A parameter as the user sees it. `start` is its default; NaN (`required`) means it must be
+/// given.
 template <class Model>
 struct Param {
   std::string_view name;
-  double Model::*member;
+  double Model::* member;
   std::string_view unit;
   std::string_view meaning;
   Rule rule = Rule::positive;
@@ -41,13 +43,15 @@ struct StateColumn {
 /// The motion of a particle over one step.
 template <class T, int D>
 struct Motion {
-  Mat<T, D> gradient;  // velocity gradient x time step, on the configuration at the start of the step
-  T volume_ratio;      // det(1 + gradient): volume after / before the step
-  T J;                 // volume after the step / initial volume
+  Mat<T, D>
+      gradient;    // velocity gradient x time step, on the configuration at the start of the step
+  T volume_ratio;  // det(1 + gradient): volume after / before the step
+  T J;             // volume after the step / initial volume
 };
 
-/// A strength model: stress and state after a step from those before it, eq. (18)-(20) and the constitutive law.
-/// `update` must leave everything as it is for a zero gradient. `sound_speed` [m/s] bounds the fastest wave.
+/// A strength model: stress and state after a step from those before it, eq. (18)-(20) and the
+/// constitutive law. `update` must leave everything as it is for a zero gradient. `sound_speed`
+/// [m/s] bounds the fastest wave.
 template <class M>
 concept StrengthModel = requires(const M m, Motion<double, 3> motion, Sym<double, 3> stress,
                                  typename M::template State<double, 3> state, double J) {

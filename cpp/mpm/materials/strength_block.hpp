@@ -1,5 +1,6 @@
 #pragma once
-// The loop over a block of particles in which a strength model is called on SIMD lanes: one indirect call per block.
+// The loop over a block of particles in which a strength model is called on SIMD lanes: one
+// indirect call per block.
 #include <cstring>
 
 #include "mpm/fields/columns.hpp"
@@ -8,17 +9,20 @@
 
 namespace mpm {
 
-/// Velocity gradients x time step of up to `capacity` particles, gathered from the cells of a patch.
+/// Velocity gradients x time step of up to `capacity` particles, gathered from the cells of a
+/// patch.
 template <int D>
 struct GradientBlock {
   static constexpr int capacity = 128;
-  static constexpr int room = capacity + native_lanes;  // a register may be stored past the last particle
+  static constexpr int room =
+      capacity + native_lanes;  // a register may be stored past the last particle
   std::uint32_t row[room];
   double gradient[D][D][room];
   std::size_t count = 0;
 };
 
-/// Where a body keeps what a strength model reads and writes: first components in its columns, -1 if absent.
+/// Where a body keeps what a strength model reads and writes: first components in its columns, -1
+/// if absent.
 struct StrengthColumns {
   int velocity, mass, volume, stress, state, viscosity_pressure;
 };
@@ -33,20 +37,22 @@ struct BulkViscosity {
 struct StressSettings {
   double time_step, cell_size;
   BulkViscosity viscosity;
-  bool forces_follow;  // USF: this step's forces use the new stress; else they have used the old one
+  bool
+      forces_follow;  // USF: this step's forces use the new stress; else they have used the old one
 };
 
 /// What the ledger and the time step need from a block; energies in J.
 struct StressSums {
-  double internal = 0.0;      // recoverable work of the stress, mean of old and new
-  double viscous = 0.0;       // work of the artificial viscosity
-  double force_power = 0.0;   // work over this strain of the stress that the nodal forces use
-  double fastest = 0.0;       // largest c + |v| [m/s]
+  double internal = 0.0;     // recoverable work of the stress, mean of old and new
+  double viscous = 0.0;      // work of the artificial viscosity
+  double force_power = 0.0;  // work over this strain of the stress that the nodal forces use
+  double fastest = 0.0;      // largest c + |v| [m/s]
   bool negative_volume = false;
 };
 
 template <class Model, class T, int D>
-typename Model::template State<T, D> load_state(const Columns& columns, int first, auto&& load_component) {
+typename Model::template State<T, D> load_state(const Columns& columns, int first,
+                                                auto&& load_component) {
   typename Model::template State<T, D> state;
   if constexpr (!Model::state_columns.empty()) {
     T flat[sizeof(state) / sizeof(T)];
@@ -59,8 +65,9 @@ typename Model::template State<T, D> load_state(const Columns& columns, int firs
 
 /// Update stress, state and volume of the particles of a block, and add up what the ledger needs.
 template <class Model, int D>
-void update_strength(const Model& model, double initial_density, Columns& columns, const StrengthColumns& at,
-                     const GradientBlock<D>& block, const StressSettings& settings, StressSums& sums) {
+void update_strength(const Model& model, double initial_density, Columns& columns,
+                     const StrengthColumns& at, const GradientBlock<D>& block,
+                     const StressSettings& settings, StressSums& sums) {
   using T = Batch<native_lanes>;
   constexpr int W = native_lanes;
   using Stress = Sym<T, D>;
@@ -74,7 +81,8 @@ void update_strength(const Model& model, double initial_density, Columns& column
 
     Motion<T, D> motion;
     for (int i = 0; i < D; ++i)
-      for (int j = 0; j < D; ++j) motion.gradient[i][j] = select(valid, T::load(&block.gradient[i][j][k]), T(0.0));
+      for (int j = 0; j < D; ++j)
+        motion.gradient[i][j] = select(valid, T::load(&block.gradient[i][j][k]), T(0.0));
     Mat<T, D> f = motion.gradient;
     for (int i = 0; i < D; ++i) f[i][i] = f[i][i] + T(1.0);
     motion.volume_ratio = determinant(f);
@@ -92,7 +100,8 @@ void update_strength(const Model& model, double initial_density, Columns& column
     const T c = model.sound_speed(stress, state, motion.J);
 
     store(columns.component(at.volume), rows, volume);
-    for (int i = 0; i < Stress::size; ++i) store(columns.component(at.stress + i), rows, stress.c[i]);
+    for (int i = 0; i < Stress::size; ++i)
+      store(columns.component(at.stress + i), rows, stress.c[i]);
     if constexpr (!Model::state_columns.empty()) {
       T flat[sizeof(state) / sizeof(T)];
       std::memcpy(flat, static_cast<const void*>(&state), sizeof(state));
@@ -102,11 +111,13 @@ void update_strength(const Model& model, double initial_density, Columns& column
 
     const Sym<T, D> strain = symmetric_part(motion.gradient);
     T work = T(0.25) * (volume_before + volume) * inner(before + stress, strain);
-    T used = settings.forces_follow ? volume * inner(stress, strain) : volume_before * inner(before, strain);
+    T used = settings.forces_follow ? volume * inner(stress, strain)
+                                    : volume_before * inner(before, strain);
     if (settings.viscosity.active()) {
       const T rate = min(trace(strain), T(0.0)) * T(settings.cell_size / settings.time_step);
       const T density = mass / volume;
-      const T q = density * rate * (T(settings.viscosity.quadratic) * rate - T(settings.viscosity.linear) * c);
+      const T q = density * rate *
+                  (T(settings.viscosity.quadratic) * rate - T(settings.viscosity.linear) * c);
       const T q_before = read(columns.component(at.viscosity_pressure));
       store(columns.component(at.viscosity_pressure), rows, q);
       viscous += select(valid, -volume * q * trace(strain), T(0.0));

@@ -1,5 +1,6 @@
 #pragma once
-// SIMD lanes: W doubles in one register, written like a scalar. The width follows the instruction set the file is compiled for.
+// SIMD lanes: W doubles in one register, written like a scalar. The width follows the instruction
+// set the file is compiled for.
 #include <cstdint>
 #include <cstring>
 #if defined(__SSE2__)

@@ -4,8 +4,8 @@
 
 namespace mpm {
 
-/// Natural logarithm of positive, finite, normal lanes, within 1 ulp: x = 2^k (1 + f), and the minimax series of
-/// log(1 + f) in s = f / (2 + f) of Sun's fdlibm (e_log.c, 1993).
+/// Natural logarithm of positive, finite, normal lanes, within 1 ulp: x = 2^k (1 + f), and the
+/// minimax series of log(1 + f) in s = f / (2 + f) of Sun's fdlibm (e_log.c, 1993).
 template <int W>
 Batch<W> log(Batch<W> x) {
   using Bits = typename Mask<W>::Vector;
@@ -17,7 +17,8 @@ Batch<W> log(Batch<W> x) {
   const Bits mantissa = bits - (exponent << 52);
   Batch<W> m;
   std::memcpy(&m.v, &mantissa, sizeof(mantissa));
-  // An integer k below 2^51 becomes a double through the bits of 1.5 x 2^52: no conversion instruction is needed.
+  // An integer k below 2^51 becomes a double through the bits of 1.5 x 2^52: no conversion
+  // instruction is needed.
   const Bits magic = exponent + 0x4338000000000000LL;
   Batch<W> k;
   std::memcpy(&k.v, &magic, sizeof(magic));
@@ -27,15 +28,18 @@ Batch<W> log(Batch<W> x) {
   const Batch<W> s = f / (Batch<W>(2.0) + f);
   const Batch<W> z = s * s;
   const Batch<W> w = z * z;
-  const Batch<W> even = w * (Batch<W>(3.999999999940941908e-01) +
-                             w * (Batch<W>(2.222219843214978396e-01) + w * Batch<W>(1.531383769920937332e-01)));
+  const Batch<W> even =
+      w * (Batch<W>(3.999999999940941908e-01) +
+           w * (Batch<W>(2.222219843214978396e-01) + w * Batch<W>(1.531383769920937332e-01)));
   const Batch<W> odd =
       z * (Batch<W>(6.666666666666735130e-01) +
            w * (Batch<W>(2.857142874366239149e-01) +
                 w * (Batch<W>(1.818357216161805012e-01) + w * Batch<W>(1.479819860511658591e-01))));
   const Batch<W> half_square = Batch<W>(0.5) * f * f;
   return k * Batch<W>(6.93147180369123816490e-01) -
-         ((half_square - (s * (half_square + even + odd) + k * Batch<W>(1.90821492927058770002e-10))) - f);
+         ((half_square -
+           (s * (half_square + even + odd) + k * Batch<W>(1.90821492927058770002e-10))) -
+          f);
 }
 
 }  // namespace mpm

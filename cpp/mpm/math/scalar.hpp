@@ -1,5 +1,6 @@
 #pragma once
-// What a number must offer for a kernel or a model: the same source serves double (the oracle) and SIMD lanes.
+// What a number must offer for a kernel or a model: the same source serves double (the oracle) and
+// SIMD lanes.
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -22,7 +23,7 @@ template <class T>
 concept Real = requires(T a, T b) {
   { a + b } -> std::convertible_to<T>;
   { a - b } -> std::convertible_to<T>;
-  { a* b } -> std::convertible_to<T>;
+  { a * b } -> std::convertible_to<T>;
   { a / b } -> std::convertible_to<T>;
   { select(a < b, a, b) } -> std::convertible_to<T>;
   { max(a, b) } -> std::convertible_to<T>;

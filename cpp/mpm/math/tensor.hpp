@@ -1,5 +1,6 @@
 #pragma once
-// Second-order tensors. In 2D the motion is plane strain: a symmetric tensor keeps its zz component and has no yz, xz.
+// Second-order tensors. In 2D the motion is plane strain: a symmetric tensor keeps its zz component
+// and has no yz, xz.
 #include "mpm/math/vec.hpp"
 
 namespace mpm {
@@ -30,7 +31,8 @@ T determinant(const Mat<T, 2>& a) {
 }
 template <class T>
 T determinant(const Mat<T, 3>& a) {
-  return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+  return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) -
+         a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
          a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
 }
 

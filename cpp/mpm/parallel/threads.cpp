@@ -7,7 +7,8 @@ namespace {
 
 // Stages follow one another within microseconds, so a thread spins this often before it sleeps.
 constexpr int spins_before_sleep = 20000;
-constexpr int spins_before_yield = 2000;  // beyond it, let another thread have the core: there may be more threads than cores
+constexpr int spins_before_yield =
+    2000;  // beyond it, let another thread have the core: there may be more threads than cores
 
 void pause(int spin) {
 #if defined(__x86_64__)
@@ -50,7 +51,8 @@ void Threads::work() {
 
 void Threads::share_out(std::size_t n, Run run, void* context) {
   total_ = n;
-  // Eight chunks a thread: small enough to balance patches of different fill, large enough to stay in step.
+  // Eight chunks a thread: small enough to balance patches of different fill, large enough to stay
+  // in step.
   chunk_ = std::max<std::size_t>(1, n / (8 * static_cast<std::size_t>(count())));
   run_ = run;
   context_ = context;

@@ -17,7 +17,8 @@ class Threads {
   int count() const { return static_cast<int>(workers_.size()) + 1; }
   void resize(int count);
 
-  /// body(i) for every i in [0, n), in chunks that idle threads take. The caller works too. Nothing is allocated.
+  /// body(i) for every i in [0, n), in chunks that idle threads take. The caller works too. Nothing
+  /// is allocated.
   template <class Body>
   void for_each(std::size_t n, Body&& body) {
     if (n == 0) return;
@@ -39,9 +40,9 @@ class Threads {
   void stop();
 
   std::vector<std::thread> workers_;
-  std::atomic<std::uint64_t> job_{0};      // number of the job posted last
-  std::atomic<std::size_t> next_{0};       // first index not yet taken
-  std::atomic<int> running_{0};            // workers still in the job
+  std::atomic<std::uint64_t> job_{0};  // number of the job posted last
+  std::atomic<std::size_t> next_{0};   // first index not yet taken
+  std::atomic<int> running_{0};        // workers still in the job
   std::atomic<bool> stopping_{false};
   std::size_t total_ = 0, chunk_ = 1;
   Run run_ = nullptr;

@@ -14,14 +14,15 @@ struct Body {
   std::string name;
   int material = 0;
   Columns columns;
-  int position = 0;          // first component of each column; position [m], D components
-  StrengthColumns at{};      // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; state; viscosity_pressure [Pa]
-  std::vector<std::uint32_t> id;          // place of each particle in the order in which the user gave them
+  int position = 0;               // first component of each column; position [m], D components
+  StrengthColumns at{};           // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; state;
+                                  // viscosity_pressure [Pa]
+  std::vector<std::uint32_t> id;  // place of each particle in the order in which the user gave them
   std::vector<std::uint32_t> order;       // particles by patch, then by cell, then by row
   std::vector<std::uint32_t> next_order;  // the list being made
   std::vector<std::uint8_t> cell;         // scratch: cell in its tile of each entry of `order`
-  double mean_edge = 0.0;    // edge of a square or cube of the mean initial particle volume [m]
-  std::size_t moved = 0;                  // changes of cell since the columns were last sorted
+  double mean_edge = 0.0;  // edge of a square or cube of the mean initial particle volume [m]
+  std::size_t moved = 0;   // changes of cell since the columns were last sorted
 
   std::size_t count() const { return columns.rows(); }
   double* x(int a) { return columns.component(position + a); }
@@ -35,7 +36,8 @@ struct Body {
   const double* stress(int k) const { return columns.component(at.stress + k); }
 
   std::size_t bytes() const {
-    return columns.bytes() + (id.capacity() + order.capacity() + next_order.capacity()) * sizeof(std::uint32_t) +
+    return columns.bytes() +
+           (id.capacity() + order.capacity() + next_order.capacity()) * sizeof(std::uint32_t) +
            cell.capacity();
   }
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Which particles lie in which cell: made once, then mended where particles have moved. Columns are put back in order
-// only when that pays; correctness never depends on it.
+// Which particles lie in which cell: made once, then mended where particles have moved. Columns are
+// put back in order only when that pays; correctness never depends on it.
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/particles/body.hpp"
 
@@ -22,19 +22,20 @@ struct ListScratch {
     std::uint32_t kept, arrival_begin, arrival_count, begin;
   };
   std::vector<Leaver<D>> leavers;
-  std::vector<Change> changes;     // one per patch
+  std::vector<Change> changes;  // one per patch
   std::vector<Patch<D>> merged;
   std::vector<std::size_t> moved;  // one per patch
 };
 
-/// Sort every body's columns by tile and cell, and make patches and lists from nothing. Sets the grid's anchor.
-/// Throws std::out_of_range if a particle lies more than 2^20 cells from the anchor.
+/// Sort every body's columns by tile and cell, and make patches and lists from nothing. Sets the
+/// grid's anchor. Throws std::out_of_range if a particle lies more than 2^20 cells from the anchor.
 template <int D>
 void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads, bool set_anchor);
 
 /// Mend the lists of patches that particles have left; true if patches were added or removed.
 template <int D>
-bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads, ListScratch<D>& scratch);
+bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
+                ListScratch<D>& scratch);
 
 /// Put the columns of a body into the order of its list.
 template <int D>

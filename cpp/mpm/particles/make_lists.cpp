@@ -18,7 +18,8 @@ std::uint64_t key_of(const Index<D>& tile, int cell) {
   constexpr std::int32_t half = 1 << (bits - 1);
   std::uint64_t key = 0;
   for (int a = D - 1; a >= 0; --a) {
-    if (tile[a] < -half || tile[a] >= half) throw std::out_of_range("a particle lies too far away for the grid");
+    if (tile[a] < -half || tile[a] >= half)
+      throw std::out_of_range("a particle lies too far away for the grid");
     key = key << bits | static_cast<std::uint64_t>(tile[a] + half);
   }
   return key << 6 | static_cast<std::uint64_t>(cell);
@@ -50,17 +51,20 @@ void add_patches(TileGrid<D>& grid, const Body<D>& body, int body_number) {
       last_cell = 0;
     }
     Patch<D>& p = grid.patches.back();
-    for (; last_cell < c; ++last_cell) p.cell_begin[static_cast<std::size_t>(last_cell) + 1] = p.count;
+    for (; last_cell < c; ++last_cell)
+      p.cell_begin[static_cast<std::size_t>(last_cell) + 1] = p.count;
     p.occupied |= std::uint64_t{1} << c;
     ++p.count;
-    for (int k = c + 1; k <= Tile<D>::cell_count; ++k) p.cell_begin[static_cast<std::size_t>(k)] = p.count;
+    for (int k = c + 1; k <= Tile<D>::cell_count; ++k)
+      p.cell_begin[static_cast<std::size_t>(k)] = p.count;
   }
 }
 
 }  // namespace
 
 template <int D>
-void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads, bool set_anchor) {
+void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
+                bool set_anchor) {
   if (set_anchor) {
     grid.anchor.fill(std::numeric_limits<std::int32_t>::max());
     for (const auto& body : bodies)

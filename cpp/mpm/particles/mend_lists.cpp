@@ -16,7 +16,8 @@ Index<D> cell_of_row(const TileGrid<D>& grid, const Body<D>& body, std::uint32_t
   return grid.cell_of(x);
 }
 
-/// Note the cell of each particle of a patch, or that it is outside; returns how many have changed cell.
+/// Note the cell of each particle of a patch, or that it is outside; returns how many have changed
+/// cell.
 template <int D>
 std::size_t classify(const TileGrid<D>& grid, Body<D>& body, const Patch<D>& patch) {
   const Index<D> first = grid.first_cell(patch.tile);
@@ -39,7 +40,8 @@ std::size_t classify(const TileGrid<D>& grid, Body<D>& body, const Patch<D>& pat
 }
 
 template <int D>
-void find_leavers(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, std::vector<Leaver<D>>& leavers) {
+void find_leavers(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                  std::vector<Leaver<D>>& leavers) {
   leavers.clear();
   for (const Patch<D>& patch : grid.patches) {
     if (!patch.left_cell) continue;
@@ -51,7 +53,8 @@ void find_leavers(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, s
       const Index<D> first = grid.first_cell(tile);
       Index<D> local;
       for (int a = 0; a < D; ++a) local[a] = cell[a] - first[a];
-      leavers.push_back({patch.body, tile, body.order[k], static_cast<std::uint8_t>(Tile<D>::cell(local))});
+      leavers.push_back(
+          {patch.body, tile, body.order[k], static_cast<std::uint8_t>(Tile<D>::cell(local))});
     }
   }
   std::sort(leavers.begin(), leavers.end(), [](const Leaver<D>& x, const Leaver<D>& y) {
@@ -60,12 +63,14 @@ void find_leavers(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, s
   });
 }
 
-/// Add patches for tiles that a body enters, and drop the empty ones; true if the set of patches has changed.
+/// Add patches for tiles that a body enters, and drop the empty ones; true if the set of patches
+/// has changed.
 template <int D>
 bool merge_new_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
   const auto& leavers = scratch.leavers;
   bool missing = false;
-  for (std::size_t k = 0; k < leavers.size() && !missing; ++k) missing = grid.find(leavers[k].body, leavers[k].tile) < 0;
+  for (std::size_t k = 0; k < leavers.size() && !missing; ++k)
+    missing = grid.find(leavers[k].body, leavers[k].tile) < 0;
   if (!missing) return false;
   auto& merged = scratch.merged;
   merged.clear();
@@ -84,7 +89,9 @@ bool merge_new_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
   for (const Patch<D>& patch : grid.patches) {
     add_before(&patch);
     bool entered = false;
-    for (; k < leavers.size() && leavers[k].body == patch.body && leavers[k].tile == patch.tile; ++k) entered = true;
+    for (; k < leavers.size() && leavers[k].body == patch.body && leavers[k].tile == patch.tile;
+         ++k)
+      entered = true;
     if (patch.count > 0 || entered) merged.push_back(patch);
   }
   add_before(nullptr);
@@ -112,7 +119,8 @@ void write_list(Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::C
   std::array<std::uint32_t, cells + 1> begin{};
   for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
     if (body.cell[k] != outside) ++begin[body.cell[k] + std::size_t{1}];
-  for (std::uint32_t k = 0; k < change.arrival_count; ++k) ++begin[arrival[k].cell + std::size_t{1}];
+  for (std::uint32_t k = 0; k < change.arrival_count; ++k)
+    ++begin[arrival[k].cell + std::size_t{1}];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   auto next = begin;
   auto put = [&](std::uint8_t cell, std::uint32_t row) {
@@ -137,7 +145,8 @@ void write_list(Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::C
 }  // namespace
 
 template <int D>
-bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads, ListScratch<D>& scratch) {
+bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
+                ListScratch<D>& scratch) {
   bool any_left = false;
   for (const auto& p : grid.patches) any_left = any_left || p.left_cell;
   if (!any_left) return false;
@@ -145,7 +154,8 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
   scratch.moved.assign(grid.patches.size(), 0);
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
-    if (patch.left_cell) scratch.moved[p] = classify(grid, bodies[static_cast<std::size_t>(patch.body)], patch);
+    if (patch.left_cell)
+      scratch.moved[p] = classify(grid, bodies[static_cast<std::size_t>(patch.body)], patch);
   });
   for (std::size_t p = 0; p < grid.patches.size(); ++p)
     bodies[static_cast<std::size_t>(grid.patches[p].body)].moved += scratch.moved[p];
@@ -163,10 +173,12 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
     c.kept = patch.count;
     if (patch.left_cell) {
       const auto& cell = bodies[static_cast<std::size_t>(patch.body)].cell;
-      for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) c.kept -= cell[k] == outside;
+      for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
+        c.kept -= cell[k] == outside;
     }
     c.arrival_begin = arrival;
-    while (arrival < total && scratch.leavers[arrival].body == patch.body && scratch.leavers[arrival].tile == patch.tile)
+    while (arrival < total && scratch.leavers[arrival].body == patch.body &&
+           scratch.leavers[arrival].tile == patch.tile)
       ++arrival;
     c.arrival_count = arrival - c.arrival_begin;
     c.begin = begin;

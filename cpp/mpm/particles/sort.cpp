@@ -11,7 +11,8 @@ void sort_columns(Body<D>& body, Threads& threads) {
   const std::size_t n = body.count();
   const std::uint32_t* order = body.order.data();
   auto in_chunks = [&](auto&& f) {
-    threads.for_each((n + chunk - 1) / chunk, [&](std::size_t c) { f(c * chunk, std::min(n, (c + 1) * chunk)); });
+    threads.for_each((n + chunk - 1) / chunk,
+                     [&](std::size_t c) { f(c * chunk, std::min(n, (c + 1) * chunk)); });
   };
   for (int c = 0; c < body.columns.component_count(); ++c) {
     const double* from = body.columns.component(c);
@@ -30,7 +31,8 @@ void sort_columns(Body<D>& body, Threads& threads) {
 
 template <int D>
 void sort_disordered(std::vector<Body<D>>& bodies, Threads& threads) {
-  // Sorting moves every column once; reading particles out of order costs about that once a quarter of them is.
+  // Sorting moves every column once; reading particles out of order costs about that once a quarter
+  // of them is.
   for (auto& body : bodies)
     if (4 * body.moved >= body.count()) sort_columns(body, threads);
 }

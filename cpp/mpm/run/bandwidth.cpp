@@ -23,9 +23,11 @@ double measure_bandwidth(int count) {
     const double s = 1.0 + r;
     const auto begin = std::chrono::steady_clock::now();
     threads.for_each(n / chunk, [&](std::size_t k) {
-      for (std::size_t i = k * chunk; i < (k + 1) * chunk; ++i) a.data()[i] = b.data()[i] + s * c.data()[i];
+      for (std::size_t i = k * chunk; i < (k + 1) * chunk; ++i)
+        a.data()[i] = b.data()[i] + s * c.data()[i];
     });
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     best = std::max(best, 3.0 * sizeof(double) * n / seconds / 1e9);
   }
   return best;

@@ -27,21 +27,25 @@ void check_finite(std::span<const double> values, const std::string& what) {
 }  // namespace
 
 template <int D>
-int SimulationOf<D>::add_material(double density, const std::string& strength, const std::map<std::string, double>& parameters) {
+int SimulationOf<D>::add_material(double density, const std::string& strength,
+                                  const std::map<std::string, double>& parameters) {
   domain_.materials.push_back(make_material(density, strength, parameters));
   return static_cast<int>(domain_.materials.size()) - 1;
 }
 
 template <int D>
-int SimulationOf<D>::add_body(const std::string& name, int material_number, std::span<const double> positions,
-                              std::span<const double> velocities, std::span<const double> volumes) {
+int SimulationOf<D>::add_body(const std::string& name, int material_number,
+                              std::span<const double> positions, std::span<const double> velocities,
+                              std::span<const double> volumes) {
   if (prepared_) throw std::invalid_argument("bodies must be added before prepare()");
   const Material& material = domain_.materials.at(static_cast<std::size_t>(material_number));
   const std::size_t n = positions.size() / D;
-  if (n == 0 || n * D != positions.size()) throw std::invalid_argument(name + ": positions must be (n, D) with n > 0");
+  if (n == 0 || n * D != positions.size())
+    throw std::invalid_argument(name + ": positions must be (n, D) with n > 0");
   if (velocities.size() != D && velocities.size() != n * D)
     throw std::invalid_argument(name + ": velocities must be (n, D) or (1, D)");
-  if (volumes.size() != 1 && volumes.size() != n) throw std::invalid_argument(name + ": volumes must be (n,) or (1,)");
+  if (volumes.size() != 1 && volumes.size() != n)
+    throw std::invalid_argument(name + ": volumes must be (n,) or (1,)");
   check_finite(positions, name + ": positions");
   check_finite(velocities, name + ": velocities");
   check_finite(volumes, name + ": volumes");
@@ -66,7 +70,8 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number, std:
         }
       },
       material.strength);
-  body.at.viscosity_pressure = domain_.viscosity.active() ? c.add("viscosity_pressure", "Pa", 1) : -1;
+  body.at.viscosity_pressure =
+      domain_.viscosity.active() ? c.add("viscosity_pressure", "Pa", 1) : -1;
   c.allocate(n);
 
   const bool one_velocity = velocities.size() == D, one_volume = volumes.size() == 1;
@@ -86,11 +91,13 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number, std:
       [&](const auto& model) {
         int at = body.at.state;
         for (const StateColumn& s : model.state_columns)
-          for (int k = 0; k < s.components(D); ++k) std::fill_n(c.component(at++), n, start_value(s, k));
+          for (int k = 0; k < s.components(D); ++k)
+            std::fill_n(c.component(at++), n, start_value(s, k));
         Sym<double, D> stress = Sym<double, D>::zero();
         typename std::remove_cvref_t<decltype(model)>::template State<double, D> state{};
         double* flat = reinterpret_cast<double*>(&state);
-        for (int k = body.at.state; k >= 0 && k < at; ++k) flat[k - body.at.state] = c.component(k)[0];
+        for (int k = body.at.state; k >= 0 && k < at; ++k)
+          flat[k - body.at.state] = c.component(k)[0];
         const double speed = model.sound_speed(stress, state, 1.0);
         domain_.stiffness.push_back(material.density * speed * speed);
       },
@@ -149,13 +156,15 @@ Limiter SimulationOf<D>::limiter() const {
         using Model = std::remove_cvref_t<decltype(model)>;
         for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
           const std::size_t i = b.order[k];
-          const auto state = load_state<Model, double, D>(b.columns, b.at.state, [&](const double* c) { return c[i]; });
+          const auto state = load_state<Model, double, D>(b.columns, b.at.state,
+                                                          [&](const double* c) { return c[i]; });
           Sym<double, D> stress;
           for (int c = 0; c < Sym<double, D>::size; ++c) stress.c[c] = b.stress(c)[i];
           double speed = 0.0;
           for (int a = 0; a < D; ++a) speed += b.v(a)[i] * b.v(a)[i];
           speed = std::sqrt(speed);
-          const double c = model.sound_speed(stress, state, b.volume()[i] * material.density / b.mass()[i]);
+          const double c =
+              model.sound_speed(stress, state, b.volume()[i] * material.density / b.mass()[i]);
           if (c + speed > result.sound_speed + result.speed || result.body < 0)
             result = {patch.body, static_cast<std::int64_t>(b.id[i]), c, speed};
         }
@@ -207,6 +216,12 @@ void SimulationOf<D>::set_velocity(int number, std::span<const double> velocitie
   ledger_.kinetic = kinetic_energy();
   ledger_.momentum = momentum();
   probe_speeds();
+}
+
+template <int D>
+void SimulationOf<D>::set_gravity(const std::array<double, 3>& gravity) {
+  check_finite(gravity, "gravity");
+  for (int a = 0; a < D; ++a) domain_.gravity[a] = gravity[static_cast<std::size_t>(a)];
 }
 
 template class SimulationOf<2>;

@@ -38,12 +38,13 @@ std::vector<double> drive(const Model& model, std::span<const double> increments
 }  // namespace
 
 std::vector<double> drive_material(double density, const std::string& strength,
-                                   const std::map<std::string, double>& parameters, std::span<const double> increments,
-                                   bool lanes) {
+                                   const std::map<std::string, double>& parameters,
+                                   std::span<const double> increments, bool lanes) {
   const Material material = make_material(density, strength, parameters);
   return std::visit(
       [&](const auto& model) {
-        return lanes ? drive<Batch<native_lanes>>(model, increments) : drive<double>(model, increments);
+        return lanes ? drive<Batch<native_lanes>>(model, increments)
+                     : drive<double>(model, increments);
       },
       material.strength);
 }

@@ -1,14 +1,21 @@
 #pragma once
-// Where the energy and the momentum go. Every term is accumulated from its own sums, so that the residual tests the code:
-//   kinetic + internal + plastic + viscous + friction + contact + eroded + numerical - external = start + residual.
-// Derivation: a particle's velocity changes by the interpolated increments dv_p = sum N_ip f_i dt / m_i, eq. (17), so
-//   change of kinetic = dt sum_i f_i . v_i + 1/2 sum_p m_p dv_p^2     (v_i mapped from the particles),
+// Where the energy and the momentum go. Every term is accumulated from its own sums, so that the
+// residual tests the code:
+//   kinetic + internal + plastic + viscous + friction + contact + eroded + numerical - external =
+//   start + residual.
+// Derivation: a particle's velocity changes by the interpolated increments dv_p = sum N_ip f_i dt /
+// m_i, eq. (17), so
+//   change of kinetic = dt sum_i f_i . v_i + 1/2 sum_p m_p dv_p^2     (v_i mapped from the
+//   particles),
 // while the stress does the work sum_p V_p sigma_p : d eps_p. What does not cancel is named:
-//   mapping  the stress works on the strain of another velocity field than the nodal forces do. USF strains with v_i;
-//            MUSL and USL strain with velocities at the end of the step, on which the forces would do
-//            sum_p m_p dv_p^2 more work than on v_i (gravity's part left out), so that much is set against it;
-//   time     first-order integration: 1/2 m dv^2, and the mean stress against the one that gave the forces;
-//   contact  normal contact that does not exactly conserve energy, with dv from eqs. (11)-(15) alone.
+//   mapping  the stress works on the strain of another velocity field than the nodal forces do. USF
+//   strains with v_i.
+//            MUSL and USL strain with velocities at the end of the step, on which the forces would
+//            do sum_p m_p dv_p^2 more work than on v_i (gravity's part left out), so that much is
+//            set against it.
+//   time     first-order integration: 1/2 m dv^2, and the mean stress against the one that gave the
+//   forces; contact  normal contact that does not exactly conserve energy, with dv from eqs.
+//   (11)-(15) alone.
 // A positive numerical term is energy lost, a negative one energy made.
 #include <array>
 #include <cmath>
@@ -18,22 +25,28 @@
 namespace mpm {
 
 struct Ledger {
-  double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0, external = 0.0,
-         eroded = 0.0, mapping = 0.0, time_integration = 0.0;  // [J]
-  double start = 0.0;                                          // kinetic energy at the start [J]
-  double largest = 0.0;                                        // largest energy brought in so far [J]
-  std::array<double, 3> momentum{};                            // [kg m/s]
+  double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0,
+         external = 0.0, eroded = 0.0, mapping = 0.0, time_integration = 0.0;  // [J]
+  double start = 0.0;                // kinetic energy at the start [J]
+  double largest = 0.0;              // largest energy brought in so far [J]
+  std::array<double, 3> momentum{};  // [kg m/s]
 
   double numerical() const { return mapping + time_integration; }
   double residual() const {
-    return kinetic + internal + plastic + viscous + friction + contact + eroded + numerical() - external - start;
+    return kinetic + internal + plastic + viscous + friction + contact + eroded + numerical() -
+           external - start;
   }
-  /// Energy made by numerics, as a fraction of the largest energy brought in; 0 while there is none.
-  double growth() const { return largest > 0.0 ? std::max(0.0, -(numerical() + contact)) / largest : 0.0; }
+  /// Energy made by numerics, as a fraction of the largest energy brought in; 0 while there is
+  /// none.
+  double growth() const {
+    return largest > 0.0 ? std::max(0.0, -(numerical() + contact)) / largest : 0.0;
+  }
 
-  /// Take over the sums of a step; `forces_follow` if the stress was updated before the forces (USF).
+  /// Take over the sums of a step; `forces_follow` if the stress was updated before the forces
+  /// (USF).
   template <int D>
-  void add(const std::vector<PatchSums<D>>& patches, const ContactSums& contacts, bool forces_follow) {
+  void add(const std::vector<PatchSums<D>>& patches, const ContactSums& contacts,
+           bool forces_follow) {
     PatchSums<D> s;
     for (const PatchSums<D>& p : patches) {
       s.stress.internal += p.stress.internal;
@@ -55,8 +68,9 @@ struct Ledger {
     external += s.gravity_first + s.gravity_second;
     const double at_end = forces_follow ? 0.0 : 2.0 * (s.second_order - s.gravity_second);
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
-    time_integration -= s.stress.internal + s.stress.viscous - s.stress.force_power + s.second_order - s.gravity_second +
-                        contacts.friction - contacts.friction_first - at_end;
+    time_integration -= s.stress.internal + s.stress.viscous - s.stress.force_power +
+                        s.second_order - s.gravity_second + contacts.friction -
+                        contacts.friction_first - at_end;
     largest = std::max({largest, std::abs(start), std::abs(external)});
   }
 };

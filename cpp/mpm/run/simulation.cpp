@@ -15,19 +15,36 @@ void check(bool condition, const std::string& sentence) {
 void check(const Settings& s) {
   check(s.dimension == 2 || s.dimension == 3, "dimension must be 2 or 3");
   check(s.cell_size > 0.0 && std::isfinite(s.cell_size), "cell_size must be > 0");
-  check(s.time_step_factor > 0.0 && s.time_step_factor <= 1.0, "time_step_factor must lie in (0, 1]");
+  check(s.time_step_factor > 0.0 && s.time_step_factor <= 1.0,
+        "time_step_factor must lie in (0, 1]");
   check(s.threads >= 1, "threads must be >= 1");
   check(s.friction >= 0.0, "friction must be >= 0");
   check(s.energy_growth_limit > 0.0, "energy_growth_limit must be > 0");
-  check(s.viscosity_quadratic >= 0.0 && s.viscosity_linear >= 0.0, "viscosity factors must be >= 0");
+  check(s.viscosity_quadratic >= 0.0 && s.viscosity_linear >= 0.0,
+        "viscosity factors must be >= 0");
 }
 
 }  // namespace
 
 const std::vector<std::string>& Simulation::history_columns() {
-  static const std::vector<std::string> names = {
-      "step",     "time",   "dt",        "kinetic",  "internal",   "plastic",    "viscous",    "friction",          "contact",
-      "external", "eroded", "numerical", "residual", "momentum_x", "momentum_y", "momentum_z", "numerical_mapping", "numerical_time"};
+  static const std::vector<std::string> names = {"step",
+                                                 "time",
+                                                 "dt",
+                                                 "kinetic",
+                                                 "internal",
+                                                 "plastic",
+                                                 "viscous",
+                                                 "friction",
+                                                 "contact",
+                                                 "external",
+                                                 "eroded",
+                                                 "numerical",
+                                                 "residual",
+                                                 "momentum_x",
+                                                 "momentum_y",
+                                                 "momentum_z",
+                                                 "numerical_mapping",
+                                                 "numerical_time"};
   return names;
 }
 
@@ -38,9 +55,11 @@ std::unique_ptr<Simulation> make_simulation(const Settings& settings) {
 }
 
 template <int D>
-SimulationOf<D>::SimulationOf(const Settings& settings) : settings_(settings), stages_(stages_of<D>(settings.scheme)) {
+SimulationOf<D>::SimulationOf(const Settings& settings)
+    : settings_(settings), stages_(stages_of<D>(settings.scheme)) {
   TileGrid<D>& grid = domain_.grid;
   grid.cell_size = settings.cell_size;
+  grid.use(settings.basis);
   grid.walls.exist = settings.box_cells[0] > 0;
   for (std::size_t a = 0; a < D; ++a) {
     const int axis = static_cast<int>(a);
@@ -77,11 +96,12 @@ void SimulationOf<D>::prepare() {
 
 template <int D>
 void SimulationOf<D>::probe_speeds() {
-  // Without motion the stress stage leaves everything as it is and gives the speeds that the time step needs.
+  // Without motion the stress stage leaves everything as it is and gives the speeds that the time
+  // step needs.
   domain_.sums.assign(domain_.grid.patches.size(), {});
   for (std::size_t p = 0; p < domain_.grid.patches.size(); ++p) {
     const NodeBlock<D> block = domain_.grid.block(p);
-    std::fill(block.data, block.data + TileGrid<D>::block_size, 0.0);
+    std::fill(block.data, block.data + domain_.grid.block_size(), 0.0);
   }
   domain_.time_step = 1.0;
   update_stress_last(domain_);
@@ -106,11 +126,13 @@ std::int64_t SimulationOf<D>::advance(std::int64_t max_steps, double end_time) {
 
 template <int D>
 void SimulationOf<D>::make_step() {
-  for (std::size_t k = 0; k < stages_.size(); ++k) timers_.time(k, [&] { stages_[k].run(domain_); });
+  for (std::size_t k = 0; k < stages_.size(); ++k)
+    timers_.time(k, [&] { stages_[k].run(domain_); });
   domain_.time += domain_.time_step;
   ++domain_.step;
   ContactSums contacts;
-  if (domain_.has_contact()) contacts = domain_.contact.record(domain_.time, domain_.time_step, domain_.step);
+  if (domain_.has_contact())
+    contacts = domain_.contact.record(domain_.time, domain_.time_step, domain_.step);
   ledger_.add(domain_.sums, contacts, settings_.scheme == Scheme::usf);
   write_history_row();
   find_failure();
@@ -129,9 +151,9 @@ void SimulationOf<D>::write_history_row() {
   if (history_.size() >= history_capacity * history_columns().size()) history_.clear();
   const Ledger& l = ledger_;
   for (const double value :
-       {static_cast<double>(domain_.step), domain_.time, domain_.time_step, l.kinetic, l.internal, l.plastic, l.viscous,
-        l.friction, l.contact, l.external, l.eroded, l.numerical(), l.residual(), l.momentum[0], l.momentum[1],
-        l.momentum[2], l.mapping, l.time_integration})
+       {static_cast<double>(domain_.step), domain_.time, domain_.time_step, l.kinetic, l.internal,
+        l.plastic, l.viscous, l.friction, l.contact, l.external, l.eroded, l.numerical(),
+        l.residual(), l.momentum[0], l.momentum[1], l.momentum[2], l.mapping, l.time_integration})
     history_.push_back(value);
 }
 
@@ -153,7 +175,8 @@ void SimulationOf<D>::find_failure() {
     std::size_t row = 0;
     while (static_cast<std::int64_t>(b.id[row]) != fastest.particle) ++row;
     std::ostringstream text;
-    text << "the numerical terms have made " << ledger_.growth() << " of the largest energy brought in";
+    text << "the numerical terms have made " << ledger_.growth()
+         << " of the largest energy brought in";
     failure_ = failure_at("energy growth", static_cast<std::size_t>(fastest.body), row, text.str());
     return;
   }
@@ -161,7 +184,8 @@ void SimulationOf<D>::find_failure() {
     const Body<D>& body = domain_.bodies[b];
     for (std::size_t i = 0; i < body.count(); ++i) {
       bool finite = true;
-      for (int c = 0; c < body.columns.component_count(); ++c) finite = finite && std::isfinite(body.columns.component(c)[i]);
+      for (int c = 0; c < body.columns.component_count(); ++c)
+        finite = finite && std::isfinite(body.columns.component(c)[i]);
       if (!finite) {
         failure_ = failure_at("non-finite", b, i, "a value of the particle is not a finite number");
         return;
@@ -176,7 +200,8 @@ void SimulationOf<D>::find_failure() {
 }
 
 template <int D>
-Failure SimulationOf<D>::failure_at(const std::string& kind, std::size_t b, std::size_t row, const std::string& what) const {
+Failure SimulationOf<D>::failure_at(const std::string& kind, std::size_t b, std::size_t row,
+                                    const std::string& what) const {
   const Body<D>& body = domain_.bodies[b];
   Failure f;
   f.kind = kind;
@@ -186,8 +211,8 @@ Failure SimulationOf<D>::failure_at(const std::string& kind, std::size_t b, std:
   f.time = domain_.time;
   for (int a = 0; a < D; ++a) f.position[static_cast<std::size_t>(a)] = body.x(a)[row];
   std::ostringstream text;
-  text << kind << " at step " << f.step << ", t = " << f.time << " s: " << what << " (body \"" << body.name
-       << "\", particle " << f.particle << ", at";
+  text << kind << " at step " << f.step << ", t = " << f.time << " s: " << what << " (body \""
+       << body.name << "\", particle " << f.particle << ", at";
   for (int a = 0; a < D; ++a) text << ' ' << body.x(a)[row];
   text << " m)";
   f.message = text.str();

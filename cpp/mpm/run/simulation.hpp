@@ -16,24 +16,26 @@
 
 namespace mpm {
 
-/// What is fixed before the bodies are added. SI units. There are no defaults here: they live in the Python case.
+/// What is fixed before the bodies are added. SI units. There are no defaults here: they live in
+/// the Python case.
 struct Settings {
-  int dimension = 3;                    // 2 (plane strain, 1 m thick) or 3
-  double cell_size = 0.0;               // [m]
-  std::array<double, 3> origin{};       // position of a node, and of the box's lower corner [m]
-  std::array<int, 3> box_cells{};       // cells of the box; 0, 0, 0 for no box
-  std::array<Wall, 6> walls{};          // of the box's faces: x-, x+, y-, y+, z-, z+
+  int dimension = 3;               // 2 (plane strain, 1 m thick) or 3
+  double cell_size = 0.0;          // [m]
+  std::array<double, 3> origin{};  // position of a node, and of the box's lower corner [m]
+  std::array<int, 3> box_cells{};  // cells of the box; 0, 0, 0 for no box
+  std::array<Wall, 6> walls{};     // of the box's faces: x-, x+, y-, y+, z-, z+
+  Basis basis = Basis::linear;
   Scheme scheme = Scheme::musl;
-  double time_step_factor = 0.0;        // of the critical time step h / (c + |v|)
-  std::array<double, 3> gravity{};      // [m/s^2]
+  double time_step_factor = 0.0;    // of the critical time step h / (c + |v|)
+  std::array<double, 3> gravity{};  // [m/s^2]
   double viscosity_quadratic = 0.0, viscosity_linear = 0.0;
   bool contact = false;
   Detection detection = Detection::gap;
   NormalRule normal_rule = NormalRule::pair;
-  double gap_distance = 0.0;            // [m]
+  double gap_distance = 0.0;  // [m]
   double friction = 0.0;
   int threads = 1;
-  double energy_growth_limit = 0.0;     // fraction of the largest energy brought in
+  double energy_growth_limit = 0.0;  // fraction of the largest energy brought in
 };
 
 /// Why a run had to stop.
@@ -62,14 +64,17 @@ class Simulation {
  public:
   virtual ~Simulation() = default;
 
-  virtual int add_material(double density, const std::string& strength, const std::map<std::string, double>& parameters) = 0;
-  /// Positions and velocities are (n, D) row by row, or one row of velocities for all; volumes n values, or one for all.
+  virtual int add_material(double density, const std::string& strength,
+                           const std::map<std::string, double>& parameters) = 0;
+  /// Positions and velocities are (n, D) row by row, or one row of velocities for all; volumes n
+  /// values, or one for all.
   virtual int add_body(const std::string& name, int material, std::span<const double> positions,
                        std::span<const double> velocities, std::span<const double> volumes) = 0;
   virtual void set_pair_friction(int a, int b, double mu) = 0;
   /// Sort the particles, make the grid, find the first time step. Once, after the last body.
   virtual void prepare() = 0;
-  /// Make up to `max_steps` steps, to `end_time` at most; returns how many. Stops early at a failure.
+  /// Make up to `max_steps` steps, to `end_time` at most; returns how many. Stops early at a
+  /// failure.
   virtual std::int64_t advance(std::int64_t max_steps, double end_time) = 0;
 
   virtual double time() const = 0;
@@ -86,10 +91,12 @@ class Simulation {
   virtual void set_threads(int count) = 0;
 
   virtual const std::vector<ColumnInfo>& columns(int body) const = 0;
-  /// A column in the order in which the user gave the particles, (n, components) row by row. Stress has six components
-  /// in 2D too.
+  /// A column in the order in which the user gave the particles, (n, components) row by row. Stress
+  /// has six components in 2D too.
   virtual int column_components(int body, const std::string& name) const = 0;
   virtual void copy_column(int body, const std::string& name, std::span<double> to) const = 0;
+  virtual void set_gravity(
+      const std::array<double, 3>& gravity) = 0;  // [m/s^2], from the next step on
   virtual void set_velocity(int body, std::span<const double> velocities) = 0;
 
   static constexpr std::size_t history_capacity = 4096;

@@ -11,7 +11,8 @@ class SimulationOf final : public Simulation {
  public:
   explicit SimulationOf(const Settings& settings);
 
-  int add_material(double density, const std::string& strength, const std::map<std::string, double>& parameters) override;
+  int add_material(double density, const std::string& strength,
+                   const std::map<std::string, double>& parameters) override;
   int add_body(const std::string& name, int material, std::span<const double> positions,
                std::span<const double> velocities, std::span<const double> volumes) override;
   void set_pair_friction(int a, int b, double mu) override;
@@ -27,19 +28,26 @@ class SimulationOf final : public Simulation {
   const std::optional<Failure>& failure() const override { return failure_; }
   Limiter limiter() const override;
   Bytes bytes() const override;
-  const std::vector<std::pair<std::string_view, double>>& stage_seconds() const override { return timers_.seconds(); }
+  const std::vector<std::pair<std::string_view, double>>& stage_seconds() const override {
+    return timers_.seconds();
+  }
   void reset_timers() override { timers_.reset(); }
   void set_threads(int count) override { domain_.threads.resize(count); }
 
-  const std::vector<ColumnInfo>& columns(int body) const override { return this->body(body).columns.infos(); }
+  const std::vector<ColumnInfo>& columns(int body) const override {
+    return this->body(body).columns.infos();
+  }
   int column_components(int body, const std::string& name) const override;
   void copy_column(int body, const std::string& name, std::span<double> to) const override;
+  void set_gravity(const std::array<double, 3>& gravity) override;
   void set_velocity(int body, std::span<const double> velocities) override;
 
   std::vector<double> take_history() override;
   const std::vector<PairRecord>& pairs() const override { return domain_.contact.pairs(); }
   std::size_t overlapped_nodes() const override { return domain_.contact.overlapped_nodes(); }
-  std::size_t overlapped_nodes_max() const override { return domain_.contact.overlapped_nodes_max(); }
+  std::size_t overlapped_nodes_max() const override {
+    return domain_.contact.overlapped_nodes_max();
+  }
   int bodies_per_node_max() const override { return domain_.contact.bodies_per_node_max(); }
 
  private:
@@ -51,7 +59,8 @@ class SimulationOf final : public Simulation {
   void choose_time_step();
   void write_history_row();
   void find_failure();
-  Failure failure_at(const std::string& kind, std::size_t body, std::size_t row, const std::string& what) const;
+  Failure failure_at(const std::string& kind, std::size_t body, std::size_t row,
+                     const std::string& what) const;
 
   Settings settings_;
   Domain<D> domain_;

@@ -17,7 +17,8 @@ class StageTimers {
   void time(std::size_t stage, F&& f) {
     const auto begin = std::chrono::steady_clock::now();
     f();
-    seconds_[stage].second += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    seconds_[stage].second +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
   const std::vector<std::pair<std::string_view, double>>& seconds() const { return seconds_; }
   void reset() {

@@ -6,12 +6,11 @@ namespace {
 
 /// 1 at the nodes that a patch owns, 0 at those that another patch counts.
 template <int D>
-void ownership(const Patch<D>& patch, double* own) {
-  for (int n = 0; n < Tile<D>::node_stride; ++n) own[n] = 0.0;
-  for (int n = 0; n < Tile<D>::node_count; ++n) {
-    const int region = region_of_node<D>[static_cast<std::size_t>(n)];
-    own[n] = region == Tile<D>::self ? 1.0 : static_cast<double>(patch.owned >> region & 1u);
-  }
+void ownership(const BlockShape<D>& shape, const Patch<D>& patch, double* own) {
+  for (int n = 0; n < shape.node_stride; ++n) own[n] = 0.0;
+  for (int n = 0; n < shape.node_count; ++n)
+    own[n] =
+        static_cast<double>(patch.owned >> shape.region_of_node[static_cast<std::size_t>(n)] & 1u);
 }
 
 }  // namespace
@@ -24,15 +23,16 @@ void advance_nodes(Domain<D>& domain) {
     using T = Batch<native_lanes>;
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
-    // Walls take up the force along the axes they hold; gravity there is cancelled below with the increment.
+    // Walls take up the force along the axes they hold; gravity there is cancelled below with the
+    // increment.
     for_each_held_node(grid, patch, [&](int node, unsigned held) {
       for (int a = 0; a < D; ++a)
         if (held >> a & 1u) block.force(a)[node] = -block.mass()[node] * domain.gravity[a];
     });
-    alignas(cache_line) double own[Tile<D>::node_stride];
-    ownership(patch, own);
+    alignas(cache_line) double own[BlockShape<D>::stride_max];
+    ownership(grid.shape, patch, own);
     T work(0.0), gravity_first(0.0), gravity_second(0.0);
-    for (int n = 0; n < Tile<D>::node_stride; n += native_lanes) {
+    for (int n = 0; n < block.stride; n += native_lanes) {
       const T m = T::load(block.mass() + n), owned = T::load(own + n);
       const T impulse = select(m > T(0.0), T(dt) / m, T(0.0));
       for (int a = 0; a < D; ++a) {

@@ -14,24 +14,24 @@ void advance_particles(Domain<D>& domain) {
     const NodeBlock<D> block = grid.block(p);
     T kinetic(0.0), second_order(0.0);
     Vec<T, D> momentum = Vec<T, D>::zero();
-    for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-      const auto increment = [&]<int... a>(std::integer_sequence<int, a...>) {
-        return std::array{CellField<D>(block.force(a) + cell.first_node)...};
-      }(std::make_integer_sequence<int, D>{});
-      for_each_group(cell, [&](const LaneRows<W>& rows) {
-        const auto xi = local_position(grid, body, cell, rows);
-        const T m = select(first_lanes<W>(rows.count), load(body.mass(), rows), T(0.0));
-        T speed2(0.0), change2(0.0);
-        for (int a = 0; a < D; ++a) {
-          const T dv = increment[static_cast<std::size_t>(a)].value(xi);
-          const T v = load(body.v(a), rows) + dv;
-          store(body.v(a), rows, v);
-          momentum[a] += m * v;
-          speed2 += v * v;
-          change2 += dv * dv;
-        }
-        kinetic += m * speed2;
-        second_order += m * change2;
+    with_basis(grid, body, [&](const auto& basis) {
+      for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+        const auto increment = vector_field(basis, cell, [&](int a) { return block.force(a); });
+        for_each_group(cell, [&](const LaneRows<W>& rows) {
+          const auto w = basis.weights(local_position(grid, body, cell, rows));
+          const T m = select(first_lanes<W>(rows.count), load(body.mass(), rows), T(0.0));
+          T speed2(0.0), change2(0.0);
+          for (int a = 0; a < D; ++a) {
+            const T dv = increment[static_cast<std::size_t>(a)].value(w);
+            const T v = load(body.v(a), rows) + dv;
+            store(body.v(a), rows, v);
+            momentum[a] += m * v;
+            speed2 += v * v;
+            change2 += dv * dv;
+          }
+          kinetic += m * speed2;
+          second_order += m * change2;
+        });
       });
     });
     PatchSums<D>& sums = domain.sums[p];

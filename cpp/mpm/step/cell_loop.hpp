@@ -1,6 +1,7 @@
 #pragma once
-// The two loops every particle stage is made of: over the cells of a patch, and over a cell's particles in lanes.
-#include "mpm/basis/linear.hpp"
+// The two loops every particle stage is made of: over the cells of a patch, and over a cell's
+// particles in lanes.
+#include "mpm/basis/basis.hpp"
 #include "mpm/domain.hpp"
 
 namespace mpm {
@@ -8,8 +9,8 @@ namespace mpm {
 /// A cell of a patch being worked on: its coordinates, its first node in the block, its particles.
 template <int D>
 struct CellRange {
-  Index<D> cell;        // grid coordinates
-  int first_node;       // in the patch's block
+  Index<D> cell;   // grid coordinates
+  int first_node;  // in the patch's block
   const std::uint32_t* rows;
   std::uint32_t count;
 };
@@ -20,7 +21,7 @@ void for_each_cell(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>&
   const Index<D> first = grid.first_cell(patch.tile);
   patch.for_each_cell([&](int c, std::uint32_t begin, std::uint32_t end) {
     const Index<D> local = Tile<D>::cell_index(c);
-    CellRange<D> range{first, Tile<D>::node(local), body.order.data() + begin, end - begin};
+    CellRange<D> range{first, grid.shape.node(local), body.order.data() + begin, end - begin};
     for (int a = 0; a < D; ++a) range.cell[a] += local[a];
     f(range);
   });
@@ -35,26 +36,34 @@ void for_each_group(const CellRange<D>& cell, F&& f) {
 
 /// Position of the particles in their cell, in [0, 1].
 template <int D>
-Vec<Batch<native_lanes>, D> local_position(const TileGrid<D>& grid, const Body<D>& body, const CellRange<D>& cell,
+Vec<Batch<native_lanes>, D> local_position(const TileGrid<D>& grid, const Body<D>& body,
+                                           const CellRange<D>& cell,
                                            const LaneRows<native_lanes>& rows) {
   Vec<Batch<native_lanes>, D> xi;
-  for (int a = 0; a < D; ++a) xi[a] = Linear<D>::local(grid.in_cells(load(body.x(a), rows), a), cell.cell[a]);
+  for (int a = 0; a < D; ++a)
+    xi[a] = local_coordinate(grid.in_cells(load(body.x(a), rows), a), cell.cell[a]);
   return xi;
 }
 
-/// Add what a cell's particles give to its nodes to one field of a block.
-template <int D>
-void add_to_nodes(double* field, int first_node, const CellNodes<D>& value) {
-  static constexpr auto offset = Tile<D>::corner_offsets();
-  double v[CellNodes<D>::count];
-  for (int k = 0; k < CellNodes<D>::parts; ++k) value.part[k].store(v + k * CellNodes<D>::width);
-  for (int k = 0; k < CellNodes<D>::count; ++k) field[first_node + offset[static_cast<std::size_t>(k)]] += v[k];
+/// f(basis object) for the basis of the grid and the size of a body's particles.
+template <int D, class F>
+void with_basis(const TileGrid<D>& grid, const Body<D>& body, F&& f) {
+  with_basis(grid.basis, grid.shape, body.mean_edge / grid.cell_size, std::forward<F>(f));
+}
+
+/// Fields of the D components of a nodal vector on a cell; `component(a)` is the first double of
+/// component a.
+template <int D, class Functions, class Component>
+auto vector_field(const Functions& basis, const CellRange<D>& cell, Component&& component) {
+  return [&]<int... a>(std::integer_sequence<int, a...>) {
+    return std::array{basis.field(component(a) + cell.first_node)...};
+  }(std::make_integer_sequence<int, D>{});
 }
 
 /// Set fields [first, last) of a block to zero.
 template <int D>
 void clear_fields(const NodeBlock<D>& block, int first, int last) {
-  std::fill(block.data + first * Tile<D>::node_stride, block.data + last * Tile<D>::node_stride, 0.0);
+  std::fill(block.data + first * block.stride, block.data + last * block.stride, 0.0);
 }
 
 /// f(node, held axes) for the nodes of a patch that walls hold.
@@ -62,18 +71,20 @@ template <int D, class F>
 void for_each_held_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
   if (!patch.at_wall) return;
   const Index<D> first = grid.first_cell(patch.tile);
-  for (int n = 0; n < Tile<D>::node_count; ++n) {
-    Index<D> node = Tile<D>::node_index(n);
+  for (int n = 0; n < grid.shape.node_count; ++n) {
+    Index<D> node = grid.shape.index(n);
     for (int a = 0; a < D; ++a) node[a] += first[a];
     if (const unsigned held = grid.walls.held(node)) f(n, held);
   }
 }
 
-/// Turn a field of momenta [kg m/s] into velocities [m/s]: zero without mass, and along axes held by walls.
+/// Turn a field of momenta [kg m/s] into velocities [m/s]: zero without mass, and along axes held
+/// by walls.
 template <int D, class Field>
-void momentum_to_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block, Field&& field) {
-  constexpr int n = Tile<D>::node_stride;
-  alignas(cache_line) double inverse[n];
+void momentum_to_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block,
+                          Field&& field) {
+  const int n = block.stride;
+  alignas(cache_line) double inverse[BlockShape<D>::stride_max];
   const double* mass = block.mass();
   for (int i = 0; i < n; ++i) inverse[i] = mass[i] > 0.0 ? 1.0 / mass[i] : 0.0;
   for (int a = 0; a < D; ++a) {

@@ -5,13 +5,15 @@ namespace mpm {
 template <int D>
 void contact_momentum(Domain<D>& domain) {
   if (!domain.has_contact()) return;
-  domain.contact.find(domain.grid, domain.bodies, domain.stiffness, domain.contact_settings, domain.threads);
+  domain.contact.find(domain.grid, domain.bodies, domain.stiffness, domain.contact_settings,
+                      domain.threads);
   domain.contact.adjust_momentum(domain.grid, domain.threads);
 }
 
 template <int D>
 void contact_forces(Domain<D>& domain) {
-  if (domain.has_contact()) domain.contact.add_forces(domain.grid, domain.gravity, domain.time_step, domain.threads);
+  if (domain.has_contact())
+    domain.contact.add_forces(domain.grid, domain.gravity, domain.time_step, domain.threads);
 }
 
 template <int D>

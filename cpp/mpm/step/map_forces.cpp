@@ -5,20 +5,23 @@ namespace mpm {
 namespace {
 
 /// f_i -= V_p (sigma_p - q_p 1) . grad N_ip, eq. (9), with the artificial viscosity's pressure q.
-template <int D>
-void scatter_forces(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch, const NodeBlock<D>& block) {
+template <int D, class Functions>
+void scatter_forces(const Functions& basis, const TileGrid<D>& grid, const Body<D>& body,
+                    const Patch<D>& patch, const NodeBlock<D>& block) {
   constexpr int W = native_lanes;
   using T = Batch<W>;
+  using Nodes = typename Functions::Nodes;
   constexpr int parts = Sym<T, D>::size;
   const double inverse_h = 1.0 / grid.cell_size;
   const bool viscous = body.at.viscosity_pressure >= 0;
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-    CellNodes<D> f_i[D];
-    for (auto& f : f_i) f = CellNodes<D>::zero();
+    Nodes f_i[D];
+    for (auto& f : f_i) f = Nodes::zero();
     for_each_group(cell, [&](const LaneRows<W>& rows) {
-      double xi[D][W], s[parts][W];
+      double xi[W][D], s[parts][W];
       const auto local = local_position(grid, body, cell, rows);
-      for (int a = 0; a < D; ++a) local[a].store(xi[a]);
+      for (int a = 0; a < D; ++a)
+        for (int k = 0; k < W; ++k) xi[k][a] = local[a][k];
       const T scale = T(-inverse_h) * load(body.volume(), rows);
       const T q = viscous ? load(body.columns.component(body.at.viscosity_pressure), rows) : T(0.0);
       for (int c = 0; c < parts; ++c) {
@@ -27,18 +30,13 @@ void scatter_forces(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>
         (scale * stress).store(s[c]);
       }
       for (int k = 0; k < rows.count; ++k) {
-        CellNodes<D> N[D], G[D];
-        for (int a = 0; a < D; ++a) N[a] = Linear<D>::factor(a, xi[a][k]);
-        for (int a = 0; a < D; ++a) {
-          G[a] = Linear<D>::slope(a);
-          for (int b = 0; b < D; ++b)
-            if (b != a) G[a] = G[a] * N[b];
-        }
+        Nodes G[D];
+        basis.gradients(xi[k], G);
         for (int a = 0; a < D; ++a)
           for (int b = 0; b < D; ++b) f_i[a].add(s[Sym<T, D>::index(a, b)][k], G[b]);
       }
     });
-    for (int a = 0; a < D; ++a) add_to_nodes(block.force(a), cell.first_node, f_i[a]);
+    for (int a = 0; a < D; ++a) basis.add_to_nodes(block.force(a) + cell.first_node, f_i[a]);
   });
 }
 
@@ -51,7 +49,9 @@ void map_forces(Domain<D>& domain) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
     clear_fields(block, 1 + D, 1 + 2 * D);
-    scatter_forces(grid, domain.body_of(patch), patch, block);
+    const Body<D>& body = domain.body_of(patch);
+    with_basis(grid, body,
+               [&](const auto& basis) { scatter_forces(basis, grid, body, patch, block); });
   });
   grid.sum_shared_nodes(domain.threads, 1 + D, 1 + 2 * D);
 }

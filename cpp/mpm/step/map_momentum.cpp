@@ -10,7 +10,11 @@ void map_momentum(Domain<D>& domain) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
     clear_fields(block, 0, 1 + D);
-    scatter_momentum<true>(grid, domain.body_of(patch), patch, block.mass(), [&](int a) { return block.velocity(a); });
+    const Body<D>& body = domain.body_of(patch);
+    with_basis(grid, body, [&](const auto& basis) {
+      scatter_momentum<true>(basis, grid, body, patch, block.mass(),
+                             [&](int a) { return block.velocity(a); });
+    });
   });
   grid.sum_shared_nodes(domain.threads, 0, 1 + D);
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {

@@ -14,18 +14,18 @@ void move_particles(Domain<D>& domain) {
     Body<D>& body = domain.body_of(patch);
     const NodeBlock<D> block = grid.block(p);
     auto left = T(1.0) < T(0.0);
-    for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-      const auto velocity = [&]<int... a>(std::integer_sequence<int, a...>) {
-        return std::array{CellField<D>(block.velocity(a) + cell.first_node)...};
-      }(std::make_integer_sequence<int, D>{});
-      for_each_group(cell, [&](const LaneRows<W>& rows) {
-        const auto xi = local_position(grid, body, cell, rows);
-        for (int a = 0; a < D; ++a) {
-          const T x = load(body.x(a), rows) + dt * velocity[static_cast<std::size_t>(a)].value(xi);
-          store(body.x(a), rows, x);
-          const T local = grid.in_cells(x, a) - T(cell.cell[a]);
-          left = left | (local < T(0.0)) | (local >= T(1.0));
-        }
+    with_basis(grid, body, [&](const auto& basis) {
+      for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+        const auto velocity = vector_field(basis, cell, [&](int a) { return block.velocity(a); });
+        for_each_group(cell, [&](const LaneRows<W>& rows) {
+          const auto w = basis.weights(local_position(grid, body, cell, rows));
+          for (int a = 0; a < D; ++a) {
+            const T x = load(body.x(a), rows) + dt * velocity[static_cast<std::size_t>(a)].value(w);
+            store(body.x(a), rows, x);
+            const T local = grid.in_cells(x, a) - T(cell.cell[a]);
+            left = left | (local < T(0.0)) | (local >= T(1.0));
+          }
+        });
       });
     });
     patch.left_cell = any(left);

@@ -10,7 +10,11 @@ void remap_momentum(Domain<D>& domain) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
     clear_fields(block, 1 + D, 1 + 2 * D);
-    scatter_momentum<false>(grid, domain.body_of(patch), patch, nullptr, [&](int a) { return block.force(a); });
+    const Body<D>& body = domain.body_of(patch);
+    with_basis(grid, body, [&](const auto& basis) {
+      scatter_momentum<false>(basis, grid, body, patch, block.mass(),
+                              [&](int a) { return block.force(a); });
+    });
   });
   grid.sum_shared_nodes(domain.threads, 1 + D, 1 + 2 * D);
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {

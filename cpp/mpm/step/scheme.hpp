@@ -1,6 +1,6 @@
 #pragma once
-// READ THIS FIRST. A step is a list of stages: usf, usl, musl, in the order of section 3.6 of Ma, Zhang & Huang (2010).
-// The lists are data: the time loop runs them, timers and tests name them.
+// READ THIS FIRST. A step is a list of stages: usf, usl, musl, in the order of section 3.6 of Ma,
+// Zhang & Huang (2010). The lists are data: the time loop runs them, timers and tests name them.
 #include <array>
 #include <span>
 #include <string_view>

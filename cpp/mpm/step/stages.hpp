@@ -4,7 +4,8 @@
 
 namespace mpm {
 
-/// Mend the lists of particles by cell, make and drop tiles (3.4), find where bodies may meet (3.3).
+/// Mend the lists of particles by cell, make and drop tiles (3.4), find where bodies may meet
+/// (3.3).
 template <int D>
 void activate_tiles(Domain<D>& domain);
 
@@ -12,7 +13,8 @@ void activate_tiles(Domain<D>& domain);
 template <int D>
 void map_momentum(Domain<D>& domain);
 
-/// Contact of bodies: overlapped nodes, normals, gaps, eq. (5); approaching momentum removed, eqs. (4), (6)-(7).
+/// Contact of bodies: overlapped nodes, normals, gaps, eq. (5); approaching momentum removed, eqs.
+/// (4), (6)-(7).
 template <int D>
 void contact_momentum(Domain<D>& domain);
 
@@ -40,8 +42,8 @@ void remap_momentum(Domain<D>& domain);
 template <int D>
 void contact_remapped(Domain<D>& domain);
 
-/// Strain, rotation, stress, eqs. (18)-(20): USF with the velocities after the first mapping, USL after the nodes have
-/// been advanced, MUSL after the remap.
+/// Strain, rotation, stress, eqs. (18)-(20): USF with the velocities after the first mapping, USL
+/// after the nodes have been advanced, MUSL after the remap.
 template <int D>
 void update_stress_first(Domain<D>& domain);
 template <int D>

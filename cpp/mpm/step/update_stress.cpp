@@ -4,7 +4,8 @@
 namespace mpm {
 namespace {
 
-/// Velocity gradients, eqs. (18)-(20), of a patch's particles, handed to the material block by block.
+/// Velocity gradients, eqs. (18)-(20), of a patch's particles, handed to the material block by
+/// block.
 template <int D, class Field>
 void update_patch(Domain<D>& domain, std::size_t p, bool forces_follow, Field&& field) {
   constexpr int W = native_lanes;
@@ -19,25 +20,29 @@ void update_patch(Domain<D>& domain, std::size_t p, bool forces_follow, Field&& 
   auto flush = [&] {
     std::visit(
         [&](const auto& model) {
-          update_strength<std::remove_cvref_t<decltype(model)>, D>(model, material.density, body.columns, body.at, block,
+          update_strength<std::remove_cvref_t<decltype(model)>, D>(model, material.density,
+                                                                   body.columns, body.at, block,
                                                                    settings, domain.sums[p].stress);
         },
         material.strength);
     block.count = 0;
   };
-  for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-    const auto velocity = [&]<int... a>(std::integer_sequence<int, a...>) {
-      return std::array{CellField<D>(field(a) + cell.first_node)...};
-    }(std::make_integer_sequence<int, D>{});
-    for_each_group(cell, [&](const LaneRows<W>& rows) {
-      if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
-      const auto xi = local_position(grid, body, cell, rows);
-      for (int i = 0; i < D; ++i) {
-        const Vec<T, D> gradient = velocity[static_cast<std::size_t>(i)].gradient(xi);
-        for (int j = 0; j < D; ++j) (scale * gradient[j]).store(&block.gradient[i][j][block.count]);
-      }
-      for (int k = 0; k < W; ++k) block.row[block.count + static_cast<std::size_t>(k)] = rows.row[k];
-      block.count += static_cast<std::size_t>(rows.count);  // lanes past the end are overwritten by the next group
+  with_basis(grid, body, [&](const auto& basis) {
+    for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+      const auto velocity = vector_field(basis, cell, field);
+      for_each_group(cell, [&](const LaneRows<W>& rows) {
+        if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
+        const auto w = basis.weights(local_position(grid, body, cell, rows));
+        for (int i = 0; i < D; ++i) {
+          const Vec<T, D> gradient = velocity[static_cast<std::size_t>(i)].gradient(w);
+          for (int j = 0; j < D; ++j)
+            (scale * gradient[j]).store(&block.gradient[i][j][block.count]);
+        }
+        for (int k = 0; k < W; ++k)
+          block.row[block.count + static_cast<std::size_t>(k)] = rows.row[k];
+        block.count += static_cast<std::size_t>(
+            rows.count);  // lanes past the end are overwritten by the next group
+      });
     });
   });
   if (block.count > 0) flush();

@@ -5,12 +5,15 @@
 
 namespace mpm {
 
-/// Isotropic hypoelasticity with the Jaumann rate: stress rate = lambda tr(D) 1 + 2 G D (Truesdell & Noll 1965, sec. 99).
+/// Isotropic hypoelasticity with the Jaumann rate: stress rate = lambda tr(D) 1 + 2 G D (Truesdell
+/// & Noll 1965, sec. 99).
 struct Elastic {
   static constexpr std::string_view name = "elastic";
   static constexpr std::string_view doc =
-      "isotropic linear elasticity in rate form (hypoelastic, Jaumann rate); small elastic strains, any rotation";
-  static constexpr std::string_view source = "Truesdell & Noll 1965, sec. 99; update after Hughes & Winget 1980";
+      "isotropic linear elasticity in rate form (hypoelastic, Jaumann rate); small elastic "
+      "strains, any rotation";
+  static constexpr std::string_view source =
+      "Truesdell & Noll 1965, sec. 99; update after Hughes & Winget 1980";
 
   double E{}, nu{}, density{};
   double lambda{}, G{};
@@ -32,7 +35,8 @@ struct Elastic {
   template <Real T, int D>
   void update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
     const Corotated<T, D> at_end = corotate(motion, stress);
-    stress = at_end.stress + Sym<T, D>::isotropic(T(lambda) * trace(at_end.strain)) + T(2.0 * G) * at_end.strain;
+    stress = at_end.stress + Sym<T, D>::isotropic(T(lambda) * trace(at_end.strain)) +
+             T(2.0 * G) * at_end.strain;
   }
 
   template <Real T, int D>

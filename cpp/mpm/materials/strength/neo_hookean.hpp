@@ -1,17 +1,19 @@
 #pragma once
 #include <array>
 
-#include "mpm/math/batch_math.hpp"
 #include "mpm/materials/model.hpp"
+#include "mpm/math/batch_math.hpp"
 
 namespace mpm {
 
-/// Compressible neo-Hookean rubber: energy per initial volume W = G/2 (tr b - 3) - G ln J + lambda/2 (ln J)^2, so that
-/// J sigma = lambda ln J 1 + G (b - 1), with lambda = K - 2G/3 (Bonet & Wood 2008, eqs. 6.27-6.29).
+/// Compressible neo-Hookean rubber: energy per initial volume W = G/2 (tr b - 3) - G ln J +
+/// lambda/2 (ln J)^2, so that J sigma = lambda ln J 1 + G (b - 1), with lambda = K - 2G/3 (Bonet &
+/// Wood 2008, eqs. 6.27-6.29).
 struct NeoHookean {
   static constexpr std::string_view name = "neo_hookean";
   static constexpr std::string_view doc =
-      "compressible neo-Hookean, W = G/2 (tr b - 3) - G ln J + lambda/2 (ln J)^2, lambda = K - 2G/3; large elastic strains";
+      "compressible neo-Hookean, W = G/2 (tr b - 3) - G ln J + lambda/2 (ln J)^2, lambda = K - "
+      "2G/3; large elastic strains";
   static constexpr std::string_view source = "Bonet & Wood 2008, eqs. 6.27-6.29";
 
   double K{}, G{}, density{};
@@ -42,7 +44,8 @@ struct NeoHookean {
     stress = (T(1.0) / motion.J) * (Sym<T, D>::isotropic(pressure_part) + T(G) * state.b);
   }
 
-  /// rho c^2 = (lambda (1 - ln J) + G (1 + b_nn)) / J along n, from the spatial tangent; b_nn by Gershgorin's bound.
+  /// rho c^2 = (lambda (1 - ln J) + G (1 + b_nn)) / J along n, from the spatial tangent; b_nn by
+  /// Gershgorin's bound.
   template <Real T, int D>
   T sound_speed(const Sym<T, D>&, const State<T, D>& state, T J) const {
     T bound = state.b.c[2];

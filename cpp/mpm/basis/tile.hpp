@@ -1,5 +1,5 @@
 #pragma once
-// The tile: 4 x 4 x 4 cells in 3D, 8 x 8 in 2D, 64 cells either way; its nodes; its 3^D - 1 neighbours.
+// The tile: 4 x 4 x 4 cells in 3D, 8 x 8 in 2D, 64 cells either way; its 3^D - 1 neighbours.
 #include <array>
 #include <cstdint>
 
@@ -9,29 +9,18 @@ namespace mpm {
 template <int D>
 using Index = std::array<std::int32_t, D>;
 
-constexpr int power(int base, int exponent) { return exponent == 0 ? 1 : base * power(base, exponent - 1); }
+constexpr int power(int base, int exponent) {
+  return exponent == 0 ? 1 : base * power(base, exponent - 1);
+}
 
 template <int D>
 struct Tile {
   static constexpr int cells = D == 3 ? 4 : 8;  // along an edge
-  static constexpr int nodes = cells + 1;
   static constexpr int cell_count = power(cells, D);
-  static constexpr int node_count = power(nodes, D);
-  static constexpr int node_stride = (node_count + 7) / 8 * 8;  // one field of a patch's block, in doubles
   static constexpr int corners = power(2, D);
   static constexpr int neighbours = power(3, D);  // the tile itself included, in the middle
   static constexpr int self = neighbours / 2;
 
-  static constexpr int node(const Index<D>& i) {
-    int n = 0;
-    for (int a = D - 1; a >= 0; --a) n = n * nodes + i[a];
-    return n;
-  }
-  static constexpr Index<D> node_index(int n) {
-    Index<D> i{};
-    for (int a = 0; a < D; ++a, n /= nodes) i[a] = n % nodes;
-    return i;
-  }
   static constexpr int cell(const Index<D>& i) {
     int n = 0;
     for (int a = D - 1; a >= 0; --a) n = n * cells + i[a];
@@ -42,7 +31,8 @@ struct Tile {
     for (int a = 0; a < D; ++a, n /= cells) i[a] = n % cells;
     return i;
   }
-  /// Offset -1, 0, 1 along each axis of neighbour k, and back. Neighbours are numbered in the order of the tiles.
+  /// Offset -1, 0, 1 along each axis of neighbour k, and back. Neighbours are numbered in the order
+  /// of the tiles.
   static constexpr Index<D> offset(int k) {
     Index<D> o{};
     for (int a = 0; a < D; ++a, k /= 3) o[a] = k % 3 - 1;
@@ -58,12 +48,6 @@ struct Tile {
     Index<D> o{};
     for (int a = 0; a < D; ++a, k /= 2) o[a] = k % 2;
     return o;
-  }
-  /// Distance in a block from a cell's first node to its corners.
-  static constexpr std::array<int, corners> corner_offsets() {
-    std::array<int, corners> r{};
-    for (int k = 0; k < corners; ++k) r[static_cast<std::size_t>(k)] = node(corner(k));
-    return r;
   }
 };
 

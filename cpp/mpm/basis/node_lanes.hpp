@@ -1,0 +1,42 @@
+#pragma once
+// Lanes over nodes: values of the nodes that a particle reaches, x fastest, in as many registers as
+// they take, so that what the particles of a cell give to them is summed in registers.
+#include <array>
+
+#include "mpm/math/batch.hpp"
+
+namespace mpm {
+
+template <int Count>
+struct NodeLanes {
+  static constexpr int count = Count;
+  static constexpr int width = Count < native_lanes ? Count : native_lanes;
+  static constexpr int parts = Count / width;
+  using Part = Batch<width>;
+  Part part[parts];
+
+  static NodeLanes zero() {
+    NodeLanes r;
+    for (auto& p : r.part) p = Part(0.0);
+    return r;
+  }
+  static NodeLanes load(const double* values) {
+    NodeLanes r;
+    for (int k = 0; k < parts; ++k) r.part[k] = Part::load(values + k * width);
+    return r;
+  }
+  void store(double* to) const {
+    for (int k = 0; k < parts; ++k) part[k].store(to + k * width);
+  }
+  /// this += s * w
+  void add(double s, const NodeLanes& w) {
+    for (int k = 0; k < parts; ++k) part[k] += Part(s) * w.part[k];
+  }
+  friend NodeLanes operator*(const NodeLanes& x, const NodeLanes& y) {
+    NodeLanes r;
+    for (int k = 0; k < parts; ++k) r.part[k] = x.part[k] * y.part[k];
+    return r;
+  }
+};
+
+}  // namespace mpm

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`mpm3dpp bench`: time per particle-step and stage, bytes per particle, share of the bandwidth.
+
+Each benchmark runs in a process of its own (`worker.py`). After warm-up steps it is timed in five
+blocks of steps; the figure is the median block, and the stages are those of that block. A
+benchmark with a twin (`two_cubes`) takes turns with it, block by block, for an honest ratio.
+
+- Bytes per particle: `total` is how much the process' resident size has grown at its peak since
+  before the bodies were made; `particles`, `grid` and `contact` are what the core counts, `other`
+  is the difference (the input while it is handed over, sorting, history, threads, the allocator).
+  The core also counts memory it has reserved and not used, so in small problems `other` can be
+  negative.
+- Bandwidth: measured by the same process after its memory has been read. How the traffic of a
+  step is counted: see `traffic.py`.
+"""
+
+from __future__ import annotations
+
+import json as json_format
+import platform
+import statistics
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from ..errors import CaseError, RunError, nearest
+from .cases import BENCHES, Bench
+from .traffic import bytes_per_particle_step
+
+BLOCKS = 5
+STEPS = 400  # So that a block of 80 steps holds several crossings of whole layers of particles.
+WARM_UP = 20
+
+
+class Worker:
+    """A benchmark running in a process of its own; a context manager that ends it."""
+
+    def __init__(self, name: str, size: int, threads: int, scheme: str, warm_up: int) -> None:
+        package = Path(__file__).absolute().parents[2]  # -m looks in the current folder first.
+        numbers = [str(size), str(threads), scheme, str(warm_up)]
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", f"{__name__}.worker", name, *numbers],
+            cwd=package,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+
+    def __enter__(self) -> Worker:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._process.kill()
+        self._process.communicate()
+
+    def ask(self, command: str = "") -> dict[str, Any]:
+        """Send a command, if any, and return the answer.
+
+        Raises:
+            RunError: the run went unstable, or its process has ended.
+        """
+        assert self._process.stdin is not None and self._process.stdout is not None
+        if command:
+            self._process.stdin.write(command + "\n")
+            self._process.stdin.flush()
+        line = self._process.stdout.readline()
+        if not line:
+            code = self._process.wait()
+            raise RunError(f"the process of the benchmark has ended with code {code}")
+        content: dict[str, Any] = json_format.loads(line)
+        if "error" in content:
+            raise RunError(content["error"])
+        return content
+
+
+def find(name: str) -> Bench:
+    """Return a benchmark by name. Raises `CaseError` that lists the names."""
+    if name not in BENCHES:
+        raise CaseError("is not a known benchmark", nearest(name, BENCHES), value=name)
+    return BENCHES[name]
+
+
+def block_lengths(steps: int) -> list[int]:
+    """Return the steps of each block: five nearly equal ones, fewer only for fewer steps."""
+    count = min(BLOCKS, steps)
+    return [steps // count + (k < steps % count) for k in range(count)]
+
+
+def measure(
+    name: str,
+    size: int | None = None,
+    threads: int = 1,
+    scheme: str = "musl",
+    steps: int | None = None,
+    told: Callable[[int, int], None] | None = None,
+) -> dict[str, Any]:
+    """Measure a benchmark.
+
+    Args:
+        name: see `cases.BENCHES`.
+        size: cells along the edge of a body.
+        threads: how many.
+        scheme: "usf", "usl" or "musl".
+        steps: how many are timed.
+        told: called with (parts done, parts in all) as the measurement goes on.
+
+    Returns:
+        What `--json` prints: `particles`, `threads`, `ns_per_particle_step`, `stages` [ns per
+        particle-step], `bytes_per_particle` {particles, grid, contact, other, total},
+        `bandwidth_GBps`, `bandwidth_fraction`; what was measured (`bench`, `scheme`, `size`,
+        `steps`, `version`, `machine`, `isa`); `blocks`, all blocks [ns]; and with a twin
+        `without_contact_ns` and `contact_ratio`, the median over pairs of blocks.
+
+    Raises:
+        CaseError: there is no such benchmark.
+        RunError: it could not be run to its end.
+    """
+    bench = find(name)
+    names = [name, bench.twin] if bench.twin else [name]
+    cells = size or bench.size
+    lengths = block_lengths(steps or STEPS)
+    parts = len(names) * (len(lengths) + 1) + 1
+    blocks: list[list[dict[str, Any]]] = [[] for _ in names]
+    done = 0
+
+    def tell() -> None:
+        nonlocal done
+        if told is not None:
+            told(done, parts)
+        done += 1
+
+    with ExitStack() as stack:
+        workers = []
+        for part in names:  # One after the other: making particles must not disturb the rest.
+            tell()
+            worker = Worker(part, cells, threads, scheme, min(WARM_UP, sum(lengths)))
+            workers.append(stack.enter_context(worker))
+            worker.ask()
+        for length in lengths:
+            for worker, found in zip(workers, blocks, strict=True):
+                tell()
+                found.append(worker.ask(f"block {length}"))
+        tell()
+        last = workers[0].ask("finish")
+    tell()
+    return _result(bench, cells, threads, scheme, sum(lengths), blocks, last)
+
+
+def _result(
+    bench: Bench,
+    size: int,
+    threads: int,
+    scheme: str,
+    steps: int,
+    blocks: list[list[dict[str, Any]]],
+    last: dict[str, Any],
+) -> dict[str, Any]:
+    """Put the measurements together; see `measure`."""
+    from .. import __version__
+
+    count = bench.particles(size)
+    median = statistics.median_low(block["ns"] for block in blocks[0])
+    stages = next(block["stages"] for block in blocks[0] if block["ns"] == median)
+    moved = sum(bytes_per_particle_step(list(stages), bench.dimension).values())
+    memory = {key: last["bytes"][key] / count for key in ("particles", "grid", "contact")}
+    total = last["growth"] / count
+    result: dict[str, Any] = {
+        "bench": bench.name,
+        "version": __version__,
+        "machine": machine(),
+        "isa": last["isa"],
+        "scheme": scheme,
+        "size": size,
+        "steps": steps,
+        "particles": count,
+        "threads": threads,
+        "ns_per_particle_step": median,
+        "blocks": [block["ns"] for block in blocks[0]],
+        "stages": stages,
+        "bytes_per_particle": {**memory, "other": total - sum(memory.values()), "total": total},
+        "bandwidth_GBps": last["bandwidth"],
+        "bytes_moved_per_particle_step": moved,
+        "bandwidth_fraction": moved / median / last["bandwidth"],
+        "overlapped_nodes": last["overlapped_nodes"],
+    }
+    if bench.twin:
+        pairs = zip(*blocks, strict=True)
+        result["without_contact_ns"] = statistics.median(block["ns"] for block in blocks[1])
+        result["contact_ratio"] = statistics.median(a["ns"] / b["ns"] for a, b in pairs)
+    return result
+
+
+def machine() -> str:
+    """Return the processor's name as the system gives it, else its architecture."""
+    try:
+        text = Path("/proc/cpuinfo").read_text()
+    except OSError:
+        text = ""
+    names = [line.partition(":")[2].strip() for line in text.splitlines() if "model name" in line]
+    return names[0] if names else platform.machine()
+
+
+def main(
+    name: str,
+    size: int | None = None,
+    threads: int = 1,
+    scheme: str = "musl",
+    steps: int | None = None,
+    json: bool = False,
+) -> None:
+    """Measure a benchmark and print a table, or JSON; see `measure`."""
+    from .report import progress, show
+
+    find(name)
+    with progress(quiet=json) as told:
+        result = measure(name, size, threads, scheme, steps, told)
+    if json:
+        print(json_format.dumps(result, indent=2))
+    else:
+        show(result)

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What `mpm3dpp bench` shows: a bar while it measures, then a table."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from .cases import BENCHES, SPEED
+from .traffic import bytes_per_particle_step
+
+
+@contextmanager
+def progress(quiet: bool) -> Iterator[Callable[[int, int], None] | None]:
+    """Yield a function that shows how far the measurement is, on standard error.
+
+    Nothing is shown where standard error is not a terminal, or if `quiet`.
+    """
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (
+        TextColumn("measuring"),
+        BarColumn(bar_width=24),
+        TextColumn("{task.completed:.0f} of {task.total:.0f} parts"),
+        TimeElapsedColumn(),
+    )
+    # The bar is drawn between two parts only, so that drawing takes no time from what is timed.
+    bar = Progress(*columns, console=Console(stderr=True), auto_refresh=False, transient=True)
+    with bar:
+        task = bar.add_task("measuring", total=1)
+
+        def told(done: int, parts: int) -> None:
+            bar.update(task, completed=done, total=parts)
+            bar.refresh()
+
+        yield told
+
+
+def show(result: dict[str, Any]) -> None:
+    """Print the tables of a result of `mpm3dpp.bench.measure` on standard output."""
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    console.print(headline(result), markup=False, soft_wrap=True)
+    console.print(_stages(result))
+    for line in lines(result):
+        console.print(line, markup=False, soft_wrap=True)
+
+
+def headline(result: dict[str, Any]) -> str:
+    """Return what was measured, in one line."""
+    threads = result["threads"]
+    return (
+        f"{result['bench']}: {BENCHES[result['bench']].about}; {result['particles']:,} particles, "
+        f"{result['scheme'].upper()}, {threads} thread{'s' if threads > 1 else ''}, "
+        f"{result['steps']} steps"
+    )
+
+
+def _stages(result: dict[str, Any]) -> Any:
+    from rich.table import Table
+
+    total, stages = result["ns_per_particle_step"], result["stages"]
+    dimension = BENCHES[result["bench"]].dimension
+    moved = bytes_per_particle_step(list(stages), dimension)
+    table = Table(show_footer=True)
+    table.add_column("stage", footer="step")
+    footers = (f"{total:.1f}", "100 %", f"{sum(moved.values())}")
+    heads = ("ns per particle-step", "share", "bytes moved")
+    for head, footer in zip(heads, footers, strict=True):
+        table.add_column(head, footer=footer, justify="right")
+    rest = total - sum(stages.values())
+    for stage, ns in [*stages.items(), ("ledger and time step", rest)]:
+        traffic = f"{moved[stage]}" if moved.get(stage) else ""
+        table.add_row(stage, f"{ns:.1f}", f"{100 * ns / total:.0f} %", traffic)
+    return table
+
+
+def lines(result: dict[str, Any]) -> list[str]:
+    """Return the lines below the table: spread, memory, bandwidth, contact."""
+    memory, blocks = result["bytes_per_particle"], result["blocks"]
+    parts = ", ".join(f"{key} {memory[key]:.1f}" for key in memory if key != "total")
+    used = result["bytes_moved_per_particle_step"] / result["ns_per_particle_step"]
+    found = [
+        f"time       {result['ns_per_particle_step']:.1f} ns per particle-step, the median of "
+        f"{len(blocks)} blocks from {min(blocks):.1f} to {max(blocks):.1f}",
+        f"memory     {memory['total']:.1f} bytes per particle at the peak: {parts}",
+        f"bandwidth  {used:.1f} of {result['bandwidth_GBps']:.1f} GB/s "
+        f"({100 * result['bandwidth_fraction']:.0f} %)",
+    ]
+    if "contact_ratio" in result:
+        found.append(
+            f"contact    {result['contact_ratio']:.3f} times the same without contact "
+            f"({result['without_contact_ns']:.1f} ns); {result['overlapped_nodes']:,} overlapped "
+            "nodes"
+        )
+    if SPEED[result["scheme"]] == 0.0:
+        found.append("note       with USL the bodies stay in place: no particle crosses cells")
+    found.append(f"machine    {result['machine']}, {result['isa']}")
+    return found

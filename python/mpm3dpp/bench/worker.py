@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The process in which a benchmark runs alone, so that no earlier memory hides its own.
+
+    python -m mpm3dpp.bench.worker NAME SIZE THREADS SCHEME WARM_UP
+
+It answers commands on standard input with one line of JSON each on standard output: `block N`
+makes and times N steps, `finish` reads the memory and then, in the same process and state of the
+machine, measures the bandwidth.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import sys
+import time as clock
+from pathlib import Path
+from typing import Any
+
+from .. import _core
+from .cases import BENCHES, make
+
+_FOREVER = 1e9  # End time that no benchmark reaches [s].
+
+
+def status_bytes(field: str) -> int:
+    """Return a size from /proc/self/status [bytes]: VmRSS is resident now, VmHWM at most."""
+    for line in Path("/proc/self/status").read_text().splitlines():
+        if line.startswith(field + ":"):
+            return int(line.split()[1]) * 1024
+    raise OSError(f"/proc/self/status has no {field}")
+
+
+def forget_peak() -> None:
+    """Set the peak VmHWM back to the present size, so that it belongs to what follows."""
+    with contextlib.suppress(OSError):  # Not allowed everywhere; the process is fresh anyway.
+        Path("/proc/self/clear_refs").write_text("5")
+
+
+def advance(simulation: Any, steps: int) -> None:
+    """Make exactly `steps` steps; raise RuntimeError with the core's sentence if it cannot."""
+    left = steps
+    while left > 0:
+        left -= simulation.advance(min(left, simulation.history_capacity), _FOREVER)
+        simulation.history()
+        if simulation.failure is not None:
+            raise RuntimeError(simulation.failure.message)
+
+
+def timed_block(simulation: Any, steps: int) -> dict[str, Any]:
+    """Return ns per particle-step of a block of steps, and of each stage in it."""
+    simulation.reset_timers()
+    begin = clock.perf_counter()
+    advance(simulation, steps)
+    seconds = clock.perf_counter() - begin
+    scale = 1e9 / (steps * simulation.particle_count)
+    return {
+        "ns": seconds * scale,
+        "stages": {name: spent * scale for name, spent in simulation.timers().items()},
+    }
+
+
+def main(arguments: list[str]) -> None:
+    """Serve the commands of `mpm3dpp.bench.main`."""
+    name, scheme = arguments[0], arguments[3]
+    size, threads, warm_up = int(arguments[1]), int(arguments[2]), int(arguments[4])
+    forget_peak()
+    before = status_bytes("VmRSS")
+    simulation = make(_core, BENCHES[name], size, threads, scheme)
+    advance(simulation, warm_up)
+    answer({"ready": True})
+    for line in sys.stdin:
+        command, *values = line.split()
+        if command == "block":
+            answer(timed_block(simulation, int(values[0])))
+        elif command == "finish":
+            result = {
+                "growth": status_bytes("VmHWM") - before,
+                "bytes": dict(simulation.bytes()),
+                "overlapped_nodes": simulation.contact_summary()["overlapped_nodes"],
+                "isa": _core.build_info()["isa"],
+            }
+            del simulation  # The arrays of the bandwidth test take its place.
+            result["bandwidth"] = _core.measure_bandwidth(threads)
+            answer(result)
+            return
+
+
+def answer(content: dict[str, Any]) -> None:
+    """Send one line to the process that asks."""
+    print(json.dumps(content), flush=True)
+
+
+if __name__ == "__main__":
+    try:
+        main(sys.argv[1:])
+    except (RuntimeError, MemoryError) as error:
+        answer({"error": str(error) or "there is not enough memory"})
