@@ -87,12 +87,30 @@ struct GimpField {
   }
 };
 
+/// Lanes over the 4^D nodes in reach of a cell, row by row along x.
+template <int D>
+struct GimpNodes {
+  static constexpr int rows = power(4, D - 1);
+  using Row = NodeLanes<4>;
+  Row row[rows];
+
+  static GimpNodes zero() {
+    GimpNodes r;
+    for (auto& x : r.row) x = Row::zero();
+    return r;
+  }
+  /// this += s * w
+  void add(double s, const GimpNodes& w) {
+    for (int k = 0; k < rows; ++k) row[k].add(s, w.row[k]);
+  }
+};
+
 template <int D>
 struct Gimp {
   const BlockShape<D>& shape;
   double half;  // l: half the particle's edge [cells], at most 1/2
   static constexpr int margin = 1;
-  using Nodes = NodeLanes<power(4, D)>;
+  using Nodes = GimpNodes<D>;
   using Field = GimpField<D>;
 
   template <class T>
@@ -105,31 +123,26 @@ struct Gimp {
     return {first_node - reach(), shape.nodes, shape.nodes * shape.nodes};
   }
 
-  /// N_ip over the nodes in reach.
-  Nodes functions(const double* xi) const {
-    const auto w = axes(xi);
+  /// N_ip over the nodes in reach; xi[a * stride] is the position in the cell along axis a.
+  Nodes functions(const double* xi, int stride) const {
+    const auto w = axes(xi, stride);
     return product(w[0].N, w[1].N, w[D - 1].N);
   }
   /// dN_ip / d xi over the nodes in reach, along each axis.
-  void gradients(const double* xi, Nodes* G) const {
-    const auto w = axes(xi);
+  void gradients(const double* xi, int stride, Nodes* G) const {
+    const auto w = axes(xi, stride);
     G[0] = product(w[0].dN, w[1].N, w[D - 1].N);
-    if constexpr (D == 2) {
-      G[1] = product(w[0].N, w[1].dN, w[1].dN);
-    } else {
-      G[1] = product(w[0].N, w[1].dN, w[2].N);
-      G[2] = product(w[0].N, w[1].N, w[2].dN);
-    }
+    G[1] = product(w[0].N, w[1].dN, w[D - 1].N);
+    if constexpr (D == 3) G[2] = product(w[0].N, w[1].N, w[2].dN);
   }
   void add_to_nodes(double* first_node, const Nodes& value) const {
-    double v[Nodes::count];
-    value.store(v);
     double* first = first_node - reach();
-    for (int z = 0; z < (D == 3 ? 4 : 1); ++z)
-      for (int y = 0; y < 4; ++y) {
-        double* to = first + y * shape.nodes + z * shape.nodes * shape.nodes;
-        for (int x = 0; x < 4; ++x) to[x] += v[x + 4 * (y + 4 * z)];
-      }
+    for (int k = 0; k < Nodes::rows; ++k) {
+      double* to = first + (k % 4) * shape.nodes + (k / 4) * shape.nodes * shape.nodes;
+      typename Nodes::Row sum = Nodes::Row::load(to);
+      sum.add(1.0, value.row[k]);
+      sum.store(to);
+    }
   }
 
   /// One-axis factor of the node at place e (-1, 0, 1 or 2) of the cell, and its derivative.
@@ -149,20 +162,17 @@ struct Gimp {
     one.fill(1);
     return shape.distance(one);
   }
-  std::array<GimpAxis<double>, D> axes(const double* xi) const {
+  std::array<GimpAxis<double>, D> axes(const double* xi, int stride) const {
     std::array<GimpAxis<double>, D> w;
-    for (std::size_t a = 0; a < D; ++a) w[a] = GimpAxis<double>(xi[a], half);
+    for (int a = 0; a < D; ++a) w[static_cast<std::size_t>(a)] = GimpAxis<double>(xi[a * stride], half);
     return w;
   }
   /// Products over the nodes; `z` counts in 3D only.
   static Nodes product(const double* x, const double* y, const double* z) {
-    double v[Nodes::count];
-    for (int k = 0; k < (D == 3 ? 4 : 1); ++k)
-      for (int j = 0; j < 4; ++j) {
-        const double yz = D == 3 ? y[j] * z[k] : y[j];
-        for (int i = 0; i < 4; ++i) v[i + 4 * (j + 4 * k)] = x[i] * yz;
-      }
-    return Nodes::load(v);
+    const auto along_x = Nodes::Row::of(x[0], x[1], x[2], x[3]);
+    Nodes r = Nodes::zero();
+    for (int k = 0; k < Nodes::rows; ++k) r.row[k].add(D == 3 ? y[k % 4] * z[k / 4] : y[k], along_x);
+    return r;
   }
 };
 

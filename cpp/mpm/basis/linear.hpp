@@ -79,16 +79,16 @@ struct Linear {
   }
   Field field(const double* first_node) const { return Field(first_node, shape); }
 
-  /// N_ip over the cell's nodes.
-  static Nodes functions(const double* xi) {
-    Nodes N = axis(0, xi);
-    for (int a = 1; a < D; ++a) N = N * axis(a, xi);
+  /// N_ip over the cell's nodes; xi[a * stride] is the position in the cell along axis a.
+  static Nodes functions(const double* xi, int stride) {
+    Nodes N = axis(0, xi[0]);
+    for (int a = 1; a < D; ++a) N = N * axis(a, xi[a * stride]);
     return N;
   }
   /// dN_ip / d xi over the cell's nodes, along each axis.
-  static void gradients(const double* xi, Nodes* G) {
+  static void gradients(const double* xi, int stride, Nodes* G) {
     Nodes N[D];
-    for (int a = 0; a < D; ++a) N[a] = axis(a, xi);
+    for (int a = 0; a < D; ++a) N[a] = axis(a, xi[a * stride]);
     for (int a = 0; a < D; ++a) {
       G[a] = Nodes::load(linear_detail::slope<D>[static_cast<std::size_t>(a)].data());
       for (int b = 0; b < D; ++b)
@@ -113,9 +113,9 @@ struct Linear {
   }
 
  private:
-  static Nodes axis(int a, const double* xi) {
+  static Nodes axis(int a, double xi) {
     Nodes N = Nodes::load(linear_detail::base<D>[static_cast<std::size_t>(a)].data());
-    N.add(xi[a], Nodes::load(linear_detail::slope<D>[static_cast<std::size_t>(a)].data()));
+    N.add(xi, Nodes::load(linear_detail::slope<D>[static_cast<std::size_t>(a)].data()));
     return N;
   }
 };

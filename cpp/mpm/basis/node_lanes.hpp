@@ -25,6 +25,19 @@ struct NodeLanes {
     for (int k = 0; k < parts; ++k) r.part[k] = Part::load(values + k * width);
     return r;
   }
+  /// Four values, put together in registers: through memory they would stall.
+  static NodeLanes of(double a, double b, double c, double d)
+    requires(Count == 4)
+  {
+    NodeLanes r;
+    if constexpr (parts == 1) {
+      r.part[0] = Part(typename Part::Vector{a, b, c, d});
+    } else {
+      r.part[0] = Part(typename Part::Vector{a, b});
+      r.part[1] = Part(typename Part::Vector{c, d});
+    }
+    return r;
+  }
   void store(double* to) const {
     for (int k = 0; k < parts; ++k) part[k].store(to + k * width);
   }

@@ -18,10 +18,9 @@ void scatter_forces(const Functions& basis, const TileGrid<D>& grid, const Body<
     Nodes f_i[D];
     for (auto& f : f_i) f = Nodes::zero();
     for_each_group(cell, [&](const LaneRows<W>& rows) {
-      double xi[W][D], s[parts][W];
+      double xi[D][W], s[parts][W];
       const auto local = local_position(grid, body, cell, rows);
-      for (int a = 0; a < D; ++a)
-        for (int k = 0; k < W; ++k) xi[k][a] = local[a][k];
+      for (int a = 0; a < D; ++a) local[a].store(xi[a]);
       const T scale = T(-inverse_h) * load(body.volume(), rows);
       const T q = viscous ? load(body.columns.component(body.at.viscosity_pressure), rows) : T(0.0);
       for (int c = 0; c < parts; ++c) {
@@ -31,7 +30,7 @@ void scatter_forces(const Functions& basis, const TileGrid<D>& grid, const Body<
       }
       for (int k = 0; k < rows.count; ++k) {
         Nodes G[D];
-        basis.gradients(xi[k], G);
+        basis.gradients(&xi[0][k], W, G);
         for (int a = 0; a < D; ++a)
           for (int b = 0; b < D; ++b) f_i[a].add(s[Sym<T, D>::index(a, b)][k], G[b]);
       }

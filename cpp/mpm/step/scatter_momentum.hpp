@@ -16,16 +16,16 @@ void scatter_momentum(const Functions& basis, const TileGrid<D>& grid, const Bod
     Nodes p_i[D];
     for (auto& p : p_i) p = Nodes::zero();
     for_each_group(cell, [&](const LaneRows<W>& rows) {
-      double xi[W][D], v[D][W], m[W];
+      double xi[D][W], v[D][W], m[W];
       const auto local = local_position(grid, body, cell, rows);
       for (int a = 0; a < D; ++a) {
-        for (int k = 0; k < W; ++k) xi[k][a] = local[a][k];
+        local[a].store(xi[a]);
         load(body.v(a), rows).store(v[a]);
       }
       load(body.mass(), rows).store(m);
       for (int k = 0; k < rows.count; ++k) {
         Nodes m_ip = Nodes::zero();
-        m_ip.add(m[k], basis.functions(xi[k]));
+        m_ip.add(m[k], basis.functions(&xi[0][k], W));
         if constexpr (with_mass) m_i.add(1.0, m_ip);
         for (int a = 0; a < D; ++a) p_i[a].add(v[a][k], m_ip);
       }

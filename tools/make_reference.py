@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Write docs/reference/ from the code: python tools/make_reference.py (mpm3dpp must be installed).
+
+The pages are committed; tests/python/test_reference.py fails while they differ from the code.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from pathlib import Path
+from typing import Any
+
+from mpm3dpp import case, case_parts
+from mpm3dpp.materials import catalogue
+from mpm3dpp.rules import requirement
+from mpm3dpp.shapes.base import KINDS
+
+NOTE = "Made by `tools/make_reference.py` from the code: do not edit."
+# Heading, class, note. The tables of a case in the order in which one writes them.
+TABLES: tuple[tuple[str, type, str], ...] = (
+    ("grid", case_parts.Grid, ""),
+    ("grid.box", case_parts.GridBox, ""),
+    ("grid.box.walls", case_parts.Walls, ""),
+    ("run", case_parts.Run, ""),
+    ("run.viscosity", case_parts.Viscosity, "`viscosity = {}` takes both defaults."),
+    ("output", case_parts.Output, ""),
+    ("contact", case_parts.Contact, ""),
+    ("contact.pair", case_parts.ContactPair, "Written `[[contact.pair]]`, once for each pair."),
+    ("material.NAME", case.Material, "The models are listed in [materials](materials.md)."),
+    ("body.NAME", case.Body, ""),
+)
+
+
+def docstring(model: type) -> tuple[str, dict[str, str]]:
+    """Return a class's docstring without its list of attributes, and the attributes' texts."""
+    text = inspect.cleandoc(model.__doc__ or "")
+    about, _, attributes = text.partition("Attributes:")
+    found: dict[str, str] = {}
+    entry = re.compile(r"^    (\w+(?:, \w+)*): (.*(?:\n {8}.*)*)", re.M)
+    for names, meaning in entry.findall(attributes):
+        for name in names.split(", "):
+            found[name] = " ".join(meaning.split()).replace("None for", "leave it out for")
+    return " ".join(about.split()), found
+
+
+def kind(schema: dict[str, Any]) -> str:
+    """Return in words what values a key of the JSON schema takes."""
+    if "enum" in schema:
+        return " ".join(f'`"{word}"`' for word in schema["enum"])
+    if "$ref" in schema:
+        return "table"
+    if schema.get("type") == "array":
+        item = schema["items"]
+        if "description" in item:
+            return f"list of 2 or 3, each {item['description']}"
+        return "list of tables" if kind(item) == "table" else f"list of {kind(item)}"
+    if "description" in schema and "type" not in schema:
+        return str(schema["description"])
+    if "anyOf" in schema:
+        return " or ".join(kind(part) for part in schema["anyOf"] if part.get("type") != "null")
+    if schema.get("type") == "integer":
+        if "maximum" in schema:
+            return f"whole number from {schema['minimum']} to {schema['maximum']}"
+        return f"whole number >= {schema['minimum']}"
+    words = {"object": "table", "string": "text", "boolean": "`true` or `false`"}
+    return words[schema["type"]]
+
+
+def default(name: str, schema: dict[str, Any], needed: bool) -> str:
+    """Return a key's default as one would write it; empty where leaving it out means none."""
+    if needed:
+        return "required"
+    value = schema.get("default")
+    if value in (None, [], "") or isinstance(value, dict):
+        return ""
+    return f"`{str(value).lower()}`" if not isinstance(value, str) else f'`"{value}"`'
+
+
+def cell(text: str) -> str:
+    """Return text that does not break a Markdown table."""
+    return text.replace("|", "\\|")
+
+
+def keys_table(model: type) -> list[str]:
+    """Return the Markdown table of the keys of a model."""
+    schema = model.model_json_schema()  # type: ignore[attr-defined]
+    _, meanings = docstring(model)
+    rows = ["| key | value | default | meaning |", "| --- | --- | --- | --- |"]
+    for name, entry in schema["properties"].items():
+        needed = name in schema.get("required", [])
+        parts = (f"`{name}`", kind(entry), default(name, entry, needed), meanings.get(name, ""))
+        rows.append("| " + " | ".join(cell(part) for part in parts) + " |")
+    return rows
+
+
+def case_page() -> str:
+    """Return docs/reference/case.md."""
+    lines = [
+        "# Case file: every key",
+        f"*{NOTE}*",
+        "",
+        "How to use them: [Run a case](../how-to/run-a-case.md).",
+        "",
+        'A quantity is text with a unit (`"30 mm"`) or a plain number in the SI unit given in',
+        "brackets. A list of 2 or 3 (D numbers) has two in 2D and three in 3D. At the top of the",
+        "file may stand `title`, a line of text for pictures and results.",
+    ]
+    for heading, model, note in TABLES:
+        about, _ = docstring(model)
+        lines += ["", f"## {heading}", about, *([note] if note else []), "", *keys_table(model)]
+    lines += ["", "## Shapes", "A shape is a table with one of these as its only key."]
+    for name, shape in sorted(KINDS.items()):
+        about, _ = docstring(shape)
+        lines += ["", f"### {name}", about]
+        if "shapes" in shape.model_fields:
+            lines += ["", f"Its value is the list of shapes itself: `{name} = [{{ ... }}, ...]`."]
+        else:
+            lines += ["", *keys_table(shape)]
+    return "\n".join(lines) + "\n"
+
+
+def materials_page() -> str:
+    """Return docs/reference/materials.md."""
+    lines = [
+        "# Material models",
+        f"*{NOTE}*",
+        "",
+        "The formulas: [theory](../theory/materials.md). A new model:",
+        "[Write a material](../how-to/write-a-material.md).",
+        "",
+        "A material is a density and one strength model,",
+        '`strength = { elastic = { E = "70 GPa", nu = 0.3 } }`.',
+    ]
+    for name, model in catalogue().items():
+        lines += ["", f"## {name}", f"{model.doc[:1].upper()}{model.doc[1:]}.", ""]
+        lines += [f"Source: {model.source}.", "", "| parameter | unit | meaning | rule | default |"]
+        lines += ["| --- | --- | --- | --- | --- |"]
+        for p in model.parameters:
+            start = "required" if p.default is None else f"{p.default:g}"
+            rule = requirement(p.rule) if p.rule else ""
+            parts = (f"`{p.name}`", p.unit or "1", p.meaning, rule, start)
+            lines.append("| " + " | ".join(cell(part) for part in parts) + " |")
+        stored = ", ".join(f"`{column}`" for column in model.state) or "nothing"
+        lines += ["", f"Stores for each particle (for `output.fields`): {stored}."]
+    return "\n".join(lines) + "\n"
+
+
+def pages() -> dict[str, str]:
+    """Return all pages: file name below docs/reference, text."""
+    return {"case.md": case_page(), "materials.md": materials_page()}
+
+
+def main() -> None:
+    """Write the pages."""
+    folder = Path(__file__).resolve().parents[1] / "docs" / "reference"
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in pages().items():
+        (folder / name).write_text(text)
+        print(folder / name)
+
+
+if __name__ == "__main__":
+    main()
