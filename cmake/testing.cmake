@@ -6,14 +6,11 @@ add_library(mpm_unit OBJECT ${unit_sources})
 target_include_directories(mpm_unit PUBLIC tests/unit)
 target_link_libraries(mpm_unit PUBLIC mpm_core)
 
-# Allocations are counted (tests/unit/run/count_allocations.cpp): every allocating function is called
-# through a wrapper, also from inside the C++ library, which is linked in for that.
+# Allocations are counted (tests/unit/run/count_allocations.cpp): our calls of an allocating function
+# go through a wrapper.
 foreach(name IN ITEMS malloc calloc realloc aligned_alloc posix_memalign _Znwm _ZnwmSt11align_val_t)
   target_link_options(mpm_unit INTERFACE LINKER:--wrap=${name})
 endforeach()
-if(NOT MPM_SANITIZE)
-  target_link_options(mpm_unit INTERFACE -static-libstdc++)
-endif()
 
 mpm_add_module(_testing tests/unit/module.cpp)
 target_link_libraries(_testing PRIVATE mpm_unit)
@@ -22,6 +19,9 @@ if(NOT SKBUILD)
   enable_testing()
   add_executable(unit_tests tests/unit/main.cpp)
   target_link_libraries(unit_tests PRIVATE mpm_unit)
+  if(NOT MPM_SANITIZE)   # then allocations from inside the C++ library are counted too
+    target_link_options(unit_tests PRIVATE -static-libstdc++)
+  endif()
   add_test(NAME unit COMMAND unit_tests)
   if(NOT MPM_SANITIZE)   # Python itself is not built with a sanitizer
     add_test(NAME pytest COMMAND "${Python_EXECUTABLE}" -m pytest

@@ -9,6 +9,17 @@
 // clang-format off
 #define MPM_UNIT_TESTS(X) \
   X(check) \
+  X(batch) \
+  X(log) \
+  X(tensor) \
+  X(threads) \
+  X(basis) \
+  X(jaumann) \
+  X(models) \
+  X(material) \
+  X(two_bodies) \
+  X(many_bodies) \
+  X(no_allocation) \
   /* end */
 // clang-format on
 

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Small cases for the tests: three blocks that meet at one node, and single blocks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mpm3dpp import Body, Case, Contact, Grid, Material, Run, shapes
+
+CELL = 2.0**-7
+"""Cell size [m]: a power of two, so that cells add up without rounding."""
+
+SCHEMES = ("usf", "usl", "musl")
+BASES = ("linear", "gimp")
+DENSITY, YOUNG = 1000.0, 1e6
+
+
+def materials() -> dict[str, Material]:
+    """Return two soft materials, waves of about 40 m/s."""
+    return {
+        "solid": Material(density=DENSITY, strength={"elastic": {"E": YOUNG, "nu": 0.3}}),
+        "rubber": Material(density=800.0, strength={"neo_hookean": {"K": 1e6, "G": 4e5}}),
+    }
+
+
+def block(lower: tuple[int, ...], cells: tuple[int, ...], **body: Any) -> Body:
+    """Return a block of whole cells, given in cells from the origin."""
+    corners = np.array(lower), np.array(lower) + np.array(cells)
+    low, high = (tuple(CELL * c for c in corner.tolist()) for corner in corners)
+    return Body(shape=shapes.Box(lower=low, upper=high), **body)
+
+
+def three_blocks(
+    dimension: int,
+    scheme: str = "musl",
+    shift: tuple[int, int, int] = (0, 0, 0),
+    order: tuple[str, ...] = ("bottom", "left", "right"),
+    grid: dict[str, Any] | None = None,
+    run: dict[str, Any] | None = None,
+    friction: float = 0.3,
+    apart: int = 0,
+) -> Case:
+    """Return a case of two blocks that slide together and fall on a third: three bodies at a node.
+
+    All lie between 1 m and 2 m along each axis, where numbers are equally fine, so that a shift
+    by whole cells there loses no bit.
+
+    Args:
+        dimension: 2 or 3.
+        scheme: usf, usl or musl.
+        shift: of all blocks, in cells.
+        order: in which the bodies stand in the case.
+        grid, run: more keys of these tables.
+        friction: of all pairs.
+        apart: cells between the upper blocks and the lower one at the start.
+    """
+    d = dimension
+    at = np.array((140, 140, 140)) + np.array(shift)
+    deep = 5 if d == 2 else 3
+    above = deep + apart
+
+    def part(lower: tuple[int, ...], cells: tuple[int, ...], v: tuple[float, ...], m: str) -> Body:
+        low = tuple((at + np.array(lower))[:d].tolist())
+        velocity = v[:d]
+        return block(low, cells[:d], velocity=velocity, material=m)
+
+    bodies = {
+        "bottom": part((0, 0, 0), (17, deep, 6), (0.5, 6.0, 2.0), "solid"),
+        "left": part((0, above, 0), (8, 5, 6), (4.0, -3.0, 1.0), "rubber"),
+        "right": part((9, above, 0), (8, 5, 6), (-3.0, -2.0, -1.0), "solid"),
+    }
+    return Case(
+        grid=Grid(dimension=d, cell_size=CELL, **(grid or {})),
+        run=Run(**{"end_time": 1.0, "scheme": scheme, "time_step_factor": 0.3} | (run or {})),
+        contact=Contact(friction=friction),
+        material=materials(),
+        body={name: bodies[name] for name in order},
+    )
+
+
+def one_block(dimension: int, grid: dict[str, Any], run: dict[str, Any], **body: Any) -> Case:
+    """Return a case of one elastic block, 4 cells wide, from cell 3 on."""
+    cells = (4,) * dimension
+    return Case(
+        grid=Grid(dimension=dimension, cell_size=CELL, **grid),
+        run=Run(**{"end_time": 1.0} | run),
+        material={"solid": materials()["solid"]},
+        body={"block": block((3,) * dimension, cells, material="solid", **body)},
+    )
+
+
+def box(dimension: int, cells: int, walls: Any) -> dict[str, Any]:
+    """Return the keys of `Grid` for a box of so many cells along each axis."""
+    upper = (cells * CELL,) * dimension
+    return {"box": {"lower": (0.0,) * dimension, "upper": upper, "walls": walls}}

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What every strength model of the catalogue obeys, to the order of its scheme."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from motions import (
+    EPS,
+    MODELS,
+    MODULUS,
+    drive,
+    falls_with_order,
+    increments,
+    parameters,
+    rotation,
+    tangled,
+    worst,
+)
+from mpm3dpp import _core
+
+STEPS = (100, 200, 400)
+# A model without a scheme is exact but for some ten roundings in each step.
+FLOOR = 10 * STEPS[-1] * EPS
+
+
+def test_the_catalogue_is_not_empty() -> None:
+    assert {"elastic", "neo_hookean"} <= set(MODELS)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_superposed_rotation_only_turns_the_stress(name: str) -> None:
+    def turn(t: float) -> np.ndarray:
+        return rotation((1.0, 2.0, -0.5), 3.0 * t) @ rotation((0.0, 1.0, 1.0), -2.0 * t**2)
+
+    errors = []
+    for steps in STEPS:
+        still = drive(name, increments(tangled, steps))
+        turned = drive(name, increments(lambda t: turn(t) @ tangled(t), steps))
+        q = np.array([turn(k / steps) for k in range(steps + 1)])
+        errors.append(worst(turned - q @ still @ q.transpose(0, 2, 1)))
+    assert errors[-1] < 1e-4
+    assert falls_with_order(errors, 2.0, FLOOR), errors
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_rotation_of_a_stressed_point_only_turns_its_stress(name: str) -> None:
+    stretch = increments(lambda t: np.diag([1 + 0.1 * t, 1 - 0.05 * t, 1.0]), 10)
+    errors = []
+    for steps in STEPS:
+        turns = increments(lambda t: rotation((0.3, -1.0, 0.7), 2 * np.pi * t), steps)
+        stress = drive(name, np.concatenate([stretch, turns]))[10:]
+        q = np.array([rotation((0.3, -1.0, 0.7), 2 * np.pi * k / steps) for k in range(steps + 1)])
+        errors.append(worst(stress - q @ stress[0] @ q.transpose(0, 2, 1)))
+    assert falls_with_order(errors, 2.0, FLOOR), errors
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_the_choice_of_axes_does_not_matter(name: str) -> None:
+    q = rotation((1.0, -0.3, 2.0), 1.1)
+    moves = increments(tangled, 50)
+    same = drive(name, q @ moves @ q.T) - q @ drive(name, moves) @ q.T
+    assert worst(same) < 10 * 50 * EPS  # ten roundings a step
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_closed_elastic_cycle_gives_and_takes_no_energy(name: str) -> None:
+    """A loop of stretches along fixed axes at constant volume, where hypoelasticity is elastic."""
+
+    def loop(t: float) -> np.ndarray:
+        a, b = 1e-3 * np.sin(2 * np.pi * t), 2e-3 * (1 - np.cos(2 * np.pi * t))
+        return np.diag(np.exp([a, b, -a - b]))
+
+    largest = MODULUS * 4e-3**2
+    errors = []
+    for steps in STEPS:
+        moves = increments(loop, steps)
+        stress = drive(name, moves)
+        middle = moves @ np.linalg.inv(np.eye(3) + 0.5 * moves)  # gradient in mid-step
+        power = np.einsum("kij,kij->k", 0.5 * (stress[1:] + stress[:-1]), middle)
+        stored = np.cumsum(power)
+        errors.append(abs(stored[-1]) / largest)
+        assert stored.max() > 0.1 * largest
+    assert errors[-1] < 1e-5
+    assert falls_with_order(errors, 2.0, 1e-12), errors
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_small_strains_follow_hooke(name: str) -> None:
+    given, size = parameters(name), 1e-7
+    if "E" in given:
+        shear = given["E"] / (2 * (1 + given["nu"]))
+        bulk = given["E"] / (3 * (1 - 2 * given["nu"]))
+    else:
+        shear, bulk = given["G"], given["K"]
+    strain = size * np.array([[1.0, 0.3, -0.2], [0.3, -0.4, 0.7], [-0.2, 0.7, 0.9]])
+    stress = drive(name, strain[None])[1]
+    volumetric = np.trace(strain) * np.eye(3)
+    hooke = bulk * volumetric + 2 * shear * (strain - volumetric / 3)
+    assert worst(stress - hooke) < 10 * size**2  # terms of second order
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_lanes_and_scalar_agree(name: str) -> None:
+    moves = increments(tangled, 200)
+    scalar, lanes = drive(name, moves), drive(name, moves, lanes=True)
+    assert worst(lanes - scalar) <= 4 * 200 * EPS  # four roundings a step may be contracted
+    assert worst(scalar) > 1e-2
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_point_at_rest_stays_unstressed(name: str) -> None:
+    assert worst(drive(name, np.zeros((10, 3, 3)))) <= EPS
+
+
+def test_a_mistake_is_one_sentence() -> None:
+    moves = np.zeros((1, 3, 3))
+    for name in MODELS:
+        good = parameters(name)
+        for key in good:
+            rest = {k: v for k, v in good.items() if k != key}
+            with pytest.raises(ValueError, match=f"{name}.{key}.*missing"):
+                _core.drive_material(1000.0, name, rest, moves, False)
+            with pytest.raises(ValueError, match=f"{name}.{key} = nan"):
+                _core.drive_material(1000.0, name, good | {key: np.nan}, moves, False)
+    with pytest.raises(ValueError, match="jelly"):
+        _core.drive_material(1000.0, "jelly", {}, moves, False)

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`mpm3dpp bench`: what it measures and prints. Nothing here depends on how fast the machine is."""
+
+import csv
+import importlib
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mpm3dpp import CaseError, _core, bench
+from mpm3dpp.bench import cases, report, traffic
+
+KEYS = {
+    *("particles", "threads", "ns_per_particle_step", "stages"),
+    *("bytes_per_particle", "bandwidth_GBps", "bandwidth_fraction"),
+}
+
+
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+
+
+@pytest.fixture
+def script(monkeypatch):
+    """Import a script of benchmarks/ by name."""
+    monkeypatch.syspath_prepend(BENCHMARKS)
+    yield importlib.import_module
+    for name in ("record", "compare"):
+        sys.modules.pop(name, None)
+
+
+@pytest.fixture(scope="module")
+def cubes():
+    """Two cubes with contact, of 4 cells along the edge, and how the progress was told."""
+    told = []
+    result = bench.measure("two_cubes", size=4, steps=7, told=lambda *part: told.append(part))
+    return result, told
+
+
+def test_keys_that_other_tools_rely_on(cubes):
+    result, _ = cubes
+    assert set(result) >= KEYS
+    assert set(result["bytes_per_particle"]) == {"particles", "grid", "contact", "other", "total"}
+    assert result["particles"] == 2 * 8**3
+    assert json.loads(json.dumps(result)) == result
+
+
+def test_figures_agree_with_one_another(cubes):
+    result, _ = cubes
+    memory, total = result["bytes_per_particle"], result["ns_per_particle_step"]
+    parts = sum(value for key, value in memory.items() if key != "total")
+    assert parts == pytest.approx(memory["total"])
+    assert memory["particles"] > 8 * 14  # 14 numbers a particle: x, v, mass, volume, stress
+    assert memory["contact"] > 0
+    assert total in result["blocks"]
+    assert 0 < sum(result["stages"].values()) <= total  # Stages are a part of the step.
+    assert result["contact_ratio"] > 0
+    assert result["overlapped_nodes"] >= 5 * 5  # The cubes share at least a face of nodes.
+
+
+def test_progress_is_told_to_the_end(cubes):
+    _, told = cubes
+    parts = told[-1][1]
+    assert told == [(done, parts) for done in range(parts + 1)]
+
+
+def test_table_names_every_stage(cubes, capsys):
+    report.show(cubes[0])
+    shown = capsys.readouterr().out
+    for stage in cubes[0]["stages"]:
+        assert stage in shown
+    assert "without contact" in shown
+
+
+def test_json_is_all_that_is_printed(capsys):
+    bench.main("elastic2d", size=4, steps=2, scheme="usf", json=True)
+    result = json.loads(capsys.readouterr().out)
+    assert (result["particles"], result["scheme"], result["steps"]) == (64, "usf", 2)
+    assert "remap momentum" not in result["stages"]
+
+
+def test_unknown_name_lists_the_known_ones():
+    with pytest.raises(CaseError) as caught:
+        bench.main("elastic4d")
+    for name in cases.BENCHES:
+        assert name in str(caught.value)
+
+
+def test_blocks_hold_all_steps():
+    for steps in (1, 4, 5, 7, 400):
+        lengths = bench.block_lengths(steps)
+        assert sum(lengths) == steps
+        assert len(lengths) == min(5, steps)
+        assert max(lengths) - min(lengths) <= 1
+
+
+@pytest.mark.parametrize("scheme", ["usf", "usl", "musl"])
+@pytest.mark.parametrize("name", cases.BENCHES)
+def test_every_benchmark_strains_and_crosses_cells(name, scheme):
+    chosen = cases.BENCHES[name]
+    simulation = cases.make(_core, chosen, size=2, threads=1, scheme=scheme)
+    dimension = chosen.dimension
+    before = [simulation.column(body, "position") for body in range(chosen.bodies)]
+    simulation.advance(150, 1.0)
+    assert simulation.failure is None
+    for body, start in enumerate(before):
+        moved = simulation.column(body, "position") - start
+        assert np.ptp(moved, axis=0).min() > 0  # It is strained ...
+        if scheme != "usl":
+            assert moved[:, 0].min() > cases.CELL  # ... and every particle has changed cell.
+    stages = list(simulation.timers())
+    assert sum(traffic.bytes_per_particle_step(stages, dimension).values()) > 0
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_columns_of_the_traffic_are_those_of_the_core(dimension):
+    name = "elastic3d" if dimension == 3 else "elastic2d"
+    simulation = cases.make(_core, cases.BENCHES[name], size=2, threads=1, scheme="musl")
+    components = {column.name: column.components for column in simulation.columns(0)}
+    used = {c for parts in traffic.STAGES.values() for part in parts for c in part}
+    assert {column: traffic.numbers(column, dimension) for column in used} == components
+
+
+def test_lattice_fills_the_cells_evenly():
+    places = cases.positions(3, 3, body=1) / cases.CELL
+    cells, counts = np.unique(np.floor(places).astype(int), axis=0, return_counts=True)
+    assert len(cells) == 27
+    assert set(counts) == {8}
+    assert cells[:, 0].min() == 3  # The second cube begins where the first one ends.
+
+
+def test_breathing_has_no_momentum():
+    speed = 100.0
+    speeds = cases.velocities(3, 3, speed)
+    rounding = np.finfo(float).eps * speed * len(speeds)
+    assert abs(np.linalg.norm(speeds.mean(axis=0)) - speed) < rounding
+    assert np.ptp(speeds, axis=0).min() > cases.BREATHING
+
+
+def test_history_takes_a_row(script, cubes, tmp_path):
+    history = tmp_path / "history.csv"
+    head = (BENCHMARKS / "history.csv").read_text().splitlines()[0]
+    history.write_text(head + "\n")
+    record = script("record")
+    record.append(history, record.row(cubes[0], "0123456789", "a note, with a comma"))
+    with history.open(newline="") as file:
+        [entry] = csv.DictReader(file)
+    assert all(entry.values())
+    assert (entry["bench"], entry["commit"]) == ("two_cubes", "0123456789")
+    assert float(entry["ns_per_particle_step"]) > 0
+    assert entry["note"].endswith("a note, with a comma")
+
+
+def test_comparison_takes_the_median_of_the_ratios(script):
+    def result(ns):
+        memory = {"total": 100.0}
+        return {"ns_per_particle_step": ns, "stages": {"all": ns}, "bytes_per_particle": memory}
+
+    a, b = [result(ns) for ns in (10.0, 20.0, 40.0)], [result(ns) for ns in (5.0, 30.0, 20.0)]
+    compare = script("compare")
+    assert compare.ratios(a, b, "") == [0.5, 1.5, 0.5]
+    [step] = [line for line in compare.table(a, b) if line.startswith("step")]
+    assert step.split()[1:4] == ["20.00", "20.00", "0.500"]

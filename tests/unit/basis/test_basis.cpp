@@ -1,0 +1,96 @@
+// The shape functions: they sum to one, their gradients to zero, they carry the position, and a
+// field read through them agrees with the sum over the nodes and with its own derivative.
+#include <random>
+#include <vector>
+
+#include "check.hpp"
+#include "mpm/basis/basis.hpp"
+
+namespace {
+
+using namespace mpm;
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+// Sums over at most 64 nodes of products of three factors, the largest of which is one.
+constexpr double tolerance = 64 * eps;
+
+/// sum over the nodes of a block of weight x field
+double sum_over_nodes(const std::vector<double>& weight, const std::vector<double>& field) {
+  double total = 0.0;
+  for (std::size_t i = 0; i < field.size(); ++i) total += weight[i] * field[i];
+  return total;
+}
+
+template <int D, class B>
+void check_basis(mpm::testing::Report& report, const B& basis) {
+  const BlockShape<D>& shape = basis.shape;
+  const auto stride = static_cast<std::size_t>(shape.node_stride);
+  const Index<D> cell =
+      Tile<D>::cell_index(Tile<D>::cell_count - 1);  // reaches to the block's edge
+  const int first = shape.node(cell);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> inside(1e-12, 1.0 - 1e-12), any(-1.0, 1.0);
+  std::vector<double> ones(stride, 0.0), field(stride, 0.0);
+  std::array<std::vector<double>, D> position;
+  position.fill(ones);
+  for (int n = 0; n < shape.node_count; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    ones[i] = 1.0;
+    field[i] = any(random);
+    for (std::size_t a = 0; a < D; ++a) position[a][i] = shape.index(n)[a] - cell[a];
+  }
+  auto spread = [&](const typename B::Nodes& nodes) {
+    std::vector<double> weight(stride, 0.0);
+    basis.add_to_nodes(weight.data() + first, nodes);
+    return weight;
+  };
+  const auto polynomial = basis.field(field.data() + first);
+
+  for (int sample = 0; sample < 200; ++sample) {
+    Vec<double, D> xi;
+    for (int a = 0; a < D; ++a) xi[a] = inside(random);
+    const auto N = spread(basis.functions(xi.c, 1));
+    CHECK_CLOSE(sum_over_nodes(N, ones), 1.0, tolerance);
+    for (std::size_t a = 0; a < D; ++a)
+      CHECK_CLOSE(sum_over_nodes(N, position[a]), xi[static_cast<int>(a)], tolerance);
+    for (const double n : N) CHECK(n >= 0.0, n);
+    CHECK_CLOSE(polynomial.value(basis.weights(xi)), sum_over_nodes(N, field), tolerance);
+
+    typename B::Nodes G[D];
+    basis.gradients(xi.c, 1, G);
+    const auto gradient = polynomial.gradient(basis.weights(xi));
+    for (int a = 0; a < D; ++a) {
+      const auto dN = spread(G[a]);
+      CHECK_CLOSE(sum_over_nodes(dN, ones), 0.0, tolerance);
+      for (std::size_t b = 0; b < D; ++b)
+        CHECK_CLOSE(sum_over_nodes(dN, position[b]), static_cast<int>(b) == a ? 1.0 : 0.0,
+                    tolerance);
+      CHECK_CLOSE(gradient[a], sum_over_nodes(dN, field), 4 * tolerance);
+      // Central difference: exact for the piecewise quadratics between kinks, but for rounding.
+      constexpr double h = 1e-6;
+      Vec<double, D> up = xi, down = xi;
+      up[a] += h;
+      down[a] -= h;
+      const double slope =
+          (polynomial.value(basis.weights(up)) - polynomial.value(basis.weights(down))) / (2 * h);
+      CHECK_CLOSE(gradient[a], slope, 1e-5);
+    }
+  }
+}
+
+}  // namespace
+
+void test_basis(mpm::testing::Report& report) {
+  for (const Basis basis : {Basis::linear, Basis::gimp})
+    for (const double edge : {0.25, 0.5, 1.0}) {
+      const BlockShape<2> flat(margin_of(basis));
+      const BlockShape<3> space(margin_of(basis));
+      with_basis<2>(basis, flat, edge, [&](const auto& b) { check_basis<2>(report, b); });
+      with_basis<3>(basis, space, edge, [&](const auto& b) { check_basis<3>(report, b); });
+    }
+  // A particle on a face, or a rounding beyond it, is held just inside the cell.
+  CHECK_EQUAL(local_coordinate(3.0, 3.0), 1e-12);
+  CHECK_EQUAL(local_coordinate(3.0 - 1e-15, 3.0), 1e-12);
+  CHECK_EQUAL(local_coordinate(4.0, 3.0), 1.0 - 1e-12);
+  CHECK_EQUAL(local_coordinate(3.25, 3.0), 0.25);
+}

@@ -1,0 +1,129 @@
+// A step takes nothing from the heap once the run is warm: in 2D and 3D, all schemes, contact of
+// three bodies, two threads.
+#include <cstdlib>
+#include <vector>
+
+#include "check.hpp"
+#include "count_allocations.hpp"
+#include "mpm/run/simulation.hpp"
+
+namespace {
+
+using namespace mpm;
+
+/// Does the counter see what it must see?
+void check_counter(mpm::testing::Report& report) {
+  auto counted = [](auto&& f) {
+    const std::size_t before = mpm::testing::allocation_count();
+    f();
+    return mpm::testing::allocation_count() - before;
+  };
+  volatile std::size_t n = 100;
+  void* volatile kept = nullptr;  // so that the compiler cannot leave an allocation out
+  CHECK_EQUAL(counted([] {}), 0u);
+  CHECK(counted([&] {
+          std::vector<double> v(n);
+          kept = v.data();
+        }) > 0);
+  CHECK(counted([&] {
+          kept = std::aligned_alloc(64, 64 * n);
+          std::free(kept);
+        }) > 0);
+  CHECK(counted([&] {
+          kept = std::malloc(n);
+          std::free(kept);
+        }) > 0);
+}
+
+struct Block {
+  std::array<int, 3> lower, upper;  // cells
+};
+
+/// Eight (2D: four) particles a cell, the cells being 1 m wide; the positions and the number of
+/// values.
+std::vector<double> fill(const Block& block, int dimension) {
+  std::vector<double> positions;
+  const int layers = dimension == 3 ? 2 * block.upper[2] : 1;
+  for (int k = dimension == 3 ? 2 * block.lower[2] : 0; k < layers; ++k)
+    for (int j = 2 * block.lower[1]; j < 2 * block.upper[1]; ++j)
+      for (int i = 2 * block.lower[0]; i < 2 * block.upper[0]; ++i) {
+        positions.push_back(0.25 + 0.5 * i);
+        positions.push_back(0.25 + 0.5 * j);
+        if (dimension == 3) positions.push_back(0.25 + 0.5 * k);
+      }
+  return positions;
+}
+
+struct Motion3 {
+  const char* name;
+  std::array<double, 3> velocity, gravity;
+};
+
+/// Two blocks side by side on a third, elastic and neo-Hookean (E about 1e7 Pa, waves of 100 m/s),
+/// so that nodes of three bodies exist from the start.
+std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& motion,
+                                  int threads) {
+  Settings settings;
+  settings.dimension = dimension;
+  settings.cell_size = 1.0;
+  settings.scheme = scheme;
+  settings.basis = scheme == Scheme::usf ? Basis::linear : Basis::gimp;
+  settings.time_step_factor = 0.3;
+  settings.gravity = motion.gravity;
+  if (motion.gravity[1] != 0.0) {
+    settings.box_cells = {40, 40, dimension == 3 ? 40 : 0};
+    settings.walls[2] = Wall::fixed;
+  }
+  settings.viscosity_quadratic = 1.5;
+  settings.viscosity_linear = 0.06;
+  settings.contact = true;
+  settings.friction = 0.3;
+  settings.threads = threads;
+  settings.energy_growth_limit = 1e9;
+  auto simulation = make_simulation(settings);
+  const int rubber = simulation->add_material(1000.0, "neo_hookean", {{"K", 1e7}, {"G", 3e6}});
+  const int solid = simulation->add_material(1000.0, "elastic", {{"E", 1e7}, {"nu", 0.3}});
+  const Block blocks[] = {
+      {{8, 0, 8}, {20, 5, 11}}, {{8, 5, 8}, {14, 9, 11}}, {{14, 5, 8}, {20, 9, 11}}};
+  for (int b = 0; b < 3; ++b) {
+    const double volume[] = {dimension == 3 ? 0.125 : 0.25};
+    const std::span<const double> velocity(motion.velocity.data(),
+                                           static_cast<std::size_t>(dimension));
+    simulation->add_body("block", b == 0 ? solid : rubber, fill(blocks[b], dimension), velocity,
+                         volume);
+  }
+  simulation->prepare();
+  return simulation;
+}
+
+std::size_t allocations_of(Simulation& simulation, std::int64_t steps) {
+  const std::size_t before = mpm::testing::allocation_count();
+  simulation.advance(steps, 1e9);
+  return mpm::testing::allocation_count() - before;
+}
+
+}  // namespace
+
+void test_no_allocation(mpm::testing::Report& report) {
+  check_counter(report);
+  // Together through many tiles; and resting on a floor, sliding, the contacts loaded in every
+  // step.
+  const Motion3 motions[] = {{"through tiles", {40.0, 40.0, 40.0}, {0.0, 0.0, 0.0}},
+                             {"on a floor", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}}};
+  for (const int dimension : {2, 3})
+    for (const Scheme scheme : {Scheme::usf, Scheme::usl, Scheme::musl})
+      for (const Motion3& motion : motions) {
+        const int threads = scheme == Scheme::musl && dimension == 2 ? 2 : 1;
+        const auto simulation = stack(dimension, scheme, motion, threads);
+        // Warm: the blocks have crossed two tiles, and been everywhere on the cells and tiles that
+        // they will be; or they have swung on the floor.
+        const int warm = dimension == 2 ? 200 : 100;
+        simulation->advance(warm, 1e9);
+        const std::size_t call = allocations_of(*simulation, 0);  // of the call itself
+        const std::size_t steps = allocations_of(*simulation, warm / 2) - call;
+        CHECK(steps == 0, steps, dimension, static_cast<int>(scheme), motion.name);
+        CHECK_EQUAL(simulation->step(), warm + warm / 2);
+        CHECK(simulation->overlapped_nodes() > 0, dimension, motion.name);
+        CHECK_EQUAL(simulation->bodies_per_node_max(), 3);
+      }
+}

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Run the verification problems and write their table."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+
+from .figure import Figure
+from .runs import RUNS, Run
+
+ABOUT = Path(__file__).parent / "about.md"
+HEAD = "| problem | resolution | figure | ours | answer | tolerance | |\n" + "| --- " * 7 + "|\n"
+
+
+def number(value: float | None) -> str:
+    """Write a number in at most six figures."""
+    return "-" if value is None else "none" if math.isnan(value) else f"{value:.6g}"
+
+
+def row(run: Run, figure: Figure) -> str:
+    """Return a row of the table."""
+    if isinstance(figure.tolerance, tuple):
+        tolerance = f"{number(figure.tolerance[0])} to {number(figure.tolerance[1])}"
+    else:
+        tolerance = "-" if figure.tolerance is None else f"± {number(figure.tolerance)}"
+    verdict = "reported" if not figure.judged else "pass" if figure.passed else "**FAIL**"
+    name = f"{figure.name} [{figure.unit}]" if figure.unit else figure.name
+    remark = f" ({figure.remark})" if figure.remark else ""
+    cells = (_name(run), _options(run), name + remark, number(figure.ours))
+    return "| " + " | ".join([*cells, number(figure.answer), tolerance, verdict]) + " |\n"
+
+
+def _name(run: Run) -> str:
+    return f"{run.problem} {run.make.__name__} {run.scheme} {run.dimension}D {run.basis}"
+
+
+def _options(run: Run) -> str:
+    return ", ".join(f"{k} {v}" for k, v in run.options.items()) or "default"
+
+
+def main() -> None:
+    """Run what was asked for; print every row as it comes, write the page at the end."""
+    parser = argparse.ArgumentParser(prog="python -m verification", description=__doc__)
+    parser.add_argument("--only", help="problems, separated by commas: E5,E6")
+    parser.add_argument("--quick", action="store_true", help="leave out the long runs")
+    parser.add_argument("--basis", help="one basis only")
+    parser.add_argument("--out", type=Path, help="the page to write")
+    chosen = parser.parse_args()
+    only = chosen.only.split(",") if chosen.only else None
+    rows, judged, passed, seconds = [], 0, 0, 0.0
+    for run in RUNS:
+        if (only and run.problem not in only) or (chosen.quick and run.slow):
+            continue
+        if chosen.basis and run.basis not in (chosen.basis, "-"):
+            continue
+        figures, stopped, took = run.figures()
+        seconds += took
+        lines = [row(run, figure) for figure in figures]
+        judged += sum(f.judged for f in figures) + bool(stopped)
+        passed += sum(f.judged and f.passed for f in figures)
+        if stopped:
+            where = f"| {_name(run)} | {_options(run)} "
+            lines.append(f"{where}| stopped: {stopped} | none | - | - | **FAIL** |\n")
+        print(*lines, sep="", end="", flush=True)
+        rows.append((run.problem, lines))
+    total = f"{passed} of {judged} figures with a tolerance are within it"
+    print(f"{total}; {seconds:.0f} s")
+    if chosen.out:
+        chosen.out.write_text(page(rows, total))
+
+
+def page(rows: list[tuple[str, list[str]]], total: str) -> str:
+    """Return the whole page: what it says about itself, then a table per problem."""
+    text = [ABOUT.read_text(), f"\n{total}.\n"]
+    for problem in sorted({name for name, _ in rows}, key=_order):
+        text.append(f"\n## {problem}\n\n{HEAD}")
+        text += [line for name, lines in rows if name == problem for line in lines]
+    return "".join(text)
+
+
+def _order(problem: str) -> tuple[int, str]:
+    digits = "".join(c for c in problem if c.isdigit())
+    return (int(digits) if digits else 99, problem)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which problems are run, with which scheme, dimension, basis and resolution."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from mpm3dpp import _core
+
+from . import bars, column, discs, groups, incline, point
+from .figure import Figure
+from .scene import Failed
+
+BASES = ("linear", "gimp") if hasattr(_core, "Basis") else ("linear",)
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run of a problem.
+
+    Attributes:
+        problem: "E1", ...; `--only` chooses by it.
+        make: the function that runs it.
+        scheme, dimension, basis: of the run.
+        options: further arguments of `make`.
+        slow: longer than a few seconds.
+    """
+
+    problem: str
+    make: Callable[..., list[Figure]]
+    scheme: str
+    dimension: int
+    basis: str
+    options: dict[str, Any] = field(default_factory=dict)
+    slow: bool = False
+
+    @property
+    def title(self) -> str:
+        """Name for a table and for pytest."""
+        words = [self.problem, self.make.__name__, self.scheme, f"{self.dimension}D", self.basis]
+        return " ".join([*words, *(f"{k}={v}" for k, v in self.options.items())])
+
+    def figures(self) -> tuple[list[Figure], str, float]:
+        """Run; return the figures, why it stopped ("" if it did not), and the time it took [s]."""
+        begin, stopped, figures = time.monotonic(), "", []
+        try:
+            if self.make is point.simple_shear:
+                figures = point.simple_shear(**self.options)
+            else:
+                figures = self.make(self.scheme, self.dimension, self.basis, **self.options)
+        except Failed as error:
+            stopped = str(error)
+        return figures, stopped, time.monotonic() - begin
+
+
+def _runs() -> Iterator[Run]:
+    both = ("musl", "usf")
+    for basis in BASES:
+        for scheme in (*both, "usl"):
+            for dimension in (2, 3):
+                for cells in (13, 26):
+                    yield Run("E1", column.vibration, scheme, dimension, basis, {"cells": cells})
+        for scheme in both:
+            yield Run("E11", column.under_gravity, scheme, 2, basis)
+            for cells in (25, 50, 100):
+                yield Run("E2", bars.two_bars, scheme, 2, basis, {"cells": cells})
+            yield Run("E2", bars.two_bars, scheme, 2, basis, {"speed": 0.1})
+            for cells in (50, 200):
+                yield Run("rod", bars.rod_energy, scheme, 2, basis, {"cells": cells})
+            yield Run("E2b", bars.unequal_bars, scheme, 2, basis)
+            yield Run("E9b", bars.five_bars, scheme, 2, basis, {"cells": 25})
+            yield Run("E9b", bars.five_bars, scheme, 2, basis, {"cells": 100})
+            for dimension in (2, 3):
+                yield Run("E3", point.rigid_translation, scheme, dimension, basis)
+                yield Run("E3", point.free_fall, scheme, dimension, basis)
+            for cells in (20, 40, 80):
+                yield Run("E5", discs.sulsky_discs, scheme, 2, basis, {"cells": cells})
+            yield Run("E5", discs.sulsky_discs, scheme, 2, basis, {"model": "elastic"})
+            yield Run("E7", discs.first_touch, scheme, 2, basis)
+            for normal in ("pair", "first"):
+                more = {"normal": normal}
+                yield Run("E8", incline.sliding_block, scheme, 2, basis, more)
+                yield Run("E8", incline.sticking_block, scheme, 2, basis, more)
+                yield Run("oblique", groups.oblique_impact, scheme, 2, basis, more)
+            yield Run("oblique", groups.oblique_impact, scheme, 2, basis, {"slip": 0.05})
+            yield Run("E9", incline.rolling, scheme, 2, basis, {"cells": 8})
+            yield Run("E9b", groups.three_discs, scheme, 2, basis)
+            yield Run("E9b", groups.many_bodies, scheme, 2, basis)
+        yield Run("E11", column.under_gravity, "musl", 3, basis)
+        yield Run("E2", bars.two_bars, "musl", 3, basis)
+        yield Run("E2", bars.two_bars, "usl", 2, basis)
+        yield Run("E5", discs.sulsky_discs, "usl", 2, basis)
+        yield Run("E7", discs.first_touch, "musl", 2, basis, {"detection": "velocity"})
+        yield Run("oblique", groups.oblique_impact, "musl", 3, basis)
+        for bodies in (3, 5, 50):
+            more = {"bodies": bodies, "steps": 500}
+            yield Run("E9b", groups.many_bodies, "musl", 2, basis, more)
+        yield Run("E9b", groups.many_bodies, "musl", 3, basis, {"bodies": 5, "steps": 300})
+        yield Run("E9b", groups.renumbering, "musl", 2, basis)
+        yield Run("E9b", groups.renumbering, "musl", 3, basis, {"steps": 100})
+        for factor in (0.1, 0.9):
+            yield Run("rod", bars.rod_energy, "musl", 2, basis, {"cells": 200, "factor": factor})
+    yield Run("E4", point.simple_shear, "-", 3, "-")
+    yield from _slow_runs()
+
+
+def _slow_runs() -> Iterator[Run]:
+    for basis in BASES:
+        for scheme in ("musl", "usf"):
+            for cells in (10, 20):
+                yield Run("E3", point.spin, scheme, 2, basis, {"cells": cells, "factor": 0.2}, True)
+            for size in (2.5, 1.25):
+                more = {"cell_mm": size, "factor": 0.2}
+                yield Run("E6", discs.rings, scheme, 2, basis, more, True)
+        more = {"cell_mm": 0.8, "factor": 0.2}
+        yield Run("E6", discs.rings, "musl", 2, basis, more, True)
+        yield Run("E8", incline.sliding_block, "musl", 2, basis, {"across": 16}, True)
+        yield Run("E9", incline.rolling, "musl", 2, basis, {"cells": 16}, True)
+        yield Run("E9", incline.rolling, "musl", 3, basis, {"cells": 5}, True)
+        for speed in (1.0, 4.0):
+            more = {"cells": 6, "speed": speed, "factor": 0.5}
+            yield Run("E10", groups.offset_spheres, "musl", 3, basis, more, True)
+        more = {"cells": 10, "speed": 1.0, "factor": 0.5, "offsets": ("0.5",)}
+        yield Run("E10", groups.offset_spheres, "musl", 3, basis, more, True)
+
+
+RUNS = list(_runs())
