@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json as json_format
 import signal
+import sys
 import time as clock
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -159,6 +160,8 @@ def run_case(
     if status == "failed":
         raise RunError(f"{reason}; frames and history up to then are in {folder}")
     if status == "interrupted":
+        if not quiet:
+            print(f"mpm3dpp: {reason}; results are in {folder}", file=sys.stderr)
         raise KeyboardInterrupt
     return manifest
 

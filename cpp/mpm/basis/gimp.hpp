@@ -164,14 +164,16 @@ struct Gimp {
   }
   std::array<GimpAxis<double>, D> axes(const double* xi, int stride) const {
     std::array<GimpAxis<double>, D> w;
-    for (int a = 0; a < D; ++a) w[static_cast<std::size_t>(a)] = GimpAxis<double>(xi[a * stride], half);
+    for (int a = 0; a < D; ++a)
+      w[static_cast<std::size_t>(a)] = GimpAxis<double>(xi[a * stride], half);
     return w;
   }
   /// Products over the nodes; `z` counts in 3D only.
   static Nodes product(const double* x, const double* y, const double* z) {
     const auto along_x = Nodes::Row::of(x[0], x[1], x[2], x[3]);
     Nodes r = Nodes::zero();
-    for (int k = 0; k < Nodes::rows; ++k) r.row[k].add(D == 3 ? y[k % 4] * z[k / 4] : y[k], along_x);
+    for (int k = 0; k < Nodes::rows; ++k)
+      r.row[k].add(D == 3 ? y[k % 4] * z[k / 4] : y[k], along_x);
     return r;
   }
 };

@@ -19,6 +19,23 @@ struct TileHolder {
   std::uint8_t neighbour;  // where the tile lies as seen from the patch: Tile<D>::offset
 };
 
+/// Coordinate in a holder's block of a node of the tile.
+template <int D>
+Index<D> seen_from(const TileHolder& holder, Index<D> node) {
+  const Index<D> o = Tile<D>::offset(holder.neighbour);
+  for (int a = 0; a < D; ++a) node[a] += Tile<D>::cells * o[a];
+  return node;
+}
+/// Does a holder's patch have this node (counted from the tile's first) in its block?
+template <int D>
+bool holds_node(const BlockShape<D>& shape, const TileHolder& holder, const Index<D>& node) {
+  return shape.holds(seen_from<D>(holder, node));
+}
+/// The node's number in the holder's block.
+template <int D>
+int node_in_holder(const BlockShape<D>& shape, const TileHolder& holder, const Index<D>& node) {
+  return shape.node(seen_from<D>(holder, node));
+}
 template <int D>
 struct ContactTile {
   Index<D> tile;
@@ -102,5 +119,16 @@ class ContactGrid {
   std::size_t nodes_max_ = 0;
   int bodies_max_ = 0;
 };
+
+template <int D>
+template <class F>
+void ContactGrid<D>::for_each_copy(const TileGrid<D>& grid, const ContactNode& node,
+                                   const Side<D>& side, F&& f) const {
+  const Index<D> index = Tile<D>::cell_index(node.cell);
+  for (std::uint32_t h = side.first_copy; h < side.first_copy + side.copies; ++h)
+    if (holds_node<D>(grid.shape, holders_[h], index))
+      f(static_cast<std::size_t>(holders_[h].patch),
+        node_in_holder<D>(grid.shape, holders_[h], index));
+}
 
 }  // namespace mpm

@@ -59,7 +59,7 @@ constexpr std::uint32_t pair_count(std::uint32_t sides) { return sides * (sides 
 /// normal_impulse and friction_impulse of every pair (0 for the others).
 template <int D, bool with_friction, class Choose>
 void solve_node(Side<D>* sides, SidePair<D>* pairs, std::uint32_t count, Choose&& takes_part) {
-  constexpr int most_sweeps = 2000;
+  constexpr int most_sweeps = 20000;
   constexpr double tolerance = 1e-12;
   for (std::uint32_t k = 0; k < count; ++k) {
     pairs[k].normal_impulse = 0.0;

@@ -26,8 +26,10 @@ ContactSums ContactGrid<D>::record(double time, double time_step, std::int64_t s
     for (std::uint32_t k = 0; k < pair_count(node.sides); ++k) {
       const SidePair<D>& pair = pairs_[node.first_pair + k];
       if (!pair.acted) continue;
-      PairRecord& r =
-          record_of(sides_[node.first_side + pair.r].body, sides_[node.first_side + pair.s].body);
+      const int body_r = sides_[node.first_side + pair.r].body;
+      const int body_s = sides_[node.first_side + pair.s].body;
+      PairRecord& r = record_of(std::min(body_r, body_s), std::max(body_r, body_s));
+      const double sign = body_r < body_s ? 1.0 : -1.0;  // records hold what acts on the first
       if (r.first_step < 0) {
         r.first_step = step;
         r.first_time = time;
@@ -35,8 +37,8 @@ ContactSums ContactGrid<D>::record(double time, double time_step, std::int64_t s
       }
       if (r.first_step == step) r.first_gap = std::min(r.first_gap, pair.gap);
       for (int a = 0; a < D; ++a) {
-        r.impulse[a] += pair.impulse[a];
-        r.force[a] += pair.impulse[a] / time_step;
+        r.impulse[a] += sign * pair.impulse[a];
+        r.force[a] += sign * pair.impulse[a] / time_step;
       }
       r.friction_work += pair.friction_work;
       sums.friction += pair.friction_work;

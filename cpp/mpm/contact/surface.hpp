@@ -1,29 +1,15 @@
 #pragma once
 // A body's surface as seen from a node: outward normal from the gradient of mass, and how far the
 // body reaches.
+#include <algorithm>
+#include <span>
+
 #include "mpm/basis/basis.hpp"
 #include "mpm/contact/contact_grid.hpp"
 #include "mpm/fields/lanes.hpp"
 
 namespace mpm {
 
-/// Coordinate in a holder's block of a node of the tile.
-template <int D>
-Index<D> seen_from(const TileHolder& holder, Index<D> node) {
-  const Index<D> o = Tile<D>::offset(holder.neighbour);
-  for (int a = 0; a < D; ++a) node[a] += Tile<D>::cells * o[a];
-  return node;
-}
-/// Does a holder's patch have this node (counted from the tile's first) in its block?
-template <int D>
-bool holds_node(const BlockShape<D>& shape, const TileHolder& holder, const Index<D>& node) {
-  return shape.holds(seen_from<D>(holder, node));
-}
-/// The node's number in the holder's block.
-template <int D>
-int node_in_holder(const BlockShape<D>& shape, const TileHolder& holder, const Index<D>& node) {
-  return shape.node(seen_from<D>(holder, node));
-}
 /// Does a block reach any node that belongs to neighbour k?
 template <int D>
 bool reaches(const BlockShape<D>& shape, int k) {
@@ -143,16 +129,32 @@ Vec<double, D> weighted_normal(const Vec<double, D>& gradient, double mass, doub
                       : Vec<double, D>::zero();
 }
 
-/// The unit normal from body r to body s of a pair from the bodies' own weighted normals; zero if
-/// they do not oppose.
+/// The unit normal from body r to body s of a pair by the chosen rule; zero if there is none.
 template <int D>
-Vec<double, D> pair_normal(const Vec<double, D>& r, const Vec<double, D>& s, NormalRule rule,
-                           bool r_is_stiffer) {
+Vec<double, D> pair_normal(const Side<D>& r, const Side<D>& s, NormalRule rule,
+                           const std::vector<double>& stiffness) {
   constexpr double parallel = 1e-6;  // normals that differ by less give no direction
-  if (rule == NormalRule::first || (rule == NormalRule::stiffer && r_is_stiffer))
-    return normalised(r);
-  if (rule == NormalRule::second || rule == NormalRule::stiffer) return normalised(-1.0 * s);
-  return normalised(r - s, parallel);
+  if (rule == NormalRule::pair) return normalised(r.normal - s.normal, parallel);
+  const auto stiff = [&](const Side<D>& x) { return stiffness[static_cast<std::size_t>(x.body)]; };
+  const bool r_is_first = r.body < s.body;
+  const bool r_is_stiffer = stiff(r) != stiff(s) ? stiff(r) > stiff(s) : r_is_first;
+  const bool takes_r = rule == NormalRule::first    ? r_is_first
+                       : rule == NormalRule::second ? !r_is_first
+                                                    : r_is_stiffer;
+  return normalised(takes_r ? r.normal : -1.0 * s.normal);
+}
+
+/// Put the bodies at a node into an order that does not depend on how bodies are numbered, as far
+/// as masses and velocities tell them apart: the solution for several bodies with friction is not
+/// unique, and the order of its steps chooses.
+template <int D>
+void sort_sides(std::span<Side<D>> sides) {
+  std::sort(sides.begin(), sides.end(), [](const Side<D>& x, const Side<D>& y) {
+    if (x.mass != y.mass) return x.mass > y.mass;
+    for (int a = 0; a < D; ++a)
+      if (x.mapped[a] != y.mapped[a]) return x.mapped[a] > y.mapped[a];
+    return x.body < y.body;
+  });
 }
 
 }  // namespace mpm

@@ -40,11 +40,8 @@ Mat<T, 3> cayley(const Mat<T, 3>& w) {
 /// end is first-order.
 template <class T, int D>
 Corotated<T, D> corotate(const Motion<T, D>& motion, const Sym<T, D>& stress) {
-  const Mat<T, D>& g = motion.gradient;
-  const Mat<T, D> g2 = g * g;
-  Mat<T, D> middle, spin;
-  for (int i = 0; i < D; ++i)
-    for (int j = 0; j < D; ++j) middle[i][j] = g[i][j] - T(0.5) * g2[i][j];
+  const Mat<T, D> middle = mid_step(motion.gradient);
+  Mat<T, D> spin;
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) spin[i][j] = T(0.5) * (middle[i][j] - middle[j][i]);
   const Sym<T, D> strain = symmetric_part(middle);

@@ -49,6 +49,16 @@ struct Motion {
   T J;             // volume after the step / initial volume
 };
 
+/// The gradient referred to the middle of the step: L (1 + L/2)^-1 = L - L^2/2 + O(L^3).
+template <class T, int D>
+Mat<T, D> mid_step(const Mat<T, D>& gradient) {
+  const Mat<T, D> square = gradient * gradient;
+  Mat<T, D> middle;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) middle[i][j] = gradient[i][j] - T(0.5) * square[i][j];
+  return middle;
+}
+
 /// A strength model: stress and state after a step from those before it, eq. (18)-(20) and the
 /// constitutive law. `update` must leave everything as it is for a zero gradient. `sound_speed`
 /// [m/s] bounds the fastest wave.

@@ -109,8 +109,10 @@ void update_strength(const Model& model, double initial_density, Columns& column
         store(columns.component(at.state + i), rows, flat[i]);
     }
 
+    // The forces work on the gradient as it is, the material on that of the middle of the step.
     const Sym<T, D> strain = symmetric_part(motion.gradient);
-    T work = T(0.25) * (volume_before + volume) * inner(before + stress, strain);
+    const T work = T(0.25) * (volume_before + volume) *
+                   inner(before + stress, symmetric_part(mid_step(motion.gradient)));
     T used = settings.forces_follow ? volume * inner(stress, strain)
                                     : volume_before * inner(before, strain);
     if (settings.viscosity.active()) {

@@ -8,7 +8,7 @@
 namespace mpm {
 namespace {
 
-void check(bool condition, const std::string& sentence) {
+void check(bool condition, const char* sentence) {
   if (!condition) throw std::invalid_argument(sentence);
 }
 

@@ -1,0 +1,119 @@
+// What contact does at the nodes: velocities, forces, remapped velocities.
+#include "mpm/contact/contact_grid.hpp"
+
+namespace mpm {
+
+template <int D>
+void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
+  threads.for_each(nodes_.size(), [&](std::size_t n) {
+    const ContactNode& node = nodes_[n];
+    Side<D>* sides = &sides_[node.first_side];
+    SidePair<D>* pairs = &pairs_[node.first_pair];
+    const std::uint32_t count = pair_count(node.sides);
+    for (std::uint32_t k = 0; k < node.sides; ++k)
+      sides[k].momentum = sides[k].mass * sides[k].mapped;
+    solve_node<D, false>(sides, pairs, count, [](const SidePair<D>& pair) { return pair.closed; });
+    for (std::uint32_t k = 0; k < node.sides; ++k) {
+      Side<D>& side = sides[k];
+      side.velocity = (1.0 / side.mass) * side.momentum;
+      for_each_copy(grid, node, side, [&](std::size_t p, int at) {
+        for (int a = 0; a < D; ++a) grid.block(p).velocity(a)[at] = side.velocity[a];
+      });
+    }
+    for (std::uint32_t k = 0; k < count; ++k) {
+      SidePair<D>& pair = pairs[k];
+      const Side<D>& r = sides[pair.r];
+      const Side<D>& s = sides[pair.s];
+      // Bodies at rest against each other touch too, whatever the rounding of their velocities.
+      const double rounding = 1e-13 * (norm(r.mapped) + norm(s.mapped));
+      pair.touching = pair.closed && (pair.normal_impulse > 0.0 ||
+                                      dot(r.velocity - s.velocity, pair.normal) >= -rounding);
+      pair.acted = pair.normal_impulse > 0.0;
+    }
+  });
+}
+
+template <int D>
+void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity, double time_step,
+                                Threads& threads) {
+  threads.for_each(nodes_.size(), [&](std::size_t n) {
+    ContactNode& node = nodes_[n];
+    Side<D>* sides = &sides_[node.first_side];
+    SidePair<D>* pairs = &pairs_[node.first_pair];
+    const std::uint32_t count = pair_count(node.sides);
+    auto force_of = [&](const Side<D>& side) {
+      Vec<double, D> f = Vec<double, D>::zero();
+      bool read = false;
+      for_each_copy(grid, node, side, [&](std::size_t p, int at) {
+        if (read) return;
+        for (int a = 0; a < D; ++a)
+          f[a] = node.held >> a & 1u ? 0.0 : grid.block(p).force(a)[at] + side.mass * gravity[a];
+        read = true;
+      });
+      return f;
+    };
+    for (std::uint32_t k = 0; k < node.sides; ++k)
+      sides[k].momentum = sides[k].mass * sides[k].velocity + time_step * force_of(sides[k]);
+    solve_node<D, true>(sides, pairs, count, [](const SidePair<D>& pair) { return pair.touching; });
+
+    double force_work = 0.0, correction = 0.0;
+    for (std::uint32_t k = 0; k < node.sides; ++k) {
+      const Side<D>& side = sides[k];
+      const Vec<double, D> change =
+          side.momentum - side.mass * side.velocity;  // impulse of all forces
+      const Vec<double, D> contact = change - time_step * force_of(side);
+      force_work += dot(contact, side.velocity);
+      correction -= dot(change, side.velocity - side.mapped);
+      for_each_copy(grid, node, side, [&](std::size_t p, int at) {
+        for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] += (1.0 / time_step) * contact[a];
+      });
+    }
+    double friction_first = 0.0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      SidePair<D>& pair = pairs[k];
+      const Side<D>& r = sides[pair.r];
+      const Side<D>& s = sides[pair.s];
+      const Vec<double, D> end = (1.0 / r.mass) * r.momentum - (1.0 / s.mass) * s.momentum;
+      pair.friction_first = dot(pair.friction_impulse, r.velocity - s.velocity);
+      pair.acted = pair.acted || pair.normal_impulse > 0.0;
+      pair.impulse = -pair.normal_impulse * pair.normal - pair.friction_impulse;
+      pair.friction_work = 0.5 * (pair.friction_first + dot(pair.friction_impulse, end));
+      friction_first += pair.friction_first;
+    }
+    node.force_work = force_work;
+    node.energy = -(force_work + correction) - friction_first;
+  });
+}
+
+template <int D>
+void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
+  threads.for_each(nodes_.size(), [&](std::size_t n) {
+    const ContactNode& node = nodes_[n];
+    Side<D>* sides = &sides_[node.first_side];
+    for (std::uint32_t k = 0; k < node.sides; ++k) {
+      Side<D>& side = sides[k];
+      for_each_copy(grid, node, side, [&](std::size_t p, int at) {
+        for (int a = 0; a < D; ++a) side.momentum[a] = side.mass * grid.block(p).force(a)[at];
+      });
+    }
+    // The impulses of this solution act on the velocities that strain the material only; they are
+    // not contact forces.
+    SidePair<D>* pairs = &pairs_[node.first_pair];
+    solve_node<D, false>(sides, pairs, pair_count(node.sides),
+                         [](const SidePair<D>& pair) { return pair.closed; });
+    for (std::uint32_t k = 0; k < node.sides; ++k)
+      for_each_copy(grid, node, sides[k], [&](std::size_t p, int at) {
+        for (int a = 0; a < D; ++a)
+          grid.block(p).force(a)[at] = sides[k].momentum[a] / sides[k].mass;
+      });
+  });
+}
+
+template void ContactGrid<2>::adjust_momentum(TileGrid<2>&, Threads&);
+template void ContactGrid<3>::adjust_momentum(TileGrid<3>&, Threads&);
+template void ContactGrid<2>::add_forces(TileGrid<2>&, const Vec<double, 2>&, double, Threads&);
+template void ContactGrid<3>::add_forces(TileGrid<3>&, const Vec<double, 3>&, double, Threads&);
+template void ContactGrid<2>::adjust_remapped(TileGrid<2>&, Threads&);
+template void ContactGrid<3>::adjust_remapped(TileGrid<3>&, Threads&);
+
+}  // namespace mpm
