@@ -93,12 +93,13 @@ def test_a_shift_by_whole_cells(dimension: int, scheme: str, basis: str) -> None
     assert different(here, there) == []
 
 
-@pytest.mark.parametrize(("dimension", "scheme", "basis"), CASES)
+# USL with the linear basis is unstable in contact: there rounding grows at once.
+@pytest.mark.parametrize(
+    ("dimension", "scheme", "basis"), [case for case in CASES if case[1:] != ("usl", "linear")]
+)
 def test_the_numbering_of_bodies_changes_rounding_only(
     dimension: int, scheme: str, basis: str
 ) -> None:
-    if scheme == "usl" and basis == "linear":
-        pytest.skip("unstable in contact, so that rounding grows at once")
     grid, steps = {"basis": basis}, 40  # three bodies have met by then
     one = outcome(three_blocks(dimension, scheme, grid=grid, apart=1), steps=steps)
     order = ("right", "bottom", "left")
