@@ -211,6 +211,7 @@ NB_MODULE(_core, m) {
              d["overlapped_nodes"] = s.overlapped_nodes();
              d["overlapped_nodes_max"] = s.overlapped_nodes_max();
              d["bodies_per_node_max"] = s.bodies_per_node_max();
+             d["unconverged_nodes"] = s.unconverged_nodes();
              d["bytes"] = s.bytes().contact;
              return d;
            })

@@ -20,6 +20,11 @@ def contact_table(manifest: Manifest) -> list[str]:
         f"{len(contact.pairs)} pairs, {contact.bodies_per_node_max} bodies at a node at most, "
         f"{contact.peak_bytes / 2**20:.2f} MiB, {share:.1%} of the step's time"
     ]
+    if contact.unconverged_nodes:
+        lines.append(
+            f"warning: {contact.unconverged_nodes:,} contact solutions at nodes with several "
+            "bodies stopped short of the tolerance; give smaller cells"
+        )
     for pair in contact.pairs[:_PAIRS_SHOWN]:
         if pair.first_time is None or pair.first_gap is None:
             continue

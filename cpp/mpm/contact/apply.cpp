@@ -12,7 +12,9 @@ void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
     const std::uint32_t count = pair_count(node.sides);
     for (std::uint32_t k = 0; k < node.sides; ++k)
       sides[k].momentum = sides[k].mass * sides[k].mapped;
-    solve_node<D, false>(sides, pairs, count, [](const SidePair<D>& pair) { return pair.closed; });
+    const bool converged = solve_node<D, false>(
+        sides, pairs, count, [](const SidePair<D>& pair) { return pair.closed; });
+    if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
     for (std::uint32_t k = 0; k < node.sides; ++k) {
       Side<D>& side = sides[k];
       side.velocity = (1.0 / side.mass) * side.momentum;
@@ -54,7 +56,9 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity
     };
     for (std::uint32_t k = 0; k < node.sides; ++k)
       sides[k].momentum = sides[k].mass * sides[k].velocity + time_step * force_of(sides[k]);
-    solve_node<D, true>(sides, pairs, count, [](const SidePair<D>& pair) { return pair.touching; });
+    const bool converged = solve_node<D, true>(
+        sides, pairs, count, [](const SidePair<D>& pair) { return pair.touching; });
+    if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
 
     double force_work = 0.0, correction = 0.0;
     for (std::uint32_t k = 0; k < node.sides; ++k) {
@@ -99,8 +103,9 @@ void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
     // The impulses of this solution act on the velocities that strain the material only; they are
     // not contact forces.
     SidePair<D>* pairs = &pairs_[node.first_pair];
-    solve_node<D, false>(sides, pairs, pair_count(node.sides),
-                         [](const SidePair<D>& pair) { return pair.closed; });
+    const bool converged = solve_node<D, false>(
+        sides, pairs, pair_count(node.sides), [](const SidePair<D>& pair) { return pair.closed; });
+    if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
     for (std::uint32_t k = 0; k < node.sides; ++k)
       for_each_copy(grid, node, sides[k], [&](std::size_t p, int at) {
         for (int a = 0; a < D; ++a)

@@ -1,6 +1,7 @@
 #pragma once
 // Where bodies overlap: the tiles whose nodes two or more bodies touch, and, anew in every step,
 // the overlapped nodes.
+#include <atomic>
 #include <cstdint>
 #include <limits>
 
@@ -92,6 +93,8 @@ class ContactGrid {
   std::size_t overlapped_nodes() const { return nodes_.size(); }
   std::size_t overlapped_nodes_max() const { return nodes_max_; }
   int bodies_per_node_max() const { return bodies_max_; }
+  /// Solutions at nodes with several bodies that stopped short of the tolerance, since the start.
+  std::size_t unconverged() const { return unconverged_.load(); }
   std::size_t bytes() const;
 
  private:
@@ -118,6 +121,7 @@ class ContactGrid {
   std::vector<PairRecord> records_;  // sorted by (a, b)
   std::size_t nodes_max_ = 0;
   int bodies_max_ = 0;
+  std::atomic<std::size_t> unconverged_{0};
 };
 
 template <int D>

@@ -58,7 +58,7 @@ constexpr std::uint32_t pair_count(std::uint32_t sides) { return sides * (sides 
 /// fixed order, to 1e-12 of the largest impulse. `takes_part(pair)` chooses the pairs. Sets
 /// normal_impulse and friction_impulse of every pair (0 for the others).
 template <int D, bool with_friction, class Choose>
-void solve_node(Side<D>* sides, SidePair<D>* pairs, std::uint32_t count, Choose&& takes_part) {
+bool solve_node(Side<D>* sides, SidePair<D>* pairs, std::uint32_t count, Choose&& takes_part) {
   constexpr int most_sweeps = 20000;
   constexpr double tolerance = 1e-12;
   for (std::uint32_t k = 0; k < count; ++k) {
@@ -93,8 +93,9 @@ void solve_node(Side<D>* sides, SidePair<D>* pairs, std::uint32_t count, Choose&
       r.momentum -= impulse;
       s.momentum += impulse;
     }
-    if (count == 1 || change <= tolerance * scale) break;
+    if (count == 1 || change <= tolerance * scale) return true;
   }
+  return false;
 }
 
 }  // namespace mpm

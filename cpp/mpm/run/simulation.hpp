@@ -108,6 +108,7 @@ class Simulation {
   virtual std::size_t overlapped_nodes() const = 0;
   virtual std::size_t overlapped_nodes_max() const = 0;
   virtual int bodies_per_node_max() const = 0;
+  virtual std::size_t unconverged_nodes() const = 0;
 };
 
 /// Throws std::invalid_argument, in one sentence, for a setting out of range.

@@ -49,6 +49,7 @@ class SimulationOf final : public Simulation {
     return domain_.contact.overlapped_nodes_max();
   }
   int bodies_per_node_max() const override { return domain_.contact.bodies_per_node_max(); }
+  std::size_t unconverged_nodes() const override { return domain_.contact.unconverged(); }
 
  private:
   const Body<D>& body(int b) const { return domain_.bodies.at(static_cast<std::size_t>(b)); }

@@ -42,11 +42,16 @@ class PairRecord:
 
 @dataclasses.dataclass
 class ContactRecord:
-    """Contact of the whole run: most overlapped nodes, most bodies at a node, pairs, bytes."""
+    """Contact of the whole run: most overlapped nodes, most bodies at a node, pairs, bytes.
+
+    `unconverged_nodes` counts the solutions at nodes with several bodies that stopped short of
+    the tolerance; 0 is usual.
+    """
 
     overlapped_nodes_max: int = 0
     bodies_per_node_max: int = 0
     peak_bytes: int = 0
+    unconverged_nodes: int = 0
     pairs: list[PairRecord] = dataclasses.field(default_factory=list)
 
 
@@ -229,6 +234,7 @@ def _contact(simulation: Any, bodies: Sequence[str]) -> ContactRecord:
         overlapped_nodes_max=int(summary.get("overlapped_nodes_max", 0)),
         bodies_per_node_max=int(summary.get("bodies_per_node_max", 0)),
         peak_bytes=int(summary.get("bytes", 0)),
+        unconverged_nodes=int(summary.get("unconverged_nodes", 0)),
         pairs=pairs,
     )
 
