@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from .errors import CaseError, RunError
     from .io import open_results
     from .materials import Strength
-    from .simulation import Simulation, run_case
+    from .run import run_case
+    from .simulation import Simulation
 
     __version__: str
 
@@ -40,7 +41,8 @@ _HOMES = {
     "errors": ("CaseError", "RunError"),
     "io": ("open_results",),
     "materials": ("Strength",),
-    "simulation": ("Simulation", "run_case"),
+    "run": ("run_case",),
+    "simulation": ("Simulation",),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 

@@ -81,7 +81,7 @@ def run(
 
     loaded = load_case(case)
     folder = writable_folder(out if out is not None else default_folder(case))
-    from .simulation import run_case  # The slowest import: after the mistakes.
+    from .run import run_case  # The slowest import: after the mistakes.
 
     run_case(loaded, folder, threads=thread_count(threads), quiet=quiet, json=json)
 
