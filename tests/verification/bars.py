@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from .figure import Figure, judge, report
-from .scene import Scene, block, on_time
+from .points import block
+from .scene import Scene, on_time
 
 RHO, E, LENGTH = 1000.0, 1e6, 0.5
 PASSAGE = LENGTH / (E / RHO) ** 0.5  # time of a wave along a bar of unit length 0.5 [s]

@@ -8,7 +8,8 @@ import math
 import numpy as np
 
 from .figure import Figure, judge, report
-from .scene import Scene, block, slope
+from .points import block
+from .scene import Scene, slope
 
 RHO, LENGTH, E, SPEED = 1.0, 25.0, 100.0, 0.1
 

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from .figure import Figure, judge, report
-from .scene import Scene, annulus, ball, on_time
+from .points import annulus, ball
+from .scene import Scene, on_time
 
 ANGLES, OFFSETS = (0.0, 30.0, 45.0), (0.0, 0.2, 0.4, 0.6, 0.8)
 

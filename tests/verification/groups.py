@@ -9,7 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from .figure import Figure, judge, reference, report
-from .scene import Array, Scene, ball, block
+from .points import ball, block
+from .scene import Array, Scene
 
 
 def three_discs(
@@ -125,7 +126,7 @@ def offset_spheres(
         apart = 2 * radius * np.array([math.sqrt(1 - sine**2), sine, 0.0])
         scene = Scene(scheme, dimension, basis, h, factor=factor)
         material = scene.material(1000.0, "elastic", E=1e7, nu=0.3)
-        for centre, v in (([0.0] * 3, speed), (apart + [0.5 * h, 0.0, 0.0], 0.0)):
+        for centre, v in (([0.0] * 3, speed), (apart + np.array([0.5 * h, 0.0, 0.0]), 0.0)):
             x, volume = ball(centre, radius, h / 2)
             scene.body(material, x, [v, 0.0, 0.0], volume)
         scene.start().run(0.5 * h / speed + 0.03)

@@ -6,7 +6,8 @@ from __future__ import annotations
 import math
 
 from .figure import Figure, judge, report
-from .scene import Array, Scene, ball, block, slope
+from .points import ball, block
+from .scene import Array, Scene, slope
 
 G, RHO, NU = 9.81, 1000.0, 0.3
 
@@ -15,7 +16,7 @@ def _floor(
     scheme: str, dimension: int, basis: str, h: float, length: float, width: float, angle: float,
     mu: float, factor: float, normal: str, modulus: float, thick: int = 2,
 ) -> tuple[Scene, int, list[float], list[float]]:  # fmt: skip
-    """A floor `thick` cells deep, its top at 0, fixed below and at its ends; gravity's two parts."""
+    """A floor `thick` cells deep, its top at 0, fixed below and at its ends."""
     from mpm3dpp import _core
 
     up = dimension - 1

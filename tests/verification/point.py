@@ -10,7 +10,8 @@ import numpy as np
 from mpm3dpp import _core
 
 from .figure import Figure, judge, report
-from .scene import Array, Scene, ball, block
+from .points import ball, block
+from .scene import Array, Scene
 
 E = 1e6
 
