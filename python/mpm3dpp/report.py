@@ -6,6 +6,7 @@ from __future__ import annotations
 from .io.manifest import Manifest
 
 _PAIRS_SHOWN = 10
+_NUMERICAL_WARNING = 0.05
 
 
 def contact_table(manifest: Manifest) -> list[str]:
@@ -15,6 +16,7 @@ def contact_table(manifest: Manifest) -> list[str]:
         return []
     total = sum(manifest.stages.values()) or 1.0
     share = sum(ns for name, ns in manifest.stages.items() if name.startswith("contact")) / total
+    unit = "J/m" if manifest.case.get("grid", {}).get("dimension") == 2 else "J"
     lines = [
         f"contact: {contact.overlapped_nodes_max:,} overlapped nodes at most, "
         f"{len(contact.pairs)} pairs, {contact.bodies_per_node_max} bodies at a node at most, "
@@ -31,11 +33,26 @@ def contact_table(manifest: Manifest) -> list[str]:
         lines.append(
             f"  {pair.bodies[0]} - {pair.bodies[1]}: first contact at {pair.first_time:.6g} s, "
             f"surfaces {pair.first_gap / manifest.cell_size:+.2f} cells apart, "
-            f"friction work {pair.friction_work:.4g} J"
+            f"friction work {pair.friction_work:.4g} {unit}"
         )
     if len(contact.pairs) > _PAIRS_SHOWN:
         lines.append(f"  ... and {len(contact.pairs) - _PAIRS_SHOWN} more, in manifest.json")
     return lines
+
+
+def energy_line(manifest: Manifest) -> str:
+    """Return the line about the energy that numerics made or lost."""
+    energies = manifest.energies
+    final, start = energies.get("final", {}), energies.get("initial", {})
+    largest = max(abs(start.get("kinetic", 0.0)), abs(final.get("external", 0.0)))
+    if not final or largest == 0.0:
+        return "energy: none came in"
+    numerical = (final["numerical"] + final["contact"]) / largest
+    word = "lost" if numerical >= 0.0 else "made"
+    line = f"energy: numerical terms and normal contact {word} {abs(numerical):.2%} of what came in"
+    if abs(numerical) > _NUMERICAL_WARNING:
+        line += "; a smaller run.time_step_factor or smaller cells may help"
+    return line
 
 
 def speed_line(manifest: Manifest) -> str:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json as json_format
+import math
 import signal
 import sys
 import time as clock
@@ -14,13 +15,13 @@ from typing import Any
 
 from . import _core
 from .case import Case
-from .errors import CaseError, RunError
+from .errors import RunError
 from .folders import writable_folder
 from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import ResultsWriter
 from .progress import Progress
-from .report import contact_table, speed_line
+from .report import contact_table, energy_line, speed_line
 from .simulation import Simulation
 
 _BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without contact.
@@ -54,12 +55,13 @@ def run_case(
     manifest = _manifest(simulation, status, reason, clock.monotonic() - begin)
     manifest.energies = simulation.summary
     manifest.write(folder)
-    with _mended_pictures(quiet or json):
+    with _pictures_may_fail(quiet or json):
         _draw(folder, case)
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
-        print("\n".join([*contact_table(manifest), speed_line(manifest), f"results in {folder}"]))
+        lines = [*contact_table(manifest), energy_line(manifest), speed_line(manifest)]
+        print("\n".join([*lines, f"results in {folder}"]))
     if status == "failed":
         raise RunError(f"{reason}; frames and history up to then are in {folder}")
     if status == "interrupted":
@@ -73,7 +75,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
     """Step to the end time, writing frames and history; return how it ended, and why."""
     case, core = simulation.case, simulation.core
     contact = case.contact_enabled
-    block = case.output.history_every if contact else _BLOCK
+    most = min(case.output.history_every if contact else _BLOCK, core.history_capacity // 2)
     frames = [t for t in case.frame_times() if t > 0.0]
     results = ResultsWriter(
         folder / "results.vtkhdf",
@@ -104,13 +106,15 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
         touched = 0
         while status == "completed" and core.time < case.run.end_time:
             try:
-                simulation.advance(block)
+                simulation.advance(_steps(most, frames, core))
             except RunError as error:
                 status, reason = "failed", str(error)
             rows, pairs = core.history(), core.contact_pairs() if contact else []
             history.append(rows, pairs)
             if status == "failed":
-                if core.failure.kind != "non-finite":
+                if (
+                    core.failure.kind == "energy growth"
+                ):  # Else the last frame is the last good one.
                     results.write(core)
                 break
             due = bool(frames) and core.time >= frames[0]
@@ -126,6 +130,13 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
                 status, reason = "interrupted", f"stopped by the user at t = {core.time:.6g} s"
     simulation.summary = history.summary()
     return status, reason
+
+
+def _steps(most: int, frames: list[float], core: Any) -> int:
+    """Return how many steps to make before the next look: not past the next frame's time."""
+    if not frames or core.dt <= 0.0:
+        return most
+    return max(1, min(most, math.ceil((frames[0] - core.time) / core.dt)))
 
 
 def _manifest(
@@ -159,13 +170,13 @@ def _draw(folder: Path, case: Case) -> None:
 
 
 @contextmanager
-def _mended_pictures(quiet: bool) -> Iterator[None]:
+def _pictures_may_fail(quiet: bool) -> Iterator[None]:
     """A picture that cannot be made must not lose a finished run: say so, and go on."""
     try:
         yield
-    except CaseError as error:
+    except Exception as error:
         if not quiet:
-            print(f"no picture: {error}")
+            print(f"no picture: {error}", file=sys.stderr)
 
 
 @contextmanager

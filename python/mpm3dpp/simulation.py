@@ -10,7 +10,7 @@ import numpy as np
 from . import _core
 from .build import build, warnings
 from .case import Case
-from .errors import RunError
+from .errors import CaseError, RunError
 from .folders import thread_count
 
 
@@ -50,8 +50,11 @@ class Simulation:
                 body.volumes[:1].copy(),
             )
         for a, b, friction in case.frictions():
-            self.core.set_friction(self.bodies.index(a), self.bodies.index(b), friction)
-        self.core.prepare()
+            self.core.set_friction(a, b, friction)
+        try:
+            self.core.prepare()
+        except ValueError as error:
+            raise CaseError(str(error), "bring the bodies together, or give larger cells") from None
         self.summary: dict[str, Any] = {}
 
     def _add_material(self, name: str) -> int:

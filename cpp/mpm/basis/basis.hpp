@@ -1,5 +1,7 @@
 #pragma once
 // The choice of shape functions.
+#include <algorithm>
+
 #include "mpm/basis/gimp.hpp"
 #include "mpm/basis/linear.hpp"
 
@@ -10,7 +12,7 @@ enum class Basis { linear, gimp };
 
 constexpr int margin_of(Basis basis) { return basis == Basis::gimp ? 1 : 0; }
 
-/// Position within the cell, in [margin, 1 - margin], from the position in cells and the cell's
+/// Position within the cell, in [1e-12, 1 - 1e-12], from the position in cells and the cell's
 /// coordinate. A particle exactly on a cell's face would give force to nodes to which it gives no
 /// mass; it is held 1e-12 cells away.
 template <class T>
@@ -19,13 +21,17 @@ T local_coordinate(T cells, double cell) {
   return min(max(cells - T(cell), T(from_face)), T(1.0 - from_face));
 }
 
+/// Half the edge of a GIMP particle [cells] from its edge at the start [cells]; at most half a
+/// cell.
+inline double gimp_half(double edge) { return std::min(0.5 * edge, 0.5); }
+
 /// f(basis object) for the chosen basis; `edge` is the particles' edge at the start [cells].
 template <int D, class F>
 void with_basis(Basis basis, const BlockShape<D>& shape, double edge, F&& f) {
   if (basis == Basis::linear) {
     f(Linear<D>{shape});
   } else {
-    f(Gimp<D>{shape, std::min(0.5 * edge, 0.5)});
+    f(Gimp<D>{shape, gimp_half(edge)});
   }
 }
 

@@ -47,8 +47,8 @@ struct ContactTile {
 struct PairRecord {
   int a = 0, b = 0;                                              // bodies, a < b
   double first_time = std::numeric_limits<double>::quiet_NaN();  // [s]
-  double first_gap =
-      std::numeric_limits<double>::quiet_NaN();  // smallest gap of the nodes in contact then [m]
+  double first_gap = std::numeric_limits<double>::quiet_NaN();
+  double first_share = 0.0;  // mass of the node of first_gap over a particle's
   std::int64_t first_step = -1;
   double force[3] = {};        // on a, in the last step [N]
   double impulse[3] = {};      // on a [N s]
@@ -87,7 +87,8 @@ class ContactGrid {
 
   /// Add this step's impulses and work to the records of the pairs and give the sums for the
   /// ledger.
-  ContactSums record(double time, double time_step, std::int64_t step);
+  ContactSums record(const std::vector<Body<D>>& bodies, double time, double time_step,
+                     std::int64_t step);
 
   const std::vector<PairRecord>& pairs() const { return records_; }
   std::size_t overlapped_nodes() const { return nodes_.size(); }

@@ -3,6 +3,17 @@
 #include "mpm/contact/contact_grid.hpp"
 
 namespace mpm {
+namespace {
+
+constexpr double least_share =
+    1e-6;  // of a particle's mass, for a node to count as a first contact
+
+template <int D>
+double particle_mass(const std::vector<Body<D>>& bodies, int body) {
+  return bodies[static_cast<std::size_t>(body)].mass()[0];
+}
+
+}  // namespace
 
 template <int D>
 PairRecord& ContactGrid<D>::record_of(int a, int b) {
@@ -17,7 +28,8 @@ PairRecord& ContactGrid<D>::record_of(int a, int b) {
 }
 
 template <int D>
-ContactSums ContactGrid<D>::record(double time, double time_step, std::int64_t step) {
+ContactSums ContactGrid<D>::record(const std::vector<Body<D>>& bodies, double time,
+                                   double time_step, std::int64_t step) {
   ContactSums sums;
   for (auto& r : records_) std::fill(std::begin(r.force), std::end(r.force), 0.0);
   for (const ContactNode& node : nodes_) {
@@ -26,16 +38,22 @@ ContactSums ContactGrid<D>::record(double time, double time_step, std::int64_t s
     for (std::uint32_t k = 0; k < pair_count(node.sides); ++k) {
       const SidePair<D>& pair = pairs_[node.first_pair + k];
       if (!pair.acted) continue;
-      const int body_r = sides_[node.first_side + pair.r].body;
-      const int body_s = sides_[node.first_side + pair.s].body;
-      PairRecord& r = record_of(std::min(body_r, body_s), std::max(body_r, body_s));
-      const double sign = body_r < body_s ? 1.0 : -1.0;  // records hold what acts on the first
-      if (r.first_step < 0) {
+      const Side<D>& side_r = sides_[node.first_side + pair.r];
+      const Side<D>& side_s = sides_[node.first_side + pair.s];
+      PairRecord& r =
+          record_of(std::min(side_r.body, side_s.body), std::max(side_r.body, side_s.body));
+      const double sign =
+          side_r.body < side_s.body ? 1.0 : -1.0;  // records hold what acts on the first
+      // A node that a body has only just reached tells nothing about when and where they met.
+      const double lighter = std::min(side_r.mass / particle_mass(bodies, side_r.body),
+                                      side_s.mass / particle_mass(bodies, side_s.body));
+      if (lighter > least_share && (r.first_step < 0 || r.first_step == step) &&
+          lighter > r.first_share) {
         r.first_step = step;
         r.first_time = time;
         r.first_gap = pair.gap;
+        r.first_share = lighter;
       }
-      if (r.first_step == step) r.first_gap = std::min(r.first_gap, pair.gap);
       for (int a = 0; a < D; ++a) {
         r.impulse[a] += sign * pair.impulse[a];
         r.force[a] += sign * pair.impulse[a] / time_step;
@@ -58,8 +76,10 @@ std::size_t ContactGrid<D>::bytes() const {
 
 template PairRecord& ContactGrid<2>::record_of(int, int);
 template PairRecord& ContactGrid<3>::record_of(int, int);
-template ContactSums ContactGrid<2>::record(double, double, std::int64_t);
-template ContactSums ContactGrid<3>::record(double, double, std::int64_t);
+template ContactSums ContactGrid<2>::record(const std::vector<Body<2>>&, double, double,
+                                            std::int64_t);
+template ContactSums ContactGrid<3>::record(const std::vector<Body<3>>&, double, double,
+                                            std::int64_t);
 template std::size_t ContactGrid<2>::bytes() const;
 template std::size_t ContactGrid<3>::bytes() const;
 

@@ -107,6 +107,8 @@ template <int D>
 double surface_distance(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
                         int node, const Vec<double, D>& normal) {
   using T = Batch<native_lanes>;
+  const double edge = body.mean_edge / grid.cell_size;
+  const double reach = 1.0 + (grid.basis == Basis::gimp ? gimp_half(edge) : 0.0);
   T furthest(-std::numeric_limits<double>::infinity());
   for_particles_around(
       grid, body, patch, node, [&](const Index<D>& place, const Vec<T, D>& xi, const auto& rows) {
@@ -114,7 +116,13 @@ double surface_distance(const TileGrid<D>& grid, const Body<D>& body, const Patc
         T distance = T(0.5) * particle_edge<D>(load(body.volume(), rows), body.mean_edge);
         for (int a = 0; a < D; ++a)
           distance += T(normal[a] * grid.cell_size) * (xi[a] - T(place[a]));
-        furthest = max(furthest, distance);
+        // Particles out of reach of the node say nothing about the surface there.
+        auto near = T(0.0) < T(1.0);
+        for (int a = 0; a < D; ++a) {
+          const T away = xi[a] - T(place[a]);
+          near = near & (max(away, -away) < T(reach));
+        }
+        furthest = select(near, max(furthest, distance), furthest);
       });
   return largest(furthest);
 }

@@ -28,9 +28,10 @@ struct ListScratch {
 };
 
 /// Sort every body's columns by tile and cell, and make patches and lists from nothing. Sets the
-/// grid's anchor. Throws std::out_of_range if a particle lies more than 2^20 cells from the anchor.
+/// grid's anchor. Throws std::invalid_argument if a particle lies more than 2^19 cells from the
+/// origin.
 template <int D>
-void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads, bool set_anchor);
+void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads);
 
 /// Mend the lists of patches that particles have left; true if patches were added or removed.
 template <int D>

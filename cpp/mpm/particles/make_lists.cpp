@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -34,7 +35,6 @@ Vec<double, D> position(const Body<D>& body, std::size_t i) {
 
 template <int D>
 void add_patches(TileGrid<D>& grid, const Body<D>& body, int body_number) {
-  int last_cell = 0;
   for (std::size_t i = 0; i < body.count(); ++i) {
     const Index<D> cell = grid.cell_of(position(body, i));
     const Index<D> tile = grid.tile_of(cell);
@@ -48,11 +48,8 @@ void add_patches(TileGrid<D>& grid, const Body<D>& body, int body_number) {
       p.tile = tile;
       p.begin = static_cast<std::uint32_t>(i);
       grid.patches.push_back(p);
-      last_cell = 0;
     }
     Patch<D>& p = grid.patches.back();
-    for (; last_cell < c; ++last_cell)
-      p.cell_begin[static_cast<std::size_t>(last_cell) + 1] = p.count;
     p.occupied |= std::uint64_t{1} << c;
     ++p.count;
     for (int k = c + 1; k <= Tile<D>::cell_count; ++k)
@@ -63,16 +60,19 @@ void add_patches(TileGrid<D>& grid, const Body<D>& body, int body_number) {
 }  // namespace
 
 template <int D>
-void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
-                bool set_anchor) {
-  if (set_anchor) {
-    grid.anchor.fill(std::numeric_limits<std::int32_t>::max());
-    for (const auto& body : bodies)
-      for (std::size_t i = 0; i < body.count(); ++i) {
-        const Index<D> cell = grid.cell_of(position(body, i));
-        for (int a = 0; a < D; ++a) grid.anchor[a] = std::min(grid.anchor[a], cell[a]);
-      }
-  }
+void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads) {
+  constexpr double furthest = 1 << 20;  // cells; within the 19 bits of a key's tile coordinates
+  grid.anchor.fill(std::numeric_limits<std::int32_t>::max());
+  for (const auto& body : bodies)
+    for (std::size_t i = 0; i < body.count(); ++i) {
+      const Vec<double, D> x = position(body, i);
+      for (int a = 0; a < D; ++a)
+        if (!(std::abs(grid.in_cells(x[a], a)) < 0.5 * furthest))
+          throw std::invalid_argument("body \"" + body.name +
+                                      "\" lies more than 2^19 cells from the grid's origin");
+      const Index<D> cell = grid.cell_of(x);
+      for (int a = 0; a < D; ++a) grid.anchor[a] = std::min(grid.anchor[a], cell[a]);
+    }
   grid.patches.clear();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     Body<D>& body = bodies[b];
@@ -101,7 +101,7 @@ void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
   grid.connect();
 }
 
-template void make_lists<2>(TileGrid<2>&, std::vector<Body<2>>&, Threads&, bool);
-template void make_lists<3>(TileGrid<3>&, std::vector<Body<3>>&, Threads&, bool);
+template void make_lists<2>(TileGrid<2>&, std::vector<Body<2>>&, Threads&);
+template void make_lists<3>(TileGrid<3>&, std::vector<Body<3>>&, Threads&);
 
 }  // namespace mpm

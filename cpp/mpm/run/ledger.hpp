@@ -1,22 +1,27 @@
 #pragma once
-// Where the energy and the momentum go. Every term is accumulated from its own sums, so that the
-// residual tests the code:
-//   kinetic + internal + plastic + viscous + friction + contact + eroded + numerical - external =
-//   start + residual.
-// Derivation: a particle's velocity changes by the interpolated increments dv_p = sum N_ip f_i dt /
-// m_i, eq. (17), so
-//   change of kinetic = dt sum_i f_i . v_i + 1/2 sum_p m_p dv_p^2     (v_i mapped from the
+// Where the energy and the momentum go. Every term is accumulated from its own sums:
+//   kinetic + internal + plastic + viscous + friction + contact + eroded + numerical - external
+//   = start + residual.
+//
+// Derivation: a particle's velocity changes by the interpolated increments
+// dv_p = sum N_ip f_i dt / m_i, eq. (17), so
+//   change of kinetic = dt sum_i f_i . v_i + 1/2 sum_p m_p dv_p^2    (v_i mapped from the
 //   particles),
 // while the stress does the work sum_p V_p sigma_p : d eps_p. What does not cancel is named:
-//   mapping  the stress works on the strain of another velocity field than the nodal forces do. USF
-//   strains with v_i.
-//            MUSL and USL strain with velocities at the end of the step, on which the forces would
-//            do sum_p m_p dv_p^2 more work than on v_i (gravity's part left out), so that much is
-//            set against it.
-//   time     first-order integration: 1/2 m dv^2, and the mean stress against the one that gave the
-//   forces; contact  normal contact that does not exactly conserve energy, with dv from eqs.
-//   (11)-(15) alone.
-// A positive numerical term is energy lost, a negative one energy made.
+//
+// - mapping: the stress works on the strain of another velocity field than the nodal forces do. USF
+//   strains with v_i. MUSL and USL strain with velocities at the end of the step, on which the
+//   forces would do sum_p m_p dv_p^2 more work than on v_i (gravity's part left out), so that much
+//   is set against it.
+// - time: first-order integration, 1/2 m dv^2, and the mean stress against that which gave the
+// forces.
+// - contact: normal contact that does not exactly conserve energy, with dv from eqs. (11)-(15)
+// alone.
+//
+// A positive numerical term is energy lost, a negative one energy made. The residual tests that
+// particles and nodes exchange exactly the same work; internal, viscous and friction enter
+// numerical with the opposite sign, so their own values are tested against closed forms
+// (tests/laws).
 #include <array>
 #include <cmath>
 

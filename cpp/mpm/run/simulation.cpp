@@ -2,6 +2,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "mpm/run/simulation_of.hpp"
 
@@ -77,14 +78,14 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
   domain_.contact_settings.friction = settings.friction;
   domain_.threads.resize(settings.threads);
   for (std::size_t k = 0; k < stages_.size(); ++k) timers_.name(k, stages_[k].name);
-  history_.reserve(history_capacity * history_columns().size());
+  history_.reserve((history_capacity + 1) * history_columns().size());
 }
 
 template <int D>
 void SimulationOf<D>::prepare() {
   check(!prepared_, "prepare() has been called already");
   check(!domain_.bodies.empty(), "there is no body");
-  make_lists(domain_.grid, domain_.bodies, domain_.threads, true);
+  make_lists(domain_.grid, domain_.bodies, domain_.threads);
   if (domain_.has_contact()) domain_.contact.connect(domain_.grid);
   probe_speeds();
   ledger_.start = ledger_.kinetic = kinetic_energy();
@@ -104,7 +105,9 @@ void SimulationOf<D>::probe_speeds() {
     std::fill(block.data, block.data + domain_.grid.block_size(), 0.0);
   }
   domain_.time_step = 1.0;
+  const BulkViscosity viscosity = std::exchange(domain_.viscosity, {});  // its pressure is kept
   update_stress_last(domain_);
+  domain_.viscosity = viscosity;
   choose_time_step();
 }
 
@@ -116,23 +119,24 @@ std::int64_t SimulationOf<D>::advance(std::int64_t max_steps, double end_time) {
   while (made < max_steps && domain_.time < end_time && !failure_) {
     const double left = end_time - domain_.time;
     const bool last = next_time_step_ >= left;
-    domain_.time_step = last ? left : next_time_step_;
-    make_step();
-    if (last) domain_.time = end_time;
+    // Two last steps of equal length rather than a tiny one, in which forces would be rounding.
+    domain_.time_step = last ? left : std::min(next_time_step_, 0.5 * left);
+    make_step(last ? end_time : domain_.time + domain_.time_step);
     ++made;
   }
   return made;
 }
 
 template <int D>
-void SimulationOf<D>::make_step() {
+void SimulationOf<D>::make_step(double time_after) {
   for (std::size_t k = 0; k < stages_.size(); ++k)
     timers_.time(k, [&] { stages_[k].run(domain_); });
-  domain_.time += domain_.time_step;
+  domain_.time = time_after;
   ++domain_.step;
   ContactSums contacts;
   if (domain_.has_contact())
-    contacts = domain_.contact.record(domain_.time, domain_.time_step, domain_.step);
+    contacts =
+        domain_.contact.record(domain_.bodies, domain_.time, domain_.time_step, domain_.step);
   ledger_.add(domain_.sums, contacts, settings_.scheme == Scheme::usf);
   write_history_row();
   find_failure();
@@ -148,7 +152,9 @@ void SimulationOf<D>::choose_time_step() {
 
 template <int D>
 void SimulationOf<D>::write_history_row() {
-  if (history_.size() >= history_capacity * history_columns().size()) history_.clear();
+  // Room for the row of the start and history_capacity steps; a caller who never takes them loses
+  // the oldest.
+  if (history_.size() > history_capacity * history_columns().size()) history_.clear();
   const Ledger& l = ledger_;
   for (const double value :
        {static_cast<double>(domain_.step), domain_.time, domain_.time_step, l.kinetic, l.internal,

@@ -56,7 +56,7 @@ class SimulationOf final : public Simulation {
   double kinetic_energy() const;
   std::array<double, 3> momentum() const;
   void probe_speeds();
-  void make_step();
+  void make_step(double time_after);
   void choose_time_step();
   void write_history_row();
   void find_failure();
