@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from types import SimpleNamespace
 
+import matplotlib.image as matplotlib_image
 import numpy as np
 import pytest
 
@@ -14,8 +15,6 @@ from mpm3dpp import plots
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io import HistoryWriter, ResultsWriter, build_manifest
 from mpm3dpp.plots import contact, labels, raster, space
-
-matplotlib_image = pytest.importorskip("matplotlib.image")
 
 
 def make_run(path: Path, dimension: int = 2, manifest: bool = True) -> Path:

@@ -84,7 +84,7 @@ def test_every_array_and_time_reads_back(tmp_path: Path, dimension: int) -> None
 
 def test_vtk_reads_every_frame(tmp_path: Path) -> None:
     """ParaView's own reader gives the same arrays, tensors in its order of components."""
-    vtk_hdf = pytest.importorskip("vtkmodules.vtkIOHDF")
+    import vtkmodules.vtkIOHDF as vtk_hdf
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     frames = run(tmp_path)
@@ -108,7 +108,7 @@ def test_vtk_reads_every_frame(tmp_path: Path) -> None:
 
 
 def test_vtk_reads_frames_with_changing_counts(tmp_path: Path) -> None:
-    vtk_hdf = pytest.importorskip("vtkmodules.vtkIOHDF")
+    import vtkmodules.vtkIOHDF as vtk_hdf
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     counts = [7, 7, 5, 1, 7]
@@ -129,7 +129,8 @@ def test_vtk_reads_frames_with_changing_counts(tmp_path: Path) -> None:
 
 
 def test_frames_as_pyvista(tmp_path: Path) -> None:
-    pyvista = pytest.importorskip("pyvista")
+    import pyvista
+
     frames = run(tmp_path)
     cloud = open_results(tmp_path)[-1]
     assert isinstance(cloud, pyvista.PolyData)
@@ -190,7 +191,6 @@ def test_killed_run_keeps_its_frames(tmp_path: Path, wait: float) -> None:
 
 def test_full_disk_is_one_sentence_and_keeps_the_frames(tmp_path: Path) -> None:
     """A limit on the file's size stands for the full disk: both fail in the same call."""
-    pytest.importorskip("resource")
     path = tmp_path / "results.vtkhdf"
     limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (3_000_000,) * 2)"
     code = textwrap.dedent(_ENDLESS.format(limit=limit))
