@@ -80,6 +80,7 @@ NB_MODULE(_core, m) {
       .value("gap", Detection::gap)
       .value("velocity", Detection::velocity);
   nb::enum_<NormalRule>(m, "NormalRule")
+      .value("plane", NormalRule::plane)
       .value("pair", NormalRule::pair)
       .value("first", NormalRule::first)
       .value("second", NormalRule::second)

@@ -214,7 +214,8 @@ class Contact(CaseModel):
     Attributes:
         enabled: without contact the bodies do not see each other.
         detection: "gap" (touching and approaching) or "velocity" (approaching only).
-        normal: whose normal counts: "pair" (the mean), "first", "second" or "stiffer".
+        normal: direction of contact: "plane" (separates the two bodies' points), or from gradients
+            of mass, of both ("pair") or one ("first", "second", "stiffer").
         friction: Coulomb coefficient of all pairs not listed in `pair`.
         gap_distance: bodies closer than this touch [m].
         pair: coefficients of single pairs; a pair of bodies wins over a pair of materials, and
@@ -223,7 +224,7 @@ class Contact(CaseModel):
 
     enabled: Flag = True
     detection: Annotated[str, Choice(("gap", "velocity"))] = "gap"
-    normal: Annotated[str, Choice(("pair", "first", "second", "stiffer"))] = "pair"
+    normal: Annotated[str, Choice(("plane", "pair", "first", "second", "stiffer"))] = "plane"
     friction: NonNegative = 0.0
     gap_distance: Annotated[float, Quantity("m", ">= 0")] = 0.0
     pair: list[ContactPair] = Field(default_factory=list)

@@ -75,7 +75,7 @@ def test_si_values_and_defaults() -> None:
     assert case.run.viscosity is not None
     assert (case.run.viscosity.quadratic, case.run.viscosity.linear) == (1.5, 0.06)
     assert (case.output.frames, case.output.history_every) == (50, 1)
-    assert (case.contact.detection, case.contact.normal) == ("gap", "pair")
+    assert (case.contact.detection, case.contact.normal) == ("gap", "plane")
     assert case.material["rubber"].strength.model == "neo_hookean"
     assert case.material["rubber"].strength.parameters == {"K": 121.7e6, "G": 26.1e6}
     left = case.body["left"]

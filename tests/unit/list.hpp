@@ -19,6 +19,7 @@
   X(material) \
   X(two_bodies) \
   X(many_bodies) \
+  X(separation) \
   X(no_allocation) \
   /* end */
 // clang-format on

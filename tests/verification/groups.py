@@ -149,7 +149,7 @@ def offset_spheres(
 
 def oblique_impact(
     scheme: str, dimension: int, basis: str, mu: float = 0.2, slip: float = 1.0,
-    cells: int = 8, factor: float = 0.3, normal: str = "pair",
+    cells: int = 8, factor: float = 0.3, normal: str = "plane",
 ) -> list[Figure]:  # fmt: skip
     """A block falls obliquely on a wider one with Coulomb friction; sliding throughout or not."""
     from mpm3dpp import _core

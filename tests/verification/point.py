@@ -86,7 +86,7 @@ def spin(
     scene.start().run(2 * math.pi * turns / omega)
 
     def angular(x: Array, v: Array) -> float:
-        return float((x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]).sum())
+        return float((volume * (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0])).sum())
 
     h_ = scene.history()
     energy = (h_["kinetic"] + h_["internal"])[-1] / h_["kinetic"][0]

@@ -21,13 +21,32 @@ def block(lower: Sequence[float], upper: Sequence[float], spacing: float) -> tup
     return np.stack([a.ravel() for a in grid], axis=1), spacing ** len(axes)
 
 
-def ball(centre: Sequence[float], radius: float, spacing: float) -> tuple[Array, float]:
-    """Fill a disc or sphere with a lattice centred on it; the volumes make up the exact volume."""
-    n = math.ceil(radius / spacing)
-    x, _ = block([-n * spacing] * len(centre), [n * spacing] * len(centre), spacing)
-    x = x[(x * x).sum(1) <= radius * radius]
-    volume = math.pi * radius**2 if len(centre) == 2 else 4.0 / 3.0 * math.pi * radius**3
-    return x + np.asarray(centre), volume / len(x)
+def ball(centre: Sequence[float], radius: float, spacing: float) -> tuple[Array, Array]:
+    """Fill a disc with rings of points, a sphere with shells; the volumes make up the exact volume.
+
+    A lattice has steps of half a spacing on the surface: a disc of it rolls like a gear wheel.
+    """
+    dimension = len(centre)
+    shells = round(radius / spacing)
+    step = radius / shells
+    points, volumes = [], []
+    for k in range(shells):
+        middle, inner, outer = (k + 0.5) * step, k * step, (k + 1) * step
+        if dimension == 2:
+            volume = math.pi * (outer**2 - inner**2)
+            count = max(round(volume / step**2), 3)
+            turn = 2 * math.pi * (np.arange(count) + 0.5 * (k % 2)) / count
+            directions = np.stack([np.cos(turn), np.sin(turn)], 1)
+        else:
+            volume = 4 / 3 * math.pi * (outer**3 - inner**3)
+            count = max(round(volume / step**3), 4)
+            z = 1 - (2 * np.arange(count) + 1) / count  # A spiral: Vogel 1979.
+            turn = math.pi * (1 + math.sqrt(5)) * np.arange(count)
+            across = np.sqrt(1 - z * z)
+            directions = np.stack([across * np.cos(turn), across * np.sin(turn), z], 1)
+        points.append(middle * directions)
+        volumes.append(np.full(count, volume / count))
+    return np.concatenate(points) + np.asarray(centre), np.concatenate(volumes)
 
 
 def annulus(

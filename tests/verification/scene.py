@@ -63,7 +63,7 @@ class Scene:
         s.walls = [_core.Wall[wall] for wall in [*walls, *["free"] * 6][:6]]
         s.gravity = _three(gravity)
         s.contact, s.friction = contact, friction
-        s.detection, s.normal_rule = _core.Detection.gap, _core.NormalRule.pair
+        s.detection, s.normal_rule = _core.Detection.gap, _core.NormalRule.plane
         s.threads, s.energy_growth_limit = 1, 5.0
         for name, value in settings.items():
             setattr(s, name, value)

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mpm/contact/surface.hpp"
+#include "mpm/contact/separation.hpp"
 
 namespace mpm {
 
@@ -114,28 +114,7 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       node.held = grid.walls.held(global);
       node.energy = node.force_work = 0.0;
       sort_sides<D>({&sides_[c.sides], count});
-      for (std::uint32_t k = 0; k < count; ++k)
-        find_normal(grid, bodies, node, sides_[c.sides + k]);
-      std::uint32_t at = c.pairs;
-      for (std::uint16_t r = 0; r < count; ++r)
-        for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < count; ++s) {
-          const Side<D>& side_r = sides_[c.sides + r];
-          const Side<D>& side_s = sides_[c.sides + s];
-          SidePair<D>& pair = pairs_[at++];
-          pair = {};
-          pair.r = r;
-          pair.s = s;
-          pair.friction = friction(settings, side_r.body, side_s.body);
-          pair.normal = pair_normal(side_r, side_s, settings.normal, stiffness);
-          const bool opposed = dot(pair.normal, pair.normal) > 0.0;
-          // Eq. (5): D_rs = D_r + D_s, each D the distance from the node to the body's surface
-          // along the pair's normal.
-          pair.gap = opposed ? -reach(grid, bodies, node, side_r, pair.normal) -
-                                   reach(grid, bodies, node, side_s, -1.0 * pair.normal)
-                             : std::numeric_limits<double>::infinity();
-          pair.closed = opposed && (settings.detection == Detection::velocity ||
-                                    pair.gap < settings.gap_distance);
-        }
+      find_pairs(grid, bodies, stiffness, settings, node);
       ++c.nodes;
       c.sides += count;
       c.pairs += pair_count(count);
@@ -146,30 +125,47 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
 }
 
 template <int D>
-void ContactGrid<D>::find_normal(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                                 const ContactNode& node, Side<D>& side) const {
-  Vec<double, D> gradient = Vec<double, D>::zero();
-  for_each_copy(grid, node, side, [&](std::size_t p, int at) {
-    gradient +=
-        mass_gradient(grid, bodies[static_cast<std::size_t>(side.body)], grid.patches[p], at);
-  });
-  // A wall mirrors the body, so its surface is normal to the wall there.
-  for (int a = 0; a < D; ++a)
-    if (node.held >> a & 1u) gradient[a] = 0.0;
-  side.normal = weighted_normal(gradient, side.mass, grid.cell_size);
-}
-
-template <int D>
-double ContactGrid<D>::reach(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                             const ContactNode& node, const Side<D>& side,
-                             const Vec<double, D>& normal) const {
-  double furthest = -std::numeric_limits<double>::infinity();
-  for_each_copy(grid, node, side, [&](std::size_t p, int at) {
-    furthest =
-        std::max(furthest, surface_distance(grid, bodies[static_cast<std::size_t>(side.body)],
-                                            grid.patches[p], at, normal));
-  });
-  return furthest;
+void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                                const std::vector<double>& stiffness,
+                                const ContactSettings& settings, const ContactNode& node) {
+  Side<D>* sides = &sides_[node.first_side];
+  thread_local std::vector<NearParticles<D>> near;
+  while (near.size() < node.sides) near.emplace_back().reserve(grid.shape.margin);
+  for (std::uint32_t k = 0; k < node.sides; ++k) {
+    const Body<D>& body = bodies[static_cast<std::size_t>(sides[k].body)];
+    near[k].lanes.clear();
+    sides[k].normal = Vec<double, D>::zero();
+    Vec<double, D> gradient = Vec<double, D>::zero();
+    for_each_copy(grid, node, sides[k], [&](std::size_t p, int at) {
+      collect_near(grid, body, grid.patches[p], at, near[k]);
+      if (settings.normal != NormalRule::plane)
+        gradient += mass_gradient(grid, body, grid.patches[p], at);
+    });
+    // A wall mirrors the body, so its surface is normal to the wall there.
+    for (int a = 0; a < D; ++a)
+      if (node.held >> a & 1u) gradient[a] = 0.0;
+    sides[k].normal = weighted_normal(gradient, sides[k].mass, grid.cell_size);
+  }
+  std::uint32_t at = node.first_pair;
+  for (std::uint16_t r = 0; r < node.sides; ++r)
+    for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
+      SidePair<D>& pair = pairs_[at++];
+      pair = {};
+      pair.r = r;
+      pair.s = s;
+      pair.friction = friction(settings, sides[r].body, sides[s].body);
+      pair.normal = settings.normal == NormalRule::plane
+                        ? SeparatingPlane<D>(near[r], near[s], node.held).normal()
+                        : pair_normal(sides[r], sides[s], settings.normal, stiffness);
+      const bool opposed = dot(pair.normal, pair.normal) > 0.0;
+      // Eq. (5): D_rs = D_r + D_s, each D the distance from the node to the body's surface along
+      // the pair's normal.
+      pair.gap = opposed ? -grid.cell_size *
+                               (near[r].reach(pair.normal) + near[s].reach(-1.0 * pair.normal))
+                         : std::numeric_limits<double>::infinity();
+      pair.closed = opposed &&
+                    (settings.detection == Detection::velocity || pair.gap < settings.gap_distance);
+    }
 }
 
 template class ContactGrid<2>;

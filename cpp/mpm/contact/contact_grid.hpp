@@ -104,10 +104,10 @@ class ContactGrid {
   template <class F>
   void for_each_copy(const TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
                      F&& f) const;
-  void find_normal(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                   const ContactNode& node, Side<D>& side) const;
-  double reach(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const ContactNode& node,
-               const Side<D>& side, const Vec<double, D>& normal) const;
+  /// Normals, gaps and frictions of the pairs at a node whose sides are known.
+  void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                  const std::vector<double>& stiffness, const ContactSettings& settings,
+                  const ContactNode& node);
   PairRecord& record_of(int a, int b);
 
   std::vector<TileHolder> holders_;

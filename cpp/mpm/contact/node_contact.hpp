@@ -14,7 +14,7 @@ template <int D>
 struct Side {
   int body;
   std::uint32_t first_copy,
-      copies;               // the patches that hold the node for this body (ContactGrid::entries)
+      copies;               // the patches that hold the node for this body (ContactGrid::holders_)
   double mass;              // [kg]
   Vec<double, D> normal;    // outward, of length <= 1 (weighted_normal)
   Vec<double, D> mapped;    // velocity mapped from the particles [m/s]

@@ -11,14 +11,14 @@ namespace mpm {
 /// velocity: when they approach.
 enum class Detection { gap, velocity };
 
-/// Whose normal a pair uses: both (n_r - n_s), the first body's, the second's, or that of the
-/// stiffer material.
-enum class NormalRule { pair, first, second, stiffer };
+/// The normal of a pair: that of the plane which separates their particles, or from gradients of
+/// mass: of both bodies (n_r - n_s), of the first, of the second, or of the stiffer.
+enum class NormalRule { plane, pair, first, second, stiffer };
 
 struct ContactSettings {
   bool enabled = false;
   Detection detection = Detection::gap;
-  NormalRule normal = NormalRule::pair;
+  NormalRule normal = NormalRule::plane;
   double gap_distance = 0.0;                                    // D of eq. (5) [m]
   double friction = 0.0;                                        // default coefficient
   std::vector<std::pair<std::uint64_t, double>> pair_friction;  // by pair_key, sorted

@@ -1,6 +1,6 @@
 #pragma once
-// A body's surface as seen from a node: outward normal from the gradient of mass, and how far the
-// body reaches.
+// A body as seen from a node: its particles around it and its outward normal from the gradient of
+// mass.
 #include <algorithm>
 #include <span>
 
@@ -101,32 +101,6 @@ T particle_edge(T volume, double mean_edge) {
   }
 }
 
-/// max over the particles of a patch near a node of (x_p - x_i) . n + l_p [m], eq. (5), with l_p
-/// half the edge of a cube of the particle's present volume; -infinity if there are none.
-template <int D>
-double surface_distance(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
-                        int node, const Vec<double, D>& normal) {
-  using T = Batch<native_lanes>;
-  const double edge = body.mean_edge / grid.cell_size;
-  const double reach = 1.0 + (grid.basis == Basis::gimp ? gimp_half(edge) : 0.0);
-  T furthest(-std::numeric_limits<double>::infinity());
-  for_particles_around(
-      grid, body, patch, node, [&](const Index<D>& place, const Vec<T, D>& xi, const auto& rows) {
-        // Lanes past the end repeat the last particle, which changes no maximum.
-        T distance = T(0.5) * particle_edge<D>(load(body.volume(), rows), body.mean_edge);
-        for (int a = 0; a < D; ++a)
-          distance += T(normal[a] * grid.cell_size) * (xi[a] - T(place[a]));
-        // Particles out of reach of the node say nothing about the surface there.
-        auto near = T(0.0) < T(1.0);
-        for (int a = 0; a < D; ++a) {
-          const T away = xi[a] - T(place[a]);
-          near = near & (max(away, -away) < T(reach));
-        }
-        furthest = select(near, max(furthest, distance), furthest);
-      });
-  return largest(furthest);
-}
-
 /// The outward unit normal of a body at a node, times min(1, |gradient| h / mass): one where the
 /// body ends at the node, near zero where the body surrounds it and the direction of its gradient
 /// is chance.
@@ -137,7 +111,8 @@ Vec<double, D> weighted_normal(const Vec<double, D>& gradient, double mass, doub
                       : Vec<double, D>::zero();
 }
 
-/// The unit normal from body r to body s of a pair by the chosen rule; zero if there is none.
+/// The unit normal from body r to body s of a pair by a rule on the normals of the two; zero if
+/// there is none.
 template <int D>
 Vec<double, D> pair_normal(const Side<D>& r, const Side<D>& s, NormalRule rule,
                            const std::vector<double>& stiffness) {

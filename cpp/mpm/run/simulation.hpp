@@ -31,7 +31,7 @@ struct Settings {
   double viscosity_quadratic = 0.0, viscosity_linear = 0.0;
   bool contact = false;
   Detection detection = Detection::gap;
-  NormalRule normal_rule = NormalRule::pair;
+  NormalRule normal_rule = NormalRule::plane;
   double gap_distance = 0.0;  // [m]
   double friction = 0.0;
   int threads = 1;

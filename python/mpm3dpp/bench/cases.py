@@ -155,7 +155,7 @@ def _settings(core: Any, bench: Bench, threads: int, scheme: str) -> Any:
     settings.gravity = [0.0, 0.0, 0.0]
     settings.contact = bench.contact
     settings.detection = core.Detection.gap
-    settings.normal_rule = core.NormalRule.pair
+    settings.normal_rule = core.NormalRule.plane
     settings.gap_distance = 0.0
     settings.friction = FRICTION
     settings.threads = threads
