@@ -56,7 +56,9 @@ def run_case(
     manifest.energies = simulation.summary
     manifest.write(folder)
     with _pictures_may_fail(quiet or json):
-        _draw(folder, case)
+        from .plots import plot_results
+
+        plot_results(folder)
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
@@ -159,14 +161,6 @@ def _manifest(
         case_hash=case.case_hash,
         build=_core.build_info(),
     )
-
-
-def _draw(folder: Path, case: Case) -> None:
-    from .plots import first_contact, plot_results
-
-    plot_results(folder)
-    if case.contact_enabled:
-        first_contact(folder)
 
 
 @contextmanager

@@ -62,7 +62,9 @@ def without_pyvista(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_pictures_of_a_run(tmp_path: Path) -> None:
     made = plots.plot_results(make_run(tmp_path), animation=True)
-    assert [p.name for p in made] == ["frame.png", "energies.png", "animation.gif"]
+    assert [p.name for p in made] == [
+        "frame.png", "energies.png", "animation.gif", "first_contact.png"
+    ]  # fmt: skip
     for path in made[:2]:
         pixels(path)
     from PIL import Image

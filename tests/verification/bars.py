@@ -40,7 +40,7 @@ def line_of_bars(
 
 def two_bars(
     scheme: str, dimension: int, basis: str, cells: int = 50, speed: float = 1.0,
-    factor: float = 0.3, points: int = 2,
+    factor: float = 0.25, points: int = 2,
 ) -> list[Figure]:  # fmt: skip
     """E2: two equal bars, the first at speed v against rest; stress and velocities over v."""
     scene = line_of_bars(
@@ -66,7 +66,7 @@ def two_bars(
 
 
 def unequal_bars(
-    scheme: str, dimension: int, basis: str, cells: int = 25, factor: float = 0.3,
+    scheme: str, dimension: int, basis: str, cells: int = 25, factor: float = 0.25,
     offsets: Sequence[float] = (0.0, 0.25, 0.5, 0.75), speed: float = 1.0,
 ) -> list[Figure]:  # fmt: skip
     """E2b: the second bar twice as long; the worst over offsets of the contact within a cell."""
@@ -108,7 +108,7 @@ def rod_energy(
 
 
 def five_bars(
-    scheme: str, dimension: int, basis: str, cells: int = 25, factor: float = 0.3,
+    scheme: str, dimension: int, basis: str, cells: int = 25, factor: float = 0.25,
     speed: float = 1.0,
 ) -> list[Figure]:  # fmt: skip
     """E9b: five equal touching bars, the first at v: the last leaves with v, the others rest."""

@@ -16,7 +16,7 @@ ANGLES, OFFSETS = (0.0, 30.0, 45.0), (0.0, 0.2, 0.4, 0.6, 0.8)
 
 
 def sulsky_discs(
-    scheme: str, dimension: int, basis: str, cells: int = 40, factor: float = 0.3,
+    scheme: str, dimension: int, basis: str, cells: int = 40, factor: float = 0.25,
     model: str = "neo_hookean", points: int = 2,
 ) -> list[Figure]:  # fmt: skip
     """E5: two discs meet along the diagonal; cells of 1/`cells`."""

@@ -14,7 +14,7 @@ from .scene import Array, Scene
 
 
 def three_discs(
-    scheme: str, dimension: int, basis: str, cells: int = 40, factor: float = 0.3
+    scheme: str, dimension: int, basis: str, cells: int = 40, factor: float = 0.25
 ) -> list[Figure]:
     """E9b: three equal discs (in 3D spheres) meet in the middle from 120 degrees."""
     h, speed = 1.0 / cells, 0.05
@@ -50,7 +50,7 @@ def _turned_ball(centre: Array, radius: float, spacing: float, along: Array) -> 
 
 def crowd(
     scheme: str, dimension: int, basis: str, bodies: int = 25, steps: int = 2000,
-    cells: int = 4, factor: float = 0.3, order: Sequence[int] | None = None,
+    cells: int = 4, factor: float = 0.25, order: Sequence[int] | None = None,
     friction: float = 0.2, speed: float = 0.05,
 ) -> tuple[Scene, Array, Array]:  # fmt: skip
     """Discs or spheres of `cells` radii on a lattice with random velocities, in a given order."""
@@ -77,7 +77,7 @@ def crowd(
 
 def many_bodies(
     scheme: str, dimension: int, basis: str, bodies: int = 25, steps: int = 2000,
-    cells: int = 4, factor: float = 0.3,
+    cells: int = 4, factor: float = 0.25,
 ) -> list[Figure]:  # fmt: skip
     """E9b: discs with random velocities and friction."""
     scene, _, _ = crowd(scheme, dimension, basis, bodies, steps, cells, factor)
@@ -93,7 +93,7 @@ def many_bodies(
 
 def renumbering(
     scheme: str, dimension: int, basis: str, bodies: int = 9, steps: int = 300, cells: int = 4,
-    factor: float = 0.3,
+    factor: float = 0.25,
 ) -> list[Figure]:  # fmt: skip
     """The same bodies in another order."""
     order = np.random.default_rng(1).permutation(bodies)
@@ -116,7 +116,7 @@ def _momentum(scene: Scene, size: float, remark: str = "") -> Figure:
 
 def offset_spheres(
     scheme: str, dimension: int, basis: str, cells: int = 8, speed: float = 0.3,
-    offsets: Sequence[str] = ("0", "0.25", "0.5", "0.75"), factor: float = 0.3,
+    offsets: Sequence[str] = ("0", "0.25", "0.5", "0.75"), factor: float = 0.25,
 ) -> list[Figure]:  # fmt: skip
     """E10: a smooth sphere meets an equal one at rest; offset b over 2R."""
     radius, turn, fast, remark = 0.1, 0.0, 0.0, []
@@ -149,7 +149,7 @@ def offset_spheres(
 
 def oblique_impact(
     scheme: str, dimension: int, basis: str, mu: float = 0.2, slip: float = 1.0,
-    cells: int = 8, factor: float = 0.3, normal: str = "plane",
+    cells: int = 8, factor: float = 0.25, normal: str = "plane",
 ) -> list[Figure]:  # fmt: skip
     """A block falls obliquely on a wider one with Coulomb friction; sliding throughout or not."""
     from mpm3dpp import _core

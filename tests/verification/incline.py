@@ -39,7 +39,7 @@ def _floor(
 
 def slide(
     scheme: str, dimension: int, basis: str, angle: float, mu: float, duration: float = 0.5,
-    across: int = 8, normal: str = "plane", factor: float = 0.3, settle: float = 0.4,
+    across: int = 8, normal: str = "plane", factor: float = 0.25, settle: float = 0.4,
 ) -> tuple[Array, Array, Array, Scene]:  # fmt: skip
     """Slide a block 0.4 long, 0.2 high; return times, displacements and velocities."""
     h, radians = 0.4 / across, math.radians(angle)
@@ -63,7 +63,7 @@ def slide(
 
 def sliding_block(
     scheme: str, dimension: int, basis: str, across: int = 8, normal: str = "plane",
-    factor: float = 0.3,
+    factor: float = 0.25,
 ) -> list[Figure]:  # fmt: skip
     """E8: acceleration of sliding blocks."""
     figures = []
@@ -79,7 +79,7 @@ def sliding_block(
 
 def sticking_block(
     scheme: str, dimension: int, basis: str, across: int = 8, normal: str = "plane",
-    factor: float = 0.3, duration: float = 1.0,
+    factor: float = 0.25, duration: float = 1.0,
 ) -> list[Figure]:  # fmt: skip
     """E8: a block that must stay where it is."""
     t, u, v, _ = slide(scheme, dimension, basis, 20, 0.5, duration, across, normal, factor)
@@ -90,7 +90,7 @@ def sticking_block(
 
 def roll(
     scheme: str, dimension: int, basis: str, angle: float, mu: float, cells: int = 8,
-    duration: float = 0.4, normal: str = "plane", factor: float = 0.3, modulus: float = 1e6,
+    duration: float = 0.4, normal: str = "plane", factor: float = 0.25, modulus: float = 1e6,
 ) -> tuple[float, float]:  # fmt: skip
     """Roll a disc or sphere of radius 0.1 with `cells` a radius; return a and R alpha [m/s^2]."""
     radius = 0.1
@@ -118,7 +118,7 @@ def roll(
 
 def rolling(
     scheme: str, dimension: int, basis: str, cells: int = 8, normal: str = "plane",
-    factor: float = 0.3, modulus: float = 1e6,
+    factor: float = 0.25, modulus: float = 1e6,
 ) -> list[Figure]:  # fmt: skip
     """E9: a disc (2D) or sphere (3D) that sticks at 30 degrees and slips at 45."""
     what = "disc" if dimension == 2 else "sphere"

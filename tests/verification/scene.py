@@ -41,7 +41,7 @@ class Scene:
         basis: str,
         cell_size: float,
         *,
-        factor: float = 0.3,
+        factor: float = 0.25,
         box: tuple[Sequence[float], Sequence[float]] | None = None,
         walls: Sequence[str] = ("free",) * 6,
         gravity: Sequence[float] = (0.0, 0.0, 0.0),

@@ -17,7 +17,7 @@ def plot_results(
     colour: str | None = None,
     out: str | Path | None = None,
 ) -> list[Path]:
-    """Make the pictures of a run: one frame, the energies, and the animation if wanted.
+    """Make the pictures of a run: one frame, the energies, the first contact, maybe an animation.
 
     Args:
         folder: output folder of the run.
@@ -30,14 +30,17 @@ def plot_results(
 
     Returns:
         paths of the pictures: `frame.png` (the last frame) or `frame_0012.png`,
-        `energies.png` when there is a history, `animation.gif`.
+        `energies.png` when there is a history, `first_contact.png` when bodies touched,
+        `animation.gif`.
 
     Raises:
         CaseError: there are no results, no such frame or no such array.
     """
     from mpm3dpp.plots.run import plot_results as make
 
-    return make(Path(folder), frame, animation, colour, Path(out) if out else None)
+    pictures = make(Path(folder), frame, animation, colour, Path(out) if out else None)
+    contact = first_contact(folder, Path(out) / "first_contact.png" if out else None)
+    return pictures if contact is None else [*pictures, contact]
 
 
 def first_contact(folder: str | Path, out: str | Path | None = None) -> Path | None:

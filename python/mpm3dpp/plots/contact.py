@@ -218,7 +218,9 @@ def _close_up(
     if results.dimension == 3:  # a slice through the contact that holds the normal
         across = int(np.argmin(np.abs(gap.normal)))
         plane = [k for k in range(3) if k != across]
-        layer = np.abs(points[:, across] - gap.place[across]) <= 0.5 * sizes
+        depth = points[:, across]
+        nearest = depth[np.abs(depth - gap.place[across]).argmin()]  # Not between two layers.
+        layer = np.abs(depth - nearest) <= 0.5 * sizes
         points, sizes, bodies = points[layer], sizes[layer], bodies[layer]
     half = 0.5 * _WINDOW * cell
     factor, unit = length_unit(2 * half)
