@@ -18,7 +18,7 @@ CASES = [(d, scheme, basis) for d in (2, 3) for scheme in SCHEMES for basis in B
 def steps_of(dimension: int, scheme: str, basis: str = "gimp") -> int:
     """Return how many steps to make; USL soon fails in contact with the linear basis."""
     if scheme == "usl" and basis == "linear":
-        return 10
+        return 15 if dimension == 2 else 13
     return 120 if dimension == 2 else 60
 
 
