@@ -12,6 +12,7 @@
   X(batch) \
   X(log) \
   X(tensor) \
+  X(cholesky) \
   X(threads) \
   X(basis) \
   X(jaumann) \

@@ -25,6 +25,11 @@ T local_coordinate(T cells, double cell) {
 /// cell.
 inline double gimp_half(double edge) { return std::min(0.5 * edge, 0.5); }
 
+/// Distance along an axis at which a particle's shape function ends [cells].
+inline double support(Basis basis, double edge) {
+  return 1.0 + (basis == Basis::gimp ? gimp_half(edge) : 0.0);
+}
+
 /// f(basis object) for the chosen basis; `edge` is the particles' edge at the start [cells].
 template <int D, class F>
 void with_basis(Basis basis, const BlockShape<D>& shape, double edge, F&& f) {

@@ -109,7 +109,6 @@ template <int D>
 struct Gimp {
   const BlockShape<D>& shape;
   double half;  // l: half the particle's edge [cells], at most 1/2
-  static constexpr int margin = 1;
   using Nodes = GimpNodes<D>;
   using Field = GimpField<D>;
 

@@ -68,7 +68,6 @@ struct LinearField {
 template <int D>
 struct Linear {
   const BlockShape<D>& shape;
-  static constexpr int margin = 0;  // nodes that a particle reaches beyond its cell
   using Nodes = NodeLanes<(1 << D)>;
   using Field = LinearField<D>;
 

@@ -1,12 +1,22 @@
 // What contact does at the nodes: velocities, forces, remapped velocities.
+#include <algorithm>
+
 #include "mpm/contact/contact_grid.hpp"
 
 namespace mpm {
 
 template <int D>
+bool ContactGrid<D>::any_closed(const ContactNode& node) const {
+  const SidePair<D>* pairs = &pairs_[node.first_pair];
+  return std::any_of(pairs, pairs + pair_count(node.sides),
+                     [](const SidePair<D>& pair) { return pair.closed; });
+}
+
+template <int D>
 void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
   threads.for_each(nodes_.size(), [&](std::size_t n) {
     const ContactNode& node = nodes_[n];
+    if (!any_closed(node)) return;
     Side<D>* sides = &sides_[node.first_side];
     SidePair<D>* pairs = &pairs_[node.first_pair];
     const std::uint32_t count = pair_count(node.sides);
@@ -40,6 +50,7 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity
                                 Threads& threads) {
   threads.for_each(nodes_.size(), [&](std::size_t n) {
     ContactNode& node = nodes_[n];
+    if (!any_closed(node)) return;
     Side<D>* sides = &sides_[node.first_side];
     SidePair<D>* pairs = &pairs_[node.first_pair];
     const std::uint32_t count = pair_count(node.sides);
@@ -93,6 +104,7 @@ template <int D>
 void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
   threads.for_each(nodes_.size(), [&](std::size_t n) {
     const ContactNode& node = nodes_[n];
+    if (!any_closed(node)) return;
     Side<D>* sides = &sides_[node.first_side];
     for (std::uint32_t k = 0; k < node.sides; ++k) {
       Side<D>& side = sides[k];

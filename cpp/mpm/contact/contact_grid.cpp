@@ -2,9 +2,26 @@
 
 #include <algorithm>
 
-#include "mpm/contact/separation.hpp"
-
 namespace mpm {
+namespace {
+
+/// Does a block reach any node that belongs to neighbour k?
+template <int D>
+bool reaches(const BlockShape<D>& shape, int k) {
+  bool any = true;
+  const Index<D> o = Tile<D>::offset(k);
+  for (int a = 0; a < D; ++a) any = any && (o[a] >= 0 || shape.margin > 0);
+  return any;
+}
+
+/// f(node) for the nodes that belong to a tile: all but those at its upper ends, which are the next
+/// tile's first.
+template <int D, class F>
+void for_each_tile_node(F&& f) {
+  for (int c = 0; c < Tile<D>::cell_count; ++c) f(Tile<D>::cell_index(c));
+}
+
+}  // namespace
 
 template <int D>
 void ContactGrid<D>::connect(const TileGrid<D>& grid) {
@@ -104,7 +121,6 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       if (count < 2) return;
       sides_at(grid, tiles_[t], index, &sides_[c.sides]);
       ContactNode& node = nodes_[c.nodes];
-      node.tile = static_cast<std::uint32_t>(t);
       node.cell = static_cast<std::uint16_t>(Tile<D>::cell(index));
       node.sides = static_cast<std::uint16_t>(count);
       node.first_side = c.sides;
@@ -122,50 +138,6 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   });
   for (const ContactNode& node : nodes_)
     bodies_max_ = std::max(bodies_max_, static_cast<int>(node.sides));
-}
-
-template <int D>
-void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                                const std::vector<double>& stiffness,
-                                const ContactSettings& settings, const ContactNode& node) {
-  Side<D>* sides = &sides_[node.first_side];
-  thread_local std::vector<NearParticles<D>> near;
-  while (near.size() < node.sides) near.emplace_back().reserve(grid.shape.margin);
-  for (std::uint32_t k = 0; k < node.sides; ++k) {
-    const Body<D>& body = bodies[static_cast<std::size_t>(sides[k].body)];
-    near[k].lanes.clear();
-    sides[k].normal = Vec<double, D>::zero();
-    Vec<double, D> gradient = Vec<double, D>::zero();
-    for_each_copy(grid, node, sides[k], [&](std::size_t p, int at) {
-      collect_near(grid, body, grid.patches[p], at, near[k]);
-      if (settings.normal != NormalRule::plane)
-        gradient += mass_gradient(grid, body, grid.patches[p], at);
-    });
-    // A wall mirrors the body, so its surface is normal to the wall there.
-    for (int a = 0; a < D; ++a)
-      if (node.held >> a & 1u) gradient[a] = 0.0;
-    sides[k].normal = weighted_normal(gradient, sides[k].mass, grid.cell_size);
-  }
-  std::uint32_t at = node.first_pair;
-  for (std::uint16_t r = 0; r < node.sides; ++r)
-    for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
-      SidePair<D>& pair = pairs_[at++];
-      pair = {};
-      pair.r = r;
-      pair.s = s;
-      pair.friction = friction(settings, sides[r].body, sides[s].body);
-      pair.normal = settings.normal == NormalRule::plane
-                        ? SeparatingPlane<D>(near[r], near[s], node.held).normal()
-                        : pair_normal(sides[r], sides[s], settings.normal, stiffness);
-      const bool opposed = dot(pair.normal, pair.normal) > 0.0;
-      // Eq. (5): D_rs = D_r + D_s, each D the distance from the node to the body's surface along
-      // the pair's normal.
-      pair.gap = opposed ? -grid.cell_size *
-                               (near[r].reach(pair.normal) + near[s].reach(-1.0 * pair.normal))
-                         : std::numeric_limits<double>::infinity();
-      pair.closed = opposed &&
-                    (settings.detection == Detection::velocity || pair.gap < settings.gap_distance);
-    }
 }
 
 template class ContactGrid<2>;

@@ -108,6 +108,8 @@ class ContactGrid {
   void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<double>& stiffness, const ContactSettings& settings,
                   const ContactNode& node);
+  /// May any pair at a node act? Other nodes stay as they are, to the last bit.
+  bool any_closed(const ContactNode& node) const;
   PairRecord& record_of(int a, int b);
 
   std::vector<TileHolder> holders_;

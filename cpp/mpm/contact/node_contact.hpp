@@ -1,7 +1,9 @@
 #pragma once
 // The contact of any number of bodies at one node: who is there, along which normals, and the
 // impulses between them.
+#include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mpm/contact/settings.hpp"
@@ -16,7 +18,6 @@ struct Side {
   std::uint32_t first_copy,
       copies;               // the patches that hold the node for this body (ContactGrid::holders_)
   double mass;              // [kg]
-  Vec<double, D> normal;    // outward, of length <= 1 (weighted_normal)
   Vec<double, D> mapped;    // velocity mapped from the particles [m/s]
   Vec<double, D> velocity;  // after the contact of eqs. (6)-(7) [m/s]
   Vec<double, D> momentum;  // working momentum of the solver [kg m/s]
@@ -41,8 +42,7 @@ struct SidePair {
 
 /// An overlapped node: its sides and its pairs.
 struct ContactNode {
-  std::uint32_t tile;  // ContactGrid::tiles
-  std::uint16_t cell;  // the node's place in that tile, as the cell whose first node it is
+  std::uint16_t cell;  // the node's place in its tile, as the cell whose first node it is
   std::uint16_t sides;
   std::uint32_t first_side, first_pair;
   unsigned held;      // axes held by walls
@@ -52,11 +52,25 @@ struct ContactNode {
 
 constexpr std::uint32_t pair_count(std::uint32_t sides) { return sides * (sides - 1) / 2; }
 
+/// Put the bodies at a node into an order that does not depend on how bodies are numbered, as far
+/// as masses and velocities tell them apart: the solution for several bodies with friction is not
+/// unique, and the order of its steps chooses.
+template <int D>
+void sort_sides(std::span<Side<D>> sides) {
+  std::sort(sides.begin(), sides.end(), [](const Side<D>& x, const Side<D>& y) {
+    if (x.mass != y.mass) return x.mass > y.mass;
+    for (int a = 0; a < D; ++a)
+      if (x.mapped[a] != y.mapped[a]) return x.mapped[a] > y.mapped[a];
+    return x.body < y.body;
+  });
+}
+
 /// Remove the approach of every closed pair, eqs. (6)-(7), working on Side::momentum; with
 /// friction, hold the tangential motion as far as Coulomb's law allows, eqs. (14)-(15). For two
 /// bodies this is the paper's formula; more are solved together by projected Gauss-Seidel in a
 /// fixed order, to 1e-12 of the largest impulse. `takes_part(pair)` chooses the pairs. Sets
-/// normal_impulse and friction_impulse of every pair (0 for the others).
+/// normal_impulse and friction_impulse of every pair (0 for the others). Gives false if it stopped
+/// short of the tolerance.
 template <int D, bool with_friction, class Choose>
 bool solve_node(Side<D>* sides, SidePair<D>* pairs, std::uint32_t count, Choose&& takes_part) {
   constexpr int most_sweeps = 20000;

@@ -5,13 +5,8 @@
 namespace mpm {
 namespace {
 
-constexpr double least_share =
-    1e-6;  // of a particle's mass, for a node to count as a first contact
-
-template <int D>
-double particle_mass(const std::vector<Body<D>>& bodies, int body) {
-  return bodies[static_cast<std::size_t>(body)].mass()[0];
-}
+// Of a particle's mass, for a node to count as a first contact.
+constexpr double least_share = 1e-6;
 
 }  // namespace
 
@@ -45,8 +40,9 @@ ContactSums ContactGrid<D>::record(const std::vector<Body<D>>& bodies, double ti
       const double sign =
           side_r.body < side_s.body ? 1.0 : -1.0;  // records hold what acts on the first
       // A node that a body has only just reached tells nothing about when and where they met.
-      const double lighter = std::min(side_r.mass / particle_mass(bodies, side_r.body),
-                                      side_s.mass / particle_mass(bodies, side_s.body));
+      const double lighter =
+          std::min(side_r.mass / bodies[static_cast<std::size_t>(side_r.body)].mean_mass,
+                   side_s.mass / bodies[static_cast<std::size_t>(side_s.body)].mean_mass);
       if (lighter > least_share && (r.first_step < 0 || r.first_step == step) &&
           lighter > r.first_share) {
         r.first_step = step;

@@ -3,75 +3,55 @@
 // those of the other. Fitted to the particles themselves, it is right at edges and corners, where
 // gradients of mass are oblique (Nairn, Hammerquist & Smith 2020, who fit it by logistic
 // regression). Here it is the plane of the support-vector machine with squared loss (Cortes &
-// Vapnik 1995), found by Newton's method with exact line search (Keerthi & DeCoste 2005).
+// Vapnik 1995), found by Newton's method with a line search (Keerthi & DeCoste 2005).
 #include <cmath>
 
 #include "mpm/contact/near_particles.hpp"
+#include "mpm/math/cholesky.hpp"
 
 namespace mpm {
 
-/// Solve A z = y, A symmetric and positive definite with its lower triangle given, by Cholesky's
-/// method in place: y becomes z.
-template <int n>
-void solve_symmetric(double (&A)[n][n], double (&y)[n]) {
-  for (int j = 0; j < n; ++j) {
-    for (int k = 0; k < j; ++k) A[j][j] -= A[j][k] * A[j][k];
-    A[j][j] = std::sqrt(A[j][j]);
-    for (int i = j + 1; i < n; ++i) {
-      for (int k = 0; k < j; ++k) A[i][j] -= A[i][k] * A[j][k];
-      A[i][j] /= A[j][j];
-    }
-  }
-  for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < i; ++k) y[i] -= A[i][k] * y[k];
-    y[i] /= A[i][i];
-  }
-  for (int i = n - 1; i >= 0; --i) {
-    for (int k = i + 1; k < n; ++k) y[i] -= A[k][i] * y[k];
-    y[i] /= A[i][i];
-  }
-}
-
-/// A plane z . (x, 1) = 0 fitted to two bodies' particles.
+/// The fit of a plane a . x + b = 0, x in cells from the node, to the particles of two bodies: the
+/// least of
+///   softness |a|^2 / 2 + sum_p w_p max(0, 1 - c_p (a . x_p + b))^2 / 2,
+/// c = -1 and +1 for the particles of r and s, w each body's masses over their sum. It is the
+/// widest corridor between the two, of half width 1/|a|, that few particles enter.
 template <int D>
-class SeparatingPlane {
+class PlaneFit {
   using T = Batch<native_lanes>;
   static constexpr int n = D + 1;
 
  public:
-  /// Minimise over the plane a . x + b = 0, x in cells from the node,
-  ///   softness |a|^2 / 2 + sum_p w_p max(0, 1 - c_p (a . x_p + b))^2 / 2,
-  /// c = -1 and +1 for the particles of r and s, w each body's masses over their sum: the widest
-  /// corridor between the two, of half width 1/|a|, that few particles enter. Axes in `held` get no
-  /// component.
-  SeparatingPlane(NearParticles<D>& r, NearParticles<D>& s, unsigned held) : r_(r), s_(s) {
+  /// Axes in `held` get no component.
+  PlaneFit(const NearParticles<D>& r, const NearParticles<D>& s, unsigned held)
+      : r_(r), s_(s), held_(held) {
     T mass_r(0.0), mass_s(0.0);
     for (const auto& p : r.lanes) mass_r += p.weight;
     for (const auto& p : s.lanes) mass_s += p.weight;
     if (!(sum(mass_r) > 0.0 && sum(mass_s) > 0.0)) return;
     share_r_ = 1.0 / sum(mass_r);
     share_s_ = 1.0 / sum(mass_s);
-    // 3 to 19 steps where it was counted; the limit is against rounding that never settles.
+    // Some five steps; the limit is against rounding that never settles.
     constexpr int most_steps = 50;
     for (int k = 0; k < most_steps; ++k) {
       double step[n];
-      newton_step(held, step);
-      const double t = best_length(step);
+      newton_step(step);
       double change = 0.0, size = 0.0;
       for (int i = 0; i < n; ++i) {
-        z_[i] += t * step[i];
-        change = std::max(change, std::abs(t * step[i]));
+        change = std::max(change, std::abs(step[i]));
         size = std::max(size, std::abs(z_[i]));
       }
       if (!(change > 1e-13 * size)) return;
+      const double t = best_length(step);
+      for (int i = 0; i < n; ++i) z_[i] += t * step[i];
     }
   }
 
-  /// The unit normal from r to s; zero if no direction separates them.
-  Vec<double, D> normal() const {
+  /// The gradient a [1/cell] of the plane; zero where a body has no particles.
+  Vec<double, D> gradient() const {
     Vec<double, D> a;
     for (int i = 0; i < D; ++i) a[i] = z_[i];
-    return normalised(a, 1e-6);
+    return a;
   }
 
  private:
@@ -79,12 +59,14 @@ class SeparatingPlane {
   // normal, and two rings lose their symmetry; five times as much keeps part of the slope of a
   // corner, and a block on an incline is braked.
   static constexpr double softness = 1.5e-3;
+  // Keeps the system regular where no particle is inside the corridor.
+  static constexpr double damping = 1e-12;
 
-  /// f(particles, sign, share of the body's mass) over both bodies.
+  /// f(position, sign, share of the body's mass) over both bodies.
   template <class F>
-  void for_both(F&& f) {
-    for (auto& p : r_.lanes) f(p, T(-1.0), T(share_r_) * p.weight);
-    for (auto& p : s_.lanes) f(p, T(1.0), T(share_s_) * p.weight);
+  void for_both(F&& f) const {
+    for (const auto& p : r_.lanes) f(p.x, T(-1.0), T(share_r_) * p.weight);
+    for (const auto& p : s_.lanes) f(p.x, T(1.0), T(share_s_) * p.weight);
   }
   static T height(const double (&z)[n], const Vec<T, D>& x) {
     T y(z[D]);
@@ -93,66 +75,79 @@ class SeparatingPlane {
   }
 
   /// Newton's step from the gradient and the curvature at the present plane.
-  void newton_step(unsigned held, double (&step)[n]) {
+  void newton_step(double (&step)[n]) const {
     T slope[n], curvature[n][n];
     for (int i = 0; i < n; ++i) {
       slope[i] = T(0.0);
       for (int j = 0; j <= i; ++j) curvature[i][j] = T(0.0);
     }
-    for_both([&](auto& p, T sign, T share) {
-      p.lack = T(1.0) - sign * height(z_, p.x);
-      const T inside = select(p.lack > T(0.0), share, T(0.0));
-      const T pull = sign * inside * p.lack;
+    for_both([&](const Vec<T, D>& x, T sign, T share) {
+      const T lack = T(1.0) - sign * height(z_, x);
+      const T weight = select(lack > T(0.0), share, T(0.0));
+      const T pull = sign * weight * lack;
       T point[n];
-      for (int a = 0; a < D; ++a) point[a] = p.x[a];
+      for (int a = 0; a < D; ++a) point[a] = x[a];
       point[D] = T(1.0);
       for (int i = 0; i < n; ++i) {
         slope[i] += pull * point[i];
-        const T row = inside * point[i];
+        const T row = weight * point[i];
         for (int j = 0; j <= i; ++j) curvature[i][j] += row * point[j];
       }
     });
     double A[n][n] = {};
-    auto fixed = [&](int i) { return i < D && (held >> i & 1u); };
+    auto fixed = [&](int i) { return i < D && (held_ >> i & 1u); };
     for (int i = 0; i < n; ++i) {
       step[i] = fixed(i) ? 0.0 : sum(slope[i]) - (i < D ? softness * z_[i] : 0.0);
       for (int j = 0; j <= i; ++j) A[i][j] = fixed(i) || fixed(j) ? 0.0 : sum(curvature[i][j]);
-      A[i][i] = fixed(i) ? 1.0 : A[i][i] + (i < D ? softness : 1e-12);
+      A[i][i] = fixed(i) ? 1.0 : A[i][i] + (i < D ? softness : damping);
     }
     solve_symmetric(A, step);
   }
 
   /// The length of a step at which the function is least: the root of a slope that is linear piece
-  /// by piece and rises.
-  double best_length(const double (&step)[n]) {
+  /// by piece and rises. Roughly is enough: the next step mends the rest.
+  double best_length(const double (&step)[n]) const {
+    constexpr int most_trials = 20;
+    constexpr double tolerance = 1e-9;
     double along = 0.0, square = 0.0;
     for (int i = 0; i < D; ++i) {
       along += softness * z_[i] * step[i];
       square += softness * step[i] * step[i];
     }
-    for_both([&](auto& p, T sign, T) { p.gain = sign * height(step, p.x); });
     double t = 1.0;
-    for (int k = 0; k < 50; ++k) {
+    for (int k = 0; k < most_trials; ++k) {
       T slope(0.0), curvature(0.0);
-      for_both([&](auto& p, T, T share) {
-        const T lack = p.lack - T(t) * p.gain;
-        const T pull = select(lack > T(0.0), share, T(0.0)) * p.gain;
+      for_both([&](const Vec<T, D>& x, T sign, T share) {
+        const T gain = sign * height(step, x);
+        const T lack = T(1.0) - sign * height(z_, x) - T(t) * gain;
+        const T pull = select(lack > T(0.0), share, T(0.0)) * gain;
         slope -= pull * lack;
-        curvature += pull * p.gain;
+        curvature += pull * gain;
       });
       const double stiffness = sum(curvature) + square;
       if (!(stiffness > 0.0)) break;
       const double change = (sum(slope) + along + t * square) / stiffness;
       t -= change;
-      if (!(std::abs(change) > 1e-14)) break;
+      if (!(std::abs(change) > tolerance)) break;
     }
     return t;
   }
 
-  NearParticles<D>& r_;
-  NearParticles<D>& s_;
+  const NearParticles<D>& r_;
+  const NearParticles<D>& s_;
+  unsigned held_;
   double share_r_ = 0.0, share_s_ = 0.0;
   double z_[n] = {};
 };
+
+/// The unit normal from r to s of the plane that separates their particles; zero if none does: all
+/// particles lie within two cells of the node, so the corridor of two separate bodies is narrower
+/// than that, and a wider one means that the bodies fill the same place.
+template <int D>
+Vec<double, D> separating_normal(const NearParticles<D>& r, const NearParticles<D>& s,
+                                 unsigned held) {
+  constexpr double widest = 4.0;  // half width [cells]
+  return normalised(PlaneFit<D>(r, s, held).gradient(), 1.0 / widest);
+}
 
 }  // namespace mpm

@@ -1,5 +1,6 @@
 #pragma once
-// The Jaumann rate for hypoelastic models, second-order accurate and exactly objective.
+// The Jaumann rate for hypoelastic models, second-order accurate; the turning of the old stress is
+// exact.
 #include "mpm/materials/model.hpp"
 
 namespace mpm {

@@ -30,9 +30,4 @@ concept Real = requires(T a, T b) {
   T(1.0);
 };
 
-template <Real T>
-T square(T a) {
-  return a * a;
-}
-
 }  // namespace mpm

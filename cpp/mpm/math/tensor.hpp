@@ -95,12 +95,6 @@ Sym<T, D> symmetric_part(const Mat<T, D>& g) {
   return r;
 }
 
-/// a : g for a symmetric a and a D x D gradient g.
-template <class T, int D>
-T inner(const Sym<T, D>& a, const Mat<T, D>& g) {
-  return inner(a, symmetric_part(g));
-}
-
 /// f s f^T; the zz component is unchanged in plane strain.
 template <class T, int D>
 Sym<T, D> congruence(const Mat<T, D>& f, const Sym<T, D>& s) {

@@ -21,6 +21,7 @@ struct Body {
   std::vector<std::uint32_t> order;       // particles by patch, then by cell, then by row
   std::vector<std::uint32_t> next_order;  // the list being made
   std::vector<std::uint8_t> cell;         // scratch: cell in its tile of each entry of `order`
+  double mean_mass = 0.0;                 // of a particle at the start [kg]
   double mean_edge = 0.0;  // edge of a square or cube of the mean initial particle volume [m]
   std::size_t moved = 0;   // changes of cell since the columns were last sorted
 

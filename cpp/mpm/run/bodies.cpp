@@ -102,6 +102,7 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
         domain_.stiffness.push_back(material.density * speed * speed);
       },
       material.strength);
+  body.mean_mass = material.density * total / static_cast<double>(n);
   body.mean_edge = std::pow(total / static_cast<double>(n), 1.0 / D);
   body.id.resize(n);
   for (std::size_t i = 0; i < n; ++i) body.id[i] = static_cast<std::uint32_t>(i);
@@ -111,7 +112,11 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
 
 template <int D>
 void SimulationOf<D>::set_pair_friction(int a, int b, double mu) {
-  if (!(mu >= 0.0)) throw std::invalid_argument("friction must be >= 0");
+  if (!(mu >= 0.0 && std::isfinite(mu)))
+    throw std::invalid_argument("friction must be a finite number >= 0");
+  const int bodies = static_cast<int>(domain_.bodies.size());
+  if (a < 0 || b < 0 || a >= bodies || b >= bodies || a == b)
+    throw std::invalid_argument("friction needs two bodies");
   set_friction(domain_.contact_settings, a, b, mu);
 }
 

@@ -19,7 +19,13 @@ void check(const Settings& s) {
   check(s.time_step_factor > 0.0 && s.time_step_factor <= 1.0,
         "time_step_factor must lie in (0, 1]");
   check(s.threads >= 1, "threads must be >= 1");
-  check(s.friction >= 0.0, "friction must be >= 0");
+  check(s.friction >= 0.0 && std::isfinite(s.friction), "friction must be a finite number >= 0");
+  check(s.gap_distance >= 0.0 && std::isfinite(s.gap_distance),
+        "gap_distance must be a finite number >= 0");
+  for (int a = 0; a < 3; ++a)
+    check(std::isfinite(s.origin[static_cast<std::size_t>(a)]) &&
+              std::isfinite(s.gravity[static_cast<std::size_t>(a)]),
+          "origin and gravity must be finite");
   check(s.energy_growth_limit > 0.0, "energy_growth_limit must be > 0");
   check(s.viscosity_quadratic >= 0.0 && s.viscosity_linear >= 0.0,
         "viscosity factors must be >= 0");

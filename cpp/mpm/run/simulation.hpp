@@ -16,8 +16,8 @@
 
 namespace mpm {
 
-/// What is fixed before the bodies are added. SI units. There are no defaults here: they live in
-/// the Python case.
+/// What is fixed before the bodies are added. SI units. What is written here is only a
+/// start; the defaults of a case live in Python.
 struct Settings {
   int dimension = 3;               // 2 (plane strain, 1 m thick) or 3
   double cell_size = 0.0;          // [m]

@@ -91,7 +91,7 @@ void check_crowd(mpm::testing::Report& report, Crowd<D> crowd, std::mt19937_64& 
   constexpr double tolerance = 1e-9;
   crowd.template solve<with_friction>();
   const std::size_t bodies = crowd.sides.size();
-  // At most 2000 sweeps of rounded additions; in practice some tens.
+  // At most 20,000 sweeps of rounded additions; in practice some tens.
   CHECK_CLOSE(norm(crowd.momentum() - start.momentum()), 0.0, 1e-13);
   CHECK(crowd.kinetic() <= start.kinetic() * (1.0 + 1e-12), crowd.kinetic(), start.kinetic(),
         bodies);

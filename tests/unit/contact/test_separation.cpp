@@ -1,4 +1,4 @@
-// The plane that separates two sets of particles.
+// The plane that separates two sets of particles, and how far a set extends.
 #include <cmath>
 #include <random>
 
@@ -17,13 +17,12 @@ void add(NearParticles<D>& to, const Vec<double, D>& x, double mass = 1.0) {
   for (int a = 0; a < D; ++a) p.x[a] = T(x[a]);
   p.half = T(0.25);
   p.weight = select(first_lanes<native_lanes>(1), T(mass), T(0.0));
-  p.lack = p.gain = T(0.0);
   to.lanes.push_back(p);
 }
 
 template <int D>
-Vec<double, D> separate(NearParticles<D> r, NearParticles<D> s, unsigned held = 0) {
-  return SeparatingPlane<D>(r, s, held).normal();
+Vec<double, D> separate(const NearParticles<D>& r, const NearParticles<D>& s, unsigned held = 0) {
+  return separating_normal(r, s, held);
 }
 
 /// Two particles: the normal is the line between them, whatever their masses.
@@ -87,12 +86,25 @@ void test_separation(mpm::testing::Report& report) {
   const auto n = separate<3>(r, s, 0b001u);
   CHECK(n[0] == 0.0 && std::abs(norm(n) - 1.0) < 1e-14, n[0], n[1], n[2]);
 
-  // Sets of one centre have no plane, nor has a body without particles.
-  NearParticles<2> cross, nothing;
-  for (const double x : {-0.5, 0.5}) {
-    add<2>(cross, {x, 0.0});
-    add<2>(cross, {0.0, x});
-  }
-  CHECK(norm(separate<2>(cross, cross)) == 0.0, norm(separate<2>(cross, cross)));
-  CHECK(norm(separate<2>(cross, nothing)) == 0.0, cross.lanes.size());
+  // Two lattices in the same place, one between the points of the other, have no plane; nor has a
+  // body without particles.
+  NearParticles<2> lattice, between, nothing;
+  for (int i = -2; i <= 2; ++i)
+    for (int j = -2; j <= 2; ++j) {
+      add<2>(lattice, {0.5 * i, 0.5 * j});
+      if (i < 2 && j < 2) add<2>(between, {0.5 * i + 0.25, 0.5 * j + 0.25});
+    }
+  CHECK(norm(separate<2>(lattice, between)) == 0.0, separate<2>(lattice, between)[0]);
+  CHECK(norm(separate<2>(lattice, nothing)) == 0.0, lattice.lanes.size());
+
+  // Within half a cell of the line through the node the disc is lower than its highest point beside
+  // it; a line that misses the body sees all of it.
+  NearParticles<2> disc;
+  add<2>(disc, {0.3, 0.1});
+  add<2>(disc, {1.0, 0.7});
+  CHECK_CLOSE(disc.extent_along({0.0, 1.0}), 0.1 + 0.25, 1e-15);
+  CHECK_CLOSE(disc.extent_along({1.0, 0.0}), 0.3 + 0.25, 1e-15);
+  NearParticles<2> beside;
+  add<2>(beside, {0.8, -0.4});
+  CHECK_CLOSE(beside.extent_along({0.0, 1.0}), -0.4 + 0.25, 1e-15);
 }

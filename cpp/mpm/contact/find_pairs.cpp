@@ -1,0 +1,61 @@
+// The pairs of bodies at a node: normals, gaps, eq. (5), and frictions.
+#include <vector>
+
+#include "mpm/contact/contact_grid.hpp"
+#include "mpm/contact/normal.hpp"
+
+namespace mpm {
+
+template <int D>
+void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                                const std::vector<double>& stiffness,
+                                const ContactSettings& settings, const ContactNode& node) {
+  const Side<D>* sides = &sides_[node.first_side];
+  // Scratch of one thread, not counted among the bytes of the contact.
+  thread_local std::vector<NormalSource<D>> sources;
+  if (sources.size() < node.sides) sources.resize(node.sides);
+  for (std::uint32_t k = 0; k < node.sides; ++k) {
+    const auto b = static_cast<std::size_t>(sides[k].body);
+    NormalSource<D>& source = sources[k];
+    source.body = sides[k].body;
+    source.stiffness = stiffness[b];
+    source.particles.clear(grid.shape.margin);
+    Vec<double, D> gradient = Vec<double, D>::zero();
+    for_each_copy(grid, node, sides[k], [&](std::size_t p, int at) {
+      collect_near(grid, bodies[b], grid.patches[p], at, source.particles);
+      if (settings.normal != NormalRule::plane)
+        gradient += mass_gradient(grid, bodies[b], grid.patches[p], at);
+    });
+    // A wall mirrors the body, so its surface is normal to the wall there.
+    for (int a = 0; a < D; ++a)
+      if (node.held >> a & 1u) gradient[a] = 0.0;
+    source.normal = weighted_normal(gradient, sides[k].mass, grid.cell_size);
+  }
+  std::uint32_t at = node.first_pair;
+  for (std::uint16_t r = 0; r < node.sides; ++r)
+    for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
+      SidePair<D>& pair = pairs_[at++];
+      pair = {};
+      pair.r = r;
+      pair.s = s;
+      pair.friction = friction(settings, sides[r].body, sides[s].body);
+      pair.normal = pair_normal(sources[r], sources[s], settings.normal, node.held);
+      const bool opposed = dot(pair.normal, pair.normal) > 0.0;
+      // D_rs = D_r + D_s, each D the distance from the node to the body's surface along the pair's
+      // normal.
+      pair.gap = opposed ? -grid.cell_size * (sources[r].particles.extent_along(pair.normal) +
+                                              sources[s].particles.extent_along(-1.0 * pair.normal))
+                         : std::numeric_limits<double>::infinity();
+      pair.closed = opposed &&
+                    (settings.detection == Detection::velocity || pair.gap < settings.gap_distance);
+    }
+}
+
+template void ContactGrid<2>::find_pairs(const TileGrid<2>&, const std::vector<Body<2>>&,
+                                         const std::vector<double>&, const ContactSettings&,
+                                         const ContactNode&);
+template void ContactGrid<3>::find_pairs(const TileGrid<3>&, const std::vector<Body<3>>&,
+                                         const std::vector<double>&, const ContactSettings&,
+                                         const ContactNode&);
+
+}  // namespace mpm
