@@ -9,7 +9,18 @@ import numpy as np
 import pytest
 
 from cases import BASES, CELL, DENSITY, SCHEMES, YOUNG, box, one_block, three_blocks
-from mpm3dpp import Body, Case, Contact, Grid, Run, RunError, Simulation, Viscosity, shapes
+from mpm3dpp import (
+    Body,
+    Case,
+    Contact,
+    Grid,
+    Material,
+    Run,
+    RunError,
+    Simulation,
+    Viscosity,
+    shapes,
+)
 from mpm3dpp.io.history import COLUMNS, NUMERICAL
 
 EPS = np.finfo(float).eps
@@ -47,6 +58,31 @@ def test_the_ledger_closes_and_momentum_stays(dimension: int, scheme: str, basis
     )
     assert np.abs(drift).max() <= ROUNDING * size
     assert [row[name][0] for name in names] == pytest.approx(momentum, abs=ROUNDING * size)
+
+
+@pytest.mark.parametrize("scheme", ["usf", "musl"])
+def test_the_ledger_closes_with_plastic_work(scheme: str) -> None:
+    """A block flies against a wall: its plastic work is the yield stress times plastic strain."""
+    case = one_block(2, box(2, 12, {"y_min": "slip"}), {"scheme": scheme}, velocity=(0.0, -5.0))
+    limit = 0.01 * YOUNG
+    case.material["solid"] = Material(
+        density=DENSITY, strength={"j2": {"E": YOUNG, "nu": 0.3, "Y0": limit}}
+    )
+    simulation = Simulation(case, threads=1)
+    work, strain, volume = (
+        0.0,
+        *(simulation.column("block", c) for c in ("plastic_strain", "volume")),
+    )
+    for _ in range(250):
+        simulation.advance(1)
+        before, size = strain, volume
+        strain, volume = (simulation.column("block", c) for c in ("plastic_strain", "volume"))
+        assert (strain >= before).all()
+        work += limit * (0.5 * (size + volume) * (strain - before)).sum()
+    row = history(simulation)
+    assert np.abs(row["residual"]).max() <= ROUNDING * row["kinetic"][0]
+    assert row["plastic"][-1] == pytest.approx(work, rel=1e-10)
+    assert row["plastic"][-1] > 0.1 * row["kinetic"][0]
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "mpm/materials/strength/elastic.hpp"
+#include "mpm/materials/strength/j2.hpp"
 #include "mpm/materials/strength/neo_hookean.hpp"
 
 namespace mpm {
@@ -18,6 +19,6 @@ struct Catalogue {
   }
 };
 
-using StrengthModels = Catalogue<Elastic, NeoHookean>;
+using StrengthModels = Catalogue<Elastic, J2, NeoHookean>;
 
 }  // namespace mpm

@@ -60,17 +60,19 @@ Mat<T, D> mid_step(const Mat<T, D>& gradient) {
 }
 
 /// A strength model: stress and state after a step from those before it, eq. (18)-(20) and the
-/// constitutive law. `update` must leave everything as it is for a zero gradient. `sound_speed`
-/// [m/s] bounds the fastest wave.
+/// constitutive law. `update` must leave everything as it is for a zero gradient, and returns the
+/// plastic work of the step per present volume [J/m^3]. `sound_speed` [m/s] bounds the fastest
+/// wave.
 template <class M>
-concept StrengthModel = requires(const M m, Motion<double, 3> motion, Sym<double, 3> stress,
+concept StrengthModel = requires(M m, Motion<double, 3> motion, Sym<double, 3> stress,
                                  typename M::template State<double, 3> state, double J) {
   { M::name } -> std::convertible_to<std::string_view>;
   { M::doc } -> std::convertible_to<std::string_view>;
   { M::source } -> std::convertible_to<std::string_view>;
   M::params;
   M::state_columns;
-  m.update(motion, stress, state);
+  m.prepare(J);
+  { m.update(motion, stress, state) } -> std::convertible_to<double>;
   { m.sound_speed(stress, state, J) } -> std::convertible_to<double>;
 };
 

@@ -44,6 +44,7 @@ struct StressSettings {
 /// What the ledger and the time step need from a block; energies in J.
 struct StressSums {
   double internal = 0.0;     // recoverable work of the stress, mean of old and new
+  double plastic = 0.0;      // plastic work
   double viscous = 0.0;      // work of the artificial viscosity
   double force_power = 0.0;  // work over this strain of the stress that the nodal forces use
   double fastest = 0.0;      // largest c + |v| [m/s]
@@ -71,7 +72,7 @@ void update_strength(const Model& model, double initial_density, Columns& column
   using T = Batch<native_lanes>;
   constexpr int W = native_lanes;
   using Stress = Sym<T, D>;
-  T internal(0.0), viscous(0.0), force_power(0.0), fastest(0.0);
+  T internal(0.0), plastic(0.0), viscous(0.0), force_power(0.0), fastest(0.0);
   auto negative = T(1.0) < T(0.0);
 
   for (std::size_t k = 0; k < block.count; k += W) {
@@ -96,7 +97,7 @@ void update_strength(const Model& model, double initial_density, Columns& column
     for (int c = 0; c < Stress::size; ++c) before.c[c] = read(columns.component(at.stress + c));
     auto state = load_state<Model, T, D>(columns, at.state, read);
     Stress stress = before;
-    model.update(motion, stress, state);
+    const T plastic_density = model.update(motion, stress, state);
     const T c = model.sound_speed(stress, state, motion.J);
 
     store(columns.component(at.volume), rows, volume);
@@ -111,8 +112,10 @@ void update_strength(const Model& model, double initial_density, Columns& column
 
     // The forces work on the gradient as it is, the material on that of the middle of the step.
     const Sym<T, D> strain = symmetric_part(motion.gradient);
-    const T work = T(0.25) * (volume_before + volume) *
-                   inner(before + stress, symmetric_part(mid_step(motion.gradient)));
+    const T mean_volume = T(0.5) * (volume_before + volume);
+    const T work =
+        T(0.5) * mean_volume * inner(before + stress, symmetric_part(mid_step(motion.gradient)));
+    const T lost = mean_volume * plastic_density;
     T used = settings.forces_follow ? volume * inner(stress, strain)
                                     : volume_before * inner(before, strain);
     if (settings.viscosity.active()) {
@@ -125,7 +128,8 @@ void update_strength(const Model& model, double initial_density, Columns& column
       viscous += select(valid, -volume * q * trace(strain), T(0.0));
       used -= (settings.forces_follow ? volume * q : volume_before * q_before) * trace(strain);
     }
-    internal += select(valid, work, T(0.0));
+    internal += select(valid, work - lost, T(0.0));
+    plastic += select(valid, lost, T(0.0));
     force_power += select(valid, used, T(0.0));
 
     Vec<T, D> v;
@@ -133,6 +137,7 @@ void update_strength(const Model& model, double initial_density, Columns& column
     fastest = max(fastest, c + sqrt(dot(v, v)));
   }
   sums.internal += sum(internal);
+  sums.plastic += sum(plastic);
   sums.viscous += sum(viscous);
   sums.force_power += sum(force_power);
   sums.fastest = max(sums.fastest, largest(fastest));

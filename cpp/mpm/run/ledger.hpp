@@ -55,6 +55,7 @@ struct Ledger {
     PatchSums<D> s;
     for (const PatchSums<D>& p : patches) {
       s.stress.internal += p.stress.internal;
+      s.stress.plastic += p.stress.plastic;
       s.stress.viscous += p.stress.viscous;
       s.stress.force_power += p.stress.force_power;
       s.kinetic += p.kinetic;
@@ -67,15 +68,16 @@ struct Ledger {
     kinetic = s.kinetic;
     for (std::size_t a = 0; a < D; ++a) momentum[a] = s.momentum[a];
     internal += s.stress.internal;
+    plastic += s.stress.plastic;
     viscous += s.stress.viscous;
     friction += contacts.friction;
     contact += contacts.energy;
     external += s.gravity_first + s.gravity_second;
     const double at_end = forces_follow ? 0.0 : 2.0 * (s.second_order - s.gravity_second);
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
-    time_integration -= s.stress.internal + s.stress.viscous - s.stress.force_power +
-                        s.second_order - s.gravity_second + contacts.friction -
-                        contacts.friction_first - at_end;
+    time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous -
+                        s.stress.force_power + s.second_order - s.gravity_second +
+                        contacts.friction - contacts.friction_first - at_end;
     largest = std::max({largest, std::abs(start), std::abs(external)});
   }
 };

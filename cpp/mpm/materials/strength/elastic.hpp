@@ -33,10 +33,11 @@ struct Elastic {
   }
 
   template <Real T, int D>
-  void update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
+  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
     const Corotated<T, D> at_end = corotate(motion, stress);
     stress = at_end.stress + Sym<T, D>::isotropic(T(lambda) * trace(at_end.strain)) +
              T(2.0 * G) * at_end.strain;
+    return T(0.0);
   }
 
   template <Real T, int D>

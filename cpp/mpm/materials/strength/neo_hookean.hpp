@@ -36,12 +36,13 @@ struct NeoHookean {
   }
 
   template <Real T, int D>
-  void update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
     Mat<T, D> f = motion.gradient;
     for (int i = 0; i < D; ++i) f[i][i] = f[i][i] + T(1.0);
     state.b = congruence(f, state.b);
     const T pressure_part = T(lambda) * log(motion.J) - T(G);
     stress = (T(1.0) / motion.J) * (Sym<T, D>::isotropic(pressure_part) + T(G) * state.b);
+    return T(0.0);
   }
 
   /// rho c^2 = (lambda (1 - ln J) + G (1 + b_nn)) / J along n, from the spatial tangent; b_nn by

@@ -1,0 +1,64 @@
+#pragma once
+#include <array>
+
+#include "mpm/materials/strength/elastic.hpp"
+
+namespace mpm {
+
+/// Elastic, then plastic at von Mises' yield stress Y0 + H ep, ep the equivalent plastic strain:
+/// perfectly plastic for H = 0, isotropic linear hardening otherwise.
+struct J2 {
+  static constexpr std::string_view name = "j2";
+  static constexpr std::string_view doc =
+      "von Mises plasticity: perfectly plastic, or isotropic linear hardening with H > 0";
+  static constexpr std::string_view source =
+      "von Mises 1913; radial return after Wilkins 1964 and Krieg & Key 1976";
+
+  double E{}, nu{}, Y0{}, H{};
+  Elastic elastic{};
+
+  static constexpr auto params = std::array{
+      Param<J2>{"E", &J2::E, "Pa", "Young's modulus", Rule::positive},
+      Param<J2>{"nu", &J2::nu, "", "Poisson's ratio", Rule::poisson_ratio},
+      Param<J2>{"Y0", &J2::Y0, "Pa", "yield stress in tension at the start", Rule::positive},
+      Param<J2>{"H", &J2::H, "Pa", "plastic modulus dY/dep (= E Et / (E - Et))", Rule::not_negative,
+                0.0},
+  };
+  static constexpr auto state_columns = std::array{
+      StateColumn{"plastic_strain", "1"},
+  };
+  template <class T, int D>
+  struct State {
+    T plastic_strain;  // equivalent
+  };
+
+  void prepare(double density) {
+    elastic.E = E;
+    elastic.nu = nu;
+    elastic.prepare(density);
+  }
+
+  /// The elastic stress, and where its von Mises stress q exceeds Y the deviator returned along its
+  /// own direction: q = Y holds after it, as 3 G dep = q_trial - Y(ep + dep) is linear in dep.
+  template <Real T, int D>
+  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+    NoState<T, D> none;
+    elastic.update(motion, stress, none);
+    const Sym<T, D> mean = Sym<T, D>::isotropic(T(1.0 / 3.0) * trace(stress));
+    const Sym<T, D> deviator = stress - mean;
+    const T q = sqrt(T(1.5) * inner(deviator, deviator));
+    const T yield = T(Y0) + T(H) * state.plastic_strain;
+    const T increment = max(q - yield, T(0.0)) * T(1.0 / (3.0 * elastic.G + H));
+    const T left = select(q > yield, T(1.0) - T(3.0 * elastic.G) * increment / q, T(1.0));
+    stress = mean + left * deviator;
+    state.plastic_strain += increment;
+    return (yield + T(0.5 * H) * increment) * increment;
+  }
+
+  template <Real T, int D>
+  T sound_speed(const Sym<T, D>& stress, const State<T, D>&, T J) const {
+    return elastic.sound_speed(stress, NoState<T, D>{}, J);
+  }
+};
+
+}  // namespace mpm
