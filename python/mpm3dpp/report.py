@@ -32,7 +32,7 @@ def contact_table(manifest: Manifest) -> list[str]:
             continue
         lines.append(
             f"  {pair.bodies[0]} - {pair.bodies[1]}: first contact at {pair.first_time:.6g} s, "
-            f"surfaces {pair.first_gap / manifest.cell_size:+.2f} cells apart, "
+            f"surfaces {round(pair.first_gap / manifest.cell_size, 2) + 0.0:.2f} cells apart, "
             f"friction work {pair.friction_work:.4g} {unit}"
         )
     if len(contact.pairs) > _PAIRS_SHOWN:

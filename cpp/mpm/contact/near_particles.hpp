@@ -80,11 +80,11 @@ struct NearParticles {
 
   /// How far the body extends from the node along a unit vector: max of x . n + l [cells], eq. (5),
   /// with l half the edge of a cube of the particle's present volume; -infinity if there are no
-  /// particles. Those within half a cell of the line through the node along n count: beside the
+  /// particles. Those within a cell of the line through the node along n count: beside the
   /// place where round bodies touch, their surfaces are still apart. If the line misses the body,
   /// as beside an edge, all count.
   double extent_along(const Vec<double, D>& normal) const {
-    constexpr double radius = 0.5;
+    constexpr double radius = 1.0;
     T on_line(-std::numeric_limits<double>::infinity()), anywhere = on_line;
     for (const Lanes& p : lanes) {
       T along(0.0), square(0.0);

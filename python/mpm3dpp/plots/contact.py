@@ -48,12 +48,12 @@ def first_contact(folder: Path, out: Path | None = None) -> Path | None:
         found = _first(folder, results.bodies)
         if found is None or len(results) == 0:
             return None
-        time, a, b = found
+        time, a, b, recorded = found
         after = np.flatnonzero(results.times >= time * (1.0 - 1e-9))
         frame = int(after[0]) if len(after) else len(results) - 1
         path = out or folder / "first_contact.png"
         with styled():
-            return _draw(results, frame, a, b, path)
+            return _draw(results, frame, a, b, recorded, path)
 
 
 def measure_gap(
@@ -144,16 +144,16 @@ def _within_bins(points: np.ndarray, others: np.ndarray, width: float) -> np.nda
     return near
 
 
-def _first(folder: Path, bodies: list[str]) -> tuple[float, int, int] | None:
-    """Time of the first contact force and the two bodies; from the manifest, else the history."""
+def _first(folder: Path, bodies: list[str]) -> tuple[float, int, int, float | None] | None:
+    """Time of the first contact force, the two bodies and, from the manifest, the gap [m]."""
     folder = folder if folder.is_dir() else folder.parent
-    found: list[tuple[float, int, int]] = []
+    found: list[tuple[float, int, int, float | None]] = []
     try:
         pairs: list[dict[str, Any]] = read_manifest(folder)["contact"]["pairs"]
         for pair in pairs:
             if pair["first_time"] is not None:
                 a, b = (bodies.index(name) for name in pair["bodies"])
-                found.append((float(pair["first_time"]), a, b))
+                found.append((float(pair["first_time"]), a, b, pair["first_gap"]))
     except CaseError:  # a killed run has no manifest
         history = read_history(folder)
         for a, b in itertools.combinations(range(len(bodies)), 2):
@@ -161,11 +161,11 @@ def _first(folder: Path, bodies: list[str]) -> tuple[float, int, int] | None:
             if names[0] in history:
                 touching = np.any([np.nan_to_num(history[n]) != 0.0 for n in names], axis=0)
                 if touching.any():
-                    found.append((float(history["time"][touching][0]), a, b))
-    return min(found, default=None)
+                    found.append((float(history["time"][touching][0]), a, b, None))
+    return min(found, key=lambda f: f[:3], default=None)
 
 
-def _draw(results: Results, frame: int, a: int, b: int, path: Path) -> Path:
+def _draw(results: Results, frame: int, a: int, b: int, recorded: float | None, path: Path) -> Path:
     arrays = results.arrays(frame)
     points = arrays["position"].astype(float)
     sizes = sizes_of(arrays, results)
@@ -200,7 +200,7 @@ def _draw(results: Results, frame: int, a: int, b: int, path: Path) -> Path:
         )
     else:
         legend_of_bodies(whole, results.bodies, loc="best")
-    _close_up(close, results, points, sizes, arrays["body"], gap)
+    _close_up(close, results, points, sizes, arrays["body"], gap, recorded)
     return save(figure, path)
 
 
@@ -211,6 +211,7 @@ def _close_up(
     sizes: np.ndarray,
     bodies: np.ndarray,
     gap: Gap,
+    recorded: float | None,
 ) -> None:
     """The neighbourhood of the contact, with the grid, the two surfaces and their distance."""
     cell = results.cell_size
@@ -241,7 +242,8 @@ def _close_up(
         ends = [factor * (centre + side * gap.value * normal) for side in (-0.5, 0.5)]
         arrow = {"arrowstyle": "<->", "lw": 1.0, "shrinkA": 0, "shrinkB": 0}
         axes.annotate("", ends[0], ends[1], arrowprops=arrow, zorder=6)
-    size, cells = round(gap.value * factor, 3) + 0.0, round(gap.value / cell, 2) + 0.0
+    said = gap.value if recorded is None else recorded  # What the contact itself has measured.
+    size, cells = round(said * factor, 3) + 0.0, round(said / cell, 2) + 0.0
     text = f"gap {size:.3f} {unit} = {cells:.2f} cells"
     axes.set_title(text.replace("-", "\N{MINUS SIGN}"), loc="left")
 
