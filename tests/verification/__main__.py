@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 from pathlib import Path
 
 from .figure import Figure
@@ -73,11 +74,28 @@ def main() -> None:
 
 def page(rows: list[tuple[str, list[str]]], total: str) -> str:
     """Return the whole page: what it says about itself, then a table per problem."""
-    text = [ABOUT.read_text(), f"\n{total}.\n"]
+    text = [
+        ABOUT.read_text(),
+        f"\n{total}.\n",
+        summary([line for _, lines in rows for line in lines]),
+    ]
     for problem in sorted({name for name, _ in rows}, key=_order):
         text.append(f"\n## {problem}\n\n{HEAD}")
         text += [line for name, lines in rows if name == problem for line in lines]
     return "".join(text)
+
+
+def summary(lines: list[str]) -> str:
+    """Return a table of how many figures pass, by scheme and basis."""
+    text = "\n| passed, of those with a tolerance | gimp | linear |\n| --- | --- | --- |\n"
+    for scheme in ("musl", "usf", "usl"):
+        text += f"| {scheme} "
+        for basis in ("gimp", "linear"):
+            own = [line for line in lines if re.match(rf"\| [^|]* {scheme} \dD {basis} \|", line)]
+            passed, failed = (sum(f"| {v} |" in line for line in own) for v in ("pass", "**FAIL**"))
+            text += f"| {passed} of {passed + failed} "
+        text += "|\n"
+    return text
 
 
 def _order(problem: str) -> tuple[int, str]:
