@@ -97,8 +97,8 @@ void test_separation(mpm::testing::Report& report) {
   CHECK(norm(separate<2>(lattice, between)) == 0.0, separate<2>(lattice, between)[0]);
   CHECK(norm(separate<2>(lattice, nothing)) == 0.0, lattice.lanes.size());
 
-  // Within a cell of the line through the node the body is lower than its highest point beside it; a
-  // line that misses the body sees all of it.
+  // Within a cell of the line through the node the body is lower than its highest point beside it;
+  // a line that misses the body sees all of it.
   NearParticles<2> disc;
   add<2>(disc, {0.3, 0.1});
   add<2>(disc, {1.2, 1.1});
