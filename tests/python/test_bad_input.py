@@ -191,7 +191,7 @@ EDITS: list[tuple[str, ...]] = [
     ("body outside the box", '["10 mm", "10 mm"]', '["4 mm", "10 mm"]', LEFT,
      "out of grid.box", "enlarge", '"4 mm"'),
     ("cell size a million times too small", CELL + "\n" + BOX, 'cell_size = "1 nm"\n', LEFT,
-     "more than 4e+09 particles", "larger grid.cell_size", "shape = { disc"),
+     "would need some", "larger grid.cell_size", "shape = { disc"),
 ]
 # fmt: on
 JARGON = re.compile(r"pydantic|validation|valueerror|traceback|input_type|nonetype|ctx", re.I)

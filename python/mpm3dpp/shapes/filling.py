@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from typing import Any
 
@@ -13,7 +14,9 @@ from ..errors import CaseError
 from .base import SURFACE_TOLERANCE, Points, Shape
 
 _CHUNK = 1 << 18  # Points looked at together: some 20 MB of temporary arrays.
-_MOST = 4_000_000_000  # Lattice points in the bounds of one shape.
+# Lattice points in the bounds of one shape: four times what the memory holds as particles of 150
+# bytes, for shapes that fill their bounds badly.
+_MOST = 4 * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 150
 _QUADRATURE = {2: 1 << 21, 3: 1 << 22}  # Lattice points for a volume without a formula.
 
 
@@ -24,9 +27,14 @@ class _Lattice:
         lower, upper = shape.bounds()
         first = np.floor((lower - origin) / spacing - 0.5)
         count = np.ceil((upper - origin) / spacing - 0.5) - first + 1
-        if not np.prod(np.maximum(count, 0.0)) < _MOST:
-            remedy = "give a larger grid.cell_size or fewer particles per cell"
-            rule = f"would need more than {_MOST:.0e} particles"
+        points = float(np.prod(np.maximum(count, 0.0)))
+        if not points < _MOST:
+            size = " x ".join(f"{x:.3g} m" for x in upper - lower)
+            rule = f"is {size} in size and would need some {points:.0e} particles"
+            remedy = (
+                "write lengths with their unit (a plain number is in metres), or give a larger "
+                "grid.cell_size"
+            )
             raise CaseError(rule, remedy, key="shape")
         self.axes = [
             origin[d] + (first[d] + np.arange(int(count[d])) + 0.5) * spacing[d]
@@ -70,7 +78,7 @@ def fill_shape(shape: Shape, origin: Any, spacing: float) -> Points:
         Positions [m], shape (n, D).
 
     Raises:
-        CaseError: the lattice would have more than 4e9 points.
+        CaseError: the particles would not fit into the memory of this machine.
     """
     start = np.asarray(origin, dtype=np.float64)
     lattice = _Lattice(shape, start, np.full(len(start), float(spacing)))
