@@ -48,7 +48,7 @@ struct NormalSource {
   int body;
   double stiffness;  // rho c^2 of its material [Pa]
   NearParticles<D> particles;
-  Vec<double, D> normal;  // from the gradient of mass (weighted_normal); unset for `plane`
+  Vec<double, D> normal;  // from the gradient of mass (weighted_normal); zero for `plane`
 };
 
 /// The unit normal from body r to body s by the chosen rule; zero if there is none.

@@ -140,9 +140,10 @@ class PlaneFit {
   double z_[n] = {};
 };
 
-/// The unit normal from r to s of the plane that separates their particles; zero if none does: all
-/// particles lie within two cells of the node, so the corridor of two separate bodies is narrower
-/// than that, and a wider one means that the bodies fill the same place.
+/// The unit normal from r to s of the plane that separates their particles; zero if none does. All
+/// particles lie within 1.5 cells of the node along each axis, so the corridor of two separate
+/// bodies has a half width below 1.5 sqrt(3) = 2.6 cells; a much wider one means that the bodies
+/// fill the same place.
 template <int D>
 Vec<double, D> separating_normal(const NearParticles<D>& r, const NearParticles<D>& s,
                                  unsigned held) {
