@@ -6,6 +6,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
@@ -43,22 +44,47 @@ struct CatalogueModel {
   std::string kind, name, doc, source;
   std::vector<CatalogueParameter> parameters;
   std::vector<std::string> state;
+  std::string eos;  // of a strength model: "never", "may", "must"
 };
+
+template <class M>
+CatalogueModel described(const char* kind, const M& model) {
+  CatalogueModel m{
+      kind, std::string(model.name), std::string(model.doc), std::string(model.source), {}, {}, ""};
+  for (const auto& p : model.params)
+    m.parameters.push_back({std::string(p.name), std::string(p.unit), std::string(p.meaning),
+                            std::string(rule_text(p.rule)),
+                            std::isnan(p.start) ? std::nullopt : std::optional<double>(p.start)});
+  if constexpr (requires { model.state_columns; })
+    for (const auto& s : model.state_columns) m.state.push_back(std::string(s.name));
+  if constexpr (requires { M::eos; })
+    m.eos = M::eos == EosUse::never ? "never" : M::eos == EosUse::may ? "may" : "must";
+  return m;
+}
 
 std::vector<CatalogueModel> catalogue() {
   std::vector<CatalogueModel> models;
-  StrengthModels::for_each([&](const auto& model) {
-    CatalogueModel m{
-        "strength", std::string(model.name), std::string(model.doc), std::string(model.source), {},
-        {}};
-    for (const auto& p : model.params)
-      m.parameters.push_back({std::string(p.name), std::string(p.unit), std::string(p.meaning),
-                              std::string(rule_text(p.rule)),
-                              std::isnan(p.start) ? std::nullopt : std::optional<double>(p.start)});
-    for (const auto& s : model.state_columns) m.state.push_back(std::string(s.name));
-    models.push_back(std::move(m));
-  });
+  const auto add = [&](const char* kind) {
+    return [&models, kind](const auto& model) { models.push_back(described(kind, model)); };
+  };
+  StrengthModels::for_each(add("strength"));
+  EosModels::for_each(add("eos"));
+  FailureModels::for_each(add("failure"));
   return models;
+}
+
+using Parameters = std::map<std::string, double>;
+using Named = std::pair<std::string, Parameters>;
+using NamedFailure = std::tuple<std::string, Parameters, std::string>;
+
+MaterialChoice choice_of(double density, const std::string& strength, const Parameters& parameters,
+                         const std::optional<Named>& eos,
+                         const std::vector<NamedFailure>& failures) {
+  MaterialChoice choice{density, {strength, parameters}, {}, {}};
+  if (eos) choice.eos = ModelChoice{eos->first, eos->second};
+  for (const auto& [name, values, action] : failures)
+    choice.failures.push_back({{name, values}, action});
+  return choice;
 }
 
 }  // namespace
@@ -145,13 +171,21 @@ NB_MODULE(_core, m) {
       .def_ro("doc", &CatalogueModel::doc)
       .def_ro("source", &CatalogueModel::source)
       .def_ro("parameters", &CatalogueModel::parameters)
-      .def_ro("state", &CatalogueModel::state);
+      .def_ro("state", &CatalogueModel::state)
+      .def_ro("eos", &CatalogueModel::eos);
 
   nb::class_<Simulation>(m, "Simulation")
       .def(nb::new_([](const Settings& settings) { return make_simulation(settings); }),
            nb::arg("settings"))
-      .def("add_material", &Simulation::add_material, nb::arg("density"), nb::arg("strength"),
-           nb::arg("parameters"))
+      .def(
+          "add_material",
+          [](Simulation& s, double density, const std::string& strength,
+             const Parameters& parameters, const std::optional<Named>& eos,
+             const std::vector<NamedFailure>& failures) {
+            return s.add_material(choice_of(density, strength, parameters, eos, failures));
+          },
+          nb::arg("density"), nb::arg("strength"), nb::arg("parameters"),
+          nb::arg("eos") = nb::none(), nb::arg("failures") = std::vector<NamedFailure>())
       .def(
           "add_body",
           [](Simulation& s, const std::string& name, int material, const Input& positions,
@@ -161,6 +195,12 @@ NB_MODULE(_core, m) {
           },
           nb::arg("name"), nb::arg("material"), nb::arg("positions"), nb::arg("velocities"),
           nb::arg("volumes"))
+      .def(
+          "set_state",
+          [](Simulation& s, int body, const std::string& column, const Input& values) {
+            s.set_state(body, column, span_of(values));
+          },
+          nb::arg("body"), nb::arg("column"), nb::arg("values"))
       .def("set_friction", &Simulation::set_pair_friction, nb::arg("body_a"), nb::arg("body_b"),
            nb::arg("mu"))
       .def("prepare", &Simulation::prepare, nb::call_guard<nb::gil_scoped_release>())
@@ -237,13 +277,17 @@ NB_MODULE(_core, m) {
   m.def("catalogue", &catalogue);
   m.def(
       "drive_material",
-      [](double density, const std::string& strength,
-         const std::map<std::string, double>& parameters, const Input& increments, bool lanes) {
-        return to_numpy(drive_material(density, strength, parameters, span_of(increments), lanes),
-                        6);
+      [](double density, const std::string& strength, const Parameters& parameters,
+         const Input& increments, bool lanes, double time_step, const std::optional<Named>& eos,
+         const std::vector<NamedFailure>& failures) {
+        DrivenPoint point = drive_material(choice_of(density, strength, parameters, eos, failures),
+                                           span_of(increments), time_step, lanes);
+        const std::size_t columns = point.names.size();
+        return std::pair(to_numpy(std::move(point.values), columns), point.names);
       },
       nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("increments"),
-      nb::arg("lanes"));
+      nb::arg("lanes"), nb::arg("time_step") = 1.0, nb::arg("eos") = nb::none(),
+      nb::arg("failures") = std::vector<NamedFailure>());
   m.def("measure_bandwidth", &measure_bandwidth, nb::arg("threads"),
         nb::call_guard<nb::gil_scoped_release>());
   m.def("build_info", [] {

@@ -12,19 +12,23 @@ from mpm3dpp import _core
 
 DENSITY, MODULUS = 1000.0, 1e8
 EPS = np.finfo(float).eps
-MODELS = [model.name for model in _core.catalogue() if model.kind == "strength"]
+MODELS = [m.name for m in _core.catalogue() if m.kind == "strength" and m.eos != "must"]
+"""The strength models that give a whole stress by themselves."""
+
+CHOSEN = {"nu": 0.3, "T_melt": 1000.0, "cp": 1000.0, "n": 0.5, "e0": 0.5, "q_phi": 0.5}
+CHOSEN["tension"] = MODULUS
 
 Motion = Callable[[float], np.ndarray]
 
 
 def parameters(name: str) -> dict[str, float]:
-    """Return parameters of a model: moduli 1e8 Pa, Poisson's ratio 0.3, else its default or 1."""
+    """Return parameters of a model: moduli and yield stresses 1e8 Pa, else CHOSEN, default or 1."""
     model = next(m for m in _core.catalogue() if m.name == name)
     values = {}
     for p in model.parameters:
-        if p.default is not None:
+        if p.default is not None and p.name not in CHOSEN:
             continue
-        values[p.name] = MODULUS if p.unit == "Pa" else 0.3 if p.name == "nu" else 1.0
+        values[p.name] = MODULUS if p.unit == "Pa" else CHOSEN.get(p.name, 1.0)
     return values
 
 
@@ -47,7 +51,7 @@ def drive(
 ) -> np.ndarray:
     """Return the Cauchy stress after each step as matrices, shape (steps + 1, 3, 3) [Pa]."""
     moves = np.ascontiguousarray(moves)
-    s = _core.drive_material(DENSITY, name, constants or parameters(name), moves, lanes)
+    s, _ = _core.drive_material(DENSITY, name, constants or parameters(name), moves, lanes)
     return s[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
 
 

@@ -12,7 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from mpm3dpp import case, case_parts
+from mpm3dpp.detonation import Detonation
 from mpm3dpp.materials import catalogue
+from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
 from mpm3dpp.rules import requirement
 from mpm3dpp.shapes.base import KINDS
 
@@ -29,6 +31,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ("contact.pair", case_parts.ContactPair, "Written `[[contact.pair]]`, once for each pair."),
     ("material.NAME", case.Material, "The models are listed in [materials](materials.md)."),
     ("body.NAME", case.Body, ""),
+    ("detonation", Detonation, "Written `[[detonation]]`, once for each point."),
 )
 
 
@@ -129,11 +132,35 @@ def materials_page() -> str:
         "The formulas: [theory](../theory/materials.md). A new model:",
         "[Write a material](../how-to/write-a-material.md).",
         "",
-        "A material is a density and one strength model,",
-        '`strength = { elastic = { E = "70 GPa", nu = 0.3 } }`.',
+        "A material is a density, one strength model,",
+        '`strength = { elastic = { E = "70 GPa", nu = 0.3 } }`, at most one equation of state,',
+        '`eos = { tait = { c0 = "30 m/s" } }`, and any number of failure models,',
+        '`failure = { plastic_strain = { limit = 1.5, action = "no_tension" } }`.',
     ]
-    for name, model in catalogue().items():
+    for kind, words in MODEL_KINDS.items():
+        lines += [
+            "",
+            f"# {words[:1].upper()}{words[1:]}s: `{kind}`".replace(
+                "equation of states", "equations of state"
+            ),
+        ]
+        lines += models_of(kind)
+    return "\n".join(lines) + "\n"
+
+
+EOS_USE = {
+    "never": "Takes no equation of state.",
+    "may": "An equation of state may give its pressure.",
+    "must": "Needs an equation of state.",
+}
+
+
+def models_of(kind: str) -> list[str]:
+    """Return the Markdown lines of all models of a kind."""
+    lines: list[str] = []
+    for name, model in catalogue(kind).items():
         lines += ["", f"## {name}", f"{model.doc[:1].upper()}{model.doc[1:]}.", ""]
+        lines += [EOS_USE[model.eos], ""] if kind == "strength" else []
         lines += [f"Source: {model.source}.", "", "| parameter | unit | meaning | rule | default |"]
         lines += ["| --- | --- | --- | --- | --- |"]
         for p in model.parameters:
@@ -143,7 +170,7 @@ def materials_page() -> str:
             lines.append("| " + " | ".join(cell(part) for part in parts) + " |")
         stored = ", ".join(f"`{column}`" for column in model.state) or "nothing"
         lines += ["", f"Stores for each particle (for `output.fields`): {stored}."]
-    return "\n".join(lines) + "\n"
+    return lines
 
 
 def pages() -> dict[str, str]:

@@ -5,7 +5,7 @@
 
 #include "mpm/contact/contact_grid.hpp"
 #include "mpm/grid/tile_grid.hpp"
-#include "mpm/materials/strength_block.hpp"
+#include "mpm/materials/material_block.hpp"
 #include "mpm/parallel/threads.hpp"
 #include "mpm/particles/lists.hpp"
 

@@ -18,9 +18,10 @@ if TYPE_CHECKING:
     from . import shapes
     from .case import Body, Case, Material, load_case
     from .case_parts import Contact, ContactPair, Grid, GridBox, Output, Run, Viscosity, Walls
+    from .detonation import Detonation
     from .errors import CaseError, RunError
     from .io import open_results
-    from .materials import Strength
+    from .materials import Eos, Failure, Strength
     from .run import run_case
     from .simulation import Simulation
 
@@ -38,9 +39,10 @@ _HOMES = {
         "Viscosity",
         "Walls",
     ),
+    "detonation": ("Detonation",),
     "errors": ("CaseError", "RunError"),
     "io": ("open_results",),
-    "materials": ("Strength",),
+    "materials": ("Eos", "Failure", "Strength"),
     "run": ("run_case",),
     "simulation": ("Simulation",),
 }
@@ -52,6 +54,9 @@ __all__ = [
     "CaseError",
     "Contact",
     "ContactPair",
+    "Detonation",
+    "Eos",
+    "Failure",
     "Grid",
     "GridBox",
     "Material",

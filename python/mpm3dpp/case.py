@@ -18,9 +18,10 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 from . import case_file
 from .case_checks import check_case
 from .case_parts import Contact, Grid, Output, Run
+from .detonation import Detonation
 from .errors import CaseError, from_validation, key_text, violation
 from .errors import Path as KeyPath
-from .materials import AnyStrength
+from .materials import AnyEos, AnyFailure, AnyStrength
 from .model import CaseModel, Count, Text
 from .shapes.base import KINDS, AnyShape
 from .units import Density, PositiveLength, Spin, VelocityVector
@@ -32,10 +33,40 @@ class Material(CaseModel):
     Attributes:
         density: initial density [kg/m^3].
         strength: one strength model with its parameters, `{"elastic": {"E": ..., "nu": ...}}`.
+        eos: at most one equation of state, `{"tait": {"c0": ...}}`; it gives the pressure.
+        failure: any number of failure models, `{"plastic_strain": {"limit": ...}}`; `action`
+            beside a model's parameters says what failing does, "no_tension" or "no_shear".
     """
 
     density: Density
     strength: AnyStrength
+    eos: AnyEos = None
+    failure: AnyFailure = Field(default_factory=list)
+
+    def table(self) -> dict[str, Any]:
+        """Return the material as a table of a case file, in SI units."""
+        table: dict[str, Any] = {"density": self.density, "strength": self.strength.table()}
+        if self.eos is not None:
+            table["eos"] = self.eos.table()
+        if self.failure:
+            table["failure"] = {k: v for f in self.failure for k, v in f.table().items()}
+        return table
+
+    @property
+    def models(self) -> set[str]:
+        """Names of all models of the material."""
+        names = {self.strength.model, *(f.model for f in self.failure)}
+        return names if self.eos is None else {*names, self.eos.model}
+
+    def for_core(self) -> dict[str, Any]:
+        """Return the keyword arguments with which the core makes the material."""
+        return {
+            "density": self.density,
+            "strength": self.strength.model,
+            "parameters": self.strength.parameters,
+            "eos": None if self.eos is None else (self.eos.model, self.eos.parameters),
+            "failures": [(f.model, f.parameters, f.action) for f in self.failure],
+        }
 
 
 class Body(CaseModel):
@@ -81,6 +112,7 @@ class Case(CaseModel):
     Attributes:
         title: one line for pictures and results.
         material, body: by name, in the order of the file.
+        detonation: the points at which explosives are lit.
         text: the file's text, empty for a case built in Python.
         source: the file's path, None for a case built in Python.
     """
@@ -92,6 +124,7 @@ class Case(CaseModel):
     contact: Contact = Field(default_factory=Contact)
     material: Annotated[dict[str, Material], Field()]
     body: Annotated[dict[str, Body], Field()]
+    detonation: list[Detonation] = Field(default_factory=list)
 
     _text: str = PrivateAttr("")
     _source: Path | None = PrivateAttr(None)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .case_parts import STANDARD_FIELDS
+from .detonation import check_detonations
 from .errors import Path, nearest, violation
 from .materials import state_columns
 
@@ -36,6 +37,7 @@ def check_case(case: Case) -> None:
                 rule = f"is not a {'body' if key == 'bodies' else 'material'} of this case"
                 path: Path = ("contact", "pair", index, key, position)
                 raise violation(rule, nearest(word, known), value=word, path=path)
+    check_detonations(case)
     _check_output(case)
 
 
@@ -70,8 +72,10 @@ def _check_body(case: Case, body: Body, path: Path) -> None:
 
 def _check_output(case: Case) -> None:
     used = {body.material for body in case.body.values()}
-    models = {case.material[name].strength.model for name in used}
-    extra = ["volume", "mass", *state_columns(models)]
+    materials = [case.material[name] for name in used]
+    extra = ["volume", "mass", *state_columns(set().union(*(m.models for m in materials)))]
+    extra += ["internal_energy"] if any(m.eos is not None for m in materials) else []
+    extra += ["failed"] if any(m.failure for m in materials) else []
     if case.run.viscosity is not None:
         extra.append("viscosity_pressure")
     extra = list(dict.fromkeys(extra))

@@ -18,20 +18,14 @@ _PARTICLE_BYTES, _CELL_BYTES = 200, 150
 def sound_speed(material: Material) -> float:
     """Return the speed of pressure waves in a material at rest [m/s].
 
-    It is sqrt(M / density), M the stress per strain of a tiny uniaxial stretch of the core's model.
-
     Raises:
         CaseError: the core refuses the parameters.
     """
     core = importlib.import_module("mpm3dpp._core")
-    strain = 1e-6
-    stretch = np.zeros((1, 3, 3))
-    stretch[0, 0, 0] = strain
-    strength = material.strength
-    stress = core.drive_material(
-        material.density, strength.model, strength.parameters, stretch, False
+    rows, names = core.drive_material(
+        **material.for_core(), increments=np.zeros((0, 3, 3)), lanes=False
     )
-    return math.sqrt(max(float(stress[1][0]), 0.0) / strain / material.density)
+    return float(rows[0][names.index("sound_speed")])
 
 
 def time_step(case: Case, bodies: list[FilledBody]) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from . import _core
 from .build import build, warnings
 from .case import Case
+from .detonation import lighting_times
 from .errors import CaseError, RunError
 from .folders import thread_count
 
@@ -42,13 +43,16 @@ class Simulation:
         numbers = {name: self._add_material(name) for name in dict.fromkeys(self.materials)}
         while filled:  # What the core has taken is dropped, so that memory holds it once.
             body = filled.pop(0)
-            self.core.add_body(
+            number = self.core.add_body(
                 body.name,
                 numbers[body.material],
                 body.positions,
                 np.ascontiguousarray(body.velocities),
                 body.volumes[:1].copy(),
             )
+            arrival = lighting_times(case, body.name, body.positions)
+            if arrival is not None:
+                self.core.set_state(number, "lighting_time", arrival)
         for a, b, friction in case.frictions():
             self.core.set_friction(a, b, friction)
         try:
@@ -59,12 +63,11 @@ class Simulation:
 
     def _add_material(self, name: str) -> int:
         material = self.case.material[name]
-        strength = material.strength
         try:
-            return self.core.add_material(material.density, strength.model, strength.parameters)
+            return self.core.add_material(**material.for_core())
         except ValueError as error:
             remedy = "see `mpm3dpp materials`"
-            raise self.case.error(("material", name, "strength"), str(error), remedy) from None
+            raise self.case.error(("material", name), str(error), remedy) from None
 
     @property
     def time(self) -> float:

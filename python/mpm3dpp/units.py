@@ -35,6 +35,8 @@ DIMENSIONS: dict[str, tuple[str, str]] = {
     "K": ("a temperature", '"293 K"'),
     "N": ("a force", '"5 N"'),
     "J": ("an energy", '"5 J"'),
+    "Pa*s": ("a dynamic viscosity", '"1 mPa*s"'),
+    "J/m^3": ("an energy per volume", '"7 GJ/m^3"'),
     "J/kg": ("a specific energy", '"5 kJ/kg"'),
     "J/kg/K": ("a specific heat", '"383 J/kg/K"'),
     "1/s": ("a rate", '"1 1/s"'),

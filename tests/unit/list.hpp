@@ -11,6 +11,7 @@
   X(check) \
   X(batch) \
   X(log) \
+  X(exp_and_pow) \
   X(tensor) \
   X(cholesky) \
   X(threads) \

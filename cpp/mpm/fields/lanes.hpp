@@ -32,6 +32,8 @@ Batch<W> load(const double* column, const LaneRows<W>& rows) {
   return b;
 }
 
+inline double load(const double* column, const LaneRows<1>& rows) { return column[rows.row[0]]; }
+
 template <int W>
 void store(double* column, const LaneRows<W>& rows, Batch<W> value) {
   if (rows.contiguous) {
@@ -39,6 +41,31 @@ void store(double* column, const LaneRows<W>& rows, Batch<W> value) {
     return;
   }
   for (int k = 0; k < rows.count; ++k) column[rows.row[k]] = value.v[k];
+}
+
+inline void store(double* column, const LaneRows<1>& rows, double value) {
+  column[rows.row[0]] = value;
+}
+
+/// Lanes from and to memory in sequence, and those before `count`, for a number or a Batch.
+template <class T>
+T load_lanes(const double* from) {
+  if constexpr (std::is_same_v<T, double>)
+    return *from;
+  else
+    return T::load(from);
+}
+inline void store_lanes(double* to, double value) { *to = value; }
+template <int W>
+void store_lanes(double* to, Batch<W> value) {
+  value.store(to);
+}
+template <class T>
+Truth<T> lanes_before(int count) {
+  if constexpr (std::is_same_v<T, double>)
+    return count > 0;
+  else
+    return first_lanes<T::lanes>(count);
 }
 
 }  // namespace mpm

@@ -3,13 +3,28 @@
 // columns and law tests.
 #include <variant>
 
+#include "mpm/materials/eos/ideal_gas.hpp"
+#include "mpm/materials/eos/jwl.hpp"
+#include "mpm/materials/eos/linear.hpp"
+#include "mpm/materials/eos/mie_gruneisen.hpp"
+#include "mpm/materials/eos/murnaghan.hpp"
+#include "mpm/materials/eos/polynomial.hpp"
+#include "mpm/materials/eos/tait.hpp"
+#include "mpm/materials/failure/plastic_strain.hpp"
+#include "mpm/materials/strength/drucker_prager.hpp"
 #include "mpm/materials/strength/elastic.hpp"
+#include "mpm/materials/strength/fluid.hpp"
+#include "mpm/materials/strength/high_explosive.hpp"
 #include "mpm/materials/strength/j2.hpp"
+#include "mpm/materials/strength/johnson_cook.hpp"
 #include "mpm/materials/strength/neo_hookean.hpp"
+#include "mpm/materials/strength/simplified_johnson_cook.hpp"
+#include "mpm/materials/strength/swift.hpp"
+#include "mpm/materials/strength/voce.hpp"
 
 namespace mpm {
 
-template <StrengthModel... Models>
+template <Model... Models>
 struct Catalogue {
   using Any = std::variant<Models...>;
   /// f(model) for a default instance of each.
@@ -19,6 +34,9 @@ struct Catalogue {
   }
 };
 
-using StrengthModels = Catalogue<Elastic, J2, NeoHookean>;
+using StrengthModels = Catalogue<Elastic, J2, Voce, Swift, JohnsonCook, SimplifiedJohnsonCook,
+                                 DruckerPrager, NeoHookean, Fluid, HighExplosive>;
+using EosModels = Catalogue<LinearBulk, Polynomial, MieGruneisen, Jwl, IdealGas, Tait, Murnaghan>;
+using FailureModels = Catalogue<PlasticStrainLimit>;
 
 }  // namespace mpm

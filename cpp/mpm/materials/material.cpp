@@ -34,6 +34,43 @@ void set_parameters(Model& model, const std::map<std::string, double>& parameter
   }
 }
 
+/// The model of a catalogue that the user has chosen, with its parameters.
+template <class Models>
+typename Models::Any made(const char* kind, const ModelChoice& choice, double density) {
+  std::optional<typename Models::Any> found;
+  Models::for_each([&](auto model) {
+    if (model.name != choice.name) return;
+    set_parameters(model, choice.parameters);
+    if (const std::string problem = model.problem(); !problem.empty())
+      throw std::invalid_argument(problem);
+    model.prepare(density);
+    found = model;
+  });
+  if (!found)
+    throw std::invalid_argument("no " + std::string(kind) + " model is named " + choice.name);
+  return *found;
+}
+
+FailureAction action_named(const std::string& name) {
+  if (name == "no_shear") return FailureAction::no_shear;
+  if (name == "no_tension") return FailureAction::no_tension;
+  throw std::invalid_argument("failure.action must be no_shear or no_tension, not " + name);
+}
+
+/// Has the strength model what the failure model judges by?
+template <class Strength, class Failure>
+void check_together(const Strength& strength, const Failure& failure, bool has_eos) {
+  using State = typename Strength::template State<double, 3>;
+  const std::string name(failure.name), with(strength.name);
+  if constexpr (requires { Failure::needs_plasticity; })
+    if (!requires(State s) { s.plastic_strain; })
+      throw std::invalid_argument("failure." + name + " needs a plastic strain, which " + with +
+                                  " does not have");
+  if constexpr (requires { Failure::needs_energy; })
+    if (!has_eos)
+      throw std::invalid_argument("failure." + name + " needs an internal energy: give an eos");
+}
+
 }  // namespace
 
 std::string_view rule_text(Rule rule) {
@@ -65,20 +102,29 @@ bool satisfies(Rule rule, double value) {
   return true;
 }
 
-Material make_material(double density, const std::string& strength,
-                       const std::map<std::string, double>& parameters) {
-  if (!satisfies(Rule::positive, density)) refuse("density", density, rule_text(Rule::positive));
+Material make_material(const MaterialChoice& choice) {
+  if (!satisfies(Rule::positive, choice.density))
+    refuse("density", choice.density, rule_text(Rule::positive));
   Material material;
-  material.density = density;
-  bool found = false;
-  StrengthModels::for_each([&](auto model) {
-    if (model.name != strength) return;
-    set_parameters(model, parameters);
-    model.prepare(density);
-    material.strength = model;
-    found = true;
-  });
-  if (!found) throw std::invalid_argument("no strength model is named " + strength);
+  material.density = choice.density;
+  material.strength = made<StrengthModels>("strength", choice.strength, choice.density);
+  if (choice.eos) material.eos = made<EosModels>("eos", *choice.eos, choice.density);
+  std::visit(
+      [&](const auto& strength) {
+        const std::string name(strength.name);
+        if (strength.eos == EosUse::must && !material.eos)
+          throw std::invalid_argument(name +
+                                      " has no pressure of its own: give the material an eos");
+        if (strength.eos == EosUse::never && material.eos)
+          throw std::invalid_argument(name + " gives the whole stress and takes no eos");
+        for (const FailureChoice& failure : choice.failures) {
+          const auto model = made<FailureModels>("failure", failure.model, choice.density);
+          std::visit([&](const auto& m) { check_together(strength, m, material.eos.has_value()); },
+                     model);
+          material.failures.push_back({model, action_named(failure.action)});
+        }
+      },
+      material.strength);
   return material;
 }
 

@@ -1,21 +1,54 @@
 #pragma once
-// A material: an initial density and a strength model, composed at run time.
+// A material: an initial density, one strength model, at most one equation of state and any number
+// of failure models, composed at run time.
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "mpm/materials/catalogue.hpp"
 
 namespace mpm {
 
+/// What becomes of a particle that has failed. Ordered: of two, the greater is done.
+enum class FailureAction {
+  intact = 0,
+  no_shear = 1,    // the deviator is dropped, the pressure kept
+  no_tension = 2,  // the deviator is dropped, the mean stress kept where it is compression
+};
+
+/// A failure model and what it does.
+struct Failing {
+  FailureModels::Any model;
+  FailureAction action;
+};
+
 struct Material {
   double density = 0.0;  // initial [kg/m^3]
   StrengthModels::Any strength;
+  std::optional<EosModels::Any> eos;
+  std::vector<Failing> failures;
 };
 
-/// A material from names and numbers in SI units; throws std::invalid_argument, in one sentence,
-/// for an unknown model or parameter, one that is missing, or a value its rule forbids.
-Material make_material(double density, const std::string& strength,
-                       const std::map<std::string, double>& parameters);
+/// A model as the user gives it: a name and numbers in SI units.
+struct ModelChoice {
+  std::string name;
+  std::map<std::string, double> parameters;
+};
+struct FailureChoice {
+  ModelChoice model;
+  std::string action;  // "no_shear" or "no_tension"
+};
+struct MaterialChoice {
+  double density = 0.0;
+  ModelChoice strength;
+  std::optional<ModelChoice> eos;
+  std::vector<FailureChoice> failures;
+};
+
+/// Throws std::invalid_argument, in one sentence, for an unknown model or parameter, one that is
+/// missing, a value its rule forbids, or models that do not go together.
+Material make_material(const MaterialChoice& choice);
 
 /// What a rule demands, in words: "must be > 0".
 std::string_view rule_text(Rule rule);

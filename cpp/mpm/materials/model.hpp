@@ -2,7 +2,9 @@
 // What a material model is: a small struct with named parameters and state, and its physics as
 // templates over the number.
 #include <concepts>
+#include <cstring>
 #include <limits>
+#include <string>
 #include <string_view>
 
 #include "mpm/math/tensor.hpp"
@@ -27,18 +29,21 @@ struct Param {
 };
 
 enum class Shape { scalar, symmetric };
-enum class Start { zero, one, identity };
 
 /// A state column that exists only for bodies whose material uses the model.
 struct StateColumn {
   std::string_view name;
   std::string_view unit;
   Shape shape = Shape::scalar;
-  Start start = Start::zero;
   constexpr int components(int dimension) const {
     return shape == Shape::scalar ? 1 : (dimension == 3 ? 6 : 4);
   }
 };
+
+/// How a strength model and an equation of state go together: the strength gives the whole stress
+/// and takes none; it gives the whole stress, whose mean part an EOS may replace; it gives no
+/// pressure and needs one.
+enum class EosUse { never, may, must };
 
 /// The motion of a particle over one step.
 template <class T, int D>
@@ -47,6 +52,9 @@ struct Motion {
       gradient;    // velocity gradient x time step, on the configuration at the start of the step
   T volume_ratio;  // det(1 + gradient): volume after / before the step
   T J;             // volume after the step / initial volume
+  double time_step = 0.0;  // [s]
+  double time = 0.0;       // at the end of the step [s]
+  double cell_size = 0.0;  // [m]
 };
 
 /// The gradient referred to the middle of the step: L (1 + L/2)^-1 = L - L^2/2 + O(L^3).
@@ -59,25 +67,92 @@ Mat<T, D> mid_step(const Mat<T, D>& gradient) {
   return middle;
 }
 
-/// A strength model: stress and state after a step from those before it, eq. (18)-(20) and the
-/// constitutive law. `update` must leave everything as it is for a zero gradient, and returns the
-/// plastic work of the step per present volume [J/m^3]. `sound_speed` [m/s] bounds the fastest
-/// wave.
+/// Names, parameters and preparation, which models of every kind have. `problem` is a sentence
+/// about parameters that do not go together, empty if they do.
 template <class M>
-concept StrengthModel = requires(M m, Motion<double, 3> motion, Sym<double, 3> stress,
-                                 typename M::template State<double, 3> state, double J) {
+concept Model = requires(M m, double density) {
   { M::name } -> std::convertible_to<std::string_view>;
   { M::doc } -> std::convertible_to<std::string_view>;
   { M::source } -> std::convertible_to<std::string_view>;
   M::params;
+  m.prepare(density);
+  { m.problem() } -> std::convertible_to<std::string>;
+};
+
+/// A strength model: stress and state after a step from those before it, eq. (18)-(20) and the
+/// constitutive law. `update` must leave stress and state as they are for a zero gradient, rates
+/// and burning apart, and returns the work [J/m^3, present volume] that the step has dissipated by
+/// plastic or viscous flow. `sound_speed` [m/s] bounds the fastest wave; `shear_wave_squared`
+/// [m^2/s^2] is what remains of its square when an EOS gives the pressure, 4 G / (3 rho) for a
+/// solid; its last argument is the cell size.
+template <class M>
+concept StrengthModel =
+    Model<M> && requires(M m, Motion<double, 3> motion, Sym<double, 3> stress,
+                         typename M::template State<double, 3> state, double J) {
+      { M::eos } -> std::convertible_to<EosUse>;
+      M::state_columns;
+      { m.template start<double, 3>() } -> std::same_as<typename M::template State<double, 3>>;
+      { m.update(motion, stress, state) } -> std::convertible_to<double>;
+      requires M::eos == EosUse::must || requires { m.sound_speed(stress, state, J); };
+      requires M::eos == EosUse::never || requires { m.shear_wave_squared(state, J, 1.0); };
+    };
+
+/// An equation of state at one relative volume V: pressure A + B E, E the internal energy per
+/// initial volume [Pa], and the derivatives of A and B with V.
+template <class T>
+struct LinearInEnergy {
+  T A, B, dA, dB;
+};
+
+/// An equation of state that is linear in the energy. `E0` [J/m^3] is the internal energy at the
+/// start.
+template <class M>
+concept EosModel = Model<M> && requires(M m, double V) {
+  { m.at(V) } -> std::same_as<LinearInEnergy<double>>;
+  { m.initial_energy() } -> std::convertible_to<double>;
+};
+
+/// What a failure model may judge by, at the end of a step.
+template <class T, int D>
+struct Condition {
+  Sym<T, D> stress;            // [Pa]
+  Sym<T, D> strain_increment;  // of the step
+  Mat<T, D> gradient;          // as in Motion
+  T plastic_strain, plastic_increment;
+  T temperature;  // homologous, 0 at the reference and 1 at melting; 0 without a thermal model
+  T energy;       // internal, per initial volume [J/m^3]; 0 without an EOS
+  double time_step = 0.0;
+};
+
+/// A failure model: `damage` returns how far the particle has come, 1 and more for failed.
+template <class M>
+concept FailureModel = Model<M> && requires(M m, Condition<double, 3> condition,
+                                            typename M::template State<double, 3> state) {
   M::state_columns;
-  m.prepare(J);
-  { m.update(motion, stress, state) } -> std::convertible_to<double>;
-  { m.sound_speed(stress, state, J) } -> std::convertible_to<double>;
+  { m.template start<double, 3>() } -> std::same_as<typename M::template State<double, 3>>;
+  { m.damage(condition, state) } -> std::convertible_to<double>;
 };
 
 /// For models without state.
 template <class T, int D>
 struct NoState {};
+
+/// The number of values of a state, and a state from them and back.
+template <class State, class T>
+inline constexpr int state_size =
+    std::is_empty_v<State> ? 0 : static_cast<int>(sizeof(State) / sizeof(T));
+
+template <class State, class T>
+State unpack(const T* values) {
+  State state;
+  if constexpr (!std::is_empty_v<State>)
+    std::memcpy(static_cast<void*>(&state), static_cast<const void*>(values), sizeof(state));
+  return state;
+}
+template <class State, class T>
+void pack(const State& state, T* values) {
+  if constexpr (!std::is_empty_v<State>)
+    std::memcpy(static_cast<void*>(values), static_cast<const void*>(&state), sizeof(state));
+}
 
 }  // namespace mpm

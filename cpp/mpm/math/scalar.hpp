@@ -6,6 +6,7 @@
 #include <concepts>
 
 #include "mpm/math/batch.hpp"
+#include "mpm/math/batch_math.hpp"
 
 namespace mpm {
 
@@ -14,9 +15,19 @@ inline double min(double a, double b) { return a < b ? a : b; }
 inline double max(double a, double b) { return a > b ? a : b; }
 inline double sqrt(double a) { return std::sqrt(a); }
 inline double log(double a) { return std::log(a); }
+inline double exp(double a) { return std::exp(a); }
+inline double pow(double a, double b) { return std::pow(a, b); }
 inline double sum(double a) { return a; }
 inline double largest(double a) { return a; }
 inline bool any(bool a) { return a; }
+
+/// Size of a number; below it, what a comparison of two numbers gives.
+template <class T>
+T absolute(T a) {
+  return max(a, -a);
+}
+template <class T>
+using Truth = decltype(T(0.0) < T(0.0));
 
 /// A number: arithmetic, ordering, select.
 template <class T>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mpm/fields/columns.hpp"
-#include "mpm/materials/strength_block.hpp"
+#include "mpm/materials/material_block.hpp"
 
 namespace mpm {
 
@@ -15,8 +15,7 @@ struct Body {
   int material = 0;
   Columns columns;
   int position = 0;               // first component of each column; position [m], D components
-  StrengthColumns at{};           // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; state;
-                                  // viscosity_pressure [Pa]
+  MaterialColumns at{};           // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
   std::vector<std::uint32_t> id;  // place of each particle in the order in which the user gave them
   std::vector<std::uint32_t> order;       // particles by patch, then by cell, then by row
   std::vector<std::uint32_t> next_order;  // the list being made

@@ -7,16 +7,11 @@
 namespace mpm {
 namespace {
 
-double start_value(const StateColumn& column, int component) {
-  switch (column.start) {
-    case Start::one:
-      return 1.0;
-    case Start::identity:
-      return component < 3 ? 1.0 : 0.0;
-    case Start::zero:
-      break;
-  }
-  return 0.0;
+template <int D>
+double speed_of(const Body<D>& body, std::size_t row) {
+  double squared = 0.0;
+  for (int a = 0; a < D; ++a) squared += body.v(a)[row] * body.v(a)[row];
+  return std::sqrt(squared);
 }
 
 void check_finite(std::span<const double> values, const std::string& what) {
@@ -27,9 +22,8 @@ void check_finite(std::span<const double> values, const std::string& what) {
 }  // namespace
 
 template <int D>
-int SimulationOf<D>::add_material(double density, const std::string& strength,
-                                  const std::map<std::string, double>& parameters) {
-  domain_.materials.push_back(make_material(density, strength, parameters));
+int SimulationOf<D>::add_material(const MaterialChoice& choice) {
+  domain_.materials.push_back(make_material(choice));
   return static_cast<int>(domain_.materials.size()) - 1;
 }
 
@@ -61,17 +55,7 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
   body.at.mass = c.add("mass", "kg", 1);
   body.at.volume = c.add("volume", "m^3", 1);
   body.at.stress = c.add("stress", "Pa", Sym<double, D>::size);
-  body.at.state = -1;
-  std::visit(
-      [&](const auto& model) {
-        for (const StateColumn& s : model.state_columns) {
-          const int first = c.add(std::string(s.name), std::string(s.unit), s.components(D));
-          if (body.at.state < 0) body.at.state = first;
-        }
-      },
-      material.strength);
-  body.at.viscosity_pressure =
-      domain_.viscosity.active() ? c.add("viscosity_pressure", "Pa", 1) : -1;
+  add_material_columns<D>(material, domain_.viscosity.active(), c, body.at);
   c.allocate(n);
 
   const bool one_velocity = velocities.size() == D, one_volume = volumes.size() == 1;
@@ -86,28 +70,56 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
     body.volume()[i] = volume;
     body.mass()[i] = material.density * volume;
   }
-  for (int k = body.at.stress; k < c.component_count(); ++k) std::fill_n(c.component(k), n, 0.0);
-  std::visit(
-      [&](const auto& model) {
-        int at = body.at.state;
-        for (const StateColumn& s : model.state_columns)
-          for (int k = 0; k < s.components(D); ++k)
-            std::fill_n(c.component(at++), n, start_value(s, k));
-        Sym<double, D> stress = Sym<double, D>::zero();
-        typename std::remove_cvref_t<decltype(model)>::template State<double, D> state{};
-        double* flat = reinterpret_cast<double*>(&state);
-        for (int k = body.at.state; k >= 0 && k < at; ++k)
-          flat[k - body.at.state] = c.component(k)[0];
-        const double speed = model.sound_speed(stress, state, 1.0);
-        domain_.stiffness.push_back(material.density * speed * speed);
-      },
-      material.strength);
+  start_material_columns<D>(material, c, body.at);
+  const double speed = sound_speed<D>(material, c, body.at, 0, domain_.grid.cell_size);
+  domain_.stiffness.push_back(material.density * speed * speed);
   body.mean_mass = material.density * total / static_cast<double>(n);
   body.mean_edge = std::pow(total / static_cast<double>(n), 1.0 / D);
   body.id.resize(n);
   for (std::size_t i = 0; i < n; ++i) body.id[i] = static_cast<std::uint32_t>(i);
   domain_.bodies.push_back(std::move(body));
   return static_cast<int>(domain_.bodies.size()) - 1;
+}
+
+template <int D>
+void SimulationOf<D>::set_state(int number, const std::string& column,
+                                std::span<const double> values) {
+  if (prepared_) throw std::invalid_argument("states must be set before prepare()");
+  Body<D>& b = domain_.bodies.at(static_cast<std::size_t>(number));
+  const ColumnInfo& info = b.columns.info(column);
+  if (info.components != 1 || values.size() != b.count())
+    throw std::invalid_argument(column + ": a state that is set must be (n,)");
+  check_finite(values, column);
+  std::copy(values.begin(), values.end(), b.columns.component(info.first));
+}
+
+template <int D>
+void SimulationOf<D>::probe_speeds() {
+  for (PatchSums<D>& s : domain_.sums) s.stress = {};
+  domain_.sums.resize(domain_.grid.patches.size());
+  for (std::size_t p = 0; p < domain_.grid.patches.size(); ++p) {
+    const Patch<D>& patch = domain_.grid.patches[p];
+    const Body<D>& b = domain_.body_of(patch);
+    const Material& material = domain_.materials[static_cast<std::size_t>(b.material)];
+    for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
+      const std::size_t i = b.order[k];
+      const double c = sound_speed<D>(material, b.columns, b.at, i, domain_.grid.cell_size);
+      double& fastest = domain_.sums[p].stress.fastest;
+      fastest = std::max(fastest, c + speed_of(b, i));
+    }
+  }
+  choose_time_step();
+}
+
+template <int D>
+double SimulationOf<D>::initial_internal_energy() const {
+  double total = 0.0;
+  for (const Body<D>& b : domain_.bodies) {
+    if (b.at.energy < 0) continue;
+    for (std::size_t i = 0; i < b.count(); ++i)
+      total += b.columns.component(b.at.energy)[i] * b.volume()[i];
+  }
+  return total;
 }
 
 template <int D>
@@ -156,25 +168,13 @@ Limiter SimulationOf<D>::limiter() const {
   const Patch<D>& patch = domain_.grid.patches[fastest];
   const Body<D>& b = body(patch.body);
   const Material& material = domain_.materials[static_cast<std::size_t>(b.material)];
-  std::visit(
-      [&](const auto& model) {
-        using Model = std::remove_cvref_t<decltype(model)>;
-        for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
-          const std::size_t i = b.order[k];
-          const auto state = load_state<Model, double, D>(b.columns, b.at.state,
-                                                          [&](const double* c) { return c[i]; });
-          Sym<double, D> stress;
-          for (int c = 0; c < Sym<double, D>::size; ++c) stress.c[c] = b.stress(c)[i];
-          double speed = 0.0;
-          for (int a = 0; a < D; ++a) speed += b.v(a)[i] * b.v(a)[i];
-          speed = std::sqrt(speed);
-          const double c =
-              model.sound_speed(stress, state, b.volume()[i] * material.density / b.mass()[i]);
-          if (c + speed > result.sound_speed + result.speed || result.body < 0)
-            result = {patch.body, static_cast<std::int64_t>(b.id[i]), c, speed};
-        }
-      },
-      material.strength);
+  for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
+    const std::size_t i = b.order[k];
+    const double c = sound_speed<D>(material, b.columns, b.at, i, domain_.grid.cell_size);
+    const double v = speed_of(b, i);
+    if (c + v > result.sound_speed + result.speed || result.body < 0)
+      result = {patch.body, static_cast<std::int64_t>(b.id[i]), c, v};
+  }
   return result;
 }
 

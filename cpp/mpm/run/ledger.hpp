@@ -32,7 +32,7 @@ namespace mpm {
 struct Ledger {
   double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0,
          external = 0.0, eroded = 0.0, mapping = 0.0, time_integration = 0.0;  // [J]
-  double start = 0.0;                // kinetic energy at the start [J]
+  double start = 0.0;                // kinetic and internal energy at the start [J]
   double largest = 0.0;              // largest energy brought in so far [J]
   std::array<double, 3> momentum{};  // [kg m/s]
 

@@ -94,27 +94,13 @@ void SimulationOf<D>::prepare() {
   make_lists(domain_.grid, domain_.bodies, domain_.threads);
   if (domain_.has_contact()) domain_.contact.connect(domain_.grid);
   probe_speeds();
-  ledger_.start = ledger_.kinetic = kinetic_energy();
+  ledger_.kinetic = kinetic_energy();
+  ledger_.internal = initial_internal_energy();
+  ledger_.start = ledger_.kinetic + ledger_.internal;
   ledger_.momentum = momentum();
   domain_.time_step = 0.0;
   write_history_row();  // the state at the start
   prepared_ = true;
-}
-
-template <int D>
-void SimulationOf<D>::probe_speeds() {
-  // Without motion the stress stage leaves everything as it is and gives the speeds that the time
-  // step needs.
-  domain_.sums.assign(domain_.grid.patches.size(), {});
-  for (std::size_t p = 0; p < domain_.grid.patches.size(); ++p) {
-    const NodeBlock<D> block = domain_.grid.block(p);
-    std::fill(block.data, block.data + domain_.grid.block_size(), 0.0);
-  }
-  domain_.time_step = 1.0;
-  const BulkViscosity viscosity = std::exchange(domain_.viscosity, {});  // its pressure is kept
-  update_stress_last(domain_);
-  domain_.viscosity = viscosity;
-  choose_time_step();
 }
 
 template <int D>

@@ -11,7 +11,7 @@
 
 #include "mpm/contact/contact_grid.hpp"
 #include "mpm/fields/columns.hpp"
-#include "mpm/materials/strength_block.hpp"
+#include "mpm/materials/material.hpp"
 #include "mpm/step/scheme.hpp"
 
 namespace mpm {
@@ -64,12 +64,14 @@ class Simulation {
  public:
   virtual ~Simulation() = default;
 
-  virtual int add_material(double density, const std::string& strength,
-                           const std::map<std::string, double>& parameters) = 0;
+  virtual int add_material(const MaterialChoice& choice) = 0;
   /// Positions and velocities are (n, D) row by row, or one row of velocities for all; volumes n
   /// values, or one for all.
   virtual int add_body(const std::string& name, int material, std::span<const double> positions,
                        std::span<const double> velocities, std::span<const double> volumes) = 0;
+  /// Values of a state column of a body, one component, in the order in which the user gave the
+  /// particles; before prepare().
+  virtual void set_state(int body, const std::string& column, std::span<const double> values) = 0;
   virtual void set_pair_friction(int a, int b, double mu) = 0;
   /// Sort the particles, make the grid, find the first time step. Once, after the last body.
   virtual void prepare() = 0;

@@ -11,10 +11,10 @@ class SimulationOf final : public Simulation {
  public:
   explicit SimulationOf(const Settings& settings);
 
-  int add_material(double density, const std::string& strength,
-                   const std::map<std::string, double>& parameters) override;
+  int add_material(const MaterialChoice& choice) override;
   int add_body(const std::string& name, int material, std::span<const double> positions,
                std::span<const double> velocities, std::span<const double> volumes) override;
+  void set_state(int body, const std::string& column, std::span<const double> values) override;
   void set_pair_friction(int a, int b, double mu) override;
   void prepare() override;
   std::int64_t advance(std::int64_t max_steps, double end_time) override;
@@ -55,7 +55,8 @@ class SimulationOf final : public Simulation {
   const Body<D>& body(int b) const { return domain_.bodies.at(static_cast<std::size_t>(b)); }
   double kinetic_energy() const;
   std::array<double, 3> momentum() const;
-  void probe_speeds();
+  double initial_internal_energy() const;
+  void probe_speeds();  // finds the next time step from the present state
   void make_step(double time_after);
   void choose_time_step();
   void write_history_row();

@@ -14,17 +14,12 @@ void update_patch(Domain<D>& domain, std::size_t p, bool forces_follow, Field&& 
   const Patch<D>& patch = grid.patches[p];
   Body<D>& body = domain.body_of(patch);
   const Material& material = domain.materials[static_cast<std::size_t>(body.material)];
-  const StressSettings settings{domain.time_step, grid.cell_size, domain.viscosity, forces_follow};
+  const StressSettings settings{domain.time_step, domain.time + domain.time_step, grid.cell_size,
+                                domain.viscosity, forces_follow};
   const T scale(domain.time_step / grid.cell_size);
-  GradientBlock<D> block;
+  MaterialBlock<D> block;
   auto flush = [&] {
-    std::visit(
-        [&](const auto& model) {
-          update_strength<std::remove_cvref_t<decltype(model)>, D>(model, material.density,
-                                                                   body.columns, body.at, block,
-                                                                   settings, domain.sums[p].stress);
-        },
-        material.strength);
+    update_block<T>(material, body.columns, body.at, block, settings, domain.sums[p].stress);
     block.count = 0;
   };
   with_basis(grid, body, [&](const auto& basis) {

@@ -1,4 +1,5 @@
-// SIMD lanes do what a double does, lane by lane; the logarithm is good to 1 ulp.
+// SIMD lanes do what a double does, lane by lane; logarithm, exponential and power
+// are as good as they say.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -103,4 +104,29 @@ void test_log(mpm::testing::Report& report) {
     }
   }
   CHECK(worst <= 1.0, worst, worst_at);
+}
+
+void test_exp_and_pow(mpm::testing::Report& report) {
+  constexpr int W = native_lanes;
+  using T = Batch<W>;
+  const auto ulps = [](double got, long double exact) {
+    const double rounded = static_cast<double>(exact);
+    const double next = std::nextafter(std::abs(rounded), std::numeric_limits<double>::infinity());
+    return static_cast<double>(std::abs(got - exact)) / (next - std::abs(rounded));
+  };
+  CHECK_EQUAL(exp(T(0.0))[W - 1], 1.0);
+  CHECK(exp(T(-1e4))[0] < 1e-307 && exp(T(1e4))[0] > 8e307);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> wide(-707.0, 708.0), near(-1.0, 1.0), base(1e-6, 10.0);
+  double worst = 0.0, worst_pow = 0.0;
+  for (int n = 0; n < 200000; ++n) {
+    const double x = n % 2 ? wide(random) : near(random);
+    worst = std::max(worst, ulps(exp(T(x))[W - 1], std::exp(static_cast<long double>(x))));
+    const double b = base(random), y = 4.0 * near(random);
+    const long double power = std::pow(static_cast<long double>(b), static_cast<long double>(y));
+    const double allowed = 2.0 + 2.0 * std::abs(y * std::log(b));
+    worst_pow = std::max(worst_pow, ulps(pow(T(b), T(y))[W - 1], power) / allowed);
+  }
+  CHECK(worst <= 2.0, worst);
+  CHECK(worst_pow <= 1.0, worst_pow);
 }

@@ -81,8 +81,10 @@ std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& m
   settings.threads = threads;
   settings.energy_growth_limit = 1e9;
   auto simulation = make_simulation(settings);
-  const int rubber = simulation->add_material(1000.0, "neo_hookean", {{"K", 1e7}, {"G", 3e6}});
-  const int solid = simulation->add_material(1000.0, "elastic", {{"E", 1e7}, {"nu", 0.3}});
+  const int rubber =
+      simulation->add_material({1000.0, {"neo_hookean", {{"K", 1e7}, {"G", 3e6}}}, {}, {}});
+  const int solid =
+      simulation->add_material({1000.0, {"elastic", {{"E", 1e7}, {"nu", 0.3}}}, {}, {}});
   const Block blocks[] = {
       {{8, 0, 8}, {20, 5, 11}}, {{8, 5, 8}, {14, 9, 11}}, {{14, 5, 8}, {20, 9, 11}}};
   for (int b = 0; b < 3; ++b) {

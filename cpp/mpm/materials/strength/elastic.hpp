@@ -15,6 +15,8 @@ struct Elastic {
   static constexpr std::string_view source =
       "Truesdell & Noll 1965, sec. 99; update after Hughes & Winget 1980";
 
+  static constexpr EosUse eos = EosUse::may;
+
   double E{}, nu{}, density{};
   double lambda{}, G{};
 
@@ -25,25 +27,62 @@ struct Elastic {
   static constexpr std::array<StateColumn, 0> state_columns{};
   template <class T, int D>
   using State = NoState<T, D>;
+  template <class T, int D>
+  State<T, D> start() const {
+    return {};
+  }
 
   void prepare(double initial_density) {
     density = initial_density;
     lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
     G = E / (2.0 * (1.0 + nu));
   }
+  std::string problem() const { return {}; }
 
+  static Elastic of(double E, double nu, double density) {
+    Elastic made;
+    made.E = E;
+    made.nu = nu;
+    made.prepare(density);
+    return made;
+  }
+
+  // For plastic models, whose elastic part this is.
   template <Real T, int D>
-  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
+  void update(const Motion<T, D>& motion, Sym<T, D>& stress) const {
     const Corotated<T, D> at_end = corotate(motion, stress);
     stress = at_end.stress + Sym<T, D>::isotropic(T(lambda) * trace(at_end.strain)) +
              T(2.0 * G) * at_end.strain;
-    return T(0.0);
+  }
+  template <Real T>
+  T sound_speed(T J) const {
+    return sqrt(T((lambda + 2.0 * G) / density) * J);
+  }
+  template <Real T>
+  T shear_wave_squared(T J) const {
+    return T(4.0 / 3.0 * G / density) * J;
   }
 
   template <Real T, int D>
+  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
+    update(motion, stress);
+    return T(0.0);
+  }
+  template <Real T, int D>
   T sound_speed(const Sym<T, D>&, const State<T, D>&, T J) const {
-    return sqrt(T((lambda + 2.0 * G) / density) * J);
+    return sound_speed(J);
+  }
+  template <Real T, int D>
+  T shear_wave_squared(const State<T, D>&, T J, double) const {
+    return shear_wave_squared(J);
   }
 };
+
+/// State of a plastic model without temperature.
+template <class T, int D>
+struct PlasticState {
+  T plastic_strain;  // equivalent
+};
+inline constexpr auto plastic_state_columns = std::array{StateColumn{"plastic_strain", "1"}};
 
 }  // namespace mpm

@@ -13,6 +13,7 @@ struct J2 {
       "von Mises plasticity: perfectly plastic, or isotropic linear hardening with H > 0";
   static constexpr std::string_view source =
       "von Mises 1913; radial return after Wilkins 1964 and Krieg & Key 1976";
+  static constexpr EosUse eos = EosUse::may;
 
   double E{}, nu{}, Y0{}, H{};
   Elastic elastic{};
@@ -24,26 +25,22 @@ struct J2 {
       Param<J2>{"H", &J2::H, "Pa", "plastic modulus dY/dep (= E Et / (E - Et))", Rule::not_negative,
                 0.0},
   };
-  static constexpr auto state_columns = std::array{
-      StateColumn{"plastic_strain", "1"},
-  };
+  static constexpr auto state_columns = plastic_state_columns;
   template <class T, int D>
-  struct State {
-    T plastic_strain;  // equivalent
-  };
-
-  void prepare(double density) {
-    elastic.E = E;
-    elastic.nu = nu;
-    elastic.prepare(density);
+  using State = PlasticState<T, D>;
+  template <class T, int D>
+  State<T, D> start() const {
+    return {T(0.0)};
   }
+
+  void prepare(double density) { elastic = Elastic::of(E, nu, density); }
+  std::string problem() const { return {}; }
 
   /// The elastic stress, and where its von Mises stress q exceeds Y the deviator returned along its
   /// own direction: q = Y holds after it, as 3 G dep = q_trial - Y(ep + dep) is linear in dep.
   template <Real T, int D>
   T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
-    NoState<T, D> none;
-    elastic.update(motion, stress, none);
+    elastic.update(motion, stress);
     const Sym<T, D> mean = Sym<T, D>::isotropic(T(1.0 / 3.0) * trace(stress));
     const Sym<T, D> deviator = stress - mean;
     const T q = sqrt(T(1.5) * inner(deviator, deviator));
@@ -56,8 +53,12 @@ struct J2 {
   }
 
   template <Real T, int D>
-  T sound_speed(const Sym<T, D>& stress, const State<T, D>&, T J) const {
-    return elastic.sound_speed(stress, NoState<T, D>{}, J);
+  T sound_speed(const Sym<T, D>&, const State<T, D>&, T J) const {
+    return elastic.sound_speed(J);
+  }
+  template <Real T, int D>
+  T shear_wave_squared(const State<T, D>&, T J, double) const {
+    return elastic.shear_wave_squared(J);
   }
 };
 

@@ -16,6 +16,8 @@ struct NeoHookean {
       "2G/3; large elastic strains";
   static constexpr std::string_view source = "Bonet & Wood 2008, eqs. 6.27-6.29";
 
+  static constexpr EosUse eos = EosUse::never;
+
   double K{}, G{}, density{};
   double lambda{};
 
@@ -24,16 +26,21 @@ struct NeoHookean {
       Param<NeoHookean>{"G", &NeoHookean::G, "Pa", "shear modulus at small strain", Rule::positive},
   };
   static constexpr auto state_columns =
-      std::array{StateColumn{"left_cauchy_green", "", Shape::symmetric, Start::identity}};
+      std::array{StateColumn{"left_cauchy_green", "", Shape::symmetric}};
   template <class T, int D>
   struct State {
     Sym<T, D> b;  // left Cauchy-Green tensor F F^T
   };
+  template <class T, int D>
+  State<T, D> start() const {
+    return {Sym<T, D>::isotropic(T(1.0))};
+  }
 
   void prepare(double initial_density) {
     density = initial_density;
     lambda = K - 2.0 / 3.0 * G;
   }
+  std::string problem() const { return {}; }
 
   template <Real T, int D>
   T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {

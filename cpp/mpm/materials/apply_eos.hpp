@@ -1,0 +1,62 @@
+#pragma once
+// The second part: the mean stress by an equation of state, solved together with the energy.
+#include "mpm/materials/block_end.hpp"
+
+namespace mpm {
+
+/// dp/drho at constant entropy [m^2/s^2], from dE = -p dV: V^2 (p B - A' - B' E) / rho0.
+template <class T>
+T sound_speed_squared(const LinearInEnergy<T>& at, T V, T energy, T pressure, double density) {
+  return max(V * V * (pressure * at.B - at.dA - at.dB * energy) * T(1.0 / density), T(0.0));
+}
+
+/// The energy per initial volume grows by the work of the deviator, of the pressure (mean of old
+/// and new) and of the artificial viscosity; with p = A + B E that gives p in closed form: p (1 + B
+/// dV/2) = A + B (E + deviatoric and viscous work - p_old dV/2).
+template <class T, int D, class Model>
+[[gnu::flatten]] void apply_eos(const Model& model, const Material& material, Columns& columns,
+                                const MaterialColumns& at, const StressSettings& settings,
+                                MaterialBlock<D>& block, BlockEnd<T, D>& end) {
+  const bool burns = std::holds_alternative<HighExplosive>(material.strength);
+  const bool viscosity = settings.viscosity.active(), last = material.failures.empty();
+  for_each_group<T>(block, [&](const Group<T, D>& group) {
+    const Moved<T, D> moved(group, block, columns, at, material.density, settings);
+    const Sym<T, D> before = group.read_stress(columns, at.stress);
+    const Sym<T, D> strength = group.get_stress(block);
+    const T V = moved.motion.J, share = moved.mean_volume / moved.initial_volume;
+    const T change = share * trace(moved.strain);  // of V
+    const T old_pressure = T(-1.0 / 3.0) * trace(before);
+    const Sym<T, D> both = before + strength;
+    const T deviatoric =
+        T(0.5) * share *
+        (inner(both, moved.strain) - T(1.0 / 3.0) * trace(both) * trace(moved.strain));
+
+    LinearInEnergy<T> p = model.at(V);
+    if (burns) {
+      const T burnt = group.get(block.burnt);
+      p = {burnt * p.A, burnt * p.B, burnt * p.dA, burnt * p.dB};
+    }
+    T energy =
+        group.read(columns.component(at.energy)) + deviatoric - T(0.5) * old_pressure * change;
+    const T guess = p.A + p.B * energy;
+    const T speed =
+        sqrt(sound_speed_squared(p, V, energy, guess, material.density) + group.get(block.speed));
+    T q(0.0);
+    if (viscosity) {
+      q = moved.viscous_pressure(settings, speed);
+      energy += moved.viscous_work(q) / moved.initial_volume;
+    }
+    const T pressure = (p.A + p.B * energy) / (T(1.0) + T(0.5) * p.B * change);
+    const T mean = T(1.0 / 3.0) * trace(strength);
+    const Sym<T, D> stress = strength - Sym<T, D>::isotropic(mean + pressure);
+    if (last) {
+      end.add(group, moved, before, {stress, group.get(block.dissipated), speed, q});
+      return;
+    }
+    group.put_stress(block, stress);
+    group.put(block.speed, speed);
+    group.put(block.viscous_pressure, q);
+  });
+}
+
+}  // namespace mpm

@@ -1,0 +1,56 @@
+#pragma once
+// The third part: what has failed, and what failure does to the stress.
+#include "mpm/materials/block_end.hpp"
+
+namespace mpm {
+
+/// A particle stays failed; of several models that it fails by, the strongest action is done.
+template <class T, int D>
+[[gnu::flatten]] void apply_failures(const Material& material, Columns& columns,
+                                     const MaterialColumns& at, const StressSettings& settings,
+                                     MaterialBlock<D>& block, BlockEnd<T, D>& end) {
+  int state_at = at.failure_state;
+  for (const Failing& failing : material.failures)
+    std::visit(
+        [&]<class Model>(const Model& model) {
+          using State = typename Model::template State<T, D>;
+          const T action(static_cast<double>(failing.action));
+          for_each_group<T>(block, [&](const Group<T, D>& group) {
+            const Moved<T, D> moved(group, block, columns, at, material.density, settings);
+            const T energy = at.energy >= 0 ? group.read(columns.component(at.energy)) : T(0.0);
+            const Condition<T, D> condition{group.get_stress(block),
+                                            moved.strain,
+                                            moved.motion.gradient,
+                                            group.get(block.plastic_strain),
+                                            group.get(block.plastic_increment),
+                                            group.get(block.temperature),
+                                            energy,
+                                            settings.time_step};
+            State state = group.template read_state<State>(columns, state_at);
+            const T damage = model.damage(condition, state);
+            group.write_state(columns, state_at, state);
+            const T failed = group.read(columns.component(at.failed));
+            group.write(columns.component(at.failed),
+                        max(failed, select(damage >= T(1.0), action, T(0.0))));
+          });
+          state_at += state_size<State, T>;
+        },
+        failing.model);
+
+  for_each_group<T>(block, [&](const Group<T, D>& group) {
+    const T failed = group.read(columns.component(at.failed));
+    const Sym<T, D> stress = group.get_stress(block);
+    const T mean = T(1.0 / 3.0) * trace(stress);
+    const T kept = select(failed >= T(static_cast<double>(FailureAction::no_tension)),
+                          min(mean, T(0.0)), mean);
+    const T deviator = select(failed > T(0.0), T(0.0), T(1.0));
+    const Sym<T, D> left =
+        Sym<T, D>::isotropic(kept) + deviator * (stress - Sym<T, D>::isotropic(mean));
+    const Moved<T, D> moved(group, block, columns, at, material.density, settings);
+    end.add(group, moved, group.read_stress(columns, at.stress),
+            {left, group.get(block.dissipated), group.get(block.speed),
+             group.get(block.viscous_pressure)});
+  });
+}
+
+}  // namespace mpm

@@ -1,0 +1,55 @@
+#pragma once
+// The first part of a block's way through its material: stress and state by the strength model.
+#include "mpm/materials/block_end.hpp"
+
+namespace mpm {
+
+template <class T, int D, class Model>
+[[gnu::flatten]] void apply_strength(const Model& model, const Material& material, Columns& columns,
+                                     const MaterialColumns& at, const StressSettings& settings,
+                                     MaterialBlock<D>& block, BlockEnd<T, D>& end) {
+  using State = typename Model::template State<T, D>;
+  const bool viscosity = settings.viscosity.active(), judged = !material.failures.empty();
+  const bool last = !material.eos && !judged;
+  for_each_group<T>(block, [&](const Group<T, D>& group) {
+    const Moved<T, D> moved(group, block, columns, at, material.density, settings);
+    const Motion<T, D>& motion = moved.motion;
+    const Sym<T, D> stress_before = group.read_stress(columns, at.stress);
+    Sym<T, D> stress = stress_before;
+    State state = group.template read_state<State>(columns, at.state);
+    const State before = state;
+    const T dissipated = model.update(motion, stress, state);
+    group.write_state(columns, at.state, state);
+
+    T speed(0.0), q(0.0);
+    if constexpr (Model::eos != EosUse::never)
+      if (material.eos) speed = model.shear_wave_squared(state, motion.J, motion.cell_size);
+    if constexpr (Model::eos != EosUse::must)
+      if (!material.eos) {
+        speed = model.sound_speed(stress, state, motion.J);
+        if (viscosity) q = moved.viscous_pressure(settings, speed);
+      }
+    if (last) {
+      end.add(group, moved, stress_before, {stress, dissipated, speed, q});
+      return;
+    }
+    group.put_stress(block, stress);
+    group.put(block.dissipated, dissipated);
+    group.put(block.speed, speed);
+    group.put(block.viscous_pressure, q);
+    if constexpr (requires { state.burn_fraction; }) group.put(block.burnt, state.burn_fraction);
+    if (!judged) return;
+    T strain(0.0), increment(0.0), temperature(0.0);
+    if constexpr (requires { state.plastic_strain; }) {
+      strain = state.plastic_strain;
+      increment = strain - before.plastic_strain;
+    }
+    if constexpr (requires { model.homologous(state.temperature); })
+      temperature = model.homologous(state.temperature);
+    group.put(block.plastic_strain, strain);
+    group.put(block.plastic_increment, increment);
+    group.put(block.temperature, temperature);
+  });
+}
+
+}  // namespace mpm

@@ -1,0 +1,76 @@
+#pragma once
+// The end of a block's way through its material: store stress, volume and energy, and add up what
+// the ledger and the time step need. The last part of the way calls it while all is in registers.
+#include "mpm/materials/block_parts.hpp"
+
+namespace mpm {
+
+/// Of one group of lanes, when all parts have done their work.
+template <class T, int D>
+struct Updated {
+  Sym<T, D> stress;
+  T dissipated, speed, viscous_pressure;
+};
+
+template <class T, int D>
+class BlockEnd {
+ public:
+  BlockEnd(Columns& columns, const MaterialColumns& at, const StressSettings& settings)
+      : columns_(columns), at_(at), settings_(settings) {}
+
+  void add(const Group<T, D>& group, const Moved<T, D>& moved, const Sym<T, D>& before,
+           const Updated<T, D>& after) {
+    const auto valid = group.valid();
+    negative_ = negative_ | (valid & !(moved.volume > T(0.0)));
+
+    // The forces work on the gradient as it is, the material on that of the middle of the step.
+    const Sym<T, D> strain = symmetric_part(moved.motion.gradient);
+    const T work = T(0.5) * moved.mean_volume * inner(before + after.stress, moved.strain);
+    const T lost = moved.mean_volume * after.dissipated;
+    T used = settings_.forces_follow ? moved.volume * inner(after.stress, strain)
+                                     : moved.volume_before * inner(before, strain);
+    T heat = work;
+    if (settings_.viscosity.active()) {
+      const T q = after.viscous_pressure, viscous_work = moved.viscous_work(q);
+      const T q_before = group.read(columns_.component(at_.viscosity_pressure));
+      group.write(columns_.component(at_.viscosity_pressure), q);
+      viscous_ += select(valid, viscous_work, T(0.0));
+      used -= (settings_.forces_follow ? moved.volume * q : moved.volume_before * q_before) *
+              trace(strain);
+      heat += viscous_work;
+    }
+    if (at_.energy >= 0) {
+      const T energy = group.read(columns_.component(at_.energy));
+      group.write(columns_.component(at_.energy), energy + heat / moved.initial_volume);
+    }
+    group.write(columns_.component(at_.volume), moved.volume);
+    for (int i = 0; i < Sym<T, D>::size; ++i)
+      group.write(columns_.component(at_.stress + i), after.stress.c[i]);
+    internal_ += select(valid, work - lost, T(0.0));
+    dissipated_ += select(valid, lost, T(0.0));
+    force_power_ += select(valid, used, T(0.0));
+
+    Vec<T, D> v;
+    for (int a = 0; a < D; ++a) v[a] = group.read(columns_.component(at_.velocity + a));
+    fastest_ = max(fastest_, after.speed + sqrt(dot(v, v)));
+  }
+
+  void add_to(StressSums& sums) const {
+    sums.internal += sum(internal_);
+    sums.plastic += sum(dissipated_);
+    sums.viscous += sum(viscous_);
+    sums.force_power += sum(force_power_);
+    sums.fastest = max(sums.fastest, largest(fastest_));
+    sums.negative_volume = sums.negative_volume || any(negative_);
+  }
+
+ private:
+  Columns& columns_;
+  const MaterialColumns& at_;
+  const StressSettings& settings_;
+  T internal_ = T(0.0), dissipated_ = T(0.0), viscous_ = T(0.0), force_power_ = T(0.0),
+    fastest_ = T(0.0);
+  Truth<T> negative_ = T(1.0) < T(0.0);
+};
+
+}  // namespace mpm

@@ -1,0 +1,103 @@
+#pragma once
+// What the parts of a block's way through its material share: groups of lanes and the motion.
+#include "mpm/materials/material_block.hpp"
+
+namespace mpm {
+
+template <class T>
+inline constexpr int lanes_of = 1;
+template <int W>
+inline constexpr int lanes_of<Batch<W>> = W;
+
+/// One group of lanes of a block: reads and writes columns and the block's own values.
+template <class T, int D>
+struct Group {
+  static constexpr int W = lanes_of<T>;
+  std::size_t at;  // in the block
+  LaneRows<W> rows;
+
+  Group(const MaterialBlock<D>& block, std::size_t k)
+      : at(k), rows(block.row + k, block.count - k) {}
+
+  T read(const double* column) const { return load(column, rows); }
+  void write(double* column, T value) const { store(column, rows, value); }
+  T get(const double* values) const { return load_lanes<T>(values + at); }
+  void put(double* values, T value) const { store_lanes(values + at, value); }
+  Truth<T> valid() const { return lanes_before<T>(rows.count); }
+
+  template <class State>
+  State read_state(const Columns& columns, int first) const {
+    T flat[state_size<State, T> + 1];
+    for (int k = 0; k < state_size<State, T>; ++k) flat[k] = read(columns.component(first + k));
+    return unpack<State>(flat);
+  }
+  template <class State>
+  void write_state(Columns& columns, int first, const State& state) const {
+    T flat[state_size<State, T> + 1];
+    pack(state, flat);
+    for (int k = 0; k < state_size<State, T>; ++k) write(columns.component(first + k), flat[k]);
+  }
+  Sym<T, D> read_stress(const Columns& columns, int first) const {
+    Sym<T, D> stress;
+    for (int c = 0; c < Sym<T, D>::size; ++c) stress.c[c] = read(columns.component(first + c));
+    return stress;
+  }
+  Sym<T, D> get_stress(const MaterialBlock<D>& block) const {
+    Sym<T, D> stress;
+    for (int c = 0; c < Sym<T, D>::size; ++c) stress.c[c] = get(block.stress[c]);
+    return stress;
+  }
+  void put_stress(MaterialBlock<D>& block, const Sym<T, D>& stress) const {
+    for (int c = 0; c < Sym<T, D>::size; ++c) put(block.stress[c], stress.c[c]);
+  }
+};
+
+/// The parts of the way are marked `flatten`: called, not inlined, the models' tensors would go
+/// through memory, which costs half as much again as the whole of linear elasticity.
+template <class T, int D, class F>
+void for_each_group(const MaterialBlock<D>& block, F&& f) {
+  for (std::size_t k = 0; k < block.count; k += lanes_of<T>) f(Group<T, D>(block, k));
+}
+
+/// The motion of a group over the step, and the volumes and mass that go with it.
+template <class T, int D>
+struct Moved {
+  Motion<T, D> motion;
+  Sym<T, D> strain;  // of the step, referred to its middle
+  T mass, volume_before, volume, initial_volume, mean_volume;
+
+  Moved(const Group<T, D>& group, const MaterialBlock<D>& block, const Columns& columns,
+        const MaterialColumns& at, double density, const StressSettings& settings) {
+    const auto valid = group.valid();
+    Mat<T, D> f;
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) {
+        motion.gradient[i][j] = select(valid, group.get(block.gradient[i][j]), T(0.0));
+        f[i][j] = i == j ? motion.gradient[i][j] + T(1.0) : motion.gradient[i][j];
+      }
+    strain = symmetric_part(mid_step(motion.gradient));
+    motion.volume_ratio = determinant(f);
+    motion.time_step = settings.time_step;
+    motion.time = settings.time;
+    motion.cell_size = settings.cell_size;
+    mass = group.read(columns.component(at.mass));
+    volume_before = group.read(columns.component(at.volume));
+    volume = volume_before * motion.volume_ratio;
+    initial_volume = mass * T(1.0 / density);
+    mean_volume = T(0.5) * (volume_before + volume);
+    motion.J = volume * T(density) / mass;
+  }
+
+  /// Pressure of the artificial viscosity for a speed of sound c, and its work on the volume.
+  T viscous_pressure(const StressSettings& settings, T c) const {
+    const T rate = min(trace(symmetric_part(motion.gradient)), T(0.0)) *
+                   T(settings.cell_size / settings.time_step);
+    return mass / volume * rate *
+           (T(settings.viscosity.quadratic) * rate - T(settings.viscosity.linear) * c);
+  }
+  T viscous_work(T pressure) const {
+    return -volume * pressure * trace(symmetric_part(motion.gradient));
+  }
+};
+
+}  // namespace mpm

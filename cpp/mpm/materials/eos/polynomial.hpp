@@ -1,0 +1,50 @@
+#pragma once
+#include <array>
+
+#include "mpm/materials/model.hpp"
+
+namespace mpm {
+
+/// p = c0 + c1 mu + c2 mu^2 + c3 mu^3 + (c4 + c5 mu + c6 mu^2) E, mu = rho / rho0 - 1. In tension
+/// the even terms c2 and c6 are left out (Hallquist 2006, eq. 19.1.1).
+struct Polynomial {
+  static constexpr std::string_view name = "polynomial";
+  static constexpr std::string_view doc =
+      "p = c0 + c1 mu + c2 mu^2 + c3 mu^3 + (c4 + c5 mu + c6 mu^2) E, mu = rho/rho0 - 1; without "
+      "c2 "
+      "and c6 in tension";
+  static constexpr std::string_view source = "Hallquist 2006 (LS-DYNA theory manual), sec. 19.1";
+
+  double c0{}, c1{}, c2{}, c3{}, c4{}, c5{}, c6{}, E0{};
+
+  static constexpr auto params = std::array{
+      Param<Polynomial>{"c0", &Polynomial::c0, "Pa", "pressure at the start", Rule::any, 0.0},
+      Param<Polynomial>{"c1", &Polynomial::c1, "Pa", "bulk modulus", Rule::not_negative, 0.0},
+      Param<Polynomial>{"c2", &Polynomial::c2, "Pa", "factor of mu^2", Rule::any, 0.0},
+      Param<Polynomial>{"c3", &Polynomial::c3, "Pa", "factor of mu^3", Rule::any, 0.0},
+      Param<Polynomial>{"c4", &Polynomial::c4, "", "factor of E", Rule::any, 0.0},
+      Param<Polynomial>{"c5", &Polynomial::c5, "", "factor of mu E", Rule::any, 0.0},
+      Param<Polynomial>{"c6", &Polynomial::c6, "", "factor of mu^2 E", Rule::any, 0.0},
+      Param<Polynomial>{"E0", &Polynomial::E0, "Pa", "internal energy per initial volume",
+                        Rule::not_negative, 0.0},
+  };
+
+  void prepare(double) {}
+  std::string problem() const {
+    if (c1 > 0.0 || (c4 + c5 != 0.0 && E0 > 0.0)) return {};
+    return "polynomial has no stiffness at the start: give c1 > 0, or c4 or c5 with E0 > 0";
+  }
+  double initial_energy() const { return E0; }
+
+  template <Real T>
+  LinearInEnergy<T> at(T V) const {
+    const T density = T(1.0) / V, mu = density - T(1.0);
+    const T d_mu = -density * density;
+    const T two = select(mu > T(0.0), T(c2), T(0.0)), six = select(mu > T(0.0), T(c6), T(0.0));
+    return {T(c0) + mu * (T(c1) + mu * (two + mu * T(c3))), T(c4) + mu * (T(c5) + mu * six),
+            d_mu * (T(c1) + mu * (T(2.0) * two + mu * T(3.0 * c3))),
+            d_mu * (T(c5) + T(2.0) * mu * six)};
+  }
+};
+
+}  // namespace mpm

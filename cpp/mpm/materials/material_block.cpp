@@ -1,0 +1,126 @@
+#include "mpm/materials/material_block.hpp"
+
+#include "mpm/materials/apply_eos.hpp"
+#include "mpm/materials/apply_failure.hpp"
+#include "mpm/materials/apply_strength.hpp"
+
+namespace mpm {
+template <class T, int D>
+void update_block(const Material& material, Columns& columns, const MaterialColumns& at,
+                  MaterialBlock<D>& block, const StressSettings& settings, StressSums& sums) {
+  BlockEnd<T, D> end(columns, at, settings);
+  std::visit(
+      [&](const auto& model) {
+        apply_strength(model, material, columns, at, settings, block, end);
+      },
+      material.strength);
+  if (material.eos)
+    std::visit(
+        [&](const auto& model) { apply_eos(model, material, columns, at, settings, block, end); },
+        *material.eos);
+  if (!material.failures.empty()) apply_failures(material, columns, at, settings, block, end);
+  end.add_to(sums);
+}
+
+template <int D>
+void add_material_columns(const Material& material, bool viscosity, Columns& columns,
+                          MaterialColumns& at) {
+  const auto add = [&](int& first, const auto& model) {
+    for (const StateColumn& s : model.state_columns) {
+      const int place = columns.add(std::string(s.name), std::string(s.unit), s.components(D));
+      if (first < 0) first = place;
+    }
+  };
+  std::visit([&](const auto& model) { add(at.state, model); }, material.strength);
+  at.viscosity_pressure = viscosity ? columns.add("viscosity_pressure", "Pa", 1) : -1;
+  at.energy = material.eos ? columns.add("internal_energy", "J/m^3", 1) : -1;
+  if (material.failures.empty()) return;
+  at.failed = columns.add("failed", "1", 1);
+  for (const Failing& failing : material.failures)
+    std::visit([&](const auto& model) { add(at.failure_state, model); }, failing.model);
+}
+
+template <int D>
+void start_material_columns(const Material& material, Columns& columns, const MaterialColumns& at) {
+  const auto fill = [&](int component, double value) {
+    std::fill_n(columns.component(component), columns.rows(), value);
+  };
+  for (int c = at.stress; c < columns.component_count(); ++c) fill(c, 0.0);
+  const auto start = [&](int& first, const auto& model) {
+    const auto state = model.template start<double, D>();
+    constexpr int size = state_size<std::remove_cvref_t<decltype(state)>, double>;
+    double flat[size + 1];
+    pack(state, flat);
+    for (int k = 0; k < size; ++k) fill(first + k, flat[k]);
+    first += size;
+  };
+  int next = at.state;
+  std::visit([&](const auto& model) { start(next, model); }, material.strength);
+  next = at.failure_state;
+  for (const Failing& failing : material.failures)
+    std::visit([&](const auto& model) { start(next, model); }, failing.model);
+  if (!material.eos) return;
+  std::visit(
+      [&](const auto& model) {
+        const double energy = model.initial_energy();
+        const LinearInEnergy<double> p = model.at(1.0);
+        fill(at.energy, energy);
+        if (std::holds_alternative<HighExplosive>(material.strength)) return;  // not burning yet
+        for (int c = 0; c < 3; ++c) fill(at.stress + c, -(p.A + p.B * energy));
+      },
+      *material.eos);
+}
+
+template <int D>
+double sound_speed(const Material& material, const Columns& columns, const MaterialColumns& at,
+                   std::size_t row, double cell_size) {
+  const auto value = [&](int component) { return columns.component(component)[row]; };
+  Sym<double, D> stress;
+  for (int c = 0; c < Sym<double, D>::size; ++c) stress.c[c] = value(at.stress + c);
+  const double J = value(at.volume) * material.density / value(at.mass);
+  return std::visit(
+      [&]<class Model>(const Model& model) {
+        using State = typename Model::template State<double, D>;
+        double flat[state_size<State, double> + 1];
+        for (int k = 0; k < state_size<State, double>; ++k) flat[k] = value(at.state + k);
+        const auto state = unpack<State>(flat);
+        if constexpr (Model::eos != EosUse::must)
+          if (!material.eos) return model.sound_speed(stress, state, J);
+        if constexpr (Model::eos != EosUse::never) {
+          double burnt = 1.0;
+          if constexpr (requires { state.burn_fraction; }) burnt = state.burn_fraction;
+          const double shear = model.shear_wave_squared(state, J, cell_size);
+          const double bulk = std::visit(
+              [&](const auto& eos) {
+                const double energy = value(at.energy);
+                const LinearInEnergy<double> p = eos.at(J);
+                return sound_speed_squared(p, J, energy, p.A + p.B * energy, material.density);
+              },
+              *material.eos);
+          return sqrt(burnt * bulk + shear);
+        }
+        return 0.0;
+      },
+      material.strength);
+}
+
+template void update_block<Batch<native_lanes>, 2>(const Material&, Columns&,
+                                                   const MaterialColumns&, MaterialBlock<2>&,
+                                                   const StressSettings&, StressSums&);
+template void update_block<Batch<native_lanes>, 3>(const Material&, Columns&,
+                                                   const MaterialColumns&, MaterialBlock<3>&,
+                                                   const StressSettings&, StressSums&);
+template void update_block<double, 2>(const Material&, Columns&, const MaterialColumns&,
+                                      MaterialBlock<2>&, const StressSettings&, StressSums&);
+template void update_block<double, 3>(const Material&, Columns&, const MaterialColumns&,
+                                      MaterialBlock<3>&, const StressSettings&, StressSums&);
+template void add_material_columns<2>(const Material&, bool, Columns&, MaterialColumns&);
+template void add_material_columns<3>(const Material&, bool, Columns&, MaterialColumns&);
+template void start_material_columns<2>(const Material&, Columns&, const MaterialColumns&);
+template void start_material_columns<3>(const Material&, Columns&, const MaterialColumns&);
+template double sound_speed<2>(const Material&, const Columns&, const MaterialColumns&, std::size_t,
+                               double);
+template double sound_speed<3>(const Material&, const Columns&, const MaterialColumns&, std::size_t,
+                               double);
+
+}  // namespace mpm

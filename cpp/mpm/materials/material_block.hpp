@@ -1,0 +1,84 @@
+#pragma once
+// A block of particles on its way through its material: gradients in, strength, equation of state,
+// failure, stress out. Each is one indirect call per block; what passes between them stays in the
+// block, in the first cache.
+#include "mpm/fields/columns.hpp"
+#include "mpm/fields/lanes.hpp"
+#include "mpm/materials/material.hpp"
+
+namespace mpm {
+
+/// Up to `capacity` particles. A register may be stored past the last one.
+template <int D>
+struct MaterialBlock {
+  static constexpr int capacity = 128;
+  static constexpr int room = capacity + native_lanes;
+  using Values = double[room];
+
+  std::size_t count = 0;
+  std::uint32_t row[room];
+  Values gradient[D][D];  // velocity gradient x time step
+
+  Values stress[Sym<double, D>::size];  // after the step [Pa]
+  Values dissipated;                    // work lost to flow per present volume [J/m^3]
+  Values speed;                         // of sound [m/s]; before an EOS its shear part, squared
+  Values viscous_pressure;              // of the artificial viscosity [Pa]
+  Values burnt;                         // factor of the EOS's pressure; of high explosives
+  Values plastic_strain, plastic_increment, temperature;  // for failure models
+};
+
+/// Where a body keeps what its material reads and writes: first components in its columns, -1 if
+/// absent.
+struct MaterialColumns {
+  int velocity, mass, volume, stress;
+  int state = -1;               // of the strength model
+  int viscosity_pressure = -1;  // of the artificial viscosity
+  int energy = -1;              // internal, per initial volume; with an EOS
+  int failed = -1;              // FailureAction; with failure models
+  int failure_state = -1;       // of the failure models, one after another
+};
+
+/// Artificial bulk viscosity (von Neumann & Richtmyer 1950, with Landshoff's linear term):
+/// q = rho h^2 quadratic e^2 - rho h c linear e for a rate of volume change e < 0.
+struct BulkViscosity {
+  double quadratic = 0.0, linear = 0.0;
+  bool active() const { return quadratic > 0.0 || linear > 0.0; }
+};
+
+struct StressSettings {
+  double time_step, time, cell_size;  // time: at the end of the step
+  BulkViscosity viscosity;
+  bool
+      forces_follow;  // USF: this step's forces use the new stress; else they have used the old one
+};
+
+/// What the ledger and the time step need from a block; energies in J.
+struct StressSums {
+  double internal = 0.0;     // recoverable work of the stress, mean of old and new
+  double plastic = 0.0;      // dissipated by plastic or viscous flow
+  double viscous = 0.0;      // work of the artificial viscosity
+  double force_power = 0.0;  // work over this strain of the stress that the nodal forces use
+  double fastest = 0.0;      // largest c + |v| [m/s]
+  bool negative_volume = false;
+};
+
+/// Take the particles of a block through a material: stress, state and volume after the step, and
+/// the sums. `Lanes` is Batch<W>, or double, which tests take as the oracle.
+template <class Lanes, int D>
+void update_block(const Material& material, Columns& columns, const MaterialColumns& at,
+                  MaterialBlock<D>& block, const StressSettings& settings, StressSums& sums);
+
+/// Declare the columns that a material needs; fills in where they are.
+template <int D>
+void add_material_columns(const Material& material, bool viscosity, Columns& columns,
+                          MaterialColumns& at);
+/// Give them the values of a body at rest at the start.
+template <int D>
+void start_material_columns(const Material& material, Columns& columns, const MaterialColumns& at);
+
+/// Speed of sound [m/s] of one particle.
+template <int D>
+double sound_speed(const Material& material, const Columns& columns, const MaterialColumns& at,
+                   std::size_t row, double cell_size);
+
+}  // namespace mpm

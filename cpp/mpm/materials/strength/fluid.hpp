@@ -1,0 +1,50 @@
+#pragma once
+#include <array>
+
+#include "mpm/materials/model.hpp"
+
+namespace mpm {
+
+/// A fluid: no strength but Newton's viscous stress 2 mu dev(D). Its pressure is the EOS's.
+struct Fluid {
+  static constexpr std::string_view name = "fluid";
+  static constexpr std::string_view doc =
+      "fluid with Newton's viscosity, or none; its pressure comes from an equation of state";
+  static constexpr std::string_view source = "Batchelor 1967, eq. 3.3.11";
+  static constexpr EosUse eos = EosUse::must;
+
+  double viscosity{}, density{};
+
+  static constexpr auto params = std::array{
+      Param<Fluid>{"viscosity", &Fluid::viscosity, "Pa*s", "dynamic viscosity", Rule::not_negative,
+                   0.0},
+  };
+  static constexpr std::array<StateColumn, 0> state_columns{};
+  template <class T, int D>
+  using State = NoState<T, D>;
+  template <class T, int D>
+  State<T, D> start() const {
+    return {};
+  }
+
+  void prepare(double initial_density) { density = initial_density; }
+  std::string problem() const { return {}; }
+
+  template <Real T, int D>
+  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
+    const Sym<T, D> strain = symmetric_part(mid_step(motion.gradient));
+    const Sym<T, D> shear = strain - Sym<T, D>::isotropic(T(1.0 / 3.0) * trace(strain));
+    stress = T(2.0 * viscosity / motion.time_step) * shear;
+    return inner(stress, shear);
+  }
+
+  /// Diffusion by viscosity is stable up to a time step h^2 / (2 nu 4/3), that of a wave of speed
+  /// 8/3 nu / h.
+  template <Real T, int D>
+  T shear_wave_squared(const State<T, D>&, T J, double cell_size) const {
+    const T speed = T(8.0 / 3.0 * viscosity / (density * cell_size)) * J;
+    return speed * speed;
+  }
+};
+
+}  // namespace mpm

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where and when explosives are lit, and when the detonation reaches each particle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from .errors import nearest, violation
+from .model import CaseModel, Text
+from .units import Point, Quantity
+
+if TYPE_CHECKING:
+    from .case import Case
+
+Array = NDArray[np.float64]
+EXPLOSIVE = "high_explosive"
+
+
+class Detonation(CaseModel):
+    """A point from which a detonation runs spherically through explosives, at their own speed.
+
+    Attributes:
+        point: where [m], D numbers.
+        time: when [s].
+        bodies: names of the bodies that it lights; empty for all explosives.
+    """
+
+    point: Point
+    time: Annotated[float, Quantity("s", ">= 0")] = 0.0
+    bodies: list[Text] = Field(default_factory=list)
+
+
+def lighting_times(case: Case, body: str, positions: Array) -> Array | None:
+    """Return when the detonation arrives at each particle of a body [s], shape (n,).
+
+    It is the earliest of all points' time + distance / D (Huygens, one medium).
+
+    Args:
+        case: gives the points and the speed D.
+        body: its name.
+        positions: of its particles at the start [m], shape (n, D).
+
+    Returns:
+        None if the body is no explosive or nothing lights it.
+    """
+    strength = case.material[case.body[body].material].strength
+    points = [d for d in case.detonation if not d.bodies or body in d.bodies]
+    if strength.model != EXPLOSIVE or not points:
+        return None
+    speed = strength.parameters["D"]
+    arrivals = [
+        d.time + np.linalg.norm(positions - np.asarray(d.point), axis=1) / speed for d in points
+    ]
+    return np.ascontiguousarray(np.min(arrivals, axis=0))
+
+
+def check_detonations(case: Case) -> None:
+    """Raise a violation for a point of the wrong dimension or a body that cannot be lit."""
+    dimension = case.grid.dimension
+    for index, detonation in enumerate(case.detonation):
+        if len(detonation.point) != dimension:
+            rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
+            remedy = f"it has {len(detonation.point)}, give {dimension}"
+            path = ("detonation", index, "point")
+            raise violation(rule, remedy, value=list(detonation.point), path=path)
+        for place, name in enumerate(detonation.bodies):
+            where = ("detonation", index, "bodies", place)
+            if name not in case.body:
+                remedy = nearest(name, case.body)
+                raise violation("is not a body of this case", remedy, value=name, path=where)
+            if case.material[case.body[name].material].strength.model != EXPLOSIVE:
+                rule = f"is not of an explosive (strength {EXPLOSIVE})"
+                raise violation(rule, "name a body that is", value=name, path=where)

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Material models: the catalogue of the core is the schema; nothing is listed here again."""
+
+from __future__ import annotations
+
+import importlib
+from functools import lru_cache
+from typing import Any
+
+from mpm3dpp.errors import CaseError, nearest, violation
+from mpm3dpp.rules import requirement
+from mpm3dpp.units import DIMENSIONS, Quantity
+
+KINDS = {
+    "strength": "strength model",
+    "eos": "equation of state",
+    "failure": "failure model",
+}
+"""Kinds of models, as the key of a material, and in words."""
+
+
+@lru_cache(maxsize=len(KINDS))
+def catalogue(kind: str = "strength") -> dict[str, Any]:
+    """Return the models of a kind that the core knows, by name.
+
+    Each has `name`, `doc`, `source`, `parameters` (each with `name`, `unit`, `meaning`, `default`
+    or None, `rule`) and `state` (names of the columns that the model stores); a strength model
+    also has `eos`, whether it "never", "may" or "must" have an equation of state.
+    """
+    core = importlib.import_module("mpm3dpp._core")
+    return {model.name: model for model in core.catalogue() if model.kind == kind}
+
+
+def state_columns(models: set[str]) -> list[str]:
+    """Return the names of the state columns that these models store, in the catalogue's order."""
+    every = [item for kind in KINDS for item in catalogue(kind).items()]
+    names = [s for name, model in every if name in models for s in model.state]
+    return list(dict.fromkeys(names))
+
+
+def check_parameters(kind: str, model: str, given: Any) -> dict[str, float]:
+    """Return all parameters of a model in SI units, defaults filled in.
+
+    Args:
+        kind: "strength", "eos" or "failure".
+        model: name of a model of that kind.
+        given: the user's table, parameter to value.
+
+    Raises:
+        PydanticCustomError: a violation, with its path below the model's table.
+    """
+    if not isinstance(given, dict):
+        remedy = f"write {model} = {{ {example(kind, model)} }}"
+        raise violation("must be a table of parameters", remedy, value=given)
+    known = {parameter.name: parameter for parameter in catalogue(kind)[model].parameters}
+    for name in given:
+        if name not in known:
+            rule = f"is not a parameter of {model}"
+            raise violation(rule, nearest(str(name), known), path=(str(name),))
+    found: dict[str, float] = {}
+    for name, parameter in known.items():
+        if name in given:
+            quantity = Quantity("" if parameter.unit == "1" else parameter.unit, parameter.rule)
+            found[name] = _parsed(quantity, given[name], name)
+        elif parameter.default is not None:
+            found[name] = float(parameter.default)
+        else:
+            what = f"{parameter.meaning} [{parameter.unit or '1'}]"
+            raise violation("is missing", f"add {name}, the {what}", path=(name,))
+    return found
+
+
+def _parsed(quantity: Quantity, value: Any, name: str) -> float:
+    from pydantic_core import PydanticCustomError
+
+    try:
+        return quantity.parse(value)
+    except PydanticCustomError as error:
+        context = error.context or {}
+        raise violation(context["rule"], context["remedy"], value=value, path=(name,)) from None
+
+
+def example(kind: str, model: str) -> str:
+    """Return a model's parameters with an example of each: `E = "26 MPa", nu = 0.3`.
+
+    Those that have a default are left out.
+    """
+    return ", ".join(
+        f"{p.name} = {DIMENSIONS.get(p.unit, ('', '1.0'))[1]}"
+        for p in catalogue(kind)[model].parameters
+        if p.default is None
+    )
+
+
+def listing(name: str | None = None) -> str:
+    """Return the catalogue as text: every model, or one, with parameters, units and source.
+
+    Args:
+        name: a model; None for all of them.
+
+    Raises:
+        CaseError: there is no such model.
+    """
+    every = [(kind, model) for kind in KINDS for model in catalogue(kind).values()]
+    names = [model.name for _, model in every]
+    if name is not None and name not in names:
+        raise CaseError("is not a known material model", nearest(name, names), value=name)
+    return "\n\n".join(_entry(kind, model) for kind, model in every if name in (None, model.name))
+
+
+def _entry(kind: str, model: Any) -> str:
+    lines = [f"{model.name} ({KINDS[kind]}): {model.doc}", f"  source: {model.source}"]
+    lines.append("  parameters:")
+    wide = max([len(p.name) for p in model.parameters], default=0)
+    for p in model.parameters:
+        rule = f", {requirement(p.rule)}" if p.rule else ""
+        default = "" if p.default is None else f", default {p.default:g}"
+        lines.append(f"    {p.name:<{wide}}  [{p.unit or '1'}] {p.meaning}{rule}{default}")
+    if model.state:
+        lines.append(f"  stores {', '.join(model.state)} (for output.fields)")
+    if kind == "strength":
+        pressure = {"never": "takes no eos", "may": "an eos may give the pressure"}
+        lines.append(f"  {pressure.get(model.eos, 'needs an eos')}")
+    lines.append(f"  case file: {kind} = {{ {model.name} = {{ {example(kind, model.name)} }} }}")
+    return "\n".join(lines)

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The models of a material as a case holds them: strength, equation of state, failure."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar
+
+from pydantic import BeforeValidator, SkipValidation, WithJsonSchema, model_validator
+
+from mpm3dpp.errors import Path, nearest, violation
+from mpm3dpp.model import CaseModel, Choice
+
+from .catalogue import KINDS, catalogue, check_parameters, example
+
+ACTIONS = ("no_tension", "no_shear")
+"""What failure does: only compression is left; or the whole pressure is."""
+
+
+class ChosenModel(CaseModel):
+    """A model of the catalogue with its parameters.
+
+    Attributes:
+        model: its name, for example "neo_hookean" (`mpm3dpp materials` lists them).
+        parameters: all of its parameters, SI units.
+    """
+
+    kind: ClassVar[str] = "strength"
+    model: str
+    parameters: dict[str, SkipValidation[float]]
+
+    @model_validator(mode="after")
+    def _from_catalogue(self) -> ChosenModel:
+        if self.model not in catalogue(self.kind):
+            remedy = nearest(self.model, catalogue(self.kind))
+            raise violation(f"is not a known {KINDS[self.kind]}", remedy, value=self.model)
+        self.__dict__["parameters"] = check_parameters(self.kind, self.model, self.parameters)
+        return self
+
+    def table(self) -> dict[str, Any]:
+        """Return `{"neo_hookean": {"K": ..., "G": ...}}`, in SI units."""
+        return {self.model: dict(self.parameters)}
+
+
+class Strength(ChosenModel):
+    """A strength model with its parameters; `Strength(model="elastic", parameters={...})`."""
+
+
+class Eos(ChosenModel):
+    """An equation of state with its parameters, which gives the pressure."""
+
+    kind: ClassVar[str] = "eos"
+
+
+class Failure(ChosenModel):
+    """A failure model with its parameters.
+
+    Attributes:
+        action: what becomes of a particle that fails: "no_tension" (the default; it bears
+            compression only) or "no_shear" (it keeps its whole pressure, like a liquid).
+    """
+
+    kind: ClassVar[str] = "failure"
+    action: Annotated[str, Choice(ACTIONS)] = "no_tension"
+
+    def table(self) -> dict[str, Any]:
+        """Return `{"plastic_strain": {"limit": ..., "action": ...}}`, in SI units."""
+        return {self.model: {**self.parameters, "action": self.action}}
+
+
+def _chosen(kind: type[ChosenModel], model: Any, given: Any) -> ChosenModel:
+    """Return the model of `{model: given}`; violations have their path from there."""
+    word, known = kind.kind, catalogue(kind.kind)
+    if model not in known:
+        rule = f"is not a known {KINDS[word]}"
+        raise violation(rule, nearest(str(model), known), path=(str(model),))
+    from pydantic_core import PydanticCustomError
+
+    extra: dict[str, Any] = {}
+    try:
+        if kind is Failure and isinstance(given, dict) and "action" in given:
+            extra = {"action": _action(given["action"])}
+            given = {key: value for key, value in given.items() if key != "action"}
+        parameters = check_parameters(word, model, given)
+    except PydanticCustomError as error:
+        found: Any = error.context
+        path: Path = (model, *found["path"])
+        raise violation(found["rule"], found["remedy"], value=found["value"], path=path) from None
+    return kind.model_construct(model=model, parameters=parameters, **extra)
+
+
+def _action(word: Any) -> str:
+    from pydantic_core import PydanticCustomError
+
+    try:
+        return Choice(ACTIONS).parse(word)
+    except PydanticCustomError as error:
+        found: Any = error.context
+        raise violation(found["rule"], found["remedy"], value=word, path=("action",)) from None
+
+
+def _parse_one(kind: type[ChosenModel]) -> Any:
+    def parse(value: Any) -> ChosenModel | None:
+        """Return the model of a table such as `{"elastic": {"E": "1 GPa", "nu": 0.3}}`."""
+        if value is None or isinstance(value, kind):
+            return value
+        names = ", ".join(catalogue(kind.kind))
+        if not isinstance(value, dict) or len(value) != 1:
+            has = f" but has {len(value)}" if isinstance(value, dict) else ""
+            model = next(iter(catalogue(kind.kind)))
+            inside = example(kind.kind, model)
+            remedy = f"write {{ {model} = {{ {inside} }} }}; the models are {names}"
+            raise violation(f"must be a table with exactly one model{has}", remedy, value=value)
+        [(model, given)] = value.items()
+        return _chosen(kind, model, given)
+
+    return parse
+
+
+def _parse_failures(value: Any) -> list[Failure]:
+    """Return the failure models of a table such as `{"plastic_strain": {"limit": 1.5}}`."""
+    if isinstance(value, list) and all(isinstance(item, Failure) for item in value):
+        return value
+    if not isinstance(value, dict):
+        model = next(iter(catalogue("failure")))
+        remedy = f"write {{ {model} = {{ {example('failure', model)} }} }}"
+        raise violation("must be a table of failure models", remedy, value=value)
+    chosen = [_chosen(Failure, model, given) for model, given in value.items()]
+    return [item for item in chosen if isinstance(item, Failure)]
+
+
+_ONE = WithJsonSchema({"type": "object", "minProperties": 1, "maxProperties": 1})
+AnyStrength = Annotated[SkipValidation[Strength], BeforeValidator(_parse_one(Strength)), _ONE]
+AnyEos = Annotated[SkipValidation[Eos | None], BeforeValidator(_parse_one(Eos)), _ONE]
+AnyFailure = Annotated[
+    SkipValidation[list[Failure]],
+    BeforeValidator(_parse_failures),
+    WithJsonSchema({"type": "object", "minProperties": 1}),
+]
