@@ -126,6 +126,7 @@ NB_MODULE(_core, m) {
       .def_rw("viscosity_quadratic", &Settings::viscosity_quadratic)
       .def_rw("viscosity_linear", &Settings::viscosity_linear)
       .def_rw("contact", &Settings::contact)
+      .def_rw("bonded", &Settings::bonded)
       .def_rw("detection", &Settings::detection)
       .def_rw("normal_rule", &Settings::normal_rule)
       .def_rw("gap_distance", &Settings::gap_distance)

@@ -185,8 +185,8 @@ class Case(CaseModel):
 
     @property
     def contact_enabled(self) -> bool:
-        """Whether contact is computed: not switched off, and at least two bodies."""
-        return self.contact.enabled and len(self.body) > 1
+        """Whether contact is computed: not switched off, nor bonded, and at least two bodies."""
+        return self.contact.enabled and not self.contact.bonded and len(self.body) > 1
 
     def frictions(self) -> list[tuple[int, int, float]]:
         """Return (body, body, coefficient) of the pairs listed in `contact.pair`, a < b."""

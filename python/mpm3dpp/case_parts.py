@@ -213,6 +213,8 @@ class Contact(CaseModel):
 
     Attributes:
         enabled: without contact the bodies do not see each other.
+        bonded: all bodies have one velocity field, so that they stick together wherever they
+            meet, as one body of several materials; nothing else of this table then matters.
         detection: "gap" (touching and approaching) or "velocity" (approaching only).
         normal: direction of contact: "plane" (separates the two bodies' points), or from gradients
             of mass, of both ("pair") or one ("first", "second", "stiffer").
@@ -223,6 +225,7 @@ class Contact(CaseModel):
     """
 
     enabled: Flag = True
+    bonded: Flag = False
     detection: Annotated[str, Choice(("gap", "velocity"))] = "gap"
     normal: Annotated[str, Choice(("plane", "pair", "first", "second", "stiffer"))] = "plane"
     friction: NonNegative = 0.0

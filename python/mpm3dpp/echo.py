@@ -67,7 +67,7 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
     dt = time_step(case, bodies)
     box = case.grid.box_cells
     bounds = " x ".join(str(n) for n in box) + " cells" if box else "no bounds"
-    contact = "none"
+    contact = "none, the bodies are bonded" if case.contact.bonded else "none"
     if case.contact_enabled:
         contact = f"{case.contact.detection} detection, friction {case.contact.friction:g}"
     lines += [

@@ -137,6 +137,7 @@ def _settings(case: Case, threads: int) -> _core.Settings:
         settings.viscosity_quadratic = run.viscosity.quadratic
         settings.viscosity_linear = run.viscosity.linear
     settings.contact = case.contact_enabled
+    settings.bonded = case.contact.bonded
     settings.detection = _core.Detection[case.contact.detection]
     settings.normal_rule = _core.NormalRule[case.contact.normal]
     settings.gap_distance = case.contact.gap_distance

@@ -60,6 +60,9 @@ template <int D>
 std::uint32_t ContactGrid<D>::sides_at(TileGrid<D>& grid, const ContactTile<D>& tile,
                                        const Index<D>& node, Side<D>* sides) {
   std::uint32_t count = 0;
+  Index<D> global = grid.first_cell(tile.tile), image;
+  for (int a = 0; a < D; ++a) global[a] += node[a];
+  if (grid.walls.mirrored(global, image)) return 0;  // it follows its image
   const std::uint32_t end = tile.first_holder + tile.holders;
   for (std::uint32_t first = tile.first_holder, next = first; first < end; first = next) {
     const int body = holders_[first].body;

@@ -32,7 +32,9 @@ struct Patch {
   std::uint64_t occupied = 0;  // bit c: cell c holds a particle
   std::array<std::uint32_t, Tile<D>::cell_count + 1> cell_begin{};  // relative to `begin`
   std::array<std::int32_t, Tile<D>::neighbours>
-      neighbour{};          // patches of the same body around it, -1 if none
+      neighbour{};  // patches of the same body around it, -1 if none; of a leader if bonded
+  std::uint32_t leader =
+      0;                    // where the bodies are bonded: the first patch of the tile; else itself
   std::uint32_t owned = 0;  // bit r: this patch owns the nodes of region r of the block's shape
   bool at_wall = false;     // its block has nodes on a wall
   bool left_cell = false;   // a particle has left its cell since the lists were made

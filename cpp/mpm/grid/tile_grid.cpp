@@ -1,6 +1,7 @@
 #include "mpm/grid/tile_grid.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace mpm {
 namespace {
@@ -33,9 +34,34 @@ std::uint32_t owned_regions(const BlockShape<D>& shape, const Patch<D>& patch) {
 
 }  // namespace
 
+/// In the order of the leaders: by body and tile, or by tile alone where bodies are bonded.
+template <int D>
+bool TileGrid<D>::before(const Patch<D>& p, int body, const Index<D>& tile) const {
+  return bonded ? tile_less<D>(p.tile, tile) : patch_less<D>(p.body, p.tile, body, tile);
+}
+
+template <int D>
+void TileGrid<D>::choose_leaders() {
+  leaders_.resize(patches.size());
+  std::iota(leaders_.begin(), leaders_.end(), 0u);
+  for (std::uint32_t p = 0; p < patches.size(); ++p) patches[p].leader = p;
+  if (!bonded) return;
+  std::sort(leaders_.begin(), leaders_.end(), [&](std::uint32_t x, std::uint32_t y) {
+    const Patch<D>&p = patches[x], &q = patches[y];
+    return p.tile != q.tile ? tile_less<D>(p.tile, q.tile) : p.body < q.body;
+  });
+  by_tile_ = leaders_;
+  leaders_.clear();
+  for (const std::uint32_t p : by_tile_) {
+    if (leaders_.empty() || patches[leaders_.back()].tile != patches[p].tile) leaders_.push_back(p);
+    patches[p].leader = leaders_.back();
+  }
+}
+
 template <int D>
 void TileGrid<D>::connect() {
   using T = Tile<D>;
+  choose_leaders();
   for (auto& p : patches) {
     p.neighbour.fill(-1);
     p.neighbour[T::self] = static_cast<std::int32_t>(&p - patches.data());
@@ -44,22 +70,24 @@ void TileGrid<D>::connect() {
   // along the list.
   for (int k = T::self + 1; k < T::neighbours; ++k) {
     const Index<D> o = T::offset(k);
-    std::size_t q = 0;
-    for (std::size_t p = 0; p < patches.size(); ++p) {
-      Index<D> target = patches[p].tile;
+    std::size_t finger = 0;
+    for (const std::uint32_t p : leaders_) {
+      Patch<D>& patch = patches[p];
+      Index<D> target = patch.tile;
       for (int a = 0; a < D; ++a) target[a] += o[a];
-      while (q < patches.size() &&
-             patch_less<D>(patches[q].body, patches[q].tile, patches[p].body, target))
-        ++q;
-      if (q == patches.size()) break;
-      if (patches[q].body != patches[p].body || patches[q].tile != target) continue;
-      patches[p].neighbour[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(q);
-      patches[q].neighbour[static_cast<std::size_t>(T::neighbours - 1 - k)] =
+      while (finger < leaders_.size() && before(patches[leaders_[finger]], patch.body, target))
+        ++finger;
+      if (finger == leaders_.size()) break;
+      Patch<D>& other = patches[leaders_[finger]];
+      if (other.tile != target || (!bonded && other.body != patch.body)) continue;
+      patch.neighbour[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(leaders_[finger]);
+      other.neighbour[static_cast<std::size_t>(T::neighbours - 1 - k)] =
           static_cast<std::int32_t>(p);
     }
   }
   for (auto& p : patches) {
-    p.owned = owned_regions(shape, p);
+    const bool leads = &patches[p.leader] == &p;
+    p.owned = leads ? owned_regions(shape, p) : 0u;
     p.at_wall = box_touches_wall(*this, p);
   }
   const std::size_t needed = patches.size() * block_size();
@@ -75,11 +103,35 @@ int TileGrid<D>::find(int body, const Index<D>& tile) const {
   return static_cast<int>(at - patches.begin());
 }
 
+/// f(p, leader) for every patch that does not lead, those of one tile one after another.
+template <int D>
+template <class F>
+void TileGrid<D>::for_each_follower(Threads& threads, F&& f) {
+  threads.for_each(leaders_.size(), [&](std::size_t k) {
+    const std::uint32_t leader = leaders_[k];
+    const auto begin = std::lower_bound(by_tile_.begin(), by_tile_.end(), leader,
+                                        [&](std::uint32_t x, std::uint32_t y) {
+                                          return tile_less<D>(patches[x].tile, patches[y].tile);
+                                        });
+    for (auto p = begin; p != by_tile_.end() && patches[*p].leader == leader; ++p)
+      if (*p != leader) f(*p, leader);
+  });
+}
+
 template <int D>
 void TileGrid<D>::sum_shared_nodes(Threads& threads, int first, int last) {
+  const auto fields = static_cast<std::size_t>((last - first) * shape.node_stride);
+  const auto start = [&](std::size_t p) { return block(p).data + first * shape.node_stride; };
+  if (bonded)
+    for_each_follower(threads, [&](std::size_t p, std::size_t leader) {
+      double* to = start(leader);
+      const double* from = start(p);
+      for (std::size_t n = 0; n < fields; ++n) to[n] += from[n];
+    });
   // An owner writes only its own entry of a node and reads those of others, which nobody writes in
   // this pass.
-  threads.for_each(patches.size(), [&](std::size_t p) {
+  threads.for_each(leaders_.size(), [&](std::size_t leader) {
+    const std::size_t p = leaders_[leader];
     const Patch<D>& patch = patches[p];
     for (std::size_t r = 0; r < shape.regions.size(); ++r) {
       if (!(patch.owned >> r & 1u)) continue;
@@ -97,7 +149,8 @@ void TileGrid<D>::sum_shared_nodes(Threads& threads, int first, int last) {
       }
     }
   });
-  threads.for_each(patches.size(), [&](std::size_t p) {
+  threads.for_each(leaders_.size(), [&](std::size_t leader) {
+    const std::size_t p = leaders_[leader];
     const Patch<D>& patch = patches[p];
     for (std::size_t r = 0; r < shape.regions.size(); ++r) {
       if (patch.owned >> r & 1u) continue;
@@ -115,6 +168,10 @@ void TileGrid<D>::sum_shared_nodes(Threads& threads, int first, int last) {
       }
     }
   });
+  if (bonded)
+    for_each_follower(threads, [&](std::size_t p, std::size_t leader) {
+      std::copy_n(start(leader), fields, start(p));
+    });
 }
 
 template class TileGrid<2>;

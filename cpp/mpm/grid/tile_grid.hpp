@@ -24,6 +24,7 @@ class TileGrid {
   // shifted by whole cells is cut into the same tiles and gives the same bits.
   Index<D> anchor{};
   Walls<D> walls;
+  bool bonded = false;            // all bodies have one velocity field: they share their nodes
   std::vector<Patch<D>> patches;  // by body, then by tile
 
   /// Position along an axis in cells from the origin. Every kernel uses this one expression, so
@@ -75,11 +76,19 @@ class TileGrid {
   int find(int body, const Index<D>& tile) const;
 
   /// Add up what the patches sharing a node have put there, for fields [first, last) of the blocks,
-  /// always in the order of the tiles; then every patch holds the sum.
+  /// always in the order of the tiles (of bonded bodies in one tile: of the bodies); then every
+  /// patch holds the sum.
   void sum_shared_nodes(Threads& threads, int first, int last);
 
  private:
+  bool before(const Patch<D>& p, int body, const Index<D>& tile) const;
+  void choose_leaders();
+  template <class F>
+  void for_each_follower(Threads& threads, F&& f);
+
   AlignedArray<double> node_memory_;
+  std::vector<std::uint32_t> by_tile_;  // if bonded: all patches, by tile, then by body
+  std::vector<std::uint32_t> leaders_;  // those whose nodes are summed with their neighbours'
 };
 
 /// Order of patches: by body, then by tile.

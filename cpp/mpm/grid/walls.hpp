@@ -13,19 +13,41 @@ struct Walls {
   Index<D> cells{};      // cells of the box along each axis
   Wall face[D][2] = {};  // [axis][lower, upper]
 
-  /// Bit a is set if a node may not move along axis a. Nodes beyond a face are held like those on
-  /// it.
+  /// Bit a is set if a node may not move along axis a. Nodes beyond a fixed face are held like
+  /// those on it; those beyond a slip face are images of nodes before it.
   unsigned held(const Index<D>& node) const {
     unsigned axes = 0;
     if (!exist) return axes;
     for (int a = 0; a < D; ++a) {
       for (int side = 0; side < 2; ++side) {
-        const bool beyond = side == 0 ? node[a] <= 0 : node[a] >= cells[a];
-        if (!beyond || face[a][side] == Wall::free) continue;
+        const int depth = depth_beyond(node, a, side);
+        if (depth < 0 || face[a][side] == Wall::free) continue;
+        if (depth > 0 && face[a][side] == Wall::slip) continue;
         axes |= face[a][side] == Wall::fixed ? (1u << D) - 1u : 1u << a;
       }
     }
     return axes;
+  }
+
+  /// Bit a is set if a node lies beyond a slip face of axis a, which is a plane of symmetry;
+  /// `image` is then where it is mirrored to.
+  unsigned mirrored(const Index<D>& node, Index<D>& image) const {
+    unsigned axes = 0;
+    image = node;
+    if (!exist) return axes;
+    for (int a = 0; a < D; ++a)
+      for (int side = 0; side < 2; ++side) {
+        const int depth = depth_beyond(node, a, side);
+        if (depth <= 0 || face[a][side] != Wall::slip) continue;
+        axes |= 1u << a;
+        image[a] += (side == 0 ? 2 : -2) * depth;
+      }
+    return axes;
+  }
+
+ private:
+  int depth_beyond(const Index<D>& node, int axis, int side) const {
+    return side == 0 ? -node[axis] : node[axis] - cells[axis];
   }
 };
 

@@ -26,6 +26,7 @@ void check(const Settings& s) {
     check(std::isfinite(s.origin[static_cast<std::size_t>(a)]) &&
               std::isfinite(s.gravity[static_cast<std::size_t>(a)]),
           "origin and gravity must be finite");
+  check(!(s.contact && s.bonded), "bodies are bonded or have contact, not both");
   check(s.energy_growth_limit > 0.0, "energy_growth_limit must be > 0");
   check(s.viscosity_quadratic >= 0.0 && s.viscosity_linear >= 0.0,
         "viscosity factors must be >= 0");
@@ -67,6 +68,7 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
   TileGrid<D>& grid = domain_.grid;
   grid.cell_size = settings.cell_size;
   grid.use(settings.basis);
+  grid.bonded = settings.bonded;
   grid.walls.exist = settings.box_cells[0] > 0;
   for (std::size_t a = 0; a < D; ++a) {
     const int axis = static_cast<int>(a);

@@ -30,6 +30,7 @@ struct Settings {
   std::array<double, 3> gravity{};  // [m/s^2]
   double viscosity_quadratic = 0.0, viscosity_linear = 0.0;
   bool contact = false;
+  bool bonded = false;  // all bodies move with one velocity field
   Detection detection = Detection::gap;
   NormalRule normal_rule = NormalRule::plane;
   double gap_distance = 0.0;  // [m]

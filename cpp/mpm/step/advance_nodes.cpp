@@ -1,4 +1,4 @@
-#include "mpm/step/cell_loop.hpp"
+#include "mpm/step/mirror.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -31,6 +31,7 @@ void advance_nodes(Domain<D>& domain) {
     });
     alignas(cache_line) double own[BlockShape<D>::stride_max];
     ownership(grid.shape, patch, own);
+    for_each_mirrored_node(grid, patch, [&](int node, int, unsigned) { own[node] = 0.0; });
     T work(0.0), gravity_first(0.0), gravity_second(0.0);
     for (int n = 0; n < block.stride; n += native_lanes) {
       const T m = T::load(block.mass() + n), owned = T::load(own + n);
@@ -46,10 +47,23 @@ void advance_nodes(Domain<D>& domain) {
         dv.store(block.force(a) + n);
       }
     }
+    // The mirrored weight went into the force; it is work of gravity.
+    double weight_first = 0.0, weight_second = 0.0;
+    for_each_mirrored_node(grid, patch, [&](int node, int image, unsigned axes) {
+      for (int a = 0; a < D; ++a) {
+        if (!(axes >> a & 1u)) continue;
+        const double weight = own[image] * mirrored_weight(domain, block, node, a);
+        const double dv = block.force(a)[image];
+        weight_first += weight * (block.velocity(a)[image] - dv);
+        weight_second += weight * dv;
+      }
+    });
+    reflect_at_walls(grid, patch, [&](int a) { return block.velocity(a); });
+    reflect_at_walls(grid, patch, [&](int a) { return block.force(a); });
     PatchSums<D>& sums = domain.sums[p];
-    sums.force_work = dt * sum(work);
-    sums.gravity_first = dt * sum(gravity_first);
-    sums.gravity_second = 0.5 * dt * sum(gravity_second);
+    sums.force_work = dt * (sum(work) + weight_first);
+    sums.gravity_first = dt * (sum(gravity_first) - weight_first);
+    sums.gravity_second = 0.5 * dt * (sum(gravity_second) - weight_second);
   });
 }
 

@@ -1,6 +1,22 @@
+#include "mpm/step/mirror.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
+
+namespace {
+
+/// Nodes beyond slip walls follow their images; `field(block, a)` is what contact has changed.
+template <int D, class Field>
+void reflect(Domain<D>& domain, Field&& field) {
+  TileGrid<D>& grid = domain.grid;
+  if (!grid.walls.exist || grid.shape.margin == 0) return;
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const NodeBlock<D> block = grid.block(p);
+    reflect_at_walls(grid, grid.patches[p], [&](int a) { return field(block, a); });
+  });
+}
+
+}  // namespace
 
 template <int D>
 void contact_momentum(Domain<D>& domain) {
@@ -8,6 +24,7 @@ void contact_momentum(Domain<D>& domain) {
   domain.contact.find(domain.grid, domain.bodies, domain.stiffness, domain.contact_settings,
                       domain.threads);
   domain.contact.adjust_momentum(domain.grid, domain.threads);
+  reflect(domain, [](const NodeBlock<D>& block, int a) { return block.velocity(a); });
 }
 
 template <int D>
@@ -18,7 +35,9 @@ void contact_forces(Domain<D>& domain) {
 
 template <int D>
 void contact_remapped(Domain<D>& domain) {
-  if (domain.has_contact()) domain.contact.adjust_remapped(domain.grid, domain.threads);
+  if (!domain.has_contact()) return;
+  domain.contact.adjust_remapped(domain.grid, domain.threads);
+  reflect(domain, [](const NodeBlock<D>& block, int a) { return block.force(a); });
 }
 
 template void contact_momentum<2>(Domain<2>&);

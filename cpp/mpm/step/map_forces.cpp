@@ -1,4 +1,4 @@
-#include "mpm/step/cell_loop.hpp"
+#include "mpm/step/mirror.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -51,8 +51,16 @@ void map_forces(Domain<D>& domain) {
     const Body<D>& body = domain.body_of(patch);
     with_basis(grid, body,
                [&](const auto& basis) { scatter_forces(basis, grid, body, patch, block); });
+    fold_at_walls<D>(grid, patch, nullptr, [&](int a) { return block.force(a); });
   });
   grid.sum_shared_nodes(domain.threads, 1 + D, 1 + 2 * D);
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const NodeBlock<D> block = grid.block(p);
+    for_each_mirrored_node(grid, grid.patches[p], [&](int node, int image, unsigned axes) {
+      for (int a = 0; a < D; ++a)
+        if (axes >> a & 1u) block.force(a)[image] -= mirrored_weight(domain, block, node, a);
+    });
+  });
 }
 
 template void map_forces<2>(Domain<2>&);

@@ -1,3 +1,4 @@
+#include "mpm/step/mirror.hpp"
 #include "mpm/step/scatter_momentum.hpp"
 #include "mpm/step/stages.hpp"
 
@@ -15,11 +16,14 @@ void map_momentum(Domain<D>& domain) {
       scatter_momentum<true>(basis, grid, body, patch, block.mass(),
                              [&](int a) { return block.velocity(a); });
     });
+    fold_at_walls(grid, patch, block.mass(), [&](int a) { return block.velocity(a); });
   });
   grid.sum_shared_nodes(domain.threads, 0, 1 + D);
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const NodeBlock<D> block = grid.block(p);
-    momentum_to_velocity(grid, grid.patches[p], block, [&](int a) { return block.velocity(a); });
+    const auto velocity = [&](int a) { return block.velocity(a); };
+    momentum_to_velocity(grid, grid.patches[p], block, velocity);
+    reflect_at_walls(grid, grid.patches[p], velocity);
   });
 }
 

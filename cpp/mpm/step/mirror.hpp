@@ -1,0 +1,59 @@
+#pragma once
+// Slip walls as planes of symmetry for a basis that reaches beyond them. What particles give to a
+// node beyond the wall belongs to its image, with the component along the normal turned; and such a
+// node moves as its image does, turned likewise. So half a body at a wall moves as the half of a
+// whole one. The mass of the node beyond stays there, for gravity: it pulls the mirrored particles
+// the other way.
+#include "mpm/step/cell_loop.hpp"
+
+namespace mpm {
+
+/// f(node, image, axes) for the nodes of a block that lie beyond slip walls.
+template <int D, class F>
+void for_each_mirrored_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
+  const BlockShape<D>& shape = grid.shape;
+  if (!patch.at_wall || shape.margin == 0) return;
+  const Index<D> first = grid.first_cell(patch.tile);
+  for (int n = 0; n < shape.node_count; ++n) {
+    Index<D> node = shape.index(n), image;
+    for (int a = 0; a < D; ++a) node[a] += first[a];
+    const unsigned axes = grid.walls.mirrored(node, image);
+    if (axes == 0) continue;
+    for (int a = 0; a < D; ++a) image[a] -= first[a];
+    if (shape.holds(image)) f(n, shape.node(image), axes);
+  }
+}
+
+/// Before the shared nodes are summed: move what lies beyond the walls to the images. `mass` if the
+/// mass has been scattered too.
+template <int D, class Field>
+void fold_at_walls(const TileGrid<D>& grid, const Patch<D>& patch, double* mass, Field&& field) {
+  for_each_mirrored_node(grid, patch, [&](int node, int image, unsigned axes) {
+    if (mass) mass[image] += mass[node];
+    for (int a = 0; a < D; ++a) {
+      double* value = field(a);
+      value[image] += axes >> a & 1u ? -value[node] : value[node];
+      value[node] = 0.0;
+    }
+  });
+}
+
+/// What the mass of a node beyond a wall adds too much to the weight of its image along the normal,
+/// where gravity pulls mirrored particles the other way [N].
+template <int D>
+double mirrored_weight(const Domain<D>& domain, const NodeBlock<D>& block, int node, int axis) {
+  return 2.0 * block.mass()[node] * domain.gravity[axis];
+}
+
+/// When the nodes have their velocities: those beyond the walls take their images'.
+template <int D, class Field>
+void reflect_at_walls(const TileGrid<D>& grid, const Patch<D>& patch, Field&& field) {
+  for_each_mirrored_node(grid, patch, [&](int node, int image, unsigned axes) {
+    for (int a = 0; a < D; ++a) {
+      double* value = field(a);
+      value[node] = axes >> a & 1u ? -value[image] : value[image];
+    }
+  });
+}
+
+}  // namespace mpm
