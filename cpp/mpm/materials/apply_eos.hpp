@@ -23,13 +23,10 @@ template <class T, int D, class Model>
     const Moved<T, D> moved(group, block, columns, at, material.density, settings);
     const Sym<T, D> before = group.read_stress(columns, at.stress);
     const Sym<T, D> strength = group.get_stress(block);
-    const T V = moved.motion.J, share = moved.mean_volume / moved.initial_volume;
-    const T change = share * trace(moved.strain);  // of V
+    const T V = moved.motion.J, per_volume = T(1.0) / moved.initial_volume;
+    const T change = (moved.volume - moved.volume_before) * per_volume;  // of V
     const T old_pressure = T(-1.0 / 3.0) * trace(before);
-    const Sym<T, D> both = before + strength;
-    const T deviatoric =
-        T(0.5) * share *
-        (inner(both, moved.strain) - T(1.0 / 3.0) * trace(both) * trace(moved.strain));
+    const T deviatoric = T(0.5) * moved.deviatoric_work(before + strength) * per_volume;
 
     LinearInEnergy<T> p = model.at(V);
     if (burns) {
@@ -44,7 +41,7 @@ template <class T, int D, class Model>
     T q(0.0);
     if (viscosity) {
       q = moved.viscous_pressure(settings, speed);
-      energy += moved.viscous_work(q) / moved.initial_volume;
+      energy += moved.viscous_work(q) * per_volume;
     }
     const T pressure = (p.A + p.B * energy) / (T(1.0) + T(0.5) * p.B * change);
     const T mean = T(1.0 / 3.0) * trace(strength);

@@ -25,7 +25,7 @@ class BlockEnd {
 
     // The forces work on the gradient as it is, the material on that of the middle of the step.
     const Sym<T, D> strain = symmetric_part(moved.motion.gradient);
-    const T work = T(0.5) * moved.mean_volume * inner(before + after.stress, moved.strain);
+    const T work = T(0.5) * moved.work(before + after.stress);
     const T lost = moved.mean_volume * after.dissipated;
     T used = settings_.forces_follow ? moved.volume * inner(after.stress, strain)
                                      : moved.volume_before * inner(before, strain);

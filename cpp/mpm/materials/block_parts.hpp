@@ -88,6 +88,15 @@ struct Moved {
     motion.J = volume * T(density) / mass;
   }
 
+  /// Work of a deviator over the step, and of a whole stress, whose mean works on the change of
+  /// volume as it is (the trace of the strain differs from it by the third order) [J].
+  T deviatoric_work(const Sym<T, D>& stress) const {
+    return mean_volume * (inner(stress, strain) - T(1.0 / 3.0) * trace(stress) * trace(strain));
+  }
+  T work(const Sym<T, D>& stress) const {
+    return deviatoric_work(stress) + T(1.0 / 3.0) * trace(stress) * (volume - volume_before);
+  }
+
   /// Pressure of the artificial viscosity for a speed of sound c, and its work on the volume.
   T viscous_pressure(const StressSettings& settings, T c) const {
     const T rate = min(trace(symmetric_part(motion.gradient)), T(0.0)) *

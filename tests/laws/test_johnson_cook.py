@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Johnson and Cook's yield stress against its formula and an independent integration of heating."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mpm3dpp import _core
+
+# Johnson & Cook 1983: A, B [Pa], n, C, m, T_room, T_melt [K], density, cp; chi = 0.9.
+OFHC = (90e6, 292e6, 0.31, 0.025, 1.09, 298.0, 1356.0, 8960.0, 383.0)
+STEEL = (792e6, 510e6, 0.26, 0.014, 1.03, 298.0, 1793.0, 7830.0, 477.0)
+YOUNG, POISSON = 124e9, 0.34
+
+
+def pulled(metal: tuple[float, ...], rate: float, steps: int, thermal: bool = True) -> dict:
+    """Pure shear diag(a, -a, 0) at a rate [1/s] to the equivalent strain 1.02: columns by name."""
+    A, B, n, C, m, room, melt, density, cp = metal
+    constants = {"E": YOUNG, "nu": POISSON, "A": A, "B": B, "n": n, "C": C, "rate0": 1.0}
+    name = "simplified_johnson_cook"
+    if thermal:
+        name = "johnson_cook"
+        constants |= {"m": m, "T_room": room, "T_melt": melt, "cp": cp, "chi": 0.9, "T0": room}
+    strain = 1.02 / steps
+    moves = np.zeros((steps, 3, 3))
+    stretch = np.sqrt(3) / 2 * strain
+    moves[:, 0, 0], moves[:, 1, 1] = np.expm1(stretch), np.expm1(-stretch)
+    rows, names = _core.drive_material(
+        density, name, constants, moves, True, time_step=strain / rate
+    )
+    found = dict(zip(names, rows.T, strict=True))
+    s = rows[:, :6]
+    deviator = s - np.where(np.arange(6) < 3, s[:, :3].mean(axis=1)[:, None], 0.0)
+    square = (deviator**2) @ np.array([1, 1, 1, 2, 2, 2])
+    return found | {"von_mises": np.sqrt(1.5 * square), "dt": strain / rate}
+
+
+def at(found: dict, name: str, plastic: float) -> float:
+    """Return a column where the plastic strain has a value, by interpolation."""
+    return float(np.interp(plastic, found["plastic_strain"], found[name]))
+
+
+@pytest.mark.parametrize("metal", [OFHC, STEEL])
+@pytest.mark.parametrize("rate", [1e-2, 1.0, 1e4])
+@pytest.mark.parametrize("steps", [300, 3000])
+def test_the_yield_stress_is_met_after_every_step(
+    metal: tuple[float, ...], rate: float, steps: int
+) -> None:
+    """Rate, hardening and temperature of the end of the step: the return is implicit in all."""
+    A, B, n, C, m, room, melt, density, cp = metal
+    found = pulled(metal, rate, steps)
+    plastic, heat = found["plastic_strain"], found["temperature"]
+    increment = np.diff(plastic, prepend=0.0)
+    flows = increment > 0
+    speed = np.maximum(increment / found["dt"], 1.0)
+    soft = 1 - np.clip((heat - room) / (melt - room), 0, 1) ** m
+    exact = (A + B * plastic**n) * (1 + C * np.log(speed)) * soft
+    assert flows.sum() > 0.95 * steps
+    assert np.abs(found["von_mises"] / exact - 1)[flows].max() < 1e-10
+    # All of the plastic work is accounted for: chi of it heats the point.
+    work = found["dissipated"]
+    assert heat - room == pytest.approx(0.9 * work / (density * cp), rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("metal", "rate", "stresses", "hot"),
+    [
+        (OFHC, 1e4, {0.1: 285.571e6, 0.5: 388.331e6, 1.0: 435.083e6}, 395.323),
+        (STEEL, 1.0, {}, None),
+    ],
+)
+def test_adiabatic_curves(
+    metal: tuple[float, ...], rate: float, stresses: dict[float, float], hot: float | None
+) -> None:
+    """Curves integrated with an ordinary-differential-equation solver to 1e-8; 1e-4 is asked for.
+
+    The plastic rate lags the given one by the elastic rate, some 1e-3 of it, which moves the stress
+    by C times that, 3e-5; the steps add the first order of 1 / 20,000.
+    """
+    found = pulled(metal, rate, 20_000)
+    for plastic, stress in stresses.items():
+        assert at(found, "von_mises", plastic) == pytest.approx(stress, rel=1e-4)
+    if hot is not None:
+        assert at(found, "temperature", 1.0) == pytest.approx(hot, rel=1e-4)
+
+
+def test_isothermal_curves() -> None:
+    """Copper at 1/s and 1e4/s, Y = (A + B ep^n) (1 + C ln rate); slower rates do not soften."""
+    closed = {1.0: (233.015e6, 325.539e6, 382.000e6), 1e4: (286.669e6, 400.498e6, 469.959e6)}
+    A, B, n, C, *_ = OFHC
+    for rate, stresses in closed.items():
+        found = pulled(OFHC, rate, 20_000, thermal=False)
+        for plastic, stress in zip((0.1, 0.5, 1.0), stresses, strict=True):
+            # The formula with the plastic rate of the very step, and the published figures.
+            speed = np.diff(found["plastic_strain"], append=np.nan) / found["dt"]
+            here = float(np.interp(plastic, found["plastic_strain"][:-1], speed[:-1]))
+            exact = (A + B * plastic**n) * (1 + C * np.log(max(here, 1.0)))
+            # The square of a step's plastic strain over n / ep^2: linear interpolation.
+            assert at(found, "von_mises", plastic) == pytest.approx(exact, rel=1e-6)
+            assert at(found, "von_mises", plastic) == pytest.approx(stress, rel=1e-4)
+    slow, at_reference = pulled(OFHC, 1e-3, 500, False), pulled(OFHC, 1.0, 500, False)
+    assert at(slow, "von_mises", 0.5) == pytest.approx(
+        at(at_reference, "von_mises", 0.5), rel=1e-12
+    )
+
+
+@pytest.mark.parametrize("model", ["voce", "swift"])
+def test_hardening_curves(model: str) -> None:
+    """Pure shear of saturating and of power hardening: the stress is the formula's."""
+    own = {"voce": {"Q": 2e8, "b": 12.0}, "swift": {"e0": 0.01, "n": 0.2}}[model]
+    constants = {"E": YOUNG, "nu": POISSON, "Y0": 1e8, **own}
+    moves = np.zeros((500, 3, 3))
+    moves[:, 0, 0], moves[:, 1, 1] = np.expm1(1e-3), np.expm1(-1e-3)
+    rows, names = _core.drive_material(8e3, model, constants, moves, True)
+    plastic = rows[1:, names.index("plastic_strain")]
+    exact = {
+        "voce": lambda p: 1e8 + 2e8 * (1 - np.exp(-12 * p)),
+        "swift": lambda p: 1e8 * (1 + p / 0.01) ** 0.2,
+    }[model](plastic)
+    mises = np.sqrt(3) / 2 * (rows[1:, 0] - rows[1:, 1])
+    flows = plastic > 0
+    assert flows.sum() > 490
+    assert np.abs(mises / exact - 1)[flows].max() < 1e-10
