@@ -15,6 +15,8 @@ from mpm3dpp import case, case_parts
 from mpm3dpp.detonation import Detonation
 from mpm3dpp.materials import catalogue
 from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
+from mpm3dpp.materials.describe import lines_for_a_case, provenance, rows
+from mpm3dpp.materials.library import NamedMaterial, library
 from mpm3dpp.rules import requirement
 from mpm3dpp.shapes.base import KINDS
 
@@ -29,7 +31,12 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ("output", case_parts.Output, ""),
     ("contact", case_parts.Contact, ""),
     ("contact.pair", case_parts.ContactPair, "Written `[[contact.pair]]`, once for each pair."),
-    ("material.NAME", case.Material, "The models are listed in [materials](materials.md)."),
+    (
+        "material.NAME",
+        case.Material,
+        "The models are listed in [materials](materials.md), the named ones in "
+        "[library](library.md).",
+    ),
     ("body.NAME", case.Body, ""),
     ("detonation", Detonation, "Written `[[detonation]]`, once for each point."),
 )
@@ -173,9 +180,46 @@ def models_of(kind: str) -> list[str]:
     return lines
 
 
+def library_page() -> str:
+    """Return docs/reference/library.md."""
+    lines = [
+        "# Named materials",
+        f"*{NOTE}*",
+        "",
+        '`library = "NAME"` in a `[material.X]` table of a case file takes one of these. A key',
+        "beside it (`density`, `strength`, `eos`, `failure`) replaces the whole of that part;",
+        '`without = ["eos"]` leaves a part out. The manifest of a run holds the numbers.',
+        "[Check a material](../how-to/check-a-material.md) draws its curves.",
+        "",
+        "Every number has a source, in the last column. What nothing has confirmed is marked with",
+        "an asterisk: compare it with the source before a result depends on it. A number that we",
+        "do not know is not here, so some materials have no equation of state.",
+    ]
+    group = ""
+    for material in library().values():
+        if material.group != group:
+            group = material.group
+            lines += ["", f"# {group.capitalize()}"]
+        lines += material_lines(material)
+    return "\n".join(lines) + "\n"
+
+
+def material_lines(material: NamedMaterial) -> list[str]:
+    """Return the Markdown lines of a named material."""
+    lines = ["", f"## {material.name}", f"{material.title}."]
+    lines += ["", "```toml", *lines_for_a_case(material), "```", ""]
+    lines += ["| part | parameter | value | meaning | source |", "| --- | --- | --- | --- | --- |"]
+    for part, name, value, meaning, source in rows(material):
+        doubt = " *" if (f"{part.split(' ')[0]}.{name}").strip(".") in material.unconfirmed else ""
+        cells = (part, f"`{name}`", value, meaning, source + doubt)
+        lines.append("| " + " | ".join(cell(text) for text in cells) + " |")
+    lines += ["", *(f"{n}. {text}." for n, text in enumerate(provenance(material), 1))]
+    return [*lines, "", material.note] if material.note else lines
+
+
 def pages() -> dict[str, str]:
     """Return all pages: file name below docs/reference, text."""
-    return {"case.md": case_page(), "materials.md": materials_page()}
+    return {"case.md": case_page(), "library.md": library_page(), "materials.md": materials_page()}
 
 
 def main() -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command line: `mpm3dpp run | check | preview | plot | bench | materials`.
+"""The command line: `mpm3dpp run | check | preview | plot | bench | materials | material-test`.
 
 Exit codes: 0 done, 1 the run had to stop, 2 a mistake in the case or on the command line.
 Heavy modules are imported by the command that needs them, so that `--help` is fast.
@@ -146,12 +146,60 @@ def bench(
 
 @app.command()
 def materials(
-    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="One model only.")] = None,
+    name: Annotated[
+        str | None, typer.Argument(metavar="[NAME]", help="A model or a named material, in detail.")
+    ] = None,
 ) -> None:
-    """List the material models: parameters, units, rules, sources."""
+    """List the material models and named materials; with NAME parameters, units and sources."""
     from .materials import listing
 
     typer.echo(listing(name))
+
+
+@app.command("material-test")
+def material_test(
+    material: Annotated[
+        str,
+        typer.Argument(
+            metavar="MATERIAL", help="A named material (copper_ofhc), or case.toml:NAME."
+        ),
+    ],
+    test: Annotated[
+        str,
+        typer.Option(
+            help="uniaxial-strain, uniaxial-stress, shear, compression-release or hugoniot."
+        ),
+    ] = "uniaxial-strain",
+    rate: Annotated[
+        float | None, typer.Option(help="Rate of strain in 1/s, such as 1e3; default 1.")
+    ] = None,
+    to: Annotated[
+        float | None,
+        typer.Option(
+            help="Last strain (logarithmic, negative in compression) or shear, such as 0.5; "
+            "for hugoniot the last particle velocity in m/s, such as 2000."
+        ),
+    ] = None,
+    steps: Annotated[int | None, typer.Option(help="Number of steps, such as 500.")] = None,
+    temperature: Annotated[
+        float | None, typer.Option(help="Temperature at the start in K, such as 500.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for CSV and PNG; default results/material_test.")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Draw a material's stress-strain curve or its shock Hugoniot, from a single point.
+
+    mpm3dpp material-test copper_ofhc --test uniaxial-stress --rate 1e4 --to 0.5
+
+    mpm3dpp material-test case.toml:plate --test hugoniot --to 2000
+    """
+    from .material_test import Options
+    from .material_test import main as do_test
+
+    options = Options(test, rate, to, steps, temperature)
+    typer.echo(do_test(material, options, out, json))
 
 
 def main() -> None:

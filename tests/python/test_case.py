@@ -225,7 +225,8 @@ def test_strength_from_the_catalogue() -> None:
     with pytest.raises(CaseError, match=r"strength.nu is missing"):
         Strength(model="elastic", parameters={"E": 1})
     for name, model in catalogue().items():
-        assert f"{name} (strength model)" in listing()
+        assert f"  {name} " in listing()
+        assert f"{name} (strength model)" in listing(name)
         assert all(f" {p.name} " in listing(name) for p in model.parameters)
 
 

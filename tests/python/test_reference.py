@@ -18,7 +18,7 @@ def tool(monkeypatch):
     sys.modules.pop("make_reference", None)
 
 
-@pytest.mark.parametrize("name", ["case.md", "materials.md"])
+@pytest.mark.parametrize("name", ["case.md", "library.md", "materials.md"])
 def test_page_is_up_to_date(tool, name):
     committed = (ROOT / "docs" / "reference" / name).read_text()
     assert committed == tool.pages()[name], "run  python tools/make_reference.py"

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Materials: models of the core's catalogue, chosen with parameters."""
+"""Materials: models of the core's catalogue, chosen with parameters, and named materials."""
 
-from .catalogue import catalogue, listing, state_columns
+from .catalogue import catalogue, state_columns
 from .chosen import AnyEos, AnyFailure, AnyStrength, Eos, Failure, Strength
+from .describe import listing
+from .library import NamedMaterial, library, named
 
 __all__ = [
     "AnyEos",
@@ -10,8 +12,11 @@ __all__ = [
     "AnyStrength",
     "Eos",
     "Failure",
+    "NamedMaterial",
     "Strength",
     "catalogue",
+    "library",
     "listing",
+    "named",
     "state_columns",
 ]

@@ -7,8 +7,7 @@ import importlib
 from functools import lru_cache
 from typing import Any
 
-from mpm3dpp.errors import CaseError, nearest, violation
-from mpm3dpp.rules import requirement
+from mpm3dpp.errors import nearest, violation
 from mpm3dpp.units import DIMENSIONS, Quantity
 
 KINDS = {
@@ -90,36 +89,3 @@ def example(kind: str, model: str) -> str:
         for p in catalogue(kind)[model].parameters
         if p.default is None
     )
-
-
-def listing(name: str | None = None) -> str:
-    """Return the catalogue as text: every model, or one, with parameters, units and source.
-
-    Args:
-        name: a model; None for all of them.
-
-    Raises:
-        CaseError: there is no such model.
-    """
-    every = [(kind, model) for kind in KINDS for model in catalogue(kind).values()]
-    names = [model.name for _, model in every]
-    if name is not None and name not in names:
-        raise CaseError("is not a known material model", nearest(name, names), value=name)
-    return "\n\n".join(_entry(kind, model) for kind, model in every if name in (None, model.name))
-
-
-def _entry(kind: str, model: Any) -> str:
-    lines = [f"{model.name} ({KINDS[kind]}): {model.doc}", f"  source: {model.source}"]
-    lines.append("  parameters:")
-    wide = max([len(p.name) for p in model.parameters], default=0)
-    for p in model.parameters:
-        rule = f", {requirement(p.rule)}" if p.rule else ""
-        default = "" if p.default is None else f", default {p.default:g}"
-        lines.append(f"    {p.name:<{wide}}  [{p.unit or '1'}] {p.meaning}{rule}{default}")
-    if model.state:
-        lines.append(f"  stores {', '.join(model.state)} (for output.fields)")
-    if kind == "strength":
-        pressure = {"never": "takes no eos", "may": "an eos may give the pressure"}
-        lines.append(f"  {pressure.get(model.eos, 'needs an eos')}")
-    lines.append(f"  case file: {kind} = {{ {model.name} = {{ {example(kind, model.name)} }} }}")
-    return "\n".join(lines)

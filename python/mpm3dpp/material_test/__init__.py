@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A single material point, pulled, sheared, compressed or shocked: what does a material do?
+
+>>> run_test("copper_ofhc", Options(test="hugoniot", to=500.0)).columns["pressure"][-1]
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from mpm3dpp.case import Material
+
+from . import driver, hugoniot
+from .curves import Curve, known_curves
+from .options import TESTS, Options
+from .subject import at_temperature, find
+
+__all__ = ["TESTS", "Options", "Result", "main", "run_test"]
+
+
+@dataclass(frozen=True)
+class Result:
+    """A material test that was done.
+
+    Attributes:
+        name: of the material.
+        material: as it was tested.
+        options: completed.
+        columns: name -> values, shape (steps + 1,).
+        units: name -> SI unit, "1" or empty for plain numbers.
+        known: curves that the test should follow.
+    """
+
+    name: str
+    material: Material
+    options: Options
+    columns: dict[str, np.ndarray]
+    units: dict[str, str]
+    known: list[Curve]
+
+
+def run_test(subject: str, options: Options) -> Result:
+    """Do a test.
+
+    Args:
+        subject: a material of the library, or `case.toml:NAME`.
+        options: what is done with it.
+
+    Raises:
+        CaseError: there is no such material, or it cannot be tested so.
+    """
+    chosen = options.completed()
+    name, material = find(subject)
+    material = at_temperature(name, material, chosen)
+    if chosen.test == "hugoniot":
+        columns, units = hugoniot.shock_test(name, material, chosen), hugoniot.UNITS
+    else:
+        columns = driver.stress_test(name, material, chosen)
+        units = driver.units_of(columns)
+    return Result(name, material, chosen, columns, units, known_curves(material, chosen))
+
+
+def main(subject: str, options: Options, out: Path | None, json: bool) -> str:
+    """Do a test, write CSV and PNG, and return what is printed.
+
+    Args:
+        subject: as for `run_test`.
+        options: as for `run_test`.
+        out: folder; None for results/material_test.
+        json: whether the text is JSON.
+    """
+    result = run_test(subject, options)
+    from mpm3dpp.folders import writable_folder
+
+    from . import plot, report
+
+    folder = writable_folder(out if out is not None else Path("results") / "material_test")
+    stem = f"{result.name}_{result.options.test.replace('-', '_')}"
+    table = report.write_csv(folder / f"{stem}.csv", result.columns, result.units)
+    title = headline(result)
+    picture = plot.save_picture(
+        folder / f"{stem}.png", title, result.options, result.columns, result.known
+    )
+    if json:
+        return report.as_json(
+            result.name, result.material, result.options, result.columns, result.units
+        )
+    lines = [title, "", report.table(result.options, result.columns, result.units), ""]
+    lines += [report.deviation(result.options, result.columns, curve) for curve in result.known]
+    return "\n".join([*lines, str(table), str(picture)])
+
+
+def headline(result: Result) -> str:
+    """Return what was done with what, one line."""
+    models = [result.material.strength.model]
+    if result.options.test == "hugoniot":
+        models = []
+    if result.material.eos is not None:
+        models.append(result.material.eos.model)
+    rate = "" if result.options.rate is None else f" at {result.options.rate:g} 1/s"
+    test = result.options.test.replace("-", " ").replace("hugoniot", "Hugoniot")
+    return f"{result.name} ({', '.join(models)}): {test}{rate}"

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One material point of the core, driven along a path of strain.
+
+Strains are logarithmic: a step multiplies the length along x by exp(to/steps).
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from mpm3dpp.case import Material
+from mpm3dpp.errors import CaseError
+
+from .options import Options
+
+TENSOR = ("xx", "yy", "zz", "yz", "xz", "xy")
+UNITS = {"strain": "1", "lateral_strain": "1", "pressure": "Pa", "von_mises": "Pa", "volume": "1"}
+UNITS |= {"dissipated": "J/m^3", "work": "J/m^3", "sound_speed": "m/s", "temperature": "K"}
+UNITS |= {"plastic_strain": "1", "internal_energy": "J/m^3", "failed": "1"}
+UNITS |= {f"stress_{c}": "Pa" for c in TENSOR}
+
+
+def drive(material: Material, moves: np.ndarray, time_step: float) -> dict[str, np.ndarray]:
+    """Return what a point goes through that starts at rest, by column.
+
+    Args:
+        material: of the point.
+        moves: velocity gradient x time step of each step, shape (steps, 3, 3).
+        time_step: [s].
+
+    Returns:
+        Arrays of shape (steps + 1,): stress_xx ... [Pa], volume (relative), dissipated and work
+        [J/m^3 of initial volume], sound_speed [m/s], and the columns of the material's state.
+
+    Raises:
+        CaseError: the core refuses the material.
+    """
+    core = importlib.import_module("mpm3dpp._core")
+    try:
+        values, names = core.drive_material(
+            **material.for_core(),
+            increments=np.ascontiguousarray(moves, dtype=float),
+            lanes=False,
+            time_step=time_step,
+        )
+    except ValueError as error:
+        raise CaseError(f"the material cannot be made: {error}") from None
+    return {name: values[:, k].copy() for k, name in enumerate(names)}
+
+
+def stress_test(name: str, material: Material, options: Options) -> dict[str, np.ndarray]:
+    """Return the columns of a test other than hugoniot; `strain` is the first.
+
+    Args:
+        name: of the material, for messages.
+        material: what is tested.
+        options: completed.
+
+    Raises:
+        CaseError: the material cannot be tested so.
+    """
+    if material.strength.model == "high_explosive":
+        rule = "is a high explosive, which burns in a run only, not in a material test"
+        raise CaseError(rule, "test the other materials of your case", value=name)
+    if material.strength.model == "fluid" and options.test == "uniaxial-stress":
+        rule = "is a fluid, which bears no uniaxial stress"
+        raise CaseError(rule, "choose another --test", value=name)
+    steps, to = int(options.steps or 0), float(options.to or 0.0)
+    time_step = abs(to) / (steps * float(options.rate or 1.0))
+    if options.test == "compression-release":
+        half = steps // 2
+        strain = np.concatenate([np.linspace(0, to, half + 1), np.linspace(to, 0, half + 1)[1:]])
+        time_step = abs(to) / (half * float(options.rate or 1.0))
+    else:
+        strain = np.linspace(0.0, to, steps + 1)
+    moves = np.zeros((len(strain) - 1, 3, 3))
+    lateral = None
+    if options.test == "shear":
+        moves[:, 0, 1] = np.diff(strain)
+    else:
+        moves[:, 0, 0] = np.expm1(np.diff(strain))
+    if options.test == "uniaxial-stress":
+        lateral = free_sides(name, material, moves, time_step)
+    columns = drive(material, moves, time_step)
+    stress = np.array([columns[f"stress_{c}"] for c in TENSOR])
+    found = {"strain": strain}
+    if lateral is not None:
+        found["lateral_strain"] = lateral
+    if not np.isfinite(stress).all():
+        first = int(np.argmin(np.isfinite(stress).all(axis=0)))
+        raise CaseError(f"has no finite stress from strain {strain[first]:g} on", value=name)
+    found |= {f"stress_{c}": columns.pop(f"stress_{c}") for c in TENSOR}
+    return found | {"pressure": pressure(stress), "von_mises": von_mises(stress)} | columns
+
+
+def pressure(stress: np.ndarray) -> np.ndarray:
+    """Return the pressure of stresses of shape (6, n), positive in compression."""
+    return -stress[:3].mean(axis=0)
+
+
+def von_mises(stress: np.ndarray) -> np.ndarray:
+    """Return von Mises' stress of stresses of shape (6, n)."""
+    deviator = stress.copy()
+    deviator[:3] += pressure(stress)
+    return np.sqrt(1.5 * (deviator[:3] ** 2).sum(axis=0) + 3.0 * (stress[3:] ** 2).sum(axis=0))
+
+
+def free_sides(name: str, material: Material, moves: np.ndarray, time_step: float) -> np.ndarray:
+    """Give `moves` the lateral strain that leaves the sides without stress, step by step.
+
+    Each step is a root in one unknown, found to 1e-11 of the stiffness rho c^2.
+
+    Returns:
+        The logarithmic lateral strain, shape (steps + 1,).
+    """
+    speed = drive(material, moves[:0], time_step)["sound_speed"][0]
+    tolerance = 1e-11 * material.density * speed**2
+    guess = -0.3 * moves[0, 0, 0]
+    for n in range(len(moves)):
+
+        def side_stress(lateral: float, n: int = n) -> float:
+            moves[n, 1, 1] = moves[n, 2, 2] = lateral
+            return float(drive(material, moves[: n + 1], time_step)["stress_yy"][-1])
+
+        root = find_root(side_stress, guess, 0.05 * abs(moves[n, 0, 0]), tolerance)
+        if root is None:
+            strain = float(np.log1p(moves[: n + 1, 0, 0]).sum())
+            rule = f"keeps a lateral stress at strain {strain:.4g} whatever its lateral strain"
+            raise CaseError(
+                rule, "end the test earlier with --to, or take more --steps", value=name
+            )
+        moves[n, 1, 1] = moves[n, 2, 2] = guess = root
+    return np.concatenate([[0.0], np.cumsum(np.log1p(moves[:, 1, 1]))])
+
+
+def find_root(
+    f: Callable[[float], float], guess: float, width: float, tolerance: float
+) -> float | None:
+    """Return x near `guess` with |f(x)| <= tolerance for an f that grows; None if there is none.
+
+    The bracket grows from `width`; then false position, halved at the end that stays (Illinois).
+    """
+    a, fa = guess, f(guess)
+    b, fb = a, fa
+    for _ in range(30):
+        if not math.isfinite(fb):
+            return None
+        if abs(fb) <= tolerance:
+            return b
+        if fa * fb < 0:
+            break
+        a, fa = b, fb
+        b = a - math.copysign(width, fa)
+        fb, width = f(b), 2.0 * width
+    else:
+        return None
+    for _ in range(200):
+        x = b - fb * (b - a) / (fb - fa)
+        fx = f(x)
+        if abs(fx) <= tolerance or x in (a, b):
+            return x if abs(fx) <= 1e3 * tolerance else None
+        if fx * fb < 0:
+            a, fa = b, fb
+        else:
+            fa *= 0.5
+        b, fb = x, fx
+    return None
+
+
+def units_of(columns: dict[str, Any]) -> dict[str, str]:
+    """Return the SI unit of each column, empty where it is not known."""
+    return {name: UNITS.get(name, "") for name in columns}

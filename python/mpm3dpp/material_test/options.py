@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The tests that there are, their options, and what is wrong with options."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from mpm3dpp.errors import CaseError, nearest
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of test.
+
+    Attributes:
+        about: one line.
+        to: how far it goes unless the user says: a logarithmic strain (negative in compression),
+            a shear, or a particle velocity [m/s].
+        steps: into how many steps it is divided unless the user says.
+    """
+
+    about: str
+    to: float
+    steps: int
+
+
+TESTS = {
+    "uniaxial-strain": Kind("stretch or compression along x, sides held", -0.05, 500),
+    "uniaxial-stress": Kind("stretch or compression along x, sides free of stress", 0.2, 400),
+    "shear": Kind("simple shear in x along y", 0.5, 500),
+    "compression-release": Kind("uniaxial strain there and back", -0.05, 1000),
+    "hugoniot": Kind("states behind shocks of growing particle velocity", 2000.0, 20),
+}
+
+
+@dataclass(frozen=True)
+class Options:
+    """What a user can choose.
+
+    Attributes:
+        test: a key of TESTS.
+        rate: rate of the strain [1/s]; None for the default of 1/s.
+        to: the last strain, shear or particle velocity; None for the test's own.
+        steps: number of steps; None for the test's own.
+        temperature: at the start [K]; None for the material's.
+    """
+
+    test: str = "uniaxial-strain"
+    rate: float | None = None
+    to: float | None = None
+    steps: int | None = None
+    temperature: float | None = None
+
+    def completed(self) -> Options:
+        """Return the options with all defaults filled in.
+
+        Raises:
+            CaseError: an option makes no sense.
+        """
+        if self.test not in TESTS:
+            raise CaseError(
+                "is not a known test", nearest(self.test, TESTS), key="--test", value=self.test
+            )
+        shock = self.test == "hugoniot"
+        for name in ("rate", "temperature"):
+            value = getattr(self, name)
+            if value is None:
+                continue
+            if shock:
+                rule = "has no meaning for the test hugoniot"
+                raise CaseError(rule, "remove it", key=f"--{name}")
+            if not (value > 0 and math.isfinite(value)):
+                unit = "1/s" if name == "rate" else "K"
+                raise CaseError("must be > 0", f"it is in {unit}", key=f"--{name}", value=value)
+        test = TESTS[self.test]
+        to = test.to if self.to is None else self.to
+        if not math.isfinite(to) or to == 0 or (shock and to < 0):
+            what = "a particle velocity in m/s" if shock else "a strain such as -0.1 (compression)"
+            rule = "must be > 0" if shock else "must not be zero"
+            raise CaseError(rule, f"give {what}", key="--to", value=to)
+        if not shock and abs(to) > 5:
+            raise CaseError("must lie between -5 and 5", "it is a strain", key="--to", value=to)
+        steps = test.steps if self.steps is None else self.steps
+        if not 2 <= steps <= 100_000:
+            raise CaseError(
+                "must be from 2 to 100000", "give a whole number", key="--steps", value=steps
+            )
+        rate = None if shock else self.rate or 1.0
+        return replace(self, rate=rate, to=to, steps=steps)
