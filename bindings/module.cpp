@@ -104,7 +104,8 @@ NB_MODULE(_core, m) {
       .value("fixed", Wall::fixed);
   nb::enum_<Detection>(m, "Detection")
       .value("gap", Detection::gap)
-      .value("velocity", Detection::velocity);
+      .value("velocity", Detection::velocity)
+      .value("joined", Detection::joined);
   nb::enum_<NormalRule>(m, "NormalRule")
       .value("plane", NormalRule::plane)
       .value("pair", NormalRule::pair)

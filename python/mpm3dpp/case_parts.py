@@ -213,7 +213,8 @@ class Contact(CaseModel):
 
     Attributes:
         enabled: without contact the bodies do not see each other.
-        detection: "gap" (touching and approaching) or "velocity" (approaching only).
+        detection: "gap" (touching and approaching), "velocity" (approaching only), or "joined" (no
+            contact: bodies that share a node have one velocity there, they stick together).
         normal: direction of contact: "plane" (separates the two bodies' points), or from gradients
             of mass, of both ("pair") or one ("first", "second", "stiffer").
         friction: Coulomb coefficient of all pairs not listed in `pair`.
@@ -223,7 +224,7 @@ class Contact(CaseModel):
     """
 
     enabled: Flag = True
-    detection: Annotated[str, Choice(("gap", "velocity"))] = "gap"
+    detection: Annotated[str, Choice(("gap", "velocity", "joined"))] = "gap"
     normal: Annotated[str, Choice(("plane", "pair", "first", "second", "stiffer"))] = "plane"
     friction: NonNegative = 0.0
     gap_distance: Annotated[float, Quantity("m", ">= 0")] = 0.0

@@ -13,6 +13,18 @@ bool ContactGrid<D>::any_closed(const ContactNode& node) const {
 }
 
 template <int D>
+template <bool with_friction, class Choose>
+void ContactGrid<D>::solve(const ContactNode& node, Choose&& takes_part) {
+  Side<D>* sides = &sides_[node.first_side];
+  if (joined_) {
+    join_node<D>({sides, node.sides});
+  } else if (!solve_node<D, with_friction>(sides, &pairs_[node.first_pair], pair_count(node.sides),
+                                           takes_part)) {
+    unconverged_.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
+template <int D>
 void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
   threads.for_each(nodes_.size(), [&](std::size_t n) {
     const ContactNode& node = nodes_[n];
@@ -22,9 +34,7 @@ void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
     const std::uint32_t count = pair_count(node.sides);
     for (std::uint32_t k = 0; k < node.sides; ++k)
       sides[k].momentum = sides[k].mass * sides[k].mapped;
-    const bool converged = solve_node<D, false>(
-        sides, pairs, count, [](const SidePair<D>& pair) { return pair.closed; });
-    if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
+    solve<false>(node, [](const SidePair<D>& pair) { return pair.closed; });
     for (std::uint32_t k = 0; k < node.sides; ++k) {
       Side<D>& side = sides[k];
       side.velocity = (1.0 / side.mass) * side.momentum;
@@ -67,9 +77,7 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity
     };
     for (std::uint32_t k = 0; k < node.sides; ++k)
       sides[k].momentum = sides[k].mass * sides[k].velocity + time_step * force_of(sides[k]);
-    const bool converged = solve_node<D, true>(
-        sides, pairs, count, [](const SidePair<D>& pair) { return pair.touching; });
-    if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
+    solve<true>(node, [](const SidePair<D>& pair) { return pair.touching; });
 
     double force_work = 0.0, correction = 0.0;
     for (std::uint32_t k = 0; k < node.sides; ++k) {
@@ -114,10 +122,7 @@ void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
     }
     // The impulses of this solution act on the velocities that strain the material only; they are
     // not contact forces.
-    SidePair<D>* pairs = &pairs_[node.first_pair];
-    const bool converged = solve_node<D, false>(
-        sides, pairs, pair_count(node.sides), [](const SidePair<D>& pair) { return pair.closed; });
-    if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
+    solve<false>(node, [](const SidePair<D>& pair) { return pair.closed; });
     for (std::uint32_t k = 0; k < node.sides; ++k)
       for_each_copy(grid, node, sides[k], [&](std::size_t p, int at) {
         for (int a = 0; a < D; ++a)

@@ -90,6 +90,7 @@ template <int D>
 void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                           const std::vector<double>& stiffness, const ContactSettings& settings,
                           Threads& threads) {
+  joined_ = settings.detection == Detection::joined;
   counts_.assign(tiles_.size() + 1, {0, 0, 0});
   threads.for_each(tiles_.size(), [&](std::size_t t) {
     TileCounts c{0, 0, 0};

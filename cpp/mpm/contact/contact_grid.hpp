@@ -108,6 +108,9 @@ class ContactGrid {
   void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<double>& stiffness, const ContactSettings& settings,
                   const ContactNode& node);
+  /// Solve the node for the working momenta of its sides: joined, or by `solve_node`.
+  template <bool with_friction, class Choose>
+  void solve(const ContactNode& node, Choose&& takes_part);
   /// May any pair at a node act? Other nodes stay as they are, to the last bit.
   bool any_closed(const ContactNode& node) const;
   PairRecord& record_of(int a, int b);
@@ -122,6 +125,7 @@ class ContactGrid {
   std::vector<Side<D>> sides_;
   std::vector<SidePair<D>> pairs_;
   std::vector<PairRecord> records_;  // sorted by (a, b)
+  bool joined_ = false;
   std::size_t nodes_max_ = 0;
   int bodies_max_ = 0;
   std::atomic<std::size_t> unconverged_{0};

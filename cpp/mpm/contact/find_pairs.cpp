@@ -11,6 +11,18 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
                                 const std::vector<double>& stiffness,
                                 const ContactSettings& settings, const ContactNode& node) {
   const Side<D>* sides = &sides_[node.first_side];
+  if (settings.detection == Detection::joined) {  // No normal, no gap: nothing to be found.
+    std::uint32_t at = node.first_pair;
+    for (std::uint16_t r = 0; r < node.sides; ++r)
+      for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
+        SidePair<D>& pair = pairs_[at++];
+        pair = {};
+        pair.r = r;
+        pair.s = s;
+        pair.closed = true;
+      }
+    return;
+  }
   // Scratch of one thread, not counted among the bytes of the contact.
   thread_local std::vector<NormalSource<D>> sources;
   if (sources.size() < node.sides) sources.resize(node.sides);

@@ -65,6 +65,19 @@ void sort_sides(std::span<Side<D>> sides) {
   });
 }
 
+/// Give all bodies at a node one velocity, that of their common mass centre, working on
+/// Side::momentum.
+template <int D>
+void join_node(std::span<Side<D>> sides) {
+  double mass = 0.0;
+  Vec<double, D> momentum = Vec<double, D>::zero();
+  for (const Side<D>& side : sides) {
+    mass += side.mass;
+    momentum += side.momentum;
+  }
+  for (Side<D>& side : sides) side.momentum = (side.mass / mass) * momentum;
+}
+
 /// Remove the approach of every closed pair, eqs. (6)-(7), working on Side::momentum; with
 /// friction, hold the tangential motion as far as Coulomb's law allows, eqs. (14)-(15). For two
 /// bodies this is the paper's formula; more are solved together by projected Gauss-Seidel in a

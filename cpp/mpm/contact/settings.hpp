@@ -8,8 +8,9 @@
 namespace mpm {
 
 /// gap: bodies touch when they approach and their distance, eq. (5), is below `gap_distance`.
-/// velocity: when they approach.
-enum class Detection { gap, velocity };
+/// velocity: when they approach. joined: always; where they share nodes they have one velocity, so
+/// that they neither part nor slide.
+enum class Detection { gap, velocity, joined };
 
 /// The normal of a pair: that of the plane which separates their particles, or from gradients of
 /// mass: of both bodies (n_r - n_s), of the first, of the second, or of the stiffer.
