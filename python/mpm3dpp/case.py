@@ -196,12 +196,24 @@ class Case(CaseModel):
         Files that the text names are looked for in the folder of `name`.
         """
         tables = case_file.parse(text, name)
-        lines = case_file.locate_keys(text)
+        case = cls.from_tables(tables, name, case_file.locate_keys(text))
+        case._text = text
+        return case
+
+    @classmethod
+    def from_tables(cls, tables: dict[str, Any], name: str, lines: dict[KeyPath, int]) -> Case:
+        """Check a case that a file gave as tables.
+
+        Args:
+            tables: of the case.
+            name: of the file, for messages and for the files that it names.
+            lines: line of each key; a key that is not there has the line of its table.
+        """
         try:
             case = cls.model_validate(tables, context={"folder": Path(name).parent})
         except ValidationError as error:
             raise from_validation(error, case_file.locator(lines, name)) from None
-        case._text, case._lines, case._source = text, lines, Path(name)
+        case._lines, case._source = lines, Path(name)
         return case
 
     @property

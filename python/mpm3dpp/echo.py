@@ -72,6 +72,8 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
     contact = "none"
     if case.contact_enabled:
         contact = f"{case.contact.detection} detection, friction {case.contact.friction:g}"
+        if case.contact.detection == "joined":
+            contact = "none, bodies are joined where they meet"
     lines += [
         f"total: {particles:,} particles, mass {sum(b.mass for b in bodies):.6g} kg{per_metre}, "
         f"about {memory / 2**20:,.1f} MiB",
