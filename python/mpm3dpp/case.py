@@ -193,7 +193,7 @@ class Case(CaseModel):
     def from_text(cls, text: str, name: str = "case.toml") -> Case:
         """Read and check a case from TOML text; `name` is that of its file, for messages.
 
-        Files that the text names are looked for in the folder of `name`.
+        Files that it names are looked for in the folder of `name`.
         """
         tables = case_file.parse(text, name)
         case = cls.from_tables(tables, name, case_file.locate_keys(text))
@@ -220,8 +220,7 @@ class Case(CaseModel):
     def case_hash(self) -> str:
         """SHA-256 (hexadecimal) of the case in SI units, numbers to 12 digits, keys sorted.
 
-        So it depends neither on formatting nor on the units that the file uses; of files of
-        particles it takes the content, not the name.
+        It depends neither on formatting nor on units nor on the names of files of particles.
         """
         table = self.table()
         for name, body in self.body.items():

@@ -133,8 +133,8 @@ class Reader:
     def word(self, what: str) -> Word:
         """Take the next word; `what` says what it should be."""
         if not self.more():
-            rule = f"ends before {what}"
-            raise self.source.error(rule, "complete the file; its last word is endi", self.line)
+            remedy = "complete the file; its last word is endi"
+            raise self.error(f"ends before {what}", remedy)
         found = self.source.words[self.at]
         self.at += 1
         self.line = found.line

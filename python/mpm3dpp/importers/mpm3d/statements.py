@@ -59,7 +59,8 @@ def read_deck(source: Source) -> Deck:
 def _title(reader: Reader, deck: Deck) -> None:
     words = reader.source.words
     if reader.more() and words[reader.at].line == reader.line:
-        deck.title = reader.word("a title").text.strip("* ")
+        text = "".join(c if c.isprintable() else " " for c in reader.word("a title").text)
+        deck.title = " ".join(text.split()).strip("* ")
 
 
 def _grid(reader: Reader, deck: Deck) -> None:
