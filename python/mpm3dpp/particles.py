@@ -69,7 +69,7 @@ class Particles:
 
     def first_wrong(self) -> tuple[int, str] | None:
         """Return (number of the particle, rule) of the first one that cannot be."""
-        inside = (np.abs(self.positions) < _LARGEST).all(axis=1)
+        inside: NDArray[np.bool_] = np.all(np.abs(self.positions) < _LARGEST, axis=1)
         good = inside if self.volumes is None else inside & (np.abs(self.volumes) < _LARGEST)
         positive = good if self.volumes is None else good & (self.volumes > 0)
         if positive.all():

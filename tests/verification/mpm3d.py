@@ -125,6 +125,8 @@ def compare(name: str, simulation: Simulation, history: dict[str, np.ndarray]) -
     internal = sum(history[part][-1] for part in parts) / energy
     rows = [
         _energy("kinetic energy", kinetic, given["kinetic"][1], limit.get("energy")),
+        _energy("largest kinetic energy", history["kinetic"].max() / energy,
+                given["largest_kinetic"], limit.get("energy")),
         _energy("internal energy", internal, given["internal"][1], limit.get("energy")),
         _energy("total energy", kinetic + internal, given["kinetic"][1] + given["internal"][1],
                 limit.get("energy")),

@@ -92,7 +92,7 @@ def _tables(deck: Deck, units: UnitSystem) -> tuple[dict[str, Any], Lines]:
     tables["material"], tables["body"] = materials, {}
     for number in order:
         part, name = deck.parts[number], f"body_{number + 1}"
-        body = {"material": material_name(deck, part.material)}
+        body: dict[str, Any] = {"material": material_name(deck, part.material)}
         body |= body_table(deck, part, lower, units)
         if number + 1 in deck.velocity:
             velocity, line = deck.velocity[number + 1]
