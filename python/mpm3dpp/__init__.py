@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .errors import CaseError, RunError
     from .io import open_results
     from .materials import Eos, Failure, Strength
+    from .particles import Particles
     from .run import run_case
     from .simulation import Simulation
 
@@ -43,6 +44,7 @@ _HOMES = {
     "errors": ("CaseError", "RunError"),
     "io": ("open_results",),
     "materials": ("Eos", "Failure", "Strength"),
+    "particles": ("Particles",),
     "run": ("run_case",),
     "simulation": ("Simulation",),
 }
@@ -61,6 +63,7 @@ __all__ = [
     "GridBox",
     "Material",
     "Output",
+    "Particles",
     "Run",
     "RunError",
     "Simulation",

@@ -30,12 +30,12 @@ class FilledBody:
         name, material: names in the case.
         positions: [m], shape (n, D).
         velocities: [m/s], shape (1, D) if all are equal, else (n, D).
-        volumes: [m^3; in 2D m^2 times 1 m], shape (n,), all equal.
+        volumes: [m^3; in 2D m^2 times 1 m], shape (n,); all equal if a shape was filled.
         spacing: distance of neighbours [m].
         mass: sum over the particles [kg; in 2D per metre of thickness].
-        shape_volume: the shape's volume [m^3; in 2D m^2].
+        shape_volume: the shape's volume [m^3; in 2D m^2]; None for particles given one by one.
         volume_is_exact: whether that is a closed form, else a fine lattice gave it.
-        mass_error: mass / (density times shape_volume) - 1.
+        mass_error: mass / (density times shape_volume) - 1; 0 without a shape.
     """
 
     name: str
@@ -45,7 +45,7 @@ class FilledBody:
     volumes: Array
     spacing: float
     mass: float
-    shape_volume: float
+    shape_volume: float | None
     volume_is_exact: bool
     mass_error: float
 
@@ -83,20 +83,26 @@ def _filled(case: Case, name: str, body: Body) -> FilledBody:
     try:
         positions, volumes = fill(body, case.grid)
     except CaseError as error:
-        raise case.error(("body", name, "shape"), error.rule, error.remedy) from None
-    volume = len(positions) * float(volumes[0])
-    shape_volume, exact = reference_volume(body.shape)
-    mass_error = volume / shape_volume - 1 if shape_volume > 0 else math.inf
-    if abs(mass_error) > MASS_ERROR:
-        rule = f"is filled too coarsely: its particles have {mass_error:+.0%} of the shape's mass"
-        remedy = "give a smaller grid.cell_size or more particles_per_cell"
-        raise case.error(("body", name, "shape"), rule, remedy)
+        raise case.error(("body", name, body.filling), error.rule, error.remedy) from None
+    shape_volume, exact, mass_error = None, True, 0.0
+    if body.shape is not None:
+        volume = len(positions) * float(volumes[0])
+        shape_volume, exact = reference_volume(body.shape)
+        mass_error = volume / shape_volume - 1 if shape_volume > 0 else math.inf
+        if abs(mass_error) > MASS_ERROR:
+            rule = (
+                f"is filled too coarsely: its particles have {mass_error:+.0%} of the shape's mass"
+            )
+            remedy = "give a smaller grid.cell_size or more particles_per_cell"
+            raise case.error(("body", name, "shape"), rule, remedy)
+    else:
+        volume = float(volumes.sum())
     _check_box(case, name, positions)
     return FilledBody(
         name=name,
         material=body.material,
         positions=positions,
-        velocities=initial_velocities(body, positions),
+        velocities=initial_velocities(body, positions, volumes),
         volumes=volumes,
         spacing=body.particle_spacing(case.grid),
         mass=volume * case.material[body.material].density,
@@ -106,12 +112,13 @@ def _filled(case: Case, name: str, body: Body) -> FilledBody:
     )
 
 
-def initial_velocities(body: Body, positions: Array) -> Array:
+def initial_velocities(body: Body, positions: Array, volumes: Array) -> Array:
     """Return v + w x (x - x_mass centre) of each particle [m/s].
 
     Args:
         body: gives v and the spin w.
         positions: [m], shape (n, D).
+        volumes: [m^3; in 2D m^2], shape (n,).
 
     Returns:
         Shape (1, D) without spin, else (n, D).
@@ -121,7 +128,8 @@ def initial_velocities(body: Body, positions: Array) -> Array:
     spin = body.angular_velocity
     if not any(spin):
         return velocity.reshape(1, dimension).copy()
-    arm = positions - positions.mean(axis=0)
+    equal = bool(np.all(volumes == volumes[0]))
+    arm = positions - np.average(positions, axis=0, weights=None if equal else volumes)
     if dimension == 2:
         return velocity + spin[0] * np.column_stack([-arm[:, 1], arm[:, 0]])
     return velocity + np.cross(np.asarray(spin), arm)
@@ -142,8 +150,9 @@ def _check_box(case: Case, name: str, positions: Array) -> None:
                 count = int((outside > sign * limit + slack).sum())
                 side = f"{axis} {'>' if sign > 0 else '<'} {limit:g} m"
                 rule = f"reaches out of grid.box: {count} of its particles are at {side}"
-                remedy = "move the shape, or enlarge the box"
-                raise case.error(("body", name, "shape"), rule, remedy)
+                filling = case.body[name].filling
+                remedy = f"move the {filling}, or enlarge the box"
+                raise case.error(("body", name, filling), rule, remedy)
 
 
 def _check_overlap(case: Case, bodies: list[FilledBody]) -> None:
@@ -164,4 +173,5 @@ def _check_overlap(case: Case, bodies: list[FilledBody]) -> None:
                     f"closer than a quarter spacing to particles of {first.name}"
                 )
                 remedy = "move one of the two, or cut one out of the other with difference"
-                raise case.error(("body", second.name, "shape"), rule, remedy)
+                key = ("body", second.name, case.body[second.name].filling)
+                raise case.error(key, rule, remedy)

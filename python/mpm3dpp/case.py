@@ -24,7 +24,8 @@ from .errors import Path as KeyPath
 from .materials import AnyEos, AnyFailure, AnyStrength
 from .materials.library import either_library_or_own, fill_in
 from .model import CaseModel, Count, Text
-from .shapes.base import KINDS, AnyShape
+from .particles import AnyParticles
+from .shapes.base import KINDS, MaybeShape
 from .units import Density, PositiveLength, Spin, VelocityVector
 
 
@@ -87,11 +88,13 @@ class Material(CaseModel):
 
 
 class Body(CaseModel):
-    """A body: a shape filled with particles of one material.
+    """A body: a shape filled with particles of one material, or the particles one by one.
 
     Attributes:
         material: name of its material.
-        shape: any shape of `mpm3dpp.shapes`.
+        shape: any shape of `mpm3dpp.shapes`; in place of `particles`.
+        particles: a CSV file beside the case file with the columns x, y, z and, if it likes,
+            volume, in SI units (in Python: `mpm3dpp.Particles`); in place of `shape`.
         particles_per_cell: particles per cell along each direction; default 2.
         spacing: distance of the particles [m], in place of `particles_per_cell`. Either way they
             stand on a lattice that is aligned with the grid's origin.
@@ -101,7 +104,8 @@ class Body(CaseModel):
     """
 
     material: Text
-    shape: AnyShape
+    shape: MaybeShape = None
+    particles: AnyParticles = None
     particles_per_cell: Count | None = None
     spacing: PositiveLength | None = None
     velocity: VelocityVector = ()
@@ -112,12 +116,35 @@ class Body(CaseModel):
         if self.particles_per_cell is not None and self.spacing is not None:
             rule = "must not be given together with particles_per_cell"
             raise violation(rule, "keep one of the two", path=("spacing",))
-        if self.particles_per_cell is None and self.spacing is None:
+        given = "spacing" if self.spacing is not None else "particles_per_cell"
+        if self.particles is not None and self.particles.volumes is not None:
+            if getattr(self, given) is not None:
+                rule = "must not be given together with particles that have volumes"
+                raise violation(rule, "remove it", path=(given,))
+        elif getattr(self, given) is None:
             self.__dict__["particles_per_cell"] = 2
         return self
 
+    @model_validator(mode="after")
+    def _shape_or_particles(self) -> Body:
+        if self.shape is not None and self.particles is not None:
+            rule = "must not be given together with shape"
+            raise violation(rule, "keep one of the two", path=("particles",))
+        if self.shape is None and self.particles is None:
+            remedy = "add this key, or particles, the name of a file"
+            raise violation("is missing", remedy, path=("shape",))
+        return self
+
+    @property
+    def filling(self) -> str:
+        """The key that gives its particles: "shape" or "particles"."""
+        return "shape" if self.shape is not None else "particles"
+
     def particle_spacing(self, grid: Grid) -> float:
         """Return the distance of neighbouring particles [m]."""
+        edge = self.particles.edge() if self.particles is not None else None
+        if edge is not None:
+            return edge
         if self.spacing is not None:
             return self.spacing
         return grid.cell_size / (self.particles_per_cell or 2)
@@ -181,23 +208,42 @@ class Case(CaseModel):
 
     @classmethod
     def from_text(cls, text: str, name: str = "case.toml") -> Case:
-        """Read and check a case from TOML text; `name` stands in the messages."""
+        """Read and check a case from TOML text; `name` is that of its file, for messages.
+
+        Files that it names are looked for in the folder of `name`.
+        """
         tables = case_file.parse(text, name)
-        lines = case_file.locate_keys(text)
+        case = cls.from_tables(tables, name, case_file.locate_keys(text))
+        case._text = text
+        return case
+
+    @classmethod
+    def from_tables(cls, tables: dict[str, Any], name: str, lines: dict[KeyPath, int]) -> Case:
+        """Check a case that a file gave as tables.
+
+        Args:
+            tables: of the case.
+            name: of the file, for messages and for the files that it names.
+            lines: line of each key; a key that is not there has the line of its table.
+        """
         try:
-            case = cls.model_validate(tables)
+            case = cls.model_validate(tables, context={"folder": Path(name).parent})
         except ValidationError as error:
             raise from_validation(error, case_file.locator(lines, name)) from None
-        case._text, case._lines, case._source = text, lines, Path(name)
+        case._lines, case._source = lines, Path(name)
         return case
 
     @property
     def case_hash(self) -> str:
         """SHA-256 (hexadecimal) of the case in SI units, numbers to 12 digits, keys sorted.
 
-        So it depends neither on formatting nor on the units that the file uses.
+        It depends neither on formatting nor on units nor on the names of files of particles.
         """
-        text = json.dumps(_rounded(self.table()), sort_keys=True, separators=(",", ":"))
+        table = self.table()
+        for name, body in self.body.items():
+            if body.particles is not None:
+                table["body"][name]["particles"] = body.particles.digest
+        text = json.dumps(_rounded(table), sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
 
     @property

@@ -56,9 +56,15 @@ def _check_body(case: Case, body: Body, path: Path) -> None:
     if body.material not in case.material:
         rule, remedy = "is not a material of this case", nearest(body.material, case.material)
         raise violation(rule, remedy, value=body.material, path=(*path, "material"))
-    wrong = body.shape.wrong_dimension(dimension, (*path, "shape"))
-    if wrong is not None:
-        raise violation(wrong[1], wrong[2], path=wrong[0])
+    if body.shape is not None:
+        wrong = body.shape.wrong_dimension(dimension, (*path, "shape"))
+        if wrong is not None:
+            raise violation(wrong[1], wrong[2], path=wrong[0])
+    if body.particles is not None and body.particles.dimension != dimension:
+        rule = f"must have {dimension} coordinates, as grid.dimension = {dimension}"
+        remedy = f"it has {body.particles.dimension}"
+        value = body.particles.file or "an array"
+        raise violation(rule, remedy, value=value, path=(*path, "particles"))
     _check_vector(body, "velocity", dimension, path)
     spin, wanted = body.angular_velocity, 1 if dimension == 2 else 3
     if spin and len(spin) != wanted:

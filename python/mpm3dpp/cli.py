@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command line: `mpm3dpp run | check | preview | plot | bench | materials | material-test`.
+"""The command line: `mpm3dpp run | check | preview | import | plot | bench | materials | ...`.
 
 Exit codes: 0 done, 1 the run had to stop, 2 a mistake in the case or on the command line.
 Heavy modules are imported by the command that needs them, so that `--help` is fast.
@@ -11,11 +11,14 @@ import enum
 import os
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from .errors import CaseError, RunError
+
+if TYPE_CHECKING:
+    from .case import Case
 
 app = typer.Typer(
     name="mpm3dpp",
@@ -25,12 +28,31 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML), or .mpm.")]
+Units = Annotated[
+    str | None,
+    typer.Option(help="Units of an .mpm file: mm-g-N-ms (default), SI, cm-g-us."),
+]
 Threads = Annotated[
     int | None,
     typer.Option(min=1, help="Threads; default OMP_NUM_THREADS, else all cores."),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+
+
+def _load(path: Path, units: str | None, quiet: bool = False) -> Case:
+    """Return the case of a file; what to know about it goes to stderr."""
+    from .importers import load_any
+
+    loaded, notes = load_any(path, units)
+    if not quiet:
+        _print_notes(notes)
+    return loaded
+
+
+def _print_notes(notes: list[str]) -> None:
+    for note in notes:
+        typer.echo(f"note: {note}", err=True)
 
 
 class Scheme(str, enum.Enum):
@@ -74,12 +96,12 @@ def run(
     threads: Threads = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
     json: Json = False,
+    units: Units = None,
 ) -> None:
     """Run a case: frames, history, manifest and pictures in the output folder."""
-    from .case import load_case
     from .folders import default_folder, thread_count, writable_folder
 
-    loaded = load_case(case)
+    loaded = _load(case, units, quiet)
     folder = writable_folder(out if out is not None else default_folder(case))
     from .run import run_case  # The slowest import: after the mistakes.
 
@@ -87,13 +109,12 @@ def run(
 
 
 @app.command()
-def check(case: CaseFile) -> None:
+def check(case: CaseFile, units: Units = None) -> None:
     """Check a case and say what it amounts to, without running it."""
     from .build import build
-    from .case import load_case
     from .echo import echo
 
-    loaded = load_case(case)
+    loaded = _load(case, units)
     typer.echo(echo(loaded, build(loaded)))
 
 
@@ -101,15 +122,32 @@ def check(case: CaseFile) -> None:
 def preview(
     case: CaseFile,
     out: Annotated[Path | None, typer.Option(help="Picture; default in results/NAME.")] = None,
+    units: Units = None,
 ) -> None:
     """Draw the particles of a case before it runs."""
-    from .case import load_case
     from .folders import default_folder, writable_folder
     from .plots import preview as draw
 
-    loaded = load_case(case)
+    loaded = _load(case, units)
     target = out if out is not None else writable_folder(default_folder(case)) / "preview.png"
     typer.echo(draw(loaded, target))
+
+
+@app.command(name="import")
+def import_(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Input file of MPM3D-F90 (.mpm).")],
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="Case file; default NAME.toml here.")
+    ] = None,
+    units: Units = None,
+) -> None:
+    """Write an input file of MPM3D-F90 as a case file in SI units."""
+    from .importers.mpm3d import import_mpm, write_case
+
+    found = import_mpm(file, units)
+    _print_notes(found.notes)
+    for written in write_case(found, out if out is not None else Path(f"{file.stem}.toml")):
+        typer.echo(written)
 
 
 @app.command()

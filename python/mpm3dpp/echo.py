@@ -56,10 +56,12 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
     lines = [case.title] if case.title else []
     for body in bodies:
         against = "exact" if body.volume_is_exact else "measured on a fine lattice"
+        source = f"{body.mass_error:+.3%} of the shape's ({against})"
+        if body.shape_volume is None:
+            source = "given one by one"
         lines.append(
             f"body {body.name}: {len(body.positions):,} particles {body.spacing:.4g} m apart, "
-            f"{body.material}, mass {body.mass:.6g} kg{per_metre}, "
-            f"{body.mass_error:+.3%} of the shape's ({against})"
+            f"{body.material}, mass {body.mass:.6g} kg{per_metre}, {source}"
         )
     particles = sum(len(body.positions) for body in bodies)
     cells = occupied_cells(case, bodies)

@@ -64,7 +64,7 @@ class CaseModel(BaseModel, metaclass=_CaseMeta):
 
 def plain(value: Any) -> Any:
     """Return a value of a case as tables, lists, numbers and text."""
-    if isinstance(value, CaseModel):
+    if hasattr(value, "table"):
         return value.table()
     if isinstance(value, dict):
         return {key: plain(item) for key, item in value.items()}

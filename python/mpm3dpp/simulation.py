@@ -43,12 +43,13 @@ class Simulation:
         numbers = {name: self._add_material(name) for name in dict.fromkeys(self.materials)}
         while filled:  # What the core has taken is dropped, so that memory holds it once.
             body = filled.pop(0)
+            equal = bool(np.all(body.volumes == body.volumes[0]))
             number = self.core.add_body(
                 body.name,
                 numbers[body.material],
                 body.positions,
                 np.ascontiguousarray(body.velocities),
-                body.volumes[:1].copy(),
+                body.volumes[:1].copy() if equal else np.ascontiguousarray(body.volumes),
             )
             arrival = lighting_times(case, body.name, body.positions)
             if arrival is not None:

@@ -156,6 +156,15 @@ def register(shape: type[Shape]) -> type[Shape]:
     return shape
 
 
+def _parse_optional(value: Any) -> Shape | None:
+    return None if value is None else parse_shape(value)
+
+
+MaybeShape = Annotated[
+    SkipValidation[Shape | None],
+    BeforeValidator(_parse_optional),
+    WithJsonSchema({"type": "object", "minProperties": 1, "maxProperties": 1}),
+]
 AnyShape = Annotated[
     SkipValidation[Shape],
     BeforeValidator(parse_shape),

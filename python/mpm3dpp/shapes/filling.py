@@ -99,16 +99,22 @@ def fill(body: Any, grid: Any) -> tuple[Points, Points]:
     """Return the particles of a body.
 
     Args:
-        body: a `case.Body`: its shape, and `particles_per_cell` or `spacing`.
+        body: a `case.Body`: its shape or particles, and `particles_per_cell` or `spacing`.
         grid: a `case.Grid`: its dimension, origin and cell size.
 
     Returns:
-        Positions [m], shape (n, D), and volumes [m^3; in 2D m^2 times 1 m], shape (n,) (all
-        equal: a read-only view of one number).
+        Positions [m], shape (n, D), and volumes [m^3; in 2D m^2 times 1 m], shape (n,) (of a
+        shape all equal: a read-only view of one number).
 
     Raises:
         CaseError: the shape does not suit the dimension, or holds no particle.
     """
+    if body.particles is not None:
+        positions, volumes = body.particles.positions, body.particles.volumes
+        if volumes is None:
+            cube = body.particle_spacing(grid) ** grid.dimension
+            volumes = np.broadcast_to(cube, (len(positions),))
+        return positions, volumes
     wrong = body.shape.wrong_dimension(grid.dimension, ("shape",))
     if wrong is not None:
         from ..errors import key_text

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""An imported case as a case file with comments, and its particles as CSV files beside it."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+from mpm3dpp.io.disk import make_folder, writing
+from mpm3dpp.particles import Particles, write_particles
+
+from .to_case import Imported
+
+_UNITS = {
+    "cell_size": "m",
+    "end_time": "s",
+    "interval": "s",
+    "gravity": "m/s^2",
+    "density": "kg/m^3",
+    "velocity": "m/s",
+    "spacing": "m",
+    "point": "m",
+}
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def write_case(found: Imported, target: Path) -> list[Path]:
+    """Write a case file, and for each body of single particles a CSV file beside it.
+
+    Args:
+        found: what was imported.
+        target: the case file; the others are named `NAME_BODY.csv` after it.
+
+    Returns:
+        The files written, the case file first.
+
+    Raises:
+        CaseError: a file cannot be written.
+    """
+    make_folder(target.parent)
+    tables, files = dict(found.tables), [target]
+    tables["body"] = {name: dict(body) for name, body in tables["body"].items()}
+    origin = Path(found.name).name
+    for name, body in tables["body"].items():
+        particles = body.get("particles")
+        if isinstance(particles, Particles):
+            file = target.with_name(f"{target.stem}_{name}.csv")
+            line = found.lines["body", name]
+            about = f"Particles of {name} from {origin}, line {line}; SI units."
+            write_particles(file, particles, about)
+            body["particles"] = file.name
+            files.append(file)
+    with writing(target):
+        target.write_text(case_text(found, tables), encoding="utf-8")
+    return files
+
+
+def case_text(found: Imported, tables: dict[str, Any]) -> str:
+    """Return the text of the case file; in `tables` particles are names of files."""
+    origin = Path(found.name).name
+    lines = [
+        f"# From {origin}, an input file of MPM3D-F90, with units {found.units}; here SI units."
+    ]
+    lines += [f"# - {_comment(note)}" for note in found.notes]
+    lines.append(f"title = {_value(tables['title'])}")
+    for name, table in tables.items():
+        if name == "title":
+            continue
+        if name in ("material", "body"):
+            for key, inner in table.items():
+                lines += _section(f"[{name}.{_key(key)}]", inner, _line(found, name, key))
+        elif isinstance(table, list):
+            for index, inner in enumerate(table):
+                lines += _section(f"[[{name}]]", inner, _line(found, name, index))
+        else:
+            lines += _section(f"[{name}]", table, "")
+    return "\n".join(lines) + "\n"
+
+
+def _section(head: str, table: dict[str, Any], origin: str) -> list[str]:
+    lines = ["", f"{head}{origin}"]
+    for key, value in table.items():
+        unit = f"  # {_UNITS[key]}" if key in _UNITS else ""
+        lines.append(f"{_key(key)} = {_value(value)}{unit}")
+    return lines
+
+
+def _line(found: Imported, *path: str | int) -> str:
+    line = found.lines.get(path)
+    return f"  # line {line}" if line else ""
+
+
+def _comment(text: str) -> str:
+    return "".join(c if c.isprintable() else "?" for c in text)
+
+
+def _key(key: str) -> str:
+    return key if _BARE.fullmatch(key) else json.dumps(key)
+
+
+def _value(value: Any) -> str:
+    """Return a value as TOML; numbers come back to the last bit."""
+    if isinstance(value, dict):
+        inner = ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items())
+        return f"{{ {inner} }}"
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, str):
+        return json.dumps(_comment(value), ensure_ascii=False)
+    return repr(value).lower() if isinstance(value, bool) else repr(value)

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Bodies given particle by particle: the file, its mistakes, and what becomes of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mpm3dpp import Body, Case, CaseError, Particles, Simulation, load_case
+from mpm3dpp.build import build
+from mpm3dpp.echo import echo
+from mpm3dpp.particles import read_particles, write_particles
+from mpm3dpp.plots import preview
+
+CASE = """\
+[grid]
+dimension = 2
+cell_size = "1 mm"
+[run]
+end_time = "1 us"
+[material.steel]
+density = "8000 kg/m^3"
+strength = { elastic = { E = "200 GPa", nu = 0.3 } }
+[body.rod]
+material = "steel"
+particles = "rod.csv"
+velocity = [1, 0]
+"""
+ROD = "x [m],y [m],volume [m^2]\n0.0001,0.0001,4e-8\n0.0003,0.0001,4e-8\n0.0006,0.0001,1e-7\n"
+
+
+def write(folder: Path, points: str, case: str = CASE) -> Path:
+    (folder / "rod.csv").write_text(points)
+    path = folder / "case.toml"
+    path.write_text(case)
+    return path
+
+
+def test_masses_positions_and_check(tmp_path: Path) -> None:
+    case = load_case(write(tmp_path, ROD))
+    [body] = build(case)
+    assert body.mass == pytest.approx(8000 * 1.8e-7, rel=1e-14)
+    assert body.shape_volume is None
+    assert body.spacing == pytest.approx(np.sqrt(6e-8), rel=1e-14)
+    simulation = Simulation(case, threads=1)
+    assert np.array_equal(simulation.column("rod", "volume").ravel(), [4e-8, 4e-8, 1e-7])
+    assert np.array_equal(simulation.column("rod", "position")[:, 0], [1e-4, 3e-4, 6e-4])
+    assert "given one by one" in echo(case, build(case))
+    assert preview(case, tmp_path / "rod.png").exists()
+
+
+def test_the_spin_is_about_the_mass_centre(tmp_path: Path) -> None:
+    case = load_case(write(tmp_path, ROD, CASE + "angular_velocity = 100\n"))
+    simulation = Simulation(case, threads=1)
+    m, v = (simulation.column("rod", name) for name in ("mass", "velocity"))
+    assert (m.ravel() @ v / m.sum()).tolist() == pytest.approx([1.0, 0.0], abs=1e-12)
+
+
+def test_without_volumes_they_are_squares_of_the_spacing(tmp_path: Path) -> None:
+    text = CASE + 'spacing = "0.2 mm"\n'
+    case = load_case(write(tmp_path, "# made by hand\nx,y\n\n1e-4,1e-4\n3e-4,1e-4\n", text))
+    [body] = build(case)
+    assert body.volumes.tolist() == pytest.approx([4e-8, 4e-8])
+
+
+def test_the_hash_is_that_of_the_content(tmp_path: Path) -> None:
+    case = load_case(write(tmp_path, ROD))
+    other = CASE.replace("rod.csv", "other.csv")
+    (tmp_path / "other.csv").write_text(ROD.replace("0.0006", "6e-4"))
+    assert load_case(write(tmp_path, ROD, other)).case_hash == case.case_hash
+    (tmp_path / "other.csv").write_text(ROD.replace("0.0006", "0.00061"))
+    assert load_case(write(tmp_path, ROD, other)).case_hash != case.case_hash
+    arrays = read_particles(tmp_path / "rod.csv")
+    tables = case.table()
+    assert tables["body"]["rod"]["particles"] == "rod.csv"
+    tables["body"]["rod"]["particles"] = Particles(arrays.positions, arrays.volumes)
+    assert Case(**tables).case_hash == case.case_hash
+
+
+@pytest.mark.parametrize(
+    ("points", "part"),
+    [
+        ("", "is empty"),
+        ("x,y\n", "holds no particle"),
+        ("x,z\n1,2\n", "must name its columns"),
+        ("0.1,0.2\n0.3,0.4\n", "must name its columns"),
+        ("x [mm],y [mm]\n1,2\n", "gives x in [mm] in line 1 but must be in m"),
+        ("# note\nx,y\n1,2\n\n1,2,3\n", "has 3 numbers in line 5 but 2 columns"),
+        ("x,y\n1,2\n1,two\n", 'has "two" in line 3, which is no number'),
+        ("x,y\n1,2\n1,nan\n", "must have finite numbers, in line 3"),
+        ("x,y,volume\n1,2,3\n1,2,0\n", "must have a volume > 0, in line 3"),
+        ("x,y,z\n1,2,3\n", "must have 2 coordinates"),
+        (b"\xff\xfe", "cannot be read as a text file"),
+        (None, "is not a file"),
+    ],
+)
+def test_a_bad_file_is_one_sentence(tmp_path: Path, points: str | bytes | None, part: str) -> None:
+    path = write(tmp_path, "")
+    if points is None:
+        (tmp_path / "rod.csv").unlink()
+    else:
+        data = points.encode() if isinstance(points, str) else points
+        (tmp_path / "rod.csv").write_bytes(data)
+    with pytest.raises(CaseError) as caught:
+        load_case(path)
+    sentence = str(caught.value)
+    assert sentence.startswith(f'{path}:11: body.rod.particles = "rod.csv" ')
+    assert part in sentence and "\n" not in sentence
+
+
+@pytest.mark.parametrize(
+    ("extra", "part"),
+    [
+        ("shape = { disc = { centre = [0, 0], radius = 1 } }\n", "together with shape"),
+        ("particles_per_cell = 2\n", "together with particles that have volumes"),
+        ("spacing = 1\n", "together with particles that have volumes"),
+    ],
+)
+def test_one_of_two_keys(tmp_path: Path, extra: str, part: str) -> None:
+    with pytest.raises(CaseError, match=part):
+        load_case(write(tmp_path, ROD, CASE + extra))
+
+
+def test_neither_key() -> None:
+    with pytest.raises(CaseError, match="shape is missing; add this key, or particles"):
+        Body(material="steel")
+
+
+def test_outside_the_box(tmp_path: Path) -> None:
+    box = 'box = { lower = [0, 0], upper = ["1 mm", "1 mm"] }\n[run]'
+    text = CASE.replace("[run]", box)
+    with pytest.raises(CaseError, match="particles reaches out of"):
+        build(load_case(write(tmp_path, ROD.replace("0.0006", "0.0016"), text)))
+
+
+@pytest.mark.parametrize(
+    ("positions", "volumes", "part"),
+    [
+        ([1.0, 2.0], None, "shape"),
+        (np.zeros((0, 3)), None, "a particle at least"),
+        ([[1.0, np.inf]], None, "finite"),
+        ([[1.0, 2.0]], [-1.0], "volume > 0"),
+        ([[1.0, 2.0]], [1.0, 2.0], "one number for each"),
+    ],
+)
+def test_bad_arrays(positions: object, volumes: object, part: str) -> None:
+    with pytest.raises(CaseError, match=part):
+        Particles(positions, volumes)
+
+
+def test_numbers_come_back_to_the_last_bit(tmp_path: Path) -> None:
+    random = np.random.default_rng(7)
+    given = Particles(random.normal(size=(50, 3)) * 1e-3, random.uniform(1e-12, 1e-9, 50))
+    write_particles(tmp_path / "p.csv", given, "two\nlines")
+    found = read_particles(tmp_path / "p.csv")
+    assert found.volumes is not None
+    assert np.array_equal(found.positions, given.positions)
+    assert np.array_equal(found.volumes, given.volumes)
+    assert found.digest == given.digest
