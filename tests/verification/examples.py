@@ -210,12 +210,12 @@ def sand_column(scheme: str, dimension: int, basis: str) -> list[Figure]:
     run.to(case.run.end_time)
     place = run.column("position")
     length = case.body["sand"].shape.upper[0]  # type: ignore[attr-defined]
-    # The front is where the deposit is a cell thick: what is thinner is not resolved, and single
-    # particles that have jumped ahead are no deposit.
+    # The deposit ends where it is first thinner than a cell: that is not resolved, and particles
+    # that have jumped ahead of it are no deposit.
     h = case.grid.cell_size
-    area = run.column("volume").sum() / len(place)
+    area = run.column("mass").sum() / case.material["sand"].density / len(place)
     thickness = np.bincount(np.floor(place[:, 0] / h).astype(int)) * area / h
-    reach = h * (int(np.flatnonzero(thickness >= h)[-1]) + 1)
+    reach = h * int(np.flatnonzero(np.append(thickness, 0.0) < h)[0])
     at_wall = place[:, 0] < 2 * case.grid.cell_size
     top = place[at_wall, 1].max() + case.grid.cell_size / 4
     return [
