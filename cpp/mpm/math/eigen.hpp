@@ -49,7 +49,7 @@ void rotate_jacobi(Sym<T, D>& a, Vec<T, D> (&axis)[D]) {
 /// rotation is exact; in space `sweeps` of three leave less than a rounding, as the tests show.
 template <class T, int D>
 Eigen<T, D> eigen(const Sym<T, D>& tensor) {
-  constexpr int sweeps = 5;
+  constexpr int sweeps = 4;
   T size(1e-300);
   for (int k = 0; k < Sym<T, D>::size; ++k) size = max(size, absolute(tensor.c[k]));
   Sym<T, D> a = (T(1.0) / size) * tensor;
