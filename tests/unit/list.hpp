@@ -20,6 +20,7 @@
   X(jaumann) \
   X(models) \
   X(material) \
+  X(mohr_coulomb) \
   X(two_bodies) \
   X(many_bodies) \
   X(separation) \
