@@ -54,7 +54,9 @@ def fails_at(rows: Row, step: int, action: float) -> bool:
 
 
 @pytest.mark.parametrize("lanes", [False, True])
-@pytest.mark.parametrize(("action", "number"), [("no_shear", 1.0), ("no_tension", 2.0)])
+@pytest.mark.parametrize(
+    ("action", "number"), [("no_shear", 1.0), ("no_tension", 2.0), ("erode", 3.0)]
+)
 def test_principal_stress_and_what_is_left_of_it(action: str, number: float, lanes: bool) -> None:
     """Uniaxial strain in tension to (lambda + 2 G) e = limit, then back into compression."""
     limit = (LAMBDA + 2 * G) * 50.5 * STEP
@@ -70,6 +72,8 @@ def test_principal_stress_and_what_is_left_of_it(action: str, number: float, lan
     assert np.ptp(after, axis=1).max() < 1e-9 * limit
     if action == "no_shear":
         assert np.allclose(after[:, 0], BULK * strain[51:], rtol=0, atol=1e-8 * limit)
+    elif action == "erode":
+        assert not after.any()
     else:
         closing = strain[51:] - np.maximum.accumulate(strain[51:])
         assert np.allclose(after[:, 0], BULK * closing, rtol=0, atol=1e-8 * limit)
