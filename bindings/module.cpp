@@ -219,6 +219,13 @@ NB_MODULE(_core, m) {
                      return n;
                    })
       .def_prop_ro("total_mass", &Simulation::total_mass)
+      .def("eroded",
+           [](const Simulation& s) {
+             nb::dict d;
+             d["mass"] = s.eroded().mass;
+             d["count"] = s.eroded().count;
+             return d;
+           })
       .def_prop_ro("failure", &Simulation::failure)
       .def("limiter", &Simulation::limiter)
       .def("set_threads", &Simulation::set_threads, nb::arg("count"))

@@ -96,6 +96,9 @@ class FakeSimulation:
     def limiter(self) -> Any:
         return SimpleNamespace(body=1, particle=7, sound_speed=100.0, speed=SPEED)
 
+    def eroded(self) -> dict[str, float]:
+        return {"mass": 0.0, "count": 0}
+
     def timers(self) -> dict[str, float]:
         return {"map momentum": 2e-3, "advance particles": 1e-3}
 

@@ -17,6 +17,7 @@ MODELS = [m.name for m in _core.catalogue() if m.kind == "strength" and m.eos !=
 
 CHOSEN = {"nu": 0.3, "T_melt": 1000.0, "cp": 1000.0, "n": 0.5, "e0": 0.5, "q_phi": 0.5}
 CHOSEN["tension"] = MODULUS
+CHOSEN["friction_angle"] = 0.5
 
 Motion = Callable[[float], np.ndarray]
 

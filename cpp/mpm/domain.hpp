@@ -43,6 +43,7 @@ struct Domain {
 
   std::vector<PatchSums<D>> sums;  // one per patch
   ListScratch<D> list_scratch;
+  Eroded<D> eroded;
 
   Body<D>& body_of(const Patch<D>& patch) { return bodies[static_cast<std::size_t>(patch.body)]; }
   bool has_contact() const { return contact_settings.enabled && bodies.size() > 1; }

@@ -40,7 +40,8 @@ class Material(CaseModel):
         strength: one strength model with its parameters, `{"elastic": {"E": ..., "nu": ...}}`.
         eos: at most one equation of state, `{"tait": {"c0": ...}}`; it gives the pressure.
         failure: any number of failure models, `{"plastic_strain": {"limit": ...}}`; `action`
-            beside a model's parameters says what failing does, "no_tension" or "no_shear".
+            beside a model's parameters says what failing does, "no_tension", "no_shear"
+            or "erode".
     """
 
     model_config = ConfigDict(json_schema_extra=either_library_or_own)

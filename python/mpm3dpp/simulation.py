@@ -110,6 +110,13 @@ class Simulation:
         """
         return self.core.column(self.bodies.index(body), name)
 
+    def eroded(self) -> dict[str, Any]:
+        """Return `mass` [kg] (per metre in 2D) and `count` of the particles that have eroded.
+
+        They stay in the columns as they were when they left, with `failed` = 3.
+        """
+        return dict(self.core.eroded())
+
     def set_velocity(self, body: str, velocities: np.ndarray) -> None:
         """Give the particles of a body velocities [m/s], shape (n, D), in the order of filling."""
         values = np.ascontiguousarray(velocities, dtype=float)

@@ -14,11 +14,13 @@
   X(exp_and_pow) \
   X(tensor) \
   X(cholesky) \
+  X(eigen) \
   X(threads) \
   X(basis) \
   X(jaumann) \
   X(models) \
   X(material) \
+  X(mohr_coulomb) \
   X(two_bodies) \
   X(many_bodies) \
   X(separation) \

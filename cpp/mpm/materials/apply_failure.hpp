@@ -8,7 +8,8 @@ namespace mpm {
 template <class T, int D>
 [[gnu::flatten]] void apply_failures(const Material& material, Columns& columns,
                                      const MaterialColumns& at, const StressSettings& settings,
-                                     MaterialBlock<D>& block, BlockEnd<T, D>& end) {
+                                     MaterialBlock<D>& block, BlockEnd<T, D>& end,
+                                     StressSums& sums) {
   int state_at = at.failure_state;
   for (const Failing& failing : material.failures)
     std::visit(
@@ -37,12 +38,16 @@ template <class T, int D>
         },
         failing.model);
 
+  const T gone(static_cast<double>(FailureAction::erode));
+  auto eroded = T(1.0) < T(0.0);
   for_each_group<T>(block, [&](const Group<T, D>& group) {
     const T failed = group.read(columns.component(at.failed));
+    eroded = eroded | (group.valid() & (failed >= gone));
     const Sym<T, D> stress = group.get_stress(block);
     const T mean = T(1.0 / 3.0) * trace(stress);
-    const T kept = select(failed >= T(static_cast<double>(FailureAction::no_tension)),
-                          min(mean, T(0.0)), mean);
+    T kept = select(failed >= T(static_cast<double>(FailureAction::no_tension)), min(mean, T(0.0)),
+                    mean);
+    kept = select(failed >= gone, T(0.0), kept);
     const T deviator = select(failed > T(0.0), T(0.0), T(1.0));
     const Sym<T, D> left =
         Sym<T, D>::isotropic(kept) + deviator * (stress - Sym<T, D>::isotropic(mean));
@@ -51,6 +56,7 @@ template <class T, int D>
             {left, group.get(block.dissipated), group.get(block.speed),
              group.get(block.viscous_pressure)});
   });
+  sums.eroded = sums.eroded || any(eroded);
 }
 
 }  // namespace mpm

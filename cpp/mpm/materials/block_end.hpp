@@ -43,6 +43,11 @@ class BlockEnd {
       const T energy = group.read(columns_.component(at_.energy));
       group.write(columns_.component(at_.energy), energy + heat / moved.initial_volume);
     }
+    if (at_.recoverable >= 0) {
+      const T energy = group.read(columns_.component(at_.recoverable));
+      group.write(columns_.component(at_.recoverable),
+                  energy + (work - lost) / moved.initial_volume);
+    }
     group.write(columns_.component(at_.volume), moved.volume);
     for (int i = 0; i < Sym<T, D>::size; ++i)
       group.write(columns_.component(at_.stress + i), after.stress.c[i]);

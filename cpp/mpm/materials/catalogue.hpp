@@ -10,13 +10,20 @@
 #include "mpm/materials/eos/murnaghan.hpp"
 #include "mpm/materials/eos/polynomial.hpp"
 #include "mpm/materials/eos/tait.hpp"
+#include "mpm/materials/failure/energy_limit.hpp"
+#include "mpm/materials/failure/hydrostatic_tension.hpp"
+#include "mpm/materials/failure/johnson_cook_damage.hpp"
+#include "mpm/materials/failure/maximum_shear.hpp"
 #include "mpm/materials/failure/plastic_strain.hpp"
+#include "mpm/materials/failure/principal_strain.hpp"
+#include "mpm/materials/failure/principal_stress.hpp"
 #include "mpm/materials/strength/drucker_prager.hpp"
 #include "mpm/materials/strength/elastic.hpp"
 #include "mpm/materials/strength/fluid.hpp"
 #include "mpm/materials/strength/high_explosive.hpp"
 #include "mpm/materials/strength/j2.hpp"
 #include "mpm/materials/strength/johnson_cook.hpp"
+#include "mpm/materials/strength/mohr_coulomb.hpp"
 #include "mpm/materials/strength/neo_hookean.hpp"
 #include "mpm/materials/strength/simplified_johnson_cook.hpp"
 #include "mpm/materials/strength/swift.hpp"
@@ -35,8 +42,10 @@ struct Catalogue {
 };
 
 using StrengthModels = Catalogue<Elastic, J2, Voce, Swift, JohnsonCook, SimplifiedJohnsonCook,
-                                 DruckerPrager, NeoHookean, Fluid, HighExplosive>;
+                                 DruckerPrager, MohrCoulomb, NeoHookean, Fluid, HighExplosive>;
 using EosModels = Catalogue<LinearBulk, Polynomial, MieGruneisen, Jwl, IdealGas, Tait, Murnaghan>;
-using FailureModels = Catalogue<PlasticStrainLimit>;
+using FailureModels =
+    Catalogue<PlasticStrainLimit, PrincipalStressLimit, PrincipalStrainLimit, MaximumShearLimit,
+              HydrostaticTensionLimit, JohnsonCookDamage, EnergyLimit>;
 
 }  // namespace mpm

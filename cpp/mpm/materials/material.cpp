@@ -54,7 +54,8 @@ typename Models::Any made(const char* kind, const ModelChoice& choice, double de
 FailureAction action_named(const std::string& name) {
   if (name == "no_shear") return FailureAction::no_shear;
   if (name == "no_tension") return FailureAction::no_tension;
-  throw std::invalid_argument("failure.action must be no_shear or no_tension, not " + name);
+  if (name == "erode") return FailureAction::erode;
+  throw std::invalid_argument("failure.action must be no_shear, no_tension or erode, not " + name);
 }
 
 /// Has the strength model what the failure model judges by?

@@ -1,6 +1,7 @@
 #pragma once
 // A material: an initial density, one strength model, at most one equation of state and any number
 // of failure models, composed at run time.
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@ enum class FailureAction {
   intact = 0,
   no_shear = 1,    // the deviator is dropped, the pressure kept
   no_tension = 2,  // the deviator is dropped, the mean stress kept where it is compression
+  erode = 3,       // all stress is dropped, and the particle takes no part from the next step on
 };
 
 /// A failure model and what it does.
@@ -28,6 +30,11 @@ struct Material {
   StrengthModels::Any strength;
   std::optional<EosModels::Any> eos;
   std::vector<Failing> failures;
+
+  bool erodes() const {
+    return std::any_of(failures.begin(), failures.end(),
+                       [](const Failing& f) { return f.action == FailureAction::erode; });
+  }
 };
 
 /// A model as the user gives it: a name and numbers in SI units.
@@ -37,7 +44,7 @@ struct ModelChoice {
 };
 struct FailureChoice {
   ModelChoice model;
-  std::string action;  // "no_shear" or "no_tension"
+  std::string action;  // "no_shear", "no_tension" or "erode"
 };
 struct MaterialChoice {
   double density = 0.0;

@@ -18,7 +18,7 @@ void update_block(const Material& material, Columns& columns, const MaterialColu
     std::visit(
         [&](const auto& model) { apply_eos(model, material, columns, at, settings, block, end); },
         *material.eos);
-  if (!material.failures.empty()) apply_failures(material, columns, at, settings, block, end);
+  if (!material.failures.empty()) apply_failures(material, columns, at, settings, block, end, sums);
   end.add_to(sums);
 }
 
@@ -35,6 +35,7 @@ void add_material_columns(const Material& material, bool viscosity, Columns& col
   at.viscosity_pressure = viscosity ? columns.add("viscosity_pressure", "Pa", 1) : -1;
   at.energy = material.eos ? columns.add("internal_energy", "J/m^3", 1) : -1;
   if (material.failures.empty()) return;
+  if (material.erodes()) at.recoverable = columns.add("recoverable_energy", "J/m^3", 1);
   at.failed = columns.add("failed", "1", 1);
   for (const Failing& failing : material.failures)
     std::visit([&](const auto& model) { add(at.failure_state, model); }, failing.model);
@@ -65,6 +66,7 @@ void start_material_columns(const Material& material, Columns& columns, const Ma
         const double energy = model.initial_energy();
         const LinearInEnergy<double> p = model.at(1.0);
         fill(at.energy, energy);
+        if (at.recoverable >= 0) fill(at.recoverable, energy);
         if (std::holds_alternative<HighExplosive>(material.strength)) return;  // not burning yet
         for (int c = 0; c < 3; ++c) fill(at.stress + c, -(p.A + p.B * energy));
       },

@@ -34,6 +34,7 @@ struct MaterialColumns {
   int state = -1;               // of the strength model
   int viscosity_pressure = -1;  // of the artificial viscosity
   int energy = -1;              // internal, per initial volume; with an EOS
+  int recoverable = -1;         // energy per initial volume; with a failure model that erodes
   int failed = -1;              // FailureAction; with failure models
   int failure_state = -1;       // of the failure models, one after another
 };
@@ -60,6 +61,7 @@ struct StressSums {
   double force_power = 0.0;  // work over this strain of the stress that the nodal forces use
   double fastest = 0.0;      // largest c + |v| [m/s]
   bool negative_volume = false;
+  bool eroded = false;  // some particle is to be eroded
 };
 
 /// Take the particles of a block through a material: stress, state and volume after the step, and

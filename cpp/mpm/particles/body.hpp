@@ -17,14 +17,18 @@ struct Body {
   int position = 0;               // first component of each column; position [m], D components
   MaterialColumns at{};           // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
   std::vector<std::uint32_t> id;  // place of each particle in the order in which the user gave them
-  std::vector<std::uint32_t> order;       // particles by patch, then by cell, then by row
+  std::vector<std::uint32_t> order;       // particles by patch, then by cell, then by row; behind
+                                          // them those that are eroded, which no patch holds
   std::vector<std::uint32_t> next_order;  // the list being made
   std::vector<std::uint8_t> cell;         // scratch: cell in its tile of each entry of `order`
+  double initial_density = 0.0;           // [kg/m^3]
   double mean_mass = 0.0;                 // of a particle at the start [kg]
   double mean_edge = 0.0;  // edge of a square or cube of the mean initial particle volume [m]
   std::size_t moved = 0;   // changes of cell since the columns were last sorted
+  std::size_t eroded = 0;  // particles that take no part any more
 
   std::size_t count() const { return columns.rows(); }
+  std::size_t active() const { return count() - eroded; }
   double* x(int a) { return columns.component(position + a); }
   double* v(int a) { return columns.component(at.velocity + a); }
   const double* x(int a) const { return columns.component(position + a); }

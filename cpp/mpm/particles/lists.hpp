@@ -15,6 +15,15 @@ struct Leaver {
   std::uint8_t cell;
 };
 
+/// What eroded particles have taken with them so far.
+template <int D>
+struct Eroded {
+  std::size_t count = 0;
+  double mass = 0.0;                        // [kg]
+  double kinetic = 0.0, recoverable = 0.0;  // [J]
+  double momentum[D] = {};                  // [kg m/s]
+};
+
 /// Reused from step to step, so that a step allocates nothing.
 template <int D>
 struct ListScratch {
@@ -33,10 +42,11 @@ struct ListScratch {
 template <int D>
 void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads);
 
-/// Mend the lists of patches that particles have left; true if patches were added or removed.
+/// Mend the lists of patches that particles have left, and take out what has eroded; true if
+/// patches were added or removed.
 template <int D>
 bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
-                ListScratch<D>& scratch);
+                ListScratch<D>& scratch, Eroded<D>& eroded);
 
 /// Put the columns of a body into the order of its list.
 template <int D>

@@ -8,6 +8,7 @@ namespace mpm {
 namespace {
 
 constexpr std::uint8_t outside = 255;  // mark of a particle that has left its tile
+constexpr std::uint8_t eroded = 254;   // mark of one that takes no part any more
 
 template <int D>
 Index<D> cell_of_row(const TileGrid<D>& grid, const Body<D>& body, std::uint32_t row) {
@@ -21,6 +22,7 @@ Index<D> cell_of_row(const TileGrid<D>& grid, const Body<D>& body, std::uint32_t
 template <int D>
 std::size_t classify(const TileGrid<D>& grid, Body<D>& body, const Patch<D>& patch) {
   const Index<D> first = grid.first_cell(patch.tile);
+  const double* failed = body.at.failed >= 0 ? body.columns.component(body.at.failed) : nullptr;
   std::size_t changed = 0;
   patch.for_each_cell([&](int old_cell, std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t k = begin; k < end; ++k) {
@@ -31,7 +33,9 @@ std::size_t classify(const TileGrid<D>& grid, Body<D>& body, const Patch<D>& pat
         local[a] = cell[a] - first[a];
         inside = inside && local[a] >= 0 && local[a] < Tile<D>::cells;
       }
-      const int now = inside ? Tile<D>::cell(local) : outside;
+      const bool gone =
+          failed && failed[body.order[k]] >= static_cast<double>(FailureAction::erode);
+      const int now = gone ? eroded : inside ? Tile<D>::cell(local) : outside;
       body.cell[k] = static_cast<std::uint8_t>(now);
       changed += now != old_cell;
     }
@@ -118,7 +122,7 @@ void write_list(Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::C
   constexpr int cells = Tile<D>::cell_count;
   std::array<std::uint32_t, cells + 1> begin{};
   for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-    if (body.cell[k] != outside) ++begin[body.cell[k] + std::size_t{1}];
+    if (body.cell[k] < eroded) ++begin[body.cell[k] + std::size_t{1}];
   for (std::uint32_t k = 0; k < change.arrival_count; ++k)
     ++begin[arrival[k].cell + std::size_t{1}];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -129,7 +133,7 @@ void write_list(Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::C
     to[at] = row;
   };
   for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-    if (body.cell[k] != outside) put(body.cell[k], body.order[k]);
+    if (body.cell[k] < eroded) put(body.cell[k], body.order[k]);
   for (std::uint32_t k = 0; k < change.arrival_count; ++k) put(arrival[k].cell, arrival[k].row);
 
   patch.begin = change.begin;
@@ -142,11 +146,49 @@ void write_list(Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::C
   patch.left_cell = false;
 }
 
+/// Take what a particle has out of the sums of those that take part.
+template <int D>
+void add_eroded(const Body<D>& body, std::uint32_t row, Eroded<D>& sums) {
+  const double m = body.mass()[row];
+  ++sums.count;
+  sums.mass += m;
+  for (int a = 0; a < D; ++a) {
+    const double v = body.v(a)[row];
+    sums.kinetic += 0.5 * m * v * v;
+    sums.momentum[a] += m * v;
+  }
+  const double energy = body.columns.component(body.at.recoverable)[row];
+  sums.recoverable += energy * m / body.initial_density;
+}
+
+/// The end of a body's new list, behind all patches: what erodes now, then what has eroded before.
+template <int D>
+void write_tail(const TileGrid<D>& grid, Body<D>& body, int number, Eroded<D>& sums) {
+  if (body.at.recoverable < 0) return;
+  const std::size_t before = body.eroded, n = body.count();
+  std::size_t now = 0;
+  const auto each = [&](auto&& f) {
+    for (const Patch<D>& patch : grid.patches) {
+      if (patch.body != number || !patch.left_cell) continue;
+      for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
+        if (body.cell[k] == eroded) f(body.order[k]);
+    }
+  };
+  each([&](std::uint32_t) { ++now; });
+  std::uint32_t* to = body.next_order.data() + (n - before - now);
+  each([&](std::uint32_t row) {
+    add_eroded(body, row, sums);
+    *to++ = row;
+  });
+  std::memcpy(to, body.order.data() + (n - before), before * sizeof(std::uint32_t));
+  body.eroded = before + now;
+}
+
 }  // namespace
 
 template <int D>
 bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
-                ListScratch<D>& scratch) {
+                ListScratch<D>& scratch, Eroded<D>& sums) {
   bool any_left = false;
   for (const auto& p : grid.patches) any_left = any_left || p.left_cell;
   if (!any_left) return false;
@@ -174,7 +216,7 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
     if (patch.left_cell) {
       const auto& cell = bodies[static_cast<std::size_t>(patch.body)].cell;
       for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-        c.kept -= cell[k] == outside;
+        c.kept -= cell[k] >= eroded;
     }
     c.arrival_begin = arrival;
     while (arrival < total && scratch.leavers[arrival].body == patch.body &&
@@ -184,6 +226,8 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
     c.begin = begin;
     begin += c.kept + c.arrival_count;
   }
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    write_tail(grid, bodies[b], static_cast<int>(b), sums);
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
     write_list(bodies[static_cast<std::size_t>(patch.body)], patch, changes[p], scratch.leavers);
@@ -192,7 +236,9 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
   return changed;
 }
 
-template bool mend_lists<2>(TileGrid<2>&, std::vector<Body<2>>&, Threads&, ListScratch<2>&);
-template bool mend_lists<3>(TileGrid<3>&, std::vector<Body<3>>&, Threads&, ListScratch<3>&);
+template bool mend_lists<2>(TileGrid<2>&, std::vector<Body<2>>&, Threads&, ListScratch<2>&,
+                            Eroded<2>&);
+template bool mend_lists<3>(TileGrid<3>&, std::vector<Body<3>>&, Threads&, ListScratch<3>&,
+                            Eroded<3>&);
 
 }  // namespace mpm

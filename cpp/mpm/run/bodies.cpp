@@ -73,6 +73,7 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
   start_material_columns<D>(material, c, body.at);
   const double speed = sound_speed<D>(material, c, body.at, 0, domain_.grid.cell_size);
   domain_.stiffness.push_back(material.density * speed * speed);
+  body.initial_density = material.density;
   body.mean_mass = material.density * total / static_cast<double>(n);
   body.mean_edge = std::pow(total / static_cast<double>(n), 1.0 / D);
   body.id.resize(n);
@@ -144,8 +145,10 @@ template <int D>
 double SimulationOf<D>::kinetic_energy() const {
   double total = 0.0;
   for (const Body<D>& b : domain_.bodies)
-    for (std::size_t i = 0; i < b.count(); ++i)
+    for (std::size_t k = 0; k < b.active(); ++k) {
+      const std::size_t i = b.order[k];
       for (int a = 0; a < D; ++a) total += 0.5 * b.mass()[i] * b.v(a)[i] * b.v(a)[i];
+    }
   return total;
 }
 
@@ -153,8 +156,10 @@ template <int D>
 std::array<double, 3> SimulationOf<D>::momentum() const {
   std::array<double, 3> total{};
   for (const Body<D>& b : domain_.bodies)
-    for (std::size_t i = 0; i < b.count(); ++i)
+    for (std::size_t k = 0; k < b.active(); ++k) {
+      const std::size_t i = b.order[k];
       for (std::size_t a = 0; a < D; ++a) total[a] += b.mass()[i] * b.v(static_cast<int>(a))[i];
+    }
   return total;
 }
 

@@ -18,6 +18,9 @@
 // - contact: normal contact that does not exactly conserve energy, with dv from eqs. (11)-(15)
 // alone.
 //
+// Eroded particles take their kinetic and recoverable energy at the start of a step to the term
+// eroded, and their momentum out of the sum; the dissipated energies stay where they are.
+//
 // A positive numerical term is energy lost, a negative one energy made. The residual tests that
 // particles and nodes exchange exactly the same work; internal, viscous and friction enter
 // numerical with the opposite sign, so their own values are tested against closed forms
@@ -32,6 +35,7 @@ namespace mpm {
 struct Ledger {
   double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0,
          external = 0.0, eroded = 0.0, mapping = 0.0, time_integration = 0.0;  // [J]
+  double eroded_recoverable = 0.0;   // the part of eroded that was internal [J]
   double start = 0.0;                // kinetic and internal energy at the start [J]
   double largest = 0.0;              // largest energy brought in so far [J]
   std::array<double, 3> momentum{};  // [kg m/s]
@@ -51,7 +55,7 @@ struct Ledger {
   /// (USF).
   template <int D>
   void add(const std::vector<PatchSums<D>>& patches, const ContactSums& contacts,
-           bool forces_follow) {
+           const Eroded<D>& gone, bool forces_follow) {
     PatchSums<D> s;
     for (const PatchSums<D>& p : patches) {
       s.stress.internal += p.stress.internal;
@@ -65,6 +69,9 @@ struct Ledger {
       s.gravity_first += p.gravity_first;
       s.gravity_second += p.gravity_second;
     }
+    internal -= gone.recoverable - eroded_recoverable;
+    eroded = gone.kinetic + gone.recoverable;
+    eroded_recoverable = gone.recoverable;
     kinetic = s.kinetic;
     for (std::size_t a = 0; a < D; ++a) momentum[a] = s.momentum[a];
     internal += s.stress.internal;

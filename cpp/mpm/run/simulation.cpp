@@ -131,7 +131,7 @@ void SimulationOf<D>::make_step(double time_after) {
   if (domain_.has_contact())
     contacts =
         domain_.contact.record(domain_.bodies, domain_.time, domain_.time_step, domain_.step);
-  ledger_.add(domain_.sums, contacts, settings_.scheme == Scheme::usf);
+  ledger_.add(domain_.sums, contacts, domain_.eroded, settings_.scheme == Scheme::usf);
   write_history_row();
   find_failure();
   if (!failure_) choose_time_step();

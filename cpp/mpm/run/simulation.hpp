@@ -57,6 +57,12 @@ struct Limiter {
   double sound_speed = 0.0, speed = 0.0;  // [m/s]
 };
 
+/// Particles that take no part any more.
+struct ErodedSum {
+  double mass = 0.0;  // [kg]
+  std::size_t count = 0;
+};
+
 struct Bytes {
   std::size_t particles = 0, grid = 0, contact = 0, other = 0;
 };
@@ -85,7 +91,8 @@ class Simulation {
   virtual std::int64_t step() const = 0;
   virtual int body_count() const = 0;
   virtual std::size_t particle_count(int body) const = 0;
-  virtual double total_mass() const = 0;
+  virtual double total_mass() const = 0;  // of all particles, eroded ones included [kg]
+  virtual ErodedSum eroded() const = 0;
   virtual const std::optional<Failure>& failure() const = 0;
   virtual Limiter limiter() const = 0;
   virtual Bytes bytes() const = 0;

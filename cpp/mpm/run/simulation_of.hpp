@@ -25,6 +25,7 @@ class SimulationOf final : public Simulation {
   int body_count() const override { return static_cast<int>(domain_.bodies.size()); }
   std::size_t particle_count(int body) const override { return this->body(body).count(); }
   double total_mass() const override;
+  ErodedSum eroded() const override { return {domain_.eroded.mass, domain_.eroded.count}; }
   const std::optional<Failure>& failure() const override { return failure_; }
   Limiter limiter() const override;
   Bytes bytes() const override;

@@ -12,8 +12,8 @@ from mpm3dpp.model import CaseModel, Choice
 
 from .catalogue import KINDS, catalogue, check_parameters, example
 
-ACTIONS = ("no_tension", "no_shear")
-"""What failure does: only compression is left; or the whole pressure is."""
+ACTIONS = ("no_tension", "no_shear", "erode")
+"""What failure does: only compression is left; the whole pressure is; nothing is."""
 
 
 class ChosenModel(CaseModel):
@@ -56,7 +56,8 @@ class Failure(ChosenModel):
 
     Attributes:
         action: what becomes of a particle that fails: "no_tension" (the default; it bears
-            compression only) or "no_shear" (it keeps its whole pressure, like a liquid).
+            compression only), "no_shear" (it keeps its whole pressure, like a liquid) or "erode"
+            (it takes no part any more; the ledger keeps its energy in `eroded`).
     """
 
     kind: ClassVar[str] = "failure"

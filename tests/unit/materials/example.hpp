@@ -11,6 +11,7 @@ inline double example_value(std::string_view name, std::string_view unit, Rule r
   if (name == "gamma") return 1.4;
   if (name == "q_phi") return 0.5;
   if (name == "n" || name == "e0") return 0.5;
+  if (unit == "rad") return 0.5;
   if (unit == "Pa") return 1e8;
   if (rule == Rule::poisson_ratio) return 0.3;
   if (unit == "m/s") return 300.0;

@@ -17,7 +17,7 @@ struct DruckerPrager {
       "sin(phi) / "
       "(sqrt(3) (3 - sin(phi))), k = 6 c cos(phi) / (sqrt(3) (3 - sin(phi)))";
   static constexpr std::string_view source =
-      "Drucker & Prager 1952; return after Itasca 2012 (FLAC 7, constitutive models, sec. 1.6.2)";
+      "Drucker & Prager 1952; the corner of shear and tension by Koiter 1953";
   static constexpr EosUse eos = EosUse::never;
 
   double E{}, nu{}, q_phi{}, k_phi{}, q_psi{}, tension{};
@@ -65,7 +65,9 @@ struct DruckerPrager {
     const T shear_flow = over * T(1.0 / (elastic.G + K * q_phi * q_psi));
     T tau_after = tau - T(elastic.G) * shear_flow;
     T mean_after = mean - T(K * q_psi) * shear_flow;
-    // In tension the mean is cut first, and tau then to the cone at that mean.
+    // In tension the mean is cut first, and tau then to the cone at that mean. That is the exact
+    // return: a shear return that ends beyond the limit would end on the cone below the corner, so
+    // it takes more shear flow than the corner does, and the tension flow left there is positive.
     const T corner(max(0.0, k_phi - q_phi * limit));
     const auto torn = mean_after > T(limit);
     mean_after = min(mean_after, T(limit));
