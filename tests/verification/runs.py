@@ -10,7 +10,7 @@ from typing import Any
 
 from mpm3dpp import _core
 
-from . import bars, column, discs, groups, incline, point
+from . import bars, column, discs, examples, groups, incline, point
 from .figure import Figure
 from .scene import Failed
 
@@ -101,11 +101,21 @@ def _runs() -> Iterator[Run]:
         yield Run("E9b", groups.renumbering, "musl", 3, basis, {"steps": 100})
         for factor in (0.1, 0.9):
             yield Run("rod", bars.rod_energy, "musl", 2, basis, {"cells": 200, "factor": factor})
+    for scheme in both:
+        yield Run("S1", examples.plate_impact, scheme, 2, "gimp")
+        yield Run("S2", examples.plate_impact, scheme, 2, "gimp", {"flyer": "6061-T6"})
+        yield Run("S3", examples.sod_tube, scheme, 2, "gimp")
+        yield Run("S5", examples.spall, scheme, 2, "gimp")
     yield Run("E4", point.simple_shear, "-", 3, "-")
     yield from _slow_runs()
 
 
 def _slow_runs() -> Iterator[Run]:
+    yield Run("S4", examples.tnt_slab, "musl", 2, "gimp", slow=True)
+    yield Run("W1", examples.dam_break, "musl", 2, "gimp", slow=True)
+    yield Run("G1", examples.sand_column, "musl", 2, "gimp", slow=True)
+    yield Run("Taylor", examples.taylor_bar, "musl", 3, "gimp", slow=True)
+    yield Run("Taylor", examples.taylor_bar, "musl", 3, "linear", slow=True)
     for basis in BASES:
         for scheme in ("musl", "usf"):
             for cells in (10, 20):

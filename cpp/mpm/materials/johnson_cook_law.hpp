@@ -4,6 +4,26 @@
 
 namespace mpm {
 
+/// x^a near the x at which it was last taken exactly.
+template <class T>
+struct Power {
+  double exponent;
+  T start, inverse, start_value;
+
+  Power(T x, double a) : exponent(a), start(x), inverse(T(1.0) / x), start_value(pow(x, T(a))) {}
+  /// Value and derivative; near the start by series, and the derivative to the change's own order,
+  /// which is enough for Newton's steps.
+  Yield<T> at(T x) const {
+    const T change = (x - start) * inverse;
+    if (any(absolute(change) > T(0.01))) {
+      const T value = pow(x, T(exponent));
+      return {value, T(exponent) * value / x};
+    }
+    const T value = start_value * power_near_one(change, exponent);
+    return {value, T(exponent) * value * inverse};
+  }
+};
+
 /// Y = (A + B ep^n) (1 + C ln(rate / rate0)) (1 - T*^m), rates below rate0 taken as rate0,
 /// T* = (T - T_room) / (T_melt - T_room) between 0 and 1 (Johnson & Cook 1983, eqs. 1-2).
 struct JohnsonCookLaw {
@@ -24,33 +44,45 @@ struct JohnsonCookLaw {
   T update(const Motion<T, D>& motion, double G, Sym<T, D>& stress, T& plastic_strain,
            T& temperature) const {
     const T before = plastic_strain, start = temperature, heat = T(heating) * motion.J;
-    const T per_rate(1.0 / (motion.time_step * rate0));
-    const T tiny(1e-300);
-    const auto soft = [&](T at) {  // 1 - T*^m
-      return T(1.0) - pow(max(homologous(at), tiny), T(m));
-    };
+    const T per_rate(1.0 / (motion.time_step * rate0)), tiny(1e-300);
+    // Powers are taken once, at the start of the step; for the small changes that follow, by
+    // series.
+    const Power<T> hardening(max(before, tiny), n),
+        softening(thermal ? max(homologous(start), tiny) : T(1.0), m);
     const auto yield = [&](T q, T d) {
-      const T total = max(before + d, tiny), power = T(B) * pow(total, T(n));
+      const Yield<T> hard = hardening.at(max(before + d, tiny));
       const T rate = d * per_rate;
-      const auto fast = rate > T(1.0);
       const T faster = T(1.0) + T(C) * log(max(rate, T(1.0)));
-      const T hard = T(A) + power;
-      Yield<T> y{hard * faster,
-                 T(n) * power / total * faster + hard * select(fast, T(C) / max(d, tiny), T(0.0))};
+      const T rest = T(A) + T(B) * hard.value;
+      Yield<T> y{rest * faster, T(B) * hard.slope * faster +
+                                    rest * select(rate > T(1.0), T(C) / max(d, tiny), T(0.0))};
       if (thermal) {
-        const T hot = start + heat * (q - T(3.0 * G) * d) * d;
-        const T star = homologous(hot), lost = pow(max(star, tiny), T(m));
+        const T star = homologous(start + heat * (q - T(3.0 * G) * d) * d);
+        const Yield<T> lost = softening.at(max(star, tiny));
+        const T change = heat * (q - T(6.0 * G) * d) * T(1.0 / (T_melt - T_room));
         const auto varies = (star > T(0.0)) & (star < T(1.0));
-        const T slope = heat * (q - T(6.0 * G) * d) * T(1.0 / (T_melt - T_room));
-        y.slope = y.slope * (T(1.0) - lost) -
-                  select(varies, y.value * T(m) * lost / max(star, tiny) * slope, T(0.0));
-        y.value = y.value * (T(1.0) - lost);
+        y.slope =
+            y.slope * (T(1.0) - lost.value) - select(varies, y.value * lost.slope * change, T(0.0));
+        y.value = y.value * (T(1.0) - lost.value);
       }
       return y;
     };
-    T at_rest = T(A) + T(B) * pow(max(before, tiny), T(n));
-    if (thermal) at_rest = at_rest * soft(start);
-    const auto done = return_radially(stress, G, at_rest, yield);
+    T at_rest = T(A) + T(B) * hardening.start_value;
+    if (thermal) at_rest = at_rest * (T(1.0) - softening.start_value);
+    // A first guess by the rate alone: q - 3 G d = at_rest (1 + C ln(d / (rate0 time step))).
+    const auto guess = [&](T q) {
+      const T stiff(3.0 * G), top = (q - at_rest) * T(1.0 / (3.0 * G));
+      T d = top;
+      for (int turn = 0; turn < 3; ++turn) {
+        const T gain = T(C) * at_rest;
+        const T rest = stiff * (top - d) - gain * log(max(d * per_rate, T(1.0)));
+        const T half = T(2.0) * (stiff * d + gain);
+        const T step = max(min(rest, T(0.9) * half), T(-0.9) * half);
+        d = max(d * (half + step) / (half - step), tiny);
+      }
+      return d;
+    };
+    const auto done = return_radially(stress, G, at_rest, yield, guess);
     plastic_strain = before + done.increment;
     const T work = done.von_mises * done.increment;
     if (thermal) temperature = start + heat * work;

@@ -218,7 +218,7 @@ void SimulationOf<D>::set_velocity(int number, std::span<const double> velocitie
   Body<D>& b = domain_.bodies.at(static_cast<std::size_t>(number));
   if (velocities.size() != b.count() * D) throw std::invalid_argument("velocities must be (n, D)");
   check_finite(velocities, "velocities");
-  const double before = kinetic_energy();
+  const double before = prepared_ ? kinetic_energy() : 0.0;  // the lists are made by prepare()
   for (std::size_t k = 0; k < b.count(); ++k)
     for (std::size_t a = 0; a < D; ++a) b.v(static_cast<int>(a))[k] = velocities[b.id[k] * D + a];
   if (!prepared_) return;

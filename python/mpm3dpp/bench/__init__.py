@@ -118,7 +118,8 @@ def measure(
         particle-step], `bytes_per_particle` {particles, grid, contact, other, total},
         `bandwidth_GBps`, `bandwidth_fraction`; what was measured (`bench`, `scheme`, `size`,
         `steps`, `version`, `machine`, `isa`); `blocks`, all blocks [ns]; and with a twin
-        `without_contact_ns` and `contact_ratio`, the median over pairs of blocks.
+        `without_contact_ns` and `contact_ratio` (`elastic3d_ns`, `elastic3d_ratio` for `jc`), the
+        median over pairs of blocks.
 
     Raises:
         CaseError: there is no such benchmark.
@@ -170,7 +171,7 @@ def _result(
     count = bench.particles(size)
     median = statistics.median_low(block["ns"] for block in blocks[0])
     stages = next(block["stages"] for block in blocks[0] if block["ns"] == median)
-    moved = sum(bytes_per_particle_step(list(stages), bench.dimension).values())
+    moved = sum(bytes_per_particle_step(list(stages), bench.dimension, bench.state).values())
     memory = {key: last["bytes"][key] / count for key in ("particles", "grid", "contact")}
     total = last["growth"] / count
     result: dict[str, Any] = {
@@ -194,8 +195,10 @@ def _result(
     }
     if bench.twin:
         pairs = zip(*blocks, strict=True)
-        result["without_contact_ns"] = statistics.median(block["ns"] for block in blocks[1])
-        result["contact_ratio"] = statistics.median(a["ns"] / b["ns"] for a, b in pairs)
+        key = "without_contact" if bench.contact else bench.twin
+        result[f"{key}_ns"] = statistics.median(block["ns"] for block in blocks[1])
+        ratio = statistics.median(a["ns"] / b["ns"] for a, b in pairs)
+        result["contact_ratio" if bench.contact else f"{key}_ratio"] = ratio
     return result
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The benchmarks: lattices of elastic particles that strain and cross cells. SI units.
+"""The benchmarks: lattices of particles that strain and cross cells. SI units.
 
 The basis is the linear one, that of the paper and of most other codes.
 """
@@ -7,7 +7,7 @@ The basis is the linear one, that of the paper and of most other codes.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -17,8 +17,22 @@ Array = NDArray[np.float64]
 
 CELL = 1e-3  # [m]
 PER_AXIS = 2  # Particles per cell along each axis.
-DENSITY = 2700.0  # [kg/m^3]
-ALUMINIUM = {"E": 70e9, "nu": 0.3}
+# Arguments of the core's add_material.
+ALUMINIUM: dict[str, Any] = {
+    "density": 2700.0,
+    "strength": "elastic",
+    "parameters": {"E": 70e9, "nu": 0.3},
+}
+# OFHC copper: Johnson & Cook 1983; shock data of Steinberg 1996.
+COPPER: dict[str, Any] = {
+    "density": 8960.0,
+    "strength": "johnson_cook",
+    "parameters": {
+        "E": 124e9, "nu": 0.34, "A": 90e6, "B": 292e6, "n": 0.31, "C": 0.025, "m": 1.09,
+        "T_melt": 1356.0, "cp": 383.0,
+    },
+    "eos": ("mie_gruneisen", {"c0": 3940.0, "s": 1.49, "gamma0": 1.96}),
+}  # fmt: skip
 TIME_STEP_FACTOR = 0.5
 DIRECTION = (3.0, 2.0, 1.0)  # Of the translation: oblique to the grid.
 # Speed of the translation [m/s]. With USL and the linear basis a particle that enters an empty cell
@@ -26,6 +40,7 @@ DIRECTION = (3.0, 2.0, 1.0)  # Of the translation: oblique to the grid.
 # bodies stay in place, and the figure holds no particles that cross cells.
 SPEED = {"usf": 190.0, "musl": 190.0, "usl": 0.0}
 BREATHING = 5.0  # Amplitude of the breathing mode along each axis [m/s].
+YIELDING = 100.0  # The same where most particles shall yield; it turns from axis to axis.
 # Speed of each cube towards the other [m/s]. Elastic cubes part when the wave has crossed them and
 # come back, after about 4 steps for each cell of the edge. At this speed they are then still so
 # near that the nodes of the face stay overlapped to the end: the cost is in finding the contact.
@@ -45,6 +60,8 @@ class Bench:
         bodies: how many cubes (squares), side by side along x.
         contact: whether the bodies feel each other.
         twin: name of the benchmark that is measured in turn with this one, for their ratio.
+        material: keyword arguments of the core's add_material.
+        state: numbers that the material keeps for a particle besides its stress.
     """
 
     name: str
@@ -54,6 +71,8 @@ class Bench:
     bodies: int = 1
     contact: bool = False
     twin: str = ""
+    material: dict[str, Any] = field(default_factory=lambda: ALUMINIUM)
+    state: int = 0
 
     def particles(self, size: int) -> int:
         """Return the number of particles of all bodies with `size` cells along the edge."""
@@ -65,6 +84,15 @@ BENCHES = {
     for bench in (
         Bench("elastic2d", "a square that flies and breathes", 2, 360),
         Bench("elastic3d", "a cube that flies and breathes", 3, 40),
+        Bench(
+            "jc",
+            "the same cube of Johnson-Cook and Mie-Grueneisen copper, yielding",
+            3,
+            40,
+            twin="elastic3d",
+            material=COPPER,
+            state=3,
+        ),
         Bench(
             "two_cubes",
             "two cubes pressed together, contact with friction",
@@ -93,11 +121,14 @@ def positions(dimension: int, size: int, body: int) -> Array:
     return lattice.reshape(-1, dimension)
 
 
-def velocities(dimension: int, size: int, speed: float, approach: float = 0.0) -> Array:
+def velocities(
+    dimension: int, size: int, speed: float, approach: float = 0.0, yielding: bool = False
+) -> Array:
     """Return translation + breathing + approach along x, shape (n, D) [m/s].
 
     Breathing is v_a = A sin(pi (x_a - centre_a) / edge): smooth, of no momentum, and it strains
-    every particle differently.
+    every particle differently. Where particles shall yield it is inwards along x and outwards along
+    the other axes.
     """
     edge = PER_AXIS * size
     field = np.empty((edge,) * dimension + (dimension,))
@@ -106,7 +137,8 @@ def velocities(dimension: int, size: int, speed: float, approach: float = 0.0) -
     mean = speed * direction / np.linalg.norm(direction)
     mean[0] += approach
     for axis in range(dimension):
-        field[..., axis] = _along(mode + mean[axis], axis, dimension)
+        sign = (-2.0 if axis == 0 else 1.0) * YIELDING / BREATHING if yielding else 1.0
+        field[..., axis] = _along(sign * mode + mean[axis], axis, dimension)
     return field.reshape(-1, dimension)
 
 
@@ -126,7 +158,7 @@ def make(core: Any, bench: Bench, size: int, threads: int, scheme: str) -> Any:
         scheme: "usf", "usl" or "musl".
     """
     simulation = core.Simulation(_settings(core, bench, threads, scheme))
-    material = simulation.add_material(DENSITY, "elastic", ALUMINIUM)
+    material = simulation.add_material(**bench.material)
     volume = np.array([(CELL / PER_AXIS) ** bench.dimension])
     at_rest = np.zeros((1, bench.dimension))
     # One array at a time: the core has its own copy, and both are counted in the peak.
@@ -135,7 +167,7 @@ def make(core: Any, bench: Bench, size: int, threads: int, scheme: str) -> Any:
         simulation.add_body(f"body {body}", material, place, at_rest, volume)
         del place
         approach = APPROACH * (1 - 2 * body) if bench.bodies > 1 else 0.0
-        motion = velocities(bench.dimension, size, SPEED[scheme], approach)
+        motion = velocities(bench.dimension, size, SPEED[scheme], approach, bench.state > 0)
         simulation.set_velocity(body, motion)
         del motion
     simulation.prepare()

@@ -67,8 +67,8 @@ def _stages(result: dict[str, Any]) -> Any:
     from rich.table import Table
 
     total, stages = result["ns_per_particle_step"], result["stages"]
-    dimension = BENCHES[result["bench"]].dimension
-    moved = bytes_per_particle_step(list(stages), dimension)
+    bench = BENCHES[result["bench"]]
+    moved = bytes_per_particle_step(list(stages), bench.dimension, bench.state)
     table = Table(show_footer=True)
     table.add_column("stage", footer="step")
     footers = (f"{total:.1f}", "100 %", f"{sum(moved.values())}")
@@ -99,6 +99,11 @@ def lines(result: dict[str, Any]) -> list[str]:
             f"contact    {result['contact_ratio']:.3f} times the same without contact "
             f"({result['without_contact_ns']:.1f} ns); {result['overlapped_nodes']:,} overlapped "
             "nodes"
+        )
+    twin = BENCHES[result["bench"]].twin
+    if f"{twin}_ratio" in result:
+        found.append(
+            f"material   {result[f'{twin}_ratio']:.3f} times {twin} ({result[f'{twin}_ns']:.1f} ns)"
         )
     if SPEED[result["scheme"]] == 0.0:
         found.append("note       with USL the bodies stay in place: no particle crosses cells")

@@ -39,12 +39,13 @@ def numbers(column: str, dimension: int) -> int:
     return dimension if column in ("position", "velocity") else 1
 
 
-def bytes_per_particle_step(stages: list[str], dimension: int) -> dict[str, int]:
-    """Return the bytes that each stage moves per particle and step (elastic material).
+def bytes_per_particle_step(stages: list[str], dimension: int, state: int = 0) -> dict[str, int]:
+    """Return the bytes that each stage moves per particle and step.
 
     Args:
         stages: names of the stages of a scheme.
         dimension: 2 or 3.
+        state: numbers of the material's state, which the stress stage reads and writes.
 
     Raises:
         KeyError: a stage is not in the table above.
@@ -53,5 +54,6 @@ def bytes_per_particle_step(stages: list[str], dimension: int) -> dict[str, int]
     for stage in stages:
         read, written = STAGES[stage]
         columns = sum(numbers(column, dimension) for column in (*read, *written))
+        columns += 2 * state if stage == "update stress" else 0
         moved[stage] = 8 * columns + _LIST if columns else 0
     return moved
