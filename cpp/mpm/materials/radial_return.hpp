@@ -22,7 +22,7 @@ struct Returned {
 /// happens. The increment d lies between 0 and q/(3 G), and the search starts at `guess(q)`.
 /// Newton's steps are those of ln d, in which rate terms are linear, with the exponential as
 /// (1 + x/2) / (1 - x/2); where they leave the bracket it is halved. The step at a residual below
-/// 2e-7 q is the last: the convergence is quadratic, which leaves less than 1e-11 q.
+/// 1e-11 q is the last (at the kink of a rate term convergence is not quadratic).
 template <Real T, int D, class F, class Guess>
 Returned<T> return_radially(Sym<T, D>& stress, double G, T at_rest, F&& yield, Guess&& guess) {
   const Sym<T, D> mean = Sym<T, D>::isotropic(T(1.0 / 3.0) * trace(stress));
@@ -43,7 +43,7 @@ Returned<T> return_radially(Sym<T, D>& stress, double G, T at_rest, F&& yield, G
     const T per_log = T(2.0) * d * (stiff + y.slope);
     const T step = max(min(rest, T(0.9) * per_log), T(-0.9) * per_log);
     const T newton = d * (per_log + step) / (per_log - step);
-    const auto rough = absolute(rest) > T(2e-7) * q, near = absolute(rest) <= T(2e-7) * q;
+    const auto rough = absolute(rest) > T(1e-11) * q, near = absolute(rest) <= T(1e-11) * q;
     const auto good = near | ((newton > low) & (newton < high));
     const T inside = select(good, newton, T(0.5) * (low + high));
     d = select(open, inside, d);
