@@ -13,7 +13,7 @@ import json
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from . import case_file
 from .case_checks import check_case
@@ -21,71 +21,11 @@ from .case_parts import Contact, Grid, Output, Run
 from .detonation import Detonation
 from .errors import CaseError, from_validation, key_text, violation
 from .errors import Path as KeyPath
-from .materials import AnyEos, AnyFailure, AnyStrength
-from .materials.library import either_library_or_own, fill_in
+from .materials.material import Material
 from .model import CaseModel, Count, Text
 from .particles import AnyParticles
 from .shapes.base import KINDS, MaybeShape
-from .units import Density, PositiveLength, Spin, VelocityVector
-
-
-class Material(CaseModel):
-    """What bodies are made of.
-
-    Attributes:
-        library: name of a material of the library, which gives the keys below; those that stand
-            beside it replace the library's. Without it, density and strength are required.
-        without: parts of the library's material that are left out, "eos" or "failure".
-        density: initial density [kg/m^3].
-        strength: one strength model with its parameters, `{"elastic": {"E": ..., "nu": ...}}`.
-        eos: at most one equation of state, `{"tait": {"c0": ...}}`; it gives the pressure.
-        failure: any number of failure models, `{"plastic_strain": {"limit": ...}}`; `action`
-            beside a model's parameters says what failing does, "no_tension", "no_shear"
-            or "erode".
-    """
-
-    model_config = ConfigDict(json_schema_extra=either_library_or_own)
-
-    library: Text | None = None
-    without: list[Text] = Field(default_factory=list)
-    density: Density
-    strength: AnyStrength
-    eos: AnyEos = None
-    failure: AnyFailure = Field(default_factory=list)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_library(cls, data: Any) -> Any:
-        return fill_in(data) if isinstance(data, dict) else data
-
-    def table(self) -> dict[str, Any]:
-        """Return the material as a table of a case file, in SI units.
-
-        It holds the numbers, not the name of a material of the library, so that it stays true
-        when the library changes.
-        """
-        table: dict[str, Any] = {"density": self.density, "strength": self.strength.table()}
-        if self.eos is not None:
-            table["eos"] = self.eos.table()
-        if self.failure:
-            table["failure"] = {k: v for f in self.failure for k, v in f.table().items()}
-        return table
-
-    @property
-    def models(self) -> set[str]:
-        """Names of all models of the material."""
-        names = {self.strength.model, *(f.model for f in self.failure)}
-        return names if self.eos is None else {*names, self.eos.model}
-
-    def for_core(self) -> dict[str, Any]:
-        """Return the keyword arguments with which the core makes the material."""
-        return {
-            "density": self.density,
-            "strength": self.strength.model,
-            "parameters": self.strength.parameters,
-            "eos": None if self.eos is None else (self.eos.model, self.eos.parameters),
-            "failures": [(f.model, f.parameters, f.action) for f in self.failure],
-        }
+from .units import PositiveLength, Spin, VelocityVector
 
 
 class Body(CaseModel):

@@ -25,6 +25,12 @@ def check_case(case: Case) -> None:
             raise violation("must not be empty", f"add a table [{name}.NAME]", path=(name,))
         if "" in what:
             raise violation("must have a name", "write [body.left]", path=(name, ""))
+    for name, material in case.material.items():
+        try:
+            material.sound_speed()
+        except ValueError as error:
+            remedy = "see `mpm3dpp materials`"
+            raise violation(f"is refused: {error}", remedy, path=("material", name)) from None
     dimension = case.grid.dimension
     _check_vector(case.run, "gravity", dimension, ("run",))
     for name, body in case.body.items():

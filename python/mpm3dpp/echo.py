@@ -3,35 +3,21 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 
 import numpy as np
 
 from .build import FilledBody, warnings
-from .case import Case, Material
+from .case import Case
 
 # Estimates for the echo [bytes]: particle columns without and with a state tensor, one grid cell.
 _PARTICLE_BYTES, _CELL_BYTES = 200, 150
 
 
-def sound_speed(material: Material) -> float:
-    """Return the speed of pressure waves in a material at rest [m/s].
-
-    Raises:
-        CaseError: the core refuses the parameters.
-    """
-    core = importlib.import_module("mpm3dpp._core")
-    rows, names = core.drive_material(
-        **material.for_core(), increments=np.zeros((0, 3, 3)), lanes=False
-    )
-    return float(rows[0][names.index("sound_speed")])
-
-
 def time_step(case: Case, bodies: list[FilledBody]) -> float:
     """Return the expected first time step f h / max(c + |v|) [s]."""
     fastest = max(
-        sound_speed(case.material[body.material])
+        case.material[body.material].sound_speed()
         + float(np.sqrt(np.einsum("ij,ij->i", body.velocities, body.velocities).max()))
         for body in bodies
     )

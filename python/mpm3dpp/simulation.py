@@ -64,11 +64,7 @@ class Simulation:
 
     def _add_material(self, name: str) -> int:
         material = self.case.material[name]
-        try:
-            return self.core.add_material(**material.for_core())
-        except ValueError as error:
-            remedy = "see `mpm3dpp materials`"
-            raise self.case.error(("material", name), str(error), remedy) from None
+        return self.core.add_material(**material.for_core())
 
     @property
     def time(self) -> float:

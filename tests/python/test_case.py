@@ -13,7 +13,7 @@ from mpm3dpp.build import build, warnings
 from mpm3dpp.case import Body, Case, Material, load_case
 from mpm3dpp.case_file import locate_keys, parse
 from mpm3dpp.case_parts import Contact, ContactPair, Grid, GridBox, Output, Run
-from mpm3dpp.echo import echo, occupied_cells, sound_speed, time_step
+from mpm3dpp.echo import echo, occupied_cells, time_step
 from mpm3dpp.errors import CaseError
 from mpm3dpp.folders import default_folder, thread_count
 from mpm3dpp.materials import Strength, catalogue, listing
@@ -179,7 +179,7 @@ def test_echo_names_time_step_and_cells() -> None:
     case = cube()
     bodies = build(case)
     # E = 1e6, nu = 0.25: M = 1.2e6 Pa, c = sqrt(600) m/s; 1e-6 of strain, so 1e-5 of c.
-    assert sound_speed(case.material["any"]) == pytest.approx(600**0.5, rel=1e-5)
+    assert case.material["any"].sound_speed() == pytest.approx(600**0.5, rel=1e-5)
     assert time_step(case, bodies) == pytest.approx(0.025 / 600**0.5, rel=1e-5)
     assert occupied_cells(case, bodies) == 1000
     assert "8,000 particles" in echo(case, bodies)
@@ -279,3 +279,48 @@ def test_default_folder_and_threads(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", "many")
     with pytest.raises(CaseError, match="OMP_NUM_THREADS"):
         thread_count(None)
+
+
+@pytest.mark.parametrize(
+    ("material", "reason"),
+    [
+        ({"density": 1000, "strength": {"fluid": {}}}, "give the material an eos"),
+        (
+            {
+                "density": 8960,
+                "strength": {
+                    "johnson_cook": {
+                        "E": 1e11, "nu": 0.3, "A": 9e7, "B": 3e8, "n": 0.3, "C": 0.02, "m": 1.0,
+                        "T_melt": 298.0, "cp": 383.0,
+                    }
+                },
+            },
+            "T_melt must be > T_room",
+        ),
+        (
+            {
+                "density": 1000,
+                "strength": {"neo_hookean": {"K": 1e7, "G": 1e6}},
+                "eos": {"linear": {"K": 1e9}},
+            },
+            "takes no eos",
+        ),
+        (
+            {
+                "density": 1000,
+                "strength": {"elastic": {"E": 1e7, "nu": 0.3}},
+                "failure": {"plastic_strain": {"limit": 1.0}},
+            },
+            "needs a plastic strain",
+        ),
+    ],
+)  # fmt: skip
+def test_models_that_do_not_go_together_are_refused(material: dict, reason: str) -> None:
+    with pytest.raises(CaseError, match=reason) as error:
+        Case(
+            grid={"dimension": 2, "cell_size": 0.1},
+            run={"end_time": 1.0},
+            material={"any": material},
+            body={"one": {"material": "any", "shape": {"box": {"lower": [0, 0], "upper": [1, 1]}}}},
+        )
+    assert "material.any" in str(error.value)

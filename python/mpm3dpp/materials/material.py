@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What bodies are made of: density, strength, equation of state, failure."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+import numpy as np
+from pydantic import ConfigDict, Field, model_validator
+
+from mpm3dpp.model import CaseModel, Text
+from mpm3dpp.units import Density
+
+from .chosen import AnyEos, AnyFailure, AnyStrength
+from .library import either_library_or_own, fill_in
+
+
+class Material(CaseModel):
+    """What bodies are made of.
+
+    Attributes:
+        library: name of a material of the library, which gives the keys below; those that stand
+            beside it replace the library's. Without it, density and strength are required.
+        without: parts of the library's material that are left out, "eos" or "failure".
+        density: initial density [kg/m^3].
+        strength: one strength model with its parameters, `{"elastic": {"E": ..., "nu": ...}}`.
+        eos: at most one equation of state, `{"tait": {"c0": ...}}`; it gives the pressure.
+        failure: any number of failure models, `{"plastic_strain": {"limit": ...}}`; `action`
+            beside a model's parameters says what failing does, "no_tension", "no_shear"
+            or "erode".
+    """
+
+    model_config = ConfigDict(json_schema_extra=either_library_or_own)
+
+    library: Text | None = None
+    without: list[Text] = Field(default_factory=list)
+    density: Density
+    strength: AnyStrength
+    eos: AnyEos = None
+    failure: AnyFailure = Field(default_factory=list)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_library(cls, data: Any) -> Any:
+        return fill_in(data) if isinstance(data, dict) else data
+
+    def table(self) -> dict[str, Any]:
+        """Return the material as a table of a case file, in SI units.
+
+        It holds the numbers, not the name of a material of the library, so that it stays true
+        when the library changes.
+        """
+        table: dict[str, Any] = {"density": self.density, "strength": self.strength.table()}
+        if self.eos is not None:
+            table["eos"] = self.eos.table()
+        if self.failure:
+            table["failure"] = {k: v for f in self.failure for k, v in f.table().items()}
+        return table
+
+    @property
+    def models(self) -> set[str]:
+        """Names of all models of the material."""
+        names = {self.strength.model, *(f.model for f in self.failure)}
+        return names if self.eos is None else {*names, self.eos.model}
+
+    def sound_speed(self) -> float:
+        """Return the speed of pressure waves at rest [m/s].
+
+        Raises:
+            ValueError: the core refuses parameters or models that do not go together.
+        """
+        core = importlib.import_module("mpm3dpp._core")
+        nothing = np.zeros((0, 3, 3))
+        rows, names = core.drive_material(**self.for_core(), increments=nothing, lanes=False)
+        return float(rows[0][names.index("sound_speed")])
+
+    def for_core(self) -> dict[str, Any]:
+        """Return the keyword arguments with which the core makes the material."""
+        return {
+            "density": self.density,
+            "strength": self.strength.model,
+            "parameters": self.strength.parameters,
+            "eos": None if self.eos is None else (self.eos.model, self.eos.parameters),
+            "failures": [(f.model, f.parameters, f.action) for f in self.failure],
+        }
