@@ -149,7 +149,6 @@ def tnt_slab(scheme: str, dimension: int, basis: str) -> list[Figure]:
     """S4 at 10 us: the Taylor wave behind a detonation that has run 69.3 mm in 2,000 cells."""
     case = case_of("14_tnt_slab", scheme, basis)
     run, cell = Run(case), case.grid.cell_size
-    made = np.zeros(0)
     run.to(9.9e-6)
     profile = run.to(10e-6).along_x()
     h = run.history()

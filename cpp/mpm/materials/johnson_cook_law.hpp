@@ -72,9 +72,9 @@ struct JohnsonCookLaw {
     // A first guess by the rate alone: q - 3 G d = at_rest (1 + C ln(d / (rate0 time step))).
     const auto guess = [&](T q) {
       const T stiff(3.0 * G), top = (q - at_rest) * T(1.0 / (3.0 * G));
+      const T gain = T(C) * at_rest;
       T d = top;
       for (int turn = 0; turn < 3; ++turn) {
-        const T gain = T(C) * at_rest;
         const T rest = stiff * (top - d) - gain * log(max(d * per_rate, T(1.0)));
         const T half = T(2.0) * (stiff * d + gain);
         const T step = max(min(rest, T(0.9) * half), T(-0.9) * half);
