@@ -20,7 +20,7 @@ struct Power {
       return {value, T(exponent) * value / x};
     }
     const T value = start_value * power_near_one(change, exponent);
-    return {value, T(exponent) * value * inverse};
+    return {value, T(exponent) * value * inverse * (T(1.0) - change)};
   }
 };
 
@@ -39,27 +39,29 @@ struct JohnsonCookLaw {
 
   /// Returns the stress; adds to plastic strain and temperature; gives the plastic work. Rate,
   /// hardening and heating are implicit: the rate is d / time step, and the temperature that of the
-  /// end of the step, T + heating J (q - 3 G d) d.
+  /// end of the step, T + heating J (q - 3 G d) d. The search starts at the rate that the stress
+  /// before the step has if it lay on the yield surface.
   template <Real T, int D>
-  T update(const Motion<T, D>& motion, double G, Sym<T, D>& stress, T& plastic_strain,
-           T& temperature) const {
+  T update(const Motion<T, D>& motion, double G, const Sym<T, D>& stress_before, Sym<T, D>& stress,
+           T& plastic_strain, T& temperature) const {
     const T before = plastic_strain, start = temperature, heat = T(heating) * motion.J;
-    const T per_rate(1.0 / (motion.time_step * rate0)), tiny(1e-300);
+    const double unit = motion.time_step * rate0;
+    const T tiny(1e-300);
     // Powers are taken once, at the start of the step; for the small changes that follow, by
     // series.
     const Power<T> hardening(max(before, tiny), n),
         softening(thermal ? max(homologous(start), tiny) : T(1.0), m);
-    const auto yield = [&](T q, T d) {
+    T at_rest = T(A) + T(B) * hardening.start_value;
+    if (thermal) at_rest = at_rest * (T(1.0) - softening.start_value);
+    const auto yield = [&](T q, T d, T x) {
       const Yield<T> hard = hardening.at(max(before + d, tiny));
-      const T rate = d * per_rate;
-      const T faster = T(1.0) + T(C) * log(max(rate, T(1.0)));
-      const T rest = T(A) + T(B) * hard.value;
-      Yield<T> y{rest * faster, T(B) * hard.slope * faster +
-                                    rest * select(rate > T(1.0), T(C) / max(d, tiny), T(0.0))};
+      const T faster = T(1.0) + T(C) * max(x, T(0.0)), rest = T(A) + T(B) * hard.value;
+      Yield<T> y{rest * faster,
+                 T(B) * hard.slope * d * faster + select(x > T(0.0), T(C) * rest, T(0.0))};
       if (thermal) {
         const T star = homologous(start + heat * (q - T(3.0 * G) * d) * d);
         const Yield<T> lost = softening.at(max(star, tiny));
-        const T change = heat * (q - T(6.0 * G) * d) * T(1.0 / (T_melt - T_room));
+        const T change = heat * (q - T(6.0 * G) * d) * d * T(1.0 / (T_melt - T_room));
         const auto varies = (star > T(0.0)) & (star < T(1.0));
         y.slope =
             y.slope * (T(1.0) - lost.value) - select(varies, y.value * lost.slope * change, T(0.0));
@@ -67,22 +69,15 @@ struct JohnsonCookLaw {
       }
       return y;
     };
-    T at_rest = T(A) + T(B) * hardening.start_value;
-    if (thermal) at_rest = at_rest * (T(1.0) - softening.start_value);
-    // A first guess by the rate alone: q - 3 G d = at_rest (1 + C ln(d / (rate0 time step))).
-    const auto guess = [&](T q) {
-      const T stiff(3.0 * G), top = (q - at_rest) * T(1.0 / (3.0 * G));
-      const T gain = T(C) * at_rest;
-      T d = top;
-      for (int turn = 0; turn < 3; ++turn) {
-        const T rest = stiff * (top - d) - gain * log(max(d * per_rate, T(1.0)));
-        const T half = T(2.0) * (stiff * d + gain);
-        const T step = max(min(rest, T(0.9) * half), T(-0.9) * half);
-        d = max(d * (half + step) / (half - step), tiny);
-      }
-      return d;
+    const T gain = max(T(C) * at_rest, tiny);
+    const auto rate_before = [&](T) {
+      return min(max((von_mises(stress_before) - at_rest) / gain, T(-50.0)), T(50.0));
     };
-    const auto done = return_radially(stress, G, at_rest, yield, guess);
+    const auto above = [&](T q) {
+      const T over = max(q - at_rest, tiny);
+      return min(max(over / gain, T(0.0)), log(max(over * T(1.0 / (3.0 * G * unit)), tiny)));
+    };
+    const auto done = return_with_rate(stress, G, unit, at_rest, yield, rate_before, above);
     plastic_strain = before + done.increment;
     const T work = done.von_mises * done.increment;
     if (thermal) temperature = start + heat * work;

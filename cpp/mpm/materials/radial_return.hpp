@@ -1,10 +1,11 @@
 #pragma once
-// The return of a trial stress to von Mises' yield surface for any hardening.
+// The return of a trial stress to von Mises' yield surface along its own deviator (Wilkins 1964,
+// Krieg & Key 1976): q_trial - 3 G d = Y, d the increment of the equivalent plastic strain.
 #include "mpm/materials/jaumann.hpp"
 
 namespace mpm {
 
-/// A yield stress [Pa] and its derivative with the plastic strain increment of the step.
+/// A yield stress [Pa] and its derivative with what it is searched for.
 template <class T>
 struct Yield {
   T value, slope;
@@ -16,50 +17,85 @@ struct Returned {
   T increment, von_mises;
 };
 
-/// Return the deviator of a trial stress along its own direction (Wilkins 1964, Krieg & Key 1976)
-/// to where q_trial - 3 G d = Y(d): `yield(q, d)` gives Y and dY/dd, everything that d changes
-/// included, so rate and temperature terms are implicit. `at_rest` is Y(0), below which nothing
-/// happens. The increment d lies between 0 and q/(3 G), and the search starts at `guess(q)`.
-/// Newton's steps are those of ln d, in which rate terms are linear, with the exponential as
-/// (1 + x/2) / (1 - x/2); where they leave the bracket it is halved. The step at a residual below
-/// 1e-11 q is the last (at the kink of a rate term convergence is not quadratic).
-template <Real T, int D, class F, class Guess>
-Returned<T> return_radially(Sym<T, D>& stress, double G, T at_rest, F&& yield, Guess&& guess) {
+/// Shorten the deviator of a stress whose von Mises stress is q to that of q - stiff d.
+template <class T, int D>
+Returned<T> shorten(Sym<T, D>& stress, T q, T stiff, T d) {
   const Sym<T, D> mean = Sym<T, D>::isotropic(T(1.0 / 3.0) * trace(stress));
-  const Sym<T, D> deviator = stress - mean;
-  const T q = sqrt(T(1.5) * inner(deviator, deviator));
+  const T after = q - stiff * d;
+  stress = mean + select(d > T(0.0), after / q, T(1.0)) * (stress - mean);
+  return {d, after};
+}
+
+/// A residual, as a share of q, below which Newton's step is the last: convergence is quadratic.
+inline constexpr double return_tolerance = 1e-11;
+
+/// The return for hardening without rates: `yield(d)` gives Y and dY/dd; `at_rest` is Y(0), below
+/// which nothing happens. Newton's steps are kept between 0 and q / (3 G) by halving.
+template <Real T, int D, class F>
+Returned<T> return_radially(Sym<T, D>& stress, double G, T at_rest, F&& yield) {
+  const T q = von_mises(stress);
   const auto flows = q > at_rest;
   if (!any(flows)) return {T(0.0), q};
 
   const T stiff(3.0 * G);
   T low(0.0), high = q / stiff;
-  T d = select(flows, max(min(guess(q), high), T(1e-3) * high), T(0.0));
+  T d = select(flows, (q - at_rest) / stiff, T(0.0));
   auto open = flows;
   for (int turn = 0; turn < 80; ++turn) {
-    const Yield<T> y = yield(q, d);
+    const Yield<T> y = yield(d);
     const T rest = q - stiff * d - y.value;
     low = select(rest > T(0.0), d, low);
     high = select(rest > T(0.0), high, d);
-    const T per_log = T(2.0) * d * (stiff + y.slope);
-    const T step = max(min(rest, T(0.9) * per_log), T(-0.9) * per_log);
-    const T newton = d * (per_log + step) / (per_log - step);
-    const auto rough = absolute(rest) > T(1e-11) * q, near = absolute(rest) <= T(1e-11) * q;
-    const auto good = near | ((newton > low) & (newton < high));
+    const T newton = d + rest / (stiff + y.slope);
+    const auto rough = absolute(rest) > T(return_tolerance) * q;
+    const auto good = (newton > low) & (newton < high);
     const T inside = select(good, newton, T(0.5) * (low + high));
-    d = select(open, inside, d);
+    d = select(open, select(rough, inside, newton), d);
     open = open & rough;
     if (!any(open)) break;
   }
-  const T after = q - stiff * d;
-  stress = mean + select(flows, after / q, T(1.0)) * deviator;
-  return {d, after};
+  return shorten(stress, q, stiff, d);
 }
 
-/// The same for hardening without rates: the yield stress hardly changes within a step.
-template <Real T, int D, class F>
-Returned<T> return_radially(Sym<T, D>& stress, double G, T at_rest, F&& yield) {
-  return return_radially(stress, G, at_rest, yield,
-                         [&](T q) { return (q - at_rest) * T(1.0 / (3.0 * G)); });
+/// The return for a yield stress that depends on the rate: the unknown is x, where the increment is
+/// unit exp(x), because rate terms are linear in x. `yield(q, d, x)` gives Y and dY/dx, and
+/// `start(q)` where the search begins; where that is far off it begins anew at `above(q)`, which
+/// must not lie below the solution. x = 0 may be a kink.
+template <Real T, int D, class F, class Start, class Above>
+Returned<T> return_with_rate(Sym<T, D>& stress, double G, double unit, T at_rest, F&& yield,
+                             Start&& start, Above&& above) {
+  const T q = von_mises(stress);
+  const auto flows = q > at_rest;
+  if (!any(flows)) return {T(0.0), q};
+
+  const T stiff(3.0 * G), nothing(0.0);
+  T low(-700.0), high(700.0), x = start(q), found = nothing;
+  auto open = flows;
+  for (int turn = 0; turn < 100; ++turn) {
+    const T d = T(unit) * exp(x);
+    const Yield<T> y = yield(q, d, x);
+    const T rest = q - stiff * d - y.value, slope = stiff * d + y.slope;
+    const T step = rest / slope;
+    low = select(rest > nothing, x, low);
+    high = select(rest > nothing, high, x);
+    T next = x + step;
+    // What this step leaves is of its square, unless it passes the kink.
+    const auto small = absolute(step) < T(1e-3);
+    const auto settled =
+        (small & (step * step * slope < T(return_tolerance) * q) & (x * next > nothing)) |
+        (absolute(rest) < T(return_tolerance) * q);
+    const T after = select(small, d + d * step * (T(1.0) + T(0.5) * step), d);
+    found = select(open, after, found);
+    open = open & !settled;
+    if (!any(open)) break;
+    const auto far = absolute(step) > T(0.5);
+    if (turn == 0 && any(open & far))
+      next = select(far, above(q), next);
+    else
+      next = select((next > low) & (next < high), next, T(0.5) * (low + high));
+    x = select(open, next, x);
+  }
+  return shorten(stress, q, stiff, found);
 }
 
 }  // namespace mpm

@@ -62,8 +62,9 @@ struct JohnsonCook {
 
   template <Real T, int D>
   T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+    const Sym<T, D> before = stress;
     elastic.update(motion, stress);
-    return law.update(motion, elastic.G, stress, state.plastic_strain, state.temperature);
+    return law.update(motion, elastic.G, before, stress, state.plastic_strain, state.temperature);
   }
   template <Real T>
   T homologous(T temperature) const {

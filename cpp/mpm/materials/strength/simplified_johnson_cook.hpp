@@ -48,9 +48,10 @@ struct SimplifiedJohnsonCook {
 
   template <Real T, int D>
   T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+    const Sym<T, D> before = stress;
     elastic.update(motion, stress);
     T no_temperature(0.0);
-    return law.update(motion, elastic.G, stress, state.plastic_strain, no_temperature);
+    return law.update(motion, elastic.G, before, stress, state.plastic_strain, no_temperature);
   }
 
   template <Real T, int D>

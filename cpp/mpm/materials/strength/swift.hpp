@@ -48,7 +48,7 @@ struct Swift {
     elastic.update(motion, stress);
     const T before = state.plastic_strain;
     const auto done = return_radially(stress, elastic.G, yield(before).value,
-                                      [&](T, T d) { return yield(before + d); });
+                                      [&](T d) { return yield(before + d); });
     state.plastic_strain += done.increment;
     return done.von_mises * done.increment;
   }
