@@ -31,6 +31,12 @@ struct Material {
   std::optional<EosModels::Any> eos;
   std::vector<Failing> failures;
 
+  bool burns() const {
+    return std::visit([]<class M>(const M&) { return Burns<M>; }, strength);
+  }
+  bool damps() const {
+    return std::visit([]<class M>(const M&) { return Damps<M>; }, strength);
+  }
   bool erodes() const {
     return std::any_of(failures.begin(), failures.end(),
                        [](const Failing& f) { return f.action == FailureAction::erode; });
