@@ -22,13 +22,14 @@ class Material(CaseModel):
     Attributes:
         library: name of a material of the library, which gives the keys below; those that stand
             beside it replace the library's. Without it, density and strength are required.
-        without: parts of the library's material that are left out, "eos" or "failure".
+        without: parts of the library's material that are left out: "eos".
         density: initial density [kg/m^3].
         strength: one strength model with its parameters, `{"elastic": {"E": ..., "nu": ...}}`.
         eos: at most one equation of state, `{"tait": {"c0": ...}}`; it gives the pressure.
         failure: any number of failure models, `{"plastic_strain": {"limit": ...}}`; `action`
             beside a model's parameters says what failing does, "no_tension", "no_shear"
-            or "erode".
+            or "erode". With `library` also "library", which takes the library's models with
+            "no_tension", or `{"library": {"action": "erode"}}`.
     """
 
     model_config = ConfigDict(json_schema_extra=either_library_or_own)
