@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from pydantic import ConfigDict, Field, model_validator
 
+from mpm3dpp.case_parts import Viscosity
 from mpm3dpp.model import CaseModel, Text
 from mpm3dpp.units import Density
 
@@ -30,6 +31,8 @@ class Material(CaseModel):
             beside a model's parameters says what failing does, "no_tension", "no_shear"
             or "erode". With `library` also "library", which takes the library's models with
             "no_tension", or `{"library": {"action": "erode"}}`.
+        artificial_viscosity: bulk viscosity of this material in place of `run.viscosity`, with the
+            same keys; both 0 for none.
     """
 
     model_config = ConfigDict(json_schema_extra=either_library_or_own)
@@ -40,6 +43,7 @@ class Material(CaseModel):
     strength: AnyStrength
     eos: AnyEos = None
     failure: AnyFailure = Field(default_factory=list)
+    artificial_viscosity: Viscosity | None = None
 
     @model_validator(mode="before")
     @classmethod
@@ -57,6 +61,8 @@ class Material(CaseModel):
             table["eos"] = self.eos.table()
         if self.failure:
             table["failure"] = {k: v for f in self.failure for k, v in f.table().items()}
+        if self.artificial_viscosity is not None:
+            table["artificial_viscosity"] = self.artificial_viscosity.table()
         return table
 
     @property
