@@ -39,6 +39,9 @@ struct Material {
   std::vector<Failing> failures;
   BulkViscosity viscosity{};
 
+  bool moves_as_one() const {
+    return std::visit([]<class M>(const M&) { return requires { M::moves_as_one; }; }, strength);
+  }
   bool burns() const {
     return std::visit([]<class M>(const M&) { return Burns<M>; }, strength);
   }
