@@ -2,14 +2,14 @@
 #include <array>
 #include <numbers>
 
-#include "mpm/materials/strength/elastic.hpp"
+#include "mpm/materials/elastic_plastic.hpp"
 #include "mpm/math/eigen.hpp"
 
 namespace mpm {
 
 /// Mohr and Coulomb's soil: elastic, yielding where the principal stresses s1 >= s2 >= s3 (tension
 /// positive) meet k s1 - s3 = 2 c sqrt(k), k = (1 + sin(phi)) / (1 - sin(phi)), or s1 = tension.
-struct MohrCoulomb {
+struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
   using Self = MohrCoulomb;
   static constexpr std::string_view name = "mohr_coulomb";
   static constexpr std::string_view doc =
@@ -21,13 +21,12 @@ struct MohrCoulomb {
   static constexpr EosUse eos = EosUse::never;
 
   double E{}, nu{}, cohesion{}, friction_angle{}, dilation_angle{}, tension{};
-  Elastic elastic{};
   double k{}, m{};             // (1 + sin) / (1 - sin) of friction and dilation
   double strength{}, limit{};  // 2 c sqrt(k) [Pa]; largest principal stress [Pa]
 
   static constexpr auto params = std::array{
-      Param<Self>{"E", &Self::E, "Pa", "Young's modulus", Rule::positive},
-      Param<Self>{"nu", &Self::nu, "", "Poisson's ratio", Rule::poisson_ratio},
+      youngs_modulus(&Self::E),
+      poissons_ratio(&Self::nu),
       Param<Self>{"cohesion", &Self::cohesion, "Pa", "cohesion c", Rule::not_negative},
       Param<Self>{"friction_angle", &Self::friction_angle, "rad",
                   "angle of internal friction phi, < 90 deg", Rule::not_negative},
@@ -38,16 +37,9 @@ struct MohrCoulomb {
                   "largest principal tension; never more than the apex c cot(phi)",
                   Rule::not_negative, 0.0},
   };
-  static constexpr auto state_columns = plastic_state_columns;
-  template <class T, int D>
-  using State = PlasticState<T, D>;
-  template <class T, int D>
-  State<T, D> start() const {
-    return {T(0.0)};
-  }
 
   void prepare(double density) {
-    elastic = Elastic::of(E, nu, density);
+    ElasticPlastic::prepare(density);
     const double friction = std::sin(friction_angle), dilation = std::sin(dilation_angle);
     k = (1.0 + friction) / (1.0 - friction);
     m = (1.0 + dilation) / (1.0 - dilation);
@@ -202,11 +194,6 @@ struct MohrCoulomb {
     stress = stress + principal.with(change);
     state.plastic_strain += sqrt(T(2.0 / 3.0) * squares);
     return work;
-  }
-
-  template <Real T, int D>
-  T sound_speed(const Sym<T, D>&, const State<T, D>&, T J) const {
-    return elastic.sound_speed(J);
   }
 };
 
