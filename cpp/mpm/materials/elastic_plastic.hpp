@@ -41,8 +41,8 @@ struct ElasticPlastic {
     return elastic.sound_speed(J);
   }
   template <Real T>
-  T shear_wave_squared(const auto& /*state*/, T J, double) const {
-    return elastic.shear_wave_squared(J);
+  T other_speed_squared(const auto& /*state*/, T J) const {
+    return elastic.other_speed_squared(J);
   }
 };
 

@@ -82,9 +82,10 @@ concept Model = requires(M m, double density) {
 /// A strength model: stress and state after a step from those before it, eq. (18)-(20) and the
 /// constitutive law. `update` must leave stress and state as they are for a zero gradient, rates
 /// and burning apart, and returns the work [J/m^3, present volume] that the step has dissipated by
-/// plastic or viscous flow. `sound_speed` [m/s] bounds the fastest wave; `shear_wave_squared`
-/// [m^2/s^2] is what remains of its square when an EOS gives the pressure, 4 G / (3 rho) for a
-/// solid; its last argument is the cell size.
+/// plastic or viscous flow. `sound_speed` [m/s] bounds the fastest wave. Where an EOS gives the
+/// pressure, `other_speed_squared` [m^2/s^2] is added to the square of the EOS's speed of sound: 4
+/// G / (3 rho) for a solid, nothing for a fluid, the square of the front's speed for an explosive
+/// until it has burnt.
 template <class M>
 concept StrengthModel =
     Model<M> && requires(M m, Motion<double, 3> motion, Sym<double, 3> stress,
@@ -94,7 +95,7 @@ concept StrengthModel =
       { m.template start<double, 3>() } -> std::same_as<typename M::template State<double, 3>>;
       { m.update(motion, stress, state) } -> std::convertible_to<double>;
       requires M::eos == EosUse::must || requires { m.sound_speed(stress, state, J); };
-      requires M::eos == EosUse::never || requires { m.shear_wave_squared(state, J, 1.0); };
+      requires M::eos == EosUse::never || requires { m.other_speed_squared(state, J); };
     };
 
 /// A strength model that burns: the EOS's pressure counts by its burn fraction.

@@ -37,7 +37,7 @@ struct Point {
   }
   T speed(const Model& model) const {
     if constexpr (Model::eos == EosUse::must)
-      return mpm::sqrt(model.shear_wave_squared(state, J, 1.0));
+      return mpm::sqrt(model.other_speed_squared(state, J));
     else
       return model.sound_speed(stress, state, J);
   }

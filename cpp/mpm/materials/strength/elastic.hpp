@@ -67,7 +67,7 @@ struct Elastic {
     return sqrt(T((lambda + 2.0 * G) / density) * J);
   }
   template <Real T>
-  T shear_wave_squared(T J) const {
+  T other_speed_squared(T J) const {
     return T(4.0 / 3.0 * G / density) * J;
   }
 
@@ -81,8 +81,8 @@ struct Elastic {
     return sound_speed(J);
   }
   template <Real T, int D>
-  T shear_wave_squared(const State<T, D>&, T J, double) const {
-    return shear_wave_squared(J);
+  T other_speed_squared(const State<T, D>&, T J) const {
+    return other_speed_squared(J);
   }
 };
 
