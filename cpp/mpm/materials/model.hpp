@@ -49,9 +49,8 @@ enum class EosUse { never, may, must };
 template <class T, int D>
 struct Motion {
   Mat<T, D>
-      gradient;    // velocity gradient x time step, on the configuration at the start of the step
-  T volume_ratio;  // det(1 + gradient): volume after / before the step
-  T J;             // volume after the step / initial volume
+      gradient;  // velocity gradient x time step, on the configuration at the start of the step
+  T J;           // volume after the step / initial volume
   double time_step = 0.0;  // [s]
   double time = 0.0;       // at the end of the step [s]
   double cell_size = 0.0;  // [m]
@@ -126,15 +125,15 @@ concept EosModel = Model<M> && requires(M m, double V) {
   { m.initial_energy() } -> std::convertible_to<double>;
 };
 
-/// What a failure model may judge by, at the end of a step.
+/// What a failure model may judge by: of the end of a step, but for the energy, which is that of
+/// its start, as the work of the step is known only when failure has changed the stress.
 template <class T, int D>
 struct Condition {
-  Sym<T, D> stress;            // [Pa]
-  Sym<T, D> strain_increment;  // of the step
-  Mat<T, D> gradient;          // as in Motion
+  Sym<T, D> stress;    // [Pa]
+  Mat<T, D> gradient;  // as in Motion
   T plastic_strain, plastic_increment;
   T temperature;  // homologous, 0 at the reference and 1 at melting; 0 without a thermal model
-  T energy;       // internal, per initial volume [J/m^3]; 0 without an EOS
+  T energy;  // internal, per initial volume, at the start of the step [J/m^3]; 0 without an EOS
   double time_step = 0.0;
 };
 
