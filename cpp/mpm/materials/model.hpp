@@ -137,10 +137,13 @@ struct Condition {
   double time_step = 0.0;
 };
 
-/// A failure model: `damage` returns how far the particle has come, 1 and more for failed.
+/// A failure model: `damage` returns how far the particle has come, 1 and more for failed. It says
+/// whether it needs a plastic strain from the strength model, and an internal energy, so an EOS.
 template <class M>
 concept FailureModel = Model<M> && requires(M m, Condition<double, 3> condition,
                                             typename M::template State<double, 3> state) {
+  { M::needs_plasticity } -> std::convertible_to<bool>;
+  { M::needs_energy } -> std::convertible_to<bool>;
   M::state_columns;
   { m.template start<double, 3>() } -> std::same_as<typename M::template State<double, 3>>;
   { m.damage(condition, state) } -> std::convertible_to<double>;

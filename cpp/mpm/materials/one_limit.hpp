@@ -9,6 +9,8 @@ namespace mpm {
 /// Base of a failure model with the one parameter `limit` and no state. The model adds `params`, by
 /// `one_limit`, and `damage`; names of the base that it has too replace those below.
 struct OneLimit {
+  static constexpr bool needs_plasticity = false, needs_energy = false;
+
   double limit{};
 
   static constexpr std::array<StateColumn, 0> state_columns{};

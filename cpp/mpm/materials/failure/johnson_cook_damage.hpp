@@ -15,7 +15,7 @@ struct JohnsonCookDamage {
       "tension positive: as Johnson and Cook write it, D3 is negative where tension embrittles "
       "(4340 steel: 0.05, 3.44, -2.12, 0.002, 0.61)";
   static constexpr std::string_view source = "Johnson & Cook 1985, eqs. 3 and 4";
-  static constexpr bool needs_plasticity = true;
+  static constexpr bool needs_plasticity = true, needs_energy = false;
   static constexpr double least_strain = 1e-9;  // at fracture, whatever the parameters
 
   double D1{}, D2{}, D3{}, D4{}, D5{}, rate0{};
