@@ -56,7 +56,7 @@ struct JohnsonCookDamage {
   template <Real T, int D>
   T damage(const Condition<T, D>& at, State<T, D>& state) const {
     const T mean = T(1.0 / 3.0) * trace(at.stress);
-    const T triaxiality = mean / max(von_mises(at.stress), T(1e-300));
+    const T triaxiality = mean / max(von_mises(at.stress), T(tiny));
     const T rate = at.plastic_increment * T(1.0 / at.time_step);
     state.damage += at.plastic_increment / fracture_strain(triaxiality, rate, at.temperature);
     return state.damage;

@@ -63,7 +63,7 @@ struct DruckerPrager : ElasticPlastic<DruckerPrager> {
     const auto torn = mean_after > T(limit);
     mean_after = min(mean_after, T(limit));
     tau_after = select(torn, min(tau, corner), tau_after);
-    const T factor = select(tau > tau_after, tau_after / max(tau, T(1e-300)), T(1.0));
+    const T factor = select(tau > tau_after, tau_after / max(tau, T(tiny)), T(1.0));
     stress = Sym<T, D>::isotropic(mean_after) + factor * deviator;
     const T slid = (tau - tau_after) * T(1.0 / elastic.G);
     const T opened = (mean - mean_after) * T(1.0 / K);

@@ -19,6 +19,9 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
   static constexpr std::string_view source =
       "Coulomb 1773; return by regions after Clausen, Damkilde & Andersen 2006";
   static constexpr EosUse eos = EosUse::never;
+  // Ten roundings of the principal stresses, there and back, and the return's; and where stresses
+  // vanish half a rounding of E, of which the elastic step has made them.
+  static constexpr double rounding_of_stress = 1e-14, rounding_of_modulus = 1e-16;
 
   double E{}, nu{}, cohesion{}, friction_angle{}, dilation_angle{}, tension{};
   double k{}, m{};             // (1 + sin) / (1 - sin) of friction and dilation
@@ -175,8 +178,8 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
     const Sorted<T> sorted(principal.value);
     const T(&trial)[3] = sorted.value;
     // What is beyond the surface by the roundings of the last return stays.
-    const T rounding =
-        T(1e-14) * (T(k) * absolute(trial[0]) + absolute(trial[2])) + T(1e-16 * elastic.E);
+    const T rounding = T(rounding_of_stress) * (T(k) * absolute(trial[0]) + absolute(trial[2])) +
+                       T(rounding_of_modulus * E);
     const auto flows =
         (T(k) * trial[0] - trial[2] > T(strength) + rounding) | (trial[0] > T(limit) + rounding);
     if (!any(flows)) return T(0.0);
