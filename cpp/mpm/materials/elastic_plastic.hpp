@@ -54,11 +54,11 @@ struct MisesPlastic : ElasticPlastic<Model> {
   T update(const Motion<T, D>& motion, Sym<T, D>& stress, PlasticState<T, D>& state) const {
     this->elastic.update(motion, stress);
     const Model& model = static_cast<const Model&>(*this);
-    const T before = state.plastic_strain;
-    const auto done = return_radially(stress, this->elastic.G, model.yield(before).value,
+    const T before = state.plastic_strain, at_rest = model.yield(before).value;
+    const auto done = return_radially(stress, this->elastic.G, at_rest,
                                       [&](T d) { return model.yield(before + d); });
     state.plastic_strain += done.increment;
-    return done.von_mises * done.increment;
+    return T(0.5) * (at_rest + done.von_mises) * done.increment;
   }
 };
 

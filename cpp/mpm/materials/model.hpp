@@ -81,10 +81,17 @@ concept Model = requires(M m, double density) {
 /// A strength model: stress and state after a step from those before it, eq. (18)-(20) and the
 /// constitutive law. `update` must leave stress and state as they are for a zero gradient, rates
 /// and burning apart, and returns the work [J/m^3, present volume] that the step has dissipated by
-/// plastic or viscous flow. `sound_speed` [m/s] bounds the fastest wave. Where an EOS gives the
-/// pressure, `other_speed_squared` [m^2/s^2] is added to the square of the EOS's speed of sound: 4
-/// G / (3 rho) for a solid, nothing for a fluid, the square of the front's speed for an explosive
-/// until it has burnt.
+/// plastic or viscous flow.
+///
+/// Plastic work: where the yield stress Y depends on the plastic strain alone, the mean of Y before
+/// and after the step times the increment, the integral of Y to second order. Where rate,
+/// temperature or direction of flow count too, the stress after the step times the increment of
+/// plastic strain, which is what the return solves for: first order.
+///
+/// `sound_speed` [m/s] bounds the fastest wave. Where an EOS gives the pressure,
+/// `other_speed_squared` [m^2/s^2] is added to the square of the EOS's speed of sound: 4 G / (3
+/// rho) for a solid, nothing for a fluid, the square of the front's speed for an explosive until it
+/// has burnt.
 template <class M>
 concept StrengthModel =
     Model<M> && requires(M m, Motion<double, 3> motion, Sym<double, 3> stress,
