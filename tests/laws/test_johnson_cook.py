@@ -122,3 +122,17 @@ def test_hardening_curves(model: str) -> None:
     flows = plastic > 0
     assert flows.sum() > 490
     assert np.abs(mises / exact - 1)[flows].max() < 1e-10
+    # Plastic work, at constant volume, by the trapezoidal rule: its error is h^2 / 12 times the
+    # change of the slope of Y, and a tenth for the next term. The stress after the step alone would
+    # leave h / 2 times the change of Y, some 400 times as much.
+    end = plastic[-1]
+    integral = {
+        "voce": 3e8 * end - 2e8 / 12 * (1 - np.exp(-12 * end)),
+        "swift": 1e6 / 1.2 * ((1 + end / 0.01) ** 1.2 - 1),
+    }[model]
+    change = {
+        "voce": 2.4e9 * (1 - np.exp(-12 * end)),
+        "swift": 2e9 * (1 - (1 + end / 0.01) ** -0.8),
+    }[model]
+    bound = 1.1 / 12 * np.diff(plastic).max() ** 2 * change
+    assert abs(rows[-1, names.index("dissipated")] - integral) < bound

@@ -20,7 +20,6 @@ template <class T, int D>
             const Moved<T, D> moved(group, block, columns, at, material.density, settings);
             const T energy = at.energy >= 0 ? group.read(columns.component(at.energy)) : T(0.0);
             const Condition<T, D> condition{group.get_stress(block),
-                                            moved.strain,
                                             moved.motion.gradient,
                                             group.get(block.plastic_strain),
                                             group.get(block.plastic_increment),

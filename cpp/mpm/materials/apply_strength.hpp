@@ -23,7 +23,7 @@ template <class T, int D, class Model>
 
     T speed(0.0), q(0.0);
     if constexpr (Model::eos != EosUse::never)
-      if (material.eos) speed = model.shear_wave_squared(state, motion.J, motion.cell_size);
+      if (material.eos) speed = model.other_speed_squared(state, motion.J);
     if constexpr (Model::eos != EosUse::must)
       if (!material.eos) {
         speed = model.sound_speed(stress, state, motion.J);

@@ -84,13 +84,12 @@ struct Moved {
         f[i][j] = i == j ? motion.gradient[i][j] + T(1.0) : motion.gradient[i][j];
       }
     strain = symmetric_part(mid_step(motion.gradient));
-    motion.volume_ratio = determinant(f);
     motion.time_step = settings.time_step;
     motion.time = settings.time;
     motion.cell_size = settings.cell_size;
     mass = group.read(columns.component(at.mass));
     volume_before = group.read(columns.component(at.volume));
-    volume = volume_before * motion.volume_ratio;
+    volume = volume_before * determinant(f);
     initial_volume = mass * T(1.0 / density);
     mean_volume = T(0.5) * (volume_before + volume);
     motion.J = volume * T(density) / mass;

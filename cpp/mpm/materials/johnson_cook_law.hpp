@@ -46,21 +46,20 @@ struct JohnsonCookLaw {
            T& plastic_strain, T& temperature) const {
     const T before = plastic_strain, start = temperature, heat = T(heating) * motion.J;
     const double unit = motion.time_step * rate0;
-    const T tiny(1e-300);
     // Powers are taken once, at the start of the step; for the small changes that follow, by
     // series.
-    const Power<T> hardening(max(before, tiny), n),
-        softening(thermal ? max(homologous(start), tiny) : T(1.0), m);
+    const Power<T> hardening(max(before, T(tiny)), n),
+        softening(thermal ? max(homologous(start), T(tiny)) : T(1.0), m);
     T at_rest = T(A) + T(B) * hardening.start_value;
     if (thermal) at_rest = at_rest * (T(1.0) - softening.start_value);
     const auto yield = [&](T q, T d, T x) {
-      const Yield<T> hard = hardening.at(max(before + d, tiny));
+      const Yield<T> hard = hardening.at(max(before + d, T(tiny)));
       const T faster = T(1.0) + T(C) * max(x, T(0.0)), rest = T(A) + T(B) * hard.value;
       Yield<T> y{rest * faster,
                  T(B) * hard.slope * d * faster + select(x > T(0.0), T(C) * rest, T(0.0))};
       if (thermal) {
         const T star = homologous(start + heat * (q - T(3.0 * G) * d) * d);
-        const Yield<T> lost = softening.at(max(star, tiny));
+        const Yield<T> lost = softening.at(max(star, T(tiny)));
         const T change = heat * (q - T(6.0 * G) * d) * d * T(1.0 / (T_melt - T_room));
         const auto varies = (star > T(0.0)) & (star < T(1.0));
         y.slope =
@@ -69,13 +68,13 @@ struct JohnsonCookLaw {
       }
       return y;
     };
-    const T gain = max(T(C) * at_rest, tiny);
+    const T gain = max(T(C) * at_rest, T(tiny));
     const auto rate_before = [&](T) {
       return min(max((von_mises(stress_before) - at_rest) / gain, T(-50.0)), T(50.0));
     };
     const auto above = [&](T q) {
-      const T over = max(q - at_rest, tiny);
-      return min(max(over / gain, T(0.0)), log(max(over * T(1.0 / (3.0 * G * unit)), tiny)));
+      const T over = max(q - at_rest, T(tiny));
+      return min(max(over / gain, T(0.0)), log(max(over * T(1.0 / (3.0 * G * unit)), T(tiny))));
     };
     const auto done = return_with_rate(stress, G, unit, at_rest, yield, rate_before, above);
     plastic_strain = before + done.increment;

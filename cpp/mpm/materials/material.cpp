@@ -63,11 +63,11 @@ template <class Strength, class Failure>
 void check_together(const Strength& strength, const Failure& failure, bool has_eos) {
   using State = typename Strength::template State<double, 3>;
   const std::string name(failure.name), with(strength.name);
-  if constexpr (requires { Failure::needs_plasticity; })
+  if constexpr (Failure::needs_plasticity)
     if (!requires(State s) { s.plastic_strain; })
       throw std::invalid_argument("failure." + name + " needs a plastic strain, which " + with +
                                   " does not have");
-  if constexpr (requires { Failure::needs_energy; })
+  if constexpr (Failure::needs_energy)
     if (!has_eos)
       throw std::invalid_argument("failure." + name + " needs an internal energy: give an eos");
 }

@@ -89,7 +89,7 @@ double sound_speed(const Material& material, const Columns& columns, const Mater
         if constexpr (Model::eos != EosUse::must)
           if (!material.eos) return model.sound_speed(stress, state, J);
         if constexpr (Model::eos != EosUse::never) {
-          const double shear = model.shear_wave_squared(state, J, cell_size);
+          const double other = model.other_speed_squared(state, J);
           const double bulk = std::visit(
               [&](const auto& eos) {
                 const double energy = value(at.energy);
@@ -98,7 +98,7 @@ double sound_speed(const Material& material, const Columns& columns, const Mater
                 return sound_speed_squared(p, J, energy, p.A + p.B * energy, material.density);
               },
               *material.eos);
-          const double c = sqrt(bulk + shear);
+          const double c = sqrt(bulk + other);
           if constexpr (Damps<Model>) return damped_speed(c, model.damping_speed(J, cell_size));
           return c;
         }

@@ -21,7 +21,7 @@ struct MaterialBlock {
 
   Values stress[Sym<double, D>::size];  // after the step [Pa]
   Values dissipated;                    // work lost to flow per present volume [J/m^3]
-  Values speed;                         // of sound [m/s]; before an EOS its shear part, squared
+  Values speed;                         // of sound [m/s]; before an EOS `other_speed_squared`
   Values viscous_pressure;              // of the artificial viscosity [Pa]
   Values burnt;                         // factor of the EOS's pressure; of high explosives
   Values damping;                       // Q of damped_speed() by the strength's own viscosity

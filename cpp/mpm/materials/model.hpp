@@ -49,9 +49,8 @@ enum class EosUse { never, may, must };
 template <class T, int D>
 struct Motion {
   Mat<T, D>
-      gradient;    // velocity gradient x time step, on the configuration at the start of the step
-  T volume_ratio;  // det(1 + gradient): volume after / before the step
-  T J;             // volume after the step / initial volume
+      gradient;  // velocity gradient x time step, on the configuration at the start of the step
+  T J;           // volume after the step / initial volume
   double time_step = 0.0;  // [s]
   double time = 0.0;       // at the end of the step [s]
   double cell_size = 0.0;  // [m]
@@ -82,9 +81,17 @@ concept Model = requires(M m, double density) {
 /// A strength model: stress and state after a step from those before it, eq. (18)-(20) and the
 /// constitutive law. `update` must leave stress and state as they are for a zero gradient, rates
 /// and burning apart, and returns the work [J/m^3, present volume] that the step has dissipated by
-/// plastic or viscous flow. `sound_speed` [m/s] bounds the fastest wave; `shear_wave_squared`
-/// [m^2/s^2] is what remains of its square when an EOS gives the pressure, 4 G / (3 rho) for a
-/// solid; its last argument is the cell size.
+/// plastic or viscous flow.
+///
+/// Plastic work: where the yield stress Y depends on the plastic strain alone, the mean of Y before
+/// and after the step times the increment, the integral of Y to second order. Where rate,
+/// temperature or direction of flow count too, the stress after the step times the increment of
+/// plastic strain, which is what the return solves for: first order.
+///
+/// `sound_speed` [m/s] bounds the fastest wave. Where an EOS gives the pressure,
+/// `other_speed_squared` [m^2/s^2] is added to the square of the EOS's speed of sound: 4 G / (3
+/// rho) for a solid, nothing for a fluid, the square of the front's speed for an explosive until it
+/// has burnt.
 template <class M>
 concept StrengthModel =
     Model<M> && requires(M m, Motion<double, 3> motion, Sym<double, 3> stress,
@@ -94,7 +101,7 @@ concept StrengthModel =
       { m.template start<double, 3>() } -> std::same_as<typename M::template State<double, 3>>;
       { m.update(motion, stress, state) } -> std::convertible_to<double>;
       requires M::eos == EosUse::must || requires { m.sound_speed(stress, state, J); };
-      requires M::eos == EosUse::never || requires { m.shear_wave_squared(state, J, 1.0); };
+      requires M::eos == EosUse::never || requires { m.other_speed_squared(state, J); };
     };
 
 /// A strength model that burns: the EOS's pressure counts by its burn fraction.
@@ -125,22 +132,25 @@ concept EosModel = Model<M> && requires(M m, double V) {
   { m.initial_energy() } -> std::convertible_to<double>;
 };
 
-/// What a failure model may judge by, at the end of a step.
+/// What a failure model may judge by: of the end of a step, but for the energy, which is that of
+/// its start, as the work of the step is known only when failure has changed the stress.
 template <class T, int D>
 struct Condition {
-  Sym<T, D> stress;            // [Pa]
-  Sym<T, D> strain_increment;  // of the step
-  Mat<T, D> gradient;          // as in Motion
+  Sym<T, D> stress;    // [Pa]
+  Mat<T, D> gradient;  // as in Motion
   T plastic_strain, plastic_increment;
   T temperature;  // homologous, 0 at the reference and 1 at melting; 0 without a thermal model
-  T energy;       // internal, per initial volume [J/m^3]; 0 without an EOS
+  T energy;  // internal, per initial volume, at the start of the step [J/m^3]; 0 without an EOS
   double time_step = 0.0;
 };
 
-/// A failure model: `damage` returns how far the particle has come, 1 and more for failed.
+/// A failure model: `damage` returns how far the particle has come, 1 and more for failed. It says
+/// whether it needs a plastic strain from the strength model, and an internal energy, so an EOS.
 template <class M>
 concept FailureModel = Model<M> && requires(M m, Condition<double, 3> condition,
                                             typename M::template State<double, 3> state) {
+  { M::needs_plasticity } -> std::convertible_to<bool>;
+  { M::needs_energy } -> std::convertible_to<bool>;
   M::state_columns;
   { m.template start<double, 3>() } -> std::same_as<typename M::template State<double, 3>>;
   { m.damage(condition, state) } -> std::convertible_to<double>;

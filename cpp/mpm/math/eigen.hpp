@@ -24,11 +24,11 @@ struct Eigen {
 
 /// One of Jacobi's rotations: makes the component p, q of a symmetric tensor zero, by the smaller
 /// of the two angles (Golub & Van Loan 2013, sec. 8.5.2), and turns the axes along. The components
-/// must be of order one: 1e-300 keeps the angle finite where nothing is to be turned.
+/// must be of order one: `tiny` keeps the angle finite where nothing is to be turned.
 template <int p, int q, class T, int D>
 void rotate_jacobi(Sym<T, D>& a, Vec<T, D> (&axis)[D]) {
   const T off = a(p, q), half = T(0.5) * (a(q, q) - a(p, p));
-  const T size = absolute(half) + sqrt(half * half + off * off + T(1e-300));
+  const T size = absolute(half) + sqrt(half * half + off * off + T(tiny));
   const T t = select(half < T(0.0), -off, off) / size;
   const T c = T(1.0) / sqrt(T(1.0) + t * t), s = t * c;
   a(p, p) = a(p, p) - t * off;
@@ -50,7 +50,7 @@ void rotate_jacobi(Sym<T, D>& a, Vec<T, D> (&axis)[D]) {
 template <class T, int D>
 Eigen<T, D> eigen(const Sym<T, D>& tensor) {
   constexpr int sweeps = 4;
-  T size(1e-300);
+  T size(tiny);
   for (int k = 0; k < Sym<T, D>::size; ++k) size = max(size, absolute(tensor.c[k]));
   Sym<T, D> a = (T(1.0) / size) * tensor;
   Eigen<T, D> r;

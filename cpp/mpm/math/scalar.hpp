@@ -21,6 +21,10 @@ inline double sum(double a) { return a; }
 inline double largest(double a) { return a; }
 inline bool any(bool a) { return a; }
 
+/// Keeps a quotient, power or logarithm finite where its argument vanishes: below all that is
+/// measured, and a normal number, which logarithms of lanes need.
+inline constexpr double tiny = 1e-300;
+
 /// Size of a number; below it, what a comparison of two numbers gives.
 template <class T>
 T absolute(T a) {

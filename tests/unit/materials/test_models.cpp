@@ -28,8 +28,7 @@ struct Point {
     motion.gradient = gradient;
     Mat<T, D> f = gradient;
     for (int i = 0; i < D; ++i) f[i][i] = f[i][i] + T(1.0);
-    motion.volume_ratio = determinant(f);
-    J = J * motion.volume_ratio;
+    J = J * determinant(f);
     motion.J = J;
     motion.time_step = motion.time = 1e-3;
     motion.cell_size = 1.0;
@@ -37,7 +36,7 @@ struct Point {
   }
   T speed(const Model& model) const {
     if constexpr (Model::eos == EosUse::must)
-      return mpm::sqrt(model.shear_wave_squared(state, J, 1.0));
+      return mpm::sqrt(model.other_speed_squared(state, J));
     else
       return model.sound_speed(stress, state, J);
   }

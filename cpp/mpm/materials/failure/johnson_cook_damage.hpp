@@ -15,7 +15,7 @@ struct JohnsonCookDamage {
       "tension positive: as Johnson and Cook write it, D3 is negative where tension embrittles "
       "(4340 steel: 0.05, 3.44, -2.12, 0.002, 0.61)";
   static constexpr std::string_view source = "Johnson & Cook 1985, eqs. 3 and 4";
-  static constexpr bool needs_plasticity = true;
+  static constexpr bool needs_plasticity = true, needs_energy = false;
   static constexpr double least_strain = 1e-9;  // at fracture, whatever the parameters
 
   double D1{}, D2{}, D3{}, D4{}, D5{}, rate0{};
@@ -56,7 +56,7 @@ struct JohnsonCookDamage {
   template <Real T, int D>
   T damage(const Condition<T, D>& at, State<T, D>& state) const {
     const T mean = T(1.0 / 3.0) * trace(at.stress);
-    const T triaxiality = mean / max(von_mises(at.stress), T(1e-300));
+    const T triaxiality = mean / max(von_mises(at.stress), T(tiny));
     const T rate = at.plastic_increment * T(1.0 / at.time_step);
     state.damage += at.plastic_increment / fracture_strain(triaxiality, rate, at.temperature);
     return state.damage;

@@ -1,35 +1,18 @@
 #pragma once
-#include <array>
-
-#include "mpm/materials/model.hpp"
+#include "mpm/materials/one_limit.hpp"
 #include "mpm/math/eigen.hpp"
 
 namespace mpm {
 
 /// Fails at a given largest shear stress.
-struct MaximumShearLimit {
+struct MaximumShearLimit : OneLimit {
   static constexpr std::string_view name = "maximum_shear";
   static constexpr std::string_view doc =
       "fails when the largest shear stress, half the difference of the largest and the smallest "
       "principal stress, reaches limit";
   static constexpr std::string_view source = "Tresca 1864";
 
-  double limit{};
-
-  static constexpr auto params = std::array{
-      Param<MaximumShearLimit>{"limit", &MaximumShearLimit::limit, "Pa", "largest shear stress",
-                               Rule::positive},
-  };
-  static constexpr std::array<StateColumn, 0> state_columns{};
-  template <class T, int D>
-  using State = NoState<T, D>;
-  template <class T, int D>
-  State<T, D> start() const {
-    return {};
-  }
-
-  void prepare(double) {}
-  std::string problem() const { return {}; }
+  static constexpr auto params = one_limit("Pa", "largest shear stress");
 
   template <Real T, int D>
   T damage(const Condition<T, D>& at, State<T, D>&) const {

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "mpm/materials/jaumann.hpp"
+#include "mpm/materials/one_limit.hpp"
 #include "mpm/math/eigen.hpp"
 
 namespace mpm {
@@ -9,19 +10,14 @@ namespace mpm {
 /// Fails at a given largest principal strain, extension positive. The strain is summed in the frame
 /// that turns with the particle (Jaumann), as the stress of `elastic` is: logarithmic where the
 /// axes do not turn in the material.
-struct PrincipalStrainLimit {
+struct PrincipalStrainLimit : OneLimit {
   static constexpr std::string_view name = "principal_strain";
   static constexpr std::string_view doc =
       "fails when the largest principal strain, extension positive, reaches limit; the strain is "
       "logarithmic, summed in the frame that turns with the particle";
   static constexpr std::string_view source = "Saint-Venant 1870; summed after Hughes & Winget 1980";
 
-  double limit{};
-
-  static constexpr auto params = std::array{
-      Param<PrincipalStrainLimit>{"limit", &PrincipalStrainLimit::limit, "",
-                                  "principal strain in extension", Rule::positive},
-  };
+  static constexpr auto params = one_limit("", "principal strain in extension");
   static constexpr auto state_columns = std::array{StateColumn{"strain", "1", Shape::symmetric}};
   template <class T, int D>
   struct State {
@@ -31,9 +27,6 @@ struct PrincipalStrainLimit {
   State<T, D> start() const {
     return {Sym<T, D>::zero()};
   }
-
-  void prepare(double) {}
-  std::string problem() const { return {}; }
 
   template <Real T, int D>
   T damage(const Condition<T, D>& at, State<T, D>& state) const {

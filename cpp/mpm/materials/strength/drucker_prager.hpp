@@ -1,32 +1,30 @@
 #pragma once
 #include <array>
 
-#include "mpm/materials/strength/elastic.hpp"
+#include "mpm/materials/elastic_plastic.hpp"
 
 namespace mpm {
 
 /// Drucker and Prager's soil: elastic, yielding at tau + q_phi sm = k_phi, tau = sqrt(s:s/2), sm
 /// the mean stress, with dilation by q_psi, and at the tension sm = tension.
-struct DruckerPrager {
+struct DruckerPrager : ElasticPlastic<DruckerPrager> {
   using Self = DruckerPrager;
   static constexpr std::string_view name = "drucker_prager";
   static constexpr std::string_view doc =
-      "soil and rock, yielding at sqrt(J2) + q_phi sm = k_phi (sm the mean stress) and at sm = "
-      "tension, "
-      "with plastic dilation by q_psi; through the outer corners of Mohr and Coulomb: q = 6 "
-      "sin(phi) / "
-      "(sqrt(3) (3 - sin(phi))), k = 6 c cos(phi) / (sqrt(3) (3 - sin(phi)))";
+      "soil and rock, yielding at sqrt(J2) + q_phi sm = k_phi (sm the mean stress) and at "
+      "sm = tension, with plastic dilation by q_psi; through the outer corners of Mohr and "
+      "Coulomb: q = 6 sin(phi) / (sqrt(3) (3 - sin(phi))), "
+      "k = 6 c cos(phi) / (sqrt(3) (3 - sin(phi)))";
   static constexpr std::string_view source =
       "Drucker & Prager 1952; the corner of shear and tension by Koiter 1953";
   static constexpr EosUse eos = EosUse::never;
 
   double E{}, nu{}, q_phi{}, k_phi{}, q_psi{}, tension{};
-  Elastic elastic{};
   double K{}, limit{};  // limit: of the mean stress in tension
 
   static constexpr auto params = std::array{
-      Param<Self>{"E", &Self::E, "Pa", "Young's modulus", Rule::positive},
-      Param<Self>{"nu", &Self::nu, "", "Poisson's ratio", Rule::poisson_ratio},
+      youngs_modulus(&Self::E),
+      poissons_ratio(&Self::nu),
       Param<Self>{"q_phi", &Self::q_phi, "", "friction", Rule::not_negative},
       Param<Self>{"k_phi", &Self::k_phi, "Pa", "cohesion", Rule::not_negative},
       Param<Self>{"q_psi", &Self::q_psi, "", "dilation; 0 for none", Rule::not_negative, 0.0},
@@ -34,16 +32,9 @@ struct DruckerPrager {
                   "largest mean tension; never more than the apex k_phi / q_phi",
                   Rule::not_negative, 0.0},
   };
-  static constexpr auto state_columns = plastic_state_columns;
-  template <class T, int D>
-  using State = PlasticState<T, D>;
-  template <class T, int D>
-  State<T, D> start() const {
-    return {T(0.0)};
-  }
 
   void prepare(double density) {
-    elastic = Elastic::of(E, nu, density);
+    ElasticPlastic::prepare(density);
     K = elastic.lambda + 2.0 / 3.0 * elastic.G;
     limit = q_phi > 0.0 ? min(tension, k_phi / q_phi) : tension;
   }
@@ -72,17 +63,12 @@ struct DruckerPrager {
     const auto torn = mean_after > T(limit);
     mean_after = min(mean_after, T(limit));
     tau_after = select(torn, min(tau, corner), tau_after);
-    const T factor = select(tau > tau_after, tau_after / max(tau, T(1e-300)), T(1.0));
+    const T factor = select(tau > tau_after, tau_after / max(tau, T(tiny)), T(1.0));
     stress = Sym<T, D>::isotropic(mean_after) + factor * deviator;
     const T slid = (tau - tau_after) * T(1.0 / elastic.G);
     const T opened = (mean - mean_after) * T(1.0 / K);
     state.plastic_strain += sqrt(T(1.0 / 3.0) * slid * slid + T(2.0 / 9.0) * opened * opened);
     return tau_after * slid + mean_after * opened;
-  }
-
-  template <Real T, int D>
-  T sound_speed(const Sym<T, D>&, const State<T, D>&, T J) const {
-    return elastic.sound_speed(J);
   }
 };
 

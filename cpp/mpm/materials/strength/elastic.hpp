@@ -5,6 +5,16 @@
 
 namespace mpm {
 
+/// The two moduli as parameters of a model.
+template <class Model>
+constexpr Param<Model> youngs_modulus(double Model::* member) {
+  return {"E", member, "Pa", "Young's modulus", Rule::positive};
+}
+template <class Model>
+constexpr Param<Model> poissons_ratio(double Model::* member) {
+  return {"nu", member, "", "Poisson's ratio", Rule::poisson_ratio};
+}
+
 /// Isotropic hypoelasticity with the Jaumann rate: stress rate = lambda tr(D) 1 + 2 G D (Truesdell
 /// & Noll 1965, sec. 99).
 struct Elastic {
@@ -20,10 +30,8 @@ struct Elastic {
   double E{}, nu{}, density{};
   double lambda{}, G{};
 
-  static constexpr auto params = std::array{
-      Param<Elastic>{"E", &Elastic::E, "Pa", "Young's modulus", Rule::positive},
-      Param<Elastic>{"nu", &Elastic::nu, "", "Poisson's ratio", Rule::poisson_ratio},
-  };
+  static constexpr auto params =
+      std::array{youngs_modulus(&Elastic::E), poissons_ratio(&Elastic::nu)};
   static constexpr std::array<StateColumn, 0> state_columns{};
   template <class T, int D>
   using State = NoState<T, D>;
@@ -59,7 +67,7 @@ struct Elastic {
     return sqrt(T((lambda + 2.0 * G) / density) * J);
   }
   template <Real T>
-  T shear_wave_squared(T J) const {
+  T other_speed_squared(T J) const {
     return T(4.0 / 3.0 * G / density) * J;
   }
 
@@ -73,16 +81,9 @@ struct Elastic {
     return sound_speed(J);
   }
   template <Real T, int D>
-  T shear_wave_squared(const State<T, D>&, T J, double) const {
-    return shear_wave_squared(J);
+  T other_speed_squared(const State<T, D>&, T J) const {
+    return other_speed_squared(J);
   }
 };
-
-/// State of a plastic model without temperature.
-template <class T, int D>
-struct PlasticState {
-  T plastic_strain;  // equivalent
-};
-inline constexpr auto plastic_state_columns = std::array{StateColumn{"plastic_strain", "1"}};
 
 }  // namespace mpm

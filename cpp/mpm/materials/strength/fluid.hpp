@@ -39,7 +39,7 @@ struct Fluid {
   }
 
   template <Real T, int D>
-  T shear_wave_squared(const State<T, D>&, T, double) const {
+  T other_speed_squared(const State<T, D>&, T) const {
     return T(0.0);
   }
   /// Alone, that is a time step of h^2 / (2 nu 4/3), the limit of diffusion.

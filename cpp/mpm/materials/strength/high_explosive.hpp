@@ -50,7 +50,7 @@ struct HighExplosive {
 
   /// Until it burns, the front is what must not pass a cell within a step.
   template <Real T, int D>
-  T shear_wave_squared(const State<T, D>& state, T, double) const {
+  T other_speed_squared(const State<T, D>& state, T) const {
     return (T(1.0) - state.burn_fraction) * T(D_front * D_front);
   }
 };

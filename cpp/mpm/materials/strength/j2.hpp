@@ -1,40 +1,29 @@
 #pragma once
 #include <array>
 
-#include "mpm/materials/strength/elastic.hpp"
+#include "mpm/materials/elastic_plastic.hpp"
 
 namespace mpm {
 
 /// Elastic, then plastic at von Mises' yield stress Y0 + H ep, ep the equivalent plastic strain:
 /// perfectly plastic for H = 0, isotropic linear hardening otherwise.
-struct J2 {
+struct J2 : ElasticPlastic<J2> {
+  using Self = J2;
   static constexpr std::string_view name = "j2";
   static constexpr std::string_view doc =
       "von Mises plasticity: perfectly plastic, or isotropic linear hardening with H > 0";
   static constexpr std::string_view source =
       "von Mises 1913; radial return after Wilkins 1964 and Krieg & Key 1976";
-  static constexpr EosUse eos = EosUse::may;
 
   double E{}, nu{}, Y0{}, H{};
-  Elastic elastic{};
 
   static constexpr auto params = std::array{
-      Param<J2>{"E", &J2::E, "Pa", "Young's modulus", Rule::positive},
-      Param<J2>{"nu", &J2::nu, "", "Poisson's ratio", Rule::poisson_ratio},
-      Param<J2>{"Y0", &J2::Y0, "Pa", "yield stress in tension at the start", Rule::positive},
-      Param<J2>{"H", &J2::H, "Pa", "plastic modulus dY/dep (= E Et / (E - Et))", Rule::not_negative,
-                0.0},
+      youngs_modulus(&Self::E),
+      poissons_ratio(&Self::nu),
+      Param<Self>{"Y0", &Self::Y0, "Pa", "yield stress in tension at the start", Rule::positive},
+      Param<Self>{"H", &Self::H, "Pa", "plastic modulus dY/dep (= E Et / (E - Et))",
+                  Rule::not_negative, 0.0},
   };
-  static constexpr auto state_columns = plastic_state_columns;
-  template <class T, int D>
-  using State = PlasticState<T, D>;
-  template <class T, int D>
-  State<T, D> start() const {
-    return {T(0.0)};
-  }
-
-  void prepare(double density) { elastic = Elastic::of(E, nu, density); }
-  std::string problem() const { return {}; }
 
   /// The elastic stress, and where its von Mises stress q exceeds Y the deviator returned along its
   /// own direction: q = Y holds after it, as 3 G dep = q_trial - Y(ep + dep) is linear in dep.
@@ -50,15 +39,6 @@ struct J2 {
     stress = mean + left * deviator;
     state.plastic_strain += increment;
     return (yield + T(0.5 * H) * increment) * increment;
-  }
-
-  template <Real T, int D>
-  T sound_speed(const Sym<T, D>&, const State<T, D>&, T J) const {
-    return elastic.sound_speed(J);
-  }
-  template <Real T, int D>
-  T shear_wave_squared(const State<T, D>&, T J, double) const {
-    return elastic.shear_wave_squared(J);
   }
 };
 

@@ -1,46 +1,41 @@
 #pragma once
 #include <array>
 
+#include "mpm/materials/elastic_plastic.hpp"
 #include "mpm/materials/johnson_cook_law.hpp"
-#include "mpm/materials/strength/elastic.hpp"
 
 namespace mpm {
 
 /// Johnson and Cook's metal, heated by its plastic work.
-struct JohnsonCook {
+struct JohnsonCook : ElasticPlastic<JohnsonCook> {
+  using Self = JohnsonCook;
   static constexpr std::string_view name = "johnson_cook";
   static constexpr std::string_view doc =
-      "metal at high rates, Y = (A + B ep^n) (1 + C ln(rate/rate0)) (1 - T*^m), T* = (T - T_room) "
-      "/ "
-      "(T_melt - T_room), heated by the share chi of the plastic work (adiabatic)";
+      "metal at high rates, Y = (A + B ep^n) (1 + C ln(rate/rate0)) (1 - T*^m), "
+      "T* = (T - T_room) / (T_melt - T_room), heated by the share chi of the plastic work "
+      "(adiabatic)";
   static constexpr std::string_view source = "Johnson & Cook 1983, eqs. 1-2";
-  static constexpr EosUse eos = EosUse::may;
 
   double E{}, nu{}, A{}, B{}, n{}, C{}, rate0{}, m{}, T_room{}, T_melt{}, T0{}, cp{}, chi{};
-  Elastic elastic{};
   JohnsonCookLaw law{};
 
   static constexpr auto params = std::array{
-      Param<JohnsonCook>{"E", &JohnsonCook::E, "Pa", "Young's modulus", Rule::positive},
-      Param<JohnsonCook>{"nu", &JohnsonCook::nu, "", "Poisson's ratio", Rule::poisson_ratio},
-      Param<JohnsonCook>{"A", &JohnsonCook::A, "Pa", "yield stress at the reference rate",
-                         Rule::positive},
-      Param<JohnsonCook>{"B", &JohnsonCook::B, "Pa", "factor of hardening", Rule::not_negative},
-      Param<JohnsonCook>{"n", &JohnsonCook::n, "", "exponent of hardening", Rule::positive},
-      Param<JohnsonCook>{"C", &JohnsonCook::C, "", "factor of the rate", Rule::not_negative},
-      Param<JohnsonCook>{"rate0", &JohnsonCook::rate0, "1/s", "reference rate", Rule::positive,
-                         1.0},
-      Param<JohnsonCook>{"m", &JohnsonCook::m, "", "exponent of softening", Rule::positive},
-      Param<JohnsonCook>{"T_room", &JohnsonCook::T_room, "K", "reference temperature",
-                         Rule::not_negative, 298.0},
-      Param<JohnsonCook>{"T_melt", &JohnsonCook::T_melt, "K", "melting temperature",
-                         Rule::positive},
-      Param<JohnsonCook>{"T0", &JohnsonCook::T0, "K", "temperature at the start", Rule::positive,
-                         298.0},
-      Param<JohnsonCook>{"cp", &JohnsonCook::cp, "J/kg/K", "specific heat", Rule::positive},
-      Param<JohnsonCook>{"chi", &JohnsonCook::chi, "", "share of the plastic work that heats",
-                         Rule::not_negative, 0.9},
+      youngs_modulus(&Self::E),
+      poissons_ratio(&Self::nu),
+      Param<Self>{"A", &Self::A, "Pa", "yield stress at the reference rate", Rule::positive},
+      Param<Self>{"B", &Self::B, "Pa", "factor of hardening", Rule::not_negative},
+      Param<Self>{"n", &Self::n, "", "exponent of hardening", Rule::positive},
+      Param<Self>{"C", &Self::C, "", "factor of the rate", Rule::not_negative},
+      Param<Self>{"rate0", &Self::rate0, "1/s", "reference rate", Rule::positive, 1.0},
+      Param<Self>{"m", &Self::m, "", "exponent of softening", Rule::positive},
+      Param<Self>{"T_room", &Self::T_room, "K", "reference temperature", Rule::not_negative, 298.0},
+      Param<Self>{"T_melt", &Self::T_melt, "K", "melting temperature", Rule::positive},
+      Param<Self>{"T0", &Self::T0, "K", "temperature at the start", Rule::positive, 298.0},
+      Param<Self>{"cp", &Self::cp, "J/kg/K", "specific heat", Rule::positive},
+      Param<Self>{"chi", &Self::chi, "", "share of the plastic work that heats", Rule::not_negative,
+                  0.9},
   };
+
   static constexpr auto state_columns =
       std::array{StateColumn{"plastic_strain", "1"}, StateColumn{"temperature", "K"}};
   template <class T, int D>
@@ -53,7 +48,7 @@ struct JohnsonCook {
   }
 
   void prepare(double density) {
-    elastic = Elastic::of(E, nu, density);
+    ElasticPlastic::prepare(density);
     law = {A, B, n, C, rate0, m, T_room, T_melt, chi / (density * cp), true};
   }
   std::string problem() const {
@@ -69,15 +64,6 @@ struct JohnsonCook {
   template <Real T>
   T homologous(T temperature) const {
     return law.homologous(temperature);
-  }
-
-  template <Real T, int D>
-  T sound_speed(const Sym<T, D>&, const State<T, D>&, T J) const {
-    return elastic.sound_speed(J);
-  }
-  template <Real T, int D>
-  T shear_wave_squared(const State<T, D>&, T J, double) const {
-    return elastic.shear_wave_squared(J);
   }
 };
 

@@ -2,14 +2,14 @@
 #include <array>
 #include <numbers>
 
-#include "mpm/materials/strength/elastic.hpp"
+#include "mpm/materials/elastic_plastic.hpp"
 #include "mpm/math/eigen.hpp"
 
 namespace mpm {
 
 /// Mohr and Coulomb's soil: elastic, yielding where the principal stresses s1 >= s2 >= s3 (tension
 /// positive) meet k s1 - s3 = 2 c sqrt(k), k = (1 + sin(phi)) / (1 - sin(phi)), or s1 = tension.
-struct MohrCoulomb {
+struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
   using Self = MohrCoulomb;
   static constexpr std::string_view name = "mohr_coulomb";
   static constexpr std::string_view doc =
@@ -19,15 +19,17 @@ struct MohrCoulomb {
   static constexpr std::string_view source =
       "Coulomb 1773; return by regions after Clausen, Damkilde & Andersen 2006";
   static constexpr EosUse eos = EosUse::never;
+  // Ten roundings of the principal stresses, there and back, and the return's; and where stresses
+  // vanish half a rounding of E, of which the elastic step has made them.
+  static constexpr double rounding_of_stress = 1e-14, rounding_of_modulus = 1e-16;
 
   double E{}, nu{}, cohesion{}, friction_angle{}, dilation_angle{}, tension{};
-  Elastic elastic{};
   double k{}, m{};             // (1 + sin) / (1 - sin) of friction and dilation
   double strength{}, limit{};  // 2 c sqrt(k) [Pa]; largest principal stress [Pa]
 
   static constexpr auto params = std::array{
-      Param<Self>{"E", &Self::E, "Pa", "Young's modulus", Rule::positive},
-      Param<Self>{"nu", &Self::nu, "", "Poisson's ratio", Rule::poisson_ratio},
+      youngs_modulus(&Self::E),
+      poissons_ratio(&Self::nu),
       Param<Self>{"cohesion", &Self::cohesion, "Pa", "cohesion c", Rule::not_negative},
       Param<Self>{"friction_angle", &Self::friction_angle, "rad",
                   "angle of internal friction phi, < 90 deg", Rule::not_negative},
@@ -38,16 +40,9 @@ struct MohrCoulomb {
                   "largest principal tension; never more than the apex c cot(phi)",
                   Rule::not_negative, 0.0},
   };
-  static constexpr auto state_columns = plastic_state_columns;
-  template <class T, int D>
-  using State = PlasticState<T, D>;
-  template <class T, int D>
-  State<T, D> start() const {
-    return {T(0.0)};
-  }
 
   void prepare(double density) {
-    elastic = Elastic::of(E, nu, density);
+    ElasticPlastic::prepare(density);
     const double friction = std::sin(friction_angle), dilation = std::sin(dilation_angle);
     k = (1.0 + friction) / (1.0 - friction);
     m = (1.0 + dilation) / (1.0 - dilation);
@@ -183,8 +178,8 @@ struct MohrCoulomb {
     const Sorted<T> sorted(principal.value);
     const T(&trial)[3] = sorted.value;
     // What is beyond the surface by the roundings of the last return stays.
-    const T rounding =
-        T(1e-14) * (T(k) * absolute(trial[0]) + absolute(trial[2])) + T(1e-16 * elastic.E);
+    const T rounding = T(rounding_of_stress) * (T(k) * absolute(trial[0]) + absolute(trial[2])) +
+                       T(rounding_of_modulus * E);
     const auto flows =
         (T(k) * trial[0] - trial[2] > T(strength) + rounding) | (trial[0] > T(limit) + rounding);
     if (!any(flows)) return T(0.0);
@@ -202,11 +197,6 @@ struct MohrCoulomb {
     stress = stress + principal.with(change);
     state.plastic_strain += sqrt(T(2.0 / 3.0) * squares);
     return work;
-  }
-
-  template <Real T, int D>
-  T sound_speed(const Sym<T, D>&, const State<T, D>&, T J) const {
-    return elastic.sound_speed(J);
   }
 };
 

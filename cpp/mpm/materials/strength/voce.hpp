@@ -1,64 +1,33 @@
 #pragma once
 #include <array>
 
-#include "mpm/materials/radial_return.hpp"
-#include "mpm/materials/strength/elastic.hpp"
+#include "mpm/materials/elastic_plastic.hpp"
 
 namespace mpm {
 
 /// Von Mises plasticity with saturating hardening, Y = Y0 + Q (1 - exp(-b ep)).
-struct Voce {
+struct Voce : MisesPlastic<Voce> {
+  using Self = Voce;
   static constexpr std::string_view name = "voce";
   static constexpr std::string_view doc =
       "von Mises plasticity with saturating hardening, Y = Y0 + Q (1 - exp(-b ep))";
   static constexpr std::string_view source = "Voce 1948";
-  static constexpr EosUse eos = EosUse::may;
 
   double E{}, nu{}, Y0{}, Q{}, b{};
-  Elastic elastic{};
 
   static constexpr auto params = std::array{
-      Param<Voce>{"E", &Voce::E, "Pa", "Young's modulus", Rule::positive},
-      Param<Voce>{"nu", &Voce::nu, "", "Poisson's ratio", Rule::poisson_ratio},
-      Param<Voce>{"Y0", &Voce::Y0, "Pa", "yield stress in tension at the start", Rule::positive},
-      Param<Voce>{"Q", &Voce::Q, "Pa", "hardening at saturation", Rule::not_negative},
-      Param<Voce>{"b", &Voce::b, "", "rate of saturation", Rule::not_negative},
+      youngs_modulus(&Self::E),
+      poissons_ratio(&Self::nu),
+      Param<Self>{"Y0", &Self::Y0, "Pa", "yield stress in tension at the start", Rule::positive},
+      Param<Self>{"Q", &Self::Q, "Pa", "hardening at saturation", Rule::not_negative},
+      Param<Self>{"b", &Self::b, "", "rate of saturation", Rule::not_negative},
   };
-  static constexpr auto state_columns = plastic_state_columns;
-  template <class T, int D>
-  using State = PlasticState<T, D>;
-  template <class T, int D>
-  State<T, D> start() const {
-    return {T(0.0)};
-  }
-
-  void prepare(double density) { elastic = Elastic::of(E, nu, density); }
-  std::string problem() const { return {}; }
 
   /// Yield stress and its slope at a plastic strain.
   template <Real T>
   Yield<T> yield(T plastic_strain) const {
     const T left = T(Q) * exp(T(-b) * plastic_strain);
     return {T(Y0 + Q) - left, T(b) * left};
-  }
-
-  template <Real T, int D>
-  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
-    elastic.update(motion, stress);
-    const T before = state.plastic_strain;
-    const auto done = return_radially(stress, elastic.G, yield(before).value,
-                                      [&](T d) { return yield(before + d); });
-    state.plastic_strain += done.increment;
-    return done.von_mises * done.increment;
-  }
-
-  template <Real T, int D>
-  T sound_speed(const Sym<T, D>&, const State<T, D>&, T J) const {
-    return elastic.sound_speed(J);
-  }
-  template <Real T, int D>
-  T shear_wave_squared(const State<T, D>&, T J, double) const {
-    return elastic.shear_wave_squared(J);
   }
 };
 
