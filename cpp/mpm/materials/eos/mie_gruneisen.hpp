@@ -36,11 +36,12 @@ struct MieGruneisen {
   template <Real T>
   LinearInEnergy<T> at(T V) const {
     // The Hugoniot ends at eta = 1/s; a hundredth before it the denominator is held.
-    const T eta = T(1.0) - V, left = max(T(1.0) - T(s) * eta, T(0.01));
+    const T eta = T(1.0) - V, free = T(1.0) - T(s) * eta, left = max(free, T(0.01));
     const T inverse = T(1.0) / left;
     const T hugoniot = T(stiffness) * eta * inverse * inverse;
-    const T slope =
-        T(stiffness) * (T(1.0) + T(s) * eta) * inverse * inverse * inverse;  // d pH/d eta
+    // d pH/d eta; where the denominator is held pH is linear.
+    const T slope = T(stiffness) * inverse * inverse *
+                    select(free < T(0.01), T(1.0), (T(1.0) + T(s) * eta) * inverse);
     const T factor = T(1.0) - T(0.5 * gamma0) * eta;
     const T density = T(1.0) / V;
     const auto compressed = eta > T(0.0);

@@ -58,7 +58,8 @@ struct JohnsonCookDamage {
     const T mean = T(1.0 / 3.0) * trace(at.stress);
     const T triaxiality = mean / max(von_mises(at.stress), T(tiny));
     const T rate = at.plastic_increment * T(1.0 / at.time_step);
-    state.damage += at.plastic_increment / fracture_strain(triaxiality, rate, at.temperature);
+    const T more = at.plastic_increment / fracture_strain(triaxiality, rate, at.temperature);
+    state.damage = min(state.damage + more, T(1.0));
     return state.damage;
   }
 };

@@ -52,7 +52,10 @@ struct JohnsonCook : ElasticPlastic<JohnsonCook> {
     law = {A, B, n, C, rate0, m, T_room, T_melt, chi / (density * cp), true};
   }
   std::string problem() const {
-    return T_melt > T_room ? std::string() : "johnson_cook.T_melt must be > T_room";
+    if (!(T_melt > T_room)) return "johnson_cook.T_melt must be > T_room";
+    if (!(T0 < T_melt)) return "johnson_cook.T0 must be < T_melt";
+    if (chi > 1.0) return "johnson_cook.chi must be <= 1";
+    return {};
   }
 
   template <Real T, int D>
