@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from mpm3dpp import _core
+from mpm3dpp.materials.point import drive_point
 
 DENSITY, MODULUS = 1000.0, 1e8
 EPS = np.finfo(float).eps
@@ -52,7 +53,7 @@ def drive(
 ) -> np.ndarray:
     """Return the Cauchy stress after each step as matrices, shape (steps + 1, 3, 3) [Pa]."""
     moves = np.ascontiguousarray(moves)
-    s, _ = _core.drive_material(DENSITY, name, constants or parameters(name), moves, lanes)
+    s, _, _ = drive_point(DENSITY, name, constants or parameters(name), moves, lanes)
     return s[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mpm3dpp import _core
+from mpm3dpp.materials.point import drive_point
 
 EPS = np.finfo(float).eps
 GAS = ("ideal_gas", {"gamma": 1.4, "E0": 2.5e5})
@@ -33,7 +34,7 @@ def squeeze(
     gradient = np.diff(volumes) / volumes[:-1]
     moves = np.zeros((len(gradient), 3, 3))
     moves[:, 0, 0] = gradient
-    rows, names = _core.drive_material(density, "fluid", {"viscosity": 0.0}, moves, lanes, eos=eos)
+    rows, names, _ = drive_point(density, "fluid", {"viscosity": 0.0}, moves, lanes, eos=eos)
     found = dict(zip(names, rows.T, strict=True))
     return found | {"pressure": -rows[:, :3].mean(axis=1)}
 
@@ -132,9 +133,7 @@ def test_burning_scales_the_pressure() -> None:
     """Unlit explosive bears nothing; the burn fraction multiplies the pressure of its products."""
     moves = np.zeros((3, 3, 3))
     moves[:, 0, 0] = -1e-3
-    rows, names = _core.drive_material(
-        1630.0, "high_explosive", {"D": 6930.0}, moves, True, eos=TNT
-    )
+    rows, names, _ = drive_point(1630.0, "high_explosive", {"D": 6930.0}, moves, True, eos=TNT)
     assert np.all(rows[:, :6] == 0.0)
     assert np.all(rows[:, names.index("burn_fraction")] == 0.0)
     assert rows[0, names.index("sound_speed")] == pytest.approx(6930.0)
@@ -145,7 +144,7 @@ def test_a_newtonian_fluid_in_shear() -> None:
     rate, viscosity, dt = 50.0, 0.2, 1e-4
     moves = np.zeros((10, 3, 3))
     moves[:, 0, 1] = rate * dt
-    rows, names = _core.drive_material(
+    rows, names, _ = drive_point(
         1000.0, "fluid", {"viscosity": viscosity}, moves, True, time_step=dt, eos=GAS
     )
     assert rows[1:, 5] == pytest.approx(viscosity * rate, rel=1e-12)

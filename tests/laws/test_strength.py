@@ -19,6 +19,7 @@ from motions import (
     worst,
 )
 from mpm3dpp import _core
+from mpm3dpp.materials.point import drive_point
 
 STEPS = (100, 200, 400)
 # A model without a scheme is exact but for some ten roundings in each step.
@@ -125,8 +126,8 @@ def test_a_mistake_is_one_sentence() -> None:
             if key in defaults:
                 continue
             with pytest.raises(ValueError, match=f"{name}.{key}.*missing"):
-                _core.drive_material(1000.0, name, rest, moves, False)
+                drive_point(1000.0, name, rest, moves, False)
             with pytest.raises(ValueError, match=f"{name}.{key} = nan"):
-                _core.drive_material(1000.0, name, good | {key: np.nan}, moves, False)
+                drive_point(1000.0, name, good | {key: np.nan}, moves, False)
     with pytest.raises(ValueError, match="jelly"):
-        _core.drive_material(1000.0, "jelly", {}, moves, False)
+        drive_point(1000.0, "jelly", {}, moves, False)

@@ -94,6 +94,6 @@ def jump(fluid: Material, volume: float) -> dict[str, float]:
     (p0 + p) (V0 - V) / 2. For a smooth path that is the trapezoidal rule; for a jump in one step it
     is exactly Rankine's and Hugoniot's relation of energy, so the step ends on the Hugoniot.
     """
-    columns = drive(fluid, np.diag([volume - 1.0, 0.0, 0.0])[None], 1.0)
+    columns = drive(fluid, np.diag([volume - 1.0, 0.0, 0.0])[None], 1.0).columns
     last = {key: float(value[-1]) for key, value in columns.items()}
     return last | {"pressure": -last["stress_xx"]}
