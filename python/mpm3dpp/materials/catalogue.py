@@ -60,7 +60,8 @@ def check_parameters(kind: str, model: str, given: Any) -> dict[str, float]:
     found: dict[str, float] = {}
     for name, parameter in known.items():
         if name in given:
-            quantity = Quantity("" if parameter.unit == "1" else parameter.unit, parameter.rule)
+            unit = "" if parameter.unit == "1" else parameter.unit
+            quantity = Quantity(unit, parameter.rule, parameter.bounds)
             found[name] = _parsed(quantity, given[name], name)
         elif parameter.default is not None:
             found[name] = float(parameter.default)
