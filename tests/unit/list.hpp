@@ -20,6 +20,7 @@
   X(jaumann) \
   X(models) \
   X(material) \
+  X(plane_strain) \
   X(mohr_coulomb) \
   X(two_bodies) \
   X(many_bodies) \
