@@ -151,6 +151,29 @@ def test_a_pressure_with_a_maximum_has_no_stronger_shock() -> None:
         hugoniot.state("soft", soft, 2 * largest**0.5)
 
 
+def test_free_sides_take_one_step_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each root resumes from the state of the step before: the work grows with the steps alone."""
+    steps = []
+    whole = driver.drive_point
+
+    def counted(*given: object, **more: object) -> object:
+        steps.append(len(more["increments"]))  # type: ignore[arg-type]
+        return whole(*given, **more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(driver, "drive_point", counted)
+    found = stress(METAL, test="uniaxial-stress", to=0.02, steps=200)
+    assert sum(steps) < 12 * 200
+    assert np.abs(found["stress_yy"]).max() < 1e-10 * E
+
+
+def test_the_line_of_a_hardening_metal_says_its_slope() -> None:
+    options = Options(test="uniaxial-strain").completed()
+    hard = Material(density=8930, strength={"j2": {"E": E, "nu": NU, "Y0": Y, "H": 1e9}})
+    [perfect], [hardening] = known_curves(METAL, options), known_curves(hard, options)
+    assert perfect.label == "slopes K + 4G/3, then K"
+    assert hardening.label == "slopes K + 4G/3, then K + 4G/3 H / (3G + H)"
+
+
 def test_known_curves_are_followed() -> None:
     """Every curve that a picture shows is met by the test that it is drawn with."""
     hard = Material(density=8930, strength={"j2": {"E": E, "nu": NU, "Y0": Y, "H": 1e9}})

@@ -14,7 +14,7 @@ import numpy as np
 
 from mpm3dpp.case import Material
 from mpm3dpp.errors import CaseError
-from mpm3dpp.materials.point import drive_point
+from mpm3dpp.materials.point import COUNTED, drive_point
 
 from .options import Options
 
@@ -132,14 +132,19 @@ def free_sides(name: str, material: Material, moves: np.ndarray, time_step: floa
     Returns:
         The logarithmic lateral strain, shape (steps + 1,).
     """
-    speed = drive(material, moves[:0], time_step).columns["sound_speed"][0]
-    tolerance = 1e-11 * material.density * speed**2
+    columns = drive(material, moves[:0], time_step).columns
+    tolerance = 1e-11 * material.density * columns["sound_speed"][0] ** 2
     guess = -0.3 * moves[0, 0, 0]
     for n in range(len(moves)):
+        state = {key: float(v[-1]) for key, v in columns.items() if key not in COUNTED}
 
-        def side_stress(lateral: float, n: int = n) -> float:
-            moves[n, 1, 1] = moves[n, 2, 2] = lateral
-            return float(drive(material, moves[: n + 1], time_step).columns["stress_yy"][-1])
+        move = moves[n : n + 1]
+
+        def side_stress(
+            lateral: float, move: np.ndarray = move, state: dict[str, float] = state
+        ) -> float:
+            move[0, 1, 1] = move[0, 2, 2] = lateral
+            return float(drive(material, move, time_step, state).columns["stress_yy"][-1])
 
         root = find_root(side_stress, guess, 0.05 * abs(moves[n, 0, 0]), tolerance)
         if root is None:
@@ -148,7 +153,8 @@ def free_sides(name: str, material: Material, moves: np.ndarray, time_step: floa
             raise CaseError(
                 rule, "end the test earlier with --to, or take more --steps", value=name
             )
-        moves[n, 1, 1] = moves[n, 2, 2] = guess = root
+        move[0, 1, 1] = move[0, 2, 2] = guess = root
+        columns = drive(material, move, time_step, state).columns
     return np.concatenate([[0.0], np.cumsum(np.log1p(moves[:, 1, 1]))])
 
 
