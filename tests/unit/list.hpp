@@ -16,6 +16,7 @@
   X(cholesky) \
   X(eigen) \
   X(threads) \
+  X(columns) \
   X(basis) \
   X(jaumann) \
   X(models) \
