@@ -123,3 +123,26 @@ def test_hardening_curves(model: str) -> None:
     flows = plastic > 0
     assert flows.sum() > 490
     assert np.abs(mises / exact - 1)[flows].max() < 1e-10
+
+
+@pytest.mark.parametrize("thermal", [False, True])
+def test_the_yield_stress_is_met_with_large_exponents(thermal: bool) -> None:
+    """n or m = 20, where six terms of the series of (1 + x)^a leave 1e-9 for x = 0.01."""
+    A, room, melt, density = (1e9 if thermal else 1e6), 298.0, 1298.0, 8e3
+    constants = {"E": YOUNG, "nu": POISSON, "A": A, "B": 0.0, "n": 1.0, "C": 0.0}
+    name, state = "simplified_johnson_cook", {"plastic_strain": 0.9}
+    if thermal:
+        name, state = "johnson_cook", {"temperature": room + 950.0}
+        constants |= {"m": 20.0, "T_room": room, "T_melt": melt, "cp": 65.0}
+    else:
+        constants |= {"B": 3e8, "n": 20.0}
+    strain = np.sqrt(3) / 2 * 0.0085  # plastic strain and T* change by up to 1 %
+    moves = np.tile(np.diag(np.expm1([strain, -strain, 0.0])), (4 if thermal else 12, 1, 1))
+    for lanes in (False, True):
+        rows, names, _ = drive_point(density, name, constants, moves, lanes, state=state)
+        found = dict(zip(names, rows[1:].T, strict=True))
+        exact = A + constants["B"] * found["plastic_strain"] ** constants["n"]
+        if thermal:
+            exact *= 1 - ((found["temperature"] - room) / (melt - room)) ** 20
+        assert np.diff(found["plastic_strain"]).min() > 0
+        assert np.abs(von_mises(rows[1:, :6]) / exact - 1).max() < 3e-11  # 2e-10 with the series
