@@ -1,18 +1,10 @@
 // The Python module mpm3dpp._core: translates between Python and the core, and nothing else.
-#include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
-#include <nanobind/stl/map.h>
-#include <nanobind/stl/optional.h>
-#include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
-#include <nanobind/stl/vector.h>
 
 #include "mpm/run/bandwidth.hpp"
-#include "mpm/run/drive_material.hpp"
 #include "mpm/run/simulation.hpp"
+#include "translate.hpp"
 
 #if defined(__clang__)
 #define MPM_COMPILER "clang++ " __clang_version__
@@ -20,74 +12,8 @@
 #define MPM_COMPILER "g++ " __VERSION__
 #endif
 
-namespace nb = nanobind;
 using namespace mpm;
-
-namespace {
-
-using Input = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
-using Output = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
-
-std::span<const double> span_of(const Input& array) { return {array.data(), array.size()}; }
-
-Output to_numpy(std::vector<double>&& values, std::size_t columns) {
-  auto* owned = new std::vector<double>(std::move(values));
-  nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-  return Output(owned->data(), {owned->size() / columns, columns}, owner);
-}
-
-struct CatalogueParameter {
-  std::string name, unit, meaning, rule;
-  std::optional<double> start;
-};
-struct CatalogueModel {
-  std::string kind, name, doc, source;
-  std::vector<CatalogueParameter> parameters;
-  std::vector<std::string> state;
-  std::string eos;  // of a strength model: "never", "may", "must"
-};
-
-template <class M>
-CatalogueModel described(const char* kind, const M& model) {
-  CatalogueModel m{
-      kind, std::string(model.name), std::string(model.doc), std::string(model.source), {}, {}, ""};
-  for (const auto& p : model.params)
-    m.parameters.push_back({std::string(p.name), std::string(p.unit), std::string(p.meaning),
-                            std::string(rule_text(p.rule)),
-                            std::isnan(p.start) ? std::nullopt : std::optional<double>(p.start)});
-  if constexpr (requires { model.state_columns; })
-    for (const auto& s : model.state_columns) m.state.push_back(std::string(s.name));
-  if constexpr (requires { M::eos; })
-    m.eos = M::eos == EosUse::never ? "never" : M::eos == EosUse::may ? "may" : "must";
-  return m;
-}
-
-std::vector<CatalogueModel> catalogue() {
-  std::vector<CatalogueModel> models;
-  const auto add = [&](const char* kind) {
-    return [&models, kind](const auto& model) { models.push_back(described(kind, model)); };
-  };
-  StrengthModels::for_each(add("strength"));
-  EosModels::for_each(add("eos"));
-  FailureModels::for_each(add("failure"));
-  return models;
-}
-
-using Parameters = std::map<std::string, double>;
-using Named = std::pair<std::string, Parameters>;
-using NamedFailure = std::tuple<std::string, Parameters, std::string>;
-
-MaterialChoice choice_of(double density, const std::string& strength, const Parameters& parameters,
-                         const std::optional<Named>& eos,
-                         const std::vector<NamedFailure>& failures) {
-  MaterialChoice choice{density, {strength, parameters}, {}, {}};
-  if (eos) choice.eos = ModelChoice{eos->first, eos->second};
-  for (const auto& [name, values, action] : failures)
-    choice.failures.push_back({{name, values}, action});
-  return choice;
-}
-
-}  // namespace
+using namespace mpm::bindings;
 
 NB_MODULE(_core, m) {
   m.doc() =
@@ -158,21 +84,6 @@ NB_MODULE(_core, m) {
       .def_prop_ro("impulse", [](const PairRecord& p) { return std::to_array(p.impulse); })
       .def_ro("friction_work", &PairRecord::friction_work);
 
-  nb::class_<CatalogueParameter>(m, "Parameter")
-      .def_ro("name", &CatalogueParameter::name)
-      .def_ro("unit", &CatalogueParameter::unit)
-      .def_ro("meaning", &CatalogueParameter::meaning)
-      .def_ro("rule", &CatalogueParameter::rule)
-      .def_ro("default", &CatalogueParameter::start);
-  nb::class_<CatalogueModel>(m, "Model")
-      .def_ro("kind", &CatalogueModel::kind)
-      .def_ro("name", &CatalogueModel::name)
-      .def_ro("doc", &CatalogueModel::doc)
-      .def_ro("source", &CatalogueModel::source)
-      .def_ro("parameters", &CatalogueModel::parameters)
-      .def_ro("state", &CatalogueModel::state)
-      .def_ro("eos", &CatalogueModel::eos);
-
   nb::class_<Simulation>(m, "Simulation")
       .def(nb::new_([](const Settings& settings) { return make_simulation(settings); }),
            nb::arg("settings"))
@@ -180,14 +91,12 @@ NB_MODULE(_core, m) {
           "add_material",
           [](Simulation& s, double density, const std::string& strength,
              const Parameters& parameters, const std::optional<Named>& eos,
-             const std::vector<NamedFailure>& failures, std::pair<double, double> viscosity) {
-            MaterialChoice choice = choice_of(density, strength, parameters, eos, failures);
-            choice.viscosity = {viscosity.first, viscosity.second};
-            return s.add_material(choice);
+             const std::vector<NamedFailure>& failures, Viscosity viscosity) {
+            return s.add_material(
+                choice_of(density, strength, parameters, eos, failures, viscosity));
           },
-          nb::arg("density"), nb::arg("strength"), nb::arg("parameters"),
-          nb::arg("eos") = nb::none(), nb::arg("failures") = std::vector<NamedFailure>(),
-          nb::arg("viscosity") = std::pair(0.0, 0.0))
+          nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
+          nb::arg("failures"), nb::arg("viscosity"))
       .def(
           "add_body",
           [](Simulation& s, const std::string& name, int material, const Input& positions,
@@ -283,20 +192,7 @@ NB_MODULE(_core, m) {
         return d;
       });
 
-  m.def("catalogue", &catalogue);
-  m.def(
-      "drive_material",
-      [](double density, const std::string& strength, const Parameters& parameters,
-         const Input& increments, bool lanes, double time_step, const std::optional<Named>& eos,
-         const std::vector<NamedFailure>& failures) {
-        DrivenPoint point = drive_material(choice_of(density, strength, parameters, eos, failures),
-                                           span_of(increments), time_step, lanes);
-        const std::size_t columns = point.names.size();
-        return std::pair(to_numpy(std::move(point.values), columns), point.names);
-      },
-      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("increments"),
-      nb::arg("lanes"), nb::arg("time_step") = 1.0, nb::arg("eos") = nb::none(),
-      nb::arg("failures") = std::vector<NamedFailure>());
+  add_materials(m);
   m.def("measure_bandwidth", &measure_bandwidth, nb::arg("threads"),
         nb::call_guard<nb::gil_scoped_release>());
   m.def("build_info", [] {

@@ -9,31 +9,40 @@ from itertools import pairwise
 import numpy as np
 
 from mpm3dpp import _core
+from mpm3dpp.materials.point import drive_point
 
 DENSITY, MODULUS = 1000.0, 1e8
+HARD, SOFT = MODULUS, 1e-3 * MODULUS
+"""A yield stress that no motion here reaches, and one that soon is reached."""
+DURATION = 1e-3
+"""Of a motion [s]; strains of 0.1 then have rates that models with rates feel."""
 EPS = np.finfo(float).eps
-MODELS = [
-    m.name
+_STRENGTH = [
+    m
     for m in _core.catalogue()
     if m.kind == "strength" and m.eos != "must" and m.name != "rigid"
 ]
+MODELS = [m.name for m in _STRENGTH]
 """The strength models that give a whole stress by themselves; a rigid body has none."""
+PLASTIC = [m.name for m in _STRENGTH if "plastic_strain" in [s.name for s in m.state]]
+CASES = [(name, HARD) for name in MODELS] + [(name, SOFT) for name in PLASTIC]
+"""Every model while it is elastic, and those that yield while they flow."""
 
-CHOSEN = {"nu": 0.3, "T_melt": 1000.0, "cp": 1000.0, "n": 0.5, "e0": 0.5, "q_phi": 0.5}
-CHOSEN["tension"] = MODULUS
-CHOSEN["friction_angle"] = 0.5
+CHOSEN = {"nu": 0.3, "T_melt": 1000.0, "cp": 1.0, "n": 0.5, "e0": 0.5, "q_phi": 0.5}
+CHOSEN |= {"tension": HARD, "friction_angle": 0.5, "C": 0.05}
 
 Motion = Callable[[float], np.ndarray]
 
 
-def parameters(name: str) -> dict[str, float]:
-    """Return parameters of a model: moduli and yield stresses 1e8 Pa, else CHOSEN, default or 1."""
+def parameters(name: str, strength: float = HARD) -> dict[str, float]:
+    """Return parameters of a model: moduli 1e8 Pa, yield stresses, else CHOSEN, default or 1."""
     model = next(m for m in _core.catalogue() if m.name == name)
     values = {}
     for p in model.parameters:
         if p.default is not None and p.name not in CHOSEN:
             continue
-        values[p.name] = MODULUS if p.unit == "Pa" else CHOSEN.get(p.name, 1.0)
+        stress = MODULUS if p.name in ("E", "K", "G") else strength
+        values[p.name] = stress if p.unit == "Pa" else CHOSEN.get(p.name, 1.0)
     return values
 
 
@@ -55,9 +64,17 @@ def drive(
     constants: dict[str, float] | None = None,
 ) -> np.ndarray:
     """Return the Cauchy stress after each step as matrices, shape (steps + 1, 3, 3) [Pa]."""
-    moves = np.ascontiguousarray(moves)
-    s, _ = _core.drive_material(DENSITY, name, constants or parameters(name), moves, lanes)
-    return s[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
+    return columns(name, moves, lanes, constants)["stress"]
+
+
+def columns(
+    name: str, moves: np.ndarray, lanes: bool = False, constants: dict[str, float] | None = None
+) -> dict[str, np.ndarray]:
+    """Return all columns of a point by name, and `stress` as matrices."""
+    given, time_step = constants or parameters(name), DURATION / len(moves)
+    rows, names, _ = drive_point(DENSITY, name, given, moves, lanes, time_step=time_step)
+    stress = rows[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
+    return dict(zip(names, rows.T, strict=True)) | {"stress": stress}
 
 
 def rotation(axis: tuple[float, float, float], angle: float) -> np.ndarray:
@@ -77,6 +94,11 @@ def tangled(t: float) -> np.ndarray:
             [-0.10 * b, 0.08 * a, 0.15 * a],
         ]
     )
+
+
+def deviator(stress: np.ndarray) -> np.ndarray:
+    """Return the deviators of stresses of shape (n, 3, 3)."""
+    return stress - np.trace(stress, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
 
 
 def worst(difference: np.ndarray) -> float:

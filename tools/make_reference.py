@@ -175,7 +175,7 @@ def models_of(kind: str) -> list[str]:
             rule = requirement(p.rule) if p.rule else ""
             parts = (f"`{p.name}`", p.unit or "1", p.meaning, rule, start)
             lines.append("| " + " | ".join(cell(part) for part in parts) + " |")
-        stored = ", ".join(f"`{column}`" for column in model.state) or "nothing"
+        stored = ", ".join(f"`{column.name}`" for column in model.state) or "nothing"
         lines += ["", f"Stores for each particle (for `output.fields`): {stored}."]
     return lines
 

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rules on numbers, in the words that the catalogue of materials and the case schema share.
+"""Rules on numbers: in words for the case schema, as bounds for the catalogue of materials.
 
-A rule is `> 0`, `>= 0`, `< 1`, `-1 < nu < 0.5`, `0 < f <= 1`, or several joined by `and`; it may
-begin with `must be`. So may `must lie between -1 and 0.5, both excluded`.
+A rule in words is `> 0`, `>= 0`, `< 1`, `0 < f <= 1`, or several joined by `and`.
 """
 
 from __future__ import annotations
@@ -11,6 +10,7 @@ import operator
 import re
 from collections.abc import Callable
 from functools import lru_cache
+from typing import Protocol
 
 _COMPARE: dict[str, Callable[[float, float], bool]] = {
     "<": operator.lt,
@@ -25,24 +25,30 @@ _PART = re.compile(
 )
 
 
-_BETWEEN = re.compile(
-    rf"must lie between (?P<low>{_NUMBER}) and (?P<high>{_NUMBER}), "
-    r"both (?P<ends>excluded|included)"
-)
+class Bounds(Protocol):
+    """The numbers from `lower` to `upper`; an open bound is not one of them."""
+
+    lower: float
+    upper: float
+    lower_open: bool
+    upper_open: bool
+
+
+def within(bounds: Bounds, value: float) -> bool:
+    """Return whether a number lies within bounds."""
+    above = value > bounds.lower if bounds.lower_open else value >= bounds.lower
+    below = value < bounds.upper if bounds.upper_open else value <= bounds.upper
+    return above and below
 
 
 @lru_cache(maxsize=256)
 def _tests(rule: str) -> tuple[tuple[str, float, bool], ...]:
     """Return (sign, bound, bound is on the left) of each comparison in a rule."""
     tests: list[tuple[str, float, bool]] = []
-    between = _BETWEEN.fullmatch(rule.strip())
-    if between is not None:
-        sign = "<" if between["ends"] == "excluded" else "<="
-        return ((sign, float(between["low"]), True), (sign, float(between["high"]), False))
-    for part in re.split(r"\s+and\s+|,", rule.strip().removeprefix("must be ")):
+    for part in re.split(r"\s+and\s+|,", rule.strip()):
         match = _PART.fullmatch(part.strip())
         if match is None:
-            continue  # A rule in other words is checked by the core alone.
+            raise ValueError(f"no rule on a number: {rule}")
         if match["left"] is not None:
             tests.append((match["left_sign"], float(match["left"]), True))
         if match["right"] is not None:

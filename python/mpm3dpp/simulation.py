@@ -11,7 +11,7 @@ from . import _core
 from .build import build, warnings
 from .case import Case
 from .detonation import lighting_times
-from .errors import CaseError, RunError
+from .errors import CaseError, RunError, nearest
 from .folders import thread_count
 
 
@@ -104,8 +104,15 @@ class Simulation:
             body: its name.
             name: "position" [m], "velocity" [m/s], "stress" [Pa] (xx yy zz yz xz xy, tension
                 positive), "volume" [m^3], "mass" [kg], or a state column of its material.
+
+        Raises:
+            CaseError: there is no such body or column.
         """
-        return self.core.column(self.bodies.index(body), name)
+        number = self._number(body)
+        known = [column.name for column in self.core.columns(number)]
+        if name not in known:
+            raise CaseError(f"is not a column of {body}", nearest(name, known), value=name)
+        return self.core.column(number, name)
 
     def eroded(self) -> dict[str, Any]:
         """Return `mass` [kg] (per metre in 2D) and `count` of the particles that have eroded.
@@ -115,9 +122,18 @@ class Simulation:
         return dict(self.core.eroded())
 
     def set_velocity(self, body: str, velocities: np.ndarray) -> None:
-        """Give the particles of a body velocities [m/s], shape (n, D), in the order of filling."""
+        """Give the particles of a body velocities [m/s], shape (n, D), in the order of filling.
+
+        Raises:
+            CaseError: there is no such body.
+        """
         values = np.ascontiguousarray(velocities, dtype=float)
-        self.core.set_velocity(self.bodies.index(body), values)
+        self.core.set_velocity(self._number(body), values)
+
+    def _number(self, body: str) -> int:
+        if body not in self.bodies:
+            raise CaseError("is not a body of the case", nearest(body, self.bodies), value=body)
+        return self.bodies.index(body)
 
 
 def _settings(case: Case, threads: int) -> _core.Settings:

@@ -18,7 +18,7 @@ from functools import lru_cache
 from typing import Annotated, Any
 
 from .errors import NO_VALUE, CaseError, violation
-from .rules import holds, requirement
+from .rules import Bounds, holds, requirement, within
 
 # What a quantity of an SI unit is called, and an example of it.
 DIMENSIONS: dict[str, tuple[str, str]] = {
@@ -163,10 +163,12 @@ class Quantity:
     Attributes:
         unit: SI unit of the stored number.
         rule: what the number must obey (see `rules.holds`); empty for no rule.
+        bounds: the same as numbers, where the core gives them; the rule is then only for messages.
     """
 
     unit: str
     rule: str = ""
+    bounds: Bounds | None = None
 
     def parse(self, value: Any) -> float:
         """Return the number in SI units, or raise the violation that pydantic collects."""
@@ -174,7 +176,8 @@ class Quantity:
             number = to_si(value, self.unit)
         except CaseError as error:
             raise violation(error.rule, error.remedy, value=value) from None
-        if not holds(self.rule, number):
+        allowed = holds(self.rule, number) if self.bounds is None else within(self.bounds, number)
+        if not allowed:
             raise violation(requirement(self.rule), _give(self.unit), value=value)
         return number
 

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from mpm3dpp import _core
+from mpm3dpp.materials.point import drive_point
 
 EPS = np.finfo(float).eps
 GAS = ("ideal_gas", {"gamma": 1.4, "E0": 2.5e5})
 TNT = ("jwl", {"A": 371.2e9, "B": 3.21e9, "R1": 4.15, "R2": 0.95, "omega": 0.3, "E0": 7e9})
 COPPER = ("mie_gruneisen", {"c0": 3940.0, "s": 1.49, "gamma0": 1.96})
+DETONATION = 6930.0  # [m/s]
 EXAMPLES = {
     "linear": {"K": 2e9},
     "polynomial": {"c1": 2e9, "c2": 1e9, "c3": 3e9, "c4": 0.3, "c5": 0.2, "c6": 0.1, "E0": 1e6},
@@ -33,7 +35,7 @@ def squeeze(
     gradient = np.diff(volumes) / volumes[:-1]
     moves = np.zeros((len(gradient), 3, 3))
     moves[:, 0, 0] = gradient
-    rows, names = _core.drive_material(density, "fluid", {"viscosity": 0.0}, moves, lanes, eos=eos)
+    rows, names, _ = drive_point(density, "fluid", {"viscosity": 0.0}, moves, lanes, eos=eos)
     found = dict(zip(names, rows.T, strict=True))
     return found | {"pressure": -rows[:, :3].mean(axis=1)}
 
@@ -128,16 +130,62 @@ def test_a_jump_in_one_step_is_a_shock(
         assert density / V == pytest.approx(after, rel=1e-5)
 
 
-def test_burning_scales_the_pressure() -> None:
-    """Unlit explosive bears nothing; the burn fraction multiplies the pressure of its products."""
+def burn(
+    moves: np.ndarray, state: dict[str, float], lanes: bool = True, **more: float
+) -> dict[str, np.ndarray]:
+    """Return the columns of TNT that goes through `moves` from a state."""
+    rows, names, _ = drive_point(
+        1630.0, "high_explosive", {"D": DETONATION}, moves, lanes, eos=TNT, state=state, **more
+    )
+    return dict(zip(names, rows.T, strict=True)) | {"pressure": -rows[:, :3].mean(axis=1)}
+
+
+def test_what_does_not_burn_bears_nothing() -> None:
     moves = np.zeros((3, 3, 3))
     moves[:, 0, 0] = -1e-3
-    rows, names = _core.drive_material(
-        1630.0, "high_explosive", {"D": 6930.0}, moves, True, eos=TNT
-    )
-    assert np.all(rows[:, :6] == 0.0)
-    assert np.all(rows[:, names.index("burn_fraction")] == 0.0)
-    assert rows[0, names.index("sound_speed")] == pytest.approx(6930.0)
+    found = burn(moves, {})
+    assert np.all(found["pressure"] == 0.0)
+    assert np.all(found["burn_fraction"] == 0.0)
+    assert found["sound_speed"][0] == pytest.approx(DETONATION)
+
+
+@pytest.mark.parametrize("lanes", [False, True])
+@pytest.mark.parametrize("fraction", [0.5, 1.0])
+def test_burning_scales_the_pressure(fraction: float, lanes: bool) -> None:
+    """The burn fraction multiplies the pressure of the products at the energy that is left.
+
+    That grows by the work of the burnt pressure. The speed of sound is that of the isentrope at a
+    constant fraction, and the square of the front's for what has not burnt.
+    """
+    volumes = np.concatenate([[1.0, 1.0], np.linspace(1.0, 0.9, 2001)[1:]])
+    moves = np.zeros((len(volumes) - 1, 3, 3))
+    moves[:, 1, 1] = np.diff(volumes) / volumes[:-1]
+    found = burn(moves, {"burn_fraction": fraction}, lanes)
+    assert np.all(found["burn_fraction"] == fraction)
+
+    p, energy, (_, c) = found["pressure"], found["internal_energy"], TNT
+    products = c["omega"] * energy / volumes
+    for size, rate in ((c["A"], c["R1"]), (c["B"], c["R2"])):
+        products += size * (1 - c["omega"] / (rate * volumes)) * np.exp(-rate * volumes)
+    assert p[1:] == pytest.approx(fraction * products[1:], rel=1e-12)  # from the first step on
+    gained = -0.5 * (p[1:] + p[:-1]) * np.diff(volumes)
+    assert np.diff(energy) == pytest.approx(gained, rel=1e-9, abs=1e-9 * energy[0])
+
+    density = 1630.0 / volumes[1:]
+    slope = (p[3:] - p[1:-2]) / (density[2:] - density[:-2])
+    unburnt = (1 - fraction) * DETONATION**2
+    assert found["sound_speed"][2:-1] ** 2 - unburnt == pytest.approx(slope, rel=2e-5)
+
+
+def test_a_front_burns_over_one_and_a_half_cells() -> None:
+    """F = (t - t_l) D / (1.5 h) between 0 and 1, and it stays (Wilkins 1964)."""
+    cell, dt, lit = 1e-3, 1e-8, 5e-8
+    found = burn(np.zeros((40, 3, 3)), {"lighting_time": lit}, time_step=dt, cell_size=cell)
+    time = dt * np.arange(41)
+    exact = np.clip((time - lit) * DETONATION / (1.5 * cell), 0.0, 1.0)
+    assert found["burn_fraction"] == pytest.approx(exact, abs=1e-12)
+    assert 0 < np.count_nonzero((exact > 0) & (exact < 1)) < 30
+    assert found["pressure"] == pytest.approx(exact * found["pressure"][-1], rel=1e-12)
 
 
 def test_a_newtonian_fluid_in_shear() -> None:
@@ -145,7 +193,7 @@ def test_a_newtonian_fluid_in_shear() -> None:
     rate, viscosity, dt = 50.0, 0.2, 1e-4
     moves = np.zeros((10, 3, 3))
     moves[:, 0, 1] = rate * dt
-    rows, names = _core.drive_material(
+    rows, names, _ = drive_point(
         1000.0, "fluid", {"viscosity": viscosity}, moves, True, time_step=dt, eos=GAS
     )
     assert rows[1:, 5] == pytest.approx(viscosity * rate, rel=1e-12)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from motions import DENSITY, rotation
-from mpm3dpp import _core
+from mpm3dpp.materials.point import drive_point
 
 E, NU = 2e11, 0.3
 LAMBDA, G = E * NU / ((1 + NU) * (1 - 2 * NU)), E / (2 * (1 + NU))
@@ -31,7 +31,7 @@ def drive(
 ) -> Row:
     """Return columns by name, one value for each step."""
     moves = np.ascontiguousarray(moves)
-    rows, names = _core.drive_material(
+    rows, names, _ = drive_point(
         DENSITY, strength, constants, moves, lanes, failures=failures, **more
     )
     return dict(zip(names, rows.T, strict=True))

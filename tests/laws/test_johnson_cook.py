@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mpm3dpp import _core
+from mpm3dpp.materials.point import drive_point
 
 # Johnson & Cook 1983: A, B [Pa], n, C, m, T_room, T_melt [K], density, cp; chi = 0.9.
 OFHC = (90e6, 292e6, 0.31, 0.025, 1.09, 298.0, 1356.0, 8960.0, 383.0)
@@ -26,14 +26,15 @@ def pulled(metal: tuple[float, ...], rate: float, steps: int, thermal: bool = Tr
     moves = np.zeros((steps, 3, 3))
     stretch = np.sqrt(3) / 2 * strain
     moves[:, 0, 0], moves[:, 1, 1] = np.expm1(stretch), np.expm1(-stretch)
-    rows, names = _core.drive_material(
-        density, name, constants, moves, True, time_step=strain / rate
-    )
+    rows, names, _ = drive_point(density, name, constants, moves, True, time_step=strain / rate)
     found = dict(zip(names, rows.T, strict=True))
-    s = rows[:, :6]
+    return found | {"von_mises": von_mises(rows[:, :6]), "dt": strain / rate}
+
+
+def von_mises(s: np.ndarray) -> np.ndarray:
+    """Return von Mises' stress of stresses of shape (n, 6)."""
     deviator = s - np.where(np.arange(6) < 3, s[:, :3].mean(axis=1)[:, None], 0.0)
-    square = (deviator**2) @ np.array([1, 1, 1, 2, 2, 2])
-    return found | {"von_mises": np.sqrt(1.5 * square), "dt": strain / rate}
+    return np.sqrt(1.5 * (deviator**2) @ np.array([1, 1, 1, 2, 2, 2]))
 
 
 def at(found: dict, name: str, plastic: float) -> float:
@@ -112,7 +113,7 @@ def test_hardening_curves(model: str) -> None:
     constants = {"E": YOUNG, "nu": POISSON, "Y0": 1e8, **own}
     moves = np.zeros((500, 3, 3))
     moves[:, 0, 0], moves[:, 1, 1] = np.expm1(1e-3), np.expm1(-1e-3)
-    rows, names = _core.drive_material(8e3, model, constants, moves, True)
+    rows, names, _ = drive_point(8e3, model, constants, moves, True)
     plastic = rows[1:, names.index("plastic_strain")]
     exact = {
         "voce": lambda p: 1e8 + 2e8 * (1 - np.exp(-12 * p)),
@@ -136,3 +137,26 @@ def test_hardening_curves(model: str) -> None:
     }[model]
     bound = 1.1 / 12 * np.diff(plastic).max() ** 2 * change
     assert abs(rows[-1, names.index("dissipated")] - integral) < bound
+
+
+@pytest.mark.parametrize("thermal", [False, True])
+def test_the_yield_stress_is_met_with_large_exponents(thermal: bool) -> None:
+    """n or m = 20, where six terms of the series of (1 + x)^a leave 1e-9 for x = 0.01."""
+    A, room, melt, density = (1e9 if thermal else 1e6), 298.0, 1298.0, 8e3
+    constants = {"E": YOUNG, "nu": POISSON, "A": A, "B": 0.0, "n": 1.0, "C": 0.0}
+    name, state = "simplified_johnson_cook", {"plastic_strain": 0.9}
+    if thermal:
+        name, state = "johnson_cook", {"temperature": room + 950.0}
+        constants |= {"m": 20.0, "T_room": room, "T_melt": melt, "cp": 65.0}
+    else:
+        constants |= {"B": 3e8, "n": 20.0}
+    strain = np.sqrt(3) / 2 * 0.0085  # plastic strain and T* change by up to 1 %
+    moves = np.tile(np.diag(np.expm1([strain, -strain, 0.0])), (4 if thermal else 12, 1, 1))
+    for lanes in (False, True):
+        rows, names, _ = drive_point(density, name, constants, moves, lanes, state=state)
+        found = dict(zip(names, rows[1:].T, strict=True))
+        exact = A + constants["B"] * found["plastic_strain"] ** constants["n"]
+        if thermal:
+            exact *= 1 - ((found["temperature"] - room) / (melt - room)) ** 20
+        assert np.diff(found["plastic_strain"]).min() > 0
+        assert np.abs(von_mises(rows[1:, :6]) / exact - 1).max() < 3e-11  # 2e-10 with the series

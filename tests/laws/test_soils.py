@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from motions import DENSITY
-from mpm3dpp import _core
+from mpm3dpp.materials.point import drive_point
 
 E, NU = 2e7, 0.3
 COHESION, ANGLE, CELL = 1e4, np.pi / 6, 1e5
@@ -29,7 +29,7 @@ Row = dict[str, np.ndarray]
 
 def drive(name: str, constants: dict[str, float], moves: np.ndarray, lanes: bool = False) -> Row:
     """Return columns by name, one value for each step."""
-    rows, names = _core.drive_material(DENSITY, name, constants, np.ascontiguousarray(moves), lanes)
+    rows, names, _ = drive_point(DENSITY, name, constants, np.ascontiguousarray(moves), lanes)
     return dict(zip(names, rows.T, strict=True))
 
 

@@ -16,7 +16,7 @@ from mpm3dpp.case_parts import Contact, ContactPair, Grid, GridBox, Output, Run
 from mpm3dpp.echo import echo, occupied_cells, time_step
 from mpm3dpp.errors import CaseError
 from mpm3dpp.folders import default_folder, thread_count
-from mpm3dpp.materials import Strength, catalogue, listing
+from mpm3dpp.materials import Failure, Strength, catalogue, listing
 from mpm3dpp.shapes import Box, Disc, Sphere
 
 RINGS = """\
@@ -324,3 +324,18 @@ def test_models_that_do_not_go_together_are_refused(material: dict, reason: str)
             body={"one": {"material": "any", "shape": {"box": {"lower": [0, 0], "upper": [1, 1]}}}},
         )
     assert "material.any" in str(error.value)
+
+
+def test_the_same_failure_model_twice_is_refused() -> None:
+    """A table of a case file cannot hold it twice; a list in Python could, and the echo not."""
+    strength = Strength(model="j2", parameters={"E": 1e9, "nu": 0.3, "Y0": 1e6})
+    low, high = (Failure(model="plastic_strain", parameters={"limit": x}) for x in (0.5, 1.0))
+    other = Failure(model="principal_stress", parameters={"limit": 1e6})
+    material = Material(density=1000, strength=strength, failure=[low, other])
+    assert set(material.table()["failure"]) == {"plastic_strain", "principal_stress"}
+    with pytest.raises(CaseError) as error:
+        Material(density=1000, strength=strength, failure=[low, other, high])
+    assert str(error.value) == (
+        "material.failure.plastic_strain stands here twice, and a material has each failure model "
+        "once; leave one of them out"
+    )

@@ -21,6 +21,7 @@ from mpm3dpp import (
     Viscosity,
     shapes,
 )
+from mpm3dpp.errors import CaseError
 from mpm3dpp.io.history import COLUMNS, NUMERICAL
 
 EPS = np.finfo(float).eps
@@ -234,6 +235,23 @@ def test_a_free_face_lets_a_body_pass() -> None:
     simulation.advance(300)
     assert simulation.column("block", "position")[:, 1].max() < 0.0
     assert np.abs(simulation.column("block", "stress")).max() <= 1e-12 * YOUNG
+
+
+def test_an_unknown_column_or_body_is_one_sentence() -> None:
+    simulation = Simulation(one_block(2, box(2, 10, "free"), {}, velocity=(0.0, 0.0)), threads=1)
+    with pytest.raises(CaseError) as error:
+        simulation.column("block", "presure")
+    assert '"presure" is not a column of block; valid here: ' in str(error.value)
+    known = ["position", "velocity", "mass", "volume", "stress"]
+    assert all(name in str(error.value) for name in known)
+    for call in (
+        lambda: simulation.column("blok", "mass"),
+        lambda: simulation.set_velocity("blok", np.zeros((1, 2))),
+    ):
+        with pytest.raises(CaseError, match='"blok" is not a body of the case; did you mean "blo'):
+            call()
+    with pytest.raises(ValueError, match="no column is named presure; there are position, "):
+        simulation.core.column(0, "presure")
 
 
 def test_set_velocity() -> None:

@@ -16,10 +16,12 @@
   X(cholesky) \
   X(eigen) \
   X(threads) \
+  X(columns) \
   X(basis) \
   X(jaumann) \
   X(models) \
   X(material) \
+  X(plane_strain) \
   X(mohr_coulomb) \
   X(two_bodies) \
   X(many_bodies) \

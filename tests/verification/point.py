@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from mpm3dpp import _core
+from mpm3dpp.materials.point import drive_point
 
 from .figure import Figure, judge, report
 from .points import ball, block
@@ -115,8 +115,8 @@ def _shear_errors(steps: int) -> dict[str, float]:
     increments[:, 0, 1] = 2 * math.pi / steps
     gamma = np.linspace(0.0, 2 * math.pi, steps + 1)[1:]
     worst = {}
-    jaumann = _core.drive_material(1.0, "elastic", {"E": 2.6, "nu": 0.3}, increments, True)[0]
-    solid = _core.drive_material(1.0, "neo_hookean", {"K": 2.0, "G": 1.0}, increments, True)[0]
+    jaumann = drive_point(1.0, "elastic", {"E": 2.6, "nu": 0.3}, increments, True)[0]
+    solid = drive_point(1.0, "neo_hookean", {"K": 2.0, "G": 1.0}, increments, True)[0]
     for name, stress, tau, s11 in (
         ("Jaumann", jaumann, np.sin(gamma), 1 - np.cos(gamma)),
         ("neo-Hookean", solid, gamma, gamma**2),

@@ -22,8 +22,11 @@ struct ColumnInfo {
 /// All columns of one body, in one allocation: component c of row i is `component(c)[i]`.
 class Columns {
  public:
-  /// Declare a column before `allocate`; returns the index of its first component.
+  /// Declare a column before `allocate`; returns the index of its first component. Throws
+  /// std::invalid_argument for a name that is taken.
   int add(std::string name, std::string unit, int components) {
+    for (const auto& i : infos_)
+      if (i.name == name) throw std::invalid_argument("two columns are named " + name);
     const int first = component_count();
     infos_.push_back({std::move(name), std::move(unit), components, first});
     return first;
@@ -46,11 +49,14 @@ class Columns {
   double* component(int c) { return components_[static_cast<std::size_t>(c)]; }
   const double* component(int c) const { return components_[static_cast<std::size_t>(c)]; }
 
-  /// The column's description; throws std::invalid_argument for an unknown name.
+  /// The column's description; throws std::invalid_argument for an unknown name, with those that
+  /// there are.
   const ColumnInfo& info(std::string_view name) const {
     for (const auto& i : infos_)
       if (i.name == name) return i;
-    throw std::invalid_argument("no column named " + std::string(name));
+    std::string known;
+    for (const auto& i : infos_) known += (known.empty() ? "" : ", ") + i.name;
+    throw std::invalid_argument("no column is named " + std::string(name) + "; there are " + known);
   }
 
   /// One component of room, to gather a permuted component into before `swap_with_spare` puts it in

@@ -15,7 +15,7 @@ struct Power {
   /// which is enough for Newton's steps.
   Yield<T> at(T x) const {
     const T change = (x - start) * inverse;
-    if (any(absolute(change) > T(0.01))) {
+    if (exponent >= power_near_one_below || any(absolute(change) > T(0.01))) {
       const T value = pow(x, T(exponent));
       return {value, T(exponent) * value / x};
     }

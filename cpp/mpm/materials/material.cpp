@@ -1,6 +1,7 @@
 #include "mpm/materials/material.hpp"
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -74,33 +75,42 @@ void check_together(const Strength& strength, const Failure& failure, bool has_e
 
 }  // namespace
 
-std::string_view rule_text(Rule rule) {
+Bounds bounds(Rule rule) {
+  constexpr double none = std::numeric_limits<double>::infinity();
   switch (rule) {
     case Rule::positive:
-      return "must be > 0";
+      return {0.0, none, true, true};
     case Rule::not_negative:
-      return "must be >= 0";
+      return {0.0, none, false, true};
     case Rule::poisson_ratio:
-      return "must lie between -1 and 0.5, both excluded";
+      return {-1.0, 0.5, true, true};
     case Rule::any:
       break;
   }
-  return "must be a finite number";
+  return {-none, none, true, true};
 }
 
 bool satisfies(Rule rule, double value) {
-  if (!std::isfinite(value)) return false;
-  switch (rule) {
-    case Rule::positive:
-      return value > 0.0;
-    case Rule::not_negative:
-      return value >= 0.0;
-    case Rule::poisson_ratio:
-      return value > -1.0 && value < 0.5;
-    case Rule::any:
-      break;
-  }
-  return true;
+  const Bounds b = bounds(rule);
+  const bool above = b.lower_open ? value > b.lower : value >= b.lower;
+  const bool below = b.upper_open ? value < b.upper : value <= b.upper;
+  return std::isfinite(value) && above && below;
+}
+
+std::string rule_text(Rule rule) {
+  const Bounds b = bounds(rule);
+  std::ostringstream text;
+  if (std::isinf(b.lower))
+    text << "must be a finite number";
+  else if (std::isinf(b.upper))
+    text << "must be " << (b.lower_open ? "> " : ">= ") << b.lower;
+  else
+    text << "must lie between " << b.lower << " and " << b.upper << ", "
+         << (b.lower_open == b.upper_open ? "both"
+             : b.lower_open               ? "the first"
+                                          : "the second")
+         << (b.lower_open || b.upper_open ? " excluded" : " included");
+  return text.str();
 }
 
 Material make_material(const MaterialChoice& choice) {

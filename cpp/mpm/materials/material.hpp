@@ -75,8 +75,14 @@ struct MaterialChoice {
 /// missing, a value its rule forbids, or models that do not go together.
 Material make_material(const MaterialChoice& choice);
 
-/// What a rule demands, in words: "must be > 0".
-std::string_view rule_text(Rule rule);
+/// The finite numbers that a rule allows; an open bound is not one of them.
+struct Bounds {
+  double lower, upper;
+  bool lower_open, upper_open;
+};
+Bounds bounds(Rule rule);
 bool satisfies(Rule rule, double value);
+/// What a rule demands, in words: "must be > 0".
+std::string rule_text(Rule rule);
 
 }  // namespace mpm

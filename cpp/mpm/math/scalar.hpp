@@ -33,7 +33,9 @@ T absolute(T a) {
 template <class T>
 using Truth = decltype(T(0.0) < T(0.0));
 
-/// (1 + x)^a for |x| <= 0.01 by the binomial series to x^6: the rest is below 1e-15 for 0 < a < 3.
+/// (1 + x)^a for |x| <= 0.01 by the binomial series to x^6: the rest is below 1e-15 for
+/// 0 < a < `power_near_one_below`, and 1e-9 for a = 20.
+inline constexpr double power_near_one_below = 3.0;
 template <class T>
 T power_near_one(T x, double a) {
   T sum(1.0);

@@ -1,67 +1,127 @@
 #include "mpm/run/drive_material.hpp"
 
-#include "mpm/materials/material_block.hpp"
+#include <cmath>
+#include <stdexcept>
 
 namespace mpm {
 namespace {
 
-constexpr double cell = 1.0;  // [m]; only a detonation front and a viscous fluid's speed know it
+/// A number that a driven point shows, and where it is.
+struct Shown {
+  std::string name, unit;
+  double* value;
+};
 
-void write_row(DrivenPoint& point, const Material& material, const Columns& columns,
-               const MaterialColumns& at, const StressSums& sums) {
-  for (int c = 0; c < 6; ++c) point.values.push_back(columns.component(at.stress + c)[0]);
-  point.values.push_back(columns.component(at.volume)[0]);
-  point.values.push_back(sums.plastic);
-  point.values.push_back(sums.internal + sums.plastic);
-  point.values.push_back(sound_speed<3>(material, columns, at, 0, cell));
-  for (int c = at.stress + 6; c < columns.component_count(); ++c)
-    point.values.push_back(columns.component(c)[0]);
+/// The point with all its columns, at rest. Its initial volume is 1 m^3.
+struct Point {
+  Material material;
+  Columns columns;
+  MaterialColumns at{};
+  double dissipated = 0.0, work = 0.0, sound_speed = 0.0, viscous = 0.0;
+
+  explicit Point(const MaterialChoice& choice) : material(make_material(choice)) {
+    at.velocity = columns.add("velocity", "m/s", 3);
+    at.mass = columns.add("mass", "kg", 1);
+    at.volume = columns.add("volume", "m^3", 1);
+    at.stress = columns.add("stress", "Pa", 6);
+    add_material_columns<3>(material, columns, at);
+    columns.allocate(1);
+    for (int a = 0; a < 3; ++a) columns.component(at.velocity + a)[0] = 0.0;
+    columns.component(at.mass)[0] = material.density;
+    columns.component(at.volume)[0] = 1.0;
+    start_material_columns<3>(material, columns, at);
+  }
+
+  /// What may be given at the start: stress, volume and the material's columns.
+  std::vector<Shown> state() {
+    std::vector<Shown> found;
+    for (const char* c : {"xx", "yy", "zz", "yz", "xz", "xy"})
+      found.push_back({std::string("stress_") + c, "Pa",
+                       columns.component(at.stress + static_cast<int>(found.size()))});
+    found.push_back({"volume", "1", columns.component(at.volume)});
+    for (const ColumnInfo& info : columns.infos())
+      for (int c = 0; c < info.components && info.first > at.stress; ++c)
+        found.push_back({info.components == 1 ? info.name : info.name + "_" + std::to_string(c),
+                         info.unit, columns.component(info.first + c)});
+    return found;
+  }
+  /// What is counted since the start, or follows from the state.
+  std::vector<Shown> sums() {
+    std::vector<Shown> found{{"dissipated", "J/m^3", &dissipated},
+                             {"work", "J/m^3", &work},
+                             {"sound_speed", "m/s", &sound_speed}};
+    if (material.viscosity.active()) found.push_back({"viscous", "J/m^3", &viscous});
+    return found;
+  }
+};
+
+void set_state(const std::vector<Shown>& state, const std::map<std::string, double>& given) {
+  for (const auto& [name, value] : given) {
+    if (!std::isfinite(value))
+      throw std::invalid_argument("state." + name + " must be a finite number");
+    if (name == "volume" && !(value > 0.0)) throw std::invalid_argument("state.volume must be > 0");
+    bool known = false;
+    std::string names;
+    for (const Shown& column : state) {
+      names += (names.empty() ? "" : ", ") + column.name;
+      if (column.name != name) continue;
+      *column.value = value;
+      known = true;
+    }
+    if (!known)
+      throw std::invalid_argument("state." + name + " is not a column here; there are " + names);
+  }
+}
+
+void check(const char* name, double value, Rule rule) {
+  if (!satisfies(rule, value))
+    throw std::invalid_argument(std::string(name) + " = " + std::to_string(value) + ' ' +
+                                rule_text(rule));
 }
 
 }  // namespace
 
-DrivenPoint drive_material(const MaterialChoice& choice, std::span<const double> increments,
-                           double time_step, bool lanes) {
-  const Material material = make_material(choice);
-  Columns columns;
-  MaterialColumns at{};
-  at.velocity = columns.add("velocity", "m/s", 3);
-  at.mass = columns.add("mass", "kg", 1);
-  at.volume = columns.add("volume", "m^3", 1);
-  at.stress = columns.add("stress", "Pa", 6);
-  add_material_columns<3>(material, columns, at);
-  columns.allocate(1);
-  for (int a = 0; a < 3; ++a) columns.component(at.velocity + a)[0] = 0.0;
-  columns.component(at.mass)[0] = material.density;
-  columns.component(at.volume)[0] = 1.0;
-  start_material_columns<3>(material, columns, at);
+DrivenPoint drive_material(const MaterialChoice& choice, const Drive& drive) {
+  if (drive.increments.size() % 9 != 0)
+    throw std::invalid_argument("increments must have the shape (n, 3, 3)");
+  check("time_step", drive.time_step, Rule::positive);
+  check("cell_size", drive.cell_size, Rule::positive);
 
-  DrivenPoint point;
-  point.names = {"stress_xx", "stress_yy", "stress_zz",  "stress_yz", "stress_xz",
-                 "stress_xy", "volume",    "dissipated", "work",      "sound_speed"};
-  for (const ColumnInfo& info : columns.infos()) {
-    if (info.first <= at.stress) continue;
-    if (info.components == 1) point.names.push_back(info.name);
-    for (int c = 0; c < info.components && info.components > 1; ++c)
-      point.names.push_back(info.name + "_" + std::to_string(c));
+  Point point(choice);
+  std::vector<Shown> shown = point.state();
+  set_state(shown, drive.state);
+  for (const Shown& sum : point.sums()) shown.push_back(sum);
+
+  DrivenPoint driven;
+  for (const Shown& column : shown) {
+    driven.names.push_back(column.name);
+    driven.units.push_back(column.unit);
   }
-
   StressSums sums;
-  write_row(point, material, columns, at, sums);
+  const auto write_row = [&] {
+    point.dissipated = sums.plastic;
+    point.work = sums.internal + sums.plastic;
+    point.viscous = sums.viscous;
+    point.sound_speed = sound_speed<3>(point.material, point.columns, point.at, 0, drive.cell_size);
+    for (const Shown& column : shown) driven.values.push_back(*column.value);
+  };
+  write_row();
   MaterialBlock<3> block;
-  for (std::size_t n = 0; n + 9 <= increments.size(); n += 9) {
-    block.row[0] = 0;
-    block.count = 1;
-    for (std::size_t k = 0; k < 9; ++k) block.gradient[k / 3][k % 3][0] = increments[n + k];
-    const double time = static_cast<double>(n / 9 + 1) * time_step;
-    const StressSettings settings{time_step, time, cell, {}, false};
-    if (lanes)
-      update_block<Batch<native_lanes>, 3>(material, columns, at, block, settings, sums);
+  block.row[0] = 0;
+  block.count = 1;
+  for (std::size_t n = 0; n < drive.increments.size(); n += 9) {
+    for (std::size_t k = 0; k < 9; ++k) block.gradient[k / 3][k % 3][0] = drive.increments[n + k];
+    const double time = static_cast<double>(n / 9 + 1) * drive.time_step;
+    const StressSettings settings{drive.time_step, time, drive.cell_size, point.material.viscosity,
+                                  false};
+    if (drive.lanes)
+      update_block<Batch<native_lanes>, 3>(point.material, point.columns, point.at, block, settings,
+                                           sums);
     else
-      update_block<double, 3>(material, columns, at, block, settings, sums);
-    write_row(point, material, columns, at, sums);
+      update_block<double, 3>(point.material, point.columns, point.at, block, settings, sums);
+    write_row();
   }
-  return point;
+  return driven;
 }
 
 }  // namespace mpm

@@ -23,8 +23,9 @@
 //
 // A positive numerical term is energy lost, a negative one energy made. The residual tests that
 // particles and nodes exchange exactly the same work; internal, viscous and friction enter
-// numerical with the opposite sign, so their own values are tested against closed forms
-// (tests/laws).
+// numerical with the opposite sign, so their own values are tested elsewhere: internal and viscous
+// against closed forms (tests/laws, test_viscosity.py), friction against the work that the pairs of
+// bodies count (tests/verification, oblique impact).
 #include <array>
 #include <cmath>
 

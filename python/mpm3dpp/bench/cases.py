@@ -22,6 +22,9 @@ ALUMINIUM: dict[str, Any] = {
     "density": 2700.0,
     "strength": "elastic",
     "parameters": {"E": 70e9, "nu": 0.3},
+    "eos": None,
+    "failures": [],
+    "viscosity": (0.0, 0.0),
 }
 # OFHC copper: Johnson & Cook 1983; shock data of Steinberg 1996.
 COPPER: dict[str, Any] = {
@@ -32,6 +35,8 @@ COPPER: dict[str, Any] = {
         "T_melt": 1356.0, "cp": 383.0,
     },
     "eos": ("mie_gruneisen", {"c0": 3940.0, "s": 1.49, "gamma0": 1.96}),
+    "failures": [],
+    "viscosity": (0.0, 0.0),
 }  # fmt: skip
 TIME_STEP_FACTOR = 0.5
 DIRECTION = (3.0, 2.0, 1.0)  # Of the translation: oblique to the grid.

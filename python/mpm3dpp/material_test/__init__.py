@@ -58,8 +58,7 @@ def run_test(subject: str, options: Options) -> Result:
     if chosen.test == "hugoniot":
         columns, units = hugoniot.shock_test(name, material, chosen), hugoniot.UNITS
     else:
-        columns = driver.stress_test(name, material, chosen)
-        units = driver.units_of(columns)
+        columns, units = driver.stress_test(name, material, chosen)
     return Result(name, material, chosen, columns, units, known_curves(material, chosen))
 
 

@@ -144,4 +144,5 @@ def _uniaxial_strain(material: Material, to: float) -> list[Curve]:
     limit = math.copysign(min(p["Y0"] / (2.0 * G), abs(to)), to)
     later = K + 4.0 * G / 3.0 * p["H"] / (3.0 * G + p["H"])
     y = np.array([0.0, steep * limit, steep * limit + later * (to - limit)])
-    return [Curve("slopes K + 4G/3, then K", np.array([0.0, limit, to]), y)]
+    slope = "K + 4G/3 H / (3G + H)" if p["H"] > 0.0 else "K"
+    return [Curve(f"slopes K + 4G/3, then {slope}", np.array([0.0, limit, to]), y)]

@@ -6,55 +6,68 @@ Strains are logarithmic: a step multiplies the length along x by exp(to/steps).
 
 from __future__ import annotations
 
-import importlib
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
 from mpm3dpp.case import Material
 from mpm3dpp.errors import CaseError
+from mpm3dpp.materials.point import COUNTED, drive_point
 
 from .options import Options
 
 TENSOR = ("xx", "yy", "zz", "yz", "xz", "xy")
-UNITS = {"strain": "1", "lateral_strain": "1", "pressure": "Pa", "von_mises": "Pa", "volume": "1"}
-UNITS |= {"dissipated": "J/m^3", "work": "J/m^3", "sound_speed": "m/s", "temperature": "K"}
-UNITS |= {"plastic_strain": "1", "internal_energy": "J/m^3", "failed": "1"}
-UNITS |= {f"stress_{c}": "Pa" for c in TENSOR}
+DERIVED = {"strain": "1", "lateral_strain": "1", "pressure": "Pa", "von_mises": "Pa"}
+"""Units of the columns that are made here; the core gives those of the others."""
 
 
-def drive(material: Material, moves: np.ndarray, time_step: float) -> dict[str, np.ndarray]:
-    """Return what a point goes through that starts at rest, by column.
+class Path(NamedTuple):
+    """What a point went through.
+
+    Attributes:
+        columns: name -> values, shape (steps + 1,).
+        units: name -> SI unit, "1" for plain numbers.
+    """
+
+    columns: dict[str, np.ndarray]
+    units: dict[str, str]
+
+
+def drive(
+    material: Material,
+    moves: np.ndarray,
+    time_step: float,
+    state: dict[str, float] | None = None,
+) -> Path:
+    """Return what a point goes through.
 
     Args:
         material: of the point.
         moves: velocity gradient x time step of each step, shape (steps, 3, 3).
         time_step: [s].
+        state: where it starts, by column; None for rest.
 
     Returns:
-        Arrays of shape (steps + 1,): stress_xx ... [Pa], volume (relative), dissipated and work
-        [J/m^3 of initial volume], sound_speed [m/s], and the columns of the material's state.
+        The columns stress_xx ... [Pa], volume (relative), those of the material's state, dissipated
+        and work [J/m^3 of initial volume] and sound_speed [m/s], shape (steps + 1,).
 
     Raises:
         CaseError: the core refuses the material.
     """
-    core = importlib.import_module("mpm3dpp._core")
     try:
-        values, names = core.drive_material(
-            **material.for_core(),
-            increments=np.ascontiguousarray(moves, dtype=float),
-            lanes=False,
-            time_step=time_step,
+        values, names, units = drive_point(
+            **material.for_core(), increments=moves, time_step=time_step, state=state
         )
     except ValueError as error:
         raise CaseError(f"the material cannot be made: {error}") from None
-    return {name: values[:, k].copy() for k, name in enumerate(names)}
+    columns = {name: values[:, k].copy() for k, name in enumerate(names)}
+    return Path(columns, dict(zip(names, units, strict=True)))
 
 
-def stress_test(name: str, material: Material, options: Options) -> dict[str, np.ndarray]:
-    """Return the columns of a test other than hugoniot; `strain` is the first.
+def stress_test(name: str, material: Material, options: Options) -> Path:
+    """Return what a test other than hugoniot gives; the column `strain` is the first.
 
     Args:
         name: of the material, for messages.
@@ -86,7 +99,7 @@ def stress_test(name: str, material: Material, options: Options) -> dict[str, np
         moves[:, 0, 0] = np.expm1(np.diff(strain))
     if options.test == "uniaxial-stress":
         lateral = free_sides(name, material, moves, time_step)
-    columns = drive(material, moves, time_step)
+    columns, units = drive(material, moves, time_step)
     stress = np.array([columns[f"stress_{c}"] for c in TENSOR])
     found = {"strain": strain}
     if lateral is not None:
@@ -95,7 +108,8 @@ def stress_test(name: str, material: Material, options: Options) -> dict[str, np
         first = int(np.argmin(np.isfinite(stress).all(axis=0)))
         raise CaseError(f"has no finite stress from strain {strain[first]:g} on", value=name)
     found |= {f"stress_{c}": columns.pop(f"stress_{c}") for c in TENSOR}
-    return found | {"pressure": pressure(stress), "von_mises": von_mises(stress)} | columns
+    found |= {"pressure": pressure(stress), "von_mises": von_mises(stress)}
+    return Path(found | columns, DERIVED | units)
 
 
 def pressure(stress: np.ndarray) -> np.ndarray:
@@ -118,14 +132,19 @@ def free_sides(name: str, material: Material, moves: np.ndarray, time_step: floa
     Returns:
         The logarithmic lateral strain, shape (steps + 1,).
     """
-    speed = drive(material, moves[:0], time_step)["sound_speed"][0]
-    tolerance = 1e-11 * material.density * speed**2
+    columns = drive(material, moves[:0], time_step).columns
+    tolerance = 1e-11 * material.density * columns["sound_speed"][0] ** 2
     guess = -0.3 * moves[0, 0, 0]
     for n in range(len(moves)):
+        state = {key: float(v[-1]) for key, v in columns.items() if key not in COUNTED}
 
-        def side_stress(lateral: float, n: int = n) -> float:
-            moves[n, 1, 1] = moves[n, 2, 2] = lateral
-            return float(drive(material, moves[: n + 1], time_step)["stress_yy"][-1])
+        move = moves[n : n + 1]
+
+        def side_stress(
+            lateral: float, move: np.ndarray = move, state: dict[str, float] = state
+        ) -> float:
+            move[0, 1, 1] = move[0, 2, 2] = lateral
+            return float(drive(material, move, time_step, state).columns["stress_yy"][-1])
 
         root = find_root(side_stress, guess, 0.05 * abs(moves[n, 0, 0]), tolerance)
         if root is None:
@@ -134,7 +153,8 @@ def free_sides(name: str, material: Material, moves: np.ndarray, time_step: floa
             raise CaseError(
                 rule, "end the test earlier with --to, or take more --steps", value=name
             )
-        moves[n, 1, 1] = moves[n, 2, 2] = guess = root
+        move[0, 1, 1] = move[0, 2, 2] = guess = root
+        columns = drive(material, move, time_step, state).columns
     return np.concatenate([[0.0], np.cumsum(np.log1p(moves[:, 1, 1]))])
 
 
@@ -170,8 +190,3 @@ def find_root(
             fa *= 0.5
         b, fb = x, fx
     return None
-
-
-def units_of(columns: dict[str, Any]) -> dict[str, str]:
-    """Return the SI unit of each column, empty where it is not known."""
-    return {name: UNITS.get(name, "") for name in columns}

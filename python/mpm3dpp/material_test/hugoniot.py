@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import numpy as np
 
 from mpm3dpp.case import Material
@@ -20,7 +23,7 @@ UNITS = {
     "internal_energy": "J/m^3",
     "sound_speed": "m/s",
 }
-_LEAST_VOLUME = 0.02
+_FIRST_STEP, _LEAST_STEP = 0.02, 1e-13  # of the relative volume
 
 
 def shock_test(name: str, material: Material, options: Options) -> dict[str, np.ndarray]:
@@ -63,12 +66,11 @@ def state(name: str, fluid: Material, particle_velocity: float) -> dict[str, flo
     if particle_velocity == 0.0:
         behind, volume, speed = rest, 1.0, rest["sound_speed"]
     else:
-        high, low = 1.0, 1.0
-        while square(low) < particle_velocity**2:
-            high, low = low, low - 0.02
-            if low < _LEAST_VOLUME:
-                rule = f"has no shock of particle velocity {particle_velocity:g} m/s"
-                raise CaseError(rule, "give a smaller --to", value=name)
+        found = bracket(square, particle_velocity**2)
+        if found is None:
+            rule = f"has no shock of particle velocity {particle_velocity:g} m/s"
+            raise CaseError(rule, "give a smaller --to", value=name)
+        low, high = found
         for _ in range(60):
             middle = 0.5 * (low + high)
             slower = square(middle) < particle_velocity**2
@@ -87,6 +89,26 @@ def state(name: str, fluid: Material, particle_velocity: float) -> dict[str, flo
     }
 
 
+def bracket(square: Callable[[float], float], goal: float) -> tuple[float, float] | None:
+    """Return volumes (low, high) with square(high) < goal <= square(low), coming from 1; or None.
+
+    The pressure behind a shock may have a pole: an ideal gas is never compressed below (gamma - 1)
+    / (gamma + 1) by one shock. Beyond it 1 + B dV/2 and the pressure are negative, so a step after
+    which `square` has not grown has gone too far and is halved.
+    """
+    high, at_high, step = 1.0, 0.0, _FIRST_STEP
+    while step > _LEAST_STEP:
+        low = high - step
+        at_low = square(low) if low > 0.0 else -math.inf
+        if at_low >= goal:
+            return low, high
+        if at_low > at_high:
+            high, at_high = low, at_low
+        else:
+            step *= 0.5
+    return None
+
+
 def jump(fluid: Material, volume: float) -> dict[str, float]:
     """Return the state after one step of the driver from rest to a relative volume.
 
@@ -94,6 +116,6 @@ def jump(fluid: Material, volume: float) -> dict[str, float]:
     (p0 + p) (V0 - V) / 2. For a smooth path that is the trapezoidal rule; for a jump in one step it
     is exactly Rankine's and Hugoniot's relation of energy, so the step ends on the Hugoniot.
     """
-    columns = drive(fluid, np.diag([volume - 1.0, 0.0, 0.0])[None], 1.0)
+    columns = drive(fluid, np.diag([volume - 1.0, 0.0, 0.0])[None], 1.0).columns
     last = {key: float(value[-1]) for key, value in columns.items()}
     return last | {"pressure": -last["stress_xx"]}

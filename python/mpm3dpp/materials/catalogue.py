@@ -23,8 +23,9 @@ def catalogue(kind: str = "strength") -> dict[str, Any]:
     """Return the models of a kind that the core knows, by name.
 
     Each has `name`, `doc`, `source`, `parameters` (each with `name`, `unit`, `meaning`, `default`
-    or None, `rule`) and `state` (names of the columns that the model stores); a strength model
-    also has `eos`, whether it "never", "may" or "must" have an equation of state.
+    or None, `rule` in words, `bounds`) and `state` (the columns that the model stores, each with
+    `name` and `unit`); a strength model also has `eos`, whether it "never", "may" or "must" have an
+    equation of state.
     """
     core = importlib.import_module("mpm3dpp._core")
     return {model.name: model for model in core.catalogue() if model.kind == kind}
@@ -33,7 +34,7 @@ def catalogue(kind: str = "strength") -> dict[str, Any]:
 def state_columns(models: set[str]) -> list[str]:
     """Return the names of the state columns that these models store, in the catalogue's order."""
     every = [item for kind in KINDS for item in catalogue(kind).items()]
-    names = [s for name, model in every if name in models for s in model.state]
+    names = [s.name for name, model in every if name in models for s in model.state]
     return list(dict.fromkeys(names))
 
 
@@ -59,7 +60,8 @@ def check_parameters(kind: str, model: str, given: Any) -> dict[str, float]:
     found: dict[str, float] = {}
     for name, parameter in known.items():
         if name in given:
-            quantity = Quantity("" if parameter.unit == "1" else parameter.unit, parameter.rule)
+            unit = "" if parameter.unit == "1" else parameter.unit
+            quantity = Quantity(unit, parameter.rule, parameter.bounds)
             found[name] = _parsed(quantity, given[name], name)
         elif parameter.default is not None:
             found[name] = float(parameter.default)

@@ -120,6 +120,11 @@ def _parse_one(kind: type[ChosenModel]) -> Any:
 def _parse_failures(value: Any) -> list[Failure]:
     """Return the failure models of a table such as `{"plastic_strain": {"limit": 1.5}}`."""
     if isinstance(value, list) and all(isinstance(item, Failure) for item in value):
+        names = [item.model for item in value]
+        for name in names:
+            if names.count(name) > 1:
+                rule = "stands here twice, and a material has each failure model once"
+                raise violation(rule, "leave one of them out", path=(name,))
         return value
     if not isinstance(value, dict):
         model = next(iter(catalogue("failure")))

@@ -88,7 +88,8 @@ def _model_entry(kind: str, model: Any) -> str:
         default = "" if p.default is None else f", default {p.default:g}"
         lines.append(f"    {p.name:<{wide}}  [{p.unit or '1'}] {p.meaning}{rule}{default}")
     if model.state:
-        lines.append(f"  stores {', '.join(model.state)} (for output.fields)")
+        stored = ", ".join(column.name for column in model.state)
+        lines.append(f"  stores {stored} (for output.fields)")
     if kind == "strength":
         pressure = {"never": "takes no eos", "may": "an eos may give the pressure"}
         lines.append(f"  {pressure.get(model.eos, 'needs an eos')}")

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import importlib
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from mpm3dpp.units import Density
 
 from .chosen import AnyEos, AnyFailure, AnyStrength
 from .library import either_library_or_own, fill_in
+from .point import drive_point
 
 
 class Material(CaseModel):
@@ -77,9 +77,7 @@ class Material(CaseModel):
         Raises:
             ValueError: the core refuses parameters or models that do not go together.
         """
-        core = importlib.import_module("mpm3dpp._core")
-        nothing = np.zeros((0, 3, 3))
-        rows, names = core.drive_material(**self.for_core(), increments=nothing, lanes=False)
+        rows, names, _ = drive_point(**self.for_core(), increments=np.zeros((0, 3, 3)))
         return float(rows[0][names.index("sound_speed")])
 
     def for_core(self) -> dict[str, Any]:

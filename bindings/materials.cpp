@@ -1,0 +1,97 @@
+// The catalogue of material models, and one point of a material by itself.
+#include "mpm/run/drive_material.hpp"
+#include "translate.hpp"
+
+namespace mpm::bindings {
+namespace {
+
+struct CatalogueParameter {
+  std::string name, unit, meaning, rule;  // the rule in words
+  Bounds bounds;
+  std::optional<double> start;
+};
+struct CatalogueColumn {
+  std::string name, unit;
+};
+struct CatalogueModel {
+  std::string kind, name, doc, source;
+  std::vector<CatalogueParameter> parameters;
+  std::vector<CatalogueColumn> state;
+  std::string eos;  // of a strength model: "never", "may", "must"
+};
+
+template <class M>
+CatalogueModel described(const char* kind, const M& model) {
+  CatalogueModel m{
+      kind, std::string(model.name), std::string(model.doc), std::string(model.source), {}, {}, ""};
+  for (const auto& p : model.params)
+    m.parameters.push_back({std::string(p.name), std::string(p.unit), std::string(p.meaning),
+                            rule_text(p.rule), bounds(p.rule),
+                            std::isnan(p.start) ? std::nullopt : std::optional<double>(p.start)});
+  if constexpr (requires { model.state_columns; })
+    for (const auto& s : model.state_columns)
+      m.state.push_back({std::string(s.name), std::string(s.unit)});
+  if constexpr (requires { M::eos; })
+    m.eos = M::eos == EosUse::never ? "never" : M::eos == EosUse::may ? "may" : "must";
+  return m;
+}
+
+std::vector<CatalogueModel> catalogue() {
+  std::vector<CatalogueModel> models;
+  const auto add = [&](const char* kind) {
+    return [&models, kind](const auto& model) { models.push_back(described(kind, model)); };
+  };
+  StrengthModels::for_each(add("strength"));
+  EosModels::for_each(add("eos"));
+  FailureModels::for_each(add("failure"));
+  return models;
+}
+
+}  // namespace
+
+void add_materials(nb::module_& m) {
+  nb::class_<Bounds>(m, "Bounds")
+      .def_ro("lower", &Bounds::lower)
+      .def_ro("upper", &Bounds::upper)
+      .def_ro("lower_open", &Bounds::lower_open)
+      .def_ro("upper_open", &Bounds::upper_open);
+  nb::class_<CatalogueParameter>(m, "Parameter")
+      .def_ro("name", &CatalogueParameter::name)
+      .def_ro("unit", &CatalogueParameter::unit)
+      .def_ro("meaning", &CatalogueParameter::meaning)
+      .def_ro("rule", &CatalogueParameter::rule)
+      .def_ro("bounds", &CatalogueParameter::bounds)
+      .def_ro("default", &CatalogueParameter::start);
+  nb::class_<CatalogueColumn>(m, "StateColumn")
+      .def_ro("name", &CatalogueColumn::name)
+      .def_ro("unit", &CatalogueColumn::unit);
+  nb::class_<CatalogueModel>(m, "Model")
+      .def_ro("kind", &CatalogueModel::kind)
+      .def_ro("name", &CatalogueModel::name)
+      .def_ro("doc", &CatalogueModel::doc)
+      .def_ro("source", &CatalogueModel::source)
+      .def_ro("parameters", &CatalogueModel::parameters)
+      .def_ro("state", &CatalogueModel::state)
+      .def_ro("eos", &CatalogueModel::eos);
+  m.def("catalogue", &catalogue);
+
+  m.def(
+      "drive_material",
+      [](double density, const std::string& strength, const Parameters& parameters,
+         const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
+         Viscosity viscosity, const Input& increments, double time_step, double cell_size,
+         const Parameters& state, bool lanes) {
+        if (increments.ndim() != 3 || increments.shape(1) != 3 || increments.shape(2) != 3)
+          throw std::invalid_argument("increments must have the shape (n, 3, 3)");
+        DrivenPoint point =
+            drive_material(choice_of(density, strength, parameters, eos, failures, viscosity),
+                           {span_of(increments), time_step, cell_size, state, lanes});
+        const std::size_t columns = point.names.size();
+        return std::tuple(to_numpy(std::move(point.values), columns), point.names, point.units);
+      },
+      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
+      nb::arg("failures"), nb::arg("viscosity"), nb::arg("increments"), nb::arg("time_step"),
+      nb::arg("cell_size"), nb::arg("state"), nb::arg("lanes"));
+}
+
+}  // namespace mpm::bindings

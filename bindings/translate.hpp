@@ -1,0 +1,47 @@
+#pragma once
+// Between NumPy and Python's tables on one side, spans and structs of the core on the other.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include "mpm/materials/material.hpp"
+
+namespace mpm::bindings {
+
+namespace nb = nanobind;
+
+using Input = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+using Output = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
+using Parameters = std::map<std::string, double>;
+using Named = std::pair<std::string, Parameters>;
+using Viscosity = std::pair<double, double>;  // quadratic, linear
+using NamedFailure = std::tuple<std::string, Parameters, std::string>;
+
+inline std::span<const double> span_of(const Input& array) { return {array.data(), array.size()}; }
+
+inline Output to_numpy(std::vector<double>&& values, std::size_t columns) {
+  auto* owned = new std::vector<double>(std::move(values));
+  nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  return Output(owned->data(), {owned->size() / columns, columns}, owner);
+}
+
+inline MaterialChoice choice_of(double density, const std::string& strength,
+                                const Parameters& parameters, const std::optional<Named>& eos,
+                                const std::vector<NamedFailure>& failures, Viscosity viscosity) {
+  MaterialChoice choice{
+      density, {strength, parameters}, {}, {}, {viscosity.first, viscosity.second}};
+  if (eos) choice.eos = ModelChoice{eos->first, eos->second};
+  for (const auto& [name, values, action] : failures)
+    choice.failures.push_back({{name, values}, action});
+  return choice;
+}
+
+/// The catalogue of material models and the single material point.
+void add_materials(nb::module_& m);
+
+}  // namespace mpm::bindings
