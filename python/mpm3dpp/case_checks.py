@@ -12,6 +12,7 @@ from .materials import state_columns
 
 if TYPE_CHECKING:
     from .case import Body, Case
+    from .materials.material import Material
 
 
 def check_case(case: Case) -> None:
@@ -26,11 +27,7 @@ def check_case(case: Case) -> None:
         if "" in what:
             raise violation("must have a name", "write [body.left]", path=(name, ""))
     for name, material in case.material.items():
-        try:
-            material.sound_speed()
-        except ValueError as error:
-            remedy = "see `mpm3dpp materials`"
-            raise violation(f"is refused: {error}", remedy, path=("material", name)) from None
+        _check_material(material, ("material", name))
     dimension = case.grid.dimension
     _check_vector(case.run, "gravity", dimension, ("run",))
     for name, body in case.body.items():
@@ -45,6 +42,20 @@ def check_case(case: Case) -> None:
                 raise violation(rule, nearest(word, known), value=word, path=path)
     check_detonations(case)
     _check_output(case)
+
+
+def _check_material(material: Material, path: Path) -> None:
+    """Raise what the core finds wrong, and if nothing would resist compression at the start."""
+    try:
+        material.sound_speed()
+        speed = material.eos_sound_speed()
+    except ValueError as error:
+        raise violation(f"is refused: {error}", "see `mpm3dpp materials`", path=path) from None
+    if material.eos is not None and not speed:
+        rule = "has no stiffness at the start: its pressure does not rise when it is compressed"
+        model = material.eos.model
+        remedy = f"correct its numbers; `mpm3dpp materials {model}` has an example"
+        raise violation(rule, remedy, path=(*path, "eos", model))
 
 
 def _check_vector(owner: object, name: str, dimension: int, path: Path) -> None:

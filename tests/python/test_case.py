@@ -313,6 +313,19 @@ def test_default_folder_and_threads(monkeypatch: pytest.MonkeyPatch) -> None:
             },
             "needs a plastic strain",
         ),
+        *[
+            (
+                {
+                    "density": 1000,
+                    "strength": strength,
+                    "eos": {"jwl": dict.fromkeys("AB", 26e6) | {
+                        "R1": 0.3, "R2": 0.3, "omega": 0.3, "E0": 26e6,
+                    }},
+                },
+                "eos.jwl has no stiffness at the start",
+            )
+            for strength in ({"fluid": {}}, {"high_explosive": {"D": 6930.0}})
+        ],
     ],
 )  # fmt: skip
 def test_models_that_do_not_go_together_are_refused(material: dict, reason: str) -> None:

@@ -70,10 +70,17 @@ class Material(CaseModel):
         Raises:
             ValueError: the core refuses parameters or models that do not go together.
         """
-        core = importlib.import_module("mpm3dpp._core")
-        nothing = np.zeros((0, 3, 3))
-        rows, names = core.drive_material(**self.for_core(), increments=nothing, lanes=False)
-        return float(rows[0][names.index("sound_speed")])
+        return _sound_speed(**self.for_core())
+
+    def eos_sound_speed(self) -> float | None:
+        """Return what the equation of state alone gives for it [m/s]: 0 without stiffness.
+
+        None without an equation of state.
+        """
+        if self.eos is None:
+            return None
+        alone = {"strength": "fluid", "parameters": {}, "failures": []}
+        return _sound_speed(**{**self.for_core(), **alone})
 
     def for_core(self) -> dict[str, Any]:
         """Return the keyword arguments with which the core makes the material."""
@@ -84,3 +91,10 @@ class Material(CaseModel):
             "eos": None if self.eos is None else (self.eos.model, self.eos.parameters),
             "failures": [(f.model, f.parameters, f.action) for f in self.failure],
         }
+
+
+def _sound_speed(**material: Any) -> float:
+    core = importlib.import_module("mpm3dpp._core")
+    nothing = np.zeros((0, 3, 3))
+    rows, names = core.drive_material(**material, increments=nothing, lanes=False)
+    return float(rows[0][names.index("sound_speed")])
