@@ -9,6 +9,7 @@ import numpy as np
 
 from .build import FilledBody, warnings
 from .case import Case
+from .case_notes import notes
 
 # Estimates for the echo [bytes]: particle columns without and with a state tensor, one grid cell.
 _PARTICLE_BYTES, _CELL_BYTES = 200, 150
@@ -67,4 +68,5 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         f"time: {case.run.scheme}, end {case.run.end_time:.6g} s, step about {dt:.3g} s, "
         f"about {math.ceil(case.run.end_time / dt):,} steps, {len(case.frame_times())} frames",
     ]
-    return "\n".join([*lines, *(f"warning: {sentence}" for sentence in warnings(bodies))])
+    lines += [f"warning: {sentence}" for sentence in warnings(bodies)]
+    return "\n".join([*lines, *(f"note: {sentence}" for sentence in notes(case, bodies))])

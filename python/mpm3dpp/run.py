@@ -104,6 +104,8 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
     with results, history, progress, _interrupt() as stopped:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
+        for sentence in simulation.notes:
+            progress.note(f"note: {sentence}")
         results.write(core)
         touched = 0
         while status == "completed" and core.time < case.run.end_time:
