@@ -11,6 +11,7 @@ import numpy as np
 
 from mpm3dpp.plots.flat import draw_particles, set_view
 from mpm3dpp.plots.labels import at_time, choose, length_unit, prefix
+from mpm3dpp.plots.line import draw_line, line_axis
 from mpm3dpp.plots.style import (
     DPI,
     body_colours,
@@ -35,18 +36,20 @@ class View:
     Attributes:
         lower, upper: corners of the visible region [m], shape (3,).
         low, high: range of the coloured array, SI.
+        along: axis over which the values are drawn, for bodies that are a line; None for others.
     """
 
     lower: np.ndarray
     upper: np.ndarray
     low: float
     high: float
+    along: int | None = None
 
 
 def view_of(results: Results, frames: list[int], colour: str) -> View:
     """The view that holds all particles of some frames, with a margin, and all their values."""
     lower, upper = np.full(3, np.inf), np.full(3, -np.inf)
-    low, high = np.inf, -np.inf
+    least, most, low, high = np.inf, -np.inf, np.inf, -np.inf
     for frame in frames:
         arrays = results.arrays(frame)
         position = arrays["position"][np.isfinite(arrays["position"]).all(axis=1)]
@@ -60,8 +63,12 @@ def view_of(results: Results, frames: list[int], colour: str) -> View:
         if len(values):
             bottom, top = _range(values)
             low, high = min(low, bottom), max(high, top)
+            least, most = min(least, float(values.min())), max(most, float(values.max()))
     margin = 0.03 * float(np.max(upper - lower))
-    return View(lower - margin, upper + margin, low, high)
+    along = line_axis(lower, upper, results.cell_size, results.dimension)
+    if along is None or colour in ("body", "material"):
+        return View(lower - margin, upper + margin, low, high)
+    return View(lower - margin, upper + margin, least, most, along)  # Points hide no others.
 
 
 def draw_frame(
@@ -86,7 +93,9 @@ def draw_frame(
     view = view or view_of(results, [frame], colour)
     arrays = results.arrays(frame)
     with styled():
-        if results.dimension == 2:
+        if view.along is not None:
+            figure = draw_line(results, arrays, colour, view, dpi)
+        elif results.dimension == 2:
             figure = _draw_flat(results, arrays, colour, view, dpi)
         else:
             figure = _draw_space(results, arrays, colour, view, dpi)
