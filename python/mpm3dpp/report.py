@@ -62,6 +62,19 @@ def energy_line(manifest: Manifest) -> str:
     return line
 
 
+def erosion_line(manifest: Manifest) -> list[str]:
+    """Return the line about particles that have eroded, with their mass and energy; or none."""
+    count, mass = int(manifest.eroded["count"]), float(manifest.eroded["mass"])
+    if not count:
+        return []
+    per = "/m" if manifest.case.get("grid", {}).get("dimension") == 2 else ""
+    energy = manifest.energies.get("final", {}).get("eroded", 0.0)
+    return [
+        f"eroded: {count:,} of {manifest.particles:,} particles, {mass:.4g} kg{per} "
+        f"({mass / manifest.mass:.2%} of the mass), {energy:.4g} J{per}"
+    ]
+
+
 def speed_line(manifest: Manifest) -> str:
     """Return the line about speed and memory."""
     used = sum(manifest.bytes.values()) / max(1, manifest.particles)

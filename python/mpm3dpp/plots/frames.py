@@ -46,12 +46,24 @@ class View:
     along: int | None = None
 
 
+_ERODED = 3  # in the column `failed`
+
+
+def drawn(results: Results, frame: int) -> dict[str, np.ndarray]:
+    """Return the arrays of a frame without the particles that have eroded."""
+    arrays = results.arrays(frame)
+    if "failed" not in arrays:
+        return arrays
+    stays = ~(arrays["failed"] >= _ERODED)  # NaN where nothing can fail
+    return {name: values[stays] for name, values in arrays.items()}
+
+
 def view_of(results: Results, frames: list[int], colour: str) -> View:
     """The view that holds all particles of some frames, with a margin, and all their values."""
     lower, upper = np.full(3, np.inf), np.full(3, -np.inf)
     least, most, low, high = np.inf, -np.inf, np.inf, -np.inf
     for frame in frames:
-        arrays = results.arrays(frame)
+        arrays = drawn(results, frame)
         position = arrays["position"][np.isfinite(arrays["position"]).all(axis=1)]
         if len(position) == 0:
             continue
@@ -64,6 +76,9 @@ def view_of(results: Results, frames: list[int], colour: str) -> View:
             bottom, top = _range(values)
             low, high = min(low, bottom), max(high, top)
             least, most = min(least, float(values.min())), max(most, float(values.max()))
+    if not np.isfinite(lower).all():  # All have eroded: an empty picture of where they were.
+        position = results.arrays(frames[0])["position"]
+        lower, upper = position.min(axis=0), position.max(axis=0) + results.cell_size
     margin = 0.03 * float(np.max(upper - lower))
     along = line_axis(lower, upper, results.cell_size, results.dimension)
     if along is None or colour in ("body", "material"):
@@ -91,7 +106,7 @@ def draw_frame(
         CaseError: the frame has no such array.
     """
     view = view or view_of(results, [frame], colour)
-    arrays = results.arrays(frame)
+    arrays = drawn(results, frame)
     with styled():
         if view.along is not None:
             figure = draw_line(results, arrays, colour, view, dpi)
