@@ -123,8 +123,6 @@ NB_MODULE(_core, m) {
       .def_rw("scheme", &Settings::scheme)
       .def_rw("time_step_factor", &Settings::time_step_factor)
       .def_rw("gravity", &Settings::gravity)
-      .def_rw("viscosity_quadratic", &Settings::viscosity_quadratic)
-      .def_rw("viscosity_linear", &Settings::viscosity_linear)
       .def_rw("contact", &Settings::contact)
       .def_rw("bonded", &Settings::bonded)
       .def_rw("detection", &Settings::detection)
@@ -182,11 +180,14 @@ NB_MODULE(_core, m) {
           "add_material",
           [](Simulation& s, double density, const std::string& strength,
              const Parameters& parameters, const std::optional<Named>& eos,
-             const std::vector<NamedFailure>& failures) {
-            return s.add_material(choice_of(density, strength, parameters, eos, failures));
+             const std::vector<NamedFailure>& failures, std::pair<double, double> viscosity) {
+            MaterialChoice choice = choice_of(density, strength, parameters, eos, failures);
+            choice.viscosity = {viscosity.first, viscosity.second};
+            return s.add_material(choice);
           },
           nb::arg("density"), nb::arg("strength"), nb::arg("parameters"),
-          nb::arg("eos") = nb::none(), nb::arg("failures") = std::vector<NamedFailure>())
+          nb::arg("eos") = nb::none(), nb::arg("failures") = std::vector<NamedFailure>(),
+          nb::arg("viscosity") = std::pair(0.0, 0.0))
       .def(
           "add_body",
           [](Simulation& s, const std::string& name, int material, const Input& positions,

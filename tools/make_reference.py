@@ -189,6 +189,8 @@ def library_page() -> str:
         '`library = "NAME"` in a `[material.X]` table of a case file takes one of these. A key',
         "beside it (`density`, `strength`, `eos`, `failure`) replaces the whole of that part;",
         '`without = ["eos"]` leaves a part out. The manifest of a run holds the numbers.',
+        'A material fails only where the case says so: `failure = "library"` takes the models here',
+        'with action `no_tension`; `failure = { library = { action = "erode" } }` with another.',
         "[Check a material](../how-to/check-a-material.md) draws its curves.",
         "",
         "Every number has a source, in the last column. What nothing has confirmed is marked with",

@@ -34,7 +34,6 @@ struct Domain {
   ContactGrid<D> contact;
   std::vector<double> stiffness;  // rho c^2 of each body [Pa]
   Vec<double, D> gravity = Vec<double, D>::zero();
-  BulkViscosity viscosity;
   Threads threads;
 
   double time = 0.0;       // [s]

@@ -192,6 +192,12 @@ class Case(CaseModel):
         """Whether contact is computed: not switched off, nor bonded, and at least two bodies."""
         return self.contact.enabled and not self.contact.bonded and len(self.body) > 1
 
+    def viscosity_of(self, material: str) -> tuple[float, float]:
+        """Return a material's quadratic and linear factors of artificial viscosity; 0, 0: none."""
+        own = self.material[material].artificial_viscosity
+        found = self.run.viscosity if own is None else own
+        return (0.0, 0.0) if found is None else (found.quadratic, found.linear)
+
     def frictions(self) -> list[tuple[int, int, float]]:
         """Return (body, body, coefficient) of the pairs listed in `contact.pair`, a < b."""
         names, found = list(self.body), {}

@@ -101,7 +101,7 @@ def _check_output(case: Case) -> None:
     extra += ["failed"] if any(m.failure for m in materials) else []
     if any(f.action == "erode" for m in materials for f in m.failure):
         extra.append("recoverable_energy")
-    if case.run.viscosity is not None:
+    if any(sum(case.viscosity_of(name)) > 0 for name in used):
         extra.append("viscosity_pressure")
     extra = list(dict.fromkeys(extra))
     for index, word in enumerate(case.output.fields):

@@ -66,7 +66,8 @@ class Simulation:
 
     def _add_material(self, name: str) -> int:
         material = self.case.material[name]
-        return self.core.add_material(**material.for_core())
+        viscosity = self.case.viscosity_of(name)
+        return self.core.add_material(**material.for_core(), viscosity=viscosity)
 
     @property
     def time(self) -> float:
@@ -139,9 +140,6 @@ def _settings(case: Case, threads: int) -> _core.Settings:
     settings.scheme = _core.Scheme[run.scheme]
     settings.time_step_factor = run.time_step_factor
     settings.gravity = three(run.gravity, 0.0)
-    if run.viscosity is not None:
-        settings.viscosity_quadratic = run.viscosity.quadratic
-        settings.viscosity_linear = run.viscosity.linear
     settings.contact = case.contact_enabled
     settings.bonded = case.contact.bonded
     settings.detection = _core.Detection[case.contact.detection]

@@ -15,6 +15,7 @@ from mpm3dpp.materials import NamedMaterial, library
 from mpm3dpp.materials.library import PARTS
 
 NAMES = list(library())
+FAILING = [name for name in NAMES if "failure" in library()[name].parts]
 SHOCKED = [name for name in NAMES if "mie_gruneisen" in library()[name].parts.get("eos", {})]
 
 # Bulk speed of sound sqrt(K / rho) [m/s] from ultrasonic moduli and densities of Kaye & Laby 1995,
@@ -67,6 +68,28 @@ def test_the_core_takes_it(name: str) -> None:
     resolved = Material(**material.table())
     assert resolved.table() == material.table()
     assert "library" not in material.table()
+
+
+@pytest.mark.parametrize("name", FAILING)
+def test_the_core_takes_its_failure(name: str) -> None:
+    material = Material(library=name, failure="library")
+    assert material.sound_speed() > 0
+    assert Material(library=name).failure == []
+
+
+def fracture_strain(name: str, triaxiality: float) -> float:
+    """Strain at fracture at the reference rate, cold: D1 + D2 exp(D3 s*), s* > 0 in tension."""
+    [failure] = Material(library=name, failure="library").failure
+    D = failure.parameters
+    return D["D1"] + D["D2"] * math.exp(D["D3"] * triaxiality)
+
+
+@pytest.mark.parametrize("name", FAILING)
+def test_tension_embrittles(name: str) -> None:
+    """Guards the sign of D3: with the other one, compression would break the metal sooner."""
+    strains = [fracture_strain(name, s) for s in (-1.0, 0.0, 1 / 3, 1.0)]
+    assert strains == sorted(strains, reverse=True)
+    assert strains[-1] > 0
 
 
 @pytest.mark.parametrize("name", BULK)

@@ -294,10 +294,15 @@ def test_an_eos_that_has_no_effect_is_a_note() -> None:
     assert any("seos for material 1 (elas) is left out" in note for note in found.notes)
 
 
-def test_the_linear_viscosity_of_other_materials_is_a_note() -> None:
-    text = edited((MATE, f" 1 pla1 {STEEL} 300\n"))
-    assert any("linear term acts for all materials" in note for note in of(text).notes)
-    assert len(of(text.replace("bulk 1.5 0.06", "bulk 1.5 0")).notes) == 1
+def test_the_linear_viscosity_acts_where_it_does_there() -> None:
+    """In MPM3D-F90 only elas, neoh and null have the linear term of `bulk`."""
+    two = edited(("nmat 1", "nmat 2"), (MATE, f"{MATE} 2 pla1 {STEEL} 300\n"))
+    case = of(two).case
+    assert case.viscosity_of("elas_1") == (1.5, 0.06)
+    assert case.viscosity_of("pla1_2") == (1.5, 0.0)
+    assert case.material["elas_1"].artificial_viscosity is None
+    none = of(two.replace("bulk 1.5 0.06", "bulk 1.5 0")).case
+    assert none.material["pla1_2"].artificial_viscosity is None
 
 
 # Kind, numbers after density and dp; the points that the language gives, in its order.

@@ -51,7 +51,24 @@ def test_a_part_beside_it_replaces_the_whole_part() -> None:
 
 def test_without_leaves_a_part_out() -> None:
     assert Material(library="copper_ofhc", without=["eos"]).eos is None
-    assert Material(library="copper_ofhc", without=["failure"]).eos is not None
+
+
+def test_failure_only_where_it_is_asked_for() -> None:
+    assert Material(library="steel_4340").failure == []
+    [taken] = Material(library="steel_4340", failure="library").failure
+    assert (taken.model, taken.action) == ("johnson_cook_damage", "no_tension")
+    assert taken.parameters["D3"] == -2.12
+    erode = {"library": {"action": "erode"}, "plastic_strain": {"limit": 2}}
+    both = Material(library="steel_4340", failure=erode)
+    assert [f.action for f in both.failure] == ["erode", "no_tension"]
+    assert both.failure[0].parameters == taken.parameters
+    assert Material(**both.table()).table() == both.table()
+
+
+def test_the_detail_says_that_failure_is_on_request() -> None:
+    text = listing("steel_4340")
+    assert 'failure johnson_cook_damage (only with failure = "library")' in text
+    assert "Engineering Fracture Mechanics 21 (1985)" in text
 
 
 @pytest.mark.parametrize(
@@ -59,11 +76,15 @@ def test_without_leaves_a_part_out() -> None:
     [
         ('library = "coper_ofhc"', 'is not a material of the library; did you mean "copper_ofhc"'),
         ("library = 3", "is not a material of the library"),
-        ('library = "tnt", without = ["strength"]', "cannot be left out; valid here: eos, failure"),
+        ('library = "tnt", without = ["strength"]', "cannot be left out; valid here: eos"),
         ('library = "tnt", without = "eos"', "must be a list"),
         ('density = 1, without = ["eos"]', "has a meaning beside library only"),
         ('library = "tnt", without = ["eos"], eos.linear.K = 1', "is left out by without"),
         ('library = "tnt", densty = 3', "is not a known key"),
+        ('library = "tnt", failure = "library"', "is not in the library for tnt"),
+        ('density = 1, failure = "library"', 'is "library" without a library'),
+        ('library = "steel_4340", failure.library = "erode"', "must be a table"),
+        ('library = "steel_4340", failure.library = { D9 = 1 }', "is not a parameter of johnson"),
     ],
 )
 def test_mistakes_are_one_sentence(material: str, sentence: str) -> None:

@@ -60,6 +60,26 @@ def test_the_ledger_closes_and_momentum_stays(dimension: int, scheme: str, basis
     assert [row[name][0] for name in names] == pytest.approx(momentum, abs=ROUNDING * size)
 
 
+def test_artificial_viscosity_of_a_material() -> None:
+    """Its own factors replace those of the run, to the last bit; 0, 0 is none at all."""
+    grid = box(2, 12, {"y_min": "slip"})
+    flying = {"velocity": (0.0, -5.0)}
+
+    def positions(of_the_run: Viscosity | None, own: Viscosity | None) -> np.ndarray:
+        case = one_block(2, grid, {"viscosity": of_the_run}, **flying)
+        case.material["solid"].artificial_viscosity = own
+        simulation = Simulation(case, threads=1)
+        simulation.advance(60)
+        assert (history(simulation)["viscous"][-1] > 0) == (sum(case.viscosity_of("solid")) > 0)
+        return simulation.column("block", "position")
+
+    strong, none = Viscosity(quadratic=3.0, linear=0.5), Viscosity(quadratic=0.0, linear=0.0)
+    assert (positions(None, strong) == positions(strong, None)).all()
+    assert (positions(Viscosity(), strong) == positions(strong, None)).all()
+    assert (positions(strong, none) == positions(None, None)).all()
+    assert (positions(strong, None) != positions(None, None)).any()
+
+
 @pytest.mark.parametrize("scheme", ["usf", "musl"])
 def test_the_ledger_closes_with_plastic_work(scheme: str) -> None:
     """A block flies against a wall: its plastic work is the yield stress times plastic strain."""

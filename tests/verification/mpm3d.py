@@ -2,9 +2,7 @@
 """Inputs of MPM3D-F90, run here and beside its own results: python -m verification.mpm3d NAME ...
 
 The inputs and the end states of MPM3D-F90 are in mpm/. A run ends at the time at which MPM3D-F90's
-last step ended, which is a part of a step later than the file asks for. MPM3D-F90 leaves out the
-linear term of the bulk viscosity for all materials but elas, neoh and null; `--linear-as-there`
-does so too, to tell that difference from others.
+last step ended, which is a part of a step later than the file asks for.
 """
 
 from __future__ import annotations
@@ -26,7 +24,6 @@ from mpm3dpp.importers.mpm3d.to_case import import_source
 from mpm3dpp.importers.mpm3d.units import SYSTEMS
 
 FOLDER = Path(__file__).parent / "mpm"
-LINEAR = {"elastic", "neo_hookean", "fluid"}
 HEAD = (
     "| case | figure | ours | MPM3D-F90 | difference | tolerance | |\n"
     "| --- | --- | --- | --- | --- | --- | --- |"
@@ -84,19 +81,11 @@ def text_of(name: str) -> str:
     return data.decode("latin-1")
 
 
-def imported(name: str, linear_as_there: bool = False) -> Case:
-    """Return an input file as a case that ends when MPM3D-F90's run ended.
-
-    Args:
-        name: of the case.
-        linear_as_there: without the linear viscosity where MPM3D-F90 has none.
-    """
+def imported(name: str) -> Case:
+    """Return an input file as a case that ends when MPM3D-F90's run ended."""
     given = reference()[name]
     case = import_source(split(text_of(name), f"{name}.mpm"), given["units"]).case
     case.run.end_time = SYSTEMS[given["units"]].si(given["end"], "time")
-    models = {material.strength.model for material in case.material.values()}
-    if linear_as_there and case.run.viscosity is not None and not models & LINEAR:
-        case.run.viscosity.linear = 0.0
     return case
 
 
@@ -131,6 +120,12 @@ def compare(name: str, simulation: Simulation, history: dict[str, np.ndarray]) -
         _energy("total energy", kinetic + internal, given["kinetic"][1] + given["internal"][1],
                 limit.get("energy")),
     ]  # fmt: skip
+    if "mean_kinetic" in given:
+        begin, theirs = given["mean_kinetic"]["from"], given["mean_kinetic"]["mean"]
+        late = history["time"] > units.si(begin, "time")
+        mean = np.average(history["kinetic"][late], weights=history["dt"][late]) / energy
+        name = f"mean kinetic energy from {begin:g}"
+        rows.append(_energy(name, mean, theirs, limit.get("energy")))
     x = np.concatenate([simulation.column(b, "position") for b in simulation.bodies]) / length
     for axis, (low, high) in zip("xyz", given["bounds"], strict=True):
         own = x[:, "xyz".index(axis)]
@@ -168,9 +163,7 @@ def main() -> None:
     """Run the cases asked for, by default all, and print the table."""
     parser = argparse.ArgumentParser(prog="python -m verification.mpm3d", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(reference()))
-    parser.add_argument("--linear-as-there", action="store_true", help="see above")
-    chosen = parser.parse_args()
-    names = chosen.names
+    names = parser.parse_args().names
     unknown = [name for name in names if name not in reference()]
     if unknown:
         parser.error(f"unknown: {', '.join(unknown)}; valid are {', '.join(reference())}")
@@ -178,7 +171,7 @@ def main() -> None:
     judged = passed = 0
     for name in names or reference():
         begin = time.monotonic()
-        simulation, history = run(imported(name, chosen.linear_as_there))
+        simulation, history = run(imported(name))
         rows = compare(name, simulation, history)
         steps = reference()[name]["steps"]
         rows.append(Row("steps", simulation.step, steps, steps))

@@ -13,23 +13,20 @@ from verification.mpm3d import compare, imported, reference, run
 
 # Difference that we reach in figures that miss: (case, figure) to (lowest, highest).
 REACHED = {
-    # The linear viscosity, which MPM3D-F90 does not apply to sjc: without it +0.3 %.
-    ("sjc125k", "internal energy"): (0.028, 0.034),
-    # It and the burn, which rises over 1.5 cells: without both -1.2 % and +0.5 %.
-    ("TNT3D", "kinetic energy"): (-0.062, -0.053),
-    ("TNT3D", "largest kinetic energy"): (-0.062, -0.053),
-    ("TNT3D", "internal energy"): (0.028, 0.034),
-    # One hundredth of the start's energy is left. The linear viscosity: without it -2.7 %.
-    ("Taylor", "kinetic energy"): (-0.055, -0.044),
-    # 0.02 % of the energy that fell, as swaying at rest.
+    # The burn, which rises over 1.5 cells: with it 1.5 cells earlier -1.2 %.
+    ("TNT3D", "kinetic energy"): (-0.051, -0.041),
+    ("TNT3D", "largest kinetic energy"): (-0.051, -0.041),
+    # The slope sways at rest, between 5 and 55 kJ, MPM3D-F90's between 4 and 52: the end is one
+    # moment of that, near the least. The mean says how strongly; ours sways more along the slope.
     ("Slopefail", "kinetic energy"): (0.0, 0.5),
+    ("Slopefail", "mean kinetic energy from 10"): (0.05, 0.085),
     # MPM3D-F90 seems to have no viscosity at all for hiex. At 13.75 us, before the front is out,
-    # kinetic energy [mJ]: exact 30.2, MPM3D-F90 44.3, ours 17.3, ours without viscosity 40.2;
+    # kinetic energy [mJ]: exact 30.2, MPM3D-F90 44.3, ours 18.0, ours without viscosity 40.2;
     # momentum [g m/s]: 0.0485, 0.0354, 0.0250, 0.0344. Both codes err, as points cross cells of the
     # linear basis; with gimp a tenth of the length comes within 4 % and 1 % of the exact answer.
     ("Deto1k", "kinetic energy"): (-0.56, -0.49),
     ("Deto1k", "largest kinetic energy"): (-0.56, -0.45),
-    ("Deto1k", "internal energy"): (0.07, 0.095),
+    ("Deto1k", "internal energy"): (0.06, 0.085),
 }
 SLOW = ("Taylor", "Slopefail", "Deto1k")
 

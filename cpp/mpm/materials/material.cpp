@@ -126,6 +126,10 @@ Material make_material(const MaterialChoice& choice) {
         }
       },
       material.strength);
+  for (const double factor : {choice.viscosity.quadratic, choice.viscosity.linear})
+    if (!satisfies(Rule::not_negative, factor))
+      refuse("viscosity", factor, rule_text(Rule::not_negative));
+  material.viscosity = choice.viscosity;
   return material;
 }
 

@@ -25,11 +25,19 @@ struct Failing {
   FailureAction action;
 };
 
+/// Artificial bulk viscosity (von Neumann & Richtmyer 1950, with Landshoff's linear term):
+/// q = rho h^2 quadratic e^2 - rho h c linear e for a rate of volume change e < 0.
+struct BulkViscosity {
+  double quadratic = 0.0, linear = 0.0;
+  bool active() const { return quadratic > 0.0 || linear > 0.0; }
+};
+
 struct Material {
   double density = 0.0;  // initial [kg/m^3]
   StrengthModels::Any strength;
   std::optional<EosModels::Any> eos;
   std::vector<Failing> failures;
+  BulkViscosity viscosity{};
 
   bool erodes() const {
     return std::any_of(failures.begin(), failures.end(),
@@ -51,6 +59,7 @@ struct MaterialChoice {
   ModelChoice strength;
   std::optional<ModelChoice> eos;
   std::vector<FailureChoice> failures;
+  BulkViscosity viscosity{};
 };
 
 /// Throws std::invalid_argument, in one sentence, for an unknown model or parameter, one that is

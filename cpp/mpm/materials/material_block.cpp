@@ -23,8 +23,7 @@ void update_block(const Material& material, Columns& columns, const MaterialColu
 }
 
 template <int D>
-void add_material_columns(const Material& material, bool viscosity, Columns& columns,
-                          MaterialColumns& at) {
+void add_material_columns(const Material& material, Columns& columns, MaterialColumns& at) {
   const auto add = [&](int& first, const auto& model) {
     for (const StateColumn& s : model.state_columns) {
       const int place = columns.add(std::string(s.name), std::string(s.unit), s.components(D));
@@ -32,7 +31,8 @@ void add_material_columns(const Material& material, bool viscosity, Columns& col
     }
   };
   std::visit([&](const auto& model) { add(at.state, model); }, material.strength);
-  at.viscosity_pressure = viscosity ? columns.add("viscosity_pressure", "Pa", 1) : -1;
+  if (material.viscosity.active())
+    at.viscosity_pressure = columns.add("viscosity_pressure", "Pa", 1);
   at.energy = material.eos ? columns.add("internal_energy", "J/m^3", 1) : -1;
   if (material.failures.empty()) return;
   if (material.erodes()) at.recoverable = columns.add("recoverable_energy", "J/m^3", 1);
@@ -116,8 +116,8 @@ template void update_block<double, 2>(const Material&, Columns&, const MaterialC
                                       MaterialBlock<2>&, const StressSettings&, StressSums&);
 template void update_block<double, 3>(const Material&, Columns&, const MaterialColumns&,
                                       MaterialBlock<3>&, const StressSettings&, StressSums&);
-template void add_material_columns<2>(const Material&, bool, Columns&, MaterialColumns&);
-template void add_material_columns<3>(const Material&, bool, Columns&, MaterialColumns&);
+template void add_material_columns<2>(const Material&, Columns&, MaterialColumns&);
+template void add_material_columns<3>(const Material&, Columns&, MaterialColumns&);
 template void start_material_columns<2>(const Material&, Columns&, const MaterialColumns&);
 template void start_material_columns<3>(const Material&, Columns&, const MaterialColumns&);
 template double sound_speed<2>(const Material&, const Columns&, const MaterialColumns&, std::size_t,

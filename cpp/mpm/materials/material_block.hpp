@@ -39,13 +39,6 @@ struct MaterialColumns {
   int failure_state = -1;       // of the failure models, one after another
 };
 
-/// Artificial bulk viscosity (von Neumann & Richtmyer 1950, with Landshoff's linear term):
-/// q = rho h^2 quadratic e^2 - rho h c linear e for a rate of volume change e < 0.
-struct BulkViscosity {
-  double quadratic = 0.0, linear = 0.0;
-  bool active() const { return quadratic > 0.0 || linear > 0.0; }
-};
-
 struct StressSettings {
   double time_step, time, cell_size;  // time: at the end of the step
   BulkViscosity viscosity;
@@ -72,8 +65,7 @@ void update_block(const Material& material, Columns& columns, const MaterialColu
 
 /// Declare the columns that a material needs; fills in where they are.
 template <int D>
-void add_material_columns(const Material& material, bool viscosity, Columns& columns,
-                          MaterialColumns& at);
+void add_material_columns(const Material& material, Columns& columns, MaterialColumns& at);
 /// Give them the values of a body at rest at the start.
 template <int D>
 void start_material_columns(const Material& material, Columns& columns, const MaterialColumns& at);

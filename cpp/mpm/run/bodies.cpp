@@ -55,7 +55,7 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
   body.at.mass = c.add("mass", "kg", 1);
   body.at.volume = c.add("volume", "m^3", 1);
   body.at.stress = c.add("stress", "Pa", Sym<double, D>::size);
-  add_material_columns<D>(material, domain_.viscosity.active(), c, body.at);
+  add_material_columns<D>(material, c, body.at);
   c.allocate(n);
 
   const bool one_velocity = velocities.size() == D, one_volume = volumes.size() == 1;

@@ -29,7 +29,7 @@ DrivenPoint drive_material(const MaterialChoice& choice, std::span<const double>
   at.mass = columns.add("mass", "kg", 1);
   at.volume = columns.add("volume", "m^3", 1);
   at.stress = columns.add("stress", "Pa", 6);
-  add_material_columns<3>(material, false, columns, at);
+  add_material_columns<3>(material, columns, at);
   columns.allocate(1);
   for (int a = 0; a < 3; ++a) columns.component(at.velocity + a)[0] = 0.0;
   columns.component(at.mass)[0] = material.density;

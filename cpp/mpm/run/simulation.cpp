@@ -28,8 +28,6 @@ void check(const Settings& s) {
           "origin and gravity must be finite");
   check(!(s.contact && s.bonded), "bodies are bonded or have contact, not both");
   check(s.energy_growth_limit > 0.0, "energy_growth_limit must be > 0");
-  check(s.viscosity_quadratic >= 0.0 && s.viscosity_linear >= 0.0,
-        "viscosity factors must be >= 0");
 }
 
 }  // namespace
@@ -78,7 +76,6 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
     grid.walls.face[a][0] = settings.walls[2 * a];
     grid.walls.face[a][1] = settings.walls[2 * a + 1];
   }
-  domain_.viscosity = {settings.viscosity_quadratic, settings.viscosity_linear};
   domain_.contact_settings.enabled = settings.contact;
   domain_.contact_settings.detection = settings.detection;
   domain_.contact_settings.normal = settings.normal_rule;

@@ -28,7 +28,6 @@ struct Settings {
   Scheme scheme = Scheme::musl;
   double time_step_factor = 0.0;    // of the critical time step h / (c + |v|)
   std::array<double, 3> gravity{};  // [m/s^2]
-  double viscosity_quadratic = 0.0, viscosity_linear = 0.0;
   bool contact = false;
   bool bonded = false;  // all bodies move with one velocity field
   Detection detection = Detection::gap;

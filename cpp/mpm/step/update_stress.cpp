@@ -15,7 +15,7 @@ void update_patch(Domain<D>& domain, std::size_t p, bool forces_follow, Field&& 
   Body<D>& body = domain.body_of(patch);
   const Material& material = domain.materials[static_cast<std::size_t>(body.material)];
   const StressSettings settings{domain.time_step, domain.time + domain.time_step, grid.cell_size,
-                                domain.viscosity, forces_follow};
+                                material.viscosity, forces_follow};
   const T scale(domain.time_step / grid.cell_size);
   MaterialBlock<D> block;
   auto flush = [&] {

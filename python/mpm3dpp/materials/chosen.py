@@ -135,5 +135,5 @@ AnyEos = Annotated[SkipValidation[Eos | None], BeforeValidator(_parse_one(Eos)),
 AnyFailure = Annotated[
     SkipValidation[list[Failure]],
     BeforeValidator(_parse_failures),
-    WithJsonSchema({"type": "object", "minProperties": 1}),
+    WithJsonSchema({"anyOf": [{"type": "object", "minProperties": 1}, {"enum": ["library"]}]}),
 ]

@@ -12,7 +12,7 @@ from mpm3dpp.errors import CaseError, nearest
 from mpm3dpp.rules import requirement
 
 from .catalogue import KINDS, catalogue, example
-from .library import NamedMaterial, library
+from .library import ON_REQUEST, NamedMaterial, library
 
 _WIDTH = 100
 _CHOICE = {"strength": "one of", "eos": "at most one of", "failure": "any of"}
@@ -58,11 +58,13 @@ def overview() -> str:
         if material.group != group:
             group = material.group
             lines.append(f"{group}:")
-        models = ", ".join(model for _, model, _ in _models_of(material))
+        models = ", ".join(model for kind, model, _ in _models_of(material) if kind != ON_REQUEST)
+        models += "  +" if ON_REQUEST in material.parts else ""
         doubt = "  *" if material.unconfirmed else ""
         lines.append(f"  {material.name:<{wide}}  {material.title:<{titles}}  {models}{doubt}")
     lines += [
         "",
+        '+ has constants of failure, for failure = "library" in a case.',
         "* some numbers could not be confirmed; the detail says which.",
         "mpm3dpp materials NAME prints parameters, units, sources and the lines for a case file;",
         "mpm3dpp material-test NAME draws its stress-strain curve or Hugoniot.",
@@ -137,7 +139,10 @@ def provenance(material: NamedMaterial) -> list[str]:
 def lines_for_a_case(material: NamedMaterial) -> list[str]:
     """Return the lines that use a named material in a case file."""
     short = material.name.split("_")[0]
-    return [f"[material.{short}]", f'library = "{material.name}"']
+    lines = [f"[material.{short}]", f'library = "{material.name}"']
+    if ON_REQUEST in material.parts:
+        lines.append(f'# {ON_REQUEST} = "library"  # if it shall fail')
+    return lines
 
 
 def _named_entry(material: NamedMaterial) -> str:
@@ -148,7 +153,8 @@ def _named_entry(material: NamedMaterial) -> str:
     for where, name, value, meaning, source in table:
         if where != part:
             part = where
-            lines.append(f"  {part}")
+            asked = f' (only with {ON_REQUEST} = "library")' if part.startswith(ON_REQUEST) else ""
+            lines.append(f"  {part}{asked}")
         mark = f"[{source}]" if source.isdigit() else f"({source})"
         lines.append(f"    {name:<{wide}}  {value:<{values}}  {meaning} {mark}")
     lines.append("  sources:")

@@ -22,8 +22,10 @@ else:
 
 PARTS = ("density", "strength", "eos", "failure")
 """Keys of a material that the library can give."""
-REMOVABLE = ("eos", "failure")
+REMOVABLE = ("eos",)
 """Keys that `without` can leave out."""
+ON_REQUEST = "failure"
+"""The key that the library gives only where the case asks for it."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,8 @@ class NamedMaterial:
         name: `copper_ofhc`.
         title: what it is, one line.
         group: metals, explosives, fluids, soils.
-        parts: the keys of a material of a case file: density, strength, eos, failure.
+        parts: the keys of a material of a case file: density, strength, eos, and failure, which
+            a case has only where it says `failure = "library"`.
         sources: of every number in `parts`.
         note: what a user should know; may be empty.
     """
@@ -114,7 +117,8 @@ def fill_in(table: dict[str, Any]) -> dict[str, Any]:
     """Return a case's material with the parts that its key `library` gives.
 
     A part that stands beside `library` replaces the library's whole part; those named in
-    `without` are left out.
+    `without` are left out. Failure is taken only where `failure = "library"`, or
+    `failure = { library = { action = "erode" } }`, asks for it.
 
     Raises:
         PydanticCustomError: a violation, with its path in the material.
@@ -131,16 +135,39 @@ def fill_in(table: dict[str, Any]) -> dict[str, Any]:
     if name is None:
         if without:
             raise violation("has a meaning beside library only", "remove it", path=("without",))
-        return table
+        return _with_failure(table, None)
     if name not in library():
         remedy = nearest(str(name), library())
         rule = "is not a material of the library"
         raise violation(rule, remedy, value=name, path=("library",))
-    parts = {k: v for k, v in library()[name].parts.items() if k not in without}
+    left_out = {*without, ON_REQUEST}
+    parts = {k: v for k, v in library()[name].parts.items() if k not in left_out}
     both = [key for key in without if key in table]
     if both:
         raise violation(f"is left out by without = {list(without)}", "keep one", path=(both[0],))
-    return {**parts, **table}
+    return {**parts, **_with_failure(table, library()[name])}
+
+
+def _with_failure(table: dict[str, Any], material: NamedMaterial | None) -> dict[str, Any]:
+    """Return the table with the library's failure models where its key `failure` asks for them."""
+    given = table.get("failure")
+    given = {"library": {}} if given == "library" else given
+    if not isinstance(given, dict) or "library" not in given:
+        return table
+    if material is None:
+        remedy = "name a material with the key library"
+        raise violation('is "library" without a library', remedy, path=("failure",))
+    models, changes = material.parts.get("failure"), given["library"]
+    if models is None:
+        able = ", ".join(m.name for m in library().values() if "failure" in m.parts)
+        rule = f"is not in the library for {material.name}"
+        raise violation(rule, f"give its models; the library has it for {able}", path=("failure",))
+    if not isinstance(changes, dict):
+        remedy = 'write failure = "library" or { library = { action = "erode" } }'
+        raise violation("must be a table", remedy, value=changes, path=("failure", "library"))
+    others = {model: values for model, values in given.items() if model != "library"}
+    taken = {model: {**values, **changes} for model, values in models.items()}
+    return {**table, "failure": {**taken, **others}}
 
 
 def either_library_or_own(schema: dict[str, Any]) -> None:

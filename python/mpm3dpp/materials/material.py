@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from pydantic import ConfigDict, Field, model_validator
 
+from mpm3dpp.case_parts import Viscosity
 from mpm3dpp.model import CaseModel, Text
 from mpm3dpp.units import Density
 
@@ -22,13 +23,16 @@ class Material(CaseModel):
     Attributes:
         library: name of a material of the library, which gives the keys below; those that stand
             beside it replace the library's. Without it, density and strength are required.
-        without: parts of the library's material that are left out, "eos" or "failure".
+        without: parts of the library's material that are left out: "eos".
         density: initial density [kg/m^3].
         strength: one strength model with its parameters, `{"elastic": {"E": ..., "nu": ...}}`.
         eos: at most one equation of state, `{"tait": {"c0": ...}}`; it gives the pressure.
         failure: any number of failure models, `{"plastic_strain": {"limit": ...}}`; `action`
             beside a model's parameters says what failing does, "no_tension", "no_shear"
-            or "erode".
+            or "erode". With `library` also "library", which takes the library's models with
+            "no_tension", or `{"library": {"action": "erode"}}`.
+        artificial_viscosity: bulk viscosity of this material in place of `run.viscosity`, with the
+            same keys; both 0 for none.
     """
 
     model_config = ConfigDict(json_schema_extra=either_library_or_own)
@@ -39,6 +43,7 @@ class Material(CaseModel):
     strength: AnyStrength
     eos: AnyEos = None
     failure: AnyFailure = Field(default_factory=list)
+    artificial_viscosity: Viscosity | None = None
 
     @model_validator(mode="before")
     @classmethod
@@ -56,6 +61,8 @@ class Material(CaseModel):
             table["eos"] = self.eos.table()
         if self.failure:
             table["failure"] = {k: v for f in self.failure for k, v in f.table().items()}
+        if self.artificial_viscosity is not None:
+            table["artificial_viscosity"] = self.artificial_viscosity.table()
         return table
 
     @property

@@ -74,17 +74,16 @@ std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& m
     settings.box_cells = {40, 40, dimension == 3 ? 40 : 0};
     settings.walls[2] = Wall::fixed;
   }
-  settings.viscosity_quadratic = 1.5;
-  settings.viscosity_linear = 0.06;
   settings.contact = true;
   settings.friction = 0.3;
   settings.threads = threads;
   settings.energy_growth_limit = 1e9;
   auto simulation = make_simulation(settings);
-  const int rubber =
-      simulation->add_material({1000.0, {"neo_hookean", {{"K", 1e7}, {"G", 3e6}}}, {}, {}});
+  const BulkViscosity viscosity{1.5, 0.06};
+  const int rubber = simulation->add_material(
+      {1000.0, {"neo_hookean", {{"K", 1e7}, {"G", 3e6}}}, {}, {}, viscosity});
   const int solid =
-      simulation->add_material({1000.0, {"elastic", {{"E", 1e7}, {"nu", 0.3}}}, {}, {}});
+      simulation->add_material({1000.0, {"elastic", {{"E", 1e7}, {"nu", 0.3}}}, {}, {}, viscosity});
   const Block blocks[] = {
       {{8, 0, 8}, {20, 5, 11}}, {{8, 5, 8}, {14, 9, 11}}, {{14, 5, 8}, {20, 9, 11}}};
   for (int b = 0; b < 3; ++b) {

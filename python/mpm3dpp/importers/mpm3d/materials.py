@@ -10,6 +10,7 @@ from .units import UnitSystem
 
 Table = dict[str, Any]
 NEEDS_EOS = ("sjc", "sjcf", "jcf", "hiex", "null")
+LINEAR_VISCOSITY = ("elas", "neoh", "null")  # Only for these has bulk a linear term.
 START_TEMPERATURE = 293.0  # Of every particle in MPM3D-F90.
 
 _UNITS = {
@@ -71,6 +72,9 @@ def _table(deck: Deck, number: int, units: UnitSystem) -> Table:
             f"{record.kind}: a particle that fails at epf bears compression only from then on "
             "(action no_tension)"
         )
+    quadratic, linear = deck.bulk
+    if linear and record.kind not in LINEAR_VISCOSITY:
+        table["artificial_viscosity"] = {"quadratic": quadratic, "linear": 0.0}
     return table
 
 

@@ -21,8 +21,6 @@ from .units import UnitSystem, choose
 
 _WALLS = ("free", "fixed", "slip")
 _NORMALS = ("pair", "first", "second")
-# Types of material for which the linear term of the bulk viscosity acts in MPM3D-F90.
-_LINEAR = ("elas", "neoh", "null")
 Lines = dict[tuple[str | int, ...], int]
 
 
@@ -188,12 +186,6 @@ def _run(deck: Deck, units: UnitSystem) -> dict[str, Any]:
     quadratic, linear = deck.bulk
     if quadratic or linear:
         table["viscosity"] = {"quadratic": quadratic, "linear": linear}
-    others = sorted({r.kind for r in deck.materials.values()} - set(_LINEAR))
-    if linear and others:
-        deck.note(
-            "bulk: the linear term acts for all materials; in MPM3D-F90 not for "
-            + ", ".join(others)
-        )
     gravity = _gravity(deck)
     if any(gravity):
         table["gravity"] = [units.si(g, "acceleration") for g in gravity]
