@@ -10,7 +10,8 @@ from pydantic import BeforeValidator, SkipValidation, WithJsonSchema, model_vali
 from mpm3dpp.errors import Path, nearest, violation
 from mpm3dpp.model import CaseModel, Choice
 
-from .catalogue import KINDS, catalogue, check_parameters, example
+from .catalogue import KINDS, catalogue, check_parameters
+from .examples import example
 
 ACTIONS = ("no_tension", "no_shear", "erode")
 """What failure does: only compression is left; the whole pressure is; nothing is."""
@@ -108,8 +109,7 @@ def _parse_one(kind: type[ChosenModel]) -> Any:
         if not isinstance(value, dict) or len(value) != 1:
             has = f" but has {len(value)}" if isinstance(value, dict) else ""
             model = next(iter(catalogue(kind.kind)))
-            inside = example(kind.kind, model)
-            remedy = f"write {{ {model} = {{ {inside} }} }}; the models are {names}"
+            remedy = f"write {{ {model} = {example(kind.kind, model)} }}; the models are {names}"
             raise violation(f"must be a table with exactly one model{has}", remedy, value=value)
         [(model, given)] = value.items()
         return _chosen(kind, model, given)
@@ -123,7 +123,7 @@ def _parse_failures(value: Any) -> list[Failure]:
         return value
     if not isinstance(value, dict):
         model = next(iter(catalogue("failure")))
-        remedy = f"write {{ {model} = {{ {example('failure', model)} }} }}"
+        remedy = f"write {{ {model} = {example('failure', model)} }}"
         raise violation("must be a table of failure models", remedy, value=value)
     chosen = [_chosen(Failure, model, given) for model, given in value.items()]
     return [item for item in chosen if isinstance(item, Failure)]

@@ -11,7 +11,8 @@ from typing import Any
 from mpm3dpp.errors import CaseError, nearest
 from mpm3dpp.rules import requirement
 
-from .catalogue import KINDS, catalogue, example
+from .catalogue import KINDS, catalogue
+from .examples import example
 from .library import ON_REQUEST, NamedMaterial, library
 
 _WIDTH = 100
@@ -95,7 +96,7 @@ def _model_entry(kind: str, model: Any) -> str:
     users = [m.name for m in library().values() if model.name in m.parts.get(kind, {})]
     if users:
         lines.append(f"  named materials that use it: {', '.join(users)}")
-    lines.append(f"  case file: {kind} = {{ {model.name} = {{ {example(kind, model.name)} }} }}")
+    lines.append(f"  case file: {kind} = {{ {model.name} = {example(kind, model.name)} }}")
     return "\n".join(lines)
 
 
