@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import math
+import textwrap
 
 import numpy as np
 
 from .build import FilledBody, warnings
 from .case import Case
 from .case_notes import notes
+from .materials import Failure, catalogue
+from .plots.labels import scaled
 
 # Estimates for the echo [bytes]: particle columns without and with a state tensor, one grid cell.
 _PARTICLE_BYTES, _CELL_BYTES = 200, 150
@@ -37,8 +40,30 @@ def occupied_cells(case: Case, bodies: list[FilledBody]) -> int:
     return total
 
 
+def material_lines(case: Case) -> list[str]:
+    """Return the numbers of each material that a body has, those of the library included."""
+    lines = []
+    for name in dict.fromkeys(body.material for body in case.body.values()):
+        material = case.material[name]
+        parts = [f"density {material.density:.6g} kg/m^3"]
+        chosen = [("strength", material.strength), ("eos", material.eos)]
+        for kind, model in [*chosen, *(("failure", f) for f in material.failure)]:
+            if model is None:
+                continue
+            units = {p.name: p.unit for p in catalogue(kind)[model.model].parameters}
+            given = model.parameters.items()
+            numbers = [f"{key} {scaled(value, units[key], 6)}".strip() for key, value in given]
+            action = [f"action {model.action}"] if isinstance(model, Failure) else []
+            parts.append(
+                f"{kind} {' '.join([model.model, ', '.join([*numbers, *action])])}".strip()
+            )
+        text = f"material {name}: {'; '.join(parts)}"
+        lines += textwrap.wrap(text, 100, subsequent_indent="  ", break_on_hyphens=False)
+    return lines
+
+
 def echo(case: Case, bodies: list[FilledBody]) -> str:
-    """Return what the case amounts to: bodies, masses, memory, cells, time step, steps."""
+    """Return what the case amounts to: bodies, materials, masses, memory, cells, time step, steps."""
     per_metre = " per metre" if case.grid.dimension == 2 else ""
     lines = [case.title] if case.title else []
     for body in bodies:
@@ -50,6 +75,7 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
             f"body {body.name}: {len(body.positions):,} particles {body.spacing:.4g} m apart, "
             f"{body.material}, mass {body.mass:.6g} kg{per_metre}, {source}"
         )
+    lines += material_lines(case)
     particles = sum(len(body.positions) for body in bodies)
     cells = occupied_cells(case, bodies)
     memory = particles * _PARTICLE_BYTES + cells * _CELL_BYTES

@@ -40,7 +40,7 @@ def test_example_of_a_model(kind: str, name: str) -> None:
 def test_lines_of_a_named_material(name: str) -> None:
     text = listing(name)
     lines = text[text.index("  case file:\n") :].splitlines()[1:]
-    toml = "\n".join(line.strip() for line in lines)
+    toml = "\n".join(line.strip() for line in lines if line.startswith("    "))
     assert toml.startswith("[material.")
     used = toml.partition("]")[0].removeprefix("[material.")
     body = CASE[: CASE.index("[material")].replace('"any"', f'"{used}"')

@@ -173,4 +173,12 @@ def _named_entry(material: NamedMaterial) -> str:
         )
     lines.append("  case file:")
     lines += [f"    {line}" for line in lines_for_a_case(material)]
+    [(model, numbers)] = material.parts["strength"].items()
+    if numbers:
+        key = next((k for k in ("A", "Y0") if k in numbers), list(numbers)[-1])
+        value = numbers[key]
+        text = f'"{value}"' if isinstance(value, str) else f"{value:g}"
+        change = f"strength = {{ {model} = {{ {key} = {text} }} }}"
+        words = f"Beside it {change} replaces that number alone; another model replaces the part."
+        lines += textwrap.wrap(words, _WIDTH, initial_indent="  ", subsequent_indent="  ")
     return "\n".join(lines)

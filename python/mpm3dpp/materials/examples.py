@@ -17,6 +17,7 @@ _EXAMPLES = {
     "e0": "0.01", "n": "0.2", "A": '"90 MPa"', "B": '"292 MPa"', "C": "0.025", "m": "1.09",
     "T_melt": '"1356 K"', "cp": '"383 J/kg/K"', "c0": '"3940 m/s"', "s": "1.49",
     "gamma0": "1.96", "K": '"2.2 GPa"', "K0": '"2.2 GPa"', "viscosity": '"1 mPa*s"',
+    "johnson_cook.E": '"129.8 GPa"', "johnson_cook.nu": "0.343", "johnson_cook.n": "0.31",
     "neo_hookean.K": '"121.7 MPa"', "neo_hookean.G": '"26.1 MPa"', "murnaghan.n": "7.15",
     "drucker_prager.E": '"10 MPa"', "drucker_prager.nu": "0.3", "q_phi": "0.3",
     "k_phi": '"1 kPa"', "mohr_coulomb.E": '"10 MPa"', "mohr_coulomb.nu": "0.3",

@@ -22,7 +22,8 @@ class Material(CaseModel):
 
     Attributes:
         library: name of a material of the library, which gives the keys below; those that stand
-            beside it replace the library's. Without it, density and strength are required.
+            beside it replace the library's, a parameter of the library's own model that number
+            alone. Without it, density and strength are required.
         without: parts of the library's material that are left out: "eos".
         density: initial density [kg/m^3].
         strength: one strength model with its parameters, `{"elastic": {"E": ..., "nu": ...}}`.
