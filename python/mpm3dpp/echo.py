@@ -52,7 +52,7 @@ def material_lines(case: Case) -> list[str]:
                 continue
             units = {p.name: p.unit for p in catalogue(kind)[model.model].parameters}
             given = model.parameters.items()
-            numbers = [f"{key} {scaled(value, units[key], 6)}".strip() for key, value in given]
+            numbers = [f"{key} {scaled(v, units[key], 6)}".strip() for key, v in given]
             action = [f"action {model.action}"] if isinstance(model, Failure) else []
             parts.append(
                 f"{kind} {' '.join([model.model, ', '.join([*numbers, *action])])}".strip()
@@ -63,7 +63,7 @@ def material_lines(case: Case) -> list[str]:
 
 
 def echo(case: Case, bodies: list[FilledBody]) -> str:
-    """Return what the case amounts to: bodies, materials, masses, memory, cells, time step, steps."""
+    """Return what the case amounts to: bodies, materials, memory, cells, time step, steps."""
     per_metre = " per metre" if case.grid.dimension == 2 else ""
     lines = [case.title] if case.title else []
     for body in bodies:

@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from mpm3dpp import Case
 from mpm3dpp.materials import catalogue, library, listing
 from mpm3dpp.materials.catalogue import KINDS
+from mpm3dpp.materials.chosen import ACTIONS, Failure
 
 CASE = """
 grid = { dimension = 3, cell_size = "100 mm" }
@@ -45,3 +48,17 @@ def test_lines_of_a_named_material(name: str) -> None:
     used = toml.partition("]")[0].removeprefix("[material.")
     body = CASE[: CASE.index("[material")].replace('"any"', f'"{used}"')
     assert Case.from_text(f"{body}{toml}").material[used].density > 0.0
+
+
+@pytest.mark.parametrize("name", catalogue("failure"))
+def test_the_detail_of_a_failure_model_says_what_failing_does(name: str) -> None:
+    text = listing(name)
+    for action in ACTIONS:
+        assert f"\n    {action}  " in text
+    default = Failure(model=name, parameters=dict.fromkeys(required(name), 1.0)).action
+    assert re.search(rf"    {default} +.*\(the default\)", text)
+    assert text.count("the default") == 1
+
+
+def required(name: str) -> list[str]:
+    return [p.name for p in catalogue("failure")[name].parameters if p.default is None]

@@ -13,8 +13,12 @@ from mpm3dpp.model import CaseModel, Choice
 from .catalogue import KINDS, catalogue, check_parameters
 from .examples import example
 
-ACTIONS = ("no_tension", "no_shear", "erode")
-"""What failure does: only compression is left; the whole pressure is; nothing is."""
+ACTIONS = {
+    "no_tension": "the particle bears compression only (the default)",
+    "no_shear": "it keeps its whole pressure, like a liquid",
+    "erode": "it takes no part any more; the ledger keeps its energy in `eroded`",
+}
+"""What failure may do to a particle, `action` in a failure model's table."""
 
 
 class ChosenModel(CaseModel):
@@ -62,7 +66,7 @@ class Failure(ChosenModel):
     """
 
     kind: ClassVar[str] = "failure"
-    action: Annotated[str, Choice(ACTIONS)] = "no_tension"
+    action: Annotated[str, Choice(tuple(ACTIONS))] = "no_tension"
 
     def table(self) -> dict[str, Any]:
         """Return `{"plastic_strain": {"limit": ..., "action": ...}}`, in SI units."""
@@ -94,7 +98,7 @@ def _action(word: Any) -> str:
     from pydantic_core import PydanticCustomError
 
     try:
-        return Choice(ACTIONS).parse(word)
+        return Choice(tuple(ACTIONS)).parse(word)
     except PydanticCustomError as error:
         found: Any = error.context
         raise violation(found["rule"], found["remedy"], value=word, path=("action",)) from None

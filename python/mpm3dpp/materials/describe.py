@@ -12,6 +12,7 @@ from mpm3dpp.errors import CaseError, nearest
 from mpm3dpp.rules import requirement
 
 from .catalogue import KINDS, catalogue
+from .chosen import ACTIONS
 from .examples import example
 from .library import ON_REQUEST, NamedMaterial, library
 
@@ -93,10 +94,17 @@ def _model_entry(kind: str, model: Any) -> str:
     if kind == "strength":
         pressure = {"never": "takes no eos", "may": "an eos may give the pressure"}
         lines.append(f"  {pressure.get(model.eos, 'needs an eos')}")
+    if kind == "failure":
+        lines.append("  action: what becomes of a particle that fails")
+        wide = max(map(len, ACTIONS))
+        lines += [f"    {word:<{wide}}  {meaning}" for word, meaning in ACTIONS.items()]
     users = [m.name for m in library().values() if model.name in m.parts.get(kind, {})]
     if users:
         lines.append(f"  named materials that use it: {', '.join(users)}")
-    lines.append(f"  case file: {kind} = {{ {model.name} = {example(kind, model.name)} }}")
+    inside = example(kind, model.name)
+    if kind == "failure":
+        inside = f'{inside.removesuffix(" }")}, action = "no_tension" }}'
+    lines.append(f"  case file: {kind} = {{ {model.name} = {inside} }}")
     return "\n".join(lines)
 
 

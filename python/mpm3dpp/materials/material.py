@@ -29,9 +29,10 @@ class Material(CaseModel):
         strength: one strength model with its parameters, `{"elastic": {"E": ..., "nu": ...}}`.
         eos: at most one equation of state, `{"tait": {"c0": ...}}`; it gives the pressure.
         failure: any number of failure models, `{"plastic_strain": {"limit": ...}}`; `action`
-            beside a model's parameters says what failing does, "no_tension", "no_shear"
-            or "erode". With `library` also "library", which takes the library's models with
-            "no_tension", or `{"library": {"action": "erode"}}`.
+            beside a model's parameters says what failing does: "no_tension" (the default; only
+            compression is left), "no_shear" (the whole pressure is) or "erode" (the particle
+            takes no part any more). With `library` also "library", which takes the library's
+            models with "no_tension", or `{"library": {"action": "erode"}}`.
         artificial_viscosity: bulk viscosity of this material in place of `run.viscosity`, with the
             same keys; both 0 for none.
     """
