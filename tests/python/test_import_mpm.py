@@ -504,6 +504,15 @@ def test_the_command_line(tmp_path: Path) -> None:
     for name in ("x.mpm", "y.toml"):
         done = command(tmp_path, "check", name)
         assert done.returncode == 0 and "64 particles" in done.stdout
+    csv, kept = (tmp_path / "y_body_1.csv"), "my own"
+    csv.write_text(kept)
+    for name in ("y.toml", "y_body_1.csv"):
+        done = command(tmp_path, "import", "x.mpm", "-o", "y.toml")
+        assert done.stderr.startswith(f"mpm3dpp: error: {name} is there already; give another name")
+        assert (done.returncode, csv.read_text()) == (2, kept)
+        (tmp_path / "y.toml").unlink(missing_ok=True)
+    done = command(tmp_path, "import", "x.mpm", "-o", "y.toml", "--force")
+    assert (done.returncode, csv.read_text().count("my own")) == (0, 0)
     (tmp_path / "z.mpm").write_text(GOOD.replace("endi\n", "bimp\nendi\n"))
     for words in (("check", "z.mpm"), ("run", "z.mpm"), ("import", "z.mpm"), ("run", "no.mpm"),
                   ("check", "y.toml", "--units", "SI")):  # fmt: skip
