@@ -112,6 +112,8 @@ def _check_output(case: Case) -> None:
     colours = picture_names(case)
     if case.output.picture not in colours:
         remedy = nearest(case.output.picture, colours)
+        if case.output.picture in extra:
+            remedy = f'add it to output.fields: fields = ["{case.output.picture}"]'
         rule = "is not a column that colours a picture of this case"
         raise violation(rule, remedy, value=case.output.picture, path=("output", "picture"))
     interval = case.output.interval

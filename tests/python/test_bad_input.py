@@ -177,6 +177,8 @@ EDITS: list[tuple[str, ...]] = [
      '"volume"'),
     ("unknown picture", "frames = 10", 'picture = "von_mieses"', "output.picture", "column",
      '"von_mises"'),
+    ("picture of a column not written", "frames = 10", 'picture = "volume"', "output.picture",
+     "column", 'add it to output.fields: fields = ["volume"]'),
     ("duplicate key", END, END + "\n" + END, "end_time", "given twice", "keep one"),
     ("duplicate table", "[contact]", "[run]", "[run]", "given twice", "keep one"),
     ("text without quotes", END, "end_time = 1 ms", "end_time = 1 ms", "not valid TOML",
