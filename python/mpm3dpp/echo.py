@@ -28,6 +28,17 @@ def time_step(case: Case, bodies: list[FilledBody]) -> float:
     return case.run.time_step_factor * case.grid.cell_size / fastest
 
 
+def steps_in_words(case: Case, bodies: list[FilledBody]) -> str:
+    """Return the number of steps: `about` or, where the time step may fall, `at least` so many.
+
+    It falls where waves become faster in what is compressed or burns (an equation of state), or
+    bodies become faster (gravity).
+    """
+    compressible = any(case.material[body.material].eos is not None for body in bodies)
+    word = "at least" if compressible or any(case.run.gravity) else "about"
+    return f"{word} {math.ceil(case.run.end_time / time_step(case, bodies)):,} steps"
+
+
 def occupied_cells(case: Case, bodies: list[FilledBody]) -> int:
     """Return the number of grid cells that hold particles, each body counted by itself."""
     total = 0
@@ -79,7 +90,6 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
     particles = sum(len(body.positions) for body in bodies)
     cells = occupied_cells(case, bodies)
     memory = particles * _PARTICLE_BYTES + cells * _CELL_BYTES
-    dt = time_step(case, bodies)
     box = case.grid.box_cells
     bounds = " x ".join(str(n) for n in box) + " cells" if box else "no bounds"
     contact = "none, the bodies are bonded" if case.contact.bonded else "none"
@@ -91,8 +101,8 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
         f"{bounds}, {case.grid.basis} basis",
         f"contact: {contact}",
-        f"time: {case.run.scheme}, end {case.run.end_time:.6g} s, step about {dt:.3g} s, "
-        f"about {math.ceil(case.run.end_time / dt):,} steps, {len(case.frame_times())} frames",
+        f"time: {case.run.scheme}, end {case.run.end_time:.6g} s, step about {time_step(case, bodies):.3g} s, "
+        f"{steps_in_words(case, bodies)}, {len(case.frame_times())} frames",
     ]
     lines += [f"warning: {sentence}" for sentence in warnings(bodies)]
     return "\n".join([*lines, *(f"note: {sentence}" for sentence in notes(case, bodies))])

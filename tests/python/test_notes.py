@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from mpm3dpp import Case, CaseError, Simulation
+from mpm3dpp import Case, CaseError, Simulation, load_case
 from mpm3dpp.build import build
 from mpm3dpp.case_notes import notes
 from mpm3dpp.cli import app
+from mpm3dpp.echo import steps_in_words
 from mpm3dpp.importers.mpm3d.lexer import split
 from mpm3dpp.importers.mpm3d.to_case import import_source
 
@@ -100,3 +101,24 @@ def test_check_and_run_print_them(tmp_path: Path) -> None:
     assert Simulation(Case.from_text(CASE), threads=1).notes == [note]
     done = CliRunner().invoke(app, ["run", str(path), "--threads", "1", "--out", str(tmp_path)])
     assert f"note: {note}\n" in done.output
+
+
+def test_steps_are_a_lower_bound_where_the_time_step_may_fall() -> None:
+    def words(text: str) -> str:
+        case = Case.from_text(text)
+        return steps_in_words(case, build(case))
+
+    solid = CASE.replace('"tnt"\nshape', '"steel"\nshape')
+    assert words(solid).startswith("about ")
+    assert words(solid.replace('"1 us"', '"1 us"\ngravity = [0, -9.81]')).startswith("at least ")
+    assert words(CASE + LIT).startswith("at least ")
+
+
+def test_the_lower_bound_holds_in_a_shock_tube() -> None:
+    """The shock heats the gas behind it, and waves are faster there."""
+    case = load_case(Path(__file__).parents[2] / "examples" / "13_sod_tube" / "case.toml")
+    case.run.end_time = 0.02
+    least = int(steps_in_words(case, build(case)).split()[2])
+    simulation = Simulation(case, threads=1)
+    assert simulation.advance(100 * least) > least
+    assert simulation.time == 0.02
