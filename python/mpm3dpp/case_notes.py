@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from .build import FilledBody
 from .case import Case
 from .detonation import EXPLOSIVE
+
+_STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
 
 
 def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
@@ -17,7 +21,36 @@ def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
         case: a checked case.
         bodies: its bodies, filled.
     """
-    return _detonations(case, bodies)
+    return [*_materials(case), *_detonations(case, bodies)]
+
+
+def _materials(case: Case) -> list[str]:
+    """Numbers that are allowed but mostly come from another convention."""
+    found = []
+    for name in dict.fromkeys(body.material for body in case.body.values()):
+        material = case.material[name]
+        strength, key = material.strength, f"material.{name}"
+        for failure in material.failure:
+            third = failure.parameters.get("D3", 0.0)
+            if failure.model == "johnson_cook_damage" and third > 0.0:
+                found.append(
+                    f"{key}.failure.johnson_cook_damage.D3 = {third:g} is > 0, so that tension "
+                    "makes the metal tougher; here tension is positive, as Johnson and Cook write "
+                    "it: give codes' numbers for pressure with the other sign"
+                )
+        friction = strength.parameters.get("q_phi", 0.0)
+        if strength.model == "drucker_prager" and friction > _STEEPEST:
+            found.append(
+                f"{key}.strength.drucker_prager.q_phi = {friction:g} is more than any angle of "
+                f"friction gives ({_STEEPEST:.3g} at 90 deg); it is a slope, not an angle"
+            )
+        if material.eos is not None and material.eos.model == "jwl" and strength.model != EXPLOSIVE:
+            found.append(
+                f"{key}.eos.jwl is of the products of an explosive, but its strength "
+                f"{strength.model} does not detonate: the whole energy E0 presses from the start; "
+                f"give strength = {{ {EXPLOSIVE} = ... }} unless that is meant"
+            )
+    return found
 
 
 def _detonations(case: Case, bodies: list[FilledBody]) -> list[str]:

@@ -66,6 +66,37 @@ def test_a_detonation_without_an_explosive() -> None:
     assert str(caught.value).startswith(f"case.toml:{line}: detonation[0] has nothing to light")
 
 
+STEEL = 'strength = { elastic = { E = "200 GPa", nu = 0.3 } }'
+JWL = '{ A = "371 GPa", B = "3.2 GPa", R1 = 4.15, R2 = 0.95, omega = 0.3, E0 = "7 GPa" }'
+PLASTIC = 'strength = { j2 = { E = "200 GPa", nu = 0.3, Y0 = "1 GPa" } }'
+DAMAGE = PLASTIC + "\nfailure.johnson_cook_damage = { D1 = 0.05, D2 = 3.44, D3 = SIGN2.12 }"
+SOIL = "strength.drucker_prager = { E = 1e7, nu = 0.3, q_phi = FRICTION, k_phi = 1e3 }"
+
+
+@pytest.mark.parametrize(
+    ("material", "note"),
+    [
+        (DAMAGE.replace("SIGN", ""), "material.steel.failure.johnson_cook_damage.D3 = 2.12 is > 0"),
+        (DAMAGE.replace("SIGN", "-"), ""),
+        (
+            SOIL.replace("FRICTION", "30"),
+            "material.steel.strength.drucker_prager.q_phi = 30 is more",
+        ),
+        (SOIL.replace("FRICTION", "1.7"), ""),
+        (
+            f"strength = {{ fluid = {{}} }}\neos.jwl = {JWL}",
+            "material.steel.eos.jwl is of the prod",
+        ),
+        (f"strength = {{ high_explosive = {{ D = 6930 }} }}\neos.jwl = {JWL}", ""),
+    ],
+)
+def test_numbers_of_another_convention(material: str, note: str) -> None:
+    text = CASE.replace(STEEL, material) + LIT
+    assert text != CASE + LIT
+    found = notes_of(text)
+    assert [line.startswith(note) for line in found] == ([True] if note else [])
+
+
 DECK = """\
 mpm3
 nbbo 1
