@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from .case_parts import STANDARD_FIELDS
@@ -50,12 +51,33 @@ def _check_material(material: Material, path: Path) -> None:
         material.sound_speed()
         speed = material.eos_sound_speed()
     except ValueError as error:
-        raise violation(f"is refused: {error}", "see `mpm3dpp materials`", path=path) from None
+        raise _refusal(material, str(error), path) from None
     if material.eos is not None and not speed:
         rule = "has no stiffness at the start: its pressure does not rise when it is compressed"
         model = material.eos.model
         remedy = f"correct its numbers; `mpm3dpp materials {model}` has an example"
         raise violation(rule, remedy, path=(*path, "eos", model))
+
+
+def _refusal(material: Material, reason: str, path: Path) -> Exception:
+    """Return the violation for what the core says, `johnson_cook.T_melt must be > T_room`.
+
+    The key is that of the parameter, and the others that are named have their values.
+    """
+    chosen = [("strength", material.strength), ("eos", material.eos)]
+    for kind, model in [*chosen, *(("failure", model) for model in material.failure)]:
+        found = re.match(r"(\w+)\.(\w+) (?=must)", reason)
+        if model is None or found is None or found[1] != model.model:
+            continue
+        name, rule, values = found[2], reason[found.end() :], model.parameters
+        others = [word for word in re.findall(r"\w+", rule) if word in values and word != name]
+        if name in values:
+            also = ", ".join(f"{word} = {values[word]:g}" for word in others)
+            where = (*path, kind, model.model, name)
+            remedy = "change one of the two" if others else "change it"
+            rule = f"{rule} ({also})" if also else rule
+            return violation(rule, remedy, value=values[name], path=where)
+    return violation(f"is refused: {reason}", "see `mpm3dpp materials`", path=path)
 
 
 def _check_vector(owner: object, name: str, dimension: int, path: Path) -> None:

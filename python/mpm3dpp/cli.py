@@ -145,6 +145,9 @@ def import_(
     """Write an input file of MPM3D-F90 as a case file in SI units."""
     from .importers.mpm3d import import_mpm, write_case
 
+    if file.suffix.lower() == ".toml":
+        rule = "is a case file, but import wants an input file of MPM3D-F90 (.mpm)"
+        raise CaseError(rule, "run, check and preview take a case file as it is", key=str(file))
     found = import_mpm(file, units)
     target = out if out is not None else Path(f"{file.stem}.toml")
     written = write_case(found, target, force)

@@ -101,7 +101,8 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
         f"{bounds}, {case.grid.basis} basis",
         f"contact: {contact}",
-        f"time: {case.run.scheme}, end {case.run.end_time:.6g} s, step about {time_step(case, bodies):.3g} s, "
+        f"time: {case.run.scheme}, end {case.run.end_time:.6g} s, "
+        f"step about {time_step(case, bodies):.3g} s, "
         f"{steps_in_words(case, bodies)}, {len(case.frame_times())} frames",
     ]
     lines += [f"warning: {sentence}" for sentence in warnings(bodies)]

@@ -295,7 +295,7 @@ def test_default_folder_and_threads(monkeypatch: pytest.MonkeyPatch) -> None:
                     }
                 },
             },
-            "T_melt must be > T_room",
+            r"johnson_cook.T_melt = 298.0 must be > T_room \(T_room = 298\)",
         ),
         (
             {

@@ -114,6 +114,8 @@ def _parse_one(kind: type[ChosenModel]) -> Any:
             has = f" but has {len(value)}" if isinstance(value, dict) else ""
             model = next(iter(catalogue(kind.kind)))
             remedy = f"write {{ {model} = {example(kind.kind, model)} }}; the models are {names}"
+            if has and len(value) > 1 and set(value) <= set(catalogue(kind.kind)):
+                remedy = f"keep {' or '.join(value)}"
             raise violation(f"must be a table with exactly one model{has}", remedy, value=value)
         [(model, given)] = value.items()
         return _chosen(kind, model, given)
