@@ -12,8 +12,12 @@ from mpm3dpp import _core
 
 DENSITY, MODULUS = 1000.0, 1e8
 EPS = np.finfo(float).eps
-MODELS = [m.name for m in _core.catalogue() if m.kind == "strength" and m.eos != "must"]
-"""The strength models that give a whole stress by themselves."""
+MODELS = [
+    m.name
+    for m in _core.catalogue()
+    if m.kind == "strength" and m.eos != "must" and m.name != "rigid"
+]
+"""The strength models that give a whole stress by themselves; a rigid body has none."""
 
 CHOSEN = {"nu": 0.3, "T_melt": 1000.0, "cp": 1000.0, "n": 0.5, "e0": 0.5, "q_phi": 0.5}
 CHOSEN["tension"] = MODULUS

@@ -8,6 +8,7 @@
 #include "mpm/materials/material_block.hpp"
 #include "mpm/parallel/threads.hpp"
 #include "mpm/particles/lists.hpp"
+#include "mpm/particles/rigid_motion.hpp"
 
 namespace mpm {
 
@@ -21,6 +22,8 @@ struct PatchSums {
   double momentum[D] = {};    // of the particles after the step [kg m/s]
   double force_work =
       0.0;  // time step x sum over nodes of internal and contact force . velocity [J]
+  double made_rigid =
+      0.0;  // kinetic energy that rigid bodies' increments had beyond a rigid motion [J]
   double gravity_first = 0.0;   // time step x sum over nodes of gravity . velocity [J]
   double gravity_second = 0.0;  // the part of second_order that is the work of gravity [J]
 };
@@ -43,8 +46,13 @@ struct Domain {
   std::vector<PatchSums<D>> sums;  // one per patch
   ListScratch<D> list_scratch;
   Eroded<D> eroded;
+  std::vector<RigidMotion> rigid;  // one per body if any is rigid, else none
+  std::vector<RigidMotion> rigid_before;
+  std::vector<RigidSums> rigid_parts, rigid_sums;  // scratch: per patch, per body
+  std::vector<Matrix3> rigid_turns;
 
   Body<D>& body_of(const Patch<D>& patch) { return bodies[static_cast<std::size_t>(patch.body)]; }
+  bool has_rigid() const { return !rigid.empty(); }
   bool has_contact() const { return contact_settings.enabled && bodies.size() > 1; }
 };
 

@@ -33,6 +33,9 @@ def check_case(case: Case) -> None:
     _check_vector(case.run, "gravity", dimension, ("run",))
     for name, body in case.body.items():
         _check_body(case, body, ("body", name))
+    if not any(case.material[body.material].sound_speed() for body in case.body.values()):
+        rule = "holds rigid bodies only, so no wave limits the time step: one must deform"
+        raise violation(rule, "give one another strength", path=("body",))
     for index, pair in enumerate(case.contact.pair):
         key = "bodies" if pair.bodies is not None else "materials"
         known = case.body if pair.bodies is not None else case.material

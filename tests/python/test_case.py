@@ -337,3 +337,15 @@ def test_models_that_do_not_go_together_are_refused(material: dict, reason: str)
             body={"one": {"material": "any", "shape": {"box": {"lower": [0, 0], "upper": [1, 1]}}}},
         )
     assert "material.any" in str(error.value)
+
+
+def test_one_body_must_deform() -> None:
+    rigid = {"density": 1000, "strength": {"rigid": {}}}
+    body = {"material": "tool", "shape": {"box": {"lower": [0, 0], "upper": [1, 1]}}}
+    with pytest.raises(CaseError, match=r"body holds rigid bodies only.*one must deform; give"):
+        Case(
+            grid={"dimension": 2, "cell_size": 0.1},
+            run={"end_time": 1.0},
+            material={"tool": rigid},
+            body={"one": body},
+        )

@@ -45,6 +45,14 @@ void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
   });
 }
 
+/// Gravity along the axes that no wall holds at a node.
+template <int D>
+Vec<double, D> free_gravity(const ContactNode& node, Vec<double, D> gravity) {
+  for (int a = 0; a < D; ++a)
+    if (node.held >> a & 1u) gravity[a] = 0.0;
+  return gravity;
+}
+
 template <int D>
 void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity, double time_step,
                                 Threads& threads) {
@@ -77,8 +85,11 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity
       const Vec<double, D> change =
           side.momentum - side.mass * side.velocity;  // impulse of all forces
       const Vec<double, D> contact = change - time_step * force_of(side);
+      // The node itself has its own mass only.
+      const Vec<double, D> own =
+          change - (time_step * (1.0 - side.share) * side.mass) * free_gravity(node, gravity);
       force_work += dot(contact, side.velocity);
-      correction -= dot(change, side.velocity - side.mapped);
+      correction -= dot(own, side.velocity - side.mapped);
       for_each_copy(grid, node, side, [&](std::size_t p, int at) {
         for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] += (1.0 / time_step) * contact[a];
       });

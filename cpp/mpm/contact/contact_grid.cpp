@@ -78,6 +78,7 @@ std::uint32_t ContactGrid<D>::sides_at(TileGrid<D>& grid, const ContactTile<D>& 
         side.body = body;
         side.first_copy = first;
         side.mass = block.mass()[at];
+        side.share = 1.0;
         for (int a = 0; a < D; ++a) side.mapped[a] = block.velocity(a)[at];
         side.velocity = side.mapped;
       }
@@ -139,8 +140,22 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       c.pairs += pair_count(count);
     });
   });
+  share_rigid_masses(bodies);
   for (const ContactNode& node : nodes_)
     bodies_max_ = std::max(bodies_max_, static_cast<int>(node.sides));
+}
+
+template <int D>
+void ContactGrid<D>::share_rigid_masses(const std::vector<Body<D>>& bodies) {
+  if (std::none_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.rigid; })) return;
+  rigid_share_.assign(bodies.size(), 0.0);
+  for (const Side<D>& side : sides_) rigid_share_[static_cast<std::size_t>(side.body)] += side.mass;
+  for (Side<D>& side : sides_) {
+    const auto b = static_cast<std::size_t>(side.body);
+    if (!bodies[b].rigid) continue;
+    side.share = rigid_share_[b] / bodies[b].total_mass;
+    side.mass /= side.share;
+  }
 }
 
 template class ContactGrid<2>;

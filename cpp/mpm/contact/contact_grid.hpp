@@ -108,6 +108,8 @@ class ContactGrid {
   void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<double>& stiffness, const ContactSettings& settings,
                   const ContactNode& node);
+  /// A rigid body meets others with its whole mass, spread over its overlapped nodes.
+  void share_rigid_masses(const std::vector<Body<D>>& bodies);
   /// May any pair at a node act? Other nodes stay as they are, to the last bit.
   bool any_closed(const ContactNode& node) const;
   PairRecord& record_of(int a, int b);
@@ -121,6 +123,7 @@ class ContactGrid {
   std::vector<ContactNode> nodes_;
   std::vector<Side<D>> sides_;
   std::vector<SidePair<D>> pairs_;
+  std::vector<double> rigid_share_;  // scratch
   std::vector<PairRecord> records_;  // sorted by (a, b)
   std::size_t nodes_max_ = 0;
   int bodies_max_ = 0;

@@ -17,7 +17,8 @@ struct Side {
   int body;
   std::uint32_t first_copy,
       copies;               // the patches that hold the node for this body (ContactGrid::holders_)
-  double mass;              // [kg]
+  double mass;              // [kg]; of a rigid body, with its share of the whole body's
+  double share;             // mapped mass / mass; 1 but for rigid bodies
   Vec<double, D> mapped;    // velocity mapped from the particles [m/s]
   Vec<double, D> velocity;  // after the contact of eqs. (6)-(7) [m/s]
   Vec<double, D> momentum;  // working momentum of the solver [kg m/s]

@@ -17,7 +17,7 @@ template <class T, int D, class Model>
 [[gnu::flatten]] void apply_eos(const Model& model, const Material& material, Columns& columns,
                                 const MaterialColumns& at, const StressSettings& settings,
                                 MaterialBlock<D>& block, BlockEnd<T, D>& end) {
-  const bool burns = std::holds_alternative<HighExplosive>(material.strength);
+  const bool burns = material.burns(), damped = material.damps();
   const bool viscosity = settings.viscosity.active(), last = material.failures.empty();
   for_each_group<T>(block, [&](const Group<T, D>& group) {
     const Moved<T, D> moved(group, block, columns, at, material.density, settings);
@@ -29,20 +29,20 @@ template <class T, int D, class Model>
     const T deviatoric = T(0.5) * moved.deviatoric_work(before + strength) * per_volume;
 
     LinearInEnergy<T> p = model.at(V);
-    if (burns) {
-      const T burnt = group.get(block.burnt);
-      p = {burnt * p.A, burnt * p.B, burnt * p.dA, burnt * p.dB};
-    }
+    if (burns) p = p.burnt(group.get(block.burnt));
     T energy =
         group.read(columns.component(at.energy)) + deviatoric - T(0.5) * old_pressure * change;
     const T guess = p.A + p.B * energy;
-    const T speed =
+    T speed =
         sqrt(sound_speed_squared(p, V, energy, guess, material.density) + group.get(block.speed));
-    T q(0.0);
+    T q(0.0), damping = damped ? group.get(block.damping) : T(0.0);
     if (viscosity) {
-      q = moved.viscous_pressure(settings, speed);
+      const T artificial = moved.viscous_speed(settings, speed);
+      q = moved.viscous_pressure(settings, artificial);
       energy += moved.viscous_work(q) * per_volume;
+      damping += artificial;
     }
+    if (viscosity || damped) speed = damped_speed(speed, damping);
     const T pressure = (p.A + p.B * energy) / (T(1.0) + T(0.5) * p.B * change);
     const T mean = T(1.0 / 3.0) * trace(strength);
     const Sym<T, D> stress = strength - Sym<T, D>::isotropic(mean + pressure);

@@ -27,7 +27,11 @@ template <class T, int D, class Model>
     if constexpr (Model::eos != EosUse::must)
       if (!material.eos) {
         speed = model.sound_speed(stress, state, motion.J);
-        if (viscosity) q = moved.viscous_pressure(settings, speed);
+        if (viscosity) {
+          const T damping = moved.viscous_speed(settings, speed);
+          q = moved.viscous_pressure(settings, damping);
+          speed = damped_speed(speed, damping);
+        }
       }
     if (last) {
       end.add(group, moved, stress_before, {stress, dissipated, speed, q});
@@ -37,7 +41,9 @@ template <class T, int D, class Model>
     group.put(block.dissipated, dissipated);
     group.put(block.speed, speed);
     group.put(block.viscous_pressure, q);
-    if constexpr (requires { state.burn_fraction; }) group.put(block.burnt, state.burn_fraction);
+    if constexpr (Burns<Model>) group.put(block.burnt, state.burn_fraction);
+    if constexpr (Damps<Model>)
+      group.put(block.damping, model.damping_speed(motion.J, motion.cell_size));
     if (!judged) return;
     T strain(0.0), increment(0.0), temperature(0.0);
     if constexpr (requires { state.plastic_strain; }) {

@@ -59,6 +59,14 @@ void for_each_group(const MaterialBlock<D>& block, F&& f) {
   for (std::size_t k = 0; k < block.count; k += lanes_of<T>) f(Group<T, D>(block, k));
 }
 
+/// The wave speed that takes the place of c in the time step where waves are damped by a viscosity
+/// of Q times density and cell size: Q + sqrt(Q^2 + c^2), the exact limit of central differences
+/// (Belytschko, Liu & Moran 2000, eq. 6.2.25, with the damping ratio Q / c).
+template <class T>
+T damped_speed(T c, T Q) {
+  return Q + sqrt(Q * Q + c * c);
+}
+
 /// The motion of a group over the step, and the volumes and mass that go with it.
 template <class T, int D>
 struct Moved {
@@ -97,12 +105,21 @@ struct Moved {
     return deviatoric_work(stress) + T(1.0 / 3.0) * trace(stress) * (volume - volume_before);
   }
 
-  /// Pressure of the artificial viscosity for a speed of sound c, and its work on the volume.
-  T viscous_pressure(const StressSettings& settings, T c) const {
-    const T rate = min(trace(symmetric_part(motion.gradient)), T(0.0)) *
-                   T(settings.cell_size / settings.time_step);
-    return mass / volume * rate *
-           (T(settings.viscosity.quadratic) * rate - T(settings.viscosity.linear) * c);
+  /// How fast a cell closes [m/s], negative in compression, else 0.
+  T closing(const StressSettings& settings) const {
+    return min(trace(symmetric_part(motion.gradient)), T(0.0)) *
+           T(settings.cell_size / settings.time_step);
+  }
+  /// The artificial viscosity over density and cell size, for a speed of sound c [m/s], its
+  /// pressure, and that pressure's work on the volume.
+  T viscous_speed(const StressSettings& settings, T c) const {
+    const T rate = closing(settings);
+    return select(rate < T(0.0),
+                  T(settings.viscosity.linear) * c - T(settings.viscosity.quadratic) * rate,
+                  T(0.0));
+  }
+  T viscous_pressure(const StressSettings& settings, T viscous_speed) const {
+    return T(-1.0) * mass / volume * closing(settings) * viscous_speed;
   }
   T viscous_work(T pressure) const {
     return -volume * pressure * trace(symmetric_part(motion.gradient));

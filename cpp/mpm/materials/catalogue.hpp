@@ -25,6 +25,7 @@
 #include "mpm/materials/strength/johnson_cook.hpp"
 #include "mpm/materials/strength/mohr_coulomb.hpp"
 #include "mpm/materials/strength/neo_hookean.hpp"
+#include "mpm/materials/strength/rigid.hpp"
 #include "mpm/materials/strength/simplified_johnson_cook.hpp"
 #include "mpm/materials/strength/swift.hpp"
 #include "mpm/materials/strength/voce.hpp"
@@ -41,8 +42,9 @@ struct Catalogue {
   }
 };
 
-using StrengthModels = Catalogue<Elastic, J2, Voce, Swift, JohnsonCook, SimplifiedJohnsonCook,
-                                 DruckerPrager, MohrCoulomb, NeoHookean, Fluid, HighExplosive>;
+using StrengthModels =
+    Catalogue<Elastic, J2, Voce, Swift, JohnsonCook, SimplifiedJohnsonCook, DruckerPrager,
+              MohrCoulomb, NeoHookean, Fluid, HighExplosive, Rigid>;
 using EosModels = Catalogue<LinearBulk, Polynomial, MieGruneisen, Jwl, IdealGas, Tait, Murnaghan>;
 using FailureModels =
     Catalogue<PlasticStrainLimit, PrincipalStressLimit, PrincipalStrainLimit, MaximumShearLimit,

@@ -118,6 +118,8 @@ Material make_material(const MaterialChoice& choice) {
                                       " has no pressure of its own: give the material an eos");
         if (strength.eos == EosUse::never && material.eos)
           throw std::invalid_argument(name + " gives the whole stress and takes no eos");
+        if (material.moves_as_one() && !choice.failures.empty())
+          throw std::invalid_argument(name + " has no stress and takes no failure model");
         for (const FailureChoice& failure : choice.failures) {
           const auto model = made<FailureModels>("failure", failure.model, choice.density);
           std::visit([&](const auto& m) { check_together(strength, m, material.eos.has_value()); },

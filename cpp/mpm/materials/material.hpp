@@ -39,6 +39,15 @@ struct Material {
   std::vector<Failing> failures;
   BulkViscosity viscosity{};
 
+  bool moves_as_one() const {
+    return std::visit([]<class M>(const M&) { return requires { M::moves_as_one; }; }, strength);
+  }
+  bool burns() const {
+    return std::visit([]<class M>(const M&) { return Burns<M>; }, strength);
+  }
+  bool damps() const {
+    return std::visit([]<class M>(const M&) { return Damps<M>; }, strength);
+  }
   bool erodes() const {
     return std::any_of(failures.begin(), failures.end(),
                        [](const Failing& f) { return f.action == FailureAction::erode; });

@@ -67,7 +67,7 @@ void start_material_columns(const Material& material, Columns& columns, const Ma
         const LinearInEnergy<double> p = model.at(1.0);
         fill(at.energy, energy);
         if (at.recoverable >= 0) fill(at.recoverable, energy);
-        if (std::holds_alternative<HighExplosive>(material.strength)) return;  // not burning yet
+        if (material.burns()) return;  // not burning yet
         for (int c = 0; c < 3; ++c) fill(at.stress + c, -(p.A + p.B * energy));
       },
       *material.eos);
@@ -89,17 +89,18 @@ double sound_speed(const Material& material, const Columns& columns, const Mater
         if constexpr (Model::eos != EosUse::must)
           if (!material.eos) return model.sound_speed(stress, state, J);
         if constexpr (Model::eos != EosUse::never) {
-          double burnt = 1.0;
-          if constexpr (requires { state.burn_fraction; }) burnt = state.burn_fraction;
           const double shear = model.shear_wave_squared(state, J, cell_size);
           const double bulk = std::visit(
               [&](const auto& eos) {
                 const double energy = value(at.energy);
-                const LinearInEnergy<double> p = eos.at(J);
+                LinearInEnergy<double> p = eos.at(J);
+                if constexpr (Burns<Model>) p = p.burnt(state.burn_fraction);
                 return sound_speed_squared(p, J, energy, p.A + p.B * energy, material.density);
               },
               *material.eos);
-          return sqrt(burnt * bulk + shear);
+          const double c = sqrt(bulk + shear);
+          if constexpr (Damps<Model>) return damped_speed(c, model.damping_speed(J, cell_size));
+          return c;
         }
         return 0.0;
       },

@@ -24,6 +24,7 @@ struct MaterialBlock {
   Values speed;                         // of sound [m/s]; before an EOS its shear part, squared
   Values viscous_pressure;              // of the artificial viscosity [Pa]
   Values burnt;                         // factor of the EOS's pressure; of high explosives
+  Values damping;                       // Q of damped_speed() by the strength's own viscosity
   Values plastic_strain, plastic_increment, temperature;  // for failure models
 };
 

@@ -97,11 +97,24 @@ concept StrengthModel =
       requires M::eos == EosUse::never || requires { m.shear_wave_squared(state, J, 1.0); };
     };
 
+/// A strength model that burns: the EOS's pressure counts by its burn fraction.
+template <class M>
+concept Burns = requires(typename M::template State<double, 3> state) { state.burn_fraction; };
+/// A strength model with a viscosity: `damping_speed(J, h)` is 4/3 of it over density and cell size
+/// [m/s].
+template <class M>
+concept Damps = requires(M m) { m.damping_speed(1.0, 1.0); };
+
 /// An equation of state at one relative volume V: pressure A + B E, E the internal energy per
 /// initial volume [Pa], and the derivatives of A and B with V.
 template <class T>
 struct LinearInEnergy {
   T A, B, dA, dB;
+
+  /// The same of which a fraction has burnt: programmed burn multiplies the pressure.
+  LinearInEnergy burnt(T fraction) const {
+    return {fraction * A, fraction * B, fraction * dA, fraction * dB};
+  }
 };
 
 /// An equation of state that is linear in the energy. `E0` [J/m^3] is the internal energy at the

@@ -50,6 +50,7 @@ void Threads::work() {
 }
 
 void Threads::share_out(std::size_t n, Run run, void* context) {
+  if (workers_.empty() || n == 1) return run(context, 0, n);
   total_ = n;
   // Eight chunks a thread: small enough to balance patches of different fill, large enough to stay
   // in step.

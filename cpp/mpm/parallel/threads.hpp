@@ -26,10 +26,8 @@ class Threads {
       auto& f = *static_cast<std::remove_reference_t<Body>*>(context);
       for (std::size_t i = begin; i < end; ++i) f(i);
     };
-    if (workers_.empty() || n == 1) {
-      run(&body, 0, n);
-      return;
-    }
+    // Never inlined here: a second copy of the body for one thread might be compiled to other
+    // roundings.
     share_out(n, run, &body);
   }
 

@@ -23,9 +23,11 @@ struct Body {
   std::vector<std::uint8_t> cell;         // scratch: cell in its tile of each entry of `order`
   double initial_density = 0.0;           // [kg/m^3]
   double mean_mass = 0.0;                 // of a particle at the start [kg]
-  double mean_edge = 0.0;  // edge of a square or cube of the mean initial particle volume [m]
-  std::size_t moved = 0;   // changes of cell since the columns were last sorted
-  std::size_t eroded = 0;  // particles that take no part any more
+  double mean_edge = 0.0;   // edge of a square or cube of the mean initial particle volume [m]
+  double total_mass = 0.0;  // [kg]
+  bool rigid = false;       // its particles move as one
+  std::size_t moved = 0;    // changes of cell since the columns were last sorted
+  std::size_t eroded = 0;   // particles that take no part any more
 
   std::size_t count() const { return columns.rows(); }
   std::size_t active() const { return count() - eroded; }

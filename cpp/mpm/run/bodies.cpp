@@ -72,7 +72,10 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
   }
   start_material_columns<D>(material, c, body.at);
   const double speed = sound_speed<D>(material, c, body.at, 0, domain_.grid.cell_size);
-  domain_.stiffness.push_back(material.density * speed * speed);
+  body.rigid = material.moves_as_one();
+  body.total_mass = material.density * total;
+  domain_.stiffness.push_back(body.rigid ? std::numeric_limits<double>::infinity()
+                                         : material.density * speed * speed);
   body.initial_density = material.density;
   body.mean_mass = material.density * total / static_cast<double>(n);
   body.mean_edge = std::pow(total / static_cast<double>(n), 1.0 / D);
@@ -222,6 +225,7 @@ void SimulationOf<D>::set_velocity(int number, std::span<const double> velocitie
   for (std::size_t k = 0; k < b.count(); ++k)
     for (std::size_t a = 0; a < D; ++a) b.v(static_cast<int>(a))[k] = velocities[b.id[k] * D + a];
   if (!prepared_) return;
+  hold_rigid_bodies(domain_);
   ledger_.external += kinetic_energy() - before;
   ledger_.kinetic = kinetic_energy();
   ledger_.momentum = momentum();

@@ -14,7 +14,7 @@
 //   forces would do sum_p m_p dv_p^2 more work than on v_i (gravity's part left out), so that much
 //   is set against it.
 // - time: first-order integration, 1/2 m dv^2, and the mean stress against that which gave the
-// forces.
+// forces; and what rigid bodies' increments have beyond a rigid motion.
 // - contact: normal contact that does not exactly conserve energy, with dv from eqs. (11)-(15)
 // alone.
 //
@@ -64,6 +64,7 @@ struct Ledger {
       s.stress.force_power += p.stress.force_power;
       s.kinetic += p.kinetic;
       s.second_order += p.second_order;
+      s.made_rigid += p.made_rigid;
       for (int a = 0; a < D; ++a) s.momentum[a] += p.momentum[a];
       s.force_work += p.force_work;
       s.gravity_first += p.gravity_first;
@@ -82,6 +83,7 @@ struct Ledger {
     external += s.gravity_first + s.gravity_second;
     const double at_end = forces_follow ? 0.0 : 2.0 * (s.second_order - s.gravity_second);
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
+    time_integration += s.made_rigid;
     time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous -
                         s.stress.force_power + s.second_order - s.gravity_second +
                         contacts.friction - contacts.friction_first - at_end;

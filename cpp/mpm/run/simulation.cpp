@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -92,6 +93,16 @@ void SimulationOf<D>::prepare() {
   check(!domain_.bodies.empty(), "there is no body");
   make_lists(domain_.grid, domain_.bodies, domain_.threads);
   if (domain_.has_contact()) domain_.contact.connect(domain_.grid);
+  domain_.sums.resize(domain_.grid.patches.size());
+  const auto& bodies = domain_.bodies;
+  const auto is_rigid = [](const Body<D>& b) { return b.rigid; };
+  check(!std::all_of(bodies.begin(), bodies.end(), is_rigid),
+        "all bodies are rigid, so no wave limits the time step: one must deform");
+  if (std::any_of(bodies.begin(), bodies.end(), is_rigid)) {
+    check(!settings_.bonded, "bodies are bonded, so none can be rigid");
+    domain_.rigid.resize(bodies.size());
+    hold_rigid_bodies(domain_);
+  }
   probe_speeds();
   ledger_.kinetic = kinetic_energy();
   ledger_.internal = initial_internal_energy();

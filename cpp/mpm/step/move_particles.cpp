@@ -12,6 +12,7 @@ void move_particles(Domain<D>& domain) {
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
     Body<D>& body = domain.body_of(patch);
+    if (body.rigid) return;
     const NodeBlock<D> block = grid.block(p);
     auto left = T(1.0) < T(0.0);
     with_basis(grid, body, [&](const auto& basis) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "mpm/step/rigid_bodies.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -28,7 +29,9 @@ inline constexpr auto usf = std::array{
     Stage<D>{"contact forces", contact_forces<D>},
     Stage<D>{"advance nodes", advance_nodes<D>},
     Stage<D>{"advance particles", advance_particles<D>},
+    Stage<D>{"hold rigid bodies", hold_rigid_bodies<D>},
     Stage<D>{"move particles", move_particles<D>},
+    Stage<D>{"move rigid bodies", move_rigid_bodies<D>},
 };
 
 /// Update stress last (Sulsky, Chen & Schreyer 1994).
@@ -41,8 +44,10 @@ inline constexpr auto usl = std::array{
     Stage<D>{"contact forces", contact_forces<D>},
     Stage<D>{"advance nodes", advance_nodes<D>},
     Stage<D>{"advance particles", advance_particles<D>},
+    Stage<D>{"hold rigid bodies", hold_rigid_bodies<D>},
     Stage<D>{"update stress", update_stress_last<D>},
     Stage<D>{"move particles", move_particles<D>},
+    Stage<D>{"move rigid bodies", move_rigid_bodies<D>},
 };
 
 /// Modified update stress last (Sulsky, Zhou & Schreyer 1995).
@@ -55,10 +60,12 @@ inline constexpr auto musl = std::array{
     Stage<D>{"contact forces", contact_forces<D>},
     Stage<D>{"advance nodes", advance_nodes<D>},
     Stage<D>{"advance particles", advance_particles<D>},
+    Stage<D>{"hold rigid bodies", hold_rigid_bodies<D>},
     Stage<D>{"remap momentum", remap_momentum<D>},
     Stage<D>{"contact remapped", contact_remapped<D>},
     Stage<D>{"update stress", update_stress_remapped<D>},
     Stage<D>{"move particles", move_particles<D>},
+    Stage<D>{"move rigid bodies", move_rigid_bodies<D>},
 };
 
 template <int D>

@@ -13,6 +13,7 @@ void update_patch(Domain<D>& domain, std::size_t p, bool forces_follow, Field&& 
   const auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   Body<D>& body = domain.body_of(patch);
+  if (body.rigid) return;
   const Material& material = domain.materials[static_cast<std::size_t>(body.material)];
   const StressSettings settings{domain.time_step, domain.time + domain.time_step, grid.cell_size,
                                 material.viscosity, forces_follow};

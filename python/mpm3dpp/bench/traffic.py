@@ -22,6 +22,7 @@ STAGES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "contact forces": ((), ()),
     "advance nodes": ((), ()),
     "advance particles": (("position", "velocity", "mass"), ("velocity",)),
+    "hold rigid bodies": ((), ()),  # Touches rigid bodies only, which benchmarks do not have.
     "remap momentum": (("position", "velocity", "mass"), ()),
     "contact remapped": ((), ()),
     "update stress": (
@@ -29,6 +30,7 @@ STAGES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ("volume", "stress"),
     ),
     "move particles": (("position",), ("position",)),
+    "move rigid bodies": ((), ()),
 }
 
 

@@ -1,0 +1,107 @@
+#pragma once
+// The motion of a rigid body by the laws of Newton and Euler.
+#include "mpm/math/cholesky.hpp"
+#include "mpm/math/tensor.hpp"
+
+namespace mpm {
+
+using Vector3 = Vec<double, 3>;
+using Matrix3 = Mat<double, 3>;
+
+inline Vector3 cross(const Vector3& a, const Vector3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline Vector3 operator*(const Matrix3& a, const Vector3& b) {
+  return {dot(Vector3{a[0][0], a[0][1], a[0][2]}, b), dot(Vector3{a[1][0], a[1][1], a[1][2]}, b),
+          dot(Vector3{a[2][0], a[2][1], a[2][2]}, b)};
+}
+inline Matrix3 transposed(const Matrix3& a) {
+  Matrix3 r;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) r[i][j] = a[j][i];
+  return r;
+}
+
+/// Rotation by the vector `angle` [rad] (Rodrigues).
+inline Matrix3 rotation(const Vector3& angle) {
+  const double size = norm(angle);
+  const Vector3 n = normalised(angle);
+  const double s = std::sin(size), c = 1.0 - std::cos(size);
+  return {{{1.0 - c * (n[1] * n[1] + n[2] * n[2]), c * n[0] * n[1] - s * n[2],
+            c * n[0] * n[2] + s * n[1]},
+           {c * n[0] * n[1] + s * n[2], 1.0 - c * (n[0] * n[0] + n[2] * n[2]),
+            c * n[1] * n[2] - s * n[0]},
+           {c * n[0] * n[2] - s * n[1], c * n[1] * n[2] + s * n[0],
+            1.0 - c * (n[0] * n[0] + n[1] * n[1])}}};
+}
+
+/// Mass, momentum, angular momentum and inertia of particles, about a point.
+struct RigidSums {
+  double mass = 0.0;                   // [kg]
+  Vector3 first = Vector3::zero();     // sum of m r [kg m]
+  Vector3 momentum = Vector3::zero();  // [kg m/s]
+  Vector3 angular = Vector3::zero();   // [kg m^2/s]
+  Matrix3 inertia{};                   // [kg m^2]
+
+  void add(double m, const Vector3& r, const Vector3& v) {
+    mass += m;
+    first += m * r;
+    momentum += m * v;
+    angular += m * cross(r, v);
+    const double square = dot(r, r);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) inertia[i][j] += m * ((i == j ? square : 0.0) - r[i] * r[j]);
+  }
+  void add(const RigidSums& s) {
+    mass += s.mass;
+    first += s.first;
+    momentum += s.momentum;
+    angular += s.angular;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) inertia[i][j] += s.inertia[i][j];
+  }
+};
+
+/// Spin [rad/s] about the axes that are free, of an angular momentum and an inertia about the mass
+/// centre. An axis without inertia does not turn.
+inline Vector3 spin_of(const Matrix3& inertia, const Vector3& angular, unsigned free_axes) {
+  const double least = 1e-12 * (inertia[0][0] + inertia[1][1] + inertia[2][2]);
+  double A[3][3], y[3];
+  for (int i = 0; i < 3; ++i) {
+    const bool turns = (free_axes >> i & 1u) && inertia[i][i] > least;
+    y[i] = turns ? angular[i] : 0.0;
+    for (int j = 0; j < 3; ++j)
+      A[i][j] = turns && (free_axes >> j & 1u) && inertia[j][j] > least ? inertia[i][j]
+                                                                        : (i == j ? 1.0 : 0.0);
+  }
+  solve_symmetric(A, y);
+  return {y[0], y[1], y[2]};
+}
+
+/// Where a rigid body is going in this step.
+struct RigidMotion {
+  Vector3 centre = Vector3::zero();    // of mass, at the start of the step [m]
+  Vector3 velocity = Vector3::zero();  // of the centre [m/s]
+  Vector3 spin = Vector3::zero();      // [rad/s]
+  Matrix3 inertia{};                   // about the centre [kg m^2]
+  unsigned free_axes = 7u;             // that it may turn about
+
+  Vector3 velocity_at(const Vector3& x) const { return velocity + cross(spin, x - centre); }
+};
+
+/// A step's motion of a rigid body: the centre moves straight, the body turns by the spin of the
+/// middle of the step, and its angular momentum stays (second-order accurate, after Simo & Wong
+/// 1991, sec. 4). Returns the turn; `motion` becomes that of the end of the step.
+inline Matrix3 turn(RigidMotion& motion, double time_step) {
+  const Vector3 angular = motion.inertia * motion.spin;
+  const auto turned = [&](const Matrix3& R) { return R * motion.inertia * transposed(R); };
+  const Matrix3 half = rotation((0.5 * time_step) * motion.spin);
+  const Vector3 middle = spin_of(turned(half), angular, motion.free_axes);
+  const Matrix3 whole = rotation(time_step * middle);
+  motion.inertia = turned(whole);
+  motion.spin = spin_of(motion.inertia, angular, motion.free_axes);
+  motion.centre += time_step * motion.velocity;
+  return whole;
+}
+
+}  // namespace mpm
