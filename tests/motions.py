@@ -18,9 +18,7 @@ DURATION = 1e-3
 """Of a motion [s]; strains of 0.1 then have rates that models with rates feel."""
 EPS = np.finfo(float).eps
 _STRENGTH = [
-    m
-    for m in _core.catalogue()
-    if m.kind == "strength" and m.eos != "must" and m.name != "rigid"
+    m for m in _core.catalogue() if m.kind == "strength" and m.eos != "must" and m.name != "rigid"
 ]
 MODELS = [m.name for m in _STRENGTH]
 """The strength models that give a whole stress by themselves; a rigid body has none."""

@@ -15,6 +15,7 @@ from mpm3dpp import case, case_parts
 from mpm3dpp.detonation import Detonation
 from mpm3dpp.materials import catalogue
 from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
+from mpm3dpp.materials.chosen import ACTIONS
 from mpm3dpp.materials.describe import lines_for_a_case, provenance, rows
 from mpm3dpp.materials.library import NamedMaterial, library
 from mpm3dpp.rules import requirement
@@ -145,12 +146,14 @@ def materials_page() -> str:
         '`failure = { plastic_strain = { limit = 1.5, action = "no_tension" } }`.',
     ]
     for kind, words in MODEL_KINDS.items():
+        plural = "equations of state" if kind == "eos" else f"{words}s"
         lines += [
             "",
-            f"# {words[:1].upper()}{words[1:]}s: `{kind}`".replace(
-                "equation of states", "equations of state"
-            ),
+            f"# {plural[:1].upper()}{plural[1:]}: `{kind}`",
         ]
+        if kind == "failure":
+            lines += ["`action` beside the parameters says what becomes of a particle that fails:"]
+            lines += [f"- `{word}`: {meaning}." for word, meaning in ACTIONS.items()]
         lines += models_of(kind)
     return "\n".join(lines) + "\n"
 
@@ -186,9 +189,11 @@ def library_page() -> str:
         "# Named materials",
         f"*{NOTE}*",
         "",
-        '`library = "NAME"` in a `[material.X]` table of a case file takes one of these. A key',
-        "beside it (`density`, `strength`, `eos`, `failure`) replaces the whole of that part;",
-        '`without = ["eos"]` leaves a part out. The manifest of a run holds the numbers.',
+        '`library = "NAME"` in a `[material.X]` table of a case file takes one of these. Beside',
+        "it, parameters of the same model replace single numbers,",
+        '`strength = { johnson_cook = { A = "900 MPa" } }`, and another model replaces the part;',
+        '`without = ["eos"]` leaves a part out. `mpm3dpp check` and the manifest of a run have the',
+        "numbers that follow.",
         'A material fails only where the case says so: `failure = "library"` takes the models here',
         'with action `no_tension`; `failure = { library = { action = "erode" } }` with another.',
         "[Check a material](../how-to/check-a-material.md) draws its curves.",

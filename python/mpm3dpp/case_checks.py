@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from .case_parts import STANDARD_FIELDS
@@ -12,6 +13,7 @@ from .materials import state_columns
 
 if TYPE_CHECKING:
     from .case import Body, Case
+    from .materials.material import Material
 
 
 def check_case(case: Case) -> None:
@@ -26,15 +28,14 @@ def check_case(case: Case) -> None:
         if "" in what:
             raise violation("must have a name", "write [body.left]", path=(name, ""))
     for name, material in case.material.items():
-        try:
-            material.sound_speed()
-        except ValueError as error:
-            remedy = "see `mpm3dpp materials`"
-            raise violation(f"is refused: {error}", remedy, path=("material", name)) from None
+        _check_material(material, ("material", name))
     dimension = case.grid.dimension
     _check_vector(case.run, "gravity", dimension, ("run",))
     for name, body in case.body.items():
         _check_body(case, body, ("body", name))
+    if not any(case.material[body.material].sound_speed() for body in case.body.values()):
+        rule = "holds rigid bodies only, so no wave limits the time step: one must deform"
+        raise violation(rule, "give one another strength", path=("body",))
     for index, pair in enumerate(case.contact.pair):
         key = "bodies" if pair.bodies is not None else "materials"
         known = case.body if pair.bodies is not None else case.material
@@ -45,6 +46,41 @@ def check_case(case: Case) -> None:
                 raise violation(rule, nearest(word, known), value=word, path=path)
     check_detonations(case)
     _check_output(case)
+
+
+def _check_material(material: Material, path: Path) -> None:
+    """Raise what the core finds wrong, and if nothing would resist compression at the start."""
+    try:
+        material.sound_speed()
+        speed = material.eos_sound_speed()
+    except ValueError as error:
+        raise _refusal(material, str(error), path) from None
+    if material.eos is not None and not speed:
+        rule = "has no stiffness at the start: its pressure does not rise when it is compressed"
+        model = material.eos.model
+        remedy = f"correct its numbers; `mpm3dpp materials {model}` has an example"
+        raise violation(rule, remedy, path=(*path, "eos", model))
+
+
+def _refusal(material: Material, reason: str, path: Path) -> Exception:
+    """Return the violation for what the core says, `johnson_cook.T_melt must be > T_room`.
+
+    The key is that of the parameter, and the others that are named have their values.
+    """
+    chosen = [("strength", material.strength), ("eos", material.eos)]
+    for kind, model in [*chosen, *(("failure", model) for model in material.failure)]:
+        found = re.match(r"(\w+)\.(\w+) (?=must)", reason)
+        if model is None or found is None or found[1] != model.model:
+            continue
+        name, rule, values = found[2], reason[found.end() :], model.parameters
+        others = [word for word in re.findall(r"\w+", rule) if word in values and word != name]
+        if name in values:
+            also = ", ".join(f"{word} = {values[word]:g}" for word in others)
+            where = (*path, kind, model.model, name)
+            remedy = "change one of the two" if others else "change it"
+            rule = f"{rule} ({also})" if also else rule
+            return violation(rule, remedy, value=values[name], path=where)
+    return violation(f"is refused: {reason}", "see `mpm3dpp materials`", path=path)
 
 
 def _check_vector(owner: object, name: str, dimension: int, path: Path) -> None:
@@ -101,6 +137,8 @@ def _check_output(case: Case) -> None:
     colours = picture_names(case)
     if case.output.picture not in colours:
         remedy = nearest(case.output.picture, colours)
+        if case.output.picture in extra:
+            remedy = f'add it to output.fields: fields = ["{case.output.picture}"]'
         rule = "is not a column that colours a picture of this case"
         raise violation(rule, remedy, value=case.output.picture, path=("output", "picture"))
     interval = case.output.interval

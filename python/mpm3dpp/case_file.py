@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import difflib
 import re
 import sys
 from collections.abc import Callable
@@ -154,10 +155,7 @@ def read_text(path: Path) -> str:
     try:
         return path.read_bytes().decode("utf-8-sig")
     except FileNotFoundError:
-        siblings = (
-            sorted(str(p) for p in path.parent.glob("*.toml")) if path.parent.is_dir() else []
-        )
-        remedy = errors.nearest(name, siblings[:10]) if siblings else "check the path"
+        remedy = similar_file(path)
         raise CaseError("there is no such file", remedy, place=name) from None
     except UnicodeDecodeError as error:
         remedy = "save it as UTF-8"
@@ -165,6 +163,26 @@ def read_text(path: Path) -> str:
     except OSError as error:
         reason = (error.strerror or "unknown reason").lower()
         raise CaseError(f"cannot be read ({reason})", "check the path", place=name) from None
+
+
+def similar_file(path: Path) -> str:
+    """Return the remedy for a file that is missing: the case file with the nearest name."""
+    folder = path.parent
+    files = [p for p in sorted(folder.iterdir()) if _is_case(p)] if folder.is_dir() else []
+    stems = [p.stem.lower() for p in files]
+    close = difflib.get_close_matches(path.stem.lower(), stems, 1, 0.6)
+    return f'did you mean "{files[stems.index(close[0])]}"?' if close else "check the path"
+
+
+def _is_case(path: Path) -> bool:
+    """Whether a file is a case file, by its table `grid`, or one of MPM3D-F90, by its ending."""
+    if path.suffix.lower() == ".mpm":
+        return path.is_file()
+    try:
+        text = path.read_text("utf-8") if path.suffix.lower() == ".toml" else ""
+    except (OSError, UnicodeDecodeError):
+        return False
+    return re.search(r"^\s*(\[\s*grid\b|grid\b.*=)", text, re.M) is not None
 
 
 def parse(text: str, name: str) -> dict[str, Any]:

@@ -140,14 +140,20 @@ def import_(
         Path | None, typer.Option("-o", "--out", help="Case file; default NAME.toml here.")
     ] = None,
     units: Units = None,
+    force: Annotated[bool, typer.Option("--force", help="Write over files.")] = False,
 ) -> None:
     """Write an input file of MPM3D-F90 as a case file in SI units."""
     from .importers.mpm3d import import_mpm, write_case
 
+    if file.suffix.lower() == ".toml":
+        rule = "is a case file, but import wants an input file of MPM3D-F90 (.mpm)"
+        raise CaseError(rule, "run, check and preview take a case file as it is", key=str(file))
     found = import_mpm(file, units)
+    target = out if out is not None else Path(f"{file.stem}.toml")
+    written = write_case(found, target, force)
     _print_notes(found.notes)
-    for written in write_case(found, out if out is not None else Path(f"{file.stem}.toml")):
-        typer.echo(written)
+    for path in written:
+        typer.echo(path)
 
 
 @app.command()

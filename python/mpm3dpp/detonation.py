@@ -59,9 +59,14 @@ def lighting_times(case: Case, body: str, positions: Array) -> Array | None:
 
 
 def check_detonations(case: Case) -> None:
-    """Raise a violation for a point of the wrong dimension or a body that cannot be lit."""
+    """Raise a violation for a point of the wrong dimension, or one that has nothing to light."""
     dimension = case.grid.dimension
+    strengths = [case.material[body.material].strength.model for body in case.body.values()]
     for index, detonation in enumerate(case.detonation):
+        if EXPLOSIVE not in strengths:
+            rule = f"has nothing to light: no body is of an explosive (strength {EXPLOSIVE})"
+            remedy = "give a body such a material, or remove the detonation"
+            raise violation(rule, remedy, path=("detonation", index))
         if len(detonation.point) != dimension:
             rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
             remedy = f"it has {len(detonation.point)}, give {dimension}"

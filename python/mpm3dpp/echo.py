@@ -4,11 +4,15 @@
 from __future__ import annotations
 
 import math
+import textwrap
 
 import numpy as np
 
 from .build import FilledBody, warnings
 from .case import Case
+from .case_notes import notes
+from .materials import Failure, catalogue
+from .plots.labels import scaled
 
 # Estimates for the echo [bytes]: particle columns without and with a state tensor, one grid cell.
 _PARTICLE_BYTES, _CELL_BYTES = 200, 150
@@ -24,6 +28,17 @@ def time_step(case: Case, bodies: list[FilledBody]) -> float:
     return case.run.time_step_factor * case.grid.cell_size / fastest
 
 
+def steps_in_words(case: Case, bodies: list[FilledBody]) -> str:
+    """Return the number of steps: `about` or, where the time step may fall, `at least` so many.
+
+    It falls where waves become faster in what is compressed or burns (an equation of state), or
+    bodies become faster (gravity).
+    """
+    compressible = any(case.material[body.material].eos is not None for body in bodies)
+    word = "at least" if compressible or any(case.run.gravity) else "about"
+    return f"{word} {math.ceil(case.run.end_time / time_step(case, bodies)):,} steps"
+
+
 def occupied_cells(case: Case, bodies: list[FilledBody]) -> int:
     """Return the number of grid cells that hold particles, each body counted by itself."""
     total = 0
@@ -36,8 +51,30 @@ def occupied_cells(case: Case, bodies: list[FilledBody]) -> int:
     return total
 
 
+def material_lines(case: Case) -> list[str]:
+    """Return the numbers of each material that a body has, those of the library included."""
+    lines = []
+    for name in dict.fromkeys(body.material for body in case.body.values()):
+        material = case.material[name]
+        parts = [f"density {material.density:.6g} kg/m^3"]
+        chosen = [("strength", material.strength), ("eos", material.eos)]
+        for kind, model in [*chosen, *(("failure", f) for f in material.failure)]:
+            if model is None:
+                continue
+            units = {p.name: p.unit for p in catalogue(kind)[model.model].parameters}
+            given = model.parameters.items()
+            numbers = [f"{key} {scaled(v, units[key], 6)}".strip() for key, v in given]
+            action = [f"action {model.action}"] if isinstance(model, Failure) else []
+            parts.append(
+                f"{kind} {' '.join([model.model, ', '.join([*numbers, *action])])}".strip()
+            )
+        text = f"material {name}: {'; '.join(parts)}"
+        lines += textwrap.wrap(text, 100, subsequent_indent="  ", break_on_hyphens=False)
+    return lines
+
+
 def echo(case: Case, bodies: list[FilledBody]) -> str:
-    """Return what the case amounts to: bodies, masses, memory, cells, time step, steps."""
+    """Return what the case amounts to: bodies, materials, memory, cells, time step, steps."""
     per_metre = " per metre" if case.grid.dimension == 2 else ""
     lines = [case.title] if case.title else []
     for body in bodies:
@@ -49,10 +86,10 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
             f"body {body.name}: {len(body.positions):,} particles {body.spacing:.4g} m apart, "
             f"{body.material}, mass {body.mass:.6g} kg{per_metre}, {source}"
         )
+    lines += material_lines(case)
     particles = sum(len(body.positions) for body in bodies)
     cells = occupied_cells(case, bodies)
     memory = particles * _PARTICLE_BYTES + cells * _CELL_BYTES
-    dt = time_step(case, bodies)
     box = case.grid.box_cells
     bounds = " x ".join(str(n) for n in box) + " cells" if box else "no bounds"
     contact = "none, the bodies are bonded" if case.contact.bonded else "none"
@@ -64,7 +101,9 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
         f"{bounds}, {case.grid.basis} basis",
         f"contact: {contact}",
-        f"time: {case.run.scheme}, end {case.run.end_time:.6g} s, step about {dt:.3g} s, "
-        f"about {math.ceil(case.run.end_time / dt):,} steps, {len(case.frame_times())} frames",
+        f"time: {case.run.scheme}, end {case.run.end_time:.6g} s, "
+        f"step about {time_step(case, bodies):.3g} s, "
+        f"{steps_in_words(case, bodies)}, {len(case.frame_times())} frames",
     ]
-    return "\n".join([*lines, *(f"warning: {sentence}" for sentence in warnings(bodies))])
+    lines += [f"warning: {sentence}" for sentence in warnings(bodies)]
+    return "\n".join([*lines, *(f"note: {sentence}" for sentence in notes(case, bodies))])

@@ -141,6 +141,8 @@ def _translate(item: dict[str, Any], prefix: Path) -> tuple[Path, str, str, Any]
         return path, "is missing", "add this key", NO_VALUE
     if kind in ("model_type", "model_attributes_type", "dict_type"):
         return path, "must be a table", "write it as { key = value, ... }", item["input"]
+    if kind == "list_type" and isinstance(item["input"], dict):
+        return path, "must be a list of tables", f"write [[{key_text(path)}]]", NO_VALUE
     if kind in ("list_type", "tuple_type"):
         return path, "must be a list", "write it as [first, second, ...]", item["input"]
     if kind == "extra_forbidden":

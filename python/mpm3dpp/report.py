@@ -41,18 +41,38 @@ def contact_table(manifest: Manifest) -> list[str]:
 
 
 def energy_line(manifest: Manifest) -> str:
-    """Return the line about the energy that numerics made or lost."""
+    """Return the line about the energy that numerics made or lost.
+
+    It is a share of what came in (kinetic energy at the start, or work from outside), or of all
+    energy at the start where most of that is internal, as in a compressed gas or an explosive.
+    """
     energies = manifest.energies
     final, start = energies.get("final", {}), energies.get("initial", {})
-    largest = max(abs(start.get("kinetic", 0.0)), abs(final.get("external", 0.0)))
-    if not final or largest == 0.0:
+    kinetic, internal = start.get("kinetic", 0.0), start.get("internal", 0.0)
+    whole, of_what = max(abs(kinetic), abs(final.get("external", 0.0))), "what came in"
+    if abs(internal) > whole:
+        whole, of_what = kinetic + abs(internal), "the energy at the start"
+    if not final or whole == 0.0:
         return "energy: none came in"
-    numerical = (final["numerical"] + final["contact"]) / largest
+    numerical = (final["numerical"] + final["contact"]) / whole
     word = "lost" if numerical >= 0.0 else "made"
-    line = f"energy: numerical terms and normal contact {word} {abs(numerical):.2%} of what came in"
+    line = f"energy: numerical terms and normal contact {word} {abs(numerical):.2%} of {of_what}"
     if abs(numerical) > _NUMERICAL_WARNING:
         line += "; a smaller run.time_step_factor or smaller cells may help"
     return line
+
+
+def erosion_line(manifest: Manifest) -> list[str]:
+    """Return the line about particles that have eroded, with their mass and energy; or none."""
+    count, mass = int(manifest.eroded["count"]), float(manifest.eroded["mass"])
+    if not count:
+        return []
+    per = "/m" if manifest.case.get("grid", {}).get("dimension") == 2 else ""
+    energy = manifest.energies.get("final", {}).get("eroded", 0.0)
+    return [
+        f"eroded: {count:,} of {manifest.particles:,} particles, {mass:.4g} kg{per} "
+        f"({mass / manifest.mass:.2%} of the mass), {energy:.4g} J{per}"
+    ]
 
 
 def speed_line(manifest: Manifest) -> str:

@@ -21,7 +21,7 @@ from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import ResultsWriter
 from .progress import Progress
-from .report import contact_table, energy_line, speed_line
+from .report import contact_table, energy_line, erosion_line, speed_line
 from .simulation import Simulation
 
 _BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without contact.
@@ -62,8 +62,8 @@ def run_case(
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
-        lines = [*contact_table(manifest), energy_line(manifest), speed_line(manifest)]
-        print("\n".join([*lines, f"results in {folder}"]))
+        lines = [*contact_table(manifest), *erosion_line(manifest), energy_line(manifest)]
+        print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]))
     if status == "failed":
         raise RunError(f"{reason}; frames and history up to then are in {folder}")
     if status == "interrupted":
@@ -86,7 +86,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
         dimension=case.grid.dimension,
         cell_size=case.grid.cell_size,
         origin=case.grid.lower,
-        fields=case.output.fields,
+        fields=_fields(case),
         title=case.title,
         case_hash=case.case_hash,
     )
@@ -104,6 +104,8 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
     with results, history, progress, _interrupt() as stopped:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
+        for sentence in simulation.notes:
+            progress.note(f"note: {sentence}")
         results.write(core)
         touched = 0
         while status == "completed" and core.time < case.run.end_time:
@@ -132,6 +134,16 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
                 status, reason = "interrupted", f"stopped by the user at t = {core.time:.6g} s"
     simulation.summary = history.summary()
     return status, reason
+
+
+def _fields(case: Case) -> list[str]:
+    """Return the columns to write: those asked for, and `failed` where particles may erode.
+
+    Without it a reader could not tell which particles are gone.
+    """
+    used = {body.material for body in case.body.values()}
+    erode = any(f.action == "erode" for name in used for f in case.material[name].failure)
+    return list(dict.fromkeys([*case.output.fields, *(["failed"] if erode else [])]))
 
 
 def _steps(most: int, frames: list[float], core: Any) -> int:

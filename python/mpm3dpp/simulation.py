@@ -10,6 +10,7 @@ import numpy as np
 from . import _core
 from .build import build, warnings
 from .case import Case
+from .case_notes import notes
 from .detonation import lighting_times
 from .errors import CaseError, RunError, nearest
 from .folders import thread_count
@@ -25,6 +26,7 @@ class Simulation:
     Attributes:
         case: as given.
         bodies: the bodies' names, in the order of their numbers.
+        warnings, notes: sentences about the case, for the user.
         summary: energies of the whole run, once `run_case` has made it.
         core: the compiled simulation (`mpm3dpp._core.Simulation`).
 
@@ -38,7 +40,7 @@ class Simulation:
         self.threads = thread_count(threads)
         self.bodies = [body.name for body in filled]
         self.materials = [body.material for body in filled]
-        self.warnings = warnings(filled)
+        self.warnings, self.notes = warnings(filled), notes(case, filled)
         self.core = _core.Simulation(_settings(case, self.threads))
         numbers = {name: self._add_material(name) for name in dict.fromkeys(self.materials)}
         while filled:  # What the core has taken is dropped, so that memory holds it once.

@@ -104,6 +104,8 @@ def _from_text(text: str, unit: str) -> float:
     if match is None:
         raise CaseError(f"must be {_name(unit)}", _give(unit), value=text)
     number, name = match.group(1), match.group(2).strip()
+    if name.startswith("/"):  # "250/s", a number per second
+        name = f"1{name}"
     if name == "" and unit != "":
         raise CaseError(f"has no unit but must be {_name(unit)}", _give(unit), value=text)
     if name == "":
@@ -176,10 +178,19 @@ class Quantity:
             number = to_si(value, self.unit)
         except CaseError as error:
             raise violation(error.rule, error.remedy, value=value) from None
-        allowed = holds(self.rule, number) if self.bounds is None else within(self.bounds, number)
-        if not allowed:
-            raise violation(requirement(self.rule), _give(self.unit), value=value)
+        if not self._allows(number):
+            raise violation(requirement(self.rule), self._obeying(), value=value)
         return number
+
+    def _allows(self, number: float) -> bool:
+        return holds(self.rule, number) if self.bounds is None else within(self.bounds, number)
+
+    def _obeying(self) -> str:
+        """Return the remedy for a number that breaks the rule."""
+        if self.unit != "":
+            return _give(self.unit)
+        fits = next((n for n in (0.3, 2, -0.3) if self._allows(n)), None)
+        return "give another number" + (f" such as {fits:g}" if fits is not None else "")
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
         from pydantic_core import core_schema

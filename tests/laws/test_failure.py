@@ -135,7 +135,7 @@ def test_hydrostatic_tension(eos: tuple[str, dict[str, float]] | None) -> None:
     assert fails_at(rows, 51, 2.0)
     stress = normal(rows)
     assert np.allclose(stress[51:61], 0.0, atol=1e-6)
-    # 60 steps out and 120 back: with an equation of state the gap closes first, else it bears at once.
+    # 60 steps out and 120 back: with an equation of state the gap closes first.
     pressed = 120 if eos is None else 60
     assert stress[-1, 0] == pytest.approx(-3 * BULK * pressed * STEP, rel=1e-2)
     still = drive([("hydrostatic_tension", {"limit": limit}, "no_tension")], -moves, eos=eos)

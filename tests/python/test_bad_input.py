@@ -15,6 +15,7 @@ import pytest
 from mpm3dpp.build import build
 from mpm3dpp.case import load_case
 from mpm3dpp.errors import CaseError
+from mpm3dpp.importers import load_any
 
 GOOD = """\
 title = "Two discs"
@@ -55,6 +56,10 @@ CELL, END, DENSITY = 'cell_size = "1 mm"', 'end_time = "1 ms"', 'density = "1010
 DISC = '{ disc = { centre = ["10 mm", "10 mm"], radius = "5 mm" } }'
 RING = '{ ring = { centre = ["30 mm", "10 mm"], inner_radius = "3 mm", outer_radius = "6 mm" } }'
 MODEL = '{ elastic = { E = "10 MPa", nu = 0.3 } }'
+JOHNSON_COOK = (
+    "{ johnson_cook = { E = 1e9, nu = 0.3, A = 1e6, B = 1e6, n = 0.3, C = 0, m = 1, cp = 400, "
+    "T_melt = 280 } }"
+)
 LEFT, ELASTIC = "body.left.shape", "material.rubber.strength.elastic"
 
 # What is wrong: (name, text of the good case, what replaces it, the key that is named, part of the
@@ -144,7 +149,18 @@ EDITS: list[tuple[str, ...]] = [
      f"{LEFT}.translate.shape.union[1].disc.radius", "must be > 0", "give", "radius = -1"),
     ("negative density", DENSITY, 'density = "-5 kg/m^3"', "material.rubber.density",
      "must be > 0", '"1000 kg/m^3"'),
-    ("incompressible", "nu = 0.3", "nu = 0.5", f"{ELASTIC}.nu", "0.5", "give", "nu = 0.5"),
+    ("incompressible", "nu = 0.3", "nu = 0.5", f"{ELASTIC}.nu", "0.5", "another number such as 0.3",
+     "nu = 0.5"),
+    ("limit below zero", DENSITY, DENSITY + "\nfailure = { plastic_strain = { limit = -0.3 } }",
+     "material.rubber.failure.plastic_strain.limit", "must be > 0", "another number such as 0.3",
+     "failure"),
+    ("melting below room temperature", MODEL, JOHNSON_COOK,
+     "material.rubber.strength.johnson_cook.T_melt",
+     "= 280.0 must be > T_room (T_room = 298)", "change one of the two", "T_melt"),
+    ("two equations of state", DENSITY, DENSITY + "\neos = { mie_gruneisen = {}, tait = {} }",
+     "material.rubber.eos", "exactly one model but has 2", "keep mie_gruneisen or tait", "eos"),
+    ("one bracket too few", "[output]", "[detonation]\npoint = [0, 0]\n[output]", "detonation",
+     "must be a list of tables", "write [[detonation]]"),
     ("zero stiffness", 'E = "10 MPa"', "E = 0", f"{ELASTIC}.E", "> 0", "give", "E = 0"),
     ("negative stiffness", 'E = "10 MPa"', 'E = "-1 Pa"', f"{ELASTIC}.E", "> 0", "give", "-1 Pa"),
     ("missing parameter", ", nu = 0.3", "", f"{ELASTIC}.nu", "is missing", "Poisson", "elastic"),
@@ -153,7 +169,7 @@ EDITS: list[tuple[str, ...]] = [
     ("unknown model", "{ elastic =", "{ elastc =", "material.rubber.strength.elastc",
      "known strength model", '"elastic"', "elastc"),
     ("two models", MODEL, MODEL[:-2] + ', neo_hookean = { K = "1 Pa", G = "1 Pa" } }',
-     "material.rubber.strength", "exactly one model", "write", "elastic"),
+     "material.rubber.strength", "exactly one model", "keep elastic or neo_hookean", "elastic"),
     ("no model", MODEL, "{}", "material.rubber.strength", "exactly one model", "write",
      "strength"),
     ("unknown material", 'material = "rubber"', 'material = "ruber"', "body.left.material",
@@ -177,6 +193,8 @@ EDITS: list[tuple[str, ...]] = [
      '"volume"'),
     ("unknown picture", "frames = 10", 'picture = "von_mieses"', "output.picture", "column",
      '"von_mises"'),
+    ("picture of a column not written", "frames = 10", 'picture = "volume"', "output.picture",
+     "column", 'add it to output.fields: fields = ["volume"]'),
     ("duplicate key", END, END + "\n" + END, "end_time", "given twice", "keep one"),
     ("duplicate table", "[contact]", "[run]", "[run]", "given twice", "keep one"),
     ("text without quotes", END, "end_time = 1 ms", "end_time = 1 ms", "not valid TOML",
@@ -280,6 +298,24 @@ def test_files_that_cannot_be_read(tmp_path: Path, content: str | bytes | None, 
     assert rule in done.stderr
     assert done.stderr.startswith(f"mpm3dpp: error: {path}: ")
     assert done.stderr.count("\n") == 1
+
+
+def test_a_missing_file_suggests_case_files_only(tmp_path: Path) -> None:
+    for name, text in {
+        "pyproject.toml": "[project]\n", "rings.toml": GOOD, "slope.mpm": "mpm3d", "rung.toml": "["
+    }.items():  # fmt: skip
+        (tmp_path / name).write_text(text)
+    for word, remedy in {
+        "project.toml": "check the path",
+        "case.toml": "check the path",
+        "ring.toml": f'did you mean "{tmp_path / "rings.toml"}"?',
+        "slopes.mpm": f'did you mean "{tmp_path / "slope.mpm"}"?',
+    }.items():
+        with pytest.raises(CaseError) as caught:
+            load_any(tmp_path / word)
+        assert str(caught.value) == f"{tmp_path / word}: there is no such file; {remedy}"
+    with pytest.raises(CaseError, match="there is no such file; check the path"):
+        load_any(tmp_path / "nowhere" / "case.toml")
 
 
 def test_unwritable_folder(tmp_path: Path) -> None:

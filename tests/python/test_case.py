@@ -295,7 +295,7 @@ def test_default_folder_and_threads(monkeypatch: pytest.MonkeyPatch) -> None:
                     }
                 },
             },
-            "T_melt must be > T_room",
+            r"johnson_cook.T_melt = 298.0 must be > T_room \(T_room = 298\)",
         ),
         (
             {
@@ -313,6 +313,19 @@ def test_default_folder_and_threads(monkeypatch: pytest.MonkeyPatch) -> None:
             },
             "needs a plastic strain",
         ),
+        *[
+            (
+                {
+                    "density": 1000,
+                    "strength": strength,
+                    "eos": {"jwl": dict.fromkeys("AB", 26e6) | {
+                        "R1": 0.3, "R2": 0.3, "omega": 0.3, "E0": 26e6,
+                    }},
+                },
+                "eos.jwl has no stiffness at the start",
+            )
+            for strength in ({"fluid": {}}, {"high_explosive": {"D": 6930.0}})
+        ],
     ],
 )  # fmt: skip
 def test_models_that_do_not_go_together_are_refused(material: dict, reason: str) -> None:
@@ -339,3 +352,15 @@ def test_the_same_failure_model_twice_is_refused() -> None:
         "material.failure.plastic_strain stands here twice, and a material has each failure model "
         "once; leave one of them out"
     )
+
+
+def test_one_body_must_deform() -> None:
+    rigid = {"density": 1000, "strength": {"rigid": {}}}
+    body = {"material": "tool", "shape": {"box": {"lower": [0, 0], "upper": [1, 1]}}}
+    with pytest.raises(CaseError, match=r"body holds rigid bodies only.*one must deform; give"):
+        Case(
+            grid={"dimension": 2, "cell_size": 0.1},
+            run={"end_time": 1.0},
+            material={"tool": rigid},
+            body={"one": body},
+        )

@@ -89,7 +89,9 @@ def test_a_case_in_si_units() -> None:
     assert case.body["body_1"].shape == Box(lower=(0, 0, 0), upper=(0.002,) * 3)
     [body] = build(case)
     assert body.mass == pytest.approx(7800 * 8e-9, rel=1e-12)
-    assert found.notes == ['units mm-g-N-ms (--units); the file says "Unit: mm g N ms MPa"']
+    assert found.notes == [
+        'units mm-g-N-ms, as --units is not given; the file says "Unit: mm g N ms MPa"'
+    ]
 
 
 # The language: (name, edits that change nothing).
@@ -202,6 +204,7 @@ REFUSED: list[tuple[str | tuple[str, str], str]] = [
     (("nmat 1\n", ""), "stands before nmat"),
     (("nmat 1\n", "nmat 2\n"), 'has "particle" where the number of a material must be'),
     ((" 1 elas", " 2 elas"), "has material 2 but nmat is 1"),
+    ((MATE, MATE + MATE.replace(" 1 elas", " 2 elas")), "mate has material 2 but nmat is 1"),
     (("elas", "wood"), 'the unknown material type "wood"'),
     ((MATE, " 1 elas 7.8d-3 210.0d3 0.7\n"), "material.elas_1.strength.elastic.nu = 0.7"),
     ((MATE, " 1 pla2 7.8d-3 210.0d3 0.3 300 3d5\n"), "Et >= E"),
@@ -504,9 +507,22 @@ def test_the_command_line(tmp_path: Path) -> None:
     for name in ("x.mpm", "y.toml"):
         done = command(tmp_path, "check", name)
         assert done.returncode == 0 and "64 particles" in done.stdout
+    csv, kept = (tmp_path / "y_body_1.csv"), "my own"
+    csv.write_text(kept)
+    for name in ("y.toml", "y_body_1.csv"):
+        done = command(tmp_path, "import", "x.mpm", "-o", "y.toml")
+        assert done.stderr.startswith(f"mpm3dpp: error: {name} is there already; give another name")
+        assert (done.returncode, csv.read_text()) == (2, kept)
+        (tmp_path / "y.toml").unlink(missing_ok=True)
+    done = command(tmp_path, "import", "x.mpm", "-o", "y.toml", "--force")
+    assert (done.returncode, csv.read_text().count("my own")) == (0, 0)
     (tmp_path / "z.mpm").write_text(GOOD.replace("endi\n", "bimp\nendi\n"))
     for words in (("check", "z.mpm"), ("run", "z.mpm"), ("import", "z.mpm"), ("run", "no.mpm"),
-                  ("check", "y.toml", "--units", "SI")):  # fmt: skip
+                  ("import", "y.toml"), ("check", "y.toml", "--units", "SI")):  # fmt: skip
         done = command(tmp_path, *words)
         assert done.returncode == 2 and "Traceback" not in done.stderr
         assert done.stderr.count("mpm3dpp: error: ") == 1
+    done = command(tmp_path, "import", "y.toml")
+    assert (
+        "y.toml is a case file, but import wants an input file of MPM3D-F90 (.mpm)" in done.stderr
+    )

@@ -6,8 +6,10 @@ from __future__ import annotations
 import pytest
 from typer.testing import CliRunner
 
+from mpm3dpp.build import build
 from mpm3dpp.case import Case, Material
 from mpm3dpp.cli import app
+from mpm3dpp.echo import echo
 from mpm3dpp.errors import CaseError
 from mpm3dpp.materials import catalogue, library, listing, named
 
@@ -47,6 +49,30 @@ def test_a_part_beside_it_replaces_the_whole_part() -> None:
     assert soft.strength.model == "elastic"
     assert soft.eos is not None and soft.eos.parameters["c0"] == 3940.0
     assert Material(library="copper_ofhc", density="8.93 g/cm^3").density == 8930.0
+
+
+def test_a_number_beside_it_replaces_that_number_alone() -> None:
+    steel = Material(library="steel_4340")
+    hard = Material(library="steel_4340", strength={"johnson_cook": {"A": "900 MPa"}})
+    assert hard.strength.parameters == {**steel.strength.parameters, "A": 900e6}
+    assert hard.eos == steel.eos
+    fast = Material(library="water", eos={"tait": {"c0": "30 m/s"}})
+    assert fast.eos is not None and fast.eos.parameters == {"c0": 30.0, "n": 7.15}
+    found = case('library = "steel_4340", strength = { johnson_cook = { A = "900 MPa" } }')
+    assert found.table()["material"]["plate"]["strength"]["johnson_cook"]["A"] == 900e6
+    shown = " ".join(echo(found, build(found)).split())
+    assert "strength johnson_cook E 205 GPa, nu 0.29, A 900 MPa, B 510 MPa, n 0.26" in shown
+    assert "eos mie_gruneisen c0 4578 m/s" in shown
+    with pytest.raises(CaseError, match="AA is not a parameter of johnson_cook"):
+        case('library = "steel_4340", strength.johnson_cook = { AA = 1 }')
+    # Nothing is merged from one model into another: the first parameter that lacks is named.
+    with pytest.raises(CaseError, match=r"swift.E is missing"):
+        case('library = "steel_4340", strength.swift = { n = 0.2 }')
+
+
+def test_the_detail_says_how_to_change_a_number() -> None:
+    text = " ".join(listing("steel_4340").split())
+    assert 'strength = { johnson_cook = { A = "792 MPa" } } replaces that number alone' in text
 
 
 def test_without_leaves_a_part_out() -> None:

@@ -24,6 +24,11 @@ def test_page_is_up_to_date(tool, name):
     assert committed == tool.pages()[name], "run  python tools/make_reference.py"
 
 
+def test_headings_are_english(tool):
+    assert "\n# Equations of state: `eos`\n" in tool.materials_page()
+    assert "\n# Failure models: `failure`\n" in tool.materials_page()
+
+
 def test_no_other_pages(tool):
     assert {page.name for page in (ROOT / "docs" / "reference").iterdir()} == set(tool.pages())
 

@@ -26,6 +26,9 @@ def test_table_agrees_with_pint(name: str) -> None:
         ("30 mm", "m", 0.03),
         ("3 cm", "m", 0.03),
         ("30mm", "m", 0.03),
+        ("1/s", "1/s", 1.0),
+        ("250 /s", "1/s", 250.0),
+        ("1/ms", "1/s", 1000.0),
         ("0.9 mm", "m", 0.0009),  # 0.9 * 0.001 in floating point is another number.
         ("1.7 us", "s", 1.7e-6),
         ("3e-2 m", "m", 0.03),

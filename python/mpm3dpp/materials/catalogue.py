@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from mpm3dpp.errors import nearest, violation
-from mpm3dpp.units import DIMENSIONS, Quantity
+from mpm3dpp.units import Quantity
 
 KINDS = {
     "strength": "strength model",
@@ -50,7 +50,9 @@ def check_parameters(kind: str, model: str, given: Any) -> dict[str, float]:
         PydanticCustomError: a violation, with its path below the model's table.
     """
     if not isinstance(given, dict):
-        remedy = f"write {model} = {{ {example(kind, model)} }}"
+        from .examples import example
+
+        remedy = f"write {model} = {example(kind, model)}"
         raise violation("must be a table of parameters", remedy, value=given)
     known = {parameter.name: parameter for parameter in catalogue(kind)[model].parameters}
     for name in given:
@@ -79,15 +81,3 @@ def _parsed(quantity: Quantity, value: Any, name: str) -> float:
     except PydanticCustomError as error:
         context = error.context or {}
         raise violation(context["rule"], context["remedy"], value=value, path=(name,)) from None
-
-
-def example(kind: str, model: str) -> str:
-    """Return a model's parameters with an example of each: `E = "26 MPa", nu = 0.3`.
-
-    Those that have a default are left out.
-    """
-    return ", ".join(
-        f"{p.name} = {DIMENSIONS.get(p.unit, ('', '1.0'))[1]}"
-        for p in catalogue(kind)[model].parameters
-        if p.default is None
-    )

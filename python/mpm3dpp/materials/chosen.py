@@ -10,10 +10,15 @@ from pydantic import BeforeValidator, SkipValidation, WithJsonSchema, model_vali
 from mpm3dpp.errors import Path, nearest, violation
 from mpm3dpp.model import CaseModel, Choice
 
-from .catalogue import KINDS, catalogue, check_parameters, example
+from .catalogue import KINDS, catalogue, check_parameters
+from .examples import example
 
-ACTIONS = ("no_tension", "no_shear", "erode")
-"""What failure does: only compression is left; the whole pressure is; nothing is."""
+ACTIONS = {
+    "no_tension": "the particle bears compression only (the default)",
+    "no_shear": "it keeps its whole pressure, like a liquid",
+    "erode": "it takes no part any more; the ledger keeps its energy in `eroded`",
+}
+"""What failure may do to a particle, `action` in a failure model's table."""
 
 
 class ChosenModel(CaseModel):
@@ -61,7 +66,7 @@ class Failure(ChosenModel):
     """
 
     kind: ClassVar[str] = "failure"
-    action: Annotated[str, Choice(ACTIONS)] = "no_tension"
+    action: Annotated[str, Choice(tuple(ACTIONS))] = "no_tension"
 
     def table(self) -> dict[str, Any]:
         """Return `{"plastic_strain": {"limit": ..., "action": ...}}`, in SI units."""
@@ -93,7 +98,7 @@ def _action(word: Any) -> str:
     from pydantic_core import PydanticCustomError
 
     try:
-        return Choice(ACTIONS).parse(word)
+        return Choice(tuple(ACTIONS)).parse(word)
     except PydanticCustomError as error:
         found: Any = error.context
         raise violation(found["rule"], found["remedy"], value=word, path=("action",)) from None
@@ -108,8 +113,9 @@ def _parse_one(kind: type[ChosenModel]) -> Any:
         if not isinstance(value, dict) or len(value) != 1:
             has = f" but has {len(value)}" if isinstance(value, dict) else ""
             model = next(iter(catalogue(kind.kind)))
-            inside = example(kind.kind, model)
-            remedy = f"write {{ {model} = {{ {inside} }} }}; the models are {names}"
+            remedy = f"write {{ {model} = {example(kind.kind, model)} }}; the models are {names}"
+            if has and len(value) > 1 and set(value) <= set(catalogue(kind.kind)):
+                remedy = f"keep {' or '.join(value)}"
             raise violation(f"must be a table with exactly one model{has}", remedy, value=value)
         [(model, given)] = value.items()
         return _chosen(kind, model, given)
@@ -128,7 +134,7 @@ def _parse_failures(value: Any) -> list[Failure]:
         return value
     if not isinstance(value, dict):
         model = next(iter(catalogue("failure")))
-        remedy = f"write {{ {model} = {{ {example('failure', model)} }} }}"
+        remedy = f"write {{ {model} = {example('failure', model)} }}"
         raise violation("must be a table of failure models", remedy, value=value)
     chosen = [_chosen(Failure, model, given) for model, given in value.items()]
     return [item for item in chosen if isinstance(item, Failure)]

@@ -11,7 +11,9 @@ from typing import Any
 from mpm3dpp.errors import CaseError, nearest
 from mpm3dpp.rules import requirement
 
-from .catalogue import KINDS, catalogue, example
+from .catalogue import KINDS, catalogue
+from .chosen import ACTIONS
+from .examples import example
 from .library import ON_REQUEST, NamedMaterial, library
 
 _WIDTH = 100
@@ -93,10 +95,17 @@ def _model_entry(kind: str, model: Any) -> str:
     if kind == "strength":
         pressure = {"never": "takes no eos", "may": "an eos may give the pressure"}
         lines.append(f"  {pressure.get(model.eos, 'needs an eos')}")
+    if kind == "failure":
+        lines.append("  action: what becomes of a particle that fails")
+        wide = max(map(len, ACTIONS))
+        lines += [f"    {word:<{wide}}  {meaning}" for word, meaning in ACTIONS.items()]
     users = [m.name for m in library().values() if model.name in m.parts.get(kind, {})]
     if users:
         lines.append(f"  named materials that use it: {', '.join(users)}")
-    lines.append(f"  case file: {kind} = {{ {model.name} = {{ {example(kind, model.name)} }} }}")
+    inside = example(kind, model.name)
+    if kind == "failure":
+        inside = f'{inside.removesuffix(" }")}, action = "no_tension" }}'
+    lines.append(f"  case file: {kind} = {{ {model.name} = {inside} }}")
     return "\n".join(lines)
 
 
@@ -173,4 +182,12 @@ def _named_entry(material: NamedMaterial) -> str:
         )
     lines.append("  case file:")
     lines += [f"    {line}" for line in lines_for_a_case(material)]
+    [(model, numbers)] = material.parts["strength"].items()
+    if numbers:
+        key = next((k for k in ("A", "Y0") if k in numbers), list(numbers)[-1])
+        value = numbers[key]
+        text = f'"{value}"' if isinstance(value, str) else f"{value:g}"
+        change = f"strength = {{ {model} = {{ {key} = {text} }} }}"
+        words = f"Beside it {change} replaces that number alone; another model replaces the part."
+        lines += textwrap.wrap(words, _WIDTH, initial_indent="  ", subsequent_indent="  ")
     return "\n".join(lines)

@@ -116,9 +116,10 @@ def named(name: str) -> NamedMaterial:
 def fill_in(table: dict[str, Any]) -> dict[str, Any]:
     """Return a case's material with the parts that its key `library` gives.
 
-    A part that stands beside `library` replaces the library's whole part; those named in
-    `without` are left out. Failure is taken only where `failure = "library"`, or
-    `failure = { library = { action = "erode" } }`, asks for it.
+    Beside `library`, parameters of the library's own model replace its single numbers, and
+    another model replaces the whole part; those named in `without` are left out. Failure is
+    taken only where `failure = "library"`, or `failure = { library = { action = "erode" } }`,
+    asks for it.
 
     Raises:
         PydanticCustomError: a violation, with its path in the material.
@@ -145,7 +146,19 @@ def fill_in(table: dict[str, Any]) -> dict[str, Any]:
     both = [key for key in without if key in table]
     if both:
         raise violation(f"is left out by without = {list(without)}", "keep one", path=(both[0],))
-    return {**parts, **_with_failure(table, library()[name])}
+    own = _with_failure(table, library()[name])
+    merged = {key: _with_numbers(parts[key], own[key]) for key in parts if key in own}
+    return {**parts, **own, **merged}
+
+
+def _with_numbers(of_library: Any, given: Any) -> Any:
+    """Return a part as given, with the library's numbers for what it leaves out of its model."""
+    if not isinstance(given, dict) or not isinstance(of_library, dict) or len(given) != 1:
+        return given
+    [(model, numbers)] = given.items()
+    if model not in of_library or not isinstance(numbers, dict):
+        return given
+    return {model: {**of_library[model], **numbers}}
 
 
 def _with_failure(table: dict[str, Any], material: NamedMaterial | None) -> dict[str, Any]:

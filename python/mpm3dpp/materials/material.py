@@ -22,15 +22,17 @@ class Material(CaseModel):
 
     Attributes:
         library: name of a material of the library, which gives the keys below; those that stand
-            beside it replace the library's. Without it, density and strength are required.
+            beside it replace the library's, a parameter of the library's own model that number
+            alone. Without it, density and strength are required.
         without: parts of the library's material that are left out: "eos".
         density: initial density [kg/m^3].
         strength: one strength model with its parameters, `{"elastic": {"E": ..., "nu": ...}}`.
         eos: at most one equation of state, `{"tait": {"c0": ...}}`; it gives the pressure.
         failure: any number of failure models, `{"plastic_strain": {"limit": ...}}`; `action`
-            beside a model's parameters says what failing does, "no_tension", "no_shear"
-            or "erode". With `library` also "library", which takes the library's models with
-            "no_tension", or `{"library": {"action": "erode"}}`.
+            beside a model's parameters says what failing does: "no_tension" (the default; only
+            compression is left), "no_shear" (the whole pressure is) or "erode" (the particle
+            takes no part any more). With `library` also "library", which takes the library's
+            models with "no_tension", or `{"library": {"action": "erode"}}`.
         artificial_viscosity: bulk viscosity of this material in place of `run.viscosity`, with the
             same keys; both 0 for none.
     """
@@ -77,8 +79,17 @@ class Material(CaseModel):
         Raises:
             ValueError: the core refuses parameters or models that do not go together.
         """
-        rows, names, _ = drive_point(**self.for_core(), increments=np.zeros((0, 3, 3)))
-        return float(rows[0][names.index("sound_speed")])
+        return _sound_speed(**self.for_core())
+
+    def eos_sound_speed(self) -> float | None:
+        """Return what the equation of state alone gives for it [m/s]: 0 without stiffness.
+
+        None without an equation of state.
+        """
+        if self.eos is None:
+            return None
+        alone = {"strength": "fluid", "parameters": {}, "failures": []}
+        return _sound_speed(**{**self.for_core(), **alone})
 
     def for_core(self) -> dict[str, Any]:
         """Return the keyword arguments with which the core makes the material."""
@@ -89,3 +100,8 @@ class Material(CaseModel):
             "eos": None if self.eos is None else (self.eos.model, self.eos.parameters),
             "failures": [(f.model, f.parameters, f.action) for f in self.failure],
         }
+
+
+def _sound_speed(**material: Any) -> float:
+    rows, names, _ = drive_point(**material, increments=np.zeros((0, 3, 3)))
+    return float(rows[0][names.index("sound_speed")])

@@ -15,7 +15,7 @@ from mpm3dpp.io.history import read_history
 from mpm3dpp.io.manifest import read_manifest
 from mpm3dpp.io.results import open_results
 from mpm3dpp.plots.flat import draw_cells, draw_particles, set_view
-from mpm3dpp.plots.frames import sizes_of, view_of
+from mpm3dpp.plots.frames import drawn, sizes_of, view_of
 from mpm3dpp.plots.labels import at_time, length_unit
 from mpm3dpp.plots.style import body_colours, legend_of_bodies, new_figure, save, styled
 
@@ -166,7 +166,9 @@ def _first(folder: Path, bodies: list[str]) -> tuple[float, int, int, float | No
 
 
 def _draw(results: Results, frame: int, a: int, b: int, recorded: float | None, path: Path) -> Path:
-    arrays = results.arrays(frame)
+    arrays = drawn(results, frame)
+    if not {a, b} <= set(arrays["body"].tolist()):  # One of them has eroded as it touched.
+        arrays = results.arrays(frame)
     points = arrays["position"].astype(float)
     sizes = sizes_of(arrays, results)
     of_a, of_b = arrays["body"] == a, arrays["body"] == b

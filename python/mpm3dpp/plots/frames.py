@@ -11,6 +11,7 @@ import numpy as np
 
 from mpm3dpp.plots.flat import draw_particles, set_view
 from mpm3dpp.plots.labels import at_time, choose, length_unit, prefix
+from mpm3dpp.plots.line import draw_line, line_axis
 from mpm3dpp.plots.style import (
     DPI,
     body_colours,
@@ -35,20 +36,34 @@ class View:
     Attributes:
         lower, upper: corners of the visible region [m], shape (3,).
         low, high: range of the coloured array, SI.
+        along: axis over which the values are drawn, for bodies that are a line; None for others.
     """
 
     lower: np.ndarray
     upper: np.ndarray
     low: float
     high: float
+    along: int | None = None
+
+
+_ERODED = 3  # in the column `failed`
+
+
+def drawn(results: Results, frame: int) -> dict[str, np.ndarray]:
+    """Return the arrays of a frame without the particles that have eroded."""
+    arrays = results.arrays(frame)
+    if "failed" not in arrays:
+        return arrays
+    stays = ~(arrays["failed"] >= _ERODED)  # NaN where nothing can fail
+    return {name: values[stays] for name, values in arrays.items()}
 
 
 def view_of(results: Results, frames: list[int], colour: str) -> View:
     """The view that holds all particles of some frames, with a margin, and all their values."""
     lower, upper = np.full(3, np.inf), np.full(3, -np.inf)
-    low, high = np.inf, -np.inf
+    least, most, low, high = np.inf, -np.inf, np.inf, -np.inf
     for frame in frames:
-        arrays = results.arrays(frame)
+        arrays = drawn(results, frame)
         position = arrays["position"][np.isfinite(arrays["position"]).all(axis=1)]
         if len(position) == 0:
             continue
@@ -60,8 +75,15 @@ def view_of(results: Results, frames: list[int], colour: str) -> View:
         if len(values):
             bottom, top = _range(values)
             low, high = min(low, bottom), max(high, top)
+            least, most = min(least, float(values.min())), max(most, float(values.max()))
+    if not np.isfinite(lower).all():  # All have eroded: an empty picture of where they were.
+        position = results.arrays(frames[0])["position"]
+        lower, upper = position.min(axis=0), position.max(axis=0) + results.cell_size
     margin = 0.03 * float(np.max(upper - lower))
-    return View(lower - margin, upper + margin, low, high)
+    along = line_axis(lower, upper, results.cell_size, results.dimension)
+    if along is None or colour in ("body", "material"):
+        return View(lower - margin, upper + margin, low, high)
+    return View(lower - margin, upper + margin, least, most, along)  # Points hide no others.
 
 
 def draw_frame(
@@ -84,9 +106,11 @@ def draw_frame(
         CaseError: the frame has no such array.
     """
     view = view or view_of(results, [frame], colour)
-    arrays = results.arrays(frame)
+    arrays = drawn(results, frame)
     with styled():
-        if results.dimension == 2:
+        if view.along is not None:
+            figure = draw_line(results, arrays, colour, view, dpi)
+        elif results.dimension == 2:
             figure = _draw_flat(results, arrays, colour, view, dpi)
         else:
             figure = _draw_space(results, arrays, colour, view, dpi)

@@ -80,6 +80,8 @@ def render(
     camera = camera_for(lower, upper)
     seen = np.isfinite(points).all(axis=1)
     points, sizes, colours = points[seen], sizes[seen], colours[seen]
+    if len(points) == 0:
+        return np.zeros((100, round(100 * camera.width / camera.height), 4)), camera
     if _pyvista_works():
         return _with_pyvista(points, sizes, colours, camera), camera
     scale = _PIXELS / max(camera.width, camera.height)

@@ -24,6 +24,9 @@ PALETTE = (
     *("#B2A300", "#7F7F7F"),
 )
 
+MOST_NAMES = 12
+"""Bodies that a legend names at most."""
+
 MAPS = {"speed": "plasma", "velocity": "plasma"}
 """Colour maps of some arrays; signed arrays get a map that is white at zero, others viridis."""
 
@@ -116,7 +119,7 @@ def legend_of_bodies(axes: Axes, names: list[str], **options: Any) -> None:
     """A legend with one coloured square per body; nothing when there are too many bodies."""
     from matplotlib.patches import Patch
 
-    if len(names) > 12:
+    if len(names) > MOST_NAMES:
         return
     patches = [
         Patch(facecolor=PALETTE[k % len(PALETTE)], label=name) for k, name in enumerate(names)

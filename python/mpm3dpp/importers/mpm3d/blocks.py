@@ -47,7 +47,7 @@ def material(reader: Reader, deck: Deck) -> None:
         line = reader.line
         if not 1 <= number <= deck.material_count:
             rule = f"has material {number} but nmat is {deck.material_count}"
-            raise reader.error(rule, "number the materials from 1")
+            raise reader.error(rule, "correct nmat, or number the materials from 1")
         word = reader.word("the type of a material")
         kind = word.text.lower()[:4]
         if kind not in MATERIALS:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+from mpm3dpp.case_file import similar_file
 from mpm3dpp.errors import CaseError
 
 _SPLIT = re.compile(r"[^\s,]+")
@@ -65,7 +66,7 @@ def read_source(path: Path) -> Source:
     try:
         data = path.read_bytes()
     except FileNotFoundError:
-        raise CaseError("there is no such file", "check the path", place=name) from None
+        raise CaseError("there is no such file", similar_file(path), place=name) from None
     except OSError as error:
         reason = (error.strerror or "unknown reason").lower()
         raise CaseError(f"cannot be read ({reason})", "check the path", place=name) from None

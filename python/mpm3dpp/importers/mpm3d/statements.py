@@ -39,8 +39,9 @@ def read_deck(source: Source) -> Deck:
     reader, deck = Reader(source), Deck(source)
     if not reader.more():
         raise source.error("is empty", "its last word must be endi", 1)
+    key = ""
     while True:
-        reader.keyword = ""
+        before, reader.keyword = key, ""
         word = reader.word("endi")
         key = word.key
         if key == "endi":
@@ -49,6 +50,10 @@ def read_deck(source: Source) -> Deck:
         if key in REFUSED:
             what, remedy = REFUSED[key]
             raise reader.error(f"asks for {what}, which cannot be honoured", remedy)
+        if key not in STATEMENTS and before == "mate" and word.text.isdigit():
+            reader.keyword = "mate"
+            rule = f"has material {word.text} but nmat is {deck.material_count}"
+            raise reader.error(rule, "correct nmat, or leave the material out")
         if key not in STATEMENTS:
             remedy = "the line above may have a value too many; words after ! are comments"
             raise reader.error("is not a keyword of MPM3D-F90", remedy)

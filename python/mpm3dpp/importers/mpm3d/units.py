@@ -96,4 +96,4 @@ def choose(given: str | None, comments: Iterable[str], name: str) -> tuple[UnitS
         rule = f'says "{said}" but --units is not given (default {DEFAULT})'
         raise CaseError(rule, f"give --units {named[0]}", place=name)
     quoted = f'; the file says "{said}"' if said else "; the file does not say"
-    return SYSTEMS[DEFAULT], f"units {DEFAULT} (--units){quoted}"
+    return SYSTEMS[DEFAULT], f"units {DEFAULT}, as --units is not given{quoted}"

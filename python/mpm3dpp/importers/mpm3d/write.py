@@ -8,6 +8,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import make_folder, writing
 from mpm3dpp.particles import Particles, write_particles
 
@@ -26,32 +27,39 @@ _UNITS = {
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
-def write_case(found: Imported, target: Path) -> list[Path]:
+def write_case(found: Imported, target: Path, force: bool = False) -> list[Path]:
     """Write a case file, and for each body of single particles a CSV file beside it.
 
     Args:
         found: what was imported.
         target: the case file; the others are named `NAME_BODY.csv` after it.
+        force: write over files that are there.
 
     Returns:
         The files written, the case file first.
 
     Raises:
-        CaseError: a file cannot be written.
+        CaseError: a file cannot be written, or is there already.
     """
-    make_folder(target.parent)
-    tables, files = dict(found.tables), [target]
+    tables = dict(found.tables)
     tables["body"] = {name: dict(body) for name, body in tables["body"].items()}
+    clouds = {
+        name: body["particles"]
+        for name, body in tables["body"].items()
+        if isinstance(body.get("particles"), Particles)
+    }
+    files = [target, *(target.with_name(f"{target.stem}_{name}.csv") for name in clouds)]
+    there = next((file for file in files if file.exists()), None)
+    if there is not None and not force:
+        remedy = "give another name with -o, or --force to write over it"
+        raise CaseError("is there already", remedy, key=str(there))
+    make_folder(target.parent)
     origin = Path(found.name).name
-    for name, body in tables["body"].items():
-        particles = body.get("particles")
-        if isinstance(particles, Particles):
-            file = target.with_name(f"{target.stem}_{name}.csv")
-            line = found.lines["body", name]
-            about = f"Particles of {name} from {origin}, line {line}; SI units."
-            write_particles(file, particles, about)
-            body["particles"] = file.name
-            files.append(file)
+    for (name, particles), file in zip(clouds.items(), files[1:], strict=True):
+        line = found.lines["body", name]
+        about = f"Particles of {name} from {origin}, line {line}; SI units."
+        write_particles(file, particles, about)
+        tables["body"][name]["particles"] = file.name
     with writing(target):
         target.write_text(case_text(found, tables), encoding="utf-8")
     return files

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is allowed in a case but perhaps not meant: the notes of `mpm3dpp check` and `run`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .build import FilledBody
+from .case import Case
+from .detonation import EXPLOSIVE
+
+_STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
+
+
+def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
+    """Return one sentence for each thing that a user should look at again.
+
+    Args:
+        case: a checked case.
+        bodies: its bodies, filled.
+    """
+    return [*_materials(case), *_detonations(case, bodies)]
+
+
+def _materials(case: Case) -> list[str]:
+    """Numbers that are allowed but mostly come from another convention."""
+    found = []
+    for name in dict.fromkeys(body.material for body in case.body.values()):
+        material = case.material[name]
+        strength, key = material.strength, f"material.{name}"
+        for failure in material.failure:
+            third = failure.parameters.get("D3", 0.0)
+            if failure.model == "johnson_cook_damage" and third > 0.0:
+                found.append(
+                    f"{key}.failure.johnson_cook_damage.D3 = {third:g} is > 0, so that tension "
+                    "makes the metal tougher; here tension is positive, as Johnson and Cook write "
+                    "it: give codes' numbers for pressure with the other sign"
+                )
+        friction = strength.parameters.get("q_phi", 0.0)
+        if strength.model == "drucker_prager" and friction > _STEEPEST:
+            found.append(
+                f"{key}.strength.drucker_prager.q_phi = {friction:g} is more than any angle of "
+                f"friction gives ({_STEEPEST:.3g} at 90 deg); it is a slope, not an angle"
+            )
+        if material.eos is not None and material.eos.model == "jwl" and strength.model != EXPLOSIVE:
+            found.append(
+                f"{key}.eos.jwl is of the products of an explosive, but its strength "
+                f"{strength.model} does not detonate: the whole energy E0 presses from the start; "
+                f"give strength = {{ {EXPLOSIVE} = ... }} unless that is meant"
+            )
+    return found
+
+
+def _detonations(case: Case, bodies: list[FilledBody]) -> list[str]:
+    """Explosives that nothing lights, and points that light nothing before the end of the run."""
+    explosives = {
+        body.name: body
+        for body in bodies
+        if case.material[body.material].strength.model == EXPLOSIVE
+    }
+    found = []
+    for name in explosives:
+        if not any(not d.bodies or name in d.bodies for d in case.detonation):
+            found.append(
+                f"body.{name} is of an explosive that nothing lights, so that it stays unburned; "
+                "add [[detonation]] with a point"
+            )
+    for index, detonation in enumerate(case.detonation):
+        first = np.inf
+        for body in (explosives[name] for name in detonation.bodies or explosives):
+            distance = np.linalg.norm(body.positions - np.asarray(detonation.point), axis=1).min()
+            speed = case.material[body.material].strength.parameters["D"]
+            first = min(first, detonation.time + float(distance) / speed)
+        if first > case.run.end_time:
+            found.append(
+                f"detonation[{index}] lights nothing before the end of the run: it reaches an "
+                f"explosive at {first:.4g} s, and run.end_time = {case.run.end_time:.4g} s; "
+                "move the point, or give a later end"
+            )
+    return found

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Notes: what is allowed in a case but perhaps not meant is said by check and by run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from mpm3dpp import Case, CaseError, Simulation, load_case
+from mpm3dpp.build import build
+from mpm3dpp.case_notes import notes
+from mpm3dpp.cli import app
+from mpm3dpp.echo import steps_in_words
+from mpm3dpp.importers.mpm3d.lexer import split
+from mpm3dpp.importers.mpm3d.to_case import import_source
+
+CASE = """\
+[grid]
+dimension = 2
+cell_size = "1 mm"
+[run]
+end_time = "1 us"
+[material.tnt]
+library = "tnt"
+[material.steel]
+density = 7800
+strength = { elastic = { E = "200 GPa", nu = 0.3 } }
+[body.charge]
+material = "tnt"
+shape = { box = { lower = [0, 0], upper = ["4 mm", "4 mm"] } }
+[body.plate]
+material = "steel"
+shape = { box = { lower = ["6 mm", 0], upper = ["8 mm", "4 mm"] } }
+"""
+LIT = '[[detonation]]\npoint = ["0.25 mm", "0.25 mm"]\n'
+# D is 6930 m/s: from 10 mm away it takes 1.44 us, longer than the run.
+FAR = '[[detonation]]\npoint = ["-9.75 mm", "0.25 mm"]\n'
+
+
+def notes_of(text: str) -> list[str]:
+    case = Case.from_text(text)
+    return notes(case, build(case))
+
+
+def test_an_explosive_that_nothing_lights() -> None:
+    assert notes_of(CASE + LIT) == []
+    [note] = notes_of(CASE)
+    assert "body.charge" in note and "add [[detonation]]" in note
+
+
+def test_a_detonation_that_comes_too_late() -> None:
+    [note] = notes_of(CASE + FAR)
+    assert "detonation[0] lights nothing" in note and "1.443e-06 s" in note
+    [note] = notes_of(CASE + LIT + LIT + 'time = "1.1 us"\n')
+    assert "detonation[1]" in note
+    assert notes_of(CASE.replace('"1 us"', '"2 us"') + FAR) == []
+
+
+def test_a_detonation_without_an_explosive() -> None:
+    text = CASE.replace('"tnt"\nshape', '"steel"\nshape') + LIT
+    with pytest.raises(CaseError) as caught:
+        Case.from_text(text)
+    line = text[: text.index("[[deto")].count("\n") + 1
+    assert str(caught.value).startswith(f"case.toml:{line}: detonation[0] has nothing to light")
+
+
+STEEL = 'strength = { elastic = { E = "200 GPa", nu = 0.3 } }'
+JWL = '{ A = "371 GPa", B = "3.2 GPa", R1 = 4.15, R2 = 0.95, omega = 0.3, E0 = "7 GPa" }'
+PLASTIC = 'strength = { j2 = { E = "200 GPa", nu = 0.3, Y0 = "1 GPa" } }'
+DAMAGE = PLASTIC + "\nfailure.johnson_cook_damage = { D1 = 0.05, D2 = 3.44, D3 = SIGN2.12 }"
+SOIL = "strength.drucker_prager = { E = 1e7, nu = 0.3, q_phi = FRICTION, k_phi = 1e3 }"
+
+
+@pytest.mark.parametrize(
+    ("material", "note"),
+    [
+        (DAMAGE.replace("SIGN", ""), "material.steel.failure.johnson_cook_damage.D3 = 2.12 is > 0"),
+        (DAMAGE.replace("SIGN", "-"), ""),
+        (
+            SOIL.replace("FRICTION", "30"),
+            "material.steel.strength.drucker_prager.q_phi = 30 is more",
+        ),
+        (SOIL.replace("FRICTION", "1.7"), ""),
+        (
+            f"strength = {{ fluid = {{}} }}\neos.jwl = {JWL}",
+            "material.steel.eos.jwl is of the prod",
+        ),
+        (f"strength = {{ high_explosive = {{ D = 6930 }} }}\neos.jwl = {JWL}", ""),
+    ],
+)
+def test_numbers_of_another_convention(material: str, note: str) -> None:
+    text = CASE.replace(STEEL, material) + LIT
+    assert text != CASE + LIT
+    found = notes_of(text)
+    assert [line.startswith(note) for line in found] == ([True] if note else [])
+
+
+DECK = """\
+mpm3
+nbbo 1
+nmat 1
+grid 0 4 0 4 0 4
+dcel 1
+dtsc 0.5
+endt 1d-3
+mate
+ 1 MATERIAL
+seos 1 3 3.712d5 3.21d3 4.15 0.95 0.3 6993
+part block 1
+ 1 1.63d-3 0.5 0 0 0 8 8 8
+deto 100 0 0
+endi
+"""
+
+
+def test_the_same_of_a_file_of_mpm3d() -> None:
+    case = import_source(split(DECK.replace("MATERIAL", "hiex 1.63d-3 6930"))).case
+    [note] = notes(case, build(case))
+    assert "lights nothing before the end" in note
+    with pytest.raises(CaseError, match=r"mpm:13: detonation\[0\] has nothing to light"):
+        import_source(split(DECK.replace("MATERIAL", "elas 7.8d-3 210d3 0.3")))
+
+
+def test_check_and_run_print_them(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(CASE)
+    [note] = notes_of(CASE)
+    done = CliRunner().invoke(app, ["check", str(path)])
+    assert f"\nnote: {note}\n" in done.output
+    assert Simulation(Case.from_text(CASE), threads=1).notes == [note]
+    done = CliRunner().invoke(app, ["run", str(path), "--threads", "1", "--out", str(tmp_path)])
+    assert f"note: {note}\n" in done.output
+
+
+def test_steps_are_a_lower_bound_where_the_time_step_may_fall() -> None:
+    def words(text: str) -> str:
+        case = Case.from_text(text)
+        return steps_in_words(case, build(case))
+
+    solid = CASE.replace('"tnt"\nshape', '"steel"\nshape')
+    assert words(solid).startswith("about ")
+    assert words(solid.replace('"1 us"', '"1 us"\ngravity = [0, -9.81]')).startswith("at least ")
+    assert words(CASE + LIT).startswith("at least ")
+
+
+def test_the_lower_bound_holds_in_a_shock_tube() -> None:
+    """The shock heats the gas behind it, and waves are faster there."""
+    case = load_case(Path(__file__).parents[2] / "examples" / "13_sod_tube" / "case.toml")
+    case.run.end_time = 0.02
+    least = int(steps_in_words(case, build(case)).split()[2])
+    simulation = Simulation(case, threads=1)
+    assert simulation.advance(100 * least) > least
+    assert simulation.time == 0.02

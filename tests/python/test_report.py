@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a finished run prints."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from mpm3dpp.report import energy_line
+
+
+def manifest(initial: dict[str, float], final: dict[str, float]) -> Any:
+    zero = dict.fromkeys(("kinetic", "internal", "external", "numerical", "contact"), 0.0)
+    return SimpleNamespace(energies={"initial": {**zero, **initial}, "final": {**zero, **final}})
+
+
+@pytest.mark.parametrize(
+    ("initial", "final", "words"),
+    [
+        ({"kinetic": 100.0}, {"numerical": 2.0, "contact": 1.0}, "lost 3.00% of what came in"),
+        ({}, {"external": -50.0, "numerical": -1.0}, "made 2.00% of what came in"),
+        # A gas or an explosive brings its energy with it.
+        ({"internal": 400.0}, {"numerical": 2.0}, "lost 0.50% of the energy at the start"),
+        ({"internal": 300.0, "kinetic": 100.0}, {"numerical": 2.0}, "lost 0.50% of the energy"),
+        # A plate with little internal energy at the start is judged by its motion.
+        ({"internal": 10.0, "kinetic": 100.0}, {"numerical": 2.0}, "lost 2.00% of what came in"),
+        ({}, {}, "none came in"),
+    ],
+)
+def test_share_of_energy(initial: dict[str, float], final: dict[str, float], words: str) -> None:
+    assert words in energy_line(manifest(initial, final))
