@@ -11,16 +11,20 @@ struct Power {
   T start, inverse, start_value;
 
   Power(T x, double a) : exponent(a), start(x), inverse(T(1.0) / x), start_value(pow(x, T(a))) {}
-  /// Value and derivative; near the start by series, and the derivative to the change's own order,
-  /// which is enough for Newton's steps.
-  Yield<T> at(T x) const {
+  struct At {
+    T value, slope, inverse;  // x^a, its derivative, 1/x
+  };
+  /// Near the start by series, and 1/x to the change's own order, which is enough for the slopes of
+  /// a search.
+  At at(T x) const {
     const T change = (x - start) * inverse;
     if (exponent >= power_near_one_below || any(absolute(change) > T(0.01))) {
-      const T value = pow(x, T(exponent));
-      return {value, T(exponent) * value / x};
+      const T value = pow(x, T(exponent)), one_over = T(1.0) / x;
+      return {value, T(exponent) * value * one_over, one_over};
     }
     const T value = start_value * power_near_one(change, exponent);
-    return {value, T(exponent) * value * inverse * (T(1.0) - change)};
+    const T one_over = inverse * (T(1.0) - change);
+    return {value, T(exponent) * value * one_over, one_over};
   }
 };
 
@@ -53,18 +57,23 @@ struct JohnsonCookLaw {
     T at_rest = T(A) + T(B) * hardening.start_value;
     if (thermal) at_rest = at_rest * (T(1.0) - softening.start_value);
     const auto yield = [&](T q, T d, T x) {
-      const Yield<T> hard = hardening.at(max(before + d, T(tiny)));
+      const auto hard = hardening.at(max(before + d, T(tiny)));
       const T faster = T(1.0) + T(C) * max(x, T(0.0)), rest = T(A) + T(B) * hard.value;
-      Yield<T> y{rest * faster,
-                 T(B) * hard.slope * d * faster + select(x > T(0.0), T(C) * rest, T(0.0))};
+      const T harder = T(B) * hard.slope * d * faster;
+      RateYield<T> y;
+      y.value = rest * faster;
+      y.slope = harder + select(x > T(0.0), T(C) * rest, T(0.0));
+      y.bend = harder * (T(1.0) + T(n - 1.0) * d * hard.inverse);
       if (thermal) {
         const T star = homologous(start + heat * (q - T(3.0 * G) * d) * d);
-        const Yield<T> lost = softening.at(max(star, T(tiny)));
-        const T change = heat * (q - T(6.0 * G) * d) * d * T(1.0 / (T_melt - T_room));
+        const auto lost = softening.at(max(star, T(tiny)));
         const auto varies = (star > T(0.0)) & (star < T(1.0));
-        y.slope =
-            y.slope * (T(1.0) - lost.value) - select(varies, y.value * lost.slope * change, T(0.0));
-        y.value = y.value * (T(1.0) - lost.value);
+        const T softer =
+            select(varies, y.value * lost.slope * heat * d * T(1.0 / (T_melt - T_room)), T(0.0));
+        const T left = T(1.0) - lost.value;
+        y.value = y.value * left;
+        y.slope = y.slope * left - softer * (q - T(6.0 * G) * d);
+        y.bend = y.bend * left - softer * (q - T(12.0 * G) * d);
       }
       return y;
     };

@@ -11,6 +11,14 @@ struct Yield {
   T value, slope;
 };
 
+/// The same for a search in x = ln d: derivatives with x, the second of which may miss `bend_error`
+/// times the first.
+template <class T>
+struct RateYield {
+  T value, slope, bend;
+};
+inline constexpr double bend_error = 0.01;
+
 /// What a return did: the increment of the equivalent plastic strain, and von Mises' stress after.
 template <class T>
 struct Returned {
@@ -73,22 +81,29 @@ Returned<T> return_with_rate(Sym<T, D>& stress, double G, double unit, T at_rest
   auto open = flows;
   for (int turn = 0; turn < 100; ++turn) {
     const T d = T(unit) * exp(x);
-    const Yield<T> y = yield(q, d, x);
+    const RateYield<T> y = yield(q, d, x);
     const T rest = q - stiff * d - y.value, slope = stiff * d + y.slope;
-    const T step = rest / slope;
+    // Halley's step, third order; far off it is kept within a third of Newton's.
+    const T inverse = T(1.0) / slope, newton = rest * inverse;
+    const T bent = T(0.5) * newton * (stiff * d + y.bend) * inverse;
+    const T step = newton / (T(1.0) + min(max(bent, T(-0.25)), T(0.25)));
     low = select(rest > nothing, x, low);
     high = select(rest > nothing, high, x);
     T next = x + step;
-    // What this step leaves is of its square, unless it passes the kink.
-    const auto small = absolute(step) < T(1e-3);
+    // What this step leaves is of its third power, and of its square as far as `bend` is inexact,
+    // unless it passes the kink.
+    const T size = absolute(step);
+    const auto small = size < T(1e-3);
     const auto settled =
-        (small & (step * step * slope < T(return_tolerance) * q) & (x * next > nothing)) |
+        (small & (size * size * (size + T(bend_error)) * slope < T(return_tolerance) * q) &
+         (x * next > nothing)) |
         (absolute(rest) < T(return_tolerance) * q);
-    const T after = select(small, d + d * step * (T(1.0) + T(0.5) * step), d);
+    const T after =
+        select(small, d + d * step * (T(1.0) + step * (T(0.5) + T(1.0 / 6.0) * step)), d);
     found = select(open, after, found);
     open = open & !settled;
     if (!any(open)) break;
-    const auto far = absolute(step) > T(0.5);
+    const auto far = size > T(0.5);
     if (turn == 0 && any(open & far))
       next = select(far, above(q), next);
     else
