@@ -235,6 +235,7 @@ grid = { dimension = 3, cell_size = 1 }
 run = { end_time = 1 }
 material.hard = { library = "lead", density = 11000 }
 material.soft = { density = 1000, strength.elastic = { E = "1 MPa", nu = 0.3 } }
+material.punch = { density = 7800, strength.rigid = {} }
 body.cube = { material = "soft", shape.box = { lower = [0, 0, 0], upper = [1, 1, 1] } }
 """
 
@@ -249,7 +250,11 @@ def test_material_of_a_case_file(tmp_path: Path) -> None:
         run_test(f"{path}:sof", Options(steps=2))
     with pytest.raises(CaseError, match="has several materials"):
         run_test(str(path), Options(steps=2))
-    path.write_text("\n".join(line for line in CASE.splitlines() if "hard" not in line))
+    for test, word in (("shear", "has no stress"), ("hugoniot", "no shock runs through it")):
+        with pytest.raises(CaseError, match=f'"punch" is rigid: .*{word}; test the other'):
+            run_test(f"{path}:punch", Options(test=test))
+    single = (line for line in CASE.splitlines() if "hard" not in line and "punch" not in line)
+    path.write_text("\n".join(single))
     assert run_test(str(path), Options(steps=2)).name == "soft"
 
 
