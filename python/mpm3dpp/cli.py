@@ -205,7 +205,8 @@ def material_test(
     material: Annotated[
         str,
         typer.Argument(
-            metavar="MATERIAL", help="A named material (copper_ofhc), or case.toml:NAME."
+            metavar="MATERIAL",
+            help="A named material (copper_ofhc), case.toml:NAME or file.mpm:NAME.",
         ),
     ],
     test: Annotated[
@@ -228,6 +229,7 @@ def material_test(
     temperature: Annotated[
         float | None, typer.Option(help="Temperature at the start in K, such as 500.")
     ] = None,
+    units: Units = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for CSV and PNG; default results/material_test.")
     ] = None,
@@ -243,7 +245,7 @@ def material_test(
     from .material_test import main as do_test
 
     options = Options(test, rate, to, steps, temperature)
-    typer.echo(do_test(material, options, out, json))
+    typer.echo(do_test(material, options, out, json, units))
 
 
 def main() -> None:

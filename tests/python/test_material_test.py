@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from mpm3dpp.case import Material
 from mpm3dpp.cli import app
 from mpm3dpp.errors import CaseError
-from mpm3dpp.material_test import Options, driver, hugoniot, main, run_test
+from mpm3dpp.material_test import Options, driver, hugoniot, main, run_test, subject
 from mpm3dpp.material_test.curves import heated_flow, known_curves
 
 E, NU = 117e9, 0.35
@@ -201,7 +201,7 @@ def test_temperature_softens() -> None:
 
 
 @pytest.mark.parametrize(
-    ("subject", "options", "sentence"),
+    ("given", "options", "sentence"),
     [
         ("coper_ofhc", {}, 'did you mean "copper_ofhc"?'),
         ("steel_1006", {"test": "hugoniot"}, "has no equation of state"),
@@ -222,10 +222,10 @@ def test_temperature_softens() -> None:
     ],
 )
 def test_mistakes_are_one_sentence(
-    subject: str, options: dict[str, float | str], sentence: str
+    given: str, options: dict[str, float | str], sentence: str
 ) -> None:
     with pytest.raises(CaseError) as caught:
-        run_test(subject, Options(**options))  # type: ignore[arg-type]
+        run_test(given, Options(**options))  # type: ignore[arg-type]
     assert sentence in str(caught.value)
     assert "\n" not in str(caught.value)
 
@@ -235,6 +235,7 @@ grid = { dimension = 3, cell_size = 1 }
 run = { end_time = 1 }
 material.hard = { library = "lead", density = 11000 }
 material.soft = { density = 1000, strength.elastic = { E = "1 MPa", nu = 0.3 } }
+material.punch = { density = 7800, strength.rigid = {} }
 body.cube = { material = "soft", shape.box = { lower = [0, 0, 0], upper = [1, 1, 1] } }
 """
 
@@ -249,8 +250,30 @@ def test_material_of_a_case_file(tmp_path: Path) -> None:
         run_test(f"{path}:sof", Options(steps=2))
     with pytest.raises(CaseError, match="has several materials"):
         run_test(str(path), Options(steps=2))
-    path.write_text("\n".join(line for line in CASE.splitlines() if "hard" not in line))
+    for test, word in (("shear", "has no stress"), ("hugoniot", "no shock runs through it")):
+        with pytest.raises(CaseError, match=f'"punch" is rigid: .*{word}; test the other'):
+            run_test(f"{path}:punch", Options(test=test))
+    single = (line for line in CASE.splitlines() if "hard" not in line and "punch" not in line)
+    path.write_text("\n".join(single))
     assert run_test(str(path), Options(steps=2)).name == "soft"
+
+
+DECKS = Path(__file__).parents[1] / "verification" / "mpm"
+
+
+def test_material_of_a_file_of_mpm3d(tmp_path: Path) -> None:
+    """As run and check read it: units of the file, SI inside, and a word on what differs."""
+    deck = DECKS / "TNT3D.mpm"
+    name, material, notes = subject.find(f"{deck}:sjc_2")
+    assert name == "sjc_2" and material.strength.model == "simplified_johnson_cook"
+    assert any("units mm-g-N-ms" in note for note in notes)
+    assert subject.find(str(DECKS / "elas125k.mpm")).name == "elas_1"
+    text = main(f"{deck}:sjc_2", Options(test="shear", steps=20), tmp_path, json=False)
+    assert "note: units mm-g-N-ms" in text
+    with pytest.raises(CaseError, match='"sjc" is not a material of this case; did you mean'):
+        subject.find(f"{deck}:sjc")
+    with pytest.raises(CaseError, match='--units = "SI" is for files of MPM3D-F90'):
+        subject.find("lead", "SI")
 
 
 def test_command_writes_a_table_and_a_picture(tmp_path: Path) -> None:

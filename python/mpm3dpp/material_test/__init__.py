@@ -32,6 +32,7 @@ class Result:
         columns: name -> values, shape (steps + 1,).
         units: name -> SI unit, "1" or empty for plain numbers.
         known: curves that the test should follow.
+        notes: what is not the same as in the program whose file the material is from.
     """
 
     name: str
@@ -40,29 +41,33 @@ class Result:
     columns: dict[str, np.ndarray]
     units: dict[str, str]
     known: list[Curve]
+    notes: list[str]
 
 
-def run_test(subject: str, options: Options) -> Result:
+def run_test(subject: str, options: Options, units: str | None = None) -> Result:
     """Do a test.
 
     Args:
-        subject: a material of the library, or `case.toml:NAME`.
+        subject: a material of the library, `case.toml:NAME` or `file.mpm:NAME`.
         options: what is done with it.
+        units: unit system of a file of MPM3D-F90 that states none.
 
     Raises:
         CaseError: there is no such material, or it cannot be tested so.
     """
     chosen = options.completed()
-    name, material = find(subject)
+    name, material, notes = find(subject, units)
     material = at_temperature(name, material, chosen)
     if chosen.test == "hugoniot":
-        columns, units = hugoniot.shock_test(name, material, chosen), hugoniot.UNITS
+        columns, si = hugoniot.shock_test(name, material, chosen), hugoniot.UNITS
     else:
-        columns, units = driver.stress_test(name, material, chosen)
-    return Result(name, material, chosen, columns, units, known_curves(material, chosen))
+        columns, si = driver.stress_test(name, material, chosen)
+    return Result(name, material, chosen, columns, si, known_curves(material, chosen), notes)
 
 
-def main(subject: str, options: Options, out: Path | None, json: bool) -> str:
+def main(
+    subject: str, options: Options, out: Path | None, json: bool, units: str | None = None
+) -> str:
     """Do a test, write CSV and PNG, and return what is printed.
 
     Args:
@@ -70,8 +75,9 @@ def main(subject: str, options: Options, out: Path | None, json: bool) -> str:
         options: as for `run_test`.
         out: folder; None for results/material_test.
         json: whether the text is JSON.
+        units: as for `run_test`.
     """
-    result = run_test(subject, options)
+    result = run_test(subject, options, units)
     from mpm3dpp.folders import writable_folder
 
     from . import plot, report
@@ -89,6 +95,7 @@ def main(subject: str, options: Options, out: Path | None, json: bool) -> str:
         )
     lines = [title, "", report.table(result.options, result.columns, result.units), ""]
     lines += [report.deviation(result.options, result.columns, curve) for curve in result.known]
+    lines += [f"note: {note}" for note in result.notes]
     return "\n".join([*lines, str(table), str(picture)])
 
 

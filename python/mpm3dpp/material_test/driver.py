@@ -16,6 +16,7 @@ from mpm3dpp.case import Material
 from mpm3dpp.errors import CaseError
 from mpm3dpp.materials.point import COUNTED, drive_point
 
+from . import sense
 from .options import Options
 
 TENSOR = ("xx", "yy", "zz", "yz", "xz", "xy")
@@ -77,12 +78,7 @@ def stress_test(name: str, material: Material, options: Options) -> Path:
     Raises:
         CaseError: the material cannot be tested so.
     """
-    if material.strength.model == "high_explosive":
-        rule = "is a high explosive, which burns in a run only, not in a material test"
-        raise CaseError(rule, "test the other materials of your case", value=name)
-    if material.strength.model == "fluid" and options.test == "uniaxial-stress":
-        rule = "is a fluid, which bears no uniaxial stress"
-        raise CaseError(rule, "choose another --test", value=name)
+    sense.check_before(name, material, options)
     steps, to = int(options.steps or 0), float(options.to or 0.0)
     time_step = abs(to) / (steps * float(options.rate or 1.0))
     if options.test == "compression-release":

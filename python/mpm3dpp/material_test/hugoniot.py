@@ -13,6 +13,7 @@ from mpm3dpp.errors import CaseError
 
 from .driver import drive
 from .options import Options
+from .sense import OTHERS
 
 UNITS = {
     "particle_velocity": "m/s",
@@ -40,6 +41,8 @@ def shock_test(name: str, material: Material, options: Options) -> dict[str, np.
 
 def without_strength(name: str, material: Material) -> Material:
     """Return a fluid without viscosity that has the material's equation of state."""
+    if material.strength.model == "rigid":
+        raise CaseError("is rigid: no shock runs through it", OTHERS, value=name)
     if material.eos is None:
         rule = "has no equation of state, which the test hugoniot needs"
         raise CaseError(rule, "give the material an eos, or choose another --test", value=name)

@@ -4,41 +4,67 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
-from mpm3dpp.case import Material, load_case
+from mpm3dpp.case import Material
 from mpm3dpp.errors import CaseError, nearest
+from mpm3dpp.importers import MPM3D_SUFFIX, load_any
 from mpm3dpp.materials import library
 
 from .options import Options
 
-REMEDY = 'give a name of "mpm3dpp materials", or case.toml:NAME'
+REMEDY = 'give a name of "mpm3dpp materials", case.toml:NAME or file.mpm:NAME'
 
 
-def find(text: str) -> tuple[str, Material]:
-    """Return the name of a material and the material.
+class Subject(NamedTuple):
+    """What is tested.
+
+    Attributes:
+        name: of the material.
+        material: itself.
+        notes: what is not the same as in the program whose file it is from.
+    """
+
+    name: str
+    material: Material
+    notes: list[str]
+
+
+def find(text: str, units: str | None = None) -> Subject:
+    """Return a material by its name.
 
     Args:
-        text: `copper_ofhc`, `case.toml:plate`, or `case.toml` if it has one material only.
+        text: `copper_ofhc`, `case.toml:plate`, `slope.mpm:dp_1`, or the file alone if it has one
+            material only.
+        units: unit system of a file of MPM3D-F90 that states none.
 
     Raises:
-        CaseError: there is no such material or case file.
+        CaseError: there is no such material or file.
     """
     if text in library():
-        return text, Material(library=text)
+        if units is not None:
+            rule = "is for files of MPM3D-F90 (.mpm) only"
+            raise CaseError(rule, "leave it out", key="--units", value=units)
+        return Subject(text, Material(library=text), [])
     path, _, name = text.rpartition(":")
-    if not path and not text.endswith(".toml"):
+    if not path and not _is_file_name(text):
         closest = nearest(text, library()).partition("?")
         hint = f"{closest[0]}? " if closest[1] else ""
         raise CaseError("is not a material of the library", f"{hint}{REMEDY}", value=text)
-    if not path or text.endswith(".toml"):
+    if not path or _is_file_name(text):
         path, name = text, ""
-    materials = load_case(Path(path)).material
-    if name in materials:
-        return name, materials[name]
+    case, notes = load_any(Path(path), units)
+    materials = case.material
     if not name and len(materials) == 1:
-        return next(iter(materials.items()))
+        name = next(iter(materials))
+    if name in materials:
+        return Subject(name, materials[name], notes)
     rule = "is not a material of this case" if name else "has several materials"
     raise CaseError(rule, nearest(name, materials), place=path if name else "", value=name or path)
+
+
+def _is_file_name(text: str) -> bool:
+    return text.lower().endswith((".toml", MPM3D_SUFFIX))
 
 
 def at_temperature(name: str, material: Material, options: Options) -> Material:
