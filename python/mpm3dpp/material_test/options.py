@@ -25,6 +25,9 @@ class Kind:
     steps: int
 
 
+LEAST, MOST = 1e-9, 1e12
+"""Sizes that no test needs, in the units of the options."""
+
 TESTS = {
     "uniaxial-strain": Kind("stretch or compression along x, sides held", -0.05, 500),
     "uniaxial-stress": Kind("stretch or compression along x, sides free of stress", 0.2, 400),
@@ -70,21 +73,37 @@ class Options:
             if shock:
                 rule = "has no meaning for the test hugoniot"
                 raise CaseError(rule, "remove it", key=f"--{name}")
+            unit = "1/s" if name == "rate" else "K"
             if not (value > 0 and math.isfinite(value)):
-                unit = "1/s" if name == "rate" else "K"
-                raise CaseError("must be > 0", f"it is in {unit}", key=f"--{name}", value=value)
+                rule = "must be > 0 and finite"
+                raise CaseError(rule, f"it is in {unit}", key=f"--{name}", value=value)
+            if not LEAST <= value <= MOST:
+                rule = f"must lie between {LEAST:g} and {MOST:g}"
+                raise CaseError(rule, f"it is in {unit}", key=f"--{name}", value=value)
         test = TESTS[self.test]
         to = test.to if self.to is None else self.to
-        if not math.isfinite(to) or to == 0 or (shock and to < 0):
-            what = "a particle velocity in m/s" if shock else "a strain such as -0.1 (compression)"
-            rule = "must be > 0" if shock else "must not be zero"
-            raise CaseError(rule, f"give {what}", key="--to", value=to)
-        if not shock and abs(to) > 5:
-            raise CaseError("must lie between -5 and 5", "it is a strain", key="--to", value=to)
+        self._check_end(to)
         steps = test.steps if self.steps is None else self.steps
-        if not 2 <= steps <= 100_000:
+        if isinstance(steps, float) or not 2 <= steps <= 100_000:
             raise CaseError(
                 "must be from 2 to 100000", "give a whole number", key="--steps", value=steps
             )
         rate = None if shock else self.rate or 1.0
         return replace(self, rate=rate, to=to, steps=steps)
+
+    def _check_end(self, to: float) -> None:
+        shock = self.test == "hugoniot"
+        what = "a particle velocity in m/s" if shock else "a strain such as -0.1 (compression)"
+        if not math.isfinite(to):
+            rule = "must be finite"
+        elif shock and to <= 0:
+            rule = "must be > 0"
+        elif to == 0:
+            rule = "must not be zero"
+        elif abs(to) < LEAST:
+            rule = f"must be at least {LEAST:g} in size"  # below it there is rounding only
+        elif not shock and abs(to) > 5:
+            rule, what = "must lie between -5 and 5", "a strain, no percentage"
+        else:
+            return
+        raise CaseError(rule, f"give {what}", key="--to", value=to)

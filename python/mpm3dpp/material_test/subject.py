@@ -71,7 +71,7 @@ def at_temperature(name: str, material: Material, options: Options) -> Material:
     """Return the material at the temperature of the test, where one is given.
 
     Raises:
-        CaseError: the strength model knows no temperature.
+        CaseError: the strength model knows no temperature, or the material is molten at it.
     """
     if options.temperature is None:
         return material
@@ -79,6 +79,12 @@ def at_temperature(name: str, material: Material, options: Options) -> Material:
     if "T0" not in strength.parameters:
         rule = f"has the strength {strength.model}, which knows no temperature"
         raise CaseError(rule, "leave --temperature out", value=name)
+    melting = strength.parameters.get("T_melt")
+    if melting is not None and options.temperature >= melting:
+        rule = f"is not below the melting temperature of {name}, {melting:g} K: molten metal has no"
+        raise CaseError(
+            f"{rule} strength", "give less", key="--temperature", value=options.temperature
+        )
     table = material.table()
     table["strength"] = {strength.model: {**strength.parameters, "T0": options.temperature}}
     return Material(**table)
