@@ -15,6 +15,7 @@ from mpm3dpp.case import Material
 
 from . import driver, hugoniot
 from .curves import Curve, known_curves
+from .failing import Failed, no_failure
 from .options import TESTS, Options
 from .subject import at_temperature, find
 
@@ -32,6 +33,7 @@ class Result:
         columns: name -> values, shape (steps + 1,).
         units: name -> SI unit, "1" or empty for plain numbers.
         known: curves that the test should follow.
+        failed: where it failed, or None.
         notes: what is not the same as in the program whose file the material is from.
     """
 
@@ -41,6 +43,7 @@ class Result:
     columns: dict[str, np.ndarray]
     units: dict[str, str]
     known: list[Curve]
+    failed: Failed | None
     notes: list[str]
 
 
@@ -59,10 +62,11 @@ def run_test(subject: str, options: Options, units: str | None = None) -> Result
     name, material, notes = find(subject, units)
     material = at_temperature(name, material, chosen)
     if chosen.test == "hugoniot":
-        columns, si = hugoniot.shock_test(name, material, chosen), hugoniot.UNITS
+        path = driver.Path(hugoniot.shock_test(name, material, chosen), hugoniot.UNITS)
     else:
-        columns, si = driver.stress_test(name, material, chosen)
-    return Result(name, material, chosen, columns, si, known_curves(material, chosen), notes)
+        path = driver.stress_test(name, material, chosen)
+    known = known_curves(material, chosen)
+    return Result(name, material, chosen, path.columns, path.units, known, path.failed, notes)
 
 
 def main(
@@ -86,15 +90,15 @@ def main(
     stem = f"{result.name}_{result.options.test.replace('-', '_')}"
     table = report.write_csv(folder / f"{stem}.csv", result.columns, result.units)
     title = headline(result)
-    picture = plot.save_picture(
-        folder / f"{stem}.png", title, result.options, result.columns, result.known
-    )
+    picture = plot.save_picture(folder / f"{stem}.png", title, result)
     if json:
-        return report.as_json(
-            result.name, result.material, result.options, result.columns, result.units
-        )
+        return report.as_json(result)
     lines = [title, "", report.table(result.options, result.columns, result.units), ""]
-    lines += [report.deviation(result.options, result.columns, curve) for curve in result.known]
+    if result.failed is not None:
+        lines.append(result.failed.sentence())
+    elif result.options.test != "hugoniot" and result.material.failure:
+        lines.append(no_failure(result.material, result.columns))
+    lines += [report.deviation(result, curve) for curve in result.known]
     lines += [f"note: {note}" for note in result.notes]
     return "\n".join([*lines, str(table), str(picture)])
 

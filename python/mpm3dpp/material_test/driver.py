@@ -17,6 +17,7 @@ from mpm3dpp.errors import CaseError
 from mpm3dpp.materials.point import COUNTED, drive_point
 
 from . import sense
+from .failing import Failed, first_failure
 from .options import Options
 
 TENSOR = ("xx", "yy", "zz", "yz", "xz", "xy")
@@ -30,10 +31,12 @@ class Path(NamedTuple):
     Attributes:
         columns: name -> values, shape (steps + 1,).
         units: name -> SI unit, "1" for plain numbers.
+        failed: where it failed in a test; None if it did not, or is no test.
     """
 
     columns: dict[str, np.ndarray]
     units: dict[str, str]
+    failed: Failed | None = None
 
 
 def drive(
@@ -95,7 +98,7 @@ def stress_test(name: str, material: Material, options: Options) -> Path:
         moves[:, 0, 0] = np.expm1(np.diff(strain))
     if options.test == "uniaxial-stress":
         lateral = free_sides(name, material, moves, time_step)
-    columns, units = drive(material, moves, time_step)
+    columns, units, _ = drive(material, moves, time_step)
     stress = np.array([columns[f"stress_{c}"] for c in TENSOR])
     found = {"strain": strain}
     if lateral is not None:
@@ -105,7 +108,13 @@ def stress_test(name: str, material: Material, options: Options) -> Path:
         raise CaseError(f"has no finite stress from strain {strain[first]:g} on", value=name)
     found |= {f"stress_{c}": columns.pop(f"stress_{c}") for c in TENSOR}
     found |= {"pressure": pressure(stress), "von_mises": von_mises(stress)}
-    return Path(found | columns, DERIVED | units)
+    columns = found | columns
+
+    def again(other: Material) -> dict[str, np.ndarray]:
+        return drive(other, moves, time_step).columns
+
+    failed = first_failure(material, options.test, columns, again)
+    return Path(columns, DERIVED | units, failed)
 
 
 def pressure(stress: np.ndarray) -> np.ndarray:

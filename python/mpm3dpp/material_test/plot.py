@@ -11,46 +11,36 @@ import numpy as np
 from mpm3dpp.plots.labels import prefix
 from mpm3dpp.plots.style import PALETTE, new_figure, save, styled
 
-from .curves import Curve
-from .options import Options
-
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from . import Result
+
 _KNOWN = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 1.0}
+_MARK = {"marker": "X", "markersize": 7, "linestyle": "none", "zorder": 5}
 
 
-def save_picture(
-    path: Path, title: str, options: Options, columns: dict[str, np.ndarray], known: list[Curve]
-) -> Path:
+def save_picture(path: Path, title: str, result: Result) -> Path:
     """Draw a test and write it as PNG.
 
     Args:
         path: of the picture.
         title: name of the material and what is done with it.
-        options: of the test, completed.
-        columns: of the test.
-        known: curves to compare with.
+        result: of the test.
     """
-    draw = _shocks if options.test == "hugoniot" else _path
+    draw = _shocks if result.options.test == "hugoniot" else _path
     with styled():
         figure = new_figure(8.6, 3.5)
         left, right = figure.subplots(1, 2)
-        draw(left, right, options, columns, known)
+        draw(left, right, result)
         for axes in (left, right):
             axes.grid(True)
         figure.suptitle(title, fontsize=10)
         return save(figure, path)
 
 
-def _path(
-    left: Axes,
-    right: Axes,
-    options: Options,
-    columns: dict[str, np.ndarray],
-    known: list[Curve],
-) -> None:
-    shear = options.test == "shear"
+def _path(left: Axes, right: Axes, result: Result) -> None:
+    shear, columns = result.options.test == "shear", result.columns
     name = "stress_xy" if shear else "stress_xx"
     strain, stress = columns["strain"], columns[name]
     factor, unit = prefix(float(np.abs(stress).max()), "Pa")
@@ -58,8 +48,13 @@ def _path(
     if "lateral_strain" not in columns:  # else von Mises' stress is the same line
         mises = factor * columns["von_mises"]
         left.plot(strain, mises, color=PALETTE[1], label="von Mises stress")
-    for curve in known:
+    for curve in result.known:
         left.plot(curve.x, factor * curve.y, label=curve.label, **_KNOWN)
+    failed = result.failed
+    if failed is not None:
+        label = f"fails: {' and '.join(model.model for model in failed.models)}"
+        point = (failed.before, factor * failed.stress)
+        left.plot(*point, color=PALETTE[4], label=label, **_MARK)
     left.set_xlabel("shear [1]" if shear else "logarithmic strain [1]")
     left.set_ylabel(f"stress [{unit}]")
     left.legend()
@@ -75,17 +70,12 @@ def _path(
     right.set_ylabel(f"pressure [{unit}]")
 
 
-def _shocks(
-    left: Axes,
-    right: Axes,
-    _options: Options,
-    columns: dict[str, np.ndarray],
-    known: list[Curve],
-) -> None:
+def _shocks(left: Axes, right: Axes, result: Result) -> None:
+    columns = result.columns
     up, us = columns["particle_velocity"], columns["shock_velocity"]
     dots = {"color": PALETTE[0], "marker": "o", "markersize": 3.5, "linewidth": 0.8}
     left.plot(up / 1e3, us / 1e3, label="equation of state", **dots)
-    for curve in known:
+    for curve in result.known:
         left.plot(curve.x / 1e3, curve.y / 1e3, label=curve.label, **_KNOWN)
     left.set_xlabel("particle velocity [km/s]")
     left.set_ylabel("shock velocity [km/s]")

@@ -5,20 +5,23 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mpm3dpp.case import Material
 from mpm3dpp.io.disk import writing
 from mpm3dpp.plots.labels import prefix
 
 from .curves import Curve
 from .options import Options
 
+if TYPE_CHECKING:
+    from . import Result
+
 SHOWN = {
     "stress": (
         *("strain", "lateral_strain", "stress_xx", "stress_yy", "stress_xy", "pressure"),
-        *("von_mises", "plastic_strain", "temperature", "work"),
+        *("von_mises", "plastic_strain", "temperature", "work", "damage", "failed"),
     ),
     "hugoniot": (
         *("particle_velocity", "shock_velocity", "pressure", "density", "volume"),
@@ -61,33 +64,36 @@ def write_csv(path: Path, columns: dict[str, np.ndarray], units: dict[str, str])
     return path
 
 
-def as_json(
-    name: str,
-    material: Material,
-    options: Options,
-    columns: dict[str, np.ndarray],
-    units: dict[str, str],
-) -> str:
-    """Return the test as JSON: what was tested, how, and all columns."""
+def as_json(result: Result) -> str:
+    """Return a test as JSON: what was tested, how, all columns, and where it failed."""
+    options = result.options
     asked = {"rate": options.rate, "to": options.to, "steps": options.steps}
     return json.dumps(
         {
-            "material": name,
-            "table": material.table(),
+            "material": result.name,
+            "table": result.material.table(),
             "test": options.test,
             **asked,
-            "units": units,
-            "columns": {key: values.tolist() for key, values in columns.items()},
+            "failed": None if result.failed is None else result.failed.table(),
+            "notes": result.notes,
+            "units": result.units,
+            "columns": {key: values.tolist() for key, values in result.columns.items()},
         },
         indent=1,
     )
 
 
-def deviation(options: Options, columns: dict[str, np.ndarray], curve: Curve) -> str:
-    """Return how far a test is from a known curve, as shares of the curve's largest value."""
-    x = next(iter(columns.values()))
-    name = {"hugoniot": "shock_velocity", "shear": "stress_xy"}.get(options.test, "stress_xx")
+def deviation(result: Result, curve: Curve) -> str:
+    """Return how far a test is from a known curve, as shares of the curve's largest value.
+
+    Rows that have failed do not count: no curve knows of failure.
+    """
+    rows = slice(None) if result.failed is None else slice(max(result.failed.row, 1))
+    test = result.options.test
+    name = {"hugoniot": "shock_velocity", "shear": "stress_xy"}.get(test, "stress_xx")
     order = np.argsort(curve.x)
+    x = next(iter(result.columns.values()))[rows]
     known = np.interp(x, curve.x[order], curve.y[order])
-    error = np.abs(columns[name] - known) / np.abs(curve.y).max()
-    return f"against {curve.label}: off by {error.max():.1e} at most, {error[-1]:.1e} at the end"
+    error = np.abs(result.columns[name][rows] - known) / np.abs(curve.y).max()
+    end = "at the end" if result.failed is None else "before it fails"
+    return f"against {curve.label}: off by {error.max():.1e} at most, {error[-1]:.1e} {end}"
