@@ -212,7 +212,8 @@ def material_test(
     test: Annotated[
         str,
         typer.Option(
-            help="uniaxial-strain, uniaxial-stress, shear, compression-release or hugoniot."
+            help="uniaxial-strain, uniaxial-stress, triaxial, shear, compression-release or "
+            "hugoniot."
         ),
     ] = "uniaxial-strain",
     rate: Annotated[
@@ -229,6 +230,10 @@ def material_test(
     temperature: Annotated[
         float | None, typer.Option(help="Temperature at the start in K, such as 500.")
     ] = None,
+    pressure: Annotated[
+        float | None,
+        typer.Option(help="In the cell of the test triaxial, in Pa; default 100e3 (100 kPa)."),
+    ] = None,
     units: Units = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for CSV and PNG; default results/material_test.")
@@ -244,7 +249,7 @@ def material_test(
     from .material_test import Options
     from .material_test import main as do_test
 
-    options = Options(test, rate, to, steps, temperature)
+    options = Options(test, rate, to, steps, temperature, pressure)
     typer.echo(do_test(material, options, out, json, units))
 
 

@@ -12,8 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from mpm3dpp.case import Material
+from mpm3dpp.plots.labels import scaled
 
-from . import driver, hugoniot
+from . import driver, hugoniot, triaxial
 from .curves import Curve, known_curves
 from .failing import Failed, no_failure
 from .options import TESTS, Options
@@ -98,6 +99,9 @@ def main(
         lines.append(result.failed.sentence())
     elif result.options.test != "hugoniot" and result.material.failure:
         lines.append(no_failure(result.material, result.columns))
+    if result.options.pressure is not None and result.failed is None:
+        pressure = result.options.pressure
+        lines.append(triaxial.verdict(result.material, pressure, result.columns))
     lines += [report.deviation(result, curve) for curve in result.known]
     lines += [f"note: {note}" for note in result.notes]
     return "\n".join([*lines, str(table), str(picture)])
@@ -112,4 +116,6 @@ def headline(result: Result) -> str:
         models.append(result.material.eos.model)
     rate = "" if result.options.rate is None else f" at {result.options.rate:g} 1/s"
     test = result.options.test.replace("-", " ").replace("hugoniot", "Hugoniot")
-    return f"{result.name} ({', '.join(models)}): {test}{rate}"
+    pressure = result.options.pressure
+    cell = "" if pressure is None else f", cell pressure {scaled(pressure, 'Pa')}"
+    return f"{result.name} ({', '.join(models)}): {test}{rate}{cell}"

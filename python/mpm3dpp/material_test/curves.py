@@ -13,6 +13,7 @@ import numpy as np
 from mpm3dpp.case import Material
 
 from .options import Options
+from .triaxial import failure_deviator
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,8 @@ def known_curves(material: Material, options: Options) -> list[Curve]:
         return _published_line(material, to)
     if options.test == "uniaxial-stress":
         return _tension(material, to, rate)
+    if options.test == "triaxial":
+        return _triaxial(material, to, rate, float(options.pressure or 0.0))
     if options.test == "shear":
         return _shear(material, to)
     return _uniaxial_strain(material, to) if options.test == "uniaxial-strain" else []
@@ -117,6 +120,20 @@ def _tension(material: Material, to: float, rate: float) -> list[Curve]:
     sign = math.copysign(1.0, to)
     label = f"{material.strength.model}: E x strain, then its yield stress"
     return [Curve(label, sign * strain, sign * stress)]
+
+
+def _triaxial(material: Material, to: float, rate: float, pressure: float) -> list[Curve]:
+    """E x strain up to the deviator at failure; a metal's is its yield stress at any pressure."""
+    known, limit = moduli(material), failure_deviator(material, pressure)
+    if known is None:
+        return []
+    if material.strength.model not in ("mohr_coulomb", "drucker_prager"):
+        return [Curve(c.label, c.x, -c.y) for c in _tension(material, to, rate)]
+    if limit is None:
+        return []
+    last = min(limit / known[0], -to)
+    x, y = np.array([0.0, -last, to]), known[0] * np.array([0.0, last, last])
+    return [Curve(f"E x strain, then {material.strength.model} in closed form", x, y)]
 
 
 def _shear(material: Material, to: float) -> list[Curve]:

@@ -20,8 +20,10 @@ from . import sense
 from .failing import Failed, first_failure
 from .options import Options
 
+SQUEEZE_STEPS = 10  # of the compression on all sides, which is smooth
 TENSOR = ("xx", "yy", "zz", "yz", "xz", "xy")
-DERIVED = {"strain": "1", "lateral_strain": "1", "pressure": "Pa", "von_mises": "Pa"}
+DERIVED = {"strain": "1", "lateral_strain": "1", "volumetric_strain": "1", "deviator": "Pa"}
+DERIVED |= {"pressure": "Pa", "von_mises": "Pa"}
 """Units of the columns that are made here; the core gives those of the others."""
 
 
@@ -91,27 +93,36 @@ def stress_test(name: str, material: Material, options: Options) -> Path:
     else:
         strain = np.linspace(0.0, to, steps + 1)
     moves = np.zeros((len(strain) - 1, 3, 3))
-    lateral = None
+    lateral, start, held = None, None, float(options.pressure or 0.0)
     if options.test == "shear":
         moves[:, 0, 1] = np.diff(strain)
     else:
         moves[:, 0, 0] = np.expm1(np.diff(strain))
-    if options.test == "uniaxial-stress":
-        lateral = free_sides(name, material, moves, time_step)
-    columns, units, _ = drive(material, moves, time_step)
+    if options.test == "triaxial":
+        start = squeezed(name, material, held, float(options.rate or 1.0))
+    if options.test in ("uniaxial-stress", "triaxial"):
+        lateral = free_sides(name, material, moves, time_step, held, start)
+    columns, units, _ = drive(material, moves, time_step, start)
     stress = np.array([columns[f"stress_{c}"] for c in TENSOR])
     found = {"strain": strain}
     if lateral is not None:
         found["lateral_strain"] = lateral
+    if options.test == "triaxial":
+        found["volumetric_strain"] = np.log(columns["volume"] / columns["volume"][0])
+        found["deviator"] = columns["stress_yy"] - columns["stress_xx"]
     if not np.isfinite(stress).all():
         first = int(np.argmin(np.isfinite(stress).all(axis=0)))
         raise CaseError(f"has no finite stress from strain {strain[first]:g} on", value=name)
+    stiffness = material.density * columns["sound_speed"][0] ** 2
+    sense.check_after(name, material, options, stress, stiffness)
     found |= {f"stress_{c}": columns.pop(f"stress_{c}") for c in TENSOR}
     found |= {"pressure": pressure(stress), "von_mises": von_mises(stress)}
     columns = found | columns
 
     def again(other: Material) -> dict[str, np.ndarray]:
-        return drive(other, moves, time_step).columns
+        known = drive(other, moves[:0], time_step).columns
+        own = {key: value for key, value in (start or {}).items() if key in known}
+        return drive(other, moves, time_step, own).columns
 
     failed = first_failure(material, options.test, columns, again)
     return Path(columns, DERIVED | units, failed)
@@ -129,15 +140,56 @@ def von_mises(stress: np.ndarray) -> np.ndarray:
     return np.sqrt(1.5 * (deviator[:3] ** 2).sum(axis=0) + 3.0 * (stress[3:] ** 2).sum(axis=0))
 
 
-def free_sides(name: str, material: Material, moves: np.ndarray, time_step: float) -> np.ndarray:
-    """Give `moves` the lateral strain that leaves the sides without stress, step by step.
+def squeezed(name: str, material: Material, pressure: float, rate: float) -> dict[str, float]:
+    """Return the state of a material after compression on all sides to a pressure.
 
-    Each step is a root in one unknown, found to 1e-11 of the stiffness rho c^2.
+    Args:
+        name: of the material, for messages.
+        material: at rest.
+        pressure: wanted [Pa].
+        rate: of the strain along each axis [1/s].
+
+    Raises:
+        CaseError: it does not reach the pressure.
+    """
+    end = drive(material, np.zeros((0, 3, 3)), 1.0).columns
+    stiffness = material.density * end["sound_speed"][0] ** 2
+
+    def compressed(strain: float) -> dict[str, np.ndarray]:
+        moves = np.tile(np.expm1(strain / SQUEEZE_STEPS) * np.eye(3), (SQUEEZE_STEPS, 1, 1))
+        return drive(material, moves, abs(strain) / (SQUEEZE_STEPS * rate)).columns
+
+    def excess(strain: float) -> float:
+        return pressure + float(compressed(strain)["stress_xx"][-1])
+
+    if pressure > 0.0:
+        guess = -pressure / (3.0 * stiffness)  # not too much: rho c^2 is more than the bulk modulus
+        tolerance = 1e-12 * stiffness + 1e-10 * pressure
+        root = find_root(excess, guess, -guess, tolerance)
+        if root is None:
+            rule = f"is not compressed to a cell pressure of {pressure:g} Pa"
+            raise CaseError(rule, "give a smaller --pressure", value=name)
+        end = compressed(root)
+    return {key: float(value[-1]) for key, value in end.items() if key not in COUNTED}
+
+
+def free_sides(
+    name: str,
+    material: Material,
+    moves: np.ndarray,
+    time_step: float,
+    held: float = 0.0,
+    start: dict[str, float] | None = None,
+) -> np.ndarray:
+    """Give `moves` the lateral strain that keeps the pressure on the sides, step by step.
+
+    Each step is a root in one unknown, found to 1e-11 of the stiffness rho c^2. The pressure is
+    `held` [Pa], 0 for free sides; `start` is the state before, None for rest.
 
     Returns:
         The logarithmic lateral strain, shape (steps + 1,).
     """
-    columns = drive(material, moves[:0], time_step).columns
+    columns = drive(material, moves[:0], time_step, start).columns
     tolerance = 1e-11 * material.density * columns["sound_speed"][0] ** 2
     guess = -0.3 * moves[0, 0, 0]
     for n in range(len(moves)):
@@ -149,7 +201,8 @@ def free_sides(name: str, material: Material, moves: np.ndarray, time_step: floa
             lateral: float, move: np.ndarray = move, state: dict[str, float] = state
         ) -> float:
             move[0, 1, 1] = move[0, 2, 2] = lateral
-            return float(drive(material, move, time_step, state).columns["stress_yy"][-1])
+            side = drive(material, move, time_step, state).columns["stress_yy"][-1]
+            return held + float(side)
 
         root = find_root(side_stress, guess, 0.05 * abs(moves[n, 0, 0]), tolerance)
         if root is None:

@@ -12,7 +12,7 @@ from mpm3dpp.case import Material
 from mpm3dpp.materials.chosen import Failure
 from mpm3dpp.plots.labels import scaled
 
-STRESS = {"shear": "stress_xy"}
+STRESS = {"shear": "stress_xy", "triaxial": "deviator"}
 """The stress that a test is about, where it is not stress_xx."""
 
 

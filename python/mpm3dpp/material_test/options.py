@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 
 from mpm3dpp.errors import CaseError, nearest
 
+from .triaxial import CELL_PRESSURE
+
 
 @dataclass(frozen=True)
 class Kind:
@@ -31,6 +33,7 @@ LEAST, MOST = 1e-9, 1e12
 TESTS = {
     "uniaxial-strain": Kind("stretch or compression along x, sides held", -0.05, 500),
     "uniaxial-stress": Kind("stretch or compression along x, sides free of stress", 0.2, 400),
+    "triaxial": Kind("compression along x after one on all sides, that pressure kept", -0.1, 400),
     "shear": Kind("simple shear in x along y", 0.5, 500),
     "compression-release": Kind("uniaxial strain there and back", -0.05, 1000),
     "hugoniot": Kind("states behind shocks of growing particle velocity", 2000.0, 20),
@@ -47,6 +50,7 @@ class Options:
         to: the last strain, shear or particle velocity; None for the test's own.
         steps: number of steps; None for the test's own.
         temperature: at the start [K]; None for the material's.
+        pressure: in the cell of the test triaxial [Pa]; None for 100 kPa.
     """
 
     test: str = "uniaxial-strain"
@@ -54,6 +58,7 @@ class Options:
     to: float | None = None
     steps: int | None = None
     temperature: float | None = None
+    pressure: float | None = None
 
     def completed(self) -> Options:
         """Return the options with all defaults filled in.
@@ -89,7 +94,22 @@ class Options:
                 "must be from 2 to 100000", "give a whole number", key="--steps", value=steps
             )
         rate = None if shock else self.rate or 1.0
-        return replace(self, rate=rate, to=to, steps=steps)
+        pressure = self._cell_pressure()
+        return replace(self, rate=rate, to=to, steps=steps, pressure=pressure)
+
+    def _cell_pressure(self) -> float | None:
+        given = self.pressure
+        if self.test != "triaxial":
+            if given is None:
+                return None
+            rule = f"has no meaning for the test {self.test}"
+            raise CaseError(rule, "remove it, or choose --test triaxial", key="--pressure")
+        pressure = CELL_PRESSURE if given is None else given
+        if not 0.0 <= pressure <= MOST:
+            remedy = "it is in Pa, such as 100e3 for 100 kPa"
+            rule = f"must lie between 0 and {MOST:g}"
+            raise CaseError(rule, remedy, key="--pressure", value=pressure)
+        return pressure
 
     def _check_end(self, to: float) -> None:
         shock = self.test == "hugoniot"
@@ -98,6 +118,8 @@ class Options:
             rule = "must be finite"
         elif shock and to <= 0:
             rule = "must be > 0"
+        elif self.test == "triaxial" and to >= 0:
+            rule, what = "must be < 0 in the test triaxial, which compresses", "a strain like -0.1"
         elif to == 0:
             rule = "must not be zero"
         elif abs(to) < LEAST:

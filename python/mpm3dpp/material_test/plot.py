@@ -11,6 +11,8 @@ import numpy as np
 from mpm3dpp.plots.labels import prefix
 from mpm3dpp.plots.style import PALETTE, new_figure, save, styled
 
+from .failing import STRESS
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -41,10 +43,13 @@ def save_picture(path: Path, title: str, result: Result) -> Path:
 
 def _path(left: Axes, right: Axes, result: Result) -> None:
     shear, columns = result.options.test == "shear", result.columns
-    name = "stress_xy" if shear else "stress_xx"
+    squeezed, name = result.options.test == "triaxial", STRESS.get(result.options.test, "stress_xx")
     strain, stress = columns["strain"], columns[name]
     factor, unit = prefix(float(np.abs(stress).max()), "Pa")
     left.plot(strain, factor * stress, color=PALETTE[0], label=name.replace("_", " "))
+    if squeezed:
+        left.invert_xaxis()
+        right.invert_xaxis()
     if "lateral_strain" not in columns:  # else von Mises' stress is the same line
         mises = factor * columns["von_mises"]
         left.plot(strain, mises, color=PALETTE[1], label="von Mises stress")
@@ -62,6 +67,11 @@ def _path(left: Axes, right: Axes, result: Result) -> None:
         right.plot(strain, columns["temperature"], color=PALETTE[4])
         right.set_xlabel(left.get_xlabel())
         right.set_ylabel("temperature [K]")
+        return
+    if squeezed:
+        right.plot(strain, columns["volumetric_strain"], color=PALETTE[2])
+        right.set_xlabel(left.get_xlabel())
+        right.set_ylabel("volumetric strain [1]")
         return
     pressure = columns["pressure"]
     factor, unit = prefix(float(np.abs(pressure).max()), "Pa")

@@ -13,6 +13,7 @@ from mpm3dpp.io.disk import writing
 from mpm3dpp.plots.labels import prefix
 
 from .curves import Curve
+from .failing import STRESS
 from .options import Options
 
 if TYPE_CHECKING:
@@ -20,7 +21,16 @@ if TYPE_CHECKING:
 
 SHOWN = {
     "stress": (
-        *("strain", "lateral_strain", "stress_xx", "stress_yy", "stress_xy", "pressure"),
+        *(
+            "strain",
+            "lateral_strain",
+            "volumetric_strain",
+            "deviator",
+            "stress_xx",
+            "stress_yy",
+            "stress_xy",
+            "pressure",
+        ),
         *("von_mises", "plastic_strain", "temperature", "work", "damage", "failed"),
     ),
     "hugoniot": (
@@ -68,6 +78,7 @@ def as_json(result: Result) -> str:
     """Return a test as JSON: what was tested, how, all columns, and where it failed."""
     options = result.options
     asked = {"rate": options.rate, "to": options.to, "steps": options.steps}
+    asked |= {"pressure": options.pressure}
     return json.dumps(
         {
             "material": result.name,
@@ -90,7 +101,7 @@ def deviation(result: Result, curve: Curve) -> str:
     """
     rows = slice(None) if result.failed is None else slice(max(result.failed.row, 1))
     test = result.options.test
-    name = {"hugoniot": "shock_velocity", "shear": "stress_xy"}.get(test, "stress_xx")
+    name = {"hugoniot": "shock_velocity", **STRESS}.get(test, "stress_xx")
     order = np.argsort(curve.x)
     x = next(iter(result.columns.values()))[rows]
     known = np.interp(x, curve.x[order], curve.y[order])
