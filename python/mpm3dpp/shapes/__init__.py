@@ -4,6 +4,7 @@
 from .base import KINDS, AnyShape, Shape, parse_shape
 from .booleans import Difference, Intersection, Union
 from .filling import fill, reference_volume
+from .ogive import OgiveRod
 from .primitives import Box, Cylinder, Disc, Ring, Sphere, Tube
 from .transforms import Rotate, Translate
 
@@ -15,6 +16,7 @@ __all__ = [
     "Difference",
     "Disc",
     "Intersection",
+    "OgiveRod",
     "Ring",
     "Rotate",
     "Shape",
