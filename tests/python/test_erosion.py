@@ -9,25 +9,32 @@ import numpy as np
 import pytest
 
 from cases import CELL, DENSITY, SCHEMES, YOUNG, block
-from mpm3dpp import Case, Contact, Eos, Grid, Material, Run, Simulation, Strength
+from mpm3dpp import Case, Contact, Eos, Grid, Material, Run, Simulation, Strength, Viscosity
 from mpm3dpp.materials.chosen import Failure
 
 SPEED = 6.0
 
 
-def torn_bar(dimension: int, scheme: str, basis: str = "gimp", eos: bool = False) -> Case:
+def torn_bar(
+    dimension: int,
+    scheme: str,
+    basis: str = "gimp",
+    eos: bool = False,
+    action: str = "erode",
+    **run: object,
+) -> Case:
     """Return a bar that yields and then tears."""
     limit = 0.05 * YOUNG
     material = Material(
         density=DENSITY,
         strength=Strength(model="j2", parameters={"E": YOUNG, "nu": 0.3, "Y0": 0.5 * limit}),
         eos=Eos(model="linear", parameters={"K": YOUNG}) if eos else None,
-        failure=[Failure(model="principal_stress", parameters={"limit": limit}, action="erode")],
+        failure=[Failure(model="principal_stress", parameters={"limit": limit}, action=action)],
     )
     size = (16, 4, 4)[:dimension]
     return Case(
         grid=Grid(dimension=dimension, cell_size=CELL, basis=basis),
-        run=Run(end_time=1.0, scheme=scheme, time_step_factor=0.3, energy_growth_limit=1e9),
+        run=Run(end_time=1.0, scheme=scheme, time_step_factor=0.3, energy_growth_limit=1e9, **run),
         material={"solid": material},
         body={"bar": block((140, 140, 140)[:dimension], size, material="solid")},
     )
@@ -155,3 +162,18 @@ def test_when_all_has_eroded_the_run_goes_to_its_end() -> None:
     row = history(simulation)
     assert row["kinetic"][-1] == 0.0
     assert row["eroded"][-1] > 0.9 * row["kinetic"][0]
+
+
+def test_debris_flies_at_its_own_speed() -> None:
+    """Torn particles that gape carry no waves and no viscosity: h / |v| alone bounds the step."""
+    case = torn_bar(2, "musl", "linear", True, "no_tension", viscosity=Viscosity())
+    simulation = Simulation(case, threads=1)
+    away = simulation.column("bar", "position") - CELL * np.array([148.0, 142.0])
+    simulation.set_velocity("bar", 2.0 * SPEED / CELL * away)  # it bursts in all directions
+    simulation.advance(400)
+    rows = history(simulation)
+    assert (simulation.column("bar", "failed") > 0).all()
+    assert np.abs(simulation.column("bar", "stress")).max() == 0.0
+    fastest = np.sqrt((simulation.column("bar", "velocity") ** 2).sum(axis=1)).max()
+    assert rows["dt"][-1] == pytest.approx(0.3 * CELL / fastest, rel=1e-9)
+    assert rows["viscous"][-1] == rows["viscous"][200]

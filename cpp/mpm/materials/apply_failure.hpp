@@ -50,10 +50,13 @@ template <class T, int D>
     const T deviator = select(failed > T(0.0), T(0.0), T(1.0));
     const Sym<T, D> left =
         Sym<T, D>::isotropic(kept) + deviator * (stress - Sym<T, D>::isotropic(mean));
+    // A torn particle that gapes is loose matter: no waves run in it, and closing it costs nothing.
+    const auto loose =
+        (failed >= T(static_cast<double>(FailureAction::no_tension))) & (kept >= T(0.0));
     const Moved<T, D> moved(group, block, columns, at, material.density, settings);
     end.add(group, moved, group.read_stress(columns, at.stress),
-            {left, group.get(block.dissipated), group.get(block.speed),
-             group.get(block.viscous_pressure)});
+            {left, group.get(block.dissipated), select(loose, T(0.0), group.get(block.speed)),
+             select(loose, T(0.0), group.get(block.viscous_pressure))});
   });
   sums.eroded = sums.eroded || any(eroded);
 }
