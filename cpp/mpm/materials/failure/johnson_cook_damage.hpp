@@ -12,11 +12,12 @@ struct JohnsonCookDamage {
   static constexpr std::string_view doc =
       "fails when the damage, the sum of dep / ef, reaches 1; strain at fracture ef = (D1 + D2 "
       "exp(D3 s*)) (1 + D4 ln(rate/rate0)) (1 + D5 T*), s* = mean stress / von Mises stress, "
-      "tension positive: as Johnson and Cook write it, D3 is negative where tension embrittles "
+      "tension positive, at most 1.5: as Johnson and Cook write it, D3 is negative where tension "
+      "embrittles "
       "(4340 steel: 0.05, 3.44, -2.12, 0.002, 0.61)";
   static constexpr std::string_view source = "Johnson & Cook 1985, eqs. 3 and 4";
   static constexpr bool needs_plasticity = true, needs_energy = false;
-  static constexpr double least_strain = 1e-9;  // at fracture, whatever the parameters
+  static constexpr double largest_triaxiality = 1.5;  // that their formula was made for
 
   double D1{}, D2{}, D3{}, D4{}, D5{}, rate0{};
 
@@ -43,14 +44,15 @@ struct JohnsonCookDamage {
   void prepare(double) {}
   std::string problem() const { return {}; }
 
+  /// May be negative, where the constants do not hold.
   template <Real T>
   T fracture_strain(T triaxiality, T rate, T temperature) const {
     // e^50 stands for infinity: without a deviator there is no flow either.
-    const T exponent = min(max(T(D3) * triaxiality, T(-50.0)), T(50.0));
-    const T strain = (T(D1) + T(D2) * exp(exponent)) *
-                     (T(1.0) + T(D4) * log(max(rate * T(1.0 / rate0), T(1.0)))) *
-                     (T(1.0) + T(D5) * temperature);
-    return max(strain, T(least_strain));
+    const T held = min(triaxiality, T(largest_triaxiality));
+    const T exponent = min(max(T(D3) * held, T(-50.0)), T(50.0));
+    return (T(D1) + T(D2) * exp(exponent)) *
+           (T(1.0) + T(D4) * log(max(rate * T(1.0 / rate0), T(1.0)))) *
+           (T(1.0) + T(D5) * temperature);
   }
 
   template <Real T, int D>
@@ -58,7 +60,8 @@ struct JohnsonCookDamage {
     const T mean = T(1.0 / 3.0) * trace(at.stress);
     const T triaxiality = mean / max(von_mises(at.stress), T(tiny));
     const T rate = at.plastic_increment * T(1.0 / at.time_step);
-    const T more = at.plastic_increment / fracture_strain(triaxiality, rate, at.temperature);
+    const T strain = fracture_strain(triaxiality, rate, at.temperature);
+    const T more = select(strain > T(0.0), at.plastic_increment / max(strain, T(tiny)), T(0.0));
     state.damage = min(state.damage + more, T(1.0));
     return state.damage;
   }
