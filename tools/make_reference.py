@@ -18,6 +18,7 @@ from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
 from mpm3dpp.materials.chosen import ACTIONS
 from mpm3dpp.materials.describe import lines_for_a_case, provenance, rows
 from mpm3dpp.materials.library import NamedMaterial, library
+from mpm3dpp.motion import Motion
 from mpm3dpp.rules import requirement
 from mpm3dpp.shapes.base import KINDS
 
@@ -39,6 +40,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
         "[library](library.md).",
     ),
     ("body.NAME", case.Body, ""),
+    ("body.NAME.motion", Motion, ""),
     ("detonation", Detonation, "Written `[[detonation]]`, once for each point."),
 )
 

@@ -21,7 +21,7 @@ _PARTICLE_BYTES, _CELL_BYTES = 200, 150
 def time_step(case: Case, bodies: list[FilledBody]) -> float:
     """Return the expected first time step f h / max(c + |v|) [s]."""
     fastest = max(
-        case.material[body.material].sound_speed()
+        (0.0 if case.is_rigid(body.name) else case.material[body.material].sound_speed())
         + float(np.sqrt(np.einsum("ij,ij->i", body.velocities, body.velocities).max()))
         for body in bodies
     )
