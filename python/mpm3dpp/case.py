@@ -44,7 +44,7 @@ class Body(CaseModel):
         angular_velocity: initial spin about the mass centre [rad/s]: one number in 2D, three in
             3D; default zero. Stored as a tuple.
         motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
-            then. None for a body that is free to move.
+            then; None for a body that is free to move.
     """
 
     material: Text

@@ -31,12 +31,12 @@ class Motion(CaseModel):
         angular_velocity: spin about the centre [rad/s]: one number or function of time in 2D,
             three in 3D; default zero. Stored as a tuple.
         centre: where the axis of the spin passes at the start [m], D numbers; it moves with
-            `velocity`. By default the body's mass centre.
+            `velocity`; default: the body's mass centre.
     """
 
     velocity: TimedVelocity = ()
     angular_velocity: TimedSpin = ()
-    centre: Point = ()
+    centre: Point | None = None
 
     @property
     def moves(self) -> bool:

@@ -38,12 +38,12 @@ class Polygon(Shape):
             if len(point) != 2:
                 rule = "must have two numbers: a polygon is a 2D shape"
                 raise violation(rule, "remove the third", value=list(point), path=("points", k))
-        if abs(self._signed()) <= 1e-12 * float(np.prod(np.ptp(self._corners(), axis=0))):
-            raise violation("must enclose an area", "move a corner", path=("points",))
         crossing = self._crossing()
         if crossing is not None:
             rule = f"must not cross itself: its sides {crossing[0]} and {crossing[1]} meet"
             raise violation(rule, "give the corners in order along the outline", path=("points",))
+        if abs(self._signed()) <= 1e-12 * float(np.prod(np.ptp(self._corners(), axis=0))):
+            raise violation("must enclose an area", "move a corner", path=("points",))
         return self
 
     def _corners(self) -> Points:
