@@ -86,6 +86,32 @@ def test_a_moving_plate_drags_a_block(scheme: str, basis: str) -> None:
     check_balance(history(sim), gravity=True)
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_turning_plate_drags_a_block(dimension: int) -> None:
+    """About a centre 100 m away: to 1e-3 the plate slides, and drags as one that does.
+
+    The particles' distances from the centre stay to rounding of the 100 m. At the block's edges the
+    normals are inclined, so that it gets some 2 % more.
+    """
+    V, g, mu, R, d = 0.03, 10.0, 0.3, 100.0, dimension
+    spin = -V / R if d == 2 else (0.0, 0.0, -V / R)
+    centre = (8 * CELL, -R, 0.0)[:d]
+    motion = {"angular_velocity": spin, "centre": centre}
+    bodies = {
+        "plate": block((0, 0, 0)[:d], (16, 3, 6)[:d], material="stone", motion=motion),
+        "block": block((4, 3, 1)[:d], (8, 3, 4)[:d], material="solid"),
+    }
+    sim = simulation(d, bodies, friction=mu, gravity=(0.0, -g, 0.0)[:d])
+    arm = np.linalg.norm(sim.column("plate", "position") - centre, axis=1)
+    for t in np.array((0.3, 0.6)) * V / (mu * g):
+        sim.advance(10**9, end_time=float(t))
+        v = sim.column("block", "velocity").mean(axis=0)
+        assert v[0] == pytest.approx(mu * (g * t + v[1]), rel=0.03)
+    now = np.linalg.norm(sim.column("plate", "position") - centre, axis=1)
+    assert np.abs(now - arm).max() < 1e-15 * R * sim.step
+    check_balance(history(sim), gravity=True)
+
+
 @pytest.mark.parametrize("basis", BASES)
 @pytest.mark.parametrize("scheme", ["usf", "musl"])
 def test_a_piston_pushes_a_column(scheme: str, basis: str) -> None:
@@ -112,7 +138,8 @@ def test_a_piston_pushes_a_column(scheme: str, basis: str) -> None:
     behind = (start > 0.1 * length * CELL) & (start < 0.5 * length * CELL)
     stress = sim.column("column", "stress")[behind, 0]
     assert stress.mean() == pytest.approx(-DENSITY * c * v, rel=0.005)
-    assert np.abs(stress + DENSITY * c * v).max() < 0.02 * DENSITY * c * v
+    means = stress.reshape(12, 16).mean(axis=1)  # over four cells each; particles scatter more
+    assert np.abs(means + DENSITY * c * v).max() < 0.015 * DENSITY * c * v
     rows = history(sim)
     check_balance(rows)
     # The piston has done the work of rho c v(t)^2 per time and area, half of it kinetic; and it

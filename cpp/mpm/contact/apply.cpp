@@ -27,7 +27,7 @@ void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
     if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
     for (std::uint32_t k = 0; k < node.sides; ++k) {
       Side<D>& side = sides[k];
-      side.velocity = side.working_velocity();
+      side.velocity = side.end_velocity();
       for_each_copy(grid, node, side, [&](std::size_t p, int at) {
         for (int a = 0; a < D; ++a) grid.block(p).velocity(a)[at] = side.velocity[a];
       });
@@ -75,7 +75,7 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity
     };
     for (std::uint32_t k = 0; k < node.sides; ++k) {
       Side<D>& side = sides[k];
-      if (side.prescribed())
+      if (side.prescribed)
         side.start(side.velocity + side.increment, Vec<double, D>::zero());
       else
         side.start(side.velocity, time_step * force_of(side));
@@ -88,7 +88,7 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity
     for (std::uint32_t k = 0; k < node.sides; ++k) {
       const Side<D>& side = sides[k];
       Vec<double, D> contact = side.momentum;  // impulse of the others
-      if (!side.prescribed()) {
+      if (!side.prescribed) {
         const Vec<double, D> change = side.momentum - side.mass * side.velocity;  // of all forces
         contact = change - time_step * force_of(side);
         // The node itself has its own mass only.
@@ -106,7 +106,7 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity
       SidePair<D>& pair = pairs[k];
       const Side<D>& r = sides[pair.r];
       const Side<D>& s = sides[pair.s];
-      const Vec<double, D> end = r.working_velocity() - s.working_velocity();
+      const Vec<double, D> end = r.end_velocity() - s.end_velocity();
       pair.friction_first = dot(pair.friction_impulse, r.velocity - s.velocity);
       pair.acted = pair.acted || pair.normal_impulse > 0.0;
       pair.impulse = -pair.normal_impulse * pair.normal - pair.friction_impulse;
@@ -139,7 +139,7 @@ void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
         sides, pairs, pair_count(node.sides), [](const SidePair<D>& pair) { return pair.closed; });
     if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
     for (std::uint32_t k = 0; k < node.sides; ++k) {
-      const Vec<double, D> velocity = sides[k].working_velocity();
+      const Vec<double, D> velocity = sides[k].end_velocity();
       for_each_copy(grid, node, sides[k], [&](std::size_t p, int at) {
         for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] = velocity[a];
       });

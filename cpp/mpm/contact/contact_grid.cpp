@@ -85,6 +85,7 @@ std::uint32_t ContactGrid<D>::sides_at(TileGrid<D>& grid, const ContactTile<D>& 
         side.first_copy = first;
         side.mass = block.mass()[at];
         side.mapped_mass = side.mass;
+        side.prescribed = false;
         for (int a = 0; a < D; ++a) side.mapped[a] = block.velocity(a)[at];
         side.velocity = side.mapped;
         side.base = side.increment = Vec<double, D>::zero();
@@ -143,6 +144,7 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       const Vector3 x = in_space<D>(grid.position_of(global));
       for (std::uint32_t k = c.sides; k < c.sides + count; ++k) {
         const Body<D>& body = bodies[static_cast<std::size_t>(sides_[k].body)];
+        sides_[k].prescribed = body.prescribed;
         if (body.prescribed) sides_[k].increment = from_space<D>(body.motion.increment_at(x));
       }
       sort_sides<D>({&sides_[c.sides], count});
@@ -157,17 +159,39 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     bodies_max_ = std::max(bodies_max_, static_cast<int>(node.sides));
 }
 
+/// Give bodies whose motion is prescribed the masses with which they meet the others at a node:
+/// infinite ones, so that the reduced mass is that of the others; but where such a body has less
+/// than a tenth of the others' volume at the node, in proportion, so that a node which it has only
+/// just reached, inside the others, is not held.
+template <int D>
+void harden(const std::vector<Body<D>>& bodies, std::span<Side<D>> sides) {
+  constexpr double full = 0.1;
+  const auto density = [&](const Side<D>& side) {
+    return bodies[static_cast<std::size_t>(side.body)].initial_density;
+  };
+  double mass = 0.0, volume = 0.0;
+  for (const Side<D>& side : sides)
+    if (!side.prescribed) {
+      mass += side.mapped_mass;
+      volume += side.mapped_mass / density(side);
+    }
+  for (Side<D>& side : sides) {
+    if (!side.prescribed) continue;
+    const double share = side.mapped_mass / density(side) / (full * volume);
+    side.mass =
+        share < 1.0 ? mass * share / (1.0 - share) : std::numeric_limits<double>::infinity();
+  }
+}
+
 template <int D>
 void ContactGrid<D>::share_rigid_masses(const std::vector<Body<D>>& bodies) {
   if (std::none_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.rigid; })) return;
   rigid_share_.assign(bodies.size(), 0.0);
+  for (const ContactNode& node : nodes_) harden(bodies, {&sides_[node.first_side], node.sides});
   for (const Side<D>& side : sides_) rigid_share_[static_cast<std::size_t>(side.body)] += side.mass;
   for (Side<D>& side : sides_) {
     const auto b = static_cast<std::size_t>(side.body);
-    if (bodies[b].prescribed)
-      side.mass = std::numeric_limits<double>::infinity();
-    else if (bodies[b].rigid)
-      side.mass /= rigid_share_[b] / bodies[b].total_mass;
+    if (bodies[b].rigid && !side.prescribed) side.mass /= rigid_share_[b] / bodies[b].total_mass;
   }
 }
 

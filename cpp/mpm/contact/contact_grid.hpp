@@ -110,7 +110,7 @@ class ContactGrid {
                   const std::vector<double>& stiffness, const ContactSettings& settings,
                   const ContactNode& node);
   /// A rigid body meets others with its whole mass, spread over its overlapped nodes; one whose
-  /// motion is prescribed with an infinite mass.
+  /// motion is prescribed mostly with an infinite mass.
   void share_rigid_masses(const std::vector<Body<D>>& bodies);
   /// May any pair at a node act? Other nodes stay as they are, to the last bit.
   bool any_closed(const ContactNode& node) const;

@@ -18,25 +18,27 @@ template <int D>
 struct Side {
   int body;
   std::uint32_t first_copy,
-      copies;                // the patches that hold the node for this body (ContactGrid::holders_)
-  double mass;               // [kg]; of a rigid body, with its share of the whole body's; infinite
-                             // if the body's motion is prescribed
+      copies;       // the patches that hold the node for this body (ContactGrid::holders_)
+  bool prescribed;  // the body moves as it does, whatever pushes it
+  double mass;  // [kg]; of a rigid body, with its share of the whole body's; of a prescribed one
+                // infinite, but where it hardly reaches the node
   double mapped_mass;        // from the particles [kg]
   Vec<double, D> mapped;     // velocity mapped from the particles [m/s]
   Vec<double, D> velocity;   // after the contact of eqs. (6)-(7) [m/s]
-  Vec<double, D> momentum;   // working momentum of the solver [kg m/s]; with infinite mass, what
-                             // the body has been pushed with
-  Vec<double, D> base;       // velocity that the solver does not change [m/s]; 0 if mass is finite
-  Vec<double, D> increment;  // of a prescribed velocity in this step [m/s]
+  Vec<double, D> increment;  // prescribed for this step [m/s]
+  Vec<double, D> momentum;   // working momentum of the solver [kg m/s]; of a prescribed body what
+                             // it has been pushed with
+  Vec<double, D> base;       // velocity of a prescribed body, else 0 [m/s]
 
-  bool prescribed() const { return mass == std::numeric_limits<double>::infinity(); }
+  /// Give it a velocity and an impulse to start from.
+  void start(const Vec<double, D>& v, const Vec<double, D>& impulse) {
+    base = prescribed ? v : Vec<double, D>::zero();
+    momentum = prescribed ? Vec<double, D>::zero() : mass * v + impulse;
+  }
   /// Velocity in the solver.
   Vec<double, D> working_velocity() const { return base + (1.0 / mass) * momentum; }
-  /// Give it a velocity and an impulse to start from. With infinite mass it keeps the velocity.
-  void start(const Vec<double, D>& v, const Vec<double, D>& impulse) {
-    base = prescribed() ? v : Vec<double, D>::zero();
-    momentum = prescribed() ? Vec<double, D>::zero() : mass * v + impulse;
-  }
+  /// Velocity that comes of it.
+  Vec<double, D> end_velocity() const { return prescribed ? base : (1.0 / mass) * momentum; }
 };
 
 /// m_r m_s / (m_r + m_s); one of the two may be infinite.
