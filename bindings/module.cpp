@@ -38,6 +38,24 @@ NB_MODULE(_core, m) {
       .value("second", NormalRule::second)
       .value("stiffer", NormalRule::stiffer);
 
+  nb::class_<TimeFunction>(m, "TimeFunction")
+      .def(nb::init_implicit<double>())
+      .def(
+          "__init__",
+          [](TimeFunction* self, double constant, double amplitude, double frequency, double phase,
+             const std::vector<double>& times, const std::vector<double>& values) {
+            new (self) TimeFunction(constant);
+            self->amplitude = amplitude;
+            self->frequency = frequency;
+            self->phase = phase;
+            self->times = times;
+            self->values = values;
+          },
+          nb::arg("constant"), nb::arg("amplitude"), nb::arg("frequency"), nb::arg("phase"),
+          nb::arg("times"), nb::arg("values"))
+      .def("at", &TimeFunction::at, nb::arg("time"))
+      .def("mean", &TimeFunction::mean, nb::arg("start"), nb::arg("end"));
+
   nb::class_<Settings>(m, "Settings")
       .def(nb::init<>())
       .def_rw("dimension", &Settings::dimension)
@@ -112,6 +130,8 @@ NB_MODULE(_core, m) {
             s.set_state(body, column, span_of(values));
           },
           nb::arg("body"), nb::arg("column"), nb::arg("values"))
+      .def("set_motion", &Simulation::set_motion, nb::arg("body"), nb::arg("velocity"),
+           nb::arg("spin"), nb::arg("centre"))
       .def("set_friction", &Simulation::set_pair_friction, nb::arg("body_a"), nb::arg("body_b"),
            nb::arg("mu"))
       .def("prepare", &Simulation::prepare, nb::call_guard<nb::gil_scoped_release>())

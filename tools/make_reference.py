@@ -18,6 +18,7 @@ from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
 from mpm3dpp.materials.chosen import ACTIONS
 from mpm3dpp.materials.describe import lines_for_a_case, provenance, rows
 from mpm3dpp.materials.library import NamedMaterial, library
+from mpm3dpp.motion import Motion
 from mpm3dpp.rules import requirement
 from mpm3dpp.shapes.base import KINDS
 
@@ -39,6 +40,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
         "[library](library.md).",
     ),
     ("body.NAME", case.Body, ""),
+    ("body.NAME.motion", Motion, ""),
     ("detonation", Detonation, "Written `[[detonation]]`, once for each point."),
 )
 
@@ -116,6 +118,12 @@ def case_page() -> str:
         'A quantity is text with a unit (`"30 mm"`) or a plain number in the SI unit given in',
         "brackets. A list of 2 or 3 (D numbers) has two in 2D and three in 3D. At the top of the",
         "file may stand `title`, a line of text for pictures and results.",
+        "",
+        "A function of time is a quantity or a table of one of these forms:",
+        '`{ times = ["0 s", "1 ms"], values = [0, 5] }`, linear between and held at the ends;',
+        '`{ sine = { amplitude = 5, frequency = "50 Hz" } }`, with `period` in place of',
+        "`frequency`, and `phase`, `mean` (default 0) if needed;",
+        '`{ ramp = { to = 5, end = "1 ms" } }`, with `from`, `start` (default 0) if needed.',
     ]
     for heading, model, note in TABLES:
         about, _ = docstring(model)

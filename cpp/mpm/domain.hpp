@@ -1,5 +1,7 @@
 #pragma once
 // Everything a step works on. Data, no behaviour.
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,6 +13,15 @@
 #include "mpm/particles/rigid_motion.hpp"
 
 namespace mpm {
+
+/// Of a patch whose body's motion is prescribed.
+template <int D>
+struct PrescribedSums {
+  double kinetic = 0.0;     // after the step [J]
+  double momentum[D] = {};  // after the step [kg m/s]
+  double work = 0.0;        // of the contact forces on it, at the mean velocity of the step [J]
+  double impulse[D] = {};   // of the contact forces on it [N s]
+};
 
 /// What the ledger needs from one patch in one step. Every patch has its own, and they are added in
 /// the order of the patches, so that no sum depends on the number of threads.
@@ -26,6 +37,7 @@ struct PatchSums {
       0.0;  // kinetic energy that rigid bodies' increments had beyond a rigid motion [J]
   double gravity_first = 0.0;   // time step x sum over nodes of gravity . velocity [J]
   double gravity_second = 0.0;  // the part of second_order that is the work of gravity [J]
+  PrescribedSums<D> prescribed;
 };
 
 template <int D>
@@ -35,8 +47,9 @@ struct Domain {
   std::vector<Material> materials;
   ContactSettings contact_settings;
   ContactGrid<D> contact;
-  std::vector<double> stiffness;  // rho c^2 of each body [Pa]
-  Vec<double, D> gravity = Vec<double, D>::zero();
+  std::vector<double> stiffness;                    // rho c^2 of each body [Pa]
+  std::array<TimeFunction, 3> gravity_of_time{};    // [m/s^2]
+  Vec<double, D> gravity = Vec<double, D>::zero();  // mean over the step being made [m/s^2]
   Threads threads;
 
   double time = 0.0;       // [s]
@@ -46,13 +59,16 @@ struct Domain {
   std::vector<PatchSums<D>> sums;  // one per patch
   ListScratch<D> list_scratch;
   Eroded<D> eroded;
-  std::vector<RigidMotion> rigid;  // one per body if any is rigid, else none
+  std::vector<RigidMotion> rigid;  // one per body if any rigid one is free to move, else none
   std::vector<RigidMotion> rigid_before;
   std::vector<RigidSums> rigid_parts, rigid_sums;  // scratch: per patch, per body
   std::vector<Matrix3> rigid_turns;
 
   Body<D>& body_of(const Patch<D>& patch) { return bodies[static_cast<std::size_t>(patch.body)]; }
   bool has_rigid() const { return !rigid.empty(); }
+  bool has_prescribed() const {
+    return std::any_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.prescribed; });
+  }
   bool has_contact() const { return contact_settings.enabled && bodies.size() > 1; }
 };
 

@@ -22,9 +22,11 @@ if TYPE_CHECKING:
     from .errors import CaseError, RunError
     from .io import open_results
     from .materials import Eos, Failure, Strength
+    from .motion import Motion
     from .particles import Particles
     from .run import run_case
     from .simulation import Simulation
+    from .time_functions import TimeFunction
 
     __version__: str
 
@@ -44,9 +46,11 @@ _HOMES = {
     "errors": ("CaseError", "RunError"),
     "io": ("open_results",),
     "materials": ("Eos", "Failure", "Strength"),
+    "motion": ("Motion",),
     "particles": ("Particles",),
     "run": ("run_case",),
     "simulation": ("Simulation",),
+    "time_functions": ("TimeFunction",),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
@@ -62,12 +66,14 @@ __all__ = [
     "Grid",
     "GridBox",
     "Material",
+    "Motion",
     "Output",
     "Particles",
     "Run",
     "RunError",
     "Simulation",
     "Strength",
+    "TimeFunction",
     "Viscosity",
     "Walls",
     "__version__",

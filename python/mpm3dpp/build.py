@@ -102,7 +102,7 @@ def _filled(case: Case, name: str, body: Body) -> FilledBody:
         name=name,
         material=body.material,
         positions=positions,
-        velocities=initial_velocities(body, positions, volumes),
+        velocities=_start(body, positions, volumes),
         volumes=volumes,
         spacing=body.particle_spacing(case.grid),
         mass=volume * case.material[body.material].density,
@@ -135,6 +135,13 @@ def initial_velocities(body: Body, positions: Array, volumes: Array) -> Array:
     return velocity + np.cross(np.asarray(spin), arm)
 
 
+def _start(body: Body, positions: Array, volumes: Array) -> Array:
+    """Return the velocities at the start, those of a prescribed motion included."""
+    if body.motion is None:
+        return initial_velocities(body, positions, volumes)
+    return body.motion.velocities(0.0, positions, body.motion.middle(positions, volumes))
+
+
 def _check_box(case: Case, name: str, positions: Array) -> None:
     """Raise if a particle stands outside the box."""
     box = case.grid.box
@@ -165,6 +172,8 @@ def _check_overlap(case: Case, bodies: list[FilledBody]) -> None:
         near = np.all((lowers[:b] < uppers[b] + reach) & (uppers[:b] > lowers[b] - reach), axis=1)
         for a in np.flatnonzero(near):
             first = bodies[a]
+            if case.is_rigid(first.name) and case.is_rigid(second.name):
+                continue  # They do not act on each other.
             distance = CLOSE * min(first.spacing, second.spacing)
             count = close_particles(first.positions, second.positions, distance)
             if count:

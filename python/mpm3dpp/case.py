@@ -23,6 +23,7 @@ from .errors import CaseError, from_validation, key_text, violation
 from .errors import Path as KeyPath
 from .materials.material import Material
 from .model import CaseModel, Count, Text
+from .motion import MaybeMotion
 from .particles import AnyParticles
 from .shapes.base import KINDS, MaybeShape
 from .units import PositiveLength, Spin, VelocityVector
@@ -42,6 +43,8 @@ class Body(CaseModel):
         velocity: initial velocity [m/s], D numbers; default zero.
         angular_velocity: initial spin about the mass centre [rad/s]: one number in 2D, three in
             3D; default zero. Stored as a tuple.
+        motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
+            then; None for a body that is free to move.
     """
 
     material: Text
@@ -51,6 +54,7 @@ class Body(CaseModel):
     spacing: PositiveLength | None = None
     velocity: VelocityVector = ()
     angular_velocity: Spin = ()
+    motion: MaybeMotion = None
 
     @model_validator(mode="after")
     def _one_spacing(self) -> Body:
@@ -191,6 +195,11 @@ class Case(CaseModel):
     def contact_enabled(self) -> bool:
         """Whether contact is computed: not switched off, nor bonded, and at least two bodies."""
         return self.contact.enabled and not self.contact.bonded and len(self.body) > 1
+
+    def is_rigid(self, body: str) -> bool:
+        """Return whether a body does not deform: by its material, or by a prescribed motion."""
+        entry = self.body[body]
+        return entry.motion is not None or not self.material[entry.material].sound_speed()
 
     def viscosity_of(self, material: str) -> tuple[float, float]:
         """Return a material's quadratic and linear factors of artificial viscosity; 0, 0: none."""

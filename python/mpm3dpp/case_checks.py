@@ -10,6 +10,7 @@ from .case_parts import STANDARD_FIELDS
 from .detonation import check_detonations
 from .errors import Path, nearest, violation
 from .materials import state_columns
+from .motion import check_motion
 
 if TYPE_CHECKING:
     from .case import Body, Case
@@ -33,7 +34,7 @@ def check_case(case: Case) -> None:
     _check_vector(case.run, "gravity", dimension, ("run",))
     for name, body in case.body.items():
         _check_body(case, body, ("body", name))
-    if not any(case.material[body.material].sound_speed() for body in case.body.values()):
+    if all(case.is_rigid(name) for name in case.body):
         rule = "holds rigid bodies only, so no wave limits the time step: one must deform"
         raise violation(rule, "give one another strength", path=("body",))
     for index, pair in enumerate(case.contact.pair):
@@ -116,6 +117,8 @@ def _check_body(case: Case, body: Body, path: Path) -> None:
         remedy = f"for example {example}"
         raise violation(rule, remedy, value=list(spin), path=(*path, "angular_velocity"))
     body.__dict__["angular_velocity"] = spin or (0.0,) * wanted
+    if body.motion is not None:
+        check_motion(case, body, path)
 
 
 def _check_output(case: Case) -> None:

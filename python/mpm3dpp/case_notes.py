@@ -21,7 +21,7 @@ def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
         case: a checked case.
         bodies: its bodies, filled.
     """
-    return [*_materials(case), *_detonations(case, bodies)]
+    return [*_materials(case), *_rigid(case), *_detonations(case, bodies)]
 
 
 def _materials(case: Case) -> list[str]:
@@ -51,6 +51,19 @@ def _materials(case: Case) -> list[str]:
                 f"give strength = {{ {EXPLOSIVE} = ... }} unless that is meant"
             )
     return found
+
+
+def _rigid(case: Case) -> list[str]:
+    """Bodies that move by the laws of Newton and pass through others."""
+    rigid = [name for name in case.body if case.is_rigid(name)]
+    free = [name for name in rigid if case.body[name].motion is None]
+    if not case.contact_enabled or not free or len(rigid) < 2:
+        return []
+    return [
+        f"body.{free[0]} is rigid and passes through the other rigid bodies "
+        f"({', '.join(name for name in rigid if name != free[0])}): bodies that do not deform do "
+        "not act on each other; give one of the two a strength that deforms if they meet"
+    ]
 
 
 def _detonations(case: Case, bodies: list[FilledBody]) -> list[str]:

@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 
 from .errors import violation
 from .model import CaseModel, Choice, Count, Exactly, Flag, Text
-from .units import AccelerationVector, NonNegative, Point, PositiveLength, Quantity, Time
+from .time_functions import TimedAcceleration
+from .units import NonNegative, Point, PositiveLength, Quantity, Time
 
 FACES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 STANDARD_FIELDS = ("position", "velocity", "stress", "pressure", "von_mises", "body", "material")
@@ -144,7 +145,7 @@ class Run(CaseModel):
         end_time: [s].
         scheme: when the stress is updated: "usf", "usl" or "musl".
         time_step_factor: share f of the largest stable step, 0 < f <= 1.
-        gravity: acceleration [m/s^2], D numbers; default zero.
+        gravity: acceleration [m/s^2], D numbers or functions of time; default zero.
         viscosity: artificial bulk viscosity; None for none.
         energy_growth_limit: the run stops when the numerical error has created this share of
             the largest energy seen.
@@ -153,7 +154,7 @@ class Run(CaseModel):
     end_time: Time
     scheme: Annotated[str, Choice(("usf", "usl", "musl"))] = "musl"
     time_step_factor: Annotated[float, Quantity("", "0 < f <= 1")] = 0.25
-    gravity: AccelerationVector = ()
+    gravity: TimedAcceleration = ()
     viscosity: Viscosity | None = None
     energy_growth_limit: Annotated[float, Quantity("", "> 0")] = 1.0
 

@@ -21,7 +21,7 @@ _PARTICLE_BYTES, _CELL_BYTES = 200, 150
 def time_step(case: Case, bodies: list[FilledBody]) -> float:
     """Return the expected first time step f h / max(c + |v|) [s]."""
     fastest = max(
-        case.material[body.material].sound_speed()
+        (0.0 if case.is_rigid(body.name) else case.material[body.material].sound_speed())
         + float(np.sqrt(np.einsum("ij,ij->i", body.velocities, body.velocities).max()))
         for body in bodies
     )
@@ -73,6 +73,13 @@ def material_lines(case: Case) -> list[str]:
     return lines
 
 
+def _motion_in_words(case: Case, body: str) -> str:
+    motion = case.body[body].motion
+    if motion is None:
+        return ""
+    return ", moves as prescribed" if motion.moves else ", fixed"
+
+
 def echo(case: Case, bodies: list[FilledBody]) -> str:
     """Return what the case amounts to: bodies, materials, memory, cells, time step, steps."""
     per_metre = " per metre" if case.grid.dimension == 2 else ""
@@ -85,6 +92,7 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         lines.append(
             f"body {body.name}: {len(body.positions):,} particles {body.spacing:.4g} m apart, "
             f"{body.material}, mass {body.mass:.6g} kg{per_metre}, {source}"
+            f"{_motion_in_words(case, body.name)}"
         )
     lines += material_lines(case)
     particles = sum(len(body.positions) for body in bodies)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from .case_notes import notes
 from .detonation import lighting_times
 from .errors import CaseError, RunError, nearest
 from .folders import thread_count
+from .motion import Motion
+from .time_functions import TimeFunction
 
 
 class Simulation:
@@ -53,6 +56,9 @@ class Simulation:
                 np.ascontiguousarray(body.velocities),
                 body.volumes[:1].copy() if equal else np.ascontiguousarray(body.volumes),
             )
+            motion = case.body[body.name].motion
+            if motion is not None:
+                self._set_motion(number, motion, motion.middle(body.positions, body.volumes))
             arrival = lighting_times(case, body.name, body.positions)
             if arrival is not None:
                 self.core.set_state(number, "lighting_time", arrival)
@@ -63,6 +69,12 @@ class Simulation:
         except ValueError as error:
             raise CaseError(str(error), "bring the bodies together, or give larger cells") from None
         self.summary: dict[str, Any] = {}
+
+    def _set_motion(self, number: int, motion: Motion, centre: np.ndarray) -> None:
+        spin = motion.angular_velocity
+        spin = (0.0, 0.0, *spin) if len(spin) == 1 else spin
+        place = [*centre.tolist(), 0.0][:3]
+        self.core.set_motion(number, _functions(motion.velocity), _functions(spin), place)
 
     def _add_material(self, name: str) -> int:
         material = self.case.material[name]
@@ -127,8 +139,10 @@ class Simulation:
         """Give the particles of a body velocities [m/s], shape (n, D), in the order of filling.
 
         Raises:
-            CaseError: there is no such body.
+            CaseError: there is no such body, or its motion is prescribed.
         """
+        if body in self.bodies and self.case.body[body].motion is not None:
+            raise CaseError("has a prescribed motion", "remove motion from it", value=body)
         values = np.ascontiguousarray(velocities, dtype=float)
         self.core.set_velocity(self._number(body), values)
 
@@ -136,6 +150,17 @@ class Simulation:
         if body not in self.bodies:
             raise CaseError("is not a body of the case", nearest(body, self.bodies), value=body)
         return self.bodies.index(body)
+
+
+def _functions(values: Sequence[float | TimeFunction]) -> list[_core.TimeFunction]:
+    """Return three functions of time for the core; those missing are zero."""
+    given = [
+        _core.TimeFunction(**v.for_core())
+        if isinstance(v, TimeFunction)
+        else _core.TimeFunction(float(v))
+        for v in values
+    ]
+    return [*given, *(_core.TimeFunction(0.0) for _ in range(3))][:3]
 
 
 def _settings(case: Case, threads: int) -> _core.Settings:
@@ -155,7 +180,7 @@ def _settings(case: Case, threads: int) -> _core.Settings:
     settings.basis = _core.Basis[grid.basis]
     settings.scheme = _core.Scheme[run.scheme]
     settings.time_step_factor = run.time_step_factor
-    settings.gravity = three(run.gravity, 0.0)
+    settings.gravity = _functions(run.gravity)
     settings.contact = case.contact_enabled
     settings.bonded = case.contact.bonded
     settings.detection = _core.Detection[case.contact.detection]

@@ -16,7 +16,10 @@ from mpm3dpp.shapes import (
     Box,
     Cylinder,
     Disc,
+    Frustum,
+    Funnel,
     OgiveRod,
+    Polygon,
     Ring,
     Rotate,
     Shape,
@@ -34,6 +37,10 @@ FLAT: list[Shape] = [
     Box(lower=(-1, -2), upper=(2, 1)),
     Disc(centre=(0.3, -0.2), radius=1.1),
     Ring(centre=(0.3, -0.2), inner_radius=0.6, outer_radius=1.1),
+    Polygon(points=[(0, 0), (2, -0.5), (3, 1), (1.2, 0.7), (0.5, 2)]),
+    Funnel(
+        centre=(0.1, 0.2), outlet_radius=0.3, inlet_radius=0.9, height=0.8, thickness=0.2, axis="x"
+    ),
 ]
 SOLID: list[Shape] = [
     Box(centre=(0.1, 0.2, 0.3), size=(1, 2, 3)),
@@ -42,6 +49,11 @@ SOLID: list[Shape] = [
     Tube(centre=(0.3, -0.2, 0.5), inner_radius=0.4, outer_radius=0.8, height=1.5, axis="y"),
     OgiveRod(tip=(0.3, -0.2, 0.5), radius=0.7, length=4, crh=3),
     OgiveRod(tip=(0.3, -0.2, 0.5), radius=0.7, length=0.8, crh=0.5, towards="x"),
+    Frustum(centre=(0.3, -0.2, 0.5), lower_radius=0.9, upper_radius=0.4, height=1.1, axis="x"),
+    Frustum(centre=(0.3, -0.2, 0.5), lower_radius=0, upper_radius=0.7, height=1.1),
+    Funnel(
+        centre=(0, 0.1, 0.2), outlet_radius=0.3, inlet_radius=1, height=0.8, thickness=0.2, stem=0.5
+    ),
 ]
 MOVED: list[Shape] = [
     Translate(shape=FLAT[2], by=(3, 4)),
@@ -131,6 +143,18 @@ def test_ring_is_the_difference_of_discs() -> None:
     radii = np.hypot(*(one - middle).T)
     assert radii.min() > 0.3 + 1e-9
     assert radii.max() < 0.5 - 1e-9
+
+
+def test_a_polygon_is_the_box_of_its_corners() -> None:
+    """Also on its surface, where points count as outside, whichever way the corners run."""
+    corners = [(0.0, 0.0), (0.4, 0.0), (0.4, 0.3), (0.0, 0.3)]
+    grid = Grid(dimension=2, cell_size=0.1)
+    for spacing in (0.02, 0.04, 0.1):
+        for points in (corners, corners[::-1]):
+            shapes = Box(lower=(0.0, 0.0), upper=(0.4, 0.3)), Polygon(points=points)
+            one, other = (fill(body(s, spacing=spacing), grid)[0] for s in shapes)
+            assert np.array_equal(one, other)
+    assert Polygon(points=corners).contains(np.array([[0.2, 0.3], [0.4, 0.1]])).sum() == 0
 
 
 def test_particles_stand_on_the_lattice_of_the_grid() -> None:

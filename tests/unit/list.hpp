@@ -14,6 +14,7 @@
   X(exp_and_pow) \
   X(tensor) \
   X(cholesky) \
+  X(time_function) \
   X(eigen) \
   X(threads) \
   X(columns) \

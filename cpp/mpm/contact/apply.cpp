@@ -21,13 +21,13 @@ void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
     SidePair<D>* pairs = &pairs_[node.first_pair];
     const std::uint32_t count = pair_count(node.sides);
     for (std::uint32_t k = 0; k < node.sides; ++k)
-      sides[k].momentum = sides[k].mass * sides[k].mapped;
+      sides[k].start(sides[k].mapped, Vec<double, D>::zero());
     const bool converged = solve_node<D, false>(
         sides, pairs, count, [](const SidePair<D>& pair) { return pair.closed; });
     if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
     for (std::uint32_t k = 0; k < node.sides; ++k) {
       Side<D>& side = sides[k];
-      side.velocity = (1.0 / side.mass) * side.momentum;
+      side.velocity = side.end_velocity();
       for_each_copy(grid, node, side, [&](std::size_t p, int at) {
         for (int a = 0; a < D; ++a) grid.block(p).velocity(a)[at] = side.velocity[a];
       });
@@ -73,8 +73,13 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity
       });
       return f;
     };
-    for (std::uint32_t k = 0; k < node.sides; ++k)
-      sides[k].momentum = sides[k].mass * sides[k].velocity + time_step * force_of(sides[k]);
+    for (std::uint32_t k = 0; k < node.sides; ++k) {
+      Side<D>& side = sides[k];
+      if (side.prescribed)
+        side.start(side.velocity + side.increment, Vec<double, D>::zero());
+      else
+        side.start(side.velocity, time_step * force_of(side));
+    }
     const bool converged = solve_node<D, true>(
         sides, pairs, count, [](const SidePair<D>& pair) { return pair.touching; });
     if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
@@ -82,14 +87,16 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity
     double force_work = 0.0, correction = 0.0;
     for (std::uint32_t k = 0; k < node.sides; ++k) {
       const Side<D>& side = sides[k];
-      const Vec<double, D> change =
-          side.momentum - side.mass * side.velocity;  // impulse of all forces
-      const Vec<double, D> contact = change - time_step * force_of(side);
-      // The node itself has its own mass only.
-      const Vec<double, D> own =
-          change - (time_step * (1.0 - side.share) * side.mass) * free_gravity(node, gravity);
+      Vec<double, D> contact = side.momentum;  // impulse of the others
+      if (!side.prescribed) {
+        const Vec<double, D> change = side.momentum - side.mass * side.velocity;  // of all forces
+        contact = change - time_step * force_of(side);
+        // The node itself has its own mass only.
+        const Vec<double, D> own =
+            change - (time_step * (side.mass - side.mapped_mass)) * free_gravity(node, gravity);
+        correction -= dot(own, side.velocity - side.mapped);
+      }
       force_work += dot(contact, side.velocity);
-      correction -= dot(own, side.velocity - side.mapped);
       for_each_copy(grid, node, side, [&](std::size_t p, int at) {
         for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] += (1.0 / time_step) * contact[a];
       });
@@ -99,7 +106,7 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity
       SidePair<D>& pair = pairs[k];
       const Side<D>& r = sides[pair.r];
       const Side<D>& s = sides[pair.s];
-      const Vec<double, D> end = (1.0 / r.mass) * r.momentum - (1.0 / s.mass) * s.momentum;
+      const Vec<double, D> end = r.end_velocity() - s.end_velocity();
       pair.friction_first = dot(pair.friction_impulse, r.velocity - s.velocity);
       pair.acted = pair.acted || pair.normal_impulse > 0.0;
       pair.impulse = -pair.normal_impulse * pair.normal - pair.friction_impulse;
@@ -119,9 +126,11 @@ void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
     Side<D>* sides = &sides_[node.first_side];
     for (std::uint32_t k = 0; k < node.sides; ++k) {
       Side<D>& side = sides[k];
+      Vec<double, D> remapped = Vec<double, D>::zero();
       for_each_copy(grid, node, side, [&](std::size_t p, int at) {
-        for (int a = 0; a < D; ++a) side.momentum[a] = side.mass * grid.block(p).force(a)[at];
+        for (int a = 0; a < D; ++a) remapped[a] = grid.block(p).force(a)[at];
       });
+      side.start(remapped, Vec<double, D>::zero());
     }
     // The impulses of this solution act on the velocities that strain the material only; they are
     // not contact forces.
@@ -129,11 +138,12 @@ void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
     const bool converged = solve_node<D, false>(
         sides, pairs, pair_count(node.sides), [](const SidePair<D>& pair) { return pair.closed; });
     if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
-    for (std::uint32_t k = 0; k < node.sides; ++k)
+    for (std::uint32_t k = 0; k < node.sides; ++k) {
+      const Vec<double, D> velocity = sides[k].end_velocity();
       for_each_copy(grid, node, sides[k], [&](std::size_t p, int at) {
-        for (int a = 0; a < D; ++a)
-          grid.block(p).force(a)[at] = sides[k].momentum[a] / sides[k].mass;
+        for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] = velocity[a];
       });
+    }
   });
 }
 

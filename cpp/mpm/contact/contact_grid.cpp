@@ -24,9 +24,10 @@ void for_each_tile_node(F&& f) {
 }  // namespace
 
 template <int D>
-void ContactGrid<D>::connect(const TileGrid<D>& grid) {
+void ContactGrid<D>::connect(TileGrid<D>& grid, const std::vector<Body<D>>& bodies) {
   holders_.clear();
   tiles_.clear();
+  for (Patch<D>& patch : grid.patches) patch.in_contact = false;
   auto tile_of = [&](const TileHolder& h) {
     Index<D> t = grid.patches[static_cast<std::size_t>(h.patch)].tile;
     const Index<D> o = Tile<D>::offset(h.neighbour);
@@ -46,12 +47,17 @@ void ContactGrid<D>::connect(const TileGrid<D>& grid) {
   std::uint32_t kept = 0;
   for (std::size_t begin = 0, end = 0; begin < holders_.size(); begin = end) {
     const Index<D> tile = tile_of(holders_[begin]);
-    bool several = false;
-    for (end = begin; end < holders_.size() && tile_of(holders_[end]) == tile; ++end)
+    bool several = false, deforms = false;
+    for (end = begin; end < holders_.size() && tile_of(holders_[end]) == tile; ++end) {
       several = several || holders_[end].body != holders_[begin].body;
-    if (!several) continue;
+      deforms = deforms || !bodies[static_cast<std::size_t>(holders_[end].body)].rigid;
+    }
+    if (!several || !deforms) continue;
     tiles_.push_back({tile, kept, static_cast<std::uint32_t>(end - begin)});
-    for (std::size_t k = begin; k < end; ++k) holders_[kept++] = holders_[k];
+    for (std::size_t k = begin; k < end; ++k) {
+      grid.patches[static_cast<std::size_t>(holders_[k].patch)].in_contact = true;
+      holders_[kept++] = holders_[k];
+    }
   }
   holders_.resize(kept);
 }
@@ -78,9 +84,11 @@ std::uint32_t ContactGrid<D>::sides_at(TileGrid<D>& grid, const ContactTile<D>& 
         side.body = body;
         side.first_copy = first;
         side.mass = block.mass()[at];
-        side.share = 1.0;
+        side.mapped_mass = side.mass;
+        side.prescribed = false;
         for (int a = 0; a < D; ++a) side.mapped[a] = block.velocity(a)[at];
         side.velocity = side.mapped;
+        side.base = side.increment = Vec<double, D>::zero();
       }
       ++count;
     }
@@ -133,6 +141,12 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       for (int a = 0; a < D; ++a) global[a] += index[a];
       node.held = grid.walls.held(global);
       node.energy = node.force_work = 0.0;
+      const Vector3 x = in_space<D>(grid.position_of(global));
+      for (std::uint32_t k = c.sides; k < c.sides + count; ++k) {
+        const Body<D>& body = bodies[static_cast<std::size_t>(sides_[k].body)];
+        sides_[k].prescribed = body.prescribed;
+        if (body.prescribed) sides_[k].increment = from_space<D>(body.motion.increment_at(x));
+      }
       sort_sides<D>({&sides_[c.sides], count});
       find_pairs(grid, bodies, stiffness, settings, node);
       ++c.nodes;
@@ -145,16 +159,39 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     bodies_max_ = std::max(bodies_max_, static_cast<int>(node.sides));
 }
 
+/// Give bodies whose motion is prescribed the masses with which they meet the others at a node:
+/// infinite ones, so that the reduced mass is that of the others; but where such a body has less
+/// than a tenth of the others' volume at the node, in proportion, so that a node which it has only
+/// just reached, inside the others, is not held.
+template <int D>
+void harden(const std::vector<Body<D>>& bodies, std::span<Side<D>> sides) {
+  constexpr double full = 0.1;
+  const auto density = [&](const Side<D>& side) {
+    return bodies[static_cast<std::size_t>(side.body)].initial_density;
+  };
+  double mass = 0.0, volume = 0.0;
+  for (const Side<D>& side : sides)
+    if (!side.prescribed) {
+      mass += side.mapped_mass;
+      volume += side.mapped_mass / density(side);
+    }
+  for (Side<D>& side : sides) {
+    if (!side.prescribed) continue;
+    const double share = side.mapped_mass / density(side) / (full * volume);
+    side.mass =
+        share < 1.0 ? mass * share / (1.0 - share) : std::numeric_limits<double>::infinity();
+  }
+}
+
 template <int D>
 void ContactGrid<D>::share_rigid_masses(const std::vector<Body<D>>& bodies) {
   if (std::none_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.rigid; })) return;
   rigid_share_.assign(bodies.size(), 0.0);
+  for (const ContactNode& node : nodes_) harden(bodies, {&sides_[node.first_side], node.sides});
   for (const Side<D>& side : sides_) rigid_share_[static_cast<std::size_t>(side.body)] += side.mass;
   for (Side<D>& side : sides_) {
     const auto b = static_cast<std::size_t>(side.body);
-    if (!bodies[b].rigid) continue;
-    side.share = rigid_share_[b] / bodies[b].total_mass;
-    side.mass /= side.share;
+    if (bodies[b].rigid && !side.prescribed) side.mass /= rigid_share_[b] / bodies[b].total_mass;
   }
 }
 

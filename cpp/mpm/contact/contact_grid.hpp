@@ -67,8 +67,9 @@ struct ContactSums {
 template <int D>
 class ContactGrid {
  public:
-  /// Find the tiles where bodies may meet. Call when patches were added or removed.
-  void connect(const TileGrid<D>& grid);
+  /// Find the tiles where bodies may meet, one of them deforming, and mark the patches that have
+  /// nodes there. Call when patches were added or removed.
+  void connect(TileGrid<D>& grid, const std::vector<Body<D>>& bodies);
 
   /// Find the overlapped nodes with their normals, pairs and gaps, eq. (5). Needs mass and velocity
   /// at the nodes.
@@ -108,7 +109,8 @@ class ContactGrid {
   void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<double>& stiffness, const ContactSettings& settings,
                   const ContactNode& node);
-  /// A rigid body meets others with its whole mass, spread over its overlapped nodes.
+  /// A rigid body meets others with its whole mass, spread over its overlapped nodes; one whose
+  /// motion is prescribed mostly with an infinite mass.
   void share_rigid_masses(const std::vector<Body<D>>& bodies);
   /// May any pair at a node act? Other nodes stay as they are, to the last bit.
   bool any_closed(const ContactNode& node) const;

@@ -11,6 +11,9 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
                                 const std::vector<double>& stiffness,
                                 const ContactSettings& settings, const ContactNode& node) {
   const Side<D>* sides = &sides_[node.first_side];
+  const auto rigid = [&](std::uint32_t k) {
+    return bodies[static_cast<std::size_t>(sides[k].body)].rigid;
+  };
   // Scratch of one thread, not counted among the bytes of the contact.
   thread_local std::vector<NormalSource<D>> sources;
   if (sources.size() < node.sides) sources.resize(node.sides);
@@ -47,6 +50,7 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
                                               sources[s].particles.extent_along(-1.0 * pair.normal))
                          : std::numeric_limits<double>::infinity();
       pair.closed = opposed &&
+                    !(rigid(r) && rigid(s)) &&  // they have no stress that could part them
                     (settings.detection == Detection::velocity || pair.gap < settings.gap_distance);
     }
 }

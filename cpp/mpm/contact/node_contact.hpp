@@ -2,7 +2,9 @@
 // The contact of any number of bodies at one node: who is there, along which normals, and the
 // impulses between them.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -16,13 +18,34 @@ template <int D>
 struct Side {
   int body;
   std::uint32_t first_copy,
-      copies;               // the patches that hold the node for this body (ContactGrid::holders_)
-  double mass;              // [kg]; of a rigid body, with its share of the whole body's
-  double share;             // mapped mass / mass; 1 but for rigid bodies
-  Vec<double, D> mapped;    // velocity mapped from the particles [m/s]
-  Vec<double, D> velocity;  // after the contact of eqs. (6)-(7) [m/s]
-  Vec<double, D> momentum;  // working momentum of the solver [kg m/s]
+      copies;       // the patches that hold the node for this body (ContactGrid::holders_)
+  bool prescribed;  // the body moves as it does, whatever pushes it
+  double mass;  // [kg]; of a rigid body, with its share of the whole body's; of a prescribed one
+                // infinite, but where it hardly reaches the node
+  double mapped_mass;        // from the particles [kg]
+  Vec<double, D> mapped;     // velocity mapped from the particles [m/s]
+  Vec<double, D> velocity;   // after the contact of eqs. (6)-(7) [m/s]
+  Vec<double, D> increment;  // prescribed for this step [m/s]
+  Vec<double, D> momentum;   // working momentum of the solver [kg m/s]; of a prescribed body what
+                             // it has been pushed with
+  Vec<double, D> base;       // velocity of a prescribed body, else 0 [m/s]
+
+  /// Give it a velocity and an impulse to start from.
+  void start(const Vec<double, D>& v, const Vec<double, D>& impulse) {
+    base = prescribed ? v : Vec<double, D>::zero();
+    momentum = prescribed ? Vec<double, D>::zero() : mass * v + impulse;
+  }
+  /// Velocity in the solver.
+  Vec<double, D> working_velocity() const { return base + (1.0 / mass) * momentum; }
+  /// Velocity that comes of it.
+  Vec<double, D> end_velocity() const { return prescribed ? base : (1.0 / mass) * momentum; }
 };
+
+/// m_r m_s / (m_r + m_s); one of the two may be infinite.
+inline double reduced_mass(double r, double s) {
+  if (std::isinf(r)) return s;
+  return std::isinf(s) ? r : r * s / (r + s);
+}
 
 /// Two bodies at an overlapped node.
 template <int D>
@@ -87,17 +110,16 @@ bool solve_node(Side<D>* sides, SidePair<D>* pairs, std::uint32_t count, Choose&
       if (!takes_part(pair)) continue;
       Side<D>& r = sides[pair.r];
       Side<D>& s = sides[pair.s];
-      const double reduced_mass = r.mass * s.mass / (r.mass + s.mass);
-      Vec<double, D> relative = (1.0 / r.mass) * r.momentum - (1.0 / s.mass) * s.momentum;
-      const double normal =
-          std::max(pair.normal_impulse + reduced_mass * dot(relative, pair.normal), 0.0);
+      const double m_rs = reduced_mass(r.mass, s.mass);
+      const Vec<double, D> relative = r.working_velocity() - s.working_velocity();
+      const double normal = std::max(pair.normal_impulse + m_rs * dot(relative, pair.normal), 0.0);
       Vec<double, D> impulse = (normal - pair.normal_impulse) * pair.normal;
       change = std::max(change, std::abs(normal - pair.normal_impulse));
       scale = std::max(scale, normal);
       pair.normal_impulse = normal;
       if constexpr (with_friction) {
         Vec<double, D> slip = relative - dot(relative, pair.normal) * pair.normal;
-        Vec<double, D> hold = pair.friction_impulse + reduced_mass * slip;
+        Vec<double, D> hold = pair.friction_impulse + m_rs * slip;
         const double limit = pair.friction * normal, needed = norm(hold);
         if (needed > limit) hold = (limit / needed) * hold;
         const Vec<double, D> difference = hold - pair.friction_impulse;

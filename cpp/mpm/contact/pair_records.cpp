@@ -40,9 +40,9 @@ ContactSums ContactGrid<D>::record(const std::vector<Body<D>>& bodies, double ti
       const double sign =
           side_r.body < side_s.body ? 1.0 : -1.0;  // records hold what acts on the first
       // A node that a body has only just reached tells nothing about when and where they met.
-      const double lighter = std::min(
-          side_r.share * side_r.mass / bodies[static_cast<std::size_t>(side_r.body)].mean_mass,
-          side_s.share * side_s.mass / bodies[static_cast<std::size_t>(side_s.body)].mean_mass);
+      const double lighter =
+          std::min(side_r.mapped_mass / bodies[static_cast<std::size_t>(side_r.body)].mean_mass,
+                   side_s.mapped_mass / bodies[static_cast<std::size_t>(side_s.body)].mean_mass);
       if (lighter > least_share && (r.first_step < 0 || r.first_step == step) &&
           lighter > r.first_share) {
         r.first_step = step;

@@ -38,6 +38,7 @@ struct Patch {
   std::uint32_t owned = 0;  // bit r: this patch owns the nodes of region r of the block's shape
   bool at_wall = false;     // its block has nodes on a wall
   bool left_cell = false;   // a particle has left its cell since the lists were made
+  bool in_contact = false;  // its block has nodes where bodies may meet
 
   /// f(cell, first, last): every occupied cell with its range in the body's order list.
   template <class F>

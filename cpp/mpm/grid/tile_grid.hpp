@@ -39,6 +39,12 @@ class TileGrid {
     for (int a = 0; a < D; ++a) i[a] = static_cast<std::int32_t>(std::floor(in_cells(x[a], a)));
     return i;
   }
+  /// Position of a node [m].
+  Vec<double, D> position_of(const Index<D>& node) const {
+    Vec<double, D> x;
+    for (int a = 0; a < D; ++a) x[a] = origin[a] + cell_size * node[a];
+    return x;
+  }
   Index<D> tile_of(const Index<D>& cell) const {
     Index<D> t;
     for (int a = 0; a < D; ++a) {

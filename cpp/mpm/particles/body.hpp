@@ -6,6 +6,7 @@
 
 #include "mpm/fields/columns.hpp"
 #include "mpm/materials/material_block.hpp"
+#include "mpm/particles/prescribed_motion.hpp"
 
 namespace mpm {
 
@@ -26,8 +27,10 @@ struct Body {
   double mean_edge = 0.0;   // edge of a square or cube of the mean initial particle volume [m]
   double total_mass = 0.0;  // [kg]
   bool rigid = false;       // its particles move as one
-  std::size_t moved = 0;    // changes of cell since the columns were last sorted
-  std::size_t eroded = 0;   // particles that take no part any more
+  bool prescribed = false;  // and by `motion`, whatever acts on them; it is rigid then
+  PrescribedMotion motion;
+  std::size_t moved = 0;   // changes of cell since the columns were last sorted
+  std::size_t eroded = 0;  // particles that take no part any more
 
   std::size_t count() const { return columns.rows(); }
   std::size_t active() const { return count() - eroded; }

@@ -1,5 +1,6 @@
 // The part of a simulation that takes bodies in and gives their columns out.
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "mpm/run/simulation_of.hpp"
@@ -17,6 +18,11 @@ double speed_of(const Body<D>& body, std::size_t row) {
 void check_finite(std::span<const double> values, const std::string& what) {
   for (const double v : values)
     if (!std::isfinite(v)) throw std::invalid_argument(what + " must be finite numbers");
+}
+
+void check_functions(const std::array<TimeFunction, 3>& functions, const std::string& what) {
+  for (const TimeFunction& f : functions)
+    if (!f.problem().empty()) throw std::invalid_argument(what + " " + f.problem());
 }
 
 }  // namespace
@@ -98,6 +104,36 @@ void SimulationOf<D>::set_state(int number, const std::string& column,
 }
 
 template <int D>
+void SimulationOf<D>::set_motion(int number, const std::array<TimeFunction, 3>& velocity,
+                                 const std::array<TimeFunction, 3>& spin,
+                                 const std::array<double, 3>& centre) {
+  if (prepared_) throw std::invalid_argument("motions must be set before prepare()");
+  Body<D>& b = domain_.bodies.at(static_cast<std::size_t>(number));
+  check_functions(velocity, b.name + ": velocity");
+  check_functions(spin, b.name + ": spin");
+  check_finite(centre, b.name + ": centre");
+  b.rigid = b.prescribed = true;
+  b.motion.velocity = velocity;
+  b.motion.spin = spin;
+  b.motion.start({centre[0], centre[1], D == 3 ? centre[2] : 0.0}, domain_.time);
+  domain_.stiffness[static_cast<std::size_t>(number)] = std::numeric_limits<double>::infinity();
+}
+
+/// Give the particles of bodies with prescribed motion their velocities at the start.
+template <int D>
+void SimulationOf<D>::start_motions() {
+  for (Body<D>& b : domain_.bodies) {
+    if (!b.prescribed) continue;
+    for (std::size_t i = 0; i < b.count(); ++i) {
+      Vec<double, D> x;
+      for (int a = 0; a < D; ++a) x[a] = b.x(a)[i];
+      const Vector3 v = b.motion.now.velocity_at(in_space<D>(x));
+      for (int a = 0; a < D; ++a) b.v(a)[i] = v[a];
+    }
+  }
+}
+
+template <int D>
 void SimulationOf<D>::probe_speeds() {
   for (PatchSums<D>& s : domain_.sums) s.stress = {};
   domain_.sums.resize(domain_.grid.patches.size());
@@ -107,7 +143,8 @@ void SimulationOf<D>::probe_speeds() {
     const Material& material = domain_.materials[static_cast<std::size_t>(b.material)];
     for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
       const std::size_t i = b.order[k];
-      const double c = sound_speed<D>(material, b.columns, b.at, i, domain_.grid.cell_size);
+      const double c =
+          b.rigid ? 0.0 : sound_speed<D>(material, b.columns, b.at, i, domain_.grid.cell_size);
       double& fastest = domain_.sums[p].stress.fastest;
       fastest = std::max(fastest, c + speed_of(b, i));
     }
@@ -178,7 +215,8 @@ Limiter SimulationOf<D>::limiter() const {
   const Material& material = domain_.materials[static_cast<std::size_t>(b.material)];
   for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
     const std::size_t i = b.order[k];
-    const double c = sound_speed<D>(material, b.columns, b.at, i, domain_.grid.cell_size);
+    const double c =
+        b.rigid ? 0.0 : sound_speed<D>(material, b.columns, b.at, i, domain_.grid.cell_size);
     const double v = speed_of(b, i);
     if (c + v > result.sound_speed + result.speed || result.body < 0)
       result = {patch.body, static_cast<std::int64_t>(b.id[i]), c, v};
@@ -219,6 +257,7 @@ void SimulationOf<D>::copy_column(int number, const std::string& name, std::span
 template <int D>
 void SimulationOf<D>::set_velocity(int number, std::span<const double> velocities) {
   Body<D>& b = domain_.bodies.at(static_cast<std::size_t>(number));
+  if (b.prescribed) throw std::invalid_argument("the motion of " + b.name + " is prescribed");
   if (velocities.size() != b.count() * D) throw std::invalid_argument("velocities must be (n, D)");
   check_finite(velocities, "velocities");
   const double before = prepared_ ? kinetic_energy() : 0.0;  // the lists are made by prepare()
@@ -233,9 +272,9 @@ void SimulationOf<D>::set_velocity(int number, std::span<const double> velocitie
 }
 
 template <int D>
-void SimulationOf<D>::set_gravity(const std::array<double, 3>& gravity) {
-  check_finite(gravity, "gravity");
-  for (int a = 0; a < D; ++a) domain_.gravity[a] = gravity[static_cast<std::size_t>(a)];
+void SimulationOf<D>::set_gravity(const std::array<TimeFunction, 3>& gravity) {
+  check_functions(gravity, "gravity");
+  domain_.gravity_of_time = gravity;
 }
 
 template class SimulationOf<2>;

@@ -18,6 +18,9 @@
 // - contact: normal contact that does not exactly conserve energy, with dv from eqs. (11)-(15)
 // alone.
 //
+// A body whose motion is prescribed gets the work that this takes: the change of its kinetic energy
+// and what contact takes from it, at the mean velocity of the step. Gravity does not act on it.
+//
 // Eroded particles take their kinetic and recoverable energy at the start of a step to the term
 // eroded, and their momentum out of the sum; the dissipated energies stay where they are.
 //
@@ -40,6 +43,10 @@ struct Ledger {
   double start = 0.0;                // kinetic and internal energy at the start [J]
   double largest = 0.0;              // largest energy brought in so far [J]
   std::array<double, 3> momentum{};  // [kg m/s]
+  double motion_work = 0.0;          // the part of external that prescribed motions have done [J]
+  std::array<double, 3> motion_impulse{};       // that they have given [N s]
+  double prescribed_kinetic = 0.0;              // of the bodies with prescribed motion [J]
+  std::array<double, 3> prescribed_momentum{};  // [kg m/s]
 
   double numerical() const { return mapping + time_integration; }
   double residual() const {
@@ -50,6 +57,17 @@ struct Ledger {
   /// none.
   double growth() const {
     return largest > 0.0 ? std::max(0.0, -(numerical() + contact)) / largest : 0.0;
+  }
+
+  /// Count a body with prescribed motion at the start.
+  template <int D>
+  void add_prescribed(const Body<D>& body) {
+    for (std::size_t i = 0; i < body.count(); ++i)
+      for (std::size_t a = 0; a < D; ++a) {
+        const double v = body.v(static_cast<int>(a))[i], m = body.mass()[i];
+        prescribed_kinetic += 0.5 * m * v * v;
+        prescribed_momentum[a] += m * v;
+      }
   }
 
   /// Take over the sums of a step; `forces_follow` if the stress was updated before the forces
@@ -70,6 +88,20 @@ struct Ledger {
       s.force_work += p.force_work;
       s.gravity_first += p.gravity_first;
       s.gravity_second += p.gravity_second;
+      s.prescribed.kinetic += p.prescribed.kinetic;
+      s.prescribed.work += p.prescribed.work;
+      for (int a = 0; a < D; ++a) {
+        s.prescribed.momentum[a] += p.prescribed.momentum[a];
+        s.prescribed.impulse[a] += p.prescribed.impulse[a];
+      }
+    }
+    const double motion = s.prescribed.kinetic - prescribed_kinetic - s.prescribed.work;
+    prescribed_kinetic = s.prescribed.kinetic;
+    motion_work += motion;
+    for (std::size_t a = 0; a < D; ++a) {
+      motion_impulse[a] +=
+          s.prescribed.momentum[a] - prescribed_momentum[a] - s.prescribed.impulse[a];
+      prescribed_momentum[a] = s.prescribed.momentum[a];
     }
     internal -= gone.recoverable - eroded_recoverable;
     eroded = gone.kinetic + gone.recoverable;
@@ -81,7 +113,7 @@ struct Ledger {
     viscous += s.stress.viscous;
     friction += contacts.friction;
     contact += contacts.energy;
-    external += s.gravity_first + s.gravity_second;
+    external += s.gravity_first + s.gravity_second + motion;
     const double at_end = forces_follow ? 0.0 : 2.0 * (s.second_order - s.gravity_second);
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
     time_integration += s.made_rigid;

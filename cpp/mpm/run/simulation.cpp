@@ -23,10 +23,11 @@ void check(const Settings& s) {
   check(s.friction >= 0.0 && std::isfinite(s.friction), "friction must be a finite number >= 0");
   check(s.gap_distance >= 0.0 && std::isfinite(s.gap_distance),
         "gap_distance must be a finite number >= 0");
-  for (int a = 0; a < 3; ++a)
-    check(std::isfinite(s.origin[static_cast<std::size_t>(a)]) &&
-              std::isfinite(s.gravity[static_cast<std::size_t>(a)]),
-          "origin and gravity must be finite");
+  for (std::size_t a = 0; a < 3; ++a) {
+    check(std::isfinite(s.origin[a]), "origin must be finite");
+    const std::string problem = s.gravity[a].problem();
+    if (!problem.empty()) throw std::invalid_argument("gravity " + problem);
+  }
   check(!(s.contact && s.bonded), "bodies are bonded or have contact, not both");
   check(s.energy_growth_limit > 0.0, "energy_growth_limit must be > 0");
 }
@@ -51,7 +52,11 @@ const std::vector<std::string>& Simulation::history_columns() {
                                                  "momentum_y",
                                                  "momentum_z",
                                                  "numerical_mapping",
-                                                 "numerical_time"};
+                                                 "numerical_time",
+                                                 "motion_work",
+                                                 "motion_impulse_x",
+                                                 "motion_impulse_y",
+                                                 "motion_impulse_z"};
   return names;
 }
 
@@ -72,11 +77,11 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
   for (std::size_t a = 0; a < D; ++a) {
     const int axis = static_cast<int>(a);
     grid.origin[axis] = settings.origin[a];
-    domain_.gravity[axis] = settings.gravity[a];
     grid.walls.cells[a] = settings.box_cells[a];
     grid.walls.face[a][0] = settings.walls[2 * a];
     grid.walls.face[a][1] = settings.walls[2 * a + 1];
   }
+  domain_.gravity_of_time = settings.gravity;
   domain_.contact_settings.enabled = settings.contact;
   domain_.contact_settings.detection = settings.detection;
   domain_.contact_settings.normal = settings.normal_rule;
@@ -92,14 +97,17 @@ void SimulationOf<D>::prepare() {
   check(!prepared_, "prepare() has been called already");
   check(!domain_.bodies.empty(), "there is no body");
   make_lists(domain_.grid, domain_.bodies, domain_.threads);
-  if (domain_.has_contact()) domain_.contact.connect(domain_.grid);
+  if (domain_.has_contact()) domain_.contact.connect(domain_.grid, domain_.bodies);
   domain_.sums.resize(domain_.grid.patches.size());
   const auto& bodies = domain_.bodies;
   const auto is_rigid = [](const Body<D>& b) { return b.rigid; };
   check(!std::all_of(bodies.begin(), bodies.end(), is_rigid),
         "all bodies are rigid, so no wave limits the time step: one must deform");
-  if (std::any_of(bodies.begin(), bodies.end(), is_rigid)) {
-    check(!settings_.bonded, "bodies are bonded, so none can be rigid");
+  check(!settings_.bonded || std::none_of(bodies.begin(), bodies.end(), is_rigid),
+        "bodies are bonded, so none can be rigid");
+  start_motions();
+  if (std::any_of(bodies.begin(), bodies.end(),
+                  [](const Body<D>& b) { return b.rigid && !b.prescribed; })) {
     domain_.rigid.resize(bodies.size());
     hold_rigid_bodies(domain_);
   }
@@ -108,6 +116,8 @@ void SimulationOf<D>::prepare() {
   ledger_.internal = initial_internal_energy();
   ledger_.start = ledger_.kinetic + ledger_.internal;
   ledger_.momentum = momentum();
+  for (const Body<D>& b : bodies)
+    if (b.prescribed) ledger_.add_prescribed(b);
   domain_.time_step = 0.0;
   write_history_row();  // the state at the start
   prepared_ = true;
@@ -131,6 +141,11 @@ std::int64_t SimulationOf<D>::advance(std::int64_t max_steps, double end_time) {
 
 template <int D>
 void SimulationOf<D>::make_step(double time_after) {
+  for (std::size_t a = 0; a < D; ++a)
+    domain_.gravity[static_cast<int>(a)] =
+        domain_.gravity_of_time[a].mean(domain_.time, time_after);
+  for (Body<D>& b : domain_.bodies)
+    if (b.prescribed) b.motion.begin_step(domain_.time, time_after);
   for (std::size_t k = 0; k < stages_.size(); ++k)
     timers_.time(k, [&] { stages_[k].run(domain_); });
   domain_.time = time_after;
@@ -158,10 +173,28 @@ void SimulationOf<D>::write_history_row() {
   // the oldest.
   if (history_.size() > history_capacity * history_columns().size()) history_.clear();
   const Ledger& l = ledger_;
-  for (const double value :
-       {static_cast<double>(domain_.step), domain_.time, domain_.time_step, l.kinetic, l.internal,
-        l.plastic, l.viscous, l.friction, l.contact, l.external, l.eroded, l.numerical(),
-        l.residual(), l.momentum[0], l.momentum[1], l.momentum[2], l.mapping, l.time_integration})
+  for (const double value : {static_cast<double>(domain_.step),
+                             domain_.time,
+                             domain_.time_step,
+                             l.kinetic,
+                             l.internal,
+                             l.plastic,
+                             l.viscous,
+                             l.friction,
+                             l.contact,
+                             l.external,
+                             l.eroded,
+                             l.numerical(),
+                             l.residual(),
+                             l.momentum[0],
+                             l.momentum[1],
+                             l.momentum[2],
+                             l.mapping,
+                             l.time_integration,
+                             l.motion_work,
+                             l.motion_impulse[0],
+                             l.motion_impulse[1],
+                             l.motion_impulse[2]})
     history_.push_back(value);
 }
 

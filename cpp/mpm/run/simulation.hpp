@@ -12,6 +12,7 @@
 #include "mpm/contact/contact_grid.hpp"
 #include "mpm/fields/columns.hpp"
 #include "mpm/materials/material.hpp"
+#include "mpm/math/time_function.hpp"
 #include "mpm/step/scheme.hpp"
 
 namespace mpm {
@@ -26,8 +27,8 @@ struct Settings {
   std::array<Wall, 6> walls{};     // of the box's faces: x-, x+, y-, y+, z-, z+
   Basis basis = Basis::linear;
   Scheme scheme = Scheme::musl;
-  double time_step_factor = 0.0;    // of the critical time step h / (c + |v|)
-  std::array<double, 3> gravity{};  // [m/s^2]
+  double time_step_factor = 0.0;          // of the critical time step h / (c + |v|)
+  std::array<TimeFunction, 3> gravity{};  // [m/s^2]
   bool contact = false;
   bool bonded = false;  // all bodies move with one velocity field
   Detection detection = Detection::gap;
@@ -78,6 +79,11 @@ class Simulation {
   /// Values of a state column of a body, one component, in the order in which the user gave the
   /// particles; before prepare().
   virtual void set_state(int body, const std::string& column, std::span<const double> values) = 0;
+  /// Prescribe the motion of a body, which is rigid then: the velocity of a centre and the spin
+  /// about it (in 2D of the third axis), as functions of time; before prepare().
+  virtual void set_motion(int body, const std::array<TimeFunction, 3>& velocity,
+                          const std::array<TimeFunction, 3>& spin,
+                          const std::array<double, 3>& centre) = 0;
   virtual void set_pair_friction(int a, int b, double mu) = 0;
   /// Sort the particles, make the grid, find the first time step. Once, after the last body.
   virtual void prepare() = 0;
@@ -105,7 +111,7 @@ class Simulation {
   virtual int column_components(int body, const std::string& name) const = 0;
   virtual void copy_column(int body, const std::string& name, std::span<double> to) const = 0;
   virtual void set_gravity(
-      const std::array<double, 3>& gravity) = 0;  // [m/s^2], from the next step on
+      const std::array<TimeFunction, 3>& gravity) = 0;  // [m/s^2], from the next step on
   virtual void set_velocity(int body, std::span<const double> velocities) = 0;
 
   static constexpr std::size_t history_capacity = 4096;

@@ -15,6 +15,9 @@ class SimulationOf final : public Simulation {
   int add_body(const std::string& name, int material, std::span<const double> positions,
                std::span<const double> velocities, std::span<const double> volumes) override;
   void set_state(int body, const std::string& column, std::span<const double> values) override;
+  void set_motion(int body, const std::array<TimeFunction, 3>& velocity,
+                  const std::array<TimeFunction, 3>& spin,
+                  const std::array<double, 3>& centre) override;
   void set_pair_friction(int a, int b, double mu) override;
   void prepare() override;
   std::int64_t advance(std::int64_t max_steps, double end_time) override;
@@ -40,7 +43,7 @@ class SimulationOf final : public Simulation {
   }
   int column_components(int body, const std::string& name) const override;
   void copy_column(int body, const std::string& name, std::span<double> to) const override;
-  void set_gravity(const std::array<double, 3>& gravity) override;
+  void set_gravity(const std::array<TimeFunction, 3>& gravity) override;
   void set_velocity(int body, std::span<const double> velocities) override;
 
   std::vector<double> take_history() override;
@@ -56,6 +59,7 @@ class SimulationOf final : public Simulation {
   const Body<D>& body(int b) const { return domain_.bodies.at(static_cast<std::size_t>(b)); }
   double kinetic_energy() const;
   std::array<double, 3> momentum() const;
+  void start_motions();
   double initial_internal_energy() const;
   void probe_speeds();  // finds the next time step from the present state
   void make_step(double time_after);

@@ -10,7 +10,7 @@ void activate_tiles(Domain<D>& domain) {
       mend_lists(domain.grid, domain.bodies, domain.threads, domain.list_scratch, domain.eroded);
   sort_disordered(domain.bodies, domain.threads);
   domain.sums.assign(domain.grid.patches.size(), {});
-  if (changed && domain.has_contact()) domain.contact.connect(domain.grid);
+  if (changed && domain.has_contact()) domain.contact.connect(domain.grid, domain.bodies);
 }
 
 template void activate_tiles<2>(Domain<2>&);

@@ -1,4 +1,5 @@
 #include "mpm/step/mirror.hpp"
+#include "mpm/step/prescribed_bodies.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -23,6 +24,10 @@ void advance_nodes(Domain<D>& domain) {
     using T = Batch<native_lanes>;
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
+    if (domain.body_of(patch).prescribed) {
+      advance_prescribed_nodes(domain, p);
+      return;
+    }
     // Walls take up the force along the axes they hold; gravity there is cancelled below with the
     // increment.
     for_each_held_node(grid, patch, [&](int node, unsigned held) {

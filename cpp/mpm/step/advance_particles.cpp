@@ -11,6 +11,7 @@ void advance_particles(Domain<D>& domain) {
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     Body<D>& body = domain.body_of(patch);
+    if (body.prescribed) return;
     const NodeBlock<D> block = grid.block(p);
     T kinetic(0.0), second_order(0.0);
     Vec<T, D> momentum = Vec<T, D>::zero();

@@ -49,6 +49,7 @@ void map_forces(Domain<D>& domain) {
     const NodeBlock<D> block = grid.block(p);
     clear_fields(block, 1 + D, 1 + 2 * D);
     const Body<D>& body = domain.body_of(patch);
+    if (body.rigid) return;  // It has no stress.
     with_basis(grid, body,
                [&](const auto& basis) { scatter_forces(basis, grid, body, patch, block); });
     fold_at_walls<D>(grid, patch, nullptr, [&](int a) { return block.force(a); });

@@ -1,4 +1,5 @@
 #include "mpm/step/mirror.hpp"
+#include "mpm/step/prescribed_bodies.hpp"
 #include "mpm/step/scatter_momentum.hpp"
 #include "mpm/step/stages.hpp"
 
@@ -12,6 +13,7 @@ void map_momentum(Domain<D>& domain) {
     const NodeBlock<D> block = grid.block(p);
     clear_fields(block, 0, 1 + D);
     const Body<D>& body = domain.body_of(patch);
+    if (body.prescribed && !patch.in_contact) return;  // Nobody asks for its nodes.
     with_basis(grid, body, [&](const auto& basis) {
       scatter_momentum<true>(basis, grid, body, patch, block.mass(),
                              [&](int a) { return block.velocity(a); });
@@ -22,6 +24,11 @@ void map_momentum(Domain<D>& domain) {
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const NodeBlock<D> block = grid.block(p);
     const auto velocity = [&](int a) { return block.velocity(a); };
+    const Body<D>& body = domain.body_of(grid.patches[p]);
+    if (body.prescribed) {
+      set_rigid_velocity(grid, grid.patches[p], body.motion.before, velocity);
+      return;
+    }
     momentum_to_velocity(grid, grid.patches[p], block, velocity);
     reflect_at_walls(grid, grid.patches[p], velocity);
   });

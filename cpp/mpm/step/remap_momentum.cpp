@@ -12,6 +12,7 @@ void remap_momentum(Domain<D>& domain) {
     const NodeBlock<D> block = grid.block(p);
     clear_fields(block, 1 + D, 1 + 2 * D);
     const Body<D>& body = domain.body_of(patch);
+    if (body.prescribed) return;
     with_basis(grid, body, [&](const auto& basis) {
       scatter_momentum<false>(basis, grid, body, patch, block.mass(),
                               [&](int a) { return block.force(a); });
@@ -22,6 +23,10 @@ void remap_momentum(Domain<D>& domain) {
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const NodeBlock<D> block = grid.block(p);
     const auto velocity = [&](int a) { return block.force(a); };
+    if (domain.body_of(grid.patches[p]).prescribed) {
+      for (int a = 0; a < D; ++a) std::copy_n(block.velocity(a), block.stride, block.force(a));
+      return;
+    }
     momentum_to_velocity(grid, grid.patches[p], block, velocity);
     reflect_at_walls(grid, grid.patches[p], velocity);
   });

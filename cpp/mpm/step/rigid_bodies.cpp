@@ -5,17 +5,10 @@
 #include <limits>
 #include <span>
 
-#include "mpm/step/cell_loop.hpp"
+#include "mpm/step/prescribed_bodies.hpp"
 
 namespace mpm {
 namespace {
-
-template <int D>
-Vector3 in_space(const Vec<double, D>& x) {
-  Vector3 r = Vector3::zero();
-  for (int a = 0; a < D; ++a) r[a] = x[a];
-  return r;
-}
 
 template <int D>
 Vector3 position(const Body<D>& body, std::uint32_t row) {
@@ -31,13 +24,19 @@ Vector3 velocity(const Body<D>& body, std::uint32_t row) {
   return in_space<D>(v);
 }
 
-/// f(patch number, rows of its particles) for the patches of rigid bodies.
+/// Does a body move as one by the laws of Newton and Euler?
+template <int D>
+bool free_rigid(const Body<D>& body) {
+  return body.rigid && !body.prescribed;
+}
+
+/// f(patch number, rows of its particles) for the patches of such bodies.
 template <int D, class F>
 void for_each_rigid_patch(Domain<D>& domain, F&& f) {
   domain.threads.for_each(domain.grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     const Body<D>& body = domain.body_of(patch);
-    if (body.rigid) f(p, std::span(body.order).subspan(patch.begin, patch.count));
+    if (free_rigid(body)) f(p, std::span(body.order).subspan(patch.begin, patch.count));
   });
 }
 
@@ -109,11 +108,11 @@ void find_rigid_motion(Domain<D>& domain) {
   // Twice: about a centre that is far off, inertia would be a difference of large numbers.
   gather(domain);
   for (std::size_t b = 0; b < domain.bodies.size(); ++b)
-    if (domain.bodies[b].rigid)
+    if (free_rigid(domain.bodies[b]))
       domain.rigid[b].centre += (1.0 / domain.rigid_sums[b].mass) * domain.rigid_sums[b].first;
   gather(domain);
   for (std::size_t b = 0; b < domain.bodies.size(); ++b) {
-    if (!domain.bodies[b].rigid) continue;
+    if (!free_rigid(domain.bodies[b])) continue;
     const RigidSums& sums = domain.rigid_sums[b];
     RigidMotion& motion = domain.rigid[b];
     motion.velocity = (1.0 / sums.mass) * sums.momentum;
@@ -144,13 +143,14 @@ void hold_rigid_bodies(Domain<D>& domain) {
 
 template <int D>
 void move_rigid_bodies(Domain<D>& domain) {
+  if (domain.has_prescribed()) move_prescribed_bodies(domain);
   if (!domain.has_rigid()) return;
   auto& before = domain.rigid_before;
   auto& turns = domain.rigid_turns;
   before = domain.rigid;
   turns.resize(domain.bodies.size());
   for (std::size_t b = 0; b < domain.bodies.size(); ++b)
-    if (domain.bodies[b].rigid) turns[b] = turn(domain.rigid[b], domain.time_step);
+    if (free_rigid(domain.bodies[b])) turns[b] = turn(domain.rigid[b], domain.time_step);
   for_each_rigid_patch(domain, [&](std::size_t p, std::span<const std::uint32_t> rows) {
     Patch<D>& patch = domain.grid.patches[p];
     Body<D>& body = domain.body_of(patch);

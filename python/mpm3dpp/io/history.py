@@ -23,6 +23,9 @@ COLUMNS = (
 NUMERICAL = ("numerical_mapping", "numerical_time")
 """The named parts of `numerical`, which follow."""
 
+MOTION = ("motion_work", *(f"motion_impulse_{x}" for x in ("x", "y", "z")))
+"""Then the work of prescribed motions, which is part of `external` [J], and their impulse [N s]."""
+
 PAIR_LIMIT = 66
 """Most pairs that get columns of their own (12 bodies); more go to `contact_pairs.csv`."""
 

@@ -4,6 +4,7 @@
 from .base import KINDS, AnyShape, Shape, parse_shape
 from .booleans import Difference, Intersection, Union
 from .filling import fill, reference_volume
+from .inclined import Frustum, Funnel, Polygon
 from .ogive import OgiveRod
 from .primitives import Box, Cylinder, Disc, Ring, Sphere, Tube
 from .transforms import Rotate, Translate
@@ -15,8 +16,11 @@ __all__ = [
     "Cylinder",
     "Difference",
     "Disc",
+    "Frustum",
+    "Funnel",
     "Intersection",
     "OgiveRod",
+    "Polygon",
     "Ring",
     "Rotate",
     "Shape",

@@ -16,7 +16,7 @@ from ..units import Point, PositiveLength
 from .base import Bounds, Mask, Points, Shape, register
 
 AxisName = Annotated[str, Choice(("x", "y", "z"))]
-_AXES = {"x": 0, "y": 1, "z": 2}
+AXES = {"x": 0, "y": 1, "z": 2}
 
 
 @register
@@ -167,11 +167,11 @@ class _Along(_Round):
 
     def _half_around(self, radius: float) -> Points:
         half = np.full(len(self.centre), radius)
-        half[min(_AXES[self.axis], len(half) - 1)] = self.height / 2
+        half[min(AXES[self.axis], len(half) - 1)] = self.height / 2
         return half
 
     def _between_ends(self, points: Points, grow: float) -> Mask:
-        axis = _AXES[self.axis]
+        axis = AXES[self.axis]
         return np.abs(points[:, axis] - self.centre[axis]) < self.height / 2 + grow
 
 
@@ -187,7 +187,7 @@ class Cylinder(_Along):
         return self._half_around(self.radius)
 
     def inside(self, points: Points, grow: float) -> Mask:
-        squared = self._distance_squared(points, _AXES[self.axis])
+        squared = self._distance_squared(points, AXES[self.axis])
         return _within(squared, self.radius + grow) & self._between_ends(points, grow)
 
     def volume(self) -> float:
@@ -207,7 +207,7 @@ class Tube(_Along):
         return self._half_around(self.outer_radius)
 
     def inside(self, points: Points, grow: float) -> Mask:
-        squared = self._distance_squared(points, _AXES[self.axis])
+        squared = self._distance_squared(points, AXES[self.axis])
         inner = max(self.inner_radius - grow, 0.0)
         hollow = _within(squared, self.outer_radius + grow) & (squared > inner**2)
         return hollow & self._between_ends(points, grow)

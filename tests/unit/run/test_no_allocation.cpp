@@ -57,6 +57,7 @@ std::vector<double> fill(const Block& block, int dimension) {
 struct Motion3 {
   const char* name;
   std::array<double, 3> velocity, gravity;
+  bool plate;  // the body below shakes as prescribed
 };
 
 /// Two blocks side by side on a third, elastic and neo-Hookean (E about 1e7 Pa, waves of 100 m/s),
@@ -69,7 +70,7 @@ std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& m
   settings.scheme = scheme;
   settings.basis = scheme == Scheme::usf ? Basis::linear : Basis::gimp;
   settings.time_step_factor = 0.3;
-  settings.gravity = motion.gravity;
+  for (std::size_t a = 0; a < 3; ++a) settings.gravity[a] = motion.gravity[a];
   if (motion.gravity[1] != 0.0) {
     settings.box_cells = {40, 40, dimension == 3 ? 40 : 0};
     settings.walls[2] = Wall::fixed;
@@ -93,6 +94,14 @@ std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& m
     simulation->add_body("block", b == 0 ? solid : rubber, fill(blocks[b], dimension), velocity,
                          volume);
   }
+  if (motion.plate) {
+    TimeFunction shaking(0.0), turning(0.0);
+    shaking.amplitude = 2.0;
+    shaking.frequency = 5.0;
+    turning.times = {0.0, 0.1, 0.2};
+    turning.values = {0.0, 1e-3, -1e-3};
+    simulation->set_motion(0, {shaking, 0.0, 0.0}, {0.0, 0.0, turning}, {14.0, 2.0, 9.5});
+  }
   simulation->prepare();
   return simulation;
 }
@@ -109,8 +118,9 @@ void test_no_allocation(mpm::testing::Report& report) {
   check_counter(report);
   // Together through many tiles; and resting on a floor, sliding, the contacts loaded in every
   // step.
-  const Motion3 motions[] = {{"through tiles", {40.0, 40.0, 40.0}, {0.0, 0.0, 0.0}},
-                             {"on a floor", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}}};
+  const Motion3 motions[] = {{"through tiles", {40.0, 40.0, 40.0}, {0.0, 0.0, 0.0}, false},
+                             {"on a floor", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, false},
+                             {"on a plate", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, true}};
   for (const int dimension : {2, 3})
     for (const Scheme scheme : {Scheme::usf, Scheme::usl, Scheme::musl})
       for (const Motion3& motion : motions) {

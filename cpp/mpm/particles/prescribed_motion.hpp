@@ -1,0 +1,55 @@
+#pragma once
+// A rigid motion that a body has whatever acts on it.
+#include <array>
+
+#include "mpm/math/time_function.hpp"
+#include "mpm/particles/rigid_motion.hpp"
+
+namespace mpm {
+
+/// The centre moves with a velocity and the body turns about it, both functions of time. In a step
+/// the velocities are their means over it, so that the displacement is the integral.
+struct PrescribedMotion {
+  std::array<TimeFunction, 3> velocity{}, spin{};  // [m/s], [rad/s]
+  bool moves = false;                              // some function does not vanish
+  RigidMotion before, now;  // of the last step and of this one; `now.centre` is at its start [m]
+
+  void start(const Vector3& centre, double time) {
+    moves = false;
+    for (std::size_t a = 0; a < 3; ++a) {
+      moves = moves || !velocity[a].vanishes() || !spin[a].vanishes();
+      now.velocity.c[a] = velocity[a].at(time);
+      now.spin.c[a] = spin[a].at(time);
+    }
+    now.centre = centre;
+    before = now;
+  }
+  void begin_step(double from, double to) {
+    before = now;
+    for (std::size_t a = 0; a < 3; ++a) {
+      now.velocity.c[a] = velocity[a].mean(from, to);
+      now.spin.c[a] = spin[a].mean(from, to);
+    }
+  }
+  /// Change of the velocity from the last step to this one, at a point [m/s].
+  Vector3 increment_at(const Vector3& x) const {
+    return now.velocity_at(x) - before.velocity_at(x);
+  }
+};
+
+/// A point or a vector of the plane as one of space.
+template <int D>
+Vector3 in_space(const Vec<double, D>& x) {
+  Vector3 r = Vector3::zero();
+  for (int a = 0; a < D; ++a) r[a] = x[a];
+  return r;
+}
+/// The first D components of a vector.
+template <int D>
+Vec<double, D> from_space(const Vector3& x) {
+  Vec<double, D> r;
+  for (int a = 0; a < D; ++a) r[a] = x[a];
+  return r;
+}
+
+}  // namespace mpm

@@ -1,0 +1,95 @@
+#include "mpm/step/prescribed_bodies.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mpm {
+namespace {
+
+/// Move a patch's particles, give them their velocities and sum what the ledger needs.
+template <int D>
+void move_patch(const TileGrid<D>& grid, Body<D>& body, Patch<D>& patch, const Matrix3& turned,
+                double time_step, PatchSums<D>& sums) {
+  const RigidMotion& motion = body.motion.now;
+  const bool turns = dot(motion.spin, motion.spin) > 0.0;
+  const Vector3 centre = motion.centre + time_step * motion.velocity;
+  double kinetic = 0.0, fastest = 0.0;
+  patch.left_cell = false;
+  for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+    for (std::uint32_t k = 0; k < cell.count; ++k) {
+      const std::uint32_t row = cell.rows[k];
+      Vector3 v = motion.velocity, x = Vector3::zero();
+      for (int a = 0; a < D; ++a) x[a] = body.x(a)[row];
+      if (turns) {
+        x = centre + turned * (x - motion.centre);
+        v += cross(motion.spin, x - centre);
+      } else {
+        x += time_step * v;
+      }
+      const double m = body.mass()[row], square = dot(v, v);
+      for (int a = 0; a < D; ++a) {
+        body.x(a)[row] = x[a];
+        body.v(a)[row] = v[a];
+        sums.momentum[a] += m * v[a];
+        const double local = grid.in_cells(x[a], a) - cell.cell[a];
+        patch.left_cell = patch.left_cell || local < 0.0 || local >= 1.0;
+      }
+      kinetic += 0.5 * m * square;
+      fastest = std::max(fastest, square);
+    }
+  });
+  sums.kinetic = kinetic;
+  sums.stress.fastest = std::sqrt(fastest);
+  sums.prescribed.kinetic = kinetic;
+  for (int a = 0; a < D; ++a) sums.prescribed.momentum[a] = sums.momentum[a];
+}
+
+}  // namespace
+
+template <int D>
+void advance_prescribed_nodes(Domain<D>& domain, std::size_t p) {
+  const auto& grid = domain.grid;
+  const Patch<D>& patch = grid.patches[p];
+  if (!patch.in_contact) return;
+  const PrescribedMotion& motion = domain.body_of(patch).motion;
+  const NodeBlock<D> block = domain.grid.block(p);
+  const Index<D> first = grid.first_cell(patch.tile);
+  PatchSums<D>& sums = domain.sums[p];
+  for (int n = 0; n < grid.shape.node_count; ++n) {
+    Index<D> node = grid.shape.index(n);
+    for (int a = 0; a < D; ++a) node[a] += first[a];
+    const Vector3 dv = motion.increment_at(in_space<D>(grid.position_of(node)));
+    const bool own = patch.owned >> grid.shape.region_of_node[static_cast<std::size_t>(n)] & 1u;
+    for (int a = 0; a < D; ++a) {
+      const double pushed = own ? domain.time_step * block.force(a)[n] : 0.0;  // [N s]
+      sums.force_work += pushed * block.velocity(a)[n];
+      sums.second_order += 0.5 * pushed * dv[a];
+      sums.prescribed.impulse[a] += pushed;
+      block.velocity(a)[n] += dv[a];
+      block.force(a)[n] = dv[a];
+    }
+  }
+  // The velocity changes evenly over the step.
+  sums.prescribed.work = sums.force_work + sums.second_order;
+}
+
+template <int D>
+void move_prescribed_bodies(Domain<D>& domain) {
+  auto& grid = domain.grid;
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    Patch<D>& patch = grid.patches[p];
+    Body<D>& body = domain.body_of(patch);
+    if (!body.prescribed || !body.motion.moves) return;
+    const Matrix3 turned = rotation(domain.time_step * body.motion.now.spin);
+    move_patch(grid, body, patch, turned, domain.time_step, domain.sums[p]);
+  });
+  for (Body<D>& body : domain.bodies)
+    if (body.prescribed) body.motion.now.centre += domain.time_step * body.motion.now.velocity;
+}
+
+template void advance_prescribed_nodes<2>(Domain<2>&, std::size_t);
+template void advance_prescribed_nodes<3>(Domain<3>&, std::size_t);
+template void move_prescribed_bodies<2>(Domain<2>&);
+template void move_prescribed_bodies<3>(Domain<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,31 @@
+#pragma once
+// Bodies whose motion is prescribed: their nodes and particles have the velocity of that motion,
+// whatever acts on them. They have no stress, and map nothing but their mass, where others are
+// near.
+#include "mpm/step/cell_loop.hpp"
+
+namespace mpm {
+
+/// Give all nodes of a patch the velocity of a rigid motion.
+template <int D, class Field>
+void set_rigid_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const RigidMotion& motion,
+                        Field&& field) {
+  const Index<D> first = grid.first_cell(patch.tile);
+  for (int n = 0; n < grid.shape.node_count; ++n) {
+    Index<D> node = grid.shape.index(n);
+    for (int a = 0; a < D; ++a) node[a] += first[a];
+    const Vector3 v = motion.velocity_at(in_space<D>(grid.position_of(node)));
+    for (int a = 0; a < D; ++a) field(a)[n] = v[a];
+  }
+}
+
+/// In place of eqs. (8) and (10): the nodes of a patch take the velocity prescribed for this step.
+/// What contact pushes them with goes to the ledger.
+template <int D>
+void advance_prescribed_nodes(Domain<D>& domain, std::size_t p);
+
+/// Positions and velocities of the particles after the step, in place of eqs. (16) and (17).
+template <int D>
+void move_prescribed_bodies(Domain<D>& domain);
+
+}  // namespace mpm
