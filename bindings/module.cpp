@@ -15,6 +15,17 @@
 using namespace mpm;
 using namespace mpm::bindings;
 
+namespace {
+
+nb::dict dict_of(const GoneSum& gone) {
+  nb::dict d;
+  d["mass"] = gone.mass;
+  d["count"] = gone.count;
+  return d;
+}
+
+}  // namespace
+
 NB_MODULE(_core, m) {
   m.doc() =
       "The compiled core of MPM3Dpp. SI units throughout; see mpm3dpp.Case for defaults and units.";
@@ -44,6 +55,9 @@ NB_MODULE(_core, m) {
       .def_rw("cell_size", &Settings::cell_size)
       .def_rw("origin", &Settings::origin)
       .def_rw("box_cells", &Settings::box_cells)
+      .def_rw("keep", &Settings::keep)
+      .def_rw("keep_lower", &Settings::keep_lower)
+      .def_rw("keep_upper", &Settings::keep_upper)
       .def_rw("walls", &Settings::walls)
       .def_rw("basis", &Settings::basis)
       .def_rw("scheme", &Settings::scheme)
@@ -129,13 +143,8 @@ NB_MODULE(_core, m) {
                      return n;
                    })
       .def_prop_ro("total_mass", &Simulation::total_mass)
-      .def("eroded",
-           [](const Simulation& s) {
-             nb::dict d;
-             d["mass"] = s.eroded().mass;
-             d["count"] = s.eroded().count;
-             return d;
-           })
+      .def("eroded", [](const Simulation& s) { return dict_of(s.eroded()); })
+      .def("left", [](const Simulation& s) { return dict_of(s.left()); })
       .def_prop_ro("failure", &Simulation::failure)
       .def("limiter", &Simulation::limiter)
       .def("set_threads", &Simulation::set_threads, nb::arg("count"))

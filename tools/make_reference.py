@@ -27,6 +27,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ("grid", case_parts.Grid, ""),
     ("grid.box", case_parts.GridBox, ""),
     ("grid.box.walls", case_parts.Walls, ""),
+    ("grid.keep", case_parts.GridKeep, ""),
     ("run", case_parts.Run, ""),
     ("run.viscosity", case_parts.Viscosity, "`viscosity = {}` takes both defaults."),
     ("output", case_parts.Output, ""),

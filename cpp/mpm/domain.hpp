@@ -45,7 +45,7 @@ struct Domain {
 
   std::vector<PatchSums<D>> sums;  // one per patch
   ListScratch<D> list_scratch;
-  Eroded<D> eroded;
+  Gone<D> eroded, left;            // by failure; out of the region that is kept
   std::vector<RigidMotion> rigid;  // one per body if any is rigid, else none
   std::vector<RigidMotion> rigid_before;
   std::vector<RigidSums> rigid_parts, rigid_sums;  // scratch: per patch, per body

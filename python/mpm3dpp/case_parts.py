@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any
 
 from pydantic import Field, model_validator
@@ -53,6 +54,26 @@ class GridBox(CaseModel):
     walls: Walls = Field(default_factory=Walls)
 
 
+class GridKeep(CaseModel):
+    """The region outside which particles take no part any more; the ledger counts them as `left`.
+
+    A rigid body leaves as a whole, with its mass centre.
+
+    Attributes:
+        lower, upper: opposite corners [m], D numbers; without one of them there is no limit on
+            that side.
+    """
+
+    lower: Point = ()
+    upper: Point = ()
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> GridKeep:
+        if not self.lower and not self.upper:
+            raise violation("has no limit", "give lower, upper or both")
+        return self
+
+
 class Grid(CaseModel):
     """The background grid.
 
@@ -61,6 +82,7 @@ class Grid(CaseModel):
         cell_size: edge of the square or cubic cells [m].
         origin: a corner of a cell [m], D numbers; by default the box's lower corner, else zero.
         box: bounds and walls; None for an unbounded grid.
+        keep: region outside which particles are taken out of the run; None for none.
         basis: shape functions. "gimp" (uniform GIMP, Bardenhagen & Kober 2004) stays accurate
             where stressed particles cross cells; "linear" is the paper's, the fastest.
     """
@@ -69,6 +91,7 @@ class Grid(CaseModel):
     cell_size: PositiveLength
     origin: Point = ()
     box: GridBox | None = None
+    keep: GridKeep | None = None
     basis: Annotated[str, Choice(("gimp", "linear"))] = "gimp"
 
     @model_validator(mode="after")
@@ -76,6 +99,8 @@ class Grid(CaseModel):
         names: dict[tuple[str, ...], tuple[float, ...]] = {("origin",): self.origin}
         if self.box is not None:
             names |= {("box", "lower"): self.box.lower, ("box", "upper"): self.box.upper}
+        if self.keep is not None:
+            names |= {("keep", "lower"): self.keep.lower, ("keep", "upper"): self.keep.upper}
         for path, vector in names.items():
             if vector and len(vector) != self.dimension:
                 rule = f"must have {self.dimension} numbers, as grid.dimension = {self.dimension}"
@@ -84,6 +109,10 @@ class Grid(CaseModel):
         self.__dict__["origin"] = self.origin or lower
         if self.box is not None:
             self._check_box(self.box)
+        for d, (low, high) in enumerate(zip(*self.kept, strict=True)):
+            if low >= high:
+                rule, remedy = f"must be > lower = {low:g} m", "swap the two corners"
+                raise violation(rule, remedy, value=high, path=("keep", "upper", d))
         return self
 
     def _check_box(self, box: GridBox) -> None:
@@ -107,6 +136,14 @@ class Grid(CaseModel):
             if not uniform:
                 rule = "has z faces but the grid is 2D"
                 raise violation(rule, "remove z_min and z_max", path=("box", "walls"))
+
+    @property
+    def kept(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Corners of the region that particles may be in [m], D numbers each; else infinite."""
+        keep, far = self.keep, (math.inf,) * self.dimension
+        lower = keep.lower if keep is not None else ()
+        upper = keep.upper if keep is not None else ()
+        return lower or tuple(-x for x in far), upper or far
 
     @property
     def lower(self) -> tuple[float, ...]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -123,6 +124,13 @@ class Simulation:
         """
         return dict(self.core.eroded())
 
+    def left(self) -> dict[str, Any]:
+        """Return `mass` [kg] (per metre in 2D) and `count` of the particles that left `grid.keep`.
+
+        They stay in the columns as they were when they left, with `failed` = 4.
+        """
+        return dict(self.core.left())
+
     def set_velocity(self, body: str, velocities: np.ndarray) -> None:
         """Give the particles of a body velocities [m/s], shape (n, D), in the order of filling.
 
@@ -152,6 +160,9 @@ def _settings(case: Case, threads: int) -> _core.Settings:
     settings.box_cells = three(grid.box_cells, 0) if grid.box_cells else [0, 0, 0]
     names = ["slip" if wall == "symmetry" else wall for wall in grid.walls]
     settings.walls = [_core.Wall[name] for name in [*names, *["free"] * 6][:6]]
+    settings.keep = grid.keep is not None
+    settings.keep_lower = three(grid.kept[0], -math.inf)
+    settings.keep_upper = three(grid.kept[1], math.inf)
     settings.basis = _core.Basis[grid.basis]
     settings.scheme = _core.Scheme[run.scheme]
     settings.time_step_factor = run.time_step_factor

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mpm/fields/aligned.hpp"
+#include "mpm/grid/keep.hpp"
 #include "mpm/grid/patch.hpp"
 #include "mpm/grid/walls.hpp"
 #include "mpm/math/vec.hpp"
@@ -24,6 +25,7 @@ class TileGrid {
   // shifted by whole cells is cut into the same tiles and gives the same bits.
   Index<D> anchor{};
   Walls<D> walls;
+  Keep<D> keep;
   bool bonded = false;            // all bodies have one velocity field: they share their nodes
   std::vector<Patch<D>> patches;  // by body, then by tile
 

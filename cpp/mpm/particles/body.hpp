@@ -18,7 +18,7 @@ struct Body {
   MaterialColumns at{};           // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
   std::vector<std::uint32_t> id;  // place of each particle in the order in which the user gave them
   std::vector<std::uint32_t> order;       // particles by patch, then by cell, then by row; behind
-                                          // them those that are eroded, which no patch holds
+                                          // them those that are gone, which no patch holds
   std::vector<std::uint32_t> next_order;  // the list being made
   std::vector<std::uint8_t> cell;         // scratch: cell in its tile of each entry of `order`
   double initial_density = 0.0;           // [kg/m^3]
@@ -27,10 +27,11 @@ struct Body {
   double total_mass = 0.0;  // [kg]
   bool rigid = false;       // its particles move as one
   std::size_t moved = 0;    // changes of cell since the columns were last sorted
-  std::size_t eroded = 0;   // particles that take no part any more
+  bool leaves = false;      // a rigid body that leaves the region that is kept, as a whole
+  std::size_t gone = 0;     // particles that take no part any more: eroded, or left the region
 
   std::size_t count() const { return columns.rows(); }
-  std::size_t active() const { return count() - eroded; }
+  std::size_t active() const { return count() - gone; }
   double* x(int a) { return columns.component(position + a); }
   double* v(int a) { return columns.component(at.velocity + a); }
   const double* x(int a) const { return columns.component(position + a); }

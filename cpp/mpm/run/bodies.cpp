@@ -56,6 +56,10 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
   body.at.volume = c.add("volume", "m^3", 1);
   body.at.stress = c.add("stress", "Pa", Sym<double, D>::size);
   add_material_columns<D>(material, c, body.at);
+  if (domain_.grid.keep.exist) {  // what particles that leave it need
+    if (body.at.recoverable < 0) body.at.recoverable = c.add("recoverable_energy", "J/m^3", 1);
+    if (body.at.failed < 0) body.at.failed = c.add("failed", "1", 1);
+  }
   c.allocate(n);
 
   const bool one_velocity = velocities.size() == D, one_volume = volumes.size() == 1;

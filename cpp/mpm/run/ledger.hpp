@@ -1,7 +1,7 @@
 #pragma once
 // Where the energy and the momentum go. Every term is accumulated from its own sums:
-//   kinetic + internal + plastic + viscous + friction + contact + eroded + numerical - external
-//   = start + residual.
+//   kinetic + internal + plastic + viscous + friction + contact + eroded + left + numerical -
+//   external = start + residual.
 //
 // Derivation: a particle's velocity changes by the interpolated increments
 // dv_p = sum N_ip f_i dt / m_i, eq. (17), so
@@ -19,7 +19,8 @@
 // alone.
 //
 // Eroded particles take their kinetic and recoverable energy at the start of a step to the term
-// eroded, and their momentum out of the sum; the dissipated energies stay where they are.
+// eroded, and their momentum out of the sum; the dissipated energies stay where they are. Particles
+// that leave the region that is kept take theirs to the term left.
 //
 // A positive numerical term is energy lost, a negative one energy made. The residual tests that
 // particles and nodes exchange exactly the same work; internal, viscous and friction enter
@@ -35,16 +36,16 @@ namespace mpm {
 
 struct Ledger {
   double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0,
-         external = 0.0, eroded = 0.0, mapping = 0.0, time_integration = 0.0;  // [J]
-  double eroded_recoverable = 0.0;   // the part of eroded that was internal [J]
+         external = 0.0, eroded = 0.0, left = 0.0, mapping = 0.0, time_integration = 0.0;  // [J]
+  double gone_recoverable = 0.0;     // the part of eroded and left that was internal [J]
   double start = 0.0;                // kinetic and internal energy at the start [J]
   double largest = 0.0;              // largest energy brought in so far [J]
   std::array<double, 3> momentum{};  // [kg m/s]
 
   double numerical() const { return mapping + time_integration; }
   double residual() const {
-    return kinetic + internal + plastic + viscous + friction + contact + eroded + numerical() -
-           external - start;
+    return kinetic + internal + plastic + viscous + friction + contact + eroded + left +
+           numerical() - external - start;
   }
   /// Energy made by numerics, as a fraction of the largest energy brought in; 0 while there is
   /// none.
@@ -56,7 +57,7 @@ struct Ledger {
   /// (USF).
   template <int D>
   void add(const std::vector<PatchSums<D>>& patches, const ContactSums& contacts,
-           const Eroded<D>& gone, bool forces_follow) {
+           const Gone<D>& by_erosion, const Gone<D>& out_of_region, bool forces_follow) {
     PatchSums<D> s;
     for (const PatchSums<D>& p : patches) {
       s.stress.internal += p.stress.internal;
@@ -71,9 +72,11 @@ struct Ledger {
       s.gravity_first += p.gravity_first;
       s.gravity_second += p.gravity_second;
     }
-    internal -= gone.recoverable - eroded_recoverable;
-    eroded = gone.kinetic + gone.recoverable;
-    eroded_recoverable = gone.recoverable;
+    const double gone = by_erosion.recoverable + out_of_region.recoverable;
+    internal -= gone - gone_recoverable;
+    gone_recoverable = gone;
+    eroded = by_erosion.kinetic + by_erosion.recoverable;
+    left = out_of_region.kinetic + out_of_region.recoverable;
     kinetic = s.kinetic;
     for (std::size_t a = 0; a < D; ++a) momentum[a] = s.momentum[a];
     internal += s.stress.internal;

@@ -34,24 +34,11 @@ void check(const Settings& s) {
 }  // namespace
 
 const std::vector<std::string>& Simulation::history_columns() {
-  static const std::vector<std::string> names = {"step",
-                                                 "time",
-                                                 "dt",
-                                                 "kinetic",
-                                                 "internal",
-                                                 "plastic",
-                                                 "viscous",
-                                                 "friction",
-                                                 "contact",
-                                                 "external",
-                                                 "eroded",
-                                                 "numerical",
-                                                 "residual",
-                                                 "momentum_x",
-                                                 "momentum_y",
-                                                 "momentum_z",
-                                                 "numerical_mapping",
-                                                 "numerical_time"};
+  static const std::vector<std::string> names = {
+      "step",          "time",     "dt",         "kinetic",    "internal",   "plastic",
+      "viscous",       "friction", "contact",    "external",   "eroded",     "left",
+      "numerical",     "residual", "momentum_x", "momentum_y", "momentum_z", "numerical_mapping",
+      "numerical_time"};
   return names;
 }
 
@@ -69,10 +56,13 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
   grid.use(settings.basis);
   grid.bonded = settings.bonded;
   grid.walls.exist = settings.box_cells[0] > 0;
+  grid.keep.exist = settings.keep;
   for (std::size_t a = 0; a < D; ++a) {
     const int axis = static_cast<int>(a);
     grid.origin[axis] = settings.origin[a];
     domain_.gravity[axis] = settings.gravity[a];
+    grid.keep.lower[axis] = settings.keep_lower[a];
+    grid.keep.upper[axis] = settings.keep_upper[a];
     grid.walls.cells[a] = settings.box_cells[a];
     grid.walls.face[a][0] = settings.walls[2 * a];
     grid.walls.face[a][1] = settings.walls[2 * a + 1];
@@ -139,7 +129,8 @@ void SimulationOf<D>::make_step(double time_after) {
   if (domain_.has_contact())
     contacts =
         domain_.contact.record(domain_.bodies, domain_.time, domain_.time_step, domain_.step);
-  ledger_.add(domain_.sums, contacts, domain_.eroded, settings_.scheme == Scheme::usf);
+  ledger_.add(domain_.sums, contacts, domain_.eroded, domain_.left,
+              settings_.scheme == Scheme::usf);
   write_history_row();
   find_failure();
   if (!failure_) choose_time_step();
@@ -160,7 +151,7 @@ void SimulationOf<D>::write_history_row() {
   const Ledger& l = ledger_;
   for (const double value :
        {static_cast<double>(domain_.step), domain_.time, domain_.time_step, l.kinetic, l.internal,
-        l.plastic, l.viscous, l.friction, l.contact, l.external, l.eroded, l.numerical(),
+        l.plastic, l.viscous, l.friction, l.contact, l.external, l.eroded, l.left, l.numerical(),
         l.residual(), l.momentum[0], l.momentum[1], l.momentum[2], l.mapping, l.time_integration})
     history_.push_back(value);
 }

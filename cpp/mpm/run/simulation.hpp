@@ -23,7 +23,9 @@ struct Settings {
   double cell_size = 0.0;          // [m]
   std::array<double, 3> origin{};  // position of a node, and of the box's lower corner [m]
   std::array<int, 3> box_cells{};  // cells of the box; 0, 0, 0 for no box
-  std::array<Wall, 6> walls{};     // of the box's faces: x-, x+, y-, y+, z-, z+
+  std::array<double, 3> keep_lower{}, keep_upper{};  // corners of the region that is kept [m] ...
+  bool keep = false;                                 // ... if particles that leave it are taken out
+  std::array<Wall, 6> walls{};                       // of the box's faces: x-, x+, y-, y+, z-, z+
   Basis basis = Basis::linear;
   Scheme scheme = Scheme::musl;
   double time_step_factor = 0.0;    // of the critical time step h / (c + |v|)
@@ -56,8 +58,8 @@ struct Limiter {
   double sound_speed = 0.0, speed = 0.0;  // [m/s]
 };
 
-/// Particles that take no part any more.
-struct ErodedSum {
+/// Particles that take no part any more: eroded, or left the region that is kept.
+struct GoneSum {
   double mass = 0.0;  // [kg]
   std::size_t count = 0;
 };
@@ -90,8 +92,9 @@ class Simulation {
   virtual std::int64_t step() const = 0;
   virtual int body_count() const = 0;
   virtual std::size_t particle_count(int body) const = 0;
-  virtual double total_mass() const = 0;  // of all particles, eroded ones included [kg]
-  virtual ErodedSum eroded() const = 0;
+  virtual double total_mass() const = 0;  // of all particles, those that are gone included [kg]
+  virtual GoneSum eroded() const = 0;
+  virtual GoneSum left() const = 0;
   virtual const std::optional<Failure>& failure() const = 0;
   virtual Limiter limiter() const = 0;
   virtual Bytes bytes() const = 0;

@@ -25,7 +25,8 @@ class SimulationOf final : public Simulation {
   int body_count() const override { return static_cast<int>(domain_.bodies.size()); }
   std::size_t particle_count(int body) const override { return this->body(body).count(); }
   double total_mass() const override;
-  ErodedSum eroded() const override { return {domain_.eroded.mass, domain_.eroded.count}; }
+  GoneSum eroded() const override { return {domain_.eroded.mass, domain_.eroded.count}; }
+  GoneSum left() const override { return {domain_.left.mass, domain_.left.count}; }
   const std::optional<Failure>& failure() const override { return failure_; }
   Limiter limiter() const override;
   Bytes bytes() const override;

@@ -41,6 +41,12 @@ void for_each_rigid_patch(Domain<D>& domain, F&& f) {
   });
 }
 
+/// Whether a body is rigid and has not left the region that is kept.
+template <int D>
+bool moves(const Body<D>& body) {
+  return body.rigid && body.active() > 0;
+}
+
 /// Sums of each rigid body about the centres in `domain.rigid`, in the order of the patches.
 template <int D>
 void gather(Domain<D>& domain) {
@@ -109,11 +115,11 @@ void find_rigid_motion(Domain<D>& domain) {
   // Twice: about a centre that is far off, inertia would be a difference of large numbers.
   gather(domain);
   for (std::size_t b = 0; b < domain.bodies.size(); ++b)
-    if (domain.bodies[b].rigid)
+    if (moves(domain.bodies[b]))
       domain.rigid[b].centre += (1.0 / domain.rigid_sums[b].mass) * domain.rigid_sums[b].first;
   gather(domain);
   for (std::size_t b = 0; b < domain.bodies.size(); ++b) {
-    if (!domain.bodies[b].rigid) continue;
+    if (!moves(domain.bodies[b])) continue;
     const RigidSums& sums = domain.rigid_sums[b];
     RigidMotion& motion = domain.rigid[b];
     motion.velocity = (1.0 / sums.mass) * sums.momentum;
@@ -150,7 +156,7 @@ void move_rigid_bodies(Domain<D>& domain) {
   before = domain.rigid;
   turns.resize(domain.bodies.size());
   for (std::size_t b = 0; b < domain.bodies.size(); ++b)
-    if (domain.bodies[b].rigid) turns[b] = turn(domain.rigid[b], domain.time_step);
+    if (moves(domain.bodies[b])) turns[b] = turn(domain.rigid[b], domain.time_step);
   for_each_rigid_patch(domain, [&](std::size_t p, std::span<const std::uint32_t> rows) {
     Patch<D>& patch = domain.grid.patches[p];
     Body<D>& body = domain.body_of(patch);

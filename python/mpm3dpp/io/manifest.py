@@ -62,7 +62,8 @@ class Manifest:
     Attributes:
         version: of mpm3dpp.          case_hash: SHA-256 of the case.
         mass: of all particles [kg] (per metre in 2D).          cell_size: [m].
-        eroded: mass [kg] (per metre in 2D) and count of the particles that have eroded.
+        eroded, left: mass [kg] (per metre in 2D) and count of the particles that have eroded,
+            and that have left `grid.keep`.
         particles, threads, steps: counts.          wall_time: of the run [s].
         ns_per_particle_step, stages: time in the steps and in each stage [ns].
         peak_memory_bytes: largest resident size of the process [bytes].
@@ -82,6 +83,7 @@ class Manifest:
     reason: str | None
     mass: float
     eroded: dict[str, Any]
+    left: dict[str, Any]
     cell_size: float
     particles: int
     threads: int
@@ -161,6 +163,7 @@ def build_manifest(
         reason=reason,
         mass=float(simulation.total_mass),
         eroded=dict(simulation.eroded()),
+        left=dict(simulation.left()),
         cell_size=float(cell_size),
         particles=int(simulation.particle_count),
         threads=int(threads),

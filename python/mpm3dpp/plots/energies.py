@@ -22,6 +22,7 @@ _LOST = {
     "friction": "friction",
     "contact": "contact",
     "eroded": "eroded",
+    "left": "left",
     "external": "external work",
 }
 _NUMERICAL = {
