@@ -38,7 +38,8 @@ NB_MODULE(_core, m) {
   nb::enum_<Wall>(m, "Wall")
       .value("free", Wall::free)
       .value("slip", Wall::slip)
-      .value("fixed", Wall::fixed);
+      .value("fixed", Wall::fixed)
+      .value("absorbing", Wall::absorbing);
   nb::enum_<Detection>(m, "Detection")
       .value("gap", Detection::gap)
       .value("velocity", Detection::velocity);

@@ -26,6 +26,7 @@ struct PatchSums {
       0.0;  // kinetic energy that rigid bodies' increments had beyond a rigid motion [J]
   double gravity_first = 0.0;   // time step x sum over nodes of gravity . velocity [J]
   double gravity_second = 0.0;  // the part of second_order that is the work of gravity [J]
+  double dashpot_first = 0.0, dashpot_second = 0.0;  // the same of walls that absorb [J]
 };
 
 template <int D>

@@ -9,6 +9,7 @@ import numpy as np
 
 from .build import FilledBody
 from .case import Case
+from .case_parts import FACES
 from .detonation import EXPLOSIVE
 
 _STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
@@ -21,7 +22,7 @@ def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
         case: a checked case.
         bodies: its bodies, filled.
     """
-    return [*_materials(case), *_detonations(case, bodies)]
+    return [*_materials(case), *_detonations(case, bodies), *_walls(case)]
 
 
 def _materials(case: Case) -> list[str]:
@@ -49,6 +50,19 @@ def _materials(case: Case) -> list[str]:
                 f"{key}.eos.jwl is of the products of an explosive, but its strength "
                 f"{strength.model} does not detonate: the whole energy E0 presses from the start; "
                 f"give strength = {{ {EXPLOSIVE} = ... }} unless that is meant"
+            )
+    return found
+
+
+def _walls(case: Case) -> list[str]:
+    """Walls that absorb waves where gravity presses on them."""
+    found = []
+    for d, g in enumerate(case.run.gravity):
+        face = 2 * d + (g > 0.0)
+        if g != 0.0 and case.grid.walls[face] == "absorbing":
+            found.append(
+                f"grid.box.walls.{FACES[face]} absorbs waves but holds no weight, and run.gravity "
+                "presses on it: what stands there sinks; give slip or fixed unless that is meant"
             )
     return found
 

@@ -16,13 +16,16 @@ FACES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 STANDARD_FIELDS = ("position", "velocity", "stress", "pressure", "von_mises", "body", "material")
 _WHOLE = 1e-6  # A box that misses a whole number of cells by less, per cell, is taken as whole.
 
-Wall = Annotated[str, Choice(("free", "slip", "fixed"), (("symmetry", "slip"),))]
+_WALL = Choice(("free", "slip", "fixed", "absorbing"), (("symmetry", "slip"),))
+Wall = Annotated[str, _WALL]
 
 
 class Walls(CaseModel):
-    """What the faces of the box do: `free` (nothing), `slip` (or `symmetry`), `fixed`.
+    """What the faces of the box do: `free` (nothing), `slip` (or `symmetry`), `fixed`, `absorbing`.
 
-    One word in place of the table holds for all faces. In 2D there are no z faces.
+    An `absorbing` face lets waves pass, as if the body went on behind it (dashpots, Lysmer &
+    Kuhlemeyer 1969); it holds no weight. One word in place of the table holds for all faces. In
+    2D there are no z faces.
     """
 
     x_min: Wall = "free"
@@ -36,7 +39,7 @@ class Walls(CaseModel):
     @classmethod
     def _one_word(cls, data: Any) -> Any:
         if isinstance(data, str):
-            word = Choice(("free", "slip", "fixed"), (("symmetry", "slip"),)).parse(data)
+            word = _WALL.parse(data)
             return dict.fromkeys(FACES, word)
         return data
 

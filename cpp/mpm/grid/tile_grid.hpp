@@ -26,8 +26,9 @@ class TileGrid {
   Index<D> anchor{};
   Walls<D> walls;
   Keep<D> keep;
-  bool bonded = false;            // all bodies have one velocity field: they share their nodes
-  std::vector<Patch<D>> patches;  // by body, then by tile
+  int fields = NodeBlock<D>::fields;  // of a block, those of forces at walls included
+  bool bonded = false;                // all bodies have one velocity field: they share their nodes
+  std::vector<Patch<D>> patches;      // by body, then by tile
 
   /// Position along an axis in cells from the origin. Every kernel uses this one expression, so
   /// that all agree on cells.
@@ -61,8 +62,7 @@ class TileGrid {
     shape = BlockShape<D>(margin_of(chosen));
   }
   std::size_t block_size() const {
-    return static_cast<std::size_t>(NodeBlock<D>::fields) *
-           static_cast<std::size_t>(shape.node_stride);
+    return static_cast<std::size_t>(fields) * static_cast<std::size_t>(shape.node_stride);
   }
   NodeBlock<D> block(std::size_t patch) {
     return {node_memory_.data() + patch * block_size(), shape.node_stride};

@@ -25,10 +25,11 @@ struct Body {
   double mean_mass = 0.0;                 // of a particle at the start [kg]
   double mean_edge = 0.0;   // edge of a square or cube of the mean initial particle volume [m]
   double total_mass = 0.0;  // [kg]
-  bool rigid = false;       // its particles move as one
-  std::size_t moved = 0;    // changes of cell since the columns were last sorted
-  bool leaves = false;      // a rigid body that leaves the region that is kept, as a whole
-  std::size_t gone = 0;     // particles that take no part any more: eroded, or left the region
+  double pressure_impedance = 0.0, shear_impedance = 0.0;  // rho c of the start [kg/(m^2 s)]
+  bool rigid = false;                                      // its particles move as one
+  std::size_t moved = 0;  // changes of cell since the columns were last sorted
+  bool leaves = false;    // a rigid body that leaves the region that is kept, as a whole
+  std::size_t gone = 0;   // particles that take no part any more: eroded, or left the region
 
   std::size_t count() const { return columns.rows(); }
   std::size_t active() const { return count() - gone; }

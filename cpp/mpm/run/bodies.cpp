@@ -81,6 +81,8 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
   domain_.stiffness.push_back(body.rigid ? std::numeric_limits<double>::infinity()
                                          : material.density * speed * speed);
   body.initial_density = material.density;
+  body.pressure_impedance = material.density * speed;
+  body.shear_impedance = std::sqrt(material.density * shear_modulus(material));
   body.mean_mass = material.density * total / static_cast<double>(n);
   body.mean_edge = std::pow(total / static_cast<double>(n), 1.0 / D);
   body.id.resize(n);

@@ -1,7 +1,7 @@
 #pragma once
 // Where the energy and the momentum go. Every term is accumulated from its own sums:
-//   kinetic + internal + plastic + viscous + friction + contact + eroded + left + numerical -
-//   external = start + residual.
+//   kinetic + internal + plastic + viscous + friction + contact + absorbed + eroded + left
+//   + numerical - external = start + residual.
 //
 // Derivation: a particle's velocity changes by the interpolated increments
 // dv_p = sum N_ip f_i dt / m_i, eq. (17), so
@@ -17,6 +17,9 @@
 // forces; and what rigid bodies' increments have beyond a rigid motion.
 // - contact: normal contact that does not exactly conserve energy, with dv from eqs. (11)-(15)
 // alone.
+//
+// The work of gravity and that of walls which absorb waves (their loss is the term absorbed) is
+// taken with the velocity in the middle of the step, so that their part of 1/2 m dv^2 is no error.
 //
 // Eroded particles take their kinetic and recoverable energy at the start of a step to the term
 // eroded, and their momentum out of the sum; the dissipated energies stay where they are. Particles
@@ -36,7 +39,8 @@ namespace mpm {
 
 struct Ledger {
   double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0,
-         external = 0.0, eroded = 0.0, left = 0.0, mapping = 0.0, time_integration = 0.0;  // [J]
+         external = 0.0, absorbed = 0.0, eroded = 0.0, left = 0.0, mapping = 0.0,
+         time_integration = 0.0;     // [J]
   double gone_recoverable = 0.0;     // the part of eroded and left that was internal [J]
   double start = 0.0;                // kinetic and internal energy at the start [J]
   double largest = 0.0;              // largest energy brought in so far [J]
@@ -44,7 +48,7 @@ struct Ledger {
 
   double numerical() const { return mapping + time_integration; }
   double residual() const {
-    return kinetic + internal + plastic + viscous + friction + contact + eroded + left +
+    return kinetic + internal + plastic + viscous + friction + contact + absorbed + eroded + left +
            numerical() - external - start;
   }
   /// Energy made by numerics, as a fraction of the largest energy brought in; 0 while there is
@@ -71,6 +75,8 @@ struct Ledger {
       s.force_work += p.force_work;
       s.gravity_first += p.gravity_first;
       s.gravity_second += p.gravity_second;
+      s.dashpot_first += p.dashpot_first;
+      s.dashpot_second += p.dashpot_second;
     }
     const double gone = by_erosion.recoverable + out_of_region.recoverable;
     internal -= gone - gone_recoverable;
@@ -85,12 +91,14 @@ struct Ledger {
     friction += contacts.friction;
     contact += contacts.energy;
     external += s.gravity_first + s.gravity_second;
-    const double at_end = forces_follow ? 0.0 : 2.0 * (s.second_order - s.gravity_second);
+    absorbed -= s.dashpot_first + s.dashpot_second;
+    const double second = s.second_order - s.gravity_second - s.dashpot_second;
+    const double at_end = forces_follow ? 0.0 : 2.0 * second;
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
     time_integration += s.made_rigid;
     time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous -
-                        s.stress.force_power + s.second_order - s.gravity_second +
-                        contacts.friction - contacts.friction_first - at_end;
+                        s.stress.force_power + second + contacts.friction -
+                        contacts.friction_first - at_end;
     largest = std::max({largest, std::abs(start), std::abs(external)});
   }
 };

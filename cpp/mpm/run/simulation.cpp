@@ -35,10 +35,10 @@ void check(const Settings& s) {
 
 const std::vector<std::string>& Simulation::history_columns() {
   static const std::vector<std::string> names = {
-      "step",          "time",     "dt",         "kinetic",    "internal",   "plastic",
-      "viscous",       "friction", "contact",    "external",   "eroded",     "left",
-      "numerical",     "residual", "momentum_x", "momentum_y", "momentum_z", "numerical_mapping",
-      "numerical_time"};
+      "step",       "time",       "dt",         "kinetic",           "internal",
+      "plastic",    "viscous",    "friction",   "contact",           "external",
+      "absorbed",   "eroded",     "left",       "numerical",         "residual",
+      "momentum_x", "momentum_y", "momentum_z", "numerical_mapping", "numerical_time"};
   return names;
 }
 
@@ -67,6 +67,7 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
     grid.walls.face[a][0] = settings.walls[2 * a];
     grid.walls.face[a][1] = settings.walls[2 * a + 1];
   }
+  if (grid.walls.absorb()) grid.fields = NodeBlock<D>::fields + D;
   domain_.contact_settings.enabled = settings.contact;
   domain_.contact_settings.detection = settings.detection;
   domain_.contact_settings.normal = settings.normal_rule;
@@ -149,10 +150,26 @@ void SimulationOf<D>::write_history_row() {
   // the oldest.
   if (history_.size() > history_capacity * history_columns().size()) history_.clear();
   const Ledger& l = ledger_;
-  for (const double value :
-       {static_cast<double>(domain_.step), domain_.time, domain_.time_step, l.kinetic, l.internal,
-        l.plastic, l.viscous, l.friction, l.contact, l.external, l.eroded, l.left, l.numerical(),
-        l.residual(), l.momentum[0], l.momentum[1], l.momentum[2], l.mapping, l.time_integration})
+  for (const double value : {static_cast<double>(domain_.step),
+                             domain_.time,
+                             domain_.time_step,
+                             l.kinetic,
+                             l.internal,
+                             l.plastic,
+                             l.viscous,
+                             l.friction,
+                             l.contact,
+                             l.external,
+                             l.absorbed,
+                             l.eroded,
+                             l.left,
+                             l.numerical(),
+                             l.residual(),
+                             l.momentum[0],
+                             l.momentum[1],
+                             l.momentum[2],
+                             l.mapping,
+                             l.time_integration})
     history_.push_back(value);
 }
 

@@ -1,3 +1,4 @@
+#include "mpm/step/absorb.hpp"
 #include "mpm/step/mirror.hpp"
 #include "mpm/step/stages.hpp"
 
@@ -44,22 +45,25 @@ void scatter_forces(const Functions& basis, const TileGrid<D>& grid, const Body<
 template <int D>
 void map_forces(Domain<D>& domain) {
   auto& grid = domain.grid;
+  const bool absorb = grid.walls.absorb();
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
-    clear_fields(block, 1 + D, 1 + 2 * D);
+    clear_fields(block, 1 + D, grid.fields);
     const Body<D>& body = domain.body_of(patch);
     with_basis(grid, body,
                [&](const auto& basis) { scatter_forces(basis, grid, body, patch, block); });
+    if (absorb) scatter_dashpots(grid, body, patch, block);
     fold_at_walls<D>(grid, patch, nullptr, [&](int a) { return block.force(a); });
   });
-  grid.sum_shared_nodes(domain.threads, 1 + D, 1 + 2 * D);
+  grid.sum_shared_nodes(domain.threads, 1 + D, grid.fields);
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const NodeBlock<D> block = grid.block(p);
     for_each_mirrored_node(grid, grid.patches[p], [&](int node, int image, unsigned axes) {
       for (int a = 0; a < D; ++a)
         if (axes >> a & 1u) block.force(a)[image] -= mirrored_weight(domain, block, node, a);
     });
+    if (absorb) add_dashpot_forces(grid.patches[p], block, domain.gravity, domain.time_step);
   });
 }
 

@@ -16,7 +16,7 @@ from mpm3dpp.io.disk import make_folder, writing
 
 COLUMNS = (
     *("step", "time", "dt", "kinetic", "internal", "plastic", "viscous", "friction", "contact"),
-    *("external", "eroded", "left", "numerical", "residual"),
+    *("external", "absorbed", "eroded", "left", "numerical", "residual"),
     *("momentum_x", "momentum_y", "momentum_z"),
 )
 """First columns of the table, in this order; 0 where a term does not exist."""

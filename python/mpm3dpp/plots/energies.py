@@ -21,6 +21,7 @@ _LOST = {
     "viscous": "viscosity",
     "friction": "friction",
     "contact": "contact",
+    "absorbed": "absorbed",
     "eroded": "eroded",
     "left": "left",
     "external": "external work",
