@@ -50,6 +50,24 @@ NB_MODULE(_core, m) {
       .value("second", NormalRule::second)
       .value("stiffer", NormalRule::stiffer);
 
+  nb::class_<TimeFunction>(m, "TimeFunction")
+      .def(nb::init_implicit<double>())
+      .def(
+          "__init__",
+          [](TimeFunction* self, double constant, double amplitude, double frequency, double phase,
+             const std::vector<double>& times, const std::vector<double>& values) {
+            new (self) TimeFunction(constant);
+            self->amplitude = amplitude;
+            self->frequency = frequency;
+            self->phase = phase;
+            self->times = times;
+            self->values = values;
+          },
+          nb::arg("constant"), nb::arg("amplitude"), nb::arg("frequency"), nb::arg("phase"),
+          nb::arg("times"), nb::arg("values"))
+      .def("at", &TimeFunction::at, nb::arg("time"))
+      .def("mean", &TimeFunction::mean, nb::arg("start"), nb::arg("end"));
+
   nb::class_<Settings>(m, "Settings")
       .def(nb::init<>())
       .def_rw("dimension", &Settings::dimension)
@@ -73,6 +91,11 @@ NB_MODULE(_core, m) {
       .def_rw("threads", &Settings::threads)
       .def_rw("energy_growth_limit", &Settings::energy_growth_limit);
 
+  nb::class_<LoadRecord>(m, "Load")
+      .def_ro("name", &LoadRecord::name)
+      .def_ro("force", &LoadRecord::force)
+      .def_ro("impulse", &LoadRecord::impulse)
+      .def_ro("area", &LoadRecord::area);
   nb::class_<Failure>(m, "Failure")
       .def_ro("kind", &Failure::kind)
       .def_ro("body", &Failure::body)
@@ -127,6 +150,15 @@ NB_MODULE(_core, m) {
             s.set_state(body, column, span_of(values));
           },
           nb::arg("body"), nb::arg("column"), nb::arg("values"))
+      .def(
+          "add_load",
+          [](Simulation& s, const std::string& name, int body, bool follows,
+             const std::array<TimeFunction, 3>& value, const std::vector<std::uint32_t>& particles,
+             const Input& areas, const Input& arms) {
+            s.add_load(name, body, follows, value, {particles, span_of(areas), span_of(arms)});
+          },
+          nb::arg("name"), nb::arg("body"), nb::arg("follows"), nb::arg("value"),
+          nb::arg("particles"), nb::arg("areas"), nb::arg("arms"))
       .def("set_friction", &Simulation::set_pair_friction, nb::arg("body_a"), nb::arg("body_b"),
            nb::arg("mu"))
       .def("prepare", &Simulation::prepare, nb::call_guard<nb::gil_scoped_release>())
@@ -146,6 +178,7 @@ NB_MODULE(_core, m) {
       .def_prop_ro("total_mass", &Simulation::total_mass)
       .def("eroded", [](const Simulation& s) { return dict_of(s.eroded()); })
       .def("left", [](const Simulation& s) { return dict_of(s.left()); })
+      .def("loads", &Simulation::loads)
       .def_prop_ro("failure", &Simulation::failure)
       .def("limiter", &Simulation::limiter)
       .def("set_threads", &Simulation::set_threads, nb::arg("count"))

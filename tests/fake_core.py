@@ -103,6 +103,9 @@ class FakeSimulation:
     def left(self) -> dict[str, float]:
         return {"mass": 0.0, "count": 0}
 
+    def loads(self) -> list[Any]:
+        return []
+
     def timers(self) -> dict[str, float]:
         return {"map momentum": 2e-3, "advance particles": 1e-3}
 

@@ -13,6 +13,7 @@ from typing import Any
 
 from mpm3dpp import case, case_parts
 from mpm3dpp.detonation import Detonation
+from mpm3dpp.loads import Load
 from mpm3dpp.materials import catalogue
 from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
 from mpm3dpp.materials.chosen import ACTIONS
@@ -40,6 +41,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
         "[library](library.md).",
     ),
     ("body.NAME", case.Body, ""),
+    ("load.NAME", Load, ""),
     ("detonation", Detonation, "Written `[[detonation]]`, once for each point."),
 )
 

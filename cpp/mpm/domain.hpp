@@ -9,6 +9,7 @@
 #include "mpm/parallel/threads.hpp"
 #include "mpm/particles/lists.hpp"
 #include "mpm/particles/rigid_motion.hpp"
+#include "mpm/particles/surface_load.hpp"
 
 namespace mpm {
 
@@ -26,6 +27,7 @@ struct PatchSums {
       0.0;  // kinetic energy that rigid bodies' increments had beyond a rigid motion [J]
   double gravity_first = 0.0;   // time step x sum over nodes of gravity . velocity [J]
   double gravity_second = 0.0;  // the part of second_order that is the work of gravity [J]
+  double load_first = 0.0, load_second = 0.0;        // the same of loads on surfaces [J]
   double dashpot_first = 0.0, dashpot_second = 0.0;  // the same of walls that absorb [J]
 };
 
@@ -46,14 +48,17 @@ struct Domain {
 
   std::vector<PatchSums<D>> sums;  // one per patch
   ListScratch<D> list_scratch;
-  Gone<D> eroded, left;            // by failure; out of the region that is kept
-  std::vector<RigidMotion> rigid;  // one per body if any is rigid, else none
+  Gone<D> eroded, left;  // by failure; out of the region that is kept
+  std::vector<SurfaceLoad<D>> loads;
+  std::vector<Vec<double, D>> load_parts;  // scratch: force by patch and load [N]
+  std::vector<RigidMotion> rigid;          // one per body if any is rigid, else none
   std::vector<RigidMotion> rigid_before;
   std::vector<RigidSums> rigid_parts, rigid_sums;  // scratch: per patch, per body
   std::vector<Matrix3> rigid_turns;
 
   Body<D>& body_of(const Patch<D>& patch) { return bodies[static_cast<std::size_t>(patch.body)]; }
   bool has_rigid() const { return !rigid.empty(); }
+  bool has_loads() const { return !loads.empty(); }
   bool has_contact() const { return contact_settings.enabled && bodies.size() > 1; }
 };
 

@@ -17,10 +17,21 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import shapes
     from .case import Body, Case, Material, load_case
-    from .case_parts import Contact, ContactPair, Grid, GridBox, Output, Run, Viscosity, Walls
+    from .case_parts import (
+        Contact,
+        ContactPair,
+        Grid,
+        GridBox,
+        GridKeep,
+        Output,
+        Run,
+        Viscosity,
+        Walls,
+    )
     from .detonation import Detonation
     from .errors import CaseError, RunError
     from .io import open_results
+    from .loads import Load
     from .materials import Eos, Failure, Strength
     from .particles import Particles
     from .run import run_case
@@ -35,6 +46,7 @@ _HOMES = {
         "ContactPair",
         "Grid",
         "GridBox",
+        "GridKeep",
         "Output",
         "Run",
         "Viscosity",
@@ -43,6 +55,7 @@ _HOMES = {
     "detonation": ("Detonation",),
     "errors": ("CaseError", "RunError"),
     "io": ("open_results",),
+    "loads": ("Load",),
     "materials": ("Eos", "Failure", "Strength"),
     "particles": ("Particles",),
     "run": ("run_case",),
@@ -61,6 +74,8 @@ __all__ = [
     "Failure",
     "Grid",
     "GridBox",
+    "GridKeep",
+    "Load",
     "Material",
     "Output",
     "Particles",

@@ -21,6 +21,7 @@ from .case_parts import Contact, Grid, Output, Run
 from .detonation import Detonation
 from .errors import CaseError, from_validation, key_text, violation
 from .errors import Path as KeyPath
+from .loads import Load
 from .materials.material import Material
 from .model import CaseModel, Count, Text
 from .particles import AnyParticles
@@ -97,6 +98,7 @@ class Case(CaseModel):
     Attributes:
         title: one line for pictures and results.
         material, body: by name, in the order of the file.
+        load: pressures and tractions on surfaces, by name.
         detonation: the points at which explosives are lit.
         text: the file's text, empty for a case built in Python.
         source: the file's path, None for a case built in Python.
@@ -109,6 +111,7 @@ class Case(CaseModel):
     contact: Contact = Field(default_factory=Contact)
     material: Annotated[dict[str, Material], Field()]
     body: Annotated[dict[str, Body], Field()]
+    load: Annotated[dict[str, Load], Field(default_factory=dict)]
     detonation: list[Detonation] = Field(default_factory=list)
 
     _text: str = PrivateAttr("")

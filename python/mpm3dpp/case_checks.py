@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from .case_parts import STANDARD_FIELDS
 from .detonation import check_detonations
 from .errors import Path, nearest, violation
+from .loads import check_loads
 from .materials import state_columns
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ def check_case(case: Case) -> None:
                 path: Path = ("contact", "pair", index, key, position)
                 raise violation(rule, nearest(word, known), value=word, path=path)
     check_detonations(case)
+    check_loads(case)
     _check_output(case)
 
 

@@ -79,6 +79,22 @@ def gone_lines(manifest: Manifest) -> list[str]:
     return lines
 
 
+def load_lines(manifest: Manifest) -> list[str]:
+    """Return a line for each load on a surface: its impulse and, at the end, its force and area."""
+    flat = manifest.case.get("grid", {}).get("dimension") == 2
+    per, square = ("/m", "m^2 per metre") if flat else ("", "m^2")
+    numbers = slice(0, 2 if flat else 3)
+    return [
+        f"load {name}: impulse [{_listed(load.impulse[numbers])}] N s{per}, at the end force "
+        f"[{_listed(load.force[numbers])}] N{per} on {load.area:.4g} {square}"
+        for name, load in manifest.loads.items()
+    ]
+
+
+def _listed(values: list[float]) -> str:
+    return ", ".join(f"{value:.4g}" for value in values)
+
+
 def speed_line(manifest: Manifest) -> str:
     """Return the line about speed and memory."""
     used = sum(manifest.bytes.values()) / max(1, manifest.particles)

@@ -21,7 +21,7 @@ from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import ResultsWriter
 from .progress import Progress
-from .report import contact_table, energy_line, gone_lines, speed_line
+from .report import contact_table, energy_line, gone_lines, load_lines, speed_line
 from .simulation import Simulation
 
 _BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without contact.
@@ -62,7 +62,8 @@ def run_case(
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
-        lines = [*contact_table(manifest), *gone_lines(manifest), energy_line(manifest)]
+        lines = [*contact_table(manifest), *load_lines(manifest), *gone_lines(manifest)]
+        lines += [energy_line(manifest)]
         print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]))
     if status == "failed":
         raise RunError(f"{reason}; frames and history up to then are in {folder}")

@@ -15,6 +15,7 @@ from .case_notes import notes
 from .detonation import lighting_times
 from .errors import CaseError, RunError, nearest
 from .folders import thread_count
+from .loads import add_load, pieces
 
 
 class Simulation:
@@ -57,6 +58,10 @@ class Simulation:
             arrival = lighting_times(case, body.name, body.positions)
             if arrival is not None:
                 self.core.set_state(number, "lighting_time", arrival)
+            for name, load in case.load.items():
+                if load.body == body.name:
+                    found = pieces(case, name, body.positions, body.spacing)
+                    add_load(self.core, case, name, number, found)
         for a, b, friction in case.frictions():
             self.core.set_friction(a, b, friction)
         try:

@@ -40,6 +40,7 @@ DIMENSIONS: dict[str, tuple[str, str]] = {
     "J/kg": ("a specific energy", '"5 kJ/kg"'),
     "J/kg/K": ("a specific heat", '"383 J/kg/K"'),
     "1/s": ("a rate", '"1 1/s"'),
+    "Hz": ("a frequency", '"50 Hz"'),
     "m^2": ("an area", '"5 mm^2"'),
     "m^3": ("a volume", '"5 mm^3"'),
 }
@@ -58,6 +59,7 @@ COMMON: dict[str, tuple[Decimal, str]] = {
         "rad": {"rad": "1"},
         "kg": {"kg": "1", "g": "1e-3"},
         "K": {"K": "1"},
+        "Hz": {"Hz": "1", "kHz": "1e3"},
     }.items()
     for name, factor in factors.items()
 }

@@ -18,8 +18,9 @@
 // - contact: normal contact that does not exactly conserve energy, with dv from eqs. (11)-(15)
 // alone.
 //
-// The work of gravity and that of walls which absorb waves (their loss is the term absorbed) is
-// taken with the velocity in the middle of the step, so that their part of 1/2 m dv^2 is no error.
+// The work of gravity, of loads on surfaces and of walls which absorb waves (their loss is the term
+// absorbed) is taken with the velocity in the middle of the step, so that their part of 1/2 m dv^2
+// is no error.
 //
 // Eroded particles take their kinetic and recoverable energy at the start of a step to the term
 // eroded, and their momentum out of the sum; the dissipated energies stay where they are. Particles
@@ -41,6 +42,7 @@ struct Ledger {
   double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0,
          external = 0.0, absorbed = 0.0, eroded = 0.0, left = 0.0, mapping = 0.0,
          time_integration = 0.0;     // [J]
+  double load_work = 0.0;            // the part of external that loads have done [J]
   double gone_recoverable = 0.0;     // the part of eroded and left that was internal [J]
   double start = 0.0;                // kinetic and internal energy at the start [J]
   double largest = 0.0;              // largest energy brought in so far [J]
@@ -75,6 +77,8 @@ struct Ledger {
       s.force_work += p.force_work;
       s.gravity_first += p.gravity_first;
       s.gravity_second += p.gravity_second;
+      s.load_first += p.load_first;
+      s.load_second += p.load_second;
       s.dashpot_first += p.dashpot_first;
       s.dashpot_second += p.dashpot_second;
     }
@@ -90,9 +94,10 @@ struct Ledger {
     viscous += s.stress.viscous;
     friction += contacts.friction;
     contact += contacts.energy;
-    external += s.gravity_first + s.gravity_second;
+    load_work += s.load_first + s.load_second;
+    external += s.gravity_first + s.gravity_second + s.load_first + s.load_second;
     absorbed -= s.dashpot_first + s.dashpot_second;
-    const double second = s.second_order - s.gravity_second - s.dashpot_second;
+    const double second = s.second_order - s.gravity_second - s.load_second - s.dashpot_second;
     const double at_end = forces_follow ? 0.0 : 2.0 * second;
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
     time_integration += s.made_rigid;

@@ -38,7 +38,8 @@ const std::vector<std::string>& Simulation::history_columns() {
       "step",       "time",       "dt",         "kinetic",           "internal",
       "plastic",    "viscous",    "friction",   "contact",           "external",
       "absorbed",   "eroded",     "left",       "numerical",         "residual",
-      "momentum_x", "momentum_y", "momentum_z", "numerical_mapping", "numerical_time"};
+      "momentum_x", "momentum_y", "momentum_z", "numerical_mapping", "numerical_time",
+      "load_work"};
   return names;
 }
 
@@ -169,7 +170,8 @@ void SimulationOf<D>::write_history_row() {
                              l.momentum[1],
                              l.momentum[2],
                              l.mapping,
-                             l.time_integration})
+                             l.time_integration,
+                             l.load_work})
     history_.push_back(value);
 }
 

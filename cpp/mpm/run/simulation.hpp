@@ -12,6 +12,7 @@
 #include "mpm/contact/contact_grid.hpp"
 #include "mpm/fields/columns.hpp"
 #include "mpm/materials/material.hpp"
+#include "mpm/math/time_function.hpp"
 #include "mpm/step/scheme.hpp"
 
 namespace mpm {
@@ -64,6 +65,21 @@ struct GoneSum {
   std::size_t count = 0;
 };
 
+/// A load on a part of a body's surface; vectors have zeros behind the dimension.
+struct LoadRecord {
+  std::string name;
+  std::array<double, 3> force{};    // of the last step [N]
+  std::array<double, 3> impulse{};  // since the start [N s]
+  double area = 0.0;                // sum over the pieces [m^2]
+};
+
+/// The pieces of a surface on which a load acts, each with its particle.
+struct Pieces {
+  std::span<const std::uint32_t> particles;  // in the order in which the user gave them
+  std::span<const double> areas;             // outward area vectors [m^2], (pieces, D)
+  std::span<const double> arms;              // from the particle to the piece [m], (pieces, D)
+};
+
 struct Bytes {
   std::size_t particles = 0, grid = 0, contact = 0, other = 0;
 };
@@ -80,6 +96,11 @@ class Simulation {
   /// Values of a state column of a body, one component, in the order in which the user gave the
   /// particles; before prepare().
   virtual void set_state(int body, const std::string& column, std::span<const double> values) = 0;
+  /// Load a part of the surface of a body that deforms: with a pressure (the first of the values)
+  /// or, if it does not follow the surface, with a traction; functions of time [Pa]; before
+  /// prepare().
+  virtual void add_load(const std::string& name, int body, bool follows,
+                        const std::array<TimeFunction, 3>& value, const Pieces& pieces) = 0;
   virtual void set_pair_friction(int a, int b, double mu) = 0;
   /// Sort the particles, make the grid, find the first time step. Once, after the last body.
   virtual void prepare() = 0;
@@ -95,6 +116,7 @@ class Simulation {
   virtual double total_mass() const = 0;  // of all particles, those that are gone included [kg]
   virtual GoneSum eroded() const = 0;
   virtual GoneSum left() const = 0;
+  virtual std::vector<LoadRecord> loads() const = 0;
   virtual const std::optional<Failure>& failure() const = 0;
   virtual Limiter limiter() const = 0;
   virtual Bytes bytes() const = 0;

@@ -15,6 +15,8 @@ class SimulationOf final : public Simulation {
   int add_body(const std::string& name, int material, std::span<const double> positions,
                std::span<const double> velocities, std::span<const double> volumes) override;
   void set_state(int body, const std::string& column, std::span<const double> values) override;
+  void add_load(const std::string& name, int body, bool follows,
+                const std::array<TimeFunction, 3>& value, const Pieces& pieces) override;
   void set_pair_friction(int a, int b, double mu) override;
   void prepare() override;
   std::int64_t advance(std::int64_t max_steps, double end_time) override;
@@ -27,6 +29,7 @@ class SimulationOf final : public Simulation {
   double total_mass() const override;
   GoneSum eroded() const override { return {domain_.eroded.mass, domain_.eroded.count}; }
   GoneSum left() const override { return {domain_.left.mass, domain_.left.count}; }
+  std::vector<LoadRecord> loads() const override;
   const std::optional<Failure>& failure() const override { return failure_; }
   Limiter limiter() const override;
   Bytes bytes() const override;

@@ -41,6 +41,21 @@ class PairRecord:
 
 
 @dataclasses.dataclass
+class LoadRecord:
+    """A load on a surface over the whole run.
+
+    Attributes:
+        impulse: that it has given its body until the end [N s] (per metre in 2D).
+        force: of the last step [N] (per metre in 2D).
+        area: on which it acts at the end [m^2; in 2D m times 1 m].
+    """
+
+    impulse: list[float]
+    force: list[float]
+    area: float
+
+
+@dataclasses.dataclass
 class ContactRecord:
     """Contact of the whole run: most overlapped nodes, most bodies at a node, pairs, bytes.
 
@@ -68,6 +83,7 @@ class Manifest:
         ns_per_particle_step, stages: time in the steps and in each stage [ns].
         peak_memory_bytes: largest resident size of the process [bytes].
         bytes: of the core: particles, grid, contact, other.
+        loads: see `LoadRecord`, by name.
         result_hash: see `mpm3dpp.io.result_hash`.
         contact: see `ContactRecord`.          end_time: time reached [s].
         status, reason: "completed", "interrupted" or "failed", and why.
@@ -96,6 +112,7 @@ class Manifest:
     bytes: dict[str, int]
     result_hash: str
     contact: ContactRecord
+    loads: dict[str, LoadRecord]
     limiter: dict[str, Any] | None
     energies: dict[str, Any]
     compiler: str
@@ -176,6 +193,7 @@ def build_manifest(
         bytes={k: int(v) for k, v in simulation.bytes().items()},
         result_hash=result_hash(simulation),
         contact=_contact(simulation, bodies),
+        loads=_loads(simulation),
         limiter=_limiter(simulation, bodies),
         energies=dict(energies or {}),
         compiler=str(build.get("compiler", "unknown")),
@@ -243,6 +261,13 @@ def _contact(simulation: Any, bodies: Sequence[str]) -> ContactRecord:
         unconverged_nodes=int(summary.get("unconverged_nodes", 0)),
         pairs=pairs,
     )
+
+
+def _loads(simulation: Any) -> dict[str, LoadRecord]:
+    return {
+        load.name: LoadRecord(list(load.impulse), list(load.force), float(load.area))
+        for load in simulation.loads()
+    }
 
 
 def _limiter(simulation: Any, bodies: Sequence[str]) -> dict[str, Any] | None:
