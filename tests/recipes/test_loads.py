@@ -13,6 +13,7 @@ from mpm3dpp import Body, Case, CaseError, Grid, Material, Run, Simulation, shap
 from mpm3dpp.loads import Load
 
 NU = 0.3
+SMOOTH = {"quadratic": 0.0, "linear": 0.3}
 FAR = shapes.Box(lower=(9, 9), upper=(10, 10))
 SQUARE = shapes.Box(lower=(0, 0), upper=(1, 1))
 WAVE = np.sqrt(YOUNG * (1 - NU) / (1 + NU) / (1 - 2 * NU) / DENSITY)
@@ -56,16 +57,18 @@ def bar(dimension: int, pressure: Any = 1000.0, **more: Any) -> Case:
 @pytest.mark.parametrize("scheme", ["usf", "musl"])
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_bar_that_is_pressed_suddenly(dimension: int, scheme: str, basis: str) -> None:
-    """A wave of stress -p and velocity p / (rho c); means of its plateau, 2 % for the ringing.
+    """A wave of stress -p and velocity p / (rho c); means of its plateau, to 1 %.
+
+    Artificial viscosity takes the ringing of a front as steep as the grid, 2 % in such means.
 
     Momentum is p A t and the work p v A t; the area does not change in uniaxial strain.
     """
-    simulation, row = finish(bar(dimension, scheme=scheme, basis=basis))
+    simulation, row = finish(bar(dimension, scheme=scheme, basis=basis, viscosity=SMOOTH))
     x = simulation.column("body", "position")[:, 0] / CELL - 4
-    plateau = (x > 3) & (x < 15)
+    plateau = (x > 2) & (x < 14)
     stress, v = (simulation.column("body", n)[plateau, 0] for n in ("stress", "velocity"))
-    assert stress.mean() == pytest.approx(-1000.0, rel=0.02)
-    assert v.mean() == pytest.approx(1000.0 / (DENSITY * WAVE), rel=0.02)
+    assert stress.mean() == pytest.approx(-1000.0, rel=0.01)
+    assert v.mean() == pytest.approx(1000.0 / (DENSITY * WAVE), rel=0.01)
     force = 1000.0 * (2 * CELL) ** (dimension - 1)
     [load] = simulation.core.loads()
     assert load.force[0] == pytest.approx(force, rel=1e-11)

@@ -96,7 +96,7 @@ def _count(length: float, step: float) -> int:
 
 def _middles(lower: float, upper: float, step: float) -> Array:
     count = _count(upper - lower, step)
-    return lower + (np.arange(count) + 0.5) * ((upper - lower) / count)
+    return np.asarray(lower + (np.arange(count) + 0.5) * ((upper - lower) / count))
 
 
 def _box(shape: Box, side: str, step: float) -> Surface:
