@@ -15,6 +15,17 @@
 using namespace mpm;
 using namespace mpm::bindings;
 
+namespace {
+
+nb::dict dict_of(const GoneSum& gone) {
+  nb::dict d;
+  d["mass"] = gone.mass;
+  d["count"] = gone.count;
+  return d;
+}
+
+}  // namespace
+
 NB_MODULE(_core, m) {
   m.doc() =
       "The compiled core of MPM3Dpp. SI units throughout; see mpm3dpp.Case for defaults and units.";
@@ -27,7 +38,8 @@ NB_MODULE(_core, m) {
   nb::enum_<Wall>(m, "Wall")
       .value("free", Wall::free)
       .value("slip", Wall::slip)
-      .value("fixed", Wall::fixed);
+      .value("fixed", Wall::fixed)
+      .value("absorbing", Wall::absorbing);
   nb::enum_<Detection>(m, "Detection")
       .value("gap", Detection::gap)
       .value("velocity", Detection::velocity);
@@ -62,6 +74,12 @@ NB_MODULE(_core, m) {
       .def_rw("cell_size", &Settings::cell_size)
       .def_rw("origin", &Settings::origin)
       .def_rw("box_cells", &Settings::box_cells)
+      .def_rw("doubling_tiles", &Settings::doubling_tiles)
+      .def_rw("doubling_bytes", &Settings::doubling_bytes)
+      .def_rw("doubling_times", &Settings::doubling_times)
+      .def_rw("keep", &Settings::keep)
+      .def_rw("keep_lower", &Settings::keep_lower)
+      .def_rw("keep_upper", &Settings::keep_upper)
       .def_rw("walls", &Settings::walls)
       .def_rw("basis", &Settings::basis)
       .def_rw("scheme", &Settings::scheme)
@@ -76,6 +94,11 @@ NB_MODULE(_core, m) {
       .def_rw("threads", &Settings::threads)
       .def_rw("energy_growth_limit", &Settings::energy_growth_limit);
 
+  nb::class_<LoadRecord>(m, "Load")
+      .def_ro("name", &LoadRecord::name)
+      .def_ro("force", &LoadRecord::force)
+      .def_ro("impulse", &LoadRecord::impulse)
+      .def_ro("area", &LoadRecord::area);
   nb::class_<Failure>(m, "Failure")
       .def_ro("kind", &Failure::kind)
       .def_ro("body", &Failure::body)
@@ -132,6 +155,15 @@ NB_MODULE(_core, m) {
           nb::arg("body"), nb::arg("column"), nb::arg("values"))
       .def("set_motion", &Simulation::set_motion, nb::arg("body"), nb::arg("velocity"),
            nb::arg("spin"), nb::arg("centre"))
+      .def(
+          "add_load",
+          [](Simulation& s, const std::string& name, int body, bool follows,
+             const std::array<TimeFunction, 3>& value, const std::vector<std::uint32_t>& particles,
+             const Input& areas, const Input& arms) {
+            s.add_load(name, body, follows, value, {particles, span_of(areas), span_of(arms)});
+          },
+          nb::arg("name"), nb::arg("body"), nb::arg("follows"), nb::arg("value"),
+          nb::arg("particles"), nb::arg("areas"), nb::arg("arms"))
       .def("set_friction", &Simulation::set_pair_friction, nb::arg("body_a"), nb::arg("body_b"),
            nb::arg("mu"))
       .def("prepare", &Simulation::prepare, nb::call_guard<nb::gil_scoped_release>())
@@ -149,13 +181,9 @@ NB_MODULE(_core, m) {
                      return n;
                    })
       .def_prop_ro("total_mass", &Simulation::total_mass)
-      .def("eroded",
-           [](const Simulation& s) {
-             nb::dict d;
-             d["mass"] = s.eroded().mass;
-             d["count"] = s.eroded().count;
-             return d;
-           })
+      .def("eroded", [](const Simulation& s) { return dict_of(s.eroded()); })
+      .def("left", [](const Simulation& s) { return dict_of(s.left()); })
+      .def("loads", &Simulation::loads)
       .def_prop_ro("failure", &Simulation::failure)
       .def("limiter", &Simulation::limiter)
       .def("set_threads", &Simulation::set_threads, nb::arg("count"))

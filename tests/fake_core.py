@@ -10,7 +10,8 @@ import numpy as np
 
 COLUMNS = (
     *("step", "time", "dt", "kinetic", "internal", "plastic", "viscous", "friction", "contact"),
-    *("external", "eroded", "numerical", "residual", "momentum_x", "momentum_y", "momentum_z"),
+    *("external", "absorbed", "eroded", "left", "numerical", "residual"),
+    *("momentum_x", "momentum_y", "momentum_z"),
     *("numerical_mapping", "numerical_time"),
 )
 SPEED, STEP, SIZE = 10.0, 1e-5, 1e-3
@@ -40,7 +41,7 @@ class FakeSimulation:
             touching = float(self.time >= self._first)
             kinetic = 4.0 - touching
             momentum = [0.0, 0.0, 0.0]
-            ledger = [0, 0, 0, 0, 0, 0, -1e-3, 1e-16, *momentum, -6e-4, -4e-4]
+            ledger = [0, 0, 0, 0, 0, 0, 0, 0, -1e-3, 1e-16, *momentum, -6e-4, -4e-4]
             self._rows.append([self.step, self.time, self.dt, kinetic, touching, *ledger])
 
     def history(self) -> np.ndarray:
@@ -98,6 +99,12 @@ class FakeSimulation:
 
     def eroded(self) -> dict[str, float]:
         return {"mass": 0.0, "count": 0}
+
+    def left(self) -> dict[str, float]:
+        return {"mass": 0.0, "count": 0}
+
+    def loads(self) -> list[Any]:
+        return []
 
     def timers(self) -> dict[str, float]:
         return {"map momentum": 2e-3, "advance particles": 1e-3}

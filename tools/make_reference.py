@@ -11,8 +11,9 @@ import re
 from pathlib import Path
 from typing import Any
 
-from mpm3dpp import case, case_parts
+from mpm3dpp import case, case_grid, case_parts
 from mpm3dpp.detonation import Detonation
+from mpm3dpp.loads import Load
 from mpm3dpp.materials import catalogue
 from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
 from mpm3dpp.materials.chosen import ACTIONS
@@ -25,9 +26,11 @@ from mpm3dpp.shapes.base import KINDS
 NOTE = "Made by `tools/make_reference.py` from the code: do not edit."
 # Heading, class, note. The tables of a case in the order in which one writes them.
 TABLES: tuple[tuple[str, type, str], ...] = (
-    ("grid", case_parts.Grid, ""),
-    ("grid.box", case_parts.GridBox, ""),
-    ("grid.box.walls", case_parts.Walls, ""),
+    ("grid", case_grid.Grid, ""),
+    ("grid.box", case_grid.GridBox, ""),
+    ("grid.box.walls", case_grid.Walls, ""),
+    ("grid.keep", case_grid.GridKeep, ""),
+    ("grid.doubling", case_grid.GridDoubling, ""),
     ("run", case_parts.Run, ""),
     ("run.viscosity", case_parts.Viscosity, "`viscosity = {}` takes both defaults."),
     ("output", case_parts.Output, ""),
@@ -41,6 +44,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ),
     ("body.NAME", case.Body, ""),
     ("body.NAME.motion", Motion, ""),
+    ("load.NAME", Load, ""),
     ("detonation", Detonation, "Written `[[detonation]]`, once for each point."),
 )
 

@@ -11,6 +11,7 @@
 #include "mpm/parallel/threads.hpp"
 #include "mpm/particles/lists.hpp"
 #include "mpm/particles/rigid_motion.hpp"
+#include "mpm/particles/surface_load.hpp"
 
 namespace mpm {
 
@@ -38,6 +39,8 @@ struct PatchSums {
   double gravity_first = 0.0;   // time step x sum over nodes of gravity . velocity [J]
   double gravity_second = 0.0;  // the part of second_order that is the work of gravity [J]
   PrescribedSums<D> prescribed;
+  double load_first = 0.0, load_second = 0.0;        // the same of loads on surfaces [J]
+  double dashpot_first = 0.0, dashpot_second = 0.0;  // the same of walls that absorb [J]
 };
 
 template <int D>
@@ -58,7 +61,9 @@ struct Domain {
 
   std::vector<PatchSums<D>> sums;  // one per patch
   ListScratch<D> list_scratch;
-  Eroded<D> eroded;
+  Gone<D> eroded, left;  // by failure; out of the region that is kept
+  std::vector<SurfaceLoad<D>> loads;
+  std::vector<Vec<double, D>> load_parts;  // scratch: force by patch and load [N]
   std::vector<RigidMotion> rigid;  // one per body if any rigid one is free to move, else none
   std::vector<RigidMotion> rigid_before;
   std::vector<RigidSums> rigid_parts, rigid_sums;  // scratch: per patch, per body
@@ -69,6 +74,7 @@ struct Domain {
   bool has_prescribed() const {
     return std::any_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.prescribed; });
   }
+  bool has_loads() const { return !loads.empty(); }
   bool has_contact() const { return contact_settings.enabled && bodies.size() > 1; }
 };
 

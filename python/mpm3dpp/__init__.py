@@ -17,10 +17,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import shapes
     from .case import Body, Case, Material, load_case
-    from .case_parts import Contact, ContactPair, Grid, GridBox, Output, Run, Viscosity, Walls
+    from .case_grid import Grid, GridBox, GridDoubling, GridKeep, Walls
+    from .case_parts import Contact, ContactPair, Output, Run, Viscosity
     from .detonation import Detonation
     from .errors import CaseError, RunError
     from .io import open_results
+    from .loads import Load
     from .materials import Eos, Failure, Strength
     from .motion import Motion
     from .particles import Particles
@@ -32,19 +34,12 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "case": ("Body", "Case", "Material", "load_case"),
-    "case_parts": (
-        "Contact",
-        "ContactPair",
-        "Grid",
-        "GridBox",
-        "Output",
-        "Run",
-        "Viscosity",
-        "Walls",
-    ),
+    "case_grid": ("Grid", "GridBox", "GridDoubling", "GridKeep", "Walls"),
+    "case_parts": ("Contact", "ContactPair", "Output", "Run", "Viscosity"),
     "detonation": ("Detonation",),
     "errors": ("CaseError", "RunError"),
     "io": ("open_results",),
+    "loads": ("Load",),
     "materials": ("Eos", "Failure", "Strength"),
     "motion": ("Motion",),
     "particles": ("Particles",),
@@ -65,6 +60,9 @@ __all__ = [
     "Failure",
     "Grid",
     "GridBox",
+    "GridDoubling",
+    "GridKeep",
+    "Load",
     "Material",
     "Motion",
     "Output",

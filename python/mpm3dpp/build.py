@@ -55,7 +55,8 @@ def build(case: Case) -> list[FilledBody]:
 
     Raises:
         CaseError: a body holds no particle, misses its mass by more than half, or reaches out of
-            the box; or particles of two bodies stand in the same place.
+            the box or of the region that is kept; or particles of two bodies stand in the same
+            place.
     """
     from .case_checks import check_case
     from .errors import from_violation
@@ -143,22 +144,33 @@ def _start(body: Body, positions: Array, volumes: Array) -> Array:
 
 
 def _check_box(case: Case, name: str, positions: Array) -> None:
-    """Raise if a particle stands outside the box."""
-    box = case.grid.box
-    if box is None:
-        return
+    """Raise if a particle stands outside the box, or the region that is kept."""
+    grid = case.grid
+    if grid.box is not None:
+        _check_inside(case, name, positions, "box", (grid.box.lower, grid.box.upper))
+    _check_inside(case, name, positions, "keep", grid.kept)
+
+
+def _check_inside(
+    case: Case,
+    name: str,
+    positions: Array,
+    region: str,
+    corners: tuple[tuple[float, ...], tuple[float, ...]],
+) -> None:
     slack = _SLACK * case.grid.cell_size
+    what = "box" if region == "box" else "region"
     for d, axis in enumerate("xyz"[: case.grid.dimension]):
         x = positions[:, d]
-        for limit, outside in ((box.lower[d], -x), (box.upper[d], x)):
-            sign = 1 if limit == box.upper[d] else -1
+        for limit, outside in ((corners[0][d], -x), (corners[1][d], x)):
+            sign = 1 if limit == corners[1][d] else -1
             reach = float(outside.max())
             if reach > sign * limit + slack:
                 count = int((outside > sign * limit + slack).sum())
                 side = f"{axis} {'>' if sign > 0 else '<'} {limit:g} m"
-                rule = f"reaches out of grid.box: {count} of its particles are at {side}"
+                rule = f"reaches out of grid.{region}: {count} of its particles are at {side}"
                 filling = case.body[name].filling
-                remedy = f"move the {filling}, or enlarge the box"
+                remedy = f"move the {filling}, or enlarge the {what}"
                 raise case.error(("body", name, filling), rule, remedy)
 
 

@@ -17,10 +17,12 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from . import case_file
 from .case_checks import check_case
-from .case_parts import Contact, Grid, Output, Run
+from .case_grid import Grid
+from .case_parts import Contact, Output, Run
 from .detonation import Detonation
 from .errors import CaseError, from_validation, key_text, violation
 from .errors import Path as KeyPath
+from .loads import Load
 from .materials.material import Material
 from .model import CaseModel, Count, Text
 from .motion import MaybeMotion
@@ -101,6 +103,7 @@ class Case(CaseModel):
     Attributes:
         title: one line for pictures and results.
         material, body: by name, in the order of the file.
+        load: pressures and tractions on surfaces, by name.
         detonation: the points at which explosives are lit.
         text: the file's text, empty for a case built in Python.
         source: the file's path, None for a case built in Python.
@@ -113,6 +116,7 @@ class Case(CaseModel):
     contact: Contact = Field(default_factory=Contact)
     material: Annotated[dict[str, Material], Field()]
     body: Annotated[dict[str, Body], Field()]
+    load: Annotated[dict[str, Load], Field(default_factory=dict)]
     detonation: list[Detonation] = Field(default_factory=list)
 
     _text: str = PrivateAttr("")

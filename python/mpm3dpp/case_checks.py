@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from .case_parts import STANDARD_FIELDS
 from .detonation import check_detonations
 from .errors import Path, nearest, violation
+from .loads import check_loads
 from .materials import state_columns
 from .motion import check_motion
 
@@ -46,6 +47,7 @@ def check_case(case: Case) -> None:
                 path: Path = ("contact", "pair", index, key, position)
                 raise violation(rule, nearest(word, known), value=word, path=path)
     check_detonations(case)
+    check_loads(case)
     _check_output(case)
 
 
@@ -127,6 +129,8 @@ def _check_output(case: Case) -> None:
     extra = ["volume", "mass", *state_columns(set().union(*(m.models for m in materials)))]
     extra += ["internal_energy"] if any(m.eos is not None for m in materials) else []
     extra += ["failed"] if any(m.failure for m in materials) else []
+    if case.grid.keep is not None:
+        extra += ["failed", "recoverable_energy"]
     if any(f.action == "erode" for m in materials for f in m.failure):
         extra.append("recoverable_energy")
     if any(sum(case.viscosity_of(name)) > 0 for name in used):

@@ -9,7 +9,9 @@ import numpy as np
 
 from .build import FilledBody
 from .case import Case
+from .case_grid import FACES
 from .detonation import EXPLOSIVE
+from .time_functions import TimeFunction
 
 _STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
 
@@ -21,7 +23,7 @@ def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
         case: a checked case.
         bodies: its bodies, filled.
     """
-    return [*_materials(case), *_rigid(case), *_detonations(case, bodies)]
+    return [*_materials(case), *_rigid(case), *_detonations(case, bodies), *_walls(case)]
 
 
 def _materials(case: Case) -> list[str]:
@@ -64,6 +66,21 @@ def _rigid(case: Case) -> list[str]:
         f"({', '.join(name for name in rigid if name != free[0])}): bodies that do not deform do "
         "not act on each other; give one of the two a strength that deforms if they meet"
     ]
+
+
+def _walls(case: Case) -> list[str]:
+    """Walls that absorb waves where gravity presses on them."""
+    found = []
+    for d, g in enumerate(case.run.gravity):
+        if isinstance(g, TimeFunction):
+            continue
+        face = 2 * d + (g > 0.0)
+        if g != 0.0 and case.grid.walls[face] == "absorbing":
+            found.append(
+                f"grid.box.walls.{FACES[face]} absorbs waves but holds no weight, and run.gravity "
+                "presses on it: what stands there sinks; give slip or fixed unless that is meant"
+            )
+    return found
 
 
 def _detonations(case: Case, bodies: list[FilledBody]) -> list[str]:

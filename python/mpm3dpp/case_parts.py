@@ -3,132 +3,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
 from .errors import violation
 from .model import CaseModel, Choice, Count, Exactly, Flag, Text
 from .time_functions import TimedAcceleration
-from .units import NonNegative, Point, PositiveLength, Quantity, Time
+from .units import NonNegative, Quantity, Time
 
-FACES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 STANDARD_FIELDS = ("position", "velocity", "stress", "pressure", "von_mises", "body", "material")
-_WHOLE = 1e-6  # A box that misses a whole number of cells by less, per cell, is taken as whole.
-
-Wall = Annotated[str, Choice(("free", "slip", "fixed"), (("symmetry", "slip"),))]
-
-
-class Walls(CaseModel):
-    """What the faces of the box do: `free` (nothing), `slip` (or `symmetry`), `fixed`.
-
-    One word in place of the table holds for all faces. In 2D there are no z faces.
-    """
-
-    x_min: Wall = "free"
-    x_max: Wall = "free"
-    y_min: Wall = "free"
-    y_max: Wall = "free"
-    z_min: Wall = "free"
-    z_max: Wall = "free"
-
-    @model_validator(mode="before")
-    @classmethod
-    def _one_word(cls, data: Any) -> Any:
-        if isinstance(data, str):
-            word = Choice(("free", "slip", "fixed"), (("symmetry", "slip"),)).parse(data)
-            return dict.fromkeys(FACES, word)
-        return data
-
-
-class GridBox(CaseModel):
-    """The region of the computation; without it the grid has no bounds.
-
-    Attributes:
-        lower, upper: opposite corners [m], D numbers, a whole number of cells apart.
-        walls: what the faces do.
-    """
-
-    lower: Point
-    upper: Point
-    walls: Walls = Field(default_factory=Walls)
-
-
-class Grid(CaseModel):
-    """The background grid.
-
-    Attributes:
-        dimension: 2 (plane strain) or 3.
-        cell_size: edge of the square or cubic cells [m].
-        origin: a corner of a cell [m], D numbers; by default the box's lower corner, else zero.
-        box: bounds and walls; None for an unbounded grid.
-        basis: shape functions. "gimp" (uniform GIMP, Bardenhagen & Kober 2004) stays accurate
-            where stressed particles cross cells; "linear" is the paper's, the fastest.
-    """
-
-    dimension: Annotated[int, Exactly(int, 2, 3)]
-    cell_size: PositiveLength
-    origin: Point = ()
-    box: GridBox | None = None
-    basis: Annotated[str, Choice(("gimp", "linear"))] = "gimp"
-
-    @model_validator(mode="after")
-    def _consistent(self) -> Grid:
-        names: dict[tuple[str, ...], tuple[float, ...]] = {("origin",): self.origin}
-        if self.box is not None:
-            names |= {("box", "lower"): self.box.lower, ("box", "upper"): self.box.upper}
-        for path, vector in names.items():
-            if vector and len(vector) != self.dimension:
-                rule = f"must have {self.dimension} numbers, as grid.dimension = {self.dimension}"
-                raise violation(rule, f"it has {len(vector)}", value=list(vector), path=path)
-        lower = self.box.lower if self.box is not None else (0.0,) * self.dimension
-        self.__dict__["origin"] = self.origin or lower
-        if self.box is not None:
-            self._check_box(self.box)
-        return self
-
-    def _check_box(self, box: GridBox) -> None:
-        for d in range(self.dimension):
-            cells = (box.upper[d] - box.lower[d]) / self.cell_size
-            if cells <= 0:
-                rule, remedy = f"must be > lower = {box.lower[d]:g} m", "swap the two corners"
-                raise violation(rule, remedy, value=box.upper[d], path=("box", "upper", d))
-            if abs(cells - round(cells)) > _WHOLE * max(1.0, cells):
-                near = box.lower[d] + max(1, round(cells)) * self.cell_size
-                rule = f"must be a whole number of cells from lower (it is {cells:.4f} cells away)"
-                remedy = f"for example {near:.6g} m"
-                raise violation(rule, remedy, value=box.upper[d], path=("box", "upper", d))
-            off = (box.lower[d] - self.origin[d]) / self.cell_size
-            if abs(off - round(off)) > _WHOLE * max(1.0, abs(off)):
-                rule = "must be a whole number of cells from the box's lower corner"
-                remedy = "leave it out, then it is that corner"
-                raise violation(rule, remedy, value=self.origin[d], path=("origin", d))
-        if self.dimension == 2 and (box.walls.z_min, box.walls.z_max) != ("free", "free"):
-            uniform = len({getattr(box.walls, face) for face in FACES}) == 1
-            if not uniform:
-                rule = "has z faces but the grid is 2D"
-                raise violation(rule, "remove z_min and z_max", path=("box", "walls"))
-
-    @property
-    def lower(self) -> tuple[float, ...]:
-        """Corner from which the core counts cells [m], D numbers: the box's, else the origin."""
-        return self.box.lower if self.box is not None else self.origin
-
-    @property
-    def box_cells(self) -> tuple[int, ...] | None:
-        """Number of cells of the box along each axis, D numbers; None without a box."""
-        if self.box is None:
-            return None
-        pairs = zip(self.box.lower, self.box.upper, strict=True)
-        return tuple(round((upper - lower) / self.cell_size) for lower, upper in pairs)
-
-    @property
-    def walls(self) -> tuple[str, ...]:
-        """Words for the six faces x- x+ y- y+ z- z+; z is `free` in 2D, all are without a box."""
-        if self.box is None:
-            return ("free",) * 6
-        used = FACES[: 2 * self.dimension]
-        return tuple(getattr(self.box.walls, f) if f in used else "free" for f in FACES)
 
 
 class Viscosity(CaseModel):

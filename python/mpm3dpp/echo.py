@@ -11,6 +11,7 @@ import numpy as np
 from .build import FilledBody, warnings
 from .case import Case
 from .case_notes import notes
+from .loads import pieces
 from .materials import Failure, catalogue
 from .plots.labels import scaled
 
@@ -93,6 +94,13 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
             f"body {body.name}: {len(body.positions):,} particles {body.spacing:.4g} m apart, "
             f"{body.material}, mass {body.mass:.6g} kg{per_metre}, {source}"
             f"{_motion_in_words(case, body.name)}"
+        )
+    for name, load in case.load.items():
+        [body] = [body for body in bodies if body.name == load.body]
+        found = pieces(case, name, body.positions, body.spacing)
+        lines.append(
+            f"load {name}: on {load.side} of {load.body}, {found.area:.6g} m^2{per_metre}, carried "
+            f"by {len(found.particles):,} particles"
         )
     lines += material_lines(case)
     particles = sum(len(body.positions) for body in bodies)

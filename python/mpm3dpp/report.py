@@ -62,17 +62,37 @@ def energy_line(manifest: Manifest) -> str:
     return line
 
 
-def erosion_line(manifest: Manifest) -> list[str]:
-    """Return the line about particles that have eroded, with their mass and energy; or none."""
-    count, mass = int(manifest.eroded["count"]), float(manifest.eroded["mass"])
-    if not count:
-        return []
+def gone_lines(manifest: Manifest) -> list[str]:
+    """Return a line each about particles that have eroded or left, with mass and energy."""
+    lines = []
     per = "/m" if manifest.case.get("grid", {}).get("dimension") == 2 else ""
-    energy = manifest.energies.get("final", {}).get("eroded", 0.0)
+    words = {"eroded": manifest.eroded, "left": manifest.left}
+    for word, gone in words.items():
+        count, mass = int(gone["count"]), float(gone["mass"])
+        if not count:
+            continue
+        energy = manifest.energies.get("final", {}).get(word, 0.0)
+        lines.append(
+            f"{word}: {count:,} of {manifest.particles:,} particles, {mass:.4g} kg{per} "
+            f"({mass / manifest.mass:.2%} of the mass), {energy:.4g} J{per}"
+        )
+    return lines
+
+
+def load_lines(manifest: Manifest) -> list[str]:
+    """Return a line for each load on a surface: its impulse and, at the end, its force and area."""
+    flat = manifest.case.get("grid", {}).get("dimension") == 2
+    per, square = ("/m", "m^2 per metre") if flat else ("", "m^2")
+    numbers = slice(0, 2 if flat else 3)
     return [
-        f"eroded: {count:,} of {manifest.particles:,} particles, {mass:.4g} kg{per} "
-        f"({mass / manifest.mass:.2%} of the mass), {energy:.4g} J{per}"
+        f"load {name}: impulse [{_listed(load.impulse[numbers])}] N s{per}, at the end force "
+        f"[{_listed(load.force[numbers])}] N{per} on {load.area:.4g} {square}"
+        for name, load in manifest.loads.items()
     ]
+
+
+def _listed(values: list[float]) -> str:
+    return ", ".join(f"{value:.4g}" for value in values)
 
 
 def speed_line(manifest: Manifest) -> str:

@@ -21,7 +21,7 @@ from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import ResultsWriter
 from .progress import Progress
-from .report import contact_table, energy_line, erosion_line, speed_line
+from .report import contact_table, energy_line, gone_lines, load_lines, speed_line
 from .simulation import Simulation
 
 _BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without contact.
@@ -62,7 +62,8 @@ def run_case(
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
-        lines = [*contact_table(manifest), *erosion_line(manifest), energy_line(manifest)]
+        lines = [*contact_table(manifest), *load_lines(manifest), *gone_lines(manifest)]
+        lines += [energy_line(manifest)]
         print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]))
     if status == "failed":
         raise RunError(f"{reason}; frames and history up to then are in {folder}")
@@ -137,13 +138,14 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
 
 
 def _fields(case: Case) -> list[str]:
-    """Return the columns to write: those asked for, and `failed` where particles may erode.
+    """Return the columns to write: those asked for; `failed` where particles may erode or leave.
 
     Without it a reader could not tell which particles are gone.
     """
     used = {body.material for body in case.body.values()}
-    erode = any(f.action == "erode" for name in used for f in case.material[name].failure)
-    return list(dict.fromkeys([*case.output.fields, *(["failed"] if erode else [])]))
+    goes = any(f.action == "erode" for name in used for f in case.material[name].failure)
+    goes = goes or case.grid.keep is not None
+    return list(dict.fromkeys([*case.output.fields, *(["failed"] if goes else [])]))
 
 
 def _steps(most: int, frames: list[float], core: Any) -> int:

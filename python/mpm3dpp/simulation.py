@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -15,6 +16,7 @@ from .case_notes import notes
 from .detonation import lighting_times
 from .errors import CaseError, RunError, nearest
 from .folders import thread_count
+from .loads import add_load, pieces
 from .motion import Motion
 from .time_functions import TimeFunction
 
@@ -62,6 +64,10 @@ class Simulation:
             arrival = lighting_times(case, body.name, body.positions)
             if arrival is not None:
                 self.core.set_state(number, "lighting_time", arrival)
+            for name, load in case.load.items():
+                if load.body == body.name:
+                    found = pieces(case, name, body.positions, body.spacing)
+                    add_load(self.core, case, name, number, found)
         for a, b, friction in case.frictions():
             self.core.set_friction(a, b, friction)
         try:
@@ -135,6 +141,13 @@ class Simulation:
         """
         return dict(self.core.eroded())
 
+    def left(self) -> dict[str, Any]:
+        """Return `mass` [kg] (per metre in 2D) and `count` of the particles that left `grid.keep`.
+
+        They stay in the columns as they were when they left, with `failed` = 4.
+        """
+        return dict(self.core.left())
+
     def set_velocity(self, body: str, velocities: np.ndarray) -> None:
         """Give the particles of a body velocities [m/s], shape (n, D), in the order of filling.
 
@@ -177,6 +190,13 @@ def _settings(case: Case, threads: int) -> _core.Settings:
     settings.box_cells = three(grid.box_cells, 0) if grid.box_cells else [0, 0, 0]
     names = ["slip" if wall == "symmetry" else wall for wall in grid.walls]
     settings.walls = [_core.Wall[name] for name in [*names, *["free"] * 6][:6]]
+    if grid.doubling is not None:
+        settings.doubling_tiles = grid.doubling.tiles or 0
+        settings.doubling_bytes = grid.doubling.bytes or 0
+        settings.doubling_times = grid.doubling.times
+    settings.keep = grid.keep is not None
+    settings.keep_lower = three(grid.kept[0], -math.inf)
+    settings.keep_upper = three(grid.kept[1], math.inf)
     settings.basis = _core.Basis[grid.basis]
     settings.scheme = _core.Scheme[run.scheme]
     settings.time_step_factor = run.time_step_factor

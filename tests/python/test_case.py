@@ -12,7 +12,8 @@ import mpm3dpp
 from mpm3dpp.build import build, warnings
 from mpm3dpp.case import Body, Case, Material, load_case
 from mpm3dpp.case_file import locate_keys, parse
-from mpm3dpp.case_parts import Contact, ContactPair, Grid, GridBox, Output, Run
+from mpm3dpp.case_grid import Grid, GridBox
+from mpm3dpp.case_parts import Contact, ContactPair, Output, Run
 from mpm3dpp.echo import echo, occupied_cells, time_step
 from mpm3dpp.errors import CaseError
 from mpm3dpp.folders import default_folder, thread_count

@@ -47,8 +47,8 @@ UNSTABLE = CASE.replace('cell_size = "10 mm"', 'cell_size = "10 mm"\nbasis = "li
     "time_step_factor = 0.3", 'time_step_factor = 0.5\nscheme = "usl"'
 )
 FIRST = (
-    "step,time,dt,kinetic,internal,plastic,viscous,friction,contact,external,eroded,numerical,"
-    "residual,momentum_x,momentum_y,momentum_z"
+    "step,time,dt,kinetic,internal,plastic,viscous,friction,contact,external,absorbed,"
+    "eroded,left,numerical,residual,momentum_x,momentum_y,momentum_z"
 )
 KEYS = (
     *("version", "case_hash", "mass", "cell_size", "particles", "threads", "steps", "wall_time"),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mpm3dpp.case import Body
-from mpm3dpp.case_parts import Grid
+from mpm3dpp.case_grid import Grid
 from mpm3dpp.errors import CaseError
 from mpm3dpp.overlap import close_particles
 from mpm3dpp.shapes import (

@@ -24,6 +24,7 @@
   X(material) \
   X(plane_strain) \
   X(mohr_coulomb) \
+  X(surface_load) \
   X(two_bodies) \
   X(many_bodies) \
   X(separation) \

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mpm/fields/aligned.hpp"
+#include "mpm/grid/keep.hpp"
 #include "mpm/grid/patch.hpp"
 #include "mpm/grid/walls.hpp"
 #include "mpm/math/vec.hpp"
@@ -24,8 +25,10 @@ class TileGrid {
   // shifted by whole cells is cut into the same tiles and gives the same bits.
   Index<D> anchor{};
   Walls<D> walls;
-  bool bonded = false;            // all bodies have one velocity field: they share their nodes
-  std::vector<Patch<D>> patches;  // by body, then by tile
+  Keep<D> keep;
+  int fields = NodeBlock<D>::fields;  // of a block, those of forces at walls included
+  bool bonded = false;                // all bodies have one velocity field: they share their nodes
+  std::vector<Patch<D>> patches;      // by body, then by tile
 
   /// Position along an axis in cells from the origin. Every kernel uses this one expression, so
   /// that all agree on cells.
@@ -65,12 +68,14 @@ class TileGrid {
     shape = BlockShape<D>(margin_of(chosen));
   }
   std::size_t block_size() const {
-    return static_cast<std::size_t>(NodeBlock<D>::fields) *
-           static_cast<std::size_t>(shape.node_stride);
+    return static_cast<std::size_t>(fields) * static_cast<std::size_t>(shape.node_stride);
   }
   NodeBlock<D> block(std::size_t patch) {
     return {node_memory_.data() + patch * block_size(), shape.node_stride};
   }
+  /// What one patch needs of memory.
+  std::size_t patch_bytes() const { return block_size() * sizeof(double) + sizeof(Patch<D>); }
+  void release_nodes() { node_memory_.release_and_allocate(0); }
   std::size_t node_bytes() const {
     return node_memory_.bytes() + patches.capacity() * sizeof(Patch<D>);
   }

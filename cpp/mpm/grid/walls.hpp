@@ -4,14 +4,22 @@
 
 namespace mpm {
 
-/// free: no constraint; slip (symmetry): no motion across the face; fixed: no motion.
-enum class Wall { free, slip, fixed };
+/// free: no constraint; slip (symmetry): no motion across the face; fixed: no motion; absorbing:
+/// dashpots that let waves pass.
+enum class Wall { free, slip, fixed, absorbing };
 
 template <int D>
 struct Walls {
   bool exist = false;    // is there a box at all
   Index<D> cells{};      // cells of the box along each axis
   Wall face[D][2] = {};  // [axis][lower, upper]
+
+  bool absorb() const {
+    bool any = false;
+    for (const auto& faces : face)
+      any = any || faces[0] == Wall::absorbing || faces[1] == Wall::absorbing;
+    return exist && any;
+  }
 
   /// Bit a is set if a node may not move along axis a. Nodes beyond a fixed face are held like
   /// those on it; those beyond a slip face are images of nodes before it.
@@ -21,9 +29,8 @@ struct Walls {
     for (int a = 0; a < D; ++a) {
       for (int side = 0; side < 2; ++side) {
         const int depth = depth_beyond(node, a, side);
-        if (depth < 0 || face[a][side] == Wall::free) continue;
-        if (depth > 0 && face[a][side] == Wall::slip) continue;
-        axes |= face[a][side] == Wall::fixed ? (1u << D) - 1u : 1u << a;
+        if (depth == 0 && face[a][side] == Wall::slip) axes |= 1u << a;
+        if (depth >= 0 && face[a][side] == Wall::fixed) axes |= (1u << D) - 1u;
       }
     }
     return axes;

@@ -75,6 +75,19 @@ void check_together(const Strength& strength, const Failure& failure, bool has_e
 
 }  // namespace
 
+double shear_modulus(const Material& material) {
+  return std::visit(
+      []<class M>(const M& model) {
+        if constexpr (requires { model.elastic.G; })
+          return model.elastic.G;
+        else if constexpr (requires { model.G; })
+          return model.G;
+        else
+          return 0.0;
+      },
+      material.strength);
+}
+
 Bounds bounds(Rule rule) {
   constexpr double none = std::numeric_limits<double>::infinity();
   switch (rule) {

@@ -54,6 +54,9 @@ struct Material {
   }
 };
 
+/// Shear modulus at small strain [Pa]; 0 of what resists no shear.
+double shear_modulus(const Material& material);
+
 /// A model as the user gives it: a name and numbers in SI units.
 struct ModelChoice {
   std::string name;

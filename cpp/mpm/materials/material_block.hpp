@@ -35,8 +35,8 @@ struct MaterialColumns {
   int state = -1;               // of the strength model
   int viscosity_pressure = -1;  // of the artificial viscosity
   int energy = -1;              // internal, per initial volume; with an EOS
-  int recoverable = -1;         // energy per initial volume; with a failure model that erodes
-  int failed = -1;              // FailureAction; with failure models
+  int recoverable = -1;         // energy per initial volume; where particles may be taken out
+  int failed = -1;              // FailureAction; with failure models, or where particles may leave
   int failure_state = -1;       // of the failure models, one after another
 };
 

@@ -19,7 +19,7 @@ struct Body {
   MaterialColumns at{};           // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
   std::vector<std::uint32_t> id;  // place of each particle in the order in which the user gave them
   std::vector<std::uint32_t> order;       // particles by patch, then by cell, then by row; behind
-                                          // them those that are eroded, which no patch holds
+                                          // them those that are gone, which no patch holds
   std::vector<std::uint32_t> next_order;  // the list being made
   std::vector<std::uint8_t> cell;         // scratch: cell in its tile of each entry of `order`
   double initial_density = 0.0;           // [kg/m^3]
@@ -29,11 +29,13 @@ struct Body {
   bool rigid = false;       // its particles move as one
   bool prescribed = false;  // and by `motion`, whatever acts on them; it is rigid then
   PrescribedMotion motion;
-  std::size_t moved = 0;   // changes of cell since the columns were last sorted
-  std::size_t eroded = 0;  // particles that take no part any more
+  double pressure_impedance = 0.0, shear_impedance = 0.0;  // rho c of the start [kg/(m^2 s)]
+  std::size_t moved = 0;  // changes of cell since the columns were last sorted
+  bool leaves = false;    // a rigid body that leaves the region that is kept, as a whole
+  std::size_t gone = 0;   // particles that take no part any more: eroded, or left the region
 
   std::size_t count() const { return columns.rows(); }
-  std::size_t active() const { return count() - eroded; }
+  std::size_t active() const { return count() - gone; }
   double* x(int a) { return columns.component(position + a); }
   double* v(int a) { return columns.component(at.velocity + a); }
   const double* x(int a) const { return columns.component(position + a); }

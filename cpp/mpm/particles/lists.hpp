@@ -15,9 +15,9 @@ struct Leaver {
   std::uint8_t cell;
 };
 
-/// What eroded particles have taken with them so far.
+/// What particles that take no part any more have taken with them so far.
 template <int D>
-struct Eroded {
+struct Gone {
   std::size_t count = 0;
   double mass = 0.0;                        // [kg]
   double kinetic = 0.0, recoverable = 0.0;  // [J]
@@ -36,17 +36,21 @@ struct ListScratch {
   std::vector<std::size_t> moved;  // one per patch
 };
 
-/// Sort every body's columns by tile and cell, and make patches and lists from nothing. Sets the
-/// grid's anchor. Throws std::invalid_argument if a particle lies more than 2^19 cells from the
+/// Sort every body's columns by tile and cell, and make patches and lists anew, at the start or
+/// after a change of the grid. Sets the grid's anchor. Throws std::invalid_argument if a particle lies more than 2^19 cells from the
 /// origin.
 template <int D>
 void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads);
 
-/// Mend the lists of patches that particles have left, and take out what has eroded; true if
-/// patches were added or removed.
+/// In the column `failed`, beside the values of FailureAction: the particle has left the region
+/// that is kept.
+inline constexpr double left_region = 4.0;
+
+/// Mend the lists of patches that particles have left, and take out what has eroded or left the
+/// region that is kept; true if patches were added or removed.
 template <int D>
 bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
-                ListScratch<D>& scratch, Eroded<D>& eroded);
+                ListScratch<D>& scratch, Gone<D>& eroded, Gone<D>& left);
 
 /// Put the columns of a body into the order of its list.
 template <int D>

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "mpm/particles/lists.hpp"
@@ -35,7 +36,7 @@ Vec<double, D> position(const Body<D>& body, std::size_t i) {
 
 template <int D>
 void add_patches(TileGrid<D>& grid, const Body<D>& body, int body_number) {
-  for (std::size_t i = 0; i < body.count(); ++i) {
+  for (std::size_t i = 0; i < body.active(); ++i) {
     const Index<D> cell = grid.cell_of(position(body, i));
     const Index<D> tile = grid.tile_of(cell);
     const Index<D> first = grid.first_cell(tile);
@@ -63,9 +64,13 @@ template <int D>
 void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads) {
   constexpr double furthest = 1 << 20;  // cells; within the 19 bits of a key's tile coordinates
   grid.anchor.fill(std::numeric_limits<std::int32_t>::max());
-  for (const auto& body : bodies)
-    for (std::size_t i = 0; i < body.count(); ++i) {
-      const Vec<double, D> x = position(body, i);
+  for (auto& body : bodies) {
+    if (body.order.size() != body.count()) {  // for the first time
+      body.order.resize(body.count());
+      std::iota(body.order.begin(), body.order.end(), 0u);
+    }
+    for (std::size_t k = 0; k < body.active(); ++k) {
+      const Vec<double, D> x = position(body, body.order[k]);
       for (int a = 0; a < D; ++a)
         if (!(std::abs(grid.in_cells(x[a], a)) < 0.5 * furthest))
           throw std::invalid_argument("body \"" + body.name +
@@ -73,28 +78,29 @@ void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
       const Index<D> cell = grid.cell_of(x);
       for (int a = 0; a < D; ++a) grid.anchor[a] = std::min(grid.anchor[a], cell[a]);
     }
+  }
   grid.patches.clear();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     Body<D>& body = bodies[b];
-    const std::size_t n = body.count();
+    const std::size_t n = body.active();
     {
       std::vector<Key> keys(n);
       for (std::size_t i = 0; i < n; ++i) {
-        const Index<D> cell = grid.cell_of(position(body, i));
+        const std::uint32_t row = body.order[i];
+        const Index<D> cell = grid.cell_of(position(body, row));
         const Index<D> tile = grid.tile_of(cell);
         const Index<D> first = grid.first_cell(tile);
         Index<D> local;
         for (int a = 0; a < D; ++a) local[a] = cell[a] - first[a];
-        keys[i] = {key_of<D>(tile, Tile<D>::cell(local)), static_cast<std::uint32_t>(i)};
+        keys[i] = {key_of<D>(tile, Tile<D>::cell(local)), row};
       }
       std::sort(keys.begin(), keys.end(), [](const Key& x, const Key& y) {
         return x.value != y.value ? x.value < y.value : x.row < y.row;
       });
-      body.order.resize(n);
       for (std::size_t i = 0; i < n; ++i) body.order[i] = keys[i].row;
     }
-    body.next_order.resize(n);
-    body.cell.resize(n);
+    body.next_order.resize(body.count());
+    body.cell.resize(body.count());
     sort_columns(body, threads);
     add_patches(grid, body, static_cast<int>(b));
   }

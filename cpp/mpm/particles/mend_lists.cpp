@@ -8,7 +8,8 @@ namespace mpm {
 namespace {
 
 constexpr std::uint8_t outside = 255;  // mark of a particle that has left its tile
-constexpr std::uint8_t eroded = 254;   // mark of one that takes no part any more
+constexpr std::uint8_t eroded = 254;   // mark of one that takes no part any more: failed
+constexpr std::uint8_t left = 253;     // the same: out of the region that is kept
 
 template <int D>
 Index<D> cell_of_row(const TileGrid<D>& grid, const Body<D>& body, std::uint32_t row) {
@@ -17,8 +18,16 @@ Index<D> cell_of_row(const TileGrid<D>& grid, const Body<D>& body, std::uint32_t
   return grid.cell_of(x);
 }
 
-/// Note the cell of each particle of a patch, or that it is outside; returns how many have changed
-/// cell.
+template <int D>
+bool keeps(const TileGrid<D>& grid, const Body<D>& body, std::uint32_t row) {
+  if (!grid.keep.exist) return true;
+  Vec<double, D> x;
+  for (int a = 0; a < D; ++a) x[a] = body.x(a)[row];
+  return grid.keep.holds(x);
+}
+
+/// Note the cell of each particle of a patch, or that it is outside or gone; returns how many have
+/// changed cell.
 template <int D>
 std::size_t classify(const TileGrid<D>& grid, Body<D>& body, const Patch<D>& patch) {
   const Index<D> first = grid.first_cell(patch.tile);
@@ -33,9 +42,10 @@ std::size_t classify(const TileGrid<D>& grid, Body<D>& body, const Patch<D>& pat
         local[a] = cell[a] - first[a];
         inside = inside && local[a] >= 0 && local[a] < Tile<D>::cells;
       }
-      const bool gone =
+      const bool erodes =
           failed && failed[body.order[k]] >= static_cast<double>(FailureAction::erode);
-      const int now = gone ? eroded : inside ? Tile<D>::cell(local) : outside;
+      const bool stays = body.rigid ? !body.leaves : keeps(grid, body, body.order[k]);
+      const int now = erodes ? eroded : !stays ? left : inside ? Tile<D>::cell(local) : outside;
       body.cell[k] = static_cast<std::uint8_t>(now);
       changed += now != old_cell;
     }
@@ -122,7 +132,7 @@ void write_list(Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::C
   constexpr int cells = Tile<D>::cell_count;
   std::array<std::uint32_t, cells + 1> begin{};
   for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-    if (body.cell[k] < eroded) ++begin[body.cell[k] + std::size_t{1}];
+    if (body.cell[k] < left) ++begin[body.cell[k] + std::size_t{1}];
   for (std::uint32_t k = 0; k < change.arrival_count; ++k)
     ++begin[arrival[k].cell + std::size_t{1}];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -133,7 +143,7 @@ void write_list(Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::C
     to[at] = row;
   };
   for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-    if (body.cell[k] < eroded) put(body.cell[k], body.order[k]);
+    if (body.cell[k] < left) put(body.cell[k], body.order[k]);
   for (std::uint32_t k = 0; k < change.arrival_count; ++k) put(arrival[k].cell, arrival[k].row);
 
   patch.begin = change.begin;
@@ -148,7 +158,7 @@ void write_list(Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::C
 
 /// Take what a particle has out of the sums of those that take part.
 template <int D>
-void add_eroded(const Body<D>& body, std::uint32_t row, Eroded<D>& sums) {
+void take_out(const Body<D>& body, std::uint32_t row, Gone<D>& sums) {
   const double m = body.mass()[row];
   ++sums.count;
   sums.mass += m;
@@ -161,34 +171,36 @@ void add_eroded(const Body<D>& body, std::uint32_t row, Eroded<D>& sums) {
   sums.recoverable += energy * m / body.initial_density;
 }
 
-/// The end of a body's new list, behind all patches: what erodes now, then what has eroded before.
+/// The end of a body's new list, behind all patches: what goes now, then what has gone before.
 template <int D>
-void write_tail(const TileGrid<D>& grid, Body<D>& body, int number, Eroded<D>& sums) {
+void write_tail(const TileGrid<D>& grid, Body<D>& body, int number, Gone<D>& eroded_sums,
+                Gone<D>& left_sums) {
   if (body.at.recoverable < 0) return;
-  const std::size_t before = body.eroded, n = body.count();
+  const std::size_t before = body.gone, n = body.count();
   std::size_t now = 0;
   const auto each = [&](auto&& f) {
     for (const Patch<D>& patch : grid.patches) {
       if (patch.body != number || !patch.left_cell) continue;
       for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-        if (body.cell[k] == eroded) f(body.order[k]);
+        if (body.cell[k] == eroded || body.cell[k] == left) f(body.order[k], body.cell[k] == left);
     }
   };
-  each([&](std::uint32_t) { ++now; });
+  each([&](std::uint32_t, bool) { ++now; });
   std::uint32_t* to = body.next_order.data() + (n - before - now);
-  each([&](std::uint32_t row) {
-    add_eroded(body, row, sums);
+  each([&](std::uint32_t row, bool leaves) {
+    take_out(body, row, leaves ? left_sums : eroded_sums);
+    if (leaves) body.columns.component(body.at.failed)[row] = left_region;
     *to++ = row;
   });
   std::memcpy(to, body.order.data() + (n - before), before * sizeof(std::uint32_t));
-  body.eroded = before + now;
+  body.gone = before + now;
 }
 
 }  // namespace
 
 template <int D>
 bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
-                ListScratch<D>& scratch, Eroded<D>& sums) {
+                ListScratch<D>& scratch, Gone<D>& eroded_sums, Gone<D>& left_sums) {
   bool any_left = false;
   for (const auto& p : grid.patches) any_left = any_left || p.left_cell;
   if (!any_left) return false;
@@ -216,7 +228,7 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
     if (patch.left_cell) {
       const auto& cell = bodies[static_cast<std::size_t>(patch.body)].cell;
       for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-        c.kept -= cell[k] >= eroded;
+        c.kept -= cell[k] >= left;
     }
     c.arrival_begin = arrival;
     while (arrival < total && scratch.leavers[arrival].body == patch.body &&
@@ -227,7 +239,7 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
     begin += c.kept + c.arrival_count;
   }
   for (std::size_t b = 0; b < bodies.size(); ++b)
-    write_tail(grid, bodies[b], static_cast<int>(b), sums);
+    write_tail(grid, bodies[b], static_cast<int>(b), eroded_sums, left_sums);
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
     write_list(bodies[static_cast<std::size_t>(patch.body)], patch, changes[p], scratch.leavers);
@@ -237,8 +249,8 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
 }
 
 template bool mend_lists<2>(TileGrid<2>&, std::vector<Body<2>>&, Threads&, ListScratch<2>&,
-                            Eroded<2>&);
+                            Gone<2>&, Gone<2>&);
 template bool mend_lists<3>(TileGrid<3>&, std::vector<Body<3>>&, Threads&, ListScratch<3>&,
-                            Eroded<3>&);
+                            Gone<3>&, Gone<3>&);
 
 }  // namespace mpm

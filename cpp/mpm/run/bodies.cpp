@@ -62,6 +62,10 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
   body.at.volume = c.add("volume", "m^3", 1);
   body.at.stress = c.add("stress", "Pa", Sym<double, D>::size);
   add_material_columns<D>(material, c, body.at);
+  if (domain_.grid.keep.exist) {  // what particles that leave it need
+    if (body.at.recoverable < 0) body.at.recoverable = c.add("recoverable_energy", "J/m^3", 1);
+    if (body.at.failed < 0) body.at.failed = c.add("failed", "1", 1);
+  }
   c.allocate(n);
 
   const bool one_velocity = velocities.size() == D, one_volume = volumes.size() == 1;
@@ -83,6 +87,8 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
   domain_.stiffness.push_back(body.rigid ? std::numeric_limits<double>::infinity()
                                          : material.density * speed * speed);
   body.initial_density = material.density;
+  body.pressure_impedance = material.density * speed;
+  body.shear_impedance = std::sqrt(material.density * shear_modulus(material));
   body.mean_mass = material.density * total / static_cast<double>(n);
   body.mean_edge = std::pow(total / static_cast<double>(n), 1.0 / D);
   body.id.resize(n);

@@ -1,7 +1,7 @@
 #pragma once
 // Where the energy and the momentum go. Every term is accumulated from its own sums:
-//   kinetic + internal + plastic + viscous + friction + contact + eroded + numerical - external
-//   = start + residual.
+//   kinetic + internal + plastic + viscous + friction + contact + absorbed + eroded + left
+//   + numerical - external = start + residual.
 //
 // Derivation: a particle's velocity changes by the interpolated increments
 // dv_p = sum N_ip f_i dt / m_i, eq. (17), so
@@ -20,9 +20,13 @@
 //
 // A body whose motion is prescribed gets the work that this takes: the change of its kinetic energy
 // and what contact takes from it, at the mean velocity of the step. Gravity does not act on it.
+// The work of gravity, of loads on surfaces and of walls which absorb waves (their loss is the term
+// absorbed) is taken with the velocity in the middle of the step, so that their part of 1/2 m dv^2
+// is no error.
 //
 // Eroded particles take their kinetic and recoverable energy at the start of a step to the term
-// eroded, and their momentum out of the sum; the dissipated energies stay where they are.
+// eroded, and their momentum out of the sum; the dissipated energies stay where they are. Particles
+// that leave the region that is kept take theirs to the term left.
 //
 // A positive numerical term is energy lost, a negative one energy made. The residual tests that
 // particles and nodes exchange exactly the same work; internal, viscous and friction enter
@@ -38,8 +42,10 @@ namespace mpm {
 
 struct Ledger {
   double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0,
-         external = 0.0, eroded = 0.0, mapping = 0.0, time_integration = 0.0;  // [J]
-  double eroded_recoverable = 0.0;   // the part of eroded that was internal [J]
+         external = 0.0, absorbed = 0.0, eroded = 0.0, left = 0.0, mapping = 0.0,
+         time_integration = 0.0;     // [J]
+  double load_work = 0.0;            // the part of external that loads have done [J]
+  double gone_recoverable = 0.0;     // the part of eroded and left that was internal [J]
   double start = 0.0;                // kinetic and internal energy at the start [J]
   double largest = 0.0;              // largest energy brought in so far [J]
   std::array<double, 3> momentum{};  // [kg m/s]
@@ -50,8 +56,8 @@ struct Ledger {
 
   double numerical() const { return mapping + time_integration; }
   double residual() const {
-    return kinetic + internal + plastic + viscous + friction + contact + eroded + numerical() -
-           external - start;
+    return kinetic + internal + plastic + viscous + friction + contact + absorbed + eroded + left +
+           numerical() - external - start;
   }
   /// Energy made by numerics, as a fraction of the largest energy brought in; 0 while there is
   /// none.
@@ -74,7 +80,7 @@ struct Ledger {
   /// (USF).
   template <int D>
   void add(const std::vector<PatchSums<D>>& patches, const ContactSums& contacts,
-           const Eroded<D>& gone, bool forces_follow) {
+           const Gone<D>& by_erosion, const Gone<D>& out_of_region, bool forces_follow) {
     PatchSums<D> s;
     for (const PatchSums<D>& p : patches) {
       s.stress.internal += p.stress.internal;
@@ -88,6 +94,10 @@ struct Ledger {
       s.force_work += p.force_work;
       s.gravity_first += p.gravity_first;
       s.gravity_second += p.gravity_second;
+      s.load_first += p.load_first;
+      s.load_second += p.load_second;
+      s.dashpot_first += p.dashpot_first;
+      s.dashpot_second += p.dashpot_second;
       s.prescribed.kinetic += p.prescribed.kinetic;
       s.prescribed.work += p.prescribed.work;
       for (int a = 0; a < D; ++a) {
@@ -103,9 +113,11 @@ struct Ledger {
           s.prescribed.momentum[a] - prescribed_momentum[a] - s.prescribed.impulse[a];
       prescribed_momentum[a] = s.prescribed.momentum[a];
     }
-    internal -= gone.recoverable - eroded_recoverable;
-    eroded = gone.kinetic + gone.recoverable;
-    eroded_recoverable = gone.recoverable;
+    const double gone = by_erosion.recoverable + out_of_region.recoverable;
+    internal -= gone - gone_recoverable;
+    gone_recoverable = gone;
+    eroded = by_erosion.kinetic + by_erosion.recoverable;
+    left = out_of_region.kinetic + out_of_region.recoverable;
     kinetic = s.kinetic;
     for (std::size_t a = 0; a < D; ++a) momentum[a] = s.momentum[a];
     internal += s.stress.internal;
@@ -113,13 +125,16 @@ struct Ledger {
     viscous += s.stress.viscous;
     friction += contacts.friction;
     contact += contacts.energy;
-    external += s.gravity_first + s.gravity_second + motion;
-    const double at_end = forces_follow ? 0.0 : 2.0 * (s.second_order - s.gravity_second);
+    load_work += s.load_first + s.load_second;
+    external += s.gravity_first + s.gravity_second + s.load_first + s.load_second + motion;
+    absorbed -= s.dashpot_first + s.dashpot_second;
+    const double second = s.second_order - s.gravity_second - s.load_second - s.dashpot_second;
+    const double at_end = forces_follow ? 0.0 : 2.0 * second;
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
     time_integration += s.made_rigid;
     time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous -
-                        s.stress.force_power + s.second_order - s.gravity_second +
-                        contacts.friction - contacts.friction_first - at_end;
+                        s.stress.force_power + second + contacts.friction -
+                        contacts.friction_first - at_end;
     largest = std::max({largest, std::abs(start), std::abs(external)});
   }
 };

@@ -45,7 +45,9 @@ const std::vector<std::string>& Simulation::history_columns() {
                                                  "friction",
                                                  "contact",
                                                  "external",
+                                                 "absorbed",
                                                  "eroded",
+                                                 "left",
                                                  "numerical",
                                                  "residual",
                                                  "momentum_x",
@@ -53,6 +55,9 @@ const std::vector<std::string>& Simulation::history_columns() {
                                                  "momentum_z",
                                                  "numerical_mapping",
                                                  "numerical_time",
+                                                 "load_work",
+                                                 "cell_size",
+                                                 "tiles",
                                                  "motion_work",
                                                  "motion_impulse_x",
                                                  "motion_impulse_y",
@@ -74,14 +79,18 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
   grid.use(settings.basis);
   grid.bonded = settings.bonded;
   grid.walls.exist = settings.box_cells[0] > 0;
+  grid.keep.exist = settings.keep;
   for (std::size_t a = 0; a < D; ++a) {
     const int axis = static_cast<int>(a);
     grid.origin[axis] = settings.origin[a];
+    grid.keep.lower[axis] = settings.keep_lower[a];
+    grid.keep.upper[axis] = settings.keep_upper[a];
     grid.walls.cells[a] = settings.box_cells[a];
     grid.walls.face[a][0] = settings.walls[2 * a];
     grid.walls.face[a][1] = settings.walls[2 * a + 1];
   }
   domain_.gravity_of_time = settings.gravity;
+  if (grid.walls.absorb()) grid.fields = NodeBlock<D>::fields + D;
   domain_.contact_settings.enabled = settings.contact;
   domain_.contact_settings.detection = settings.detection;
   domain_.contact_settings.normal = settings.normal_rule;
@@ -154,10 +163,13 @@ void SimulationOf<D>::make_step(double time_after) {
   if (domain_.has_contact())
     contacts =
         domain_.contact.record(domain_.bodies, domain_.time, domain_.time_step, domain_.step);
-  ledger_.add(domain_.sums, contacts, domain_.eroded, settings_.scheme == Scheme::usf);
+  ledger_.add(domain_.sums, contacts, domain_.eroded, domain_.left,
+              settings_.scheme == Scheme::usf);
   write_history_row();
   find_failure();
-  if (!failure_) choose_time_step();
+  if (failure_) return;
+  choose_time_step();
+  if (must_double()) double_cells();
 }
 
 template <int D>
@@ -183,7 +195,9 @@ void SimulationOf<D>::write_history_row() {
                              l.friction,
                              l.contact,
                              l.external,
+                             l.absorbed,
                              l.eroded,
+                             l.left,
                              l.numerical(),
                              l.residual(),
                              l.momentum[0],
@@ -191,6 +205,9 @@ void SimulationOf<D>::write_history_row() {
                              l.momentum[2],
                              l.mapping,
                              l.time_integration,
+                             l.load_work,
+                             domain_.grid.cell_size,
+                             static_cast<double>(domain_.grid.patches.size()),
                              l.motion_work,
                              l.motion_impulse[0],
                              l.motion_impulse[1],

@@ -24,7 +24,12 @@ struct Settings {
   double cell_size = 0.0;          // [m]
   std::array<double, 3> origin{};  // position of a node, and of the box's lower corner [m]
   std::array<int, 3> box_cells{};  // cells of the box; 0, 0, 0 for no box
-  std::array<Wall, 6> walls{};     // of the box's faces: x-, x+, y-, y+, z-, z+
+  // With more tiles or bytes of nodes the cells double, so many times at most; 0 for no limit.
+  std::size_t doubling_tiles = 0, doubling_bytes = 0;
+  int doubling_times = 0;
+  std::array<double, 3> keep_lower{}, keep_upper{};  // corners of the region that is kept [m] ...
+  bool keep = false;                                 // ... if particles that leave it are taken out
+  std::array<Wall, 6> walls{};                       // of the box's faces: x-, x+, y-, y+, z-, z+
   Basis basis = Basis::linear;
   Scheme scheme = Scheme::musl;
   double time_step_factor = 0.0;          // of the critical time step h / (c + |v|)
@@ -57,10 +62,25 @@ struct Limiter {
   double sound_speed = 0.0, speed = 0.0;  // [m/s]
 };
 
-/// Particles that take no part any more.
-struct ErodedSum {
+/// Particles that take no part any more: eroded, or left the region that is kept.
+struct GoneSum {
   double mass = 0.0;  // [kg]
   std::size_t count = 0;
+};
+
+/// A load on a part of a body's surface; vectors have zeros behind the dimension.
+struct LoadRecord {
+  std::string name;
+  std::array<double, 3> force{};    // of the last step [N]
+  std::array<double, 3> impulse{};  // since the start [N s]
+  double area = 0.0;                // sum over the pieces [m^2]
+};
+
+/// The pieces of a surface on which a load acts, each with its particle.
+struct Pieces {
+  std::span<const std::uint32_t> particles;  // in the order in which the user gave them
+  std::span<const double> areas;             // outward area vectors [m^2], (pieces, D)
+  std::span<const double> arms;              // from the particle to the piece [m], (pieces, D)
 };
 
 struct Bytes {
@@ -84,6 +104,11 @@ class Simulation {
   virtual void set_motion(int body, const std::array<TimeFunction, 3>& velocity,
                           const std::array<TimeFunction, 3>& spin,
                           const std::array<double, 3>& centre) = 0;
+  /// Load a part of the surface of a body that deforms: with a pressure (the first of the values)
+  /// or, if it does not follow the surface, with a traction; functions of time [Pa]; before
+  /// prepare().
+  virtual void add_load(const std::string& name, int body, bool follows,
+                        const std::array<TimeFunction, 3>& value, const Pieces& pieces) = 0;
   virtual void set_pair_friction(int a, int b, double mu) = 0;
   /// Sort the particles, make the grid, find the first time step. Once, after the last body.
   virtual void prepare() = 0;
@@ -96,8 +121,10 @@ class Simulation {
   virtual std::int64_t step() const = 0;
   virtual int body_count() const = 0;
   virtual std::size_t particle_count(int body) const = 0;
-  virtual double total_mass() const = 0;  // of all particles, eroded ones included [kg]
-  virtual ErodedSum eroded() const = 0;
+  virtual double total_mass() const = 0;  // of all particles, those that are gone included [kg]
+  virtual GoneSum eroded() const = 0;
+  virtual GoneSum left() const = 0;
+  virtual std::vector<LoadRecord> loads() const = 0;
   virtual const std::optional<Failure>& failure() const = 0;
   virtual Limiter limiter() const = 0;
   virtual Bytes bytes() const = 0;

@@ -18,6 +18,8 @@ class SimulationOf final : public Simulation {
   void set_motion(int body, const std::array<TimeFunction, 3>& velocity,
                   const std::array<TimeFunction, 3>& spin,
                   const std::array<double, 3>& centre) override;
+  void add_load(const std::string& name, int body, bool follows,
+                const std::array<TimeFunction, 3>& value, const Pieces& pieces) override;
   void set_pair_friction(int a, int b, double mu) override;
   void prepare() override;
   std::int64_t advance(std::int64_t max_steps, double end_time) override;
@@ -28,7 +30,9 @@ class SimulationOf final : public Simulation {
   int body_count() const override { return static_cast<int>(domain_.bodies.size()); }
   std::size_t particle_count(int body) const override { return this->body(body).count(); }
   double total_mass() const override;
-  ErodedSum eroded() const override { return {domain_.eroded.mass, domain_.eroded.count}; }
+  GoneSum eroded() const override { return {domain_.eroded.mass, domain_.eroded.count}; }
+  GoneSum left() const override { return {domain_.left.mass, domain_.left.count}; }
+  std::vector<LoadRecord> loads() const override;
   const std::optional<Failure>& failure() const override { return failure_; }
   Limiter limiter() const override;
   Bytes bytes() const override;
@@ -64,6 +68,8 @@ class SimulationOf final : public Simulation {
   void probe_speeds();  // finds the next time step from the present state
   void make_step(double time_after);
   void choose_time_step();
+  bool must_double() const;
+  void double_cells();
   void write_history_row();
   void find_failure();
   Failure failure_at(const std::string& kind, std::size_t body, std::size_t row,
@@ -75,6 +81,7 @@ class SimulationOf final : public Simulation {
   StageTimers timers_;
   Ledger ledger_;
   double next_time_step_ = 0.0;
+  int doublings_ = 0;  // of the cells so far
   bool prepared_ = false;
   std::optional<Failure> failure_;
   std::vector<double> history_;  // rows not yet taken; room for history_capacity is made once

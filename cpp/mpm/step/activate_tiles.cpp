@@ -2,12 +2,50 @@
 
 namespace mpm {
 
+namespace {
+
+/// Mark the patches of which particles have left the region that is kept. A rigid body leaves as a
+/// whole, with its mass centre; one whose motion is prescribed stays.
+template <int D>
+void mark_leaving(Domain<D>& domain) {
+  TileGrid<D>& grid = domain.grid;
+  for (std::size_t b = 0; b < domain.bodies.size(); ++b) {
+    if (!domain.bodies[b].rigid || domain.bodies[b].prescribed) continue;
+    Vec<double, D> centre;
+    for (int a = 0; a < D; ++a) centre[a] = domain.rigid[b].centre[a];
+    domain.bodies[b].leaves = !grid.keep.holds(centre);
+  }
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    Patch<D>& patch = grid.patches[p];
+    const Body<D>& body = domain.body_of(patch);
+    if (patch.left_cell) return;  // its particles are looked at anyway
+    if (body.rigid) {
+      patch.left_cell = body.leaves;
+      return;
+    }
+    const Index<D> first = grid.first_cell(patch.tile);
+    Vec<double, D> lower, upper, x;
+    for (int a = 0; a < D; ++a) {
+      lower[a] = grid.origin[a] + first[a] * grid.cell_size;
+      upper[a] = lower[a] + Tile<D>::cells * grid.cell_size;
+    }
+    if (grid.keep.holds(lower, upper)) return;
+    for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
+      for (int a = 0; a < D; ++a) x[a] = body.x(a)[body.order[k]];
+      if (!grid.keep.holds(x)) patch.left_cell = true;
+    }
+  });
+}
+
+}  // namespace
+
 template <int D>
 void activate_tiles(Domain<D>& domain) {
   for (std::size_t p = 0; p < domain.sums.size(); ++p)
     if (domain.sums[p].stress.eroded) domain.grid.patches[p].left_cell = true;
-  const bool changed =
-      mend_lists(domain.grid, domain.bodies, domain.threads, domain.list_scratch, domain.eroded);
+  if (domain.grid.keep.exist) mark_leaving(domain);
+  const bool changed = mend_lists(domain.grid, domain.bodies, domain.threads, domain.list_scratch,
+                                  domain.eroded, domain.left);
   sort_disordered(domain.bodies, domain.threads);
   domain.sums.assign(domain.grid.patches.size(), {});
   if (changed && domain.has_contact()) domain.contact.connect(domain.grid, domain.bodies);

@@ -1,3 +1,4 @@
+#include "mpm/step/absorb.hpp"
 #include "mpm/step/mirror.hpp"
 #include "mpm/step/prescribed_bodies.hpp"
 #include "mpm/step/stages.hpp"
@@ -20,6 +21,7 @@ template <int D>
 void advance_nodes(Domain<D>& domain) {
   auto& grid = domain.grid;
   const double dt = domain.time_step;
+  const bool absorb = grid.walls.absorb(), loaded = domain.has_loads();
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     using T = Batch<native_lanes>;
     const Patch<D>& patch = grid.patches[p];
@@ -52,6 +54,10 @@ void advance_nodes(Domain<D>& domain) {
         dv.store(block.force(a) + n);
       }
     }
+    Work loads, dashpots;
+    if (loaded) loads = work_of(block, own, dt, [&](int a) { return block.load(a); });
+    if (absorb && patch.at_wall)
+      dashpots = work_of(block, own, dt, [&](int a) { return block.dashpot(a); });
     // The mirrored weight went into the force; it is work of gravity.
     double weight_first = 0.0, weight_second = 0.0;
     for_each_mirrored_node(grid, patch, [&](int node, int image, unsigned axes) {
@@ -66,7 +72,11 @@ void advance_nodes(Domain<D>& domain) {
     reflect_at_walls(grid, patch, [&](int a) { return block.velocity(a); });
     reflect_at_walls(grid, patch, [&](int a) { return block.force(a); });
     PatchSums<D>& sums = domain.sums[p];
-    sums.force_work = dt * (sum(work) + weight_first);
+    sums.force_work = dt * (sum(work) + weight_first) - loads.first - dashpots.first;
+    sums.load_first = loads.first;
+    sums.load_second = loads.second;
+    sums.dashpot_first = dashpots.first;
+    sums.dashpot_second = dashpots.second;
     sums.gravity_first = dt * (sum(gravity_first) - weight_first);
     sums.gravity_second = 0.5 * dt * (sum(gravity_second) - weight_second);
   });

@@ -1,3 +1,5 @@
+#include "mpm/step/absorb.hpp"
+#include "mpm/step/loads.hpp"
 #include "mpm/step/mirror.hpp"
 #include "mpm/step/stages.hpp"
 
@@ -44,24 +46,34 @@ void scatter_forces(const Functions& basis, const TileGrid<D>& grid, const Body<
 template <int D>
 void map_forces(Domain<D>& domain) {
   auto& grid = domain.grid;
+  const bool absorb = grid.walls.absorb(), loaded = domain.has_loads();
+  if (loaded) start_loads(domain);
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
-    clear_fields(block, 1 + D, 1 + 2 * D);
+    clear_fields(block, 1 + D, grid.fields);
     const Body<D>& body = domain.body_of(patch);
     if (body.rigid) return;  // It has no stress.
     with_basis(grid, body,
                [&](const auto& basis) { scatter_forces(basis, grid, body, patch, block); });
+    if (absorb) scatter_dashpots(grid, body, patch, block);
     fold_at_walls<D>(grid, patch, nullptr, [&](int a) { return block.force(a); });
+    if (!loaded) return;
+    scatter_loads(domain, p);
+    fold_at_walls<D>(grid, patch, nullptr, [&](int a) { return block.load(a); });
   });
-  grid.sum_shared_nodes(domain.threads, 1 + D, 1 + 2 * D);
+  grid.sum_shared_nodes(domain.threads, 1 + D, grid.fields);
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const NodeBlock<D> block = grid.block(p);
     for_each_mirrored_node(grid, grid.patches[p], [&](int node, int image, unsigned axes) {
       for (int a = 0; a < D; ++a)
         if (axes >> a & 1u) block.force(a)[image] -= mirrored_weight(domain, block, node, a);
     });
+    if (loaded)
+      for (int n = 0; n < D * block.stride; ++n) block.force(0)[n] += block.load(0)[n];
+    if (absorb) add_dashpot_forces(grid.patches[p], block, domain.gravity, domain.time_step);
   });
+  if (loaded) sum_loads(domain);
 }
 
 template void map_forces<2>(Domain<2>&);

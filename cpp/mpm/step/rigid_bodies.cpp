@@ -27,7 +27,7 @@ Vector3 velocity(const Body<D>& body, std::uint32_t row) {
 /// Does a body move as one by the laws of Newton and Euler?
 template <int D>
 bool free_rigid(const Body<D>& body) {
-  return body.rigid && !body.prescribed;
+  return body.rigid && !body.prescribed && body.active() > 0;
 }
 
 /// f(patch number, rows of its particles) for the patches of such bodies.
@@ -67,7 +67,7 @@ unsigned held_axes(const Domain<D>& domain, const Body<D>& body) {
   for (int a = 0; a < D; ++a)
     for (int side = 0; side < 2; ++side) {
       const Wall wall = grid.walls.face[a][side];
-      if (wall == Wall::free) continue;
+      if (wall == Wall::free || wall == Wall::absorbing) continue;
       const double face = side == 0 ? 0.0 : grid.walls.cells[a];
       double nearest = std::numeric_limits<double>::max();
       for (std::size_t i = 0; i < body.count(); ++i) {

@@ -1,4 +1,4 @@
-#include "mpm/step/cell_loop.hpp"
+#include "mpm/step/loads.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -42,6 +42,7 @@ void update_patch(Domain<D>& domain, std::size_t p, bool forces_follow, Field&& 
     });
   });
   if (block.count > 0) flush();
+  if (domain.has_loads()) carry_loads(domain, p, field);
 }
 
 template <int D>

@@ -16,7 +16,8 @@ from mpm3dpp.io.disk import make_folder, writing
 
 COLUMNS = (
     *("step", "time", "dt", "kinetic", "internal", "plastic", "viscous", "friction", "contact"),
-    *("external", "eroded", "numerical", "residual", "momentum_x", "momentum_y", "momentum_z"),
+    *("external", "absorbed", "eroded", "left", "numerical", "residual"),
+    *("momentum_x", "momentum_y", "momentum_z"),
 )
 """First columns of the table, in this order; 0 where a term does not exist."""
 
@@ -162,7 +163,7 @@ class HistoryWriter:
     def _note(self, table: np.ndarray) -> None:
         column = {name: table[:, k] for name, k in self._index.items()}
         momentum = table[:, [self._index[f"momentum_{x}"] for x in _AXES]]
-        energies = COLUMNS[3:13]
+        energies = COLUMNS[3 : COLUMNS.index("momentum_x")]
         new = self._summary
         if not new:
             new["initial"] = {name: float(column[name][0]) for name in energies}

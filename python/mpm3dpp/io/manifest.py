@@ -41,6 +41,21 @@ class PairRecord:
 
 
 @dataclasses.dataclass
+class LoadRecord:
+    """A load on a surface over the whole run.
+
+    Attributes:
+        impulse: that it has given its body until the end [N s] (per metre in 2D).
+        force: of the last step [N] (per metre in 2D).
+        area: on which it acts at the end [m^2; in 2D m times 1 m].
+    """
+
+    impulse: list[float]
+    force: list[float]
+    area: float
+
+
+@dataclasses.dataclass
 class ContactRecord:
     """Contact of the whole run: most overlapped nodes, most bodies at a node, pairs, bytes.
 
@@ -62,11 +77,13 @@ class Manifest:
     Attributes:
         version: of mpm3dpp.          case_hash: SHA-256 of the case.
         mass: of all particles [kg] (per metre in 2D).          cell_size: [m].
-        eroded: mass [kg] (per metre in 2D) and count of the particles that have eroded.
+        eroded, left: mass [kg] (per metre in 2D) and count of the particles that have eroded,
+            and that have left `grid.keep`.
         particles, threads, steps: counts.          wall_time: of the run [s].
         ns_per_particle_step, stages: time in the steps and in each stage [ns].
         peak_memory_bytes: largest resident size of the process [bytes].
         bytes: of the core: particles, grid, contact, other.
+        loads: see `LoadRecord`, by name.
         result_hash: see `mpm3dpp.io.result_hash`.
         contact: see `ContactRecord`.          end_time: time reached [s].
         status, reason: "completed", "interrupted" or "failed", and why.
@@ -82,6 +99,7 @@ class Manifest:
     reason: str | None
     mass: float
     eroded: dict[str, Any]
+    left: dict[str, Any]
     cell_size: float
     particles: int
     threads: int
@@ -94,6 +112,7 @@ class Manifest:
     bytes: dict[str, int]
     result_hash: str
     contact: ContactRecord
+    loads: dict[str, LoadRecord]
     limiter: dict[str, Any] | None
     energies: dict[str, Any]
     compiler: str
@@ -161,6 +180,7 @@ def build_manifest(
         reason=reason,
         mass=float(simulation.total_mass),
         eroded=dict(simulation.eroded()),
+        left=dict(simulation.left()),
         cell_size=float(cell_size),
         particles=int(simulation.particle_count),
         threads=int(threads),
@@ -173,6 +193,7 @@ def build_manifest(
         bytes={k: int(v) for k, v in simulation.bytes().items()},
         result_hash=result_hash(simulation),
         contact=_contact(simulation, bodies),
+        loads=_loads(simulation),
         limiter=_limiter(simulation, bodies),
         energies=dict(energies or {}),
         compiler=str(build.get("compiler", "unknown")),
@@ -240,6 +261,13 @@ def _contact(simulation: Any, bodies: Sequence[str]) -> ContactRecord:
         unconverged_nodes=int(summary.get("unconverged_nodes", 0)),
         pairs=pairs,
     )
+
+
+def _loads(simulation: Any) -> dict[str, LoadRecord]:
+    return {
+        load.name: LoadRecord(list(load.impulse), list(load.force), float(load.area))
+        for load in simulation.loads()
+    }
 
 
 def _limiter(simulation: Any, bodies: Sequence[str]) -> dict[str, Any] | None:

@@ -21,7 +21,9 @@ _LOST = {
     "viscous": "viscosity",
     "friction": "friction",
     "contact": "contact",
+    "absorbed": "absorbed",
     "eroded": "eroded",
+    "left": "left",
     "external": "external work",
 }
 _NUMERICAL = {

@@ -46,15 +46,15 @@ class View:
     along: int | None = None
 
 
-_ERODED = 3  # in the column `failed`
+_GONE = 3  # in the column `failed`: eroded; 4: left the region that is kept
 
 
 def drawn(results: Results, frame: int) -> dict[str, np.ndarray]:
-    """Return the arrays of a frame without the particles that have eroded."""
+    """Return the arrays of a frame without the particles that have eroded or left."""
     arrays = results.arrays(frame)
     if "failed" not in arrays:
         return arrays
-    stays = ~(arrays["failed"] >= _ERODED)  # NaN where nothing can fail
+    stays = ~(arrays["failed"] >= _GONE)  # NaN where nothing can fail
     return {name: values[stays] for name, values in arrays.items()}
 
 
@@ -76,7 +76,7 @@ def view_of(results: Results, frames: list[int], colour: str) -> View:
             bottom, top = _range(values)
             low, high = min(low, bottom), max(high, top)
             least, most = min(least, float(values.min())), max(most, float(values.max()))
-    if not np.isfinite(lower).all():  # All have eroded: an empty picture of where they were.
+    if not np.isfinite(lower).all():  # All are gone: an empty picture of where they were.
         position = results.arrays(frames[0])["position"]
         lower, upper = position.min(axis=0), position.max(axis=0) + results.cell_size
     margin = 0.03 * float(np.max(upper - lower))

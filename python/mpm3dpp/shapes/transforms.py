@@ -74,7 +74,7 @@ class Rotate(_Moved):
             return (*path, "rotate", "axis"), "is missing", "in 3D add axis = [0, 0, 1]"
         return super().wrong_dimension(dimension, path)
 
-    def _matrix(self) -> Points:
+    def matrix(self) -> Points:
         """Return the rotation, shape (D, D), by the formula of Rodrigues (1840) in 3D."""
         cos, sin = math.cos(self.angle), math.sin(self.angle)
         if self.axis is None:
@@ -83,7 +83,8 @@ class Rotate(_Moved):
         cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         return np.eye(3) + sin * cross + (1 - cos) * (cross @ cross)
 
-    def _about(self) -> Points:
+    def centre(self) -> Points:
+        """Return the point that stays [m], shape (D,)."""
         if self.about is not None:
             return np.array(self.about)
         lower, upper = self.shape.bounds()
@@ -91,9 +92,9 @@ class Rotate(_Moved):
 
     def inside(self, points: Points, grow: float) -> Mask:
         # Rows times R are R transposed times the points: the points turned back.
-        return self.shape.inside((points - self._about()) @ self._matrix() + self._about(), grow)
+        return self.shape.inside((points - self.centre()) @ self.matrix() + self.centre(), grow)
 
     def bounds(self) -> Bounds:
         corners = np.array(list(itertools.product(*zip(*self.shape.bounds(), strict=True))))
-        turned = (corners - self._about()) @ self._matrix().T + self._about()
+        turned = (corners - self.centre()) @ self.matrix().T + self.centre()
         return turned.min(axis=0), turned.max(axis=0)

@@ -74,6 +74,10 @@ std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& m
   if (motion.gravity[1] != 0.0) {
     settings.box_cells = {40, 40, dimension == 3 ? 40 : 0};
     settings.walls[2] = Wall::fixed;
+    settings.walls[1] = Wall::absorbing;
+    settings.keep = true;
+    settings.keep_lower = {-100.0, -100.0, -100.0};
+    settings.keep_upper = {100.0, 100.0, 100.0};
   }
   settings.contact = true;
   settings.friction = 0.3;
@@ -101,6 +105,10 @@ std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& m
     turning.times = {0.0, 0.1, 0.2};
     turning.values = {0.0, 1e-3, -1e-3};
     simulation->set_motion(0, {shaking, 0.0, 0.0}, {0.0, 0.0, turning}, {14.0, 2.0, 9.5});
+  } else if (motion.gravity[1] != 0.0) {
+    const std::uint32_t particles[] = {0, 1, 2};
+    const std::vector<double> vectors(3 * static_cast<std::size_t>(dimension), 0.25);
+    simulation->add_load("load", 0, true, {TimeFunction(10.0)}, {particles, vectors, vectors});
   }
   simulation->prepare();
   return simulation;
@@ -117,7 +125,7 @@ std::size_t allocations_of(Simulation& simulation, std::int64_t steps) {
 void test_no_allocation(mpm::testing::Report& report) {
   check_counter(report);
   // Together through many tiles; and resting on a floor, sliding, the contacts loaded in every
-  // step.
+  // step, with a pressure, in a region that is kept, before a wall that absorbs.
   const Motion3 motions[] = {{"through tiles", {40.0, 40.0, 40.0}, {0.0, 0.0, 0.0}, false},
                              {"on a floor", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, false},
                              {"on a plate", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, true}};

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm3dpp.case import Case
-from mpm3dpp.case_parts import FACES
+from mpm3dpp.case_grid import FACES
 
 from .deck import Deck
 from .lexer import Source, read_source

@@ -1,0 +1,40 @@
+// The moving grid: where debris spreads, the cells double. Ma, Zhang & Huang 2010, section 3.5.
+#include "mpm/run/simulation_of.hpp"
+
+namespace mpm {
+
+/// Whether the grid has more tiles or bytes than wanted, and its box can be cut into cells of twice
+/// the size.
+template <int D>
+bool SimulationOf<D>::must_double() const {
+  const TileGrid<D>& grid = domain_.grid;
+  if (doublings_ >= settings_.doubling_times) return false;
+  const std::size_t tiles = grid.patches.size(), bytes = tiles * grid.patch_bytes();
+  const bool many = settings_.doubling_tiles > 0 && tiles > settings_.doubling_tiles;
+  const bool large = settings_.doubling_bytes > 0 && bytes > settings_.doubling_bytes;
+  if (!many && !large) return false;
+  for (int a = 0; a < D; ++a)
+    if (grid.walls.exist && grid.walls.cells[static_cast<std::size_t>(a)] % 2 != 0) return false;
+  return true;
+}
+
+/// Cells of twice the size about the same particles. A node of the new grid is one of the old grid,
+/// and the walls stay where they are. Between two steps all mass, momentum and energy is the
+/// particles', so that none changes; what the coarser grid then costs is in the numerical terms.
+template <int D>
+void SimulationOf<D>::double_cells() {
+  TileGrid<D>& grid = domain_.grid;
+  ++doublings_;
+  settings_.cell_size *= 2.0;
+  grid.cell_size = settings_.cell_size;
+  for (int& cells : grid.walls.cells) cells /= 2;
+  grid.release_nodes();
+  make_lists(grid, domain_.bodies, domain_.threads);
+  if (domain_.has_contact()) domain_.contact.connect(grid, domain_.bodies);
+  probe_speeds();
+}
+
+template class SimulationOf<2>;
+template class SimulationOf<3>;
+
+}  // namespace mpm

@@ -1,0 +1,79 @@
+#pragma once
+// Absorbing walls: dashpots on the nodes of a face let the waves of the bodies before it pass, with
+// the traction -rho c_p v along the normal and -rho c_s v along the face (Lysmer & Kuhlemeyer 1969,
+// eqs. 1-2 with a = b = 1).
+#include "mpm/step/cell_loop.hpp"
+
+namespace mpm {
+
+/// Add a patch's dashpots to its nodes: C_i += rho c A_p N_i [kg/s]. A particle in the cells along
+/// a face stands for its initial volume over the cell size of the face, so that the area does not
+/// change while particles move about within these cells; N_i are the linear functions on the face.
+template <int D>
+void scatter_dashpots(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
+                      const NodeBlock<D>& block) {
+  if (!patch.at_wall || body.rigid) return;
+  for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+    for (int normal = 0; normal < D; ++normal)
+      for (int side = 0; side < 2; ++side) {
+        if (grid.walls.face[normal][side] != Wall::absorbing) continue;
+        if (cell.cell[normal] != (side == 0 ? 0 : grid.walls.cells[normal] - 1)) continue;
+        for (std::uint32_t k = 0; k < cell.count; ++k) {
+          const std::uint32_t row = cell.rows[k];
+          const double area = body.mass()[row] / (body.initial_density * grid.cell_size);
+          for (int corner = 0; corner < Tile<D>::corners; ++corner) {
+            if ((corner >> normal & 1) != side) continue;
+            double share = area;
+            for (int a = 0; a < D; ++a) {
+              if (a == normal) continue;
+              const double xi = local_coordinate(grid.in_cells(body.x(a)[row], a), cell.cell[a]);
+              share *= corner >> a & 1 ? xi : 1.0 - xi;
+            }
+            const int node =
+                cell.first_node + grid.shape.corner_offset[static_cast<std::size_t>(corner)];
+            for (int a = 0; a < D; ++a)
+              block.dashpot(a)[node] +=
+                  share * (a == normal ? body.pressure_impedance : body.shear_impedance);
+          }
+        }
+      }
+  });
+}
+
+/// From the dashpots' factors to their forces, which are added to the others:
+/// f_i -= C_i (v_i + dv_i / 2). The velocity in the middle of the step makes them stable for every
+/// time step, and they never give energy.
+template <int D>
+void add_dashpot_forces(const Patch<D>& patch, const NodeBlock<D>& block,
+                        const Vec<double, D>& gravity, double time_step) {
+  if (!patch.at_wall) return;
+  for (int a = 0; a < D; ++a)
+    for (int n = 0; n < block.stride; ++n) {
+      double& dashpot = block.dashpot(a)[n];
+      const double m = block.mass()[n];
+      if (!(dashpot > 0.0 && m > 0.0)) continue;
+      const double half = 0.5 * time_step / m;
+      const double middle = block.velocity(a)[n] + half * (block.force(a)[n] + m * gravity[a]);
+      dashpot *= -middle / (1.0 + half * dashpot);
+      block.force(a)[n] += dashpot;
+    }
+}
+
+/// Time step x sum over a patch's own nodes of a force . velocity before the nodes were advanced,
+/// and half of force . increment; both give the work of the force over the step.
+struct Work {
+  double first = 0.0, second = 0.0;  // [J]
+};
+template <int D, class Force>
+Work work_of(const NodeBlock<D>& block, const double* own, double time_step, Force&& force) {
+  Work work;
+  for (int a = 0; a < D; ++a)
+    for (int n = 0; n < block.stride; ++n) {
+      const double f = own[n] * force(a)[n], dv = block.force(a)[n];
+      work.first += f * (block.velocity(a)[n] - dv);
+      work.second += f * dv;
+    }
+  return {time_step * work.first, 0.5 * time_step * work.second};
+}
+
+}  // namespace mpm

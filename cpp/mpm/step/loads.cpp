@@ -1,0 +1,68 @@
+#include "mpm/step/loads.hpp"
+
+namespace mpm {
+
+template <int D>
+void start_loads(Domain<D>& domain) {
+  const double now = domain.time, next = domain.time + domain.time_step;
+  for (SurfaceLoad<D>& load : domain.loads)
+    for (int a = 0; a < D; ++a)
+      load.stress[a] = load.value[static_cast<std::size_t>(a)].mean(now, next);
+  domain.load_parts.assign(domain.grid.patches.size() * domain.loads.size(),
+                           Vec<double, D>::zero());
+}
+
+template <int D>
+void scatter_loads(Domain<D>& domain, std::size_t p) {
+  const TileGrid<D>& grid = domain.grid;
+  const Patch<D>& patch = grid.patches[p];
+  const Body<D>& body = domain.body_of(patch);
+  const NodeBlock<D> block = domain.grid.block(p);
+  const double reach = grid.basis == Basis::gimp ? gimp_half(body.mean_edge / grid.cell_size) : 0.0;
+  for (std::size_t l = 0; l < domain.loads.size(); ++l) {
+    const SurfaceLoad<D>& load = domain.loads[l];
+    if (load.body != patch.body) continue;
+    Vec<double, D>& total = domain.load_parts[p * domain.loads.size() + l];
+    for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+      for_each_piece(load, body, cell, [&](std::uint32_t row, std::size_t piece) {
+        const Vec<double, D> force = load.force_on(piece);
+        total += force;
+        Index<D> shift{};  // of the cell that the piece lies in
+        double xi[D];
+        for (int a = 0; a < D; ++a) {
+          const double x = grid.in_cells(body.x(a)[row], a) - cell.cell[a];
+          const double low = std::min(0.0, x - reach), high = std::max(1.0, x + reach);
+          xi[a] = std::clamp(x + load.arm[piece][a] / grid.cell_size, low, high);
+          const auto k = static_cast<std::size_t>(a);
+          shift[k] = xi[a] < 0.0 ? -1 : xi[a] > 1.0 ? 1 : 0;
+          xi[a] -= shift[k];
+        }
+        const int first = cell.first_node + grid.shape.distance(shift);
+        for (int corner = 0; corner < Tile<D>::corners; ++corner) {
+          double N = 1.0;
+          for (int a = 0; a < D; ++a) N *= corner >> a & 1 ? xi[a] : 1.0 - xi[a];
+          const int node = first + grid.shape.corner_offset[static_cast<std::size_t>(corner)];
+          for (int a = 0; a < D; ++a) block.load(a)[node] += N * force[a];
+        }
+      });
+    });
+  }
+}
+
+template <int D>
+void sum_loads(Domain<D>& domain) {
+  const std::size_t count = domain.loads.size();
+  for (SurfaceLoad<D>& load : domain.loads) load.force = Vec<double, D>::zero();
+  for (std::size_t k = 0; k < domain.load_parts.size(); ++k)
+    domain.loads[k % count].force += domain.load_parts[k];
+  for (SurfaceLoad<D>& load : domain.loads) load.impulse += domain.time_step * load.force;
+}
+
+template void start_loads<2>(Domain<2>&);
+template void start_loads<3>(Domain<3>&);
+template void scatter_loads<2>(Domain<2>&, std::size_t);
+template void scatter_loads<3>(Domain<3>&, std::size_t);
+template void sum_loads<2>(Domain<2>&);
+template void sum_loads<3>(Domain<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,62 @@
+#pragma once
+// Loads on surfaces: from the pieces that particles carry to the nodes, and the pieces along with
+// the particles.
+#include "mpm/step/cell_loop.hpp"
+
+namespace mpm {
+
+/// The loads of a step: their means over it, and room for the patches' sums.
+template <int D>
+void start_loads(Domain<D>& domain);
+
+/// f_i += sum over the pieces of N_i(x) f, x the middle of the piece: the surface term of the
+/// equation of motion (Sulsky, Chen & Schreyer 1994). N_i are the linear functions. x is
+/// held within the cell of the particle, with GIMP within the particle's box too, so that only
+/// nodes with mass are loaded.
+template <int D>
+void scatter_loads(Domain<D>& domain, std::size_t patch);
+
+/// Force and impulse of each load, added in the order of the patches.
+template <int D>
+void sum_loads(Domain<D>& domain);
+
+/// f(row, piece) for the particles of a cell that carry a piece of a load.
+template <int D, class F>
+void for_each_piece(const SurfaceLoad<D>& load, const Body<D>& body, const CellRange<D>& cell,
+                    F&& f) {
+  for (std::uint32_t k = 0; k < cell.count; ++k)
+    if (const std::uint32_t piece = load.piece[body.id[cell.rows[k]]])
+      f(cell.rows[k], static_cast<std::size_t>(piece - 1));
+}
+
+/// Take the pieces of a patch's particles along; `field(a)` is the nodal velocity that strains the
+/// material.
+template <int D, class Field>
+void carry_loads(Domain<D>& domain, std::size_t p, Field&& field) {
+  const auto& grid = domain.grid;
+  const Patch<D>& patch = grid.patches[p];
+  const Body<D>& body = domain.body_of(patch);
+  const double scale = domain.time_step / grid.cell_size;
+  for (SurfaceLoad<D>& load : domain.loads) {
+    if (load.body != patch.body) continue;
+    with_basis(grid, body, [&](const auto& basis) {
+      for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+        for_each_piece(load, body, cell, [&](std::uint32_t row, std::size_t piece) {
+          const auto velocity = vector_field(basis, cell, field);
+          Vec<double, D> xi;
+          for (int a = 0; a < D; ++a)
+            xi[a] = local_coordinate(grid.in_cells(body.x(a)[row], a), cell.cell[a]);
+          const auto w = basis.weights(xi);
+          Mat<double, D> L;
+          for (int i = 0; i < D; ++i) {
+            const Vec<double, D> gradient = velocity[static_cast<std::size_t>(i)].gradient(w);
+            for (int j = 0; j < D; ++j) L[i][j] = scale * gradient[j];
+          }
+          load.carry(piece, L);
+        });
+      });
+    });
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pressures and tractions on surfaces, against closed forms; impulse and work are counted."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from cases import BASES, CELL, DENSITY, YOUNG, block, box, materials
+from mpm3dpp import Body, Case, CaseError, Grid, Material, Run, Simulation, shapes
+from mpm3dpp.loads import Load
+
+NU = 0.3
+SMOOTH = {"quadratic": 0.0, "linear": 0.3}
+FAR = shapes.Box(lower=(9, 9), upper=(10, 10))
+SQUARE = shapes.Box(lower=(0, 0), upper=(1, 1))
+WAVE = np.sqrt(YOUNG * (1 - NU) / (1 + NU) / (1 - 2 * NU) / DENSITY)
+TIME = CELL / WAVE  # that a wave takes for a cell
+
+
+def loaded(
+    body: Body, loads: dict[str, Load], dimension: int, lengths: float, grid: Any = None, **run: Any
+) -> Case:
+    """Return a case of one body with loads, for so many cell lengths of a wave."""
+    grid = {"dimension": dimension, "cell_size": CELL} | (grid or {})
+    return Case(
+        grid=Grid(**grid),
+        run=Run(**{"end_time": lengths * TIME} | run),
+        material={"solid": materials()["solid"]},
+        body={"body": body},
+        load=loads,
+    )
+
+
+def finish(case: Case, threads: int = 1) -> tuple[Simulation, dict[str, np.ndarray]]:
+    simulation = Simulation(case, threads)
+    simulation.advance(10**6)
+    rows = simulation.core.history()
+    return simulation, dict(zip(simulation.core.history_columns, rows.T, strict=True))
+
+
+def bar(dimension: int, pressure: Any = 1000.0, **more: Any) -> Case:
+    """Return a bar of uniaxial strain, 40 cells long from cell 4 on, pressed on its left end."""
+    cells = (40, 2, 2)[:dimension]
+    walls = {f"{a}_{end}": "slip" for a in "yz"[: dimension - 1] for end in ("min", "max")}
+    grid = box(dimension, 2, walls)
+    grid["box"]["upper"] = (48 * CELL, 2 * CELL, 2 * CELL)[:dimension]
+    body = block((4, 0, 0)[:dimension], cells, material="solid")
+    basis = {"basis": more.pop("basis", "gimp")}
+    load = {"end": Load(body="body", side="x_min", pressure=pressure)}
+    return loaded(body, load, dimension, more.pop("lengths", 24.0), grid | basis, **more)
+
+
+@pytest.mark.parametrize("basis", BASES)
+@pytest.mark.parametrize("scheme", ["usf", "musl"])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_bar_that_is_pressed_suddenly(dimension: int, scheme: str, basis: str) -> None:
+    """A wave of stress -p and velocity p / (rho c); means of its plateau, to 1 %.
+
+    Artificial viscosity takes the ringing of a front as steep as the grid, 2 % in such means.
+
+    Momentum is p A t and the work p v A t; the area does not change in uniaxial strain.
+    """
+    simulation, row = finish(bar(dimension, scheme=scheme, basis=basis, viscosity=SMOOTH))
+    x = simulation.column("body", "position")[:, 0] / CELL - 4
+    plateau = (x > 2) & (x < 14)
+    stress, v = (simulation.column("body", n)[plateau, 0] for n in ("stress", "velocity"))
+    assert stress.mean() == pytest.approx(-1000.0, rel=0.01)
+    assert v.mean() == pytest.approx(1000.0 / (DENSITY * WAVE), rel=0.01)
+    force = 1000.0 * (2 * CELL) ** (dimension - 1)
+    [load] = simulation.core.loads()
+    assert load.force[0] == pytest.approx(force, rel=1e-11)
+    assert row["momentum_x"][-1] == pytest.approx(force * simulation.time, rel=1e-11)
+    assert load.impulse[0] == pytest.approx(row["momentum_x"][-1], rel=1e-12)
+    work = force * 1000.0 / (DENSITY * WAVE) * simulation.time
+    # The end moves by a part of a cell before a wave of the grid's resolution has built up.
+    assert row["load_work"][-1] == pytest.approx(work, rel=0.03)
+    assert row["external"][-1] == row["load_work"][-1]
+    assert np.abs(row["residual"]).max() < 1e-12 * work  # some thousand roundings
+
+
+def test_a_pressure_over_time_gives_its_integral() -> None:
+    """The impulse of a table is exact, however the steps fall."""
+    table = {"times": [0.0, 5 * TIME, 9 * TIME], "values": [0.0, 2000.0, 0.0]}
+    _, row = finish(bar(2, table))
+    impulse = 0.5 * 9 * TIME * 2000.0 * 2 * CELL
+    assert row["momentum_x"][-1] == pytest.approx(impulse, rel=1e-11)
+
+
+def mean_state(case: Case, after: float, names: tuple[str, ...]) -> list[np.ndarray]:
+    """Return means over time of columns, from a time on."""
+    simulation = Simulation(case, threads=2)
+    simulation.advance(10**6, end_time=after)
+    sums: list[Any] = [0.0] * len(names)
+    count = 0
+    while simulation.advance(5):
+        sums = [s + simulation.column("body", n) for s, n in zip(sums, names, strict=True)]
+        count += 1
+    rows = simulation.core.history()
+    row = dict(zip(simulation.core.history_columns, rows.T, strict=True))
+    assert np.abs(row["residual"]).max() < 1e-12 * row["load_work"].max()
+    return [s / count for s in sums]
+
+
+@pytest.mark.parametrize("basis", BASES)
+def test_a_ring_under_pressure_from_within(basis: str) -> None:
+    """Lame's solution in plane strain (Timoshenko & Goodier 1970, art. 28), radii 10 and 20 cells.
+
+    Means over two periods of breathing after a slow ramp: the shift of the outer rim, and the
+    hoop stress away from the rims; 3 % for the steps of the inner rim, a sixth of its radius high.
+    """
+    inner, outer, p = 10 * CELL, 20 * CELL, 2000.0
+    ring = Body(
+        material="solid",
+        shape=shapes.Ring(centre=(0.0, 0.0), inner_radius=inner, outer_radius=outer),
+    )
+    period = 2 * np.pi * 15  # cell lengths of the wave: about that of a thin ring
+    ramp = {"ramp": {"to": p, "end": 3 * period * TIME}}
+    load = {"within": Load(body="body", side="inner", pressure=ramp)}
+    case = loaded(ring, load, 2, 5 * period, {"basis": basis}, time_step_factor=0.5)
+    start = Simulation(case, 1).column("body", "position")
+    x, stress = mean_state(case, 3 * period * TIME, ("position", "stress"))
+    r = np.linalg.norm(start, axis=1)
+    n = start / r[:, None]
+    scale = p * inner**2 / (outer**2 - inner**2)
+    shift = (1 + NU) / YOUNG * scale * ((1 - 2 * NU) * r + outer**2 / r)
+    moved = ((x - start) * n).sum(axis=1)
+    rim = r > 18 * CELL
+    assert moved[rim].mean() == pytest.approx(shift[rim].mean(), rel=0.03)
+    hoop = stress[:, 0] * n[:, 1] ** 2 + stress[:, 1] * n[:, 0] ** 2
+    hoop -= 2 * stress[:, 5] * n[:, 0] * n[:, 1]
+    within = (r > 12 * CELL) & (r < 18 * CELL)
+    expected = scale * (1 + outer**2 / r**2)
+    assert hoop[within].mean() == pytest.approx(expected[within].mean(), rel=0.03)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_ball_under_pressure_all_around_stays(dimension: int) -> None:
+    """No force to rounding at first, and the stress -p of the plane (2D) or of space within.
+
+    Later the pieces of a closed surface close to the grid's resolution, as each has the gradient of
+    its own particle.
+    """
+    size, p = (10, 6)[dimension - 2] * CELL, 1000.0
+    kind = shapes.Disc if dimension == 2 else shapes.Sphere
+    body = Body(material="solid", shape=kind(centre=(0.0,) * dimension, radius=size))
+    ramp = {"ramp": {"to": p, "end": 60 * TIME}}
+    load = {"around": Load(body="body", side="outer", pressure=ramp)}
+    case = loaded(body, load, dimension, 90.0, time_step_factor=0.5)
+    simulation = Simulation(case, 1)
+    simulation.advance(1)
+    [found] = simulation.core.loads()
+    area = 2 * np.pi * size if dimension == 2 else 4 * np.pi * size**2
+    assert found.area < area  # A particle at a corner adds areas that are not parallel.
+    assert 0.0 < np.abs(found.force).max() < 1e-14 * p * area
+    simulation.advance(99)
+    [found] = simulation.core.loads()
+    assert np.abs(found.force).max() < 1e-6 * p * area
+    x, stress = mean_state(case, 60 * TIME, ("position", "stress"))
+    inner = np.linalg.norm(x, axis=1) < 0.6 * size
+    means = stress[inner].mean(axis=0)
+    assert means[:dimension] == pytest.approx(np.full(dimension, -p), rel=0.03)
+    assert np.abs(means[5]) < 1e-5 * p
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_pressure_turns_with_its_body_and_a_traction_does_not(dimension: int) -> None:
+    """A spinning block: the force has turned as far as the particles, to 1 % of a radian.
+
+    (Small bodies lose spin, so their angle is measured.)
+    """
+    spin = 20.0
+    cells = (6, 6, 3)[:dimension]
+    body = block(
+        (0,) * dimension,
+        cells,
+        material="solid",
+        angular_velocity=(spin,) if dimension == 2 else (0.0, 0.0, spin),
+    )
+    loads = {
+        "pressure": Load(body="body", side="x_max", pressure=1e-3),
+        "traction": Load(body="body", side="x_max", traction=(0.0, 2e-3, 0.0)[:dimension]),
+    }
+    case = loaded(body, loads, dimension, 2.5 / spin / TIME, time_step_factor=0.5)
+    first = Simulation(case, 1).column("body", "position")[:, :2]
+    simulation, _ = finish(case)
+    pressure, traction = simulation.core.loads()
+    last = simulation.column("body", "position")[:, :2]
+    before, after = ((x - x.mean(axis=0)) @ [1.0, 1.0j] for x in (first, last))
+    angle = np.angle((after * before.conj()).sum())
+    assert angle > 1.5
+    force = 1e-3 * 6 * CELL * (3 * CELL if dimension == 3 else 1.0)
+    # Spinning stretches the block by rho (w r)^2 / E, less than a thousandth.
+    assert pressure.force[0] == pytest.approx(-force * np.cos(angle), abs=0.01 * force)
+    assert pressure.force[1] == pytest.approx(-force * np.sin(angle), rel=0.01)
+    assert traction.force[1] == pytest.approx(2 * force, rel=0.01)
+    assert np.abs(traction.force[0]) < 1e-12 * force
+
+
+@pytest.mark.parametrize("basis", BASES)
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_area_grows_with_the_body(dimension: int, basis: str) -> None:
+    """Nanson's formula: a body that flies apart evenly has the area of its stretch.
+
+    In the cells at its ends the grid sees 0.625 of the gradient, as their outer nodes have
+    particles on one side only: with 12 cells 0.06 of the growth is missing along each axis.
+    """
+    soft = Material(density=DENSITY, strength={"elastic": {"E": 1e-3, "nu": 0.3}})
+    body = block((0,) * dimension, (12, 3, 12)[:dimension], material="solid")
+    load = {"face": Load(body="body", side="y_min", pressure=1e-9)}
+    case = loaded(body, load, dimension, 1.0, {"basis": basis}, time_step_factor=0.02)
+    case.material["solid"] = soft
+    case.run.end_time = 0.5
+    simulation = Simulation(case, 1)
+    x = simulation.column("body", "position")
+    simulation.set_velocity("body", 0.2 * (x - x.mean(axis=0)))
+    simulation.advance(10**6)
+    [found] = simulation.core.loads()
+    area = (12 * CELL * (1 + 0.94 * 0.1)) ** (dimension - 1)
+    assert found.area == pytest.approx(area, rel=5e-3)
+    assert found.force[1] == pytest.approx(1e-9 * area, rel=5e-3)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_same_bits_for_any_number_of_threads(dimension: int) -> None:
+    size = 6 * CELL
+    kind = shapes.Disc if dimension == 2 else shapes.Sphere
+    body = Body(
+        material="solid",
+        shape=kind(centre=(0.1,) * dimension, radius=size),
+        velocity=(5.0,) * dimension,
+    )
+    loads = {
+        "around": Load(body="body", side="outer", pressure=5000.0),
+        "aside": Load(body="body", side="all", traction=(10.0, 20.0, 30.0)[:dimension]),
+    }
+    outcomes = []
+    for threads in (1, 2):
+        simulation, _ = finish(loaded(body, loads, dimension, 10.0), threads)
+        records = [[*r.force, *r.impulse, r.area] for r in simulation.core.loads()]
+        columns = [simulation.column("body", name) for name in ("position", "velocity", "stress")]
+        outcomes.append([np.array(records), *columns])
+    assert all(a.tobytes() == b.tobytes() for a, b in zip(*outcomes, strict=True))
+
+
+def test_a_load_goes_with_the_particles_that_leave() -> None:
+    """Pieces of particles that are taken out are not loaded any more."""
+    body = block((0, 0), (4, 4), material="solid", velocity=(5.0, 0.0))
+    load = {"side": Load(body="body", side="y_min", pressure=1.0)}
+    grid = {"keep": {"upper": (6.0 * CELL, 1.0)}}
+    case = loaded(body, load, 2, 10.0, grid, end_time=3.5 * CELL / 5.0)
+    simulation, _ = finish(case)
+    [found] = simulation.core.loads()
+    left = simulation.left()["count"] / 64
+    assert 0.2 < left < 0.5
+    assert found.force[1] == pytest.approx(4 * CELL * (1 - left), rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (
+            {"body": "bodi"},
+            'load.end.body = "bodi" is not a body of this case; did you mean "body"',
+        ),
+        ({"side": "x_mim"}, 'is not a side of the box body.body; did you mean "x_min"'),
+        ({"side": "z_min"}, "is not a side of the box body.body"),
+        ({"side": "outer"}, "valid here: x_min, x_max, y_min, y_max, all"),
+        ({"pressure": ...}, "load.pressure is missing; add this key, or traction"),
+        ({"traction": (1.0, 2.0)}, "must not be given together with pressure"),
+        ({"pressure": ..., "traction": (1.0, 2.0, 3.0)}, "must have 2 numbers"),
+        ({"pressure": "3 m"}, "3 m"),
+    ],
+)
+def test_bad_loads(change: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(CaseError) as error:
+        keys = {"body": "body", "side": "x_min", "pressure": 1.0} | change
+        load = Load(**{key: value for key, value in keys.items() if value is not ...})
+        body = block((0, 0), (4, 4), material="solid")
+        Simulation(loaded(body, {"end": load}, 2, 1.0), 1)
+    assert sentence in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("body", "sentence"),
+    [
+        ({"material": "stone"}, "is rigid, and a load acts on bodies that deform"),
+        (
+            {
+                "shape": shapes.Box(lower=(0, 0), upper=(1, 1))
+                | shapes.Disc(centre=(1, 1), radius=1)
+            },
+            "cannot be found: body.body is a union, which has no named sides",
+        ),
+    ],
+)
+def test_bodies_that_cannot_be_loaded(body: dict[str, Any], sentence: str) -> None:
+    given = {"material": "solid", "shape": SQUARE} | body
+    with pytest.raises(CaseError) as error:
+        case = Case(
+            grid=Grid(dimension=2, cell_size=0.5),
+            run=Run(end_time=1.0),
+            material=materials() | {"stone": Material(density=1.0, strength={"rigid": {}})},
+            body={
+                "body": Body(spacing=0.43, **given),
+                "other": Body(material="solid", shape=FAR),
+            },
+            load={"end": Load(body="body", side="x_min", pressure=1.0)},
+        )
+        Simulation(case, 1)
+    assert sentence in str(error.value)
