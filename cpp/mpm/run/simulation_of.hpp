@@ -15,6 +15,7 @@ class SimulationOf final : public Simulation {
   int add_body(const std::string& name, int material, std::span<const double> positions,
                std::span<const double> velocities, std::span<const double> volumes) override;
   void set_state(int body, const std::string& column, std::span<const double> values) override;
+  void set_group(int body, int first) override;
   void set_pair_friction(int a, int b, double mu) override;
   void prepare() override;
   std::int64_t advance(std::int64_t max_steps, double end_time) override;
@@ -45,6 +46,7 @@ class SimulationOf final : public Simulation {
 
   std::vector<double> take_history() override;
   const std::vector<PairRecord>& pairs() const override { return domain_.contact.pairs(); }
+  std::vector<PairRecord> group_pairs() const override;
   std::size_t overlapped_nodes() const override { return domain_.contact.overlapped_nodes(); }
   std::size_t overlapped_nodes_max() const override {
     return domain_.contact.overlapped_nodes_max();
