@@ -13,6 +13,7 @@ from typing import Any
 
 from mpm3dpp import case, case_parts
 from mpm3dpp.detonation import Detonation
+from mpm3dpp.grains import GrainLattice, GrainPacking, Grains
 from mpm3dpp.materials import catalogue
 from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
 from mpm3dpp.materials.chosen import ACTIONS
@@ -39,6 +40,14 @@ TABLES: tuple[tuple[str, type, str], ...] = (
         "[library](library.md).",
     ),
     ("body.NAME", case.Body, ""),
+    (
+        "grains.NAME",
+        Grains,
+        "[Many grains](../how-to/many-grains.md) explains them. Bodies and entries of grains have "
+        "different names.",
+    ),
+    ("grains.NAME.lattice", GrainLattice, ""),
+    ("grains.NAME.packing", GrainPacking, ""),
     ("detonation", Detonation, "Written `[[detonation]]`, once for each point."),
 )
 

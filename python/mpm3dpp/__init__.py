@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .case_parts import Contact, ContactPair, Grid, GridBox, Output, Run, Viscosity, Walls
     from .detonation import Detonation
     from .errors import CaseError, RunError
+    from .grains import GrainCentres, GrainLattice, GrainPacking, Grains
     from .io import open_results
     from .materials import Eos, Failure, Strength
     from .particles import Particles
@@ -42,6 +43,7 @@ _HOMES = {
     ),
     "detonation": ("Detonation",),
     "errors": ("CaseError", "RunError"),
+    "grains": ("GrainCentres", "GrainLattice", "GrainPacking", "Grains"),
     "io": ("open_results",),
     "materials": ("Eos", "Failure", "Strength"),
     "particles": ("Particles",),
@@ -59,6 +61,10 @@ __all__ = [
     "Detonation",
     "Eos",
     "Failure",
+    "GrainCentres",
+    "GrainLattice",
+    "GrainPacking",
+    "Grains",
     "Grid",
     "GridBox",
     "Material",
