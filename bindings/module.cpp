@@ -123,7 +123,8 @@ NB_MODULE(_core, m) {
       .def_ro("first_step", &PairRecord::first_step)
       .def_prop_ro("force", [](const PairRecord& p) { return std::to_array(p.force); })
       .def_prop_ro("impulse", [](const PairRecord& p) { return std::to_array(p.impulse); })
-      .def_ro("friction_work", &PairRecord::friction_work);
+      .def_ro("friction_work", &PairRecord::friction_work)
+      .def_ro("pairs", &PairRecord::pairs);
 
   nb::class_<Simulation>(m, "Simulation")
       .def(nb::new_([](const Settings& settings) { return make_simulation(settings); }),
@@ -164,6 +165,7 @@ NB_MODULE(_core, m) {
           },
           nb::arg("name"), nb::arg("body"), nb::arg("follows"), nb::arg("value"),
           nb::arg("particles"), nb::arg("areas"), nb::arg("arms"))
+      .def("set_group", &Simulation::set_group, nb::arg("body"), nb::arg("first"))
       .def("set_friction", &Simulation::set_pair_friction, nb::arg("body_a"), nb::arg("body_b"),
            nb::arg("mu"))
       .def("prepare", &Simulation::prepare, nb::call_guard<nb::gil_scoped_release>())
@@ -212,6 +214,7 @@ NB_MODULE(_core, m) {
                           [](nb::handle) { return Simulation::history_columns(); })
       .def_ro_static("history_capacity", &Simulation::history_capacity)
       .def("contact_pairs", &Simulation::pairs)
+      .def("contact_groups", &Simulation::group_pairs)
       .def("contact_summary",
            [](const Simulation& s) {
              nb::dict d;

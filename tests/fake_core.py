@@ -83,8 +83,11 @@ class FakeSimulation:
             force=[-5.0 * touching, 0.0, 0.0],
             impulse=[-0.1 * touching, 0.0, 0.0],
             friction_work=0.0,
+            pairs=1,
         )
         return [pair]
+
+    contact_groups = contact_pairs
 
     def contact_summary(self) -> dict[str, int]:
         return {

@@ -13,6 +13,7 @@ from typing import Any
 
 from mpm3dpp import case, case_grid, case_parts
 from mpm3dpp.detonation import Detonation
+from mpm3dpp.grains import GrainLattice, GrainPacking, Grains
 from mpm3dpp.loads import Load
 from mpm3dpp.materials import catalogue
 from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
@@ -44,6 +45,14 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ),
     ("body.NAME", case.Body, ""),
     ("body.NAME.motion", Motion, ""),
+    (
+        "grains.NAME",
+        Grains,
+        "[Many grains](../how-to/many-grains.md) explains them. Bodies and entries of grains have "
+        "different names.",
+    ),
+    ("grains.NAME.lattice", GrainLattice, ""),
+    ("grains.NAME.packing", GrainPacking, ""),
     ("load.NAME", Load, ""),
     ("detonation", Detonation, "Written `[[detonation]]`, once for each point."),
 )

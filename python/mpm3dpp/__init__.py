@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .case_parts import Contact, ContactPair, Output, Run, Viscosity
     from .detonation import Detonation
     from .errors import CaseError, RunError
+    from .grains import GrainCentres, GrainLattice, GrainPacking, Grains
     from .io import open_results
     from .loads import Load
     from .materials import Eos, Failure, Strength
@@ -38,6 +39,7 @@ _HOMES = {
     "case_parts": ("Contact", "ContactPair", "Output", "Run", "Viscosity"),
     "detonation": ("Detonation",),
     "errors": ("CaseError", "RunError"),
+    "grains": ("GrainCentres", "GrainLattice", "GrainPacking", "Grains"),
     "io": ("open_results",),
     "loads": ("Load",),
     "materials": ("Eos", "Failure", "Strength"),
@@ -58,6 +60,10 @@ __all__ = [
     "Detonation",
     "Eos",
     "Failure",
+    "GrainCentres",
+    "GrainLattice",
+    "GrainPacking",
+    "Grains",
     "Grid",
     "GridBox",
     "GridDoubling",

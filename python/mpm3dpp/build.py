@@ -11,6 +11,10 @@ from numpy.typing import NDArray
 
 from .case import Body, Case
 from .errors import CaseError
+from .errors import Path as KeyPath
+from .grains import Grains, fill_grain
+from .grains.packing import ball_volume
+from .neighbours import overlapping_boxes
 from .overlap import close_particles
 from .shapes import fill, reference_volume
 
@@ -27,7 +31,9 @@ class FilledBody:
     """The particles of one body at the start.
 
     Attributes:
-        name, material: names in the case.
+        name: of the body.
+        part: its name in the case: of the entry of `grains` if it is a grain, else its own.
+        material: name in the case.
         positions: [m], shape (n, D).
         velocities: [m/s], shape (1, D) if all are equal, else (n, D).
         volumes: [m^3; in 2D m^2 times 1 m], shape (n,); all equal if a shape was filled.
@@ -36,9 +42,11 @@ class FilledBody:
         shape_volume: the shape's volume [m^3; in 2D m^2]; None for particles given one by one.
         volume_is_exact: whether that is a closed form, else a fine lattice gave it.
         mass_error: mass / (density times shape_volume) - 1; 0 without a shape.
+        ball: centre [m], shape (D,), and radius [m] of a grain; None for others.
     """
 
     name: str
+    part: str
     material: str
     positions: Array
     velocities: Array
@@ -48,10 +56,13 @@ class FilledBody:
     shape_volume: float | None
     volume_is_exact: bool
     mass_error: float
+    ball: tuple[Array, float] | None = None
 
 
 def build(case: Case) -> list[FilledBody]:
     """Fill all bodies of a case with particles, in the order of the case, and check them.
+
+    Grains come after the others.
 
     Raises:
         CaseError: a body holds no particle, misses its mass by more than half, or reaches out of
@@ -65,19 +76,90 @@ def build(case: Case) -> list[FilledBody]:
         check_case(case)  # Again: objects may have been changed since the case was made.
     except ValueError as error:
         raise from_violation(error) from None
-    bodies = [_filled(case, name, body) for name, body in case.body.items()]
+    bodies = fill_all(case)
+    for body in bodies:
+        _check_box(case, body)
     _check_overlap(case, bodies)
     return bodies
 
 
+def fill_all(case: Case) -> list[FilledBody]:
+    """Fill all bodies as `build` does, but let them overlap and reach out of the box.
+
+    Raises:
+        CaseError: a body holds no particle or misses its mass by more than half.
+    """
+    bodies = [_filled(case, name, body) for name, body in case.body.items()]
+    for name, grains in case.grains.items():
+        bodies += _filled_grains(case, name, grains)
+    return bodies
+
+
 def warnings(bodies: list[FilledBody]) -> list[str]:
-    """Return a sentence for every body whose mass is off by more than 5 %."""
-    return [
-        f"body.{body.name}: its particles have {body.mass_error:+.1%} of the mass of its shape; "
-        "give more particles_per_cell, or a shape aligned with the cells"
-        for body in bodies
-        if abs(body.mass_error) > MASS_WARNING
-    ]
+    """Return a sentence for every body or entry of grains whose mass is off by more than 5 %."""
+    found = []
+    for part, members in by_part(bodies).items():
+        worst = max((body.mass_error for body in members), key=abs)
+        if abs(worst) <= MASS_WARNING:
+            continue
+        if members[0].name == part:
+            found.append(
+                f"body.{part}: its particles have {worst:+.1%} of the mass of its shape; "
+                "give more particles_per_cell, or a shape aligned with the cells"
+            )
+        else:
+            found.append(
+                f"grains.{part}: the particles of a grain have up to {worst:+.1%} of the mass of "
+                "its shape; give more particles_per_cell, or another align"
+            )
+    return found
+
+
+def by_part(bodies: list[FilledBody]) -> dict[str, list[FilledBody]]:
+    """Return the bodies of each entry of the case: one, or all the grains."""
+    found: dict[str, list[FilledBody]] = {}
+    for body in bodies:
+        found.setdefault(body.part, []).append(body)
+    return found
+
+
+def _filled_grains(case: Case, part: str, grains: Grains) -> list[FilledBody]:
+    path, grid = ("grains", part), case.grid
+    spacing, density = grains.particle_spacing(grid), case.material[grains.material].density
+    bodies: list[FilledBody] = []
+    made: dict[float, Array] = {}
+    try:
+        centres, radii = grains.place(grid.dimension)
+        volumes = ball_volume(radii, grid.dimension).tolist()
+        for k, name in enumerate(grains.names(part)):
+            radius = float(radii[k])
+            positions = fill_grain(centres[k], radius, spacing, grains.align, grid, made)
+            particle_volumes = np.broadcast_to(spacing**grid.dimension, (len(positions),))
+            volume = len(positions) * spacing**grid.dimension
+            bodies.append(
+                FilledBody(
+                    name=name,
+                    part=part,
+                    material=grains.material,
+                    positions=positions,
+                    velocities=initial_velocities(grains, positions, particle_volumes),
+                    volumes=particle_volumes,
+                    spacing=spacing,
+                    mass=volume * density,
+                    shape_volume=volumes[k],
+                    volume_is_exact=True,
+                    mass_error=volume / volumes[k] - 1,
+                    ball=(centres[k], radius),
+                )
+            )
+    except CaseError as error:
+        raise case.error((*path, grains.filling), error.rule, error.remedy) from None
+    worst = max((body.mass_error for body in bodies), key=abs)
+    if abs(worst) > MASS_ERROR:
+        rule = f"is filled too coarsely: particles have {worst:+.0%} of the mass of a grain"
+        remedy = "give a smaller grid.cell_size or more particles_per_cell"
+        raise case.error((*path, grains.filling), rule, remedy)
+    return bodies
 
 
 def _filled(case: Case, name: str, body: Body) -> FilledBody:
@@ -98,9 +180,9 @@ def _filled(case: Case, name: str, body: Body) -> FilledBody:
             raise case.error(("body", name, "shape"), rule, remedy)
     else:
         volume = float(volumes.sum())
-    _check_box(case, name, positions)
     return FilledBody(
         name=name,
+        part=name,
         material=body.material,
         positions=positions,
         velocities=_start(body, positions, volumes),
@@ -113,7 +195,7 @@ def _filled(case: Case, name: str, body: Body) -> FilledBody:
     )
 
 
-def initial_velocities(body: Body, positions: Array, volumes: Array) -> Array:
+def initial_velocities(body: Body | Grains, positions: Array, volumes: Array) -> Array:
     """Return v + w x (x - x_mass centre) of each particle [m/s].
 
     Args:
@@ -143,56 +225,80 @@ def _start(body: Body, positions: Array, volumes: Array) -> Array:
     return body.motion.velocities(0.0, positions, body.motion.middle(positions, volumes))
 
 
-def _check_box(case: Case, name: str, positions: Array) -> None:
+def _check_box(case: Case, body: FilledBody) -> None:
     """Raise if a particle stands outside the box, or the region that is kept."""
     grid = case.grid
     if grid.box is not None:
-        _check_inside(case, name, positions, "box", (grid.box.lower, grid.box.upper))
-    _check_inside(case, name, positions, "keep", grid.kept)
+        _check_inside(case, body, "box", (grid.box.lower, grid.box.upper))
+    _check_inside(case, body, "keep", grid.kept)
 
 
 def _check_inside(
     case: Case,
-    name: str,
-    positions: Array,
+    body: FilledBody,
     region: str,
     corners: tuple[tuple[float, ...], tuple[float, ...]],
 ) -> None:
     slack = _SLACK * case.grid.cell_size
     what = "box" if region == "box" else "region"
     for d, axis in enumerate("xyz"[: case.grid.dimension]):
-        x = positions[:, d]
+        x = body.positions[:, d]
         for limit, outside in ((corners[0][d], -x), (corners[1][d], x)):
             sign = 1 if limit == corners[1][d] else -1
             reach = float(outside.max())
             if reach > sign * limit + slack:
                 count = int((outside > sign * limit + slack).sum())
                 side = f"{axis} {'>' if sign > 0 else '<'} {limit:g} m"
-                rule = f"reaches out of grid.{region}: {count} of its particles are at {side}"
-                filling = case.body[name].filling
-                remedy = f"move the {filling}, or enlarge the {what}"
-                raise case.error(("body", name, filling), rule, remedy)
+                path, filling = _key(case, body)
+                who = "its particles" if body.name == body.part else f"the particles of {body.name}"
+                rule = f"reaches out of grid.{region}: {count} of {who} are at {side}"
+                raise case.error(path, rule, f"move the {filling}, or enlarge the {what}")
+
+
+def _key(case: Case, body: FilledBody) -> tuple[KeyPath, str]:
+    """Return the path of what gives a body its particles, and that key alone."""
+    filling = case.parts()[body.part].filling
+    return (*case.part_path(body.part), filling), filling
 
 
 def _check_overlap(case: Case, bodies: list[FilledBody]) -> None:
-    """Raise if particles of two bodies are closer than a quarter of their spacing."""
+    """Raise if two bodies overlap by more than a quarter spacing.
+
+    Grains are judged as balls: where those touch, particles may be as near as chance has it.
+    """
+    if len(bodies) < 2:
+        return
+    reach = CLOSE * np.array([body.spacing for body in bodies])
+    no_ball = (np.full(case.grid.dimension, np.nan), np.nan)
+    centres = np.array([(body.ball or no_ball)[0] for body in bodies])
+    radii = np.array([(body.ball or no_ball)[1] for body in bodies])
     lowers = np.array([body.positions.min(axis=0) for body in bodies])
     uppers = np.array([body.positions.max(axis=0) for body in bodies])
-    for b in range(1, len(bodies)):
-        second = bodies[b]
-        reach = CLOSE * np.minimum(second.spacing, [body.spacing for body in bodies[:b]])[:, None]
-        near = np.all((lowers[:b] < uppers[b] + reach) & (uppers[:b] > lowers[b] - reach), axis=1)
-        for a in np.flatnonzero(near):
-            first = bodies[a]
-            if case.is_rigid(first.name) and case.is_rigid(second.name):
-                continue  # They do not act on each other.
+    lowers = np.fmin(lowers, centres - radii[:, None]) - 0.5 * reach[:, None]
+    uppers = np.fmax(uppers, centres + radii[:, None]) + 0.5 * reach[:, None]
+    a, b = overlapping_boxes(lowers, uppers)
+    depths = radii[a] + radii[b] - np.sqrt(((centres[a] - centres[b]) ** 2).sum(axis=1))
+    near = ~(depths <= np.minimum(reach[a], reach[b]))  # With a body that is no ball: not a number.
+    rigid = {name: case.is_rigid(name) for name in case.parts()}
+    for k in np.flatnonzero(near).tolist():
+        first, second = bodies[a[k]], bodies[b[k]]
+        if rigid[first.part] and rigid[second.part]:
+            continue  # They do not act on each other.
+        how = f"by {depths[k]:.4g} m"
+        if np.isnan(depths[k]):
             distance = CLOSE * min(first.spacing, second.spacing)
             count = close_particles(first.positions, second.positions, distance)
-            if count:
-                rule = (
-                    f"overlaps body.{first.name}: {count} of the particles of {second.name} are "
-                    f"closer than a quarter spacing to particles of {first.name}"
-                )
-                remedy = "move one of the two, or cut one out of the other with difference"
-                key = ("body", second.name, case.body[second.name].filling)
-                raise case.error(key, rule, remedy)
+            if not count:
+                continue
+            how = (
+                f"{count} of the particles of {second.name} are closer than a quarter spacing to "
+                f"particles of {first.name}"
+            )
+        other = f"body.{first.name}" if first.name == first.part else first.name
+        if second.name == second.part:
+            rule = f"overlaps {other}: {how}"
+            remedy = "move one of the two, or cut one out of the other with difference"
+        else:
+            rule = f"has {second.name} overlap {other}: {how}"
+            remedy = "move the grains, or make them smaller"
+        raise case.error(_key(case, second)[0], rule, remedy)

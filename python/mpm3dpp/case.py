@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from itertools import accumulate, combinations_with_replacement
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,6 +23,7 @@ from .case_parts import Contact, Output, Run
 from .detonation import Detonation
 from .errors import CaseError, from_validation, key_text, violation
 from .errors import Path as KeyPath
+from .grains import Grains
 from .loads import Load
 from .materials.material import Material
 from .model import CaseModel, Count, Text
@@ -98,11 +100,12 @@ class Body(CaseModel):
 
 
 class Case(CaseModel):
-    """A whole problem, checked. See `Grid`, `Run`, `Output`, `Contact`, `Material`, `Body`.
+    """A whole problem, checked: `Grid`, `Run`, `Output`, `Contact`, `Material`, `Body`, `Grains`.
 
     Attributes:
         title: one line for pictures and results.
-        material, body: by name, in the order of the file.
+        material, body, grains: by name, in the order of the file. The bodies of `grains` are
+            numbered after those of `body`.
         load: pressures and tractions on surfaces, by name.
         detonation: the points at which explosives are lit.
         text: the file's text, empty for a case built in Python.
@@ -115,7 +118,8 @@ class Case(CaseModel):
     output: Output = Field(default_factory=Output)
     contact: Contact = Field(default_factory=Contact)
     material: Annotated[dict[str, Material], Field()]
-    body: Annotated[dict[str, Body], Field()]
+    body: Annotated[dict[str, Body], Field(default_factory=dict)]
+    grains: Annotated[dict[str, Grains], Field(default_factory=dict)]
     load: Annotated[dict[str, Load], Field(default_factory=dict)]
     detonation: list[Detonation] = Field(default_factory=list)
 
@@ -192,18 +196,46 @@ class Case(CaseModel):
         for name, body in self.body.items():
             if body.particles is not None:
                 table["body"][name]["particles"] = body.particles.digest
+        for name, grains in self.grains.items():
+            if grains.file is not None:
+                table["grains"][name]["file"] = grains.file.digest
+        if not self.grains:  # So that older cases keep their hash.
+            del table["grains"]
         text = json.dumps(_rounded(table), sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
+
+    def parts(self) -> dict[str, Body | Grains]:
+        """Return the entries of `body` and `grains` by name, in the order of their bodies."""
+        return {**self.body, **self.grains}
+
+    def part_path(self, name: str) -> KeyPath:
+        """Return the path of an entry of `body` or `grains`."""
+        return ("grains" if name in self.grains else "body", name)
+
+    @property
+    def materials_used(self) -> list[str]:
+        """Names of the materials that a body has, in the order of the bodies."""
+        return list(dict.fromkeys(part.material for part in self.parts().values()))
+
+    @property
+    def body_count(self) -> int:
+        """Number of bodies, each grain counted."""
+        return len(self.body) + sum(grains.count for grains in self.grains.values())
 
     @property
     def contact_enabled(self) -> bool:
         """Whether contact is computed: not switched off, nor bonded, and at least two bodies."""
-        return self.contact.enabled and not self.contact.bonded and len(self.body) > 1
+        return self.contact.enabled and not self.contact.bonded and self.body_count > 1
 
-    def is_rigid(self, body: str) -> bool:
-        """Return whether a body does not deform: by its material, or by a prescribed motion."""
-        entry = self.body[body]
-        return entry.motion is not None or not self.material[entry.material].sound_speed()
+    def is_rigid(self, part: str) -> bool:
+        """Return whether a body does not deform: by its material, or by a prescribed motion.
+
+        Args:
+            part: name of the body, or of an entry of grains.
+        """
+        entry = self.parts()[part]
+        moves = isinstance(entry, Body) and entry.motion is not None
+        return moves or not self.material[entry.material].sound_speed()
 
     def viscosity_of(self, material: str) -> tuple[float, float]:
         """Return a material's quadratic and linear factors of artificial viscosity; 0, 0: none."""
@@ -212,17 +244,25 @@ class Case(CaseModel):
         return (0.0, 0.0) if found is None else (found.quadratic, found.linear)
 
     def frictions(self) -> list[tuple[int, int, float]]:
-        """Return (body, body, coefficient) of the pairs listed in `contact.pair`, a < b."""
-        names, found = list(self.body), {}
+        """Return (body, body, coefficient) of the pairs listed in `contact.pair`, a <= b.
+
+        Bodies are numbered; an entry of `grains` is given by its first. a == b is for the pairs
+        among its own.
+        """
+        parts, firsts = self.parts(), self.first_bodies()
+        found = {}
         for pair in sorted(self.contact.pair, key=lambda p: p.bodies is not None):
-            for b in range(len(names)):
-                for a in range(b):
-                    ends = [names[a], names[b]]
-                    if pair.bodies is None:
-                        ends = [self.body[name].material for name in ends]
-                    if sorted(ends) == sorted(pair.bodies or pair.materials or []):
-                        found[a, b] = pair.friction
+            for (a, first), (b, second) in combinations_with_replacement(firsts.items(), 2):
+                ends = [a, b] if pair.bodies else [parts[a].material, parts[b].material]
+                among_itself = a != b or a in self.grains
+                if among_itself and sorted(ends) == sorted(pair.bodies or pair.materials or []):
+                    found[first, second] = pair.friction
         return [(a, b, friction) for (a, b), friction in sorted(found.items())]
+
+    def first_bodies(self) -> dict[str, int]:
+        """Return the number of the first body of every entry of `body` and `grains`."""
+        counts = [1] * len(self.body) + [grains.count for grains in self.grains.values()]
+        return dict(zip(self.parts(), accumulate(counts, initial=0), strict=False))
 
     def frame_times(self) -> list[float]:
         """Return the times of the frames [s], the first 0 and the last the end time."""

@@ -15,6 +15,7 @@ from .motion import check_motion
 
 if TYPE_CHECKING:
     from .case import Body, Case
+    from .grains import Grains
     from .materials.material import Material
 
 
@@ -25,7 +26,7 @@ def check_case(case: Case) -> None:
         PydanticCustomError: a violation, with its path in the case.
     """
     for name, what in (("material", case.material), ("body", case.body)):
-        if not what:
+        if not what and not (name == "body" and case.grains):
             raise violation("must not be empty", f"add a table [{name}.NAME]", path=(name,))
         if "" in what:
             raise violation("must have a name", "write [body.left]", path=(name, ""))
@@ -35,16 +36,24 @@ def check_case(case: Case) -> None:
     _check_vector(case.run, "gravity", dimension, ("run",))
     for name, body in case.body.items():
         _check_body(case, body, ("body", name))
-    if all(case.is_rigid(name) for name in case.body):
+    for name, grains in case.grains.items():
+        _check_grains(case, name, grains)
+    if all(case.is_rigid(name) for name in case.parts()):
         rule = "holds rigid bodies only, so no wave limits the time step: one must deform"
-        raise violation(rule, "give one another strength", path=("body",))
+        path: Path = ("body",) if case.body else ("grains",)
+        raise violation(rule, "give one another strength", path=path)
     for index, pair in enumerate(case.contact.pair):
         key = "bodies" if pair.bodies is not None else "materials"
-        known = case.body if pair.bodies is not None else case.material
+        known = case.parts() if pair.bodies is not None else case.material
+        first, second = pair.bodies or ("", " ")
+        if first == second and first in case.body:
+            rule, remedy = "must be two different bodies", "a body has no contact with itself"
+            path = ("contact", "pair", index, key)
+            raise violation(rule, remedy, value=pair.bodies, path=path)
         for position, word in enumerate(pair.bodies or pair.materials or []):
             if word not in known:
                 rule = f"is not a {'body' if key == 'bodies' else 'material'} of this case"
-                path: Path = ("contact", "pair", index, key, position)
+                path = ("contact", "pair", index, key, position)
                 raise violation(rule, nearest(word, known), value=word, path=path)
     check_detonations(case)
     check_loads(case)
@@ -96,20 +105,28 @@ def _check_vector(owner: object, name: str, dimension: int, path: Path) -> None:
     owner.__dict__[name] = vector or (0.0,) * dimension
 
 
-def _check_body(case: Case, body: Body, path: Path) -> None:
+def _check_grains(case: Case, name: str, grains: Grains) -> None:
+    path: Path = ("grains", name)
+    if not name or name in case.body:
+        rule = "has the name of a body" if name else "must have a name"
+        raise violation(rule, "write another name, [grains.sand]", path=path)
+    others = {*case.body, *case.grains}
+    taken = next((one for one in grains.names(name) if one in others), None)
+    if taken is not None:
+        rule = f"has a grain {taken}, which is the name of another entry too"
+        raise violation(rule, "rename one of the two", path=path)
+    wrong = grains.wrong_dimension(case.grid.dimension)
+    if wrong is not None:
+        raise violation(wrong[1], wrong[2], path=(*path, *wrong[0]))
+    _check_motion(case, grains, path)
+
+
+def _check_motion(case: Case, body: Body | Grains, path: Path) -> None:
+    """Check the material and the velocities, and fill in those that are absent."""
     dimension = case.grid.dimension
     if body.material not in case.material:
         rule, remedy = "is not a material of this case", nearest(body.material, case.material)
         raise violation(rule, remedy, value=body.material, path=(*path, "material"))
-    if body.shape is not None:
-        wrong = body.shape.wrong_dimension(dimension, (*path, "shape"))
-        if wrong is not None:
-            raise violation(wrong[1], wrong[2], path=wrong[0])
-    if body.particles is not None and body.particles.dimension != dimension:
-        rule = f"must have {dimension} coordinates, as grid.dimension = {dimension}"
-        remedy = f"it has {body.particles.dimension}"
-        value = body.particles.file or "an array"
-        raise violation(rule, remedy, value=value, path=(*path, "particles"))
     _check_vector(body, "velocity", dimension, path)
     spin, wanted = body.angular_velocity, 1 if dimension == 2 else 3
     if spin and len(spin) != wanted:
@@ -123,8 +140,22 @@ def _check_body(case: Case, body: Body, path: Path) -> None:
         check_motion(case, body, path)
 
 
+def _check_body(case: Case, body: Body, path: Path) -> None:
+    dimension = case.grid.dimension
+    if body.shape is not None:
+        wrong = body.shape.wrong_dimension(dimension, (*path, "shape"))
+        if wrong is not None:
+            raise violation(wrong[1], wrong[2], path=wrong[0])
+    if body.particles is not None and body.particles.dimension != dimension:
+        rule = f"must have {dimension} coordinates, as grid.dimension = {dimension}"
+        remedy = f"it has {body.particles.dimension}"
+        value = body.particles.file or "an array"
+        raise violation(rule, remedy, value=value, path=(*path, "particles"))
+    _check_motion(case, body, path)
+
+
 def _check_output(case: Case) -> None:
-    used = {body.material for body in case.body.values()}
+    used = case.materials_used
     materials = [case.material[name] for name in used]
     extra = ["volume", "mass", *state_columns(set().union(*(m.models for m in materials)))]
     extra += ["internal_energy"] if any(m.eos is not None for m in materials) else []

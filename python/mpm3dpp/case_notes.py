@@ -7,10 +7,11 @@ import math
 
 import numpy as np
 
-from .build import FilledBody
+from .build import FilledBody, by_part
 from .case import Case
 from .case_grid import FACES
 from .detonation import EXPLOSIVE
+from .errors import key_text
 from .time_functions import TimeFunction
 
 _STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
@@ -29,7 +30,7 @@ def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
 def _materials(case: Case) -> list[str]:
     """Numbers that are allowed but mostly come from another convention."""
     found = []
-    for name in dict.fromkeys(body.material for body in case.body.values()):
+    for name in case.materials_used:
         material = case.material[name]
         strength, key = material.strength, f"material.{name}"
         for failure in material.failure:
@@ -86,20 +87,20 @@ def _walls(case: Case) -> list[str]:
 def _detonations(case: Case, bodies: list[FilledBody]) -> list[str]:
     """Explosives that nothing lights, and points that light nothing before the end of the run."""
     explosives = {
-        body.name: body
-        for body in bodies
-        if case.material[body.material].strength.model == EXPLOSIVE
+        part: members
+        for part, members in by_part(bodies).items()
+        if case.material[members[0].material].strength.model == EXPLOSIVE
     }
     found = []
     for name in explosives:
         if not any(not d.bodies or name in d.bodies for d in case.detonation):
             found.append(
-                f"body.{name} is of an explosive that nothing lights, so that it stays unburned; "
-                "add [[detonation]] with a point"
+                f"{key_text(case.part_path(name))} is of an explosive that nothing lights, so that "
+                "it stays unburned; add [[detonation]] with a point"
             )
     for index, detonation in enumerate(case.detonation):
         first = np.inf
-        for body in (explosives[name] for name in detonation.bodies or explosives):
+        for body in (b for name in detonation.bodies or explosives for b in explosives[name]):
             distance = np.linalg.norm(body.positions - np.asarray(detonation.point), axis=1).min()
             speed = case.material[body.material].strength.parameters["D"]
             first = min(first, detonation.time + float(distance) / speed)

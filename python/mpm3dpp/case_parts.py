@@ -72,7 +72,10 @@ class Output(CaseModel):
 
 
 class ContactPair(CaseModel):
-    """A friction coefficient for two bodies, or for all bodies of two materials."""
+    """A friction coefficient for two bodies, or for all bodies of two materials.
+
+    The name of a `grains` entry stands for all its bodies; twice, for the pairs among them.
+    """
 
     bodies: list[Text] | None = None
     materials: list[Text] | None = None
@@ -87,9 +90,6 @@ class ContactPair(CaseModel):
         names = getattr(self, name)
         if len(names) != 2:
             raise violation("must have two names", "give two", value=names, path=(name,))
-        if name == "bodies" and names[0] == names[1]:
-            rule = "must be two different bodies"
-            raise violation(rule, "a body has no contact with itself", value=names, path=(name,))
         return self
 
 

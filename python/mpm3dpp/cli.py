@@ -176,7 +176,9 @@ def plot(
 @app.command()
 def bench(
     name: Annotated[str, typer.Argument(metavar="NAME", help="elastic3d, two_cubes, ...")],
-    size: Annotated[int | None, typer.Option(min=1, help="Cells along an edge.")] = None,
+    size: Annotated[
+        int | None, typer.Option(min=1, help="Cells along an edge; of spheres, how many.")
+    ] = None,
     threads: Annotated[int, typer.Option(min=1, help="Threads.")] = 1,
     scheme: Annotated[Scheme, typer.Option(help="Scheme.")] = Scheme.musl,
     steps: Annotated[int | None, typer.Option(min=1, help="Steps that are timed.")] = None,

@@ -26,7 +26,7 @@ class Detonation(CaseModel):
     Attributes:
         point: where [m], D numbers.
         time: when [s].
-        bodies: names of the bodies that it lights; empty for all explosives.
+        bodies: names of the bodies or entries of `grains` that it lights; empty for all explosives.
     """
 
     point: Point
@@ -34,21 +34,21 @@ class Detonation(CaseModel):
     bodies: list[Text] = Field(default_factory=list)
 
 
-def lighting_times(case: Case, body: str, positions: Array) -> Array | None:
+def lighting_times(case: Case, part: str, positions: Array) -> Array | None:
     """Return when the detonation arrives at each particle of a body [s], shape (n,).
 
     It is the earliest of all points' time + distance / D (Huygens, one medium).
 
     Args:
         case: gives the points and the speed D.
-        body: its name.
+        part: name of the body, or of the entry of grains that it belongs to.
         positions: of its particles at the start [m], shape (n, D).
 
     Returns:
         None if the body is no explosive or nothing lights it.
     """
-    strength = case.material[case.body[body].material].strength
-    points = [d for d in case.detonation if not d.bodies or body in d.bodies]
+    strength = case.material[case.parts()[part].material].strength
+    points = [d for d in case.detonation if not d.bodies or part in d.bodies]
     if strength.model != EXPLOSIVE or not points:
         return None
     speed = strength.parameters["D"]
@@ -61,7 +61,8 @@ def lighting_times(case: Case, body: str, positions: Array) -> Array | None:
 def check_detonations(case: Case) -> None:
     """Raise a violation for a point of the wrong dimension, or one that has nothing to light."""
     dimension = case.grid.dimension
-    strengths = [case.material[body.material].strength.model for body in case.body.values()]
+    strengths = [case.material[name].strength.model for name in case.materials_used]
+    parts = case.parts()
     for index, detonation in enumerate(case.detonation):
         if EXPLOSIVE not in strengths:
             rule = f"has nothing to light: no body is of an explosive (strength {EXPLOSIVE})"
@@ -74,9 +75,9 @@ def check_detonations(case: Case) -> None:
             raise violation(rule, remedy, value=list(detonation.point), path=path)
         for place, name in enumerate(detonation.bodies):
             where = ("detonation", index, "bodies", place)
-            if name not in case.body:
-                remedy = nearest(name, case.body)
+            if name not in parts:
+                remedy = nearest(name, parts)
                 raise violation("is not a body of this case", remedy, value=name, path=where)
-            if case.material[case.body[name].material].strength.model != EXPLOSIVE:
+            if case.material[parts[name].material].strength.model != EXPLOSIVE:
                 rule = f"is not of an explosive (strength {EXPLOSIVE})"
                 raise violation(rule, "name a body that is", value=name, path=where)

@@ -8,7 +8,7 @@ import textwrap
 
 import numpy as np
 
-from .build import FilledBody, warnings
+from .build import FilledBody, by_part, warnings
 from .case import Case
 from .case_notes import notes
 from .loads import pieces
@@ -21,11 +21,15 @@ _PARTICLE_BYTES, _CELL_BYTES = 200, 150
 
 def time_step(case: Case, bodies: list[FilledBody]) -> float:
     """Return the expected first time step f h / max(c + |v|) [s]."""
-    fastest = max(
-        (0.0 if case.is_rigid(body.name) else case.material[body.material].sound_speed())
-        + float(np.sqrt(np.einsum("ij,ij->i", body.velocities, body.velocities).max()))
-        for body in bodies
-    )
+    sound = {
+        name: 0.0 if case.is_rigid(name) else case.material[part.material].sound_speed()
+        for name, part in case.parts().items()
+    }
+    fastest = 0.0
+    for name, members in by_part(bodies).items():
+        v = np.concatenate([body.velocities for body in members])
+        speed = float(np.sqrt(np.einsum("ij,ij->i", v, v).max()))
+        fastest = max(fastest, sound[name] + speed)
     return case.run.time_step_factor * case.grid.cell_size / fastest
 
 
@@ -43,19 +47,20 @@ def steps_in_words(case: Case, bodies: list[FilledBody]) -> str:
 def occupied_cells(case: Case, bodies: list[FilledBody]) -> int:
     """Return the number of grid cells that hold particles, each body counted by itself."""
     total = 0
-    for body in bodies:
-        cells = np.floor((body.positions - np.asarray(case.grid.lower)) / case.grid.cell_size)
+    for members in by_part(bodies).values():
+        positions = np.concatenate([body.positions for body in members])
+        owner = np.repeat(np.arange(len(members)), [len(body.positions) for body in members])
+        cells = np.floor((positions - np.asarray(case.grid.lower)) / case.grid.cell_size)
         cells -= cells.min(axis=0)
-        extent = cells.max(axis=0) + 1
-        keys = cells @ np.cumprod([1.0, *extent[:-1]])
-        total += len(np.unique(keys))
+        strides = np.cumprod([1.0, *(cells.max(axis=0) + 1)])
+        total += len(np.unique(cells @ strides[:-1] + owner * strides[-1]))
     return total
 
 
 def material_lines(case: Case) -> list[str]:
     """Return the numbers of each material that a body has, those of the library included."""
     lines = []
-    for name in dict.fromkeys(body.material for body in case.body.values()):
+    for name in case.materials_used:
         material = case.material[name]
         parts = [f"density {material.density:.6g} kg/m^3"]
         chosen = [("strength", material.strength), ("eos", material.eos)]
@@ -81,19 +86,41 @@ def _motion_in_words(case: Case, body: str) -> str:
     return ", moves as prescribed" if motion.moves else ", fixed"
 
 
+def _body_line(case: Case, body: FilledBody, per_metre: str) -> str:
+    against = "exact" if body.volume_is_exact else "measured on a fine lattice"
+    source = f"{body.mass_error:+.3%} of the shape's ({against})"
+    if body.shape_volume is None:
+        source = "given one by one"
+    return (
+        f"body {body.name}: {len(body.positions):,} particles {body.spacing:.4g} m apart, "
+        f"{body.material}, mass {body.mass:.6g} kg{per_metre}, {source}"
+        f"{_motion_in_words(case, body.name)}"
+    )
+
+
+def _grains_line(name: str, grains: list[FilledBody], per_metre: str) -> str:
+    counts = sorted(len(grain.positions) for grain in grains)
+    each = f"{counts[0]:,} each"
+    if counts[0] != counts[-1]:
+        each = f"{counts[0]:,} to {counts[-1]:,} each"
+    mass = sum(grain.mass for grain in grains)
+    exact = sum(grain.mass / (1.0 + grain.mass_error) for grain in grains)
+    return (
+        f"grains {name}: {len(grains):,} bodies, {sum(counts):,} particles ({each}) "
+        f"{grains[0].spacing:.4g} m apart, {grains[0].material}, mass {mass:.6g} kg{per_metre}, "
+        f"{mass / exact - 1.0:+.3%} of the shapes' (exact)"
+    )
+
+
 def echo(case: Case, bodies: list[FilledBody]) -> str:
     """Return what the case amounts to: bodies, materials, memory, cells, time step, steps."""
     per_metre = " per metre" if case.grid.dimension == 2 else ""
     lines = [case.title] if case.title else []
-    for body in bodies:
-        against = "exact" if body.volume_is_exact else "measured on a fine lattice"
-        source = f"{body.mass_error:+.3%} of the shape's ({against})"
-        if body.shape_volume is None:
-            source = "given one by one"
+    for name, members in by_part(bodies).items():
         lines.append(
-            f"body {body.name}: {len(body.positions):,} particles {body.spacing:.4g} m apart, "
-            f"{body.material}, mass {body.mass:.6g} kg{per_metre}, {source}"
-            f"{_motion_in_words(case, body.name)}"
+            _grains_line(name, members, per_metre)
+            if name in case.grains
+            else _body_line(case, members[0], per_metre)
         )
     for name, load in case.load.items():
         [body] = [body for body in bodies if body.name == load.body]

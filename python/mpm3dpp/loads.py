@@ -85,9 +85,9 @@ def check_loads(case: Case) -> None:
             rule, remedy = "is not a body of this case", nearest(load.body, case.body)
             raise violation(rule, remedy, value=load.body, path=(*path, "body"))
         body = case.body[load.body]
-        if case.material[body.material].strength.model == "rigid":
-            rule = "is rigid, and a load acts on bodies that deform"
-            remedy = "give its material another strength, or the body a velocity"
+        if case.is_rigid(load.body):
+            rule = "does not deform, and a load acts on bodies that do"
+            remedy = "give its material another strength, remove its motion, or load another body"
             raise violation(rule, remedy, value=load.body, path=(*path, "body"))
         known = sides(body.shape, dimension) if body.shape is not None else []
         if not known:

@@ -9,7 +9,6 @@ line is a particle, in SI units. Blank lines and lines that begin with `#` are s
 from __future__ import annotations
 
 import hashlib
-import re
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
@@ -18,13 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import SkipValidation
 
+from .csv_points import Layout, read_points, short
 from .errors import CaseError, violation
 from .io.disk import writing
 
 Array = NDArray[np.float64]
-_COLUMN = re.compile(r"\s*(\w+)\s*(?:\[\s*(.*?)\s*\])?\s*")
 _LARGEST = 1e100
 _GIVE = "see the how-to page of MPM3D files for its columns"
+_LAYOUT = Layout("volume", ("m^2", "m^3"), False, "particle", _GIVE)
 
 
 class Particles:
@@ -128,77 +128,18 @@ def read_particles(path: Path, name: str = "") -> Particles:
         CaseError: the file is missing or malformed; the rule names the line.
     """
     name = name or str(path)
-    try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except FileNotFoundError:
-        raise CaseError(f"is not a file ({path})", "check the path", value=name) from None
-    except (OSError, UnicodeDecodeError):
-        raise CaseError("cannot be read as a text file", "check the file", value=name) from None
-    lines = [
-        (number, line)
-        for number, line in enumerate(text.splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not lines:
-        raise CaseError("is empty", _GIVE, value=name)
-    width, dimension = _header(*lines[0], name)
-    if len(lines) == 1:
-        raise CaseError("holds no particle", "add a line for each particle", value=name)
-    table = _numbers(lines[1:], width, name)
+    points = read_points(path, name, _LAYOUT)
+    table, dimension = points.table, points.dimension
+    width = table.shape[1]
     volumes = table[:, dimension] if width > dimension else None
     found = Particles.__new__(Particles)  # Checked below, where the line is known.
     found.positions, found.file = np.ascontiguousarray(table[:, :dimension]), name
     found.volumes = None if volumes is None else np.ascontiguousarray(volumes)
     wrong = found.first_wrong()
     if wrong is not None:
-        number, line = lines[1 + wrong[0]]
-        raise CaseError(f"{wrong[1]}, in line {number} ({_short(line)})", _GIVE, value=name)
+        number, line = points.lines[wrong[0]]
+        raise CaseError(f"{wrong[1]}, in line {number} ({short(line)})", _GIVE, value=name)
     return found
-
-
-def _header(number: int, line: str, name: str) -> tuple[int, int]:
-    """Return the number of columns and the dimension that the line of names tells."""
-    matches = [_COLUMN.fullmatch(word) for word in line.split(",")]
-    names = [match.group(1) if match else "?" for match in matches]
-    units = [match.group(2) if match else None for match in matches]
-    for dimension in (2, 3):
-        wanted = [*"xyz"[:dimension], "volume"]
-        if names in (wanted, wanted[:-1]):
-            right = [*["m"] * dimension, f"m^{dimension}"]
-            for unit, si, word in zip(units, right, names, strict=False):
-                if unit not in (None, si):
-                    rule = f"gives {word} in [{unit}] in line {number} but must be in {si}"
-                    raise CaseError(rule, "convert the column to SI units", value=name)
-            return len(names), dimension
-    rule = f"must name its columns x,y,z or x,y,z,volume (in 2D without z) in line {number}"
-    raise CaseError(f"{rule}, which is: {_short(line)}", _GIVE, value=name)
-
-
-def _numbers(lines: list[tuple[int, str]], width: int, name: str) -> Array:
-    """Return the numbers of all lines, shape (n, width)."""
-    try:
-        table = np.loadtxt([line for _, line in lines], delimiter=",", ndmin=2, comments=None)
-        if table.shape[1] == width:
-            return np.asarray(table, dtype=np.float64)
-    except ValueError:
-        pass
-    for number, line in lines:  # Which line is it? Slower, and only now.
-        words = line.split(",")
-        if len(words) != width:
-            rule = f"has {len(words)} numbers in line {number} but {width} columns"
-            raise CaseError(rule, _GIVE, value=name)
-        for word in words:
-            try:
-                float(word)
-            except ValueError:
-                rule = f"has {_short(word.strip())} in line {number}, which is no number"
-                raise CaseError(rule, _GIVE, value=name) from None
-    raise CaseError("cannot be read as numbers", _GIVE, value=name)
-
-
-def _short(text: str) -> str:
-    text = " ".join(text.split())
-    return f'"{text}"' if len(text) <= 40 else f'"{text[:37]}..."'
 
 
 class _FromFile:

@@ -18,8 +18,9 @@ def contact_table(manifest: Manifest) -> list[str]:
     share = sum(ns for name, ns in manifest.stages.items() if name.startswith("contact")) / total
     unit = "J/m" if manifest.case.get("grid", {}).get("dimension") == 2 else "J"
     lines = [
-        f"contact: {contact.overlapped_nodes_max:,} overlapped nodes at most, "
-        f"{len(contact.pairs)} pairs, {contact.bodies_per_node_max} bodies at a node at most, "
+        f"contact: {contact.bodies:,} bodies, {contact.overlapped_nodes:,} overlapped nodes at the "
+        f"end, {contact.overlapped_nodes_max:,} at most, {sum(p.pairs for p in contact.pairs):,} "
+        f"pairs, {contact.bodies_per_node_max} bodies at a node at most, "
         f"{contact.peak_bytes / 2**20:.2f} MiB, {share:.1%} of the step's time"
     ]
     if contact.unconverged_nodes:
@@ -30,8 +31,9 @@ def contact_table(manifest: Manifest) -> list[str]:
     for pair in contact.pairs[:_PAIRS_SHOWN]:
         if pair.first_time is None or pair.first_gap is None:
             continue
+        many = f" ({pair.pairs:,} pairs)" if pair.pairs > 1 else ""
         lines.append(
-            f"  {pair.bodies[0]} - {pair.bodies[1]}: first contact at {pair.first_time:.6g} s, "
+            f"  {' - '.join(pair.bodies)}{many}: first contact at {pair.first_time:.6g} s, "
             f"surfaces {round(pair.first_gap / manifest.cell_size, 2) + 0.0:.2f} cells apart, "
             f"friction work {pair.friction_work:.4g} {unit}"
         )

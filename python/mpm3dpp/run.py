@@ -82,7 +82,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
     frames = [t for t in case.frame_times() if t > 0.0]
     results = ResultsWriter(
         folder / "results.vtkhdf",
-        bodies=simulation.bodies,
+        bodies=simulation.parts,
         materials=simulation.materials,
         dimension=case.grid.dimension,
         cell_size=case.grid.cell_size,
@@ -94,7 +94,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
     history = HistoryWriter(
         folder / "history.csv",
         columns=core.history_columns,
-        bodies=simulation.bodies,
+        bodies=simulation.parts,
         contact=contact,
         every=case.output.history_every,
     )
@@ -114,7 +114,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
                 simulation.advance(_steps(most, frames, core))
             except RunError as error:
                 status, reason = "failed", str(error)
-            rows, pairs = core.history(), core.contact_pairs() if contact else []
+            rows, pairs = core.history(), core.contact_groups() if contact else []
             history.append(rows, pairs)
             if status == "failed":
                 if (
@@ -125,7 +125,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
             due = bool(frames) and core.time >= frames[0]
             while frames and core.time >= frames[0]:
                 frames.pop(0)
-            if due or len(pairs) > touched:  # A frame too whenever two bodies first touch.
+            if due or len(pairs) > touched:  # A frame too whenever two entries first touch.
                 results.write(core)
                 touched = len(pairs)
             overlapped = core.contact_summary()["overlapped_nodes"] if contact else None
@@ -142,7 +142,7 @@ def _fields(case: Case) -> list[str]:
 
     Without it a reader could not tell which particles are gone.
     """
-    used = {body.material for body in case.body.values()}
+    used = case.materials_used
     goes = any(f.action == "erode" for name in used for f in case.material[name].failure)
     goes = goes or case.grid.keep is not None
     return list(dict.fromkeys([*case.output.fields, *(["failed"] if goes else [])]))
@@ -167,6 +167,7 @@ def _manifest(
         case=case.table(),
         case_text=case.text,
         bodies=simulation.bodies,
+        parts=simulation.parts,
         cell_size=case.grid.cell_size,
         threads=simulation.threads,
         wall_time=wall_time,

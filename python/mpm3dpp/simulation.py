@@ -30,7 +30,8 @@ class Simulation:
 
     Attributes:
         case: as given.
-        bodies: the bodies' names, in the order of their numbers.
+        bodies: the bodies' names, in the order of their numbers; those of grains come last.
+        parts: of each body, the name of its entry in the case: its own, or that of its grains.
         warnings, notes: sentences about the case, for the user.
         summary: energies of the whole run, once `run_case` has made it.
         core: the compiled simulation (`mpm3dpp._core.Simulation`).
@@ -44,12 +45,15 @@ class Simulation:
         self.case = case
         self.threads = thread_count(threads)
         self.bodies = [body.name for body in filled]
+        self.parts = [body.part for body in filled]
         self.materials = [body.material for body in filled]
         self.warnings, self.notes = warnings(filled), notes(case, filled)
         self.core = _core.Simulation(_settings(case, self.threads))
         numbers = {name: self._add_material(name) for name in dict.fromkeys(self.materials)}
+        firsts = case.first_bodies()
+        filled.reverse()
         while filled:  # What the core has taken is dropped, so that memory holds it once.
-            body = filled.pop(0)
+            body = filled.pop()
             equal = bool(np.all(body.volumes == body.volumes[0]))
             number = self.core.add_body(
                 body.name,
@@ -58,10 +62,12 @@ class Simulation:
                 np.ascontiguousarray(body.velocities),
                 body.volumes[:1].copy() if equal else np.ascontiguousarray(body.volumes),
             )
-            motion = case.body[body.name].motion
+            motion = None if body.part in case.grains else case.body[body.part].motion
             if motion is not None:
                 self._set_motion(number, motion, motion.middle(body.positions, body.volumes))
-            arrival = lighting_times(case, body.name, body.positions)
+            if number != firsts[body.part]:
+                self.core.set_group(number, firsts[body.part])
+            arrival = lighting_times(case, body.part, body.positions)
             if arrival is not None:
                 self.core.set_state(number, "lighting_time", arrival)
             for name, load in case.load.items():
@@ -121,18 +127,18 @@ class Simulation:
         """Return a column of a body, shape (n, components), particles in the order of filling.
 
         Args:
-            body: its name.
+            body: its name; that of an entry of `grains` stands for all of them, one by one.
             name: "position" [m], "velocity" [m/s], "stress" [Pa] (xx yy zz yz xz xy, tension
                 positive), "volume" [m^3], "mass" [kg], or a state column of its material.
 
         Raises:
             CaseError: there is no such body or column.
         """
-        number = self._number(body)
-        known = [column.name for column in self.core.columns(number)]
+        numbers = self._numbers(body)
+        known = [column.name for column in self.core.columns(numbers[0])]
         if name not in known:
             raise CaseError(f"is not a column of {body}", nearest(name, known), value=name)
-        return self.core.column(number, name)
+        return np.concatenate([self.core.column(number, name) for number in numbers])
 
     def eroded(self) -> dict[str, Any]:
         """Return `mass` [kg] (per metre in 2D) and `count` of the particles that have eroded.
@@ -154,15 +160,22 @@ class Simulation:
         Raises:
             CaseError: there is no such body, or its motion is prescribed.
         """
-        if body in self.bodies and self.case.body[body].motion is not None:
+        if body in self.case.body and self.case.body[body].motion is not None:
             raise CaseError("has a prescribed motion", "remove motion from it", value=body)
         values = np.ascontiguousarray(velocities, dtype=float)
-        self.core.set_velocity(self._number(body), values)
-
-    def _number(self, body: str) -> int:
         if body not in self.bodies:
             raise CaseError("is not a body of the case", nearest(body, self.bodies), value=body)
-        return self.bodies.index(body)
+        self.core.set_velocity(self.bodies.index(body), values)
+
+    def _numbers(self, body: str) -> list[int]:
+        """Return the numbers of the bodies that a name stands for."""
+        if body in self.case.grains:
+            first = self.case.first_bodies()[body]
+            return list(range(first, first + self.case.grains[body].count))
+        if body not in self.bodies:
+            known = [*self.bodies, *self.case.grains]
+            raise CaseError("is not a body of the case", nearest(body, known), value=body)
+        return [self.bodies.index(body)]
 
 
 def _functions(values: Sequence[float | TimeFunction]) -> list[_core.TimeFunction]:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mpm3dpp import CaseError, _core, bench
-from mpm3dpp.bench import cases, report, traffic
+from mpm3dpp.bench import cases, report, spheres, traffic
 
 KEYS = {
     *("particles", "threads", "ns_per_particle_step", "stages"),
@@ -60,6 +60,19 @@ def test_figures_agree_with_one_another(cubes):
     assert result["overlapped_nodes"] >= 5 * 5  # The cubes share at least a face of nodes.
 
 
+def test_grains_are_balls_of_552_particles_that_touch():
+    spacing = cases.CELL / cases.PER_AXIS
+    ball, places = spheres.ball(spacing), spheres.centres(1000, spacing)
+    assert ball.shape == (spheres.PARTICLES, 3)
+    assert cases.BENCHES["spheres"].particles(1000) == 552_000
+    assert np.ptp(places, axis=0) == pytest.approx([9 * 5 * cases.CELL] * 3)
+    assert len(np.unique(spheres.centres(100, spacing), axis=0)) == 100
+    simulation = cases.make(_core, cases.BENCHES["spheres"], size=8, threads=1, scheme="musl")
+    simulation.advance(20, 1.0)
+    pairs = {pair.bodies for pair in simulation.contact_pairs()}
+    assert len(pairs) == 12  # The edges of a cube: neighbours touch, no others.
+
+
 def test_progress_is_told_to_the_end(cubes):
     _, told = cubes
     parts = told[-1][1]
@@ -102,7 +115,7 @@ def test_every_benchmark_strains_and_crosses_cells(name, scheme):
     chosen = cases.BENCHES[name]
     simulation = cases.make(_core, chosen, size=2, threads=1, scheme=scheme)
     dimension = chosen.dimension
-    before = [simulation.column(body, "position") for body in range(chosen.bodies)]
+    before = [simulation.column(body, "position") for body in range(chosen.body_count(2))]
     simulation.advance(150, 1.0)
     assert simulation.failure is None
     for body, start in enumerate(before):

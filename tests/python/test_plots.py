@@ -184,16 +184,20 @@ def test_labels() -> None:
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_preview(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dimension: int) -> None:
     """The filling is the shapes' business; here a body is the positions it fills."""
-    import mpm3dpp.shapes
+    import mpm3dpp.build
 
-    block = FakeSimulation(dimension)._start
-    size = np.full(len(block[0]), SIZE**dimension)
-    monkeypatch.setattr(mpm3dpp.shapes, "fill", lambda body, grid: (body, size))
+    names, blocks = ["left", "right"], FakeSimulation(dimension)._start
+    size = np.full(len(blocks[0]), SIZE**dimension)
+    bodies = [
+        SimpleNamespace(part=name, positions=block, volumes=size)
+        for name, block in zip(names, blocks, strict=True)
+    ]
+    monkeypatch.setattr(mpm3dpp.build, "fill_all", lambda case: bodies)
     box = SimpleNamespace(lower=(0.0,) * dimension, upper=(0.03,) * dimension)
     grid = SimpleNamespace(
         dimension=dimension, cell_size=2 * SIZE, origin=(0.0,) * dimension, box=box
     )
-    case = SimpleNamespace(grid=grid, body=dict(zip(["left", "right"], block, strict=True)))
+    case = SimpleNamespace(grid=grid, parts=lambda: names)
     path = plots.preview(case, tmp_path)
     assert path == tmp_path / "preview.png"
     pixels(path)

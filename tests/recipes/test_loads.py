@@ -286,7 +286,7 @@ def test_bad_loads(change: dict[str, Any], sentence: str) -> None:
 @pytest.mark.parametrize(
     ("body", "sentence"),
     [
-        ({"material": "stone"}, "is rigid, and a load acts on bodies that deform"),
+        ({"material": "stone"}, "does not deform, and a load acts on bodies that do"),
         (
             {
                 "shape": shapes.Box(lower=(0, 0), upper=(1, 1))

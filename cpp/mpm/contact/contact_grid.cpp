@@ -1,6 +1,7 @@
 #include "mpm/contact/contact_grid.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace mpm {
 namespace {
@@ -12,13 +13,6 @@ bool reaches(const BlockShape<D>& shape, int k) {
   const Index<D> o = Tile<D>::offset(k);
   for (int a = 0; a < D; ++a) any = any && (o[a] >= 0 || shape.margin > 0);
   return any;
-}
-
-/// f(node) for the nodes that belong to a tile: all but those at its upper ends, which are the next
-/// tile's first.
-template <int D, class F>
-void for_each_tile_node(F&& f) {
-  for (int c = 0; c < Tile<D>::cell_count; ++c) f(Tile<D>::cell_index(c));
 }
 
 }  // namespace
@@ -102,16 +96,18 @@ template <int D>
 void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                           const std::vector<double>& stiffness, const ContactSettings& settings,
                           Threads& threads) {
-  counts_.assign(tiles_.size() + 1, {0, 0, 0});
+  counts_.assign(tiles_.size() + 1, {});
   threads.for_each(tiles_.size(), [&](std::size_t t) {
-    TileCounts c{0, 0, 0};
-    for_each_tile_node<D>([&](const Index<D>& node) {
-      const std::uint32_t sides = sides_at(grid, tiles_[t], node, nullptr);
-      if (sides < 2) return;
+    TileCounts c{};
+    // The nodes that belong to a tile are all but those at its upper ends, the next tile's first.
+    for (int cell = 0; cell < Tile<D>::cell_count; ++cell) {
+      const std::uint32_t sides = sides_at(grid, tiles_[t], Tile<D>::cell_index(cell), nullptr);
+      if (sides < 2) continue;
       ++c.nodes;
       c.sides += sides;
       c.pairs += pair_count(sides);
-    });
+      c.overlapped |= std::uint64_t{1} << cell;
+    }
     counts_[t + 1] = c;
   });
   for (std::size_t t = 1; t < counts_.size(); ++t) {
@@ -126,14 +122,12 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
 
   threads.for_each(tiles_.size(), [&](std::size_t t) {
     TileCounts c = counts_[t];
-    if (counts_[t + 1].nodes == c.nodes) return;
-    for_each_tile_node<D>([&](const Index<D>& index) {
-      if (counts_[t + 1].nodes == c.nodes) return;
-      const std::uint32_t count = sides_at(grid, tiles_[t], index, nullptr);
-      if (count < 2) return;
-      sides_at(grid, tiles_[t], index, &sides_[c.sides]);
+    for (std::uint64_t left = counts_[t + 1].overlapped; left != 0; left &= left - 1) {
+      const int cell = std::countr_zero(left);
+      const Index<D> index = Tile<D>::cell_index(cell);
+      const std::uint32_t count = sides_at(grid, tiles_[t], index, &sides_[c.sides]);
       ContactNode& node = nodes_[c.nodes];
-      node.cell = static_cast<std::uint16_t>(Tile<D>::cell(index));
+      node.cell = static_cast<std::uint16_t>(cell);
       node.sides = static_cast<std::uint16_t>(count);
       node.first_side = c.sides;
       node.first_pair = c.pairs;
@@ -152,7 +146,7 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       ++c.nodes;
       c.sides += count;
       c.pairs += pair_count(count);
-    });
+    }
   });
   share_rigid_masses(bodies);
   for (const ContactNode& node : nodes_)

@@ -45,7 +45,8 @@ struct ContactTile {
 
 /// What has passed between two bodies since the start.
 struct PairRecord {
-  int a = 0, b = 0;                                              // bodies, a < b
+  int a = 0, b = 0;        // bodies, a < b; or groups of bodies, a <= b
+  std::int64_t pairs = 0;  // of bodies, that the record is the sum of
   double first_time = std::numeric_limits<double>::quiet_NaN();  // [s]
   double first_gap = std::numeric_limits<double>::quiet_NaN();
   double first_share = 0.0;  // mass of the node of first_gap over a particle's
@@ -115,18 +116,25 @@ class ContactGrid {
   /// May any pair at a node act? Other nodes stay as they are, to the last bit.
   bool any_closed(const ContactNode& node) const;
   PairRecord& record_of(int a, int b);
+  void enter(std::size_t record);
+  void sort_records();
 
   std::vector<TileHolder> holders_;
   std::vector<ContactTile<D>> tiles_;
+  static_assert(Tile<D>::cell_count <= 64);
   struct TileCounts {
     std::uint32_t nodes, sides, pairs;
+    std::uint64_t overlapped;  // the tile's overlapped nodes, a bit each, by Tile<D>::cell
   };
-  std::vector<TileCounts> counts_;  // per tile, then their running sums
+  std::vector<TileCounts> counts_;  // per tile, from the second entry on; then their running sums
   std::vector<ContactNode> nodes_;
   std::vector<Side<D>> sides_;
   std::vector<SidePair<D>> pairs_;
   std::vector<double> rigid_share_;  // scratch
-  std::vector<PairRecord> records_;  // sorted by (a, b)
+  std::vector<PairRecord> records_;  // sorted by (a, b) between steps
+  // Where a pair's record is: open addressing by pair_key, at most half full; 0 is empty, else the
+  // record's number + 1.
+  std::vector<std::uint32_t> places_;
   std::size_t nodes_max_ = 0;
   int bodies_max_ = 0;
   std::atomic<std::size_t> unconverged_{0};

@@ -41,7 +41,8 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
       pair = {};
       pair.r = r;
       pair.s = s;
-      pair.friction = friction(settings, sides[r].body, sides[s].body);
+      pair.friction = friction(settings, bodies[static_cast<std::size_t>(sides[r].body)].group,
+                               bodies[static_cast<std::size_t>(sides[s].body)].group);
       pair.normal = pair_normal(sources[r], sources[s], settings.normal, node.held);
       const bool opposed = dot(pair.normal, pair.normal) > 0.0;
       // D_rs = D_r + D_s, each D the distance from the node to the body's surface along the pair's

@@ -8,24 +8,61 @@ namespace {
 // Of a particle's mass, for a node to count as a first contact.
 constexpr double least_share = 1e-6;
 
+/// Spread the pairs of bodies over all numbers (Fibonacci hashing, Knuth 1973, section 6.4).
+std::size_t hash(int a, int b) {
+  const std::uint64_t product = pair_key(a, b) * 0x9E3779B97F4A7C15u;
+  return static_cast<std::size_t>(product >> 32);
+}
+
 }  // namespace
 
+/// The record of a pair; a new one stands at the end until sort_records().
 template <int D>
 PairRecord& ContactGrid<D>::record_of(int a, int b) {
-  const auto at =
-      std::lower_bound(records_.begin(), records_.end(), std::pair(a, b),
-                       [](const PairRecord& x, const auto& y) { return std::pair(x.a, x.b) < y; });
-  if (at != records_.end() && at->a == a && at->b == b) return *at;
+  const std::size_t mask = places_.size() - 1;
+  if (!places_.empty())
+    for (std::size_t at = hash(a, b) & mask; places_[at] != 0; at = (at + 1) & mask) {
+      PairRecord& record = records_[places_[at] - 1];
+      if (record.a == a && record.b == b) return record;
+    }
   PairRecord record;
   record.a = a;
   record.b = b;
-  return *records_.insert(at, record);
+  record.pairs = 1;
+  records_.push_back(record);
+  if (2 * records_.size() > places_.size()) {
+    places_.assign(std::max<std::size_t>(64, 4 * places_.size()), 0);
+    for (std::size_t k = 0; k < records_.size(); ++k) enter(k);
+  } else {
+    enter(records_.size() - 1);
+  }
+  return records_.back();
+}
+
+/// Note where a record is.
+template <int D>
+void ContactGrid<D>::enter(std::size_t record) {
+  const std::size_t mask = places_.size() - 1;
+  std::size_t at = hash(records_[record].a, records_[record].b) & mask;
+  while (places_[at] != 0) at = (at + 1) & mask;
+  places_[at] = static_cast<std::uint32_t>(record) + 1;
+}
+
+/// Put new records in their order among the old ones.
+template <int D>
+void ContactGrid<D>::sort_records() {
+  std::sort(records_.begin(), records_.end(), [](const PairRecord& x, const PairRecord& y) {
+    return std::pair(x.a, x.b) < std::pair(y.a, y.b);
+  });
+  std::fill(places_.begin(), places_.end(), 0u);
+  for (std::size_t k = 0; k < records_.size(); ++k) enter(k);
 }
 
 template <int D>
 ContactSums ContactGrid<D>::record(const std::vector<Body<D>>& bodies, double time,
                                    double time_step, std::int64_t step) {
   ContactSums sums;
+  const std::size_t known = records_.size();
   for (auto& r : records_) std::fill(std::begin(r.force), std::end(r.force), 0.0);
   for (const ContactNode& node : nodes_) {
     sums.energy += node.energy;
@@ -59,6 +96,7 @@ ContactSums ContactGrid<D>::record(const std::vector<Body<D>>& bodies, double ti
       sums.friction_first += pair.friction_first;
     }
   }
+  if (records_.size() > known) sort_records();
   return sums;
 }
 
@@ -67,11 +105,9 @@ std::size_t ContactGrid<D>::bytes() const {
   return holders_.capacity() * sizeof(TileHolder) + tiles_.capacity() * sizeof(ContactTile<D>) +
          counts_.capacity() * sizeof(TileCounts) + nodes_.capacity() * sizeof(ContactNode) +
          sides_.capacity() * sizeof(Side<D>) + pairs_.capacity() * sizeof(SidePair<D>) +
-         records_.capacity() * sizeof(PairRecord);
+         records_.capacity() * sizeof(PairRecord) + places_.capacity() * sizeof(std::uint32_t);
 }
 
-template PairRecord& ContactGrid<2>::record_of(int, int);
-template PairRecord& ContactGrid<3>::record_of(int, int);
 template ContactSums ContactGrid<2>::record(const std::vector<Body<2>>&, double, double,
                                             std::int64_t);
 template ContactSums ContactGrid<3>::record(const std::vector<Body<3>>&, double, double,

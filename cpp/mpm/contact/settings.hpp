@@ -21,10 +21,10 @@ struct ContactSettings {
   NormalRule normal = NormalRule::plane;
   double gap_distance = 0.0;                                    // D of eq. (5) [m]
   double friction = 0.0;                                        // default coefficient
-  std::vector<std::pair<std::uint64_t, double>> pair_friction;  // by pair_key, sorted
+  std::vector<std::pair<std::uint64_t, double>> pair_friction;  // by pair_key of groups, sorted
 };
 
-/// One number for an unordered pair of bodies.
+/// One number for an unordered pair of bodies or of groups of bodies.
 inline std::uint64_t pair_key(int a, int b) {
   const auto low = static_cast<std::uint64_t>(std::min(a, b)),
              high = static_cast<std::uint64_t>(std::max(a, b));
@@ -43,6 +43,7 @@ inline void set_friction(ContactSettings& settings, int a, int b, double mu) {
   }
 }
 
+/// Coefficient between bodies of two groups, or between bodies of one.
 inline double friction(const ContactSettings& settings, int a, int b) {
   const std::uint64_t key = pair_key(a, b);
   const auto& list = settings.pair_friction;

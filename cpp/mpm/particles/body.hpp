@@ -14,6 +14,7 @@ template <int D>
 struct Body {
   std::string name;
   int material = 0;
+  int group = 0;  // number of the first of the bodies with which it shares frictions and reports
   Columns columns;
   int position = 0;               // first component of each column; position [m], D components
   MaterialColumns at{};           // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...

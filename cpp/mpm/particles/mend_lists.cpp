@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <span>
 
 #include "mpm/particles/lists.hpp"
 
@@ -173,14 +174,14 @@ void take_out(const Body<D>& body, std::uint32_t row, Gone<D>& sums) {
 
 /// The end of a body's new list, behind all patches: what goes now, then what has gone before.
 template <int D>
-void write_tail(const TileGrid<D>& grid, Body<D>& body, int number, Gone<D>& eroded_sums,
+void write_tail(std::span<const Patch<D>> patches, Body<D>& body, Gone<D>& eroded_sums,
                 Gone<D>& left_sums) {
   if (body.at.recoverable < 0) return;
   const std::size_t before = body.gone, n = body.count();
   std::size_t now = 0;
   const auto each = [&](auto&& f) {
-    for (const Patch<D>& patch : grid.patches) {
-      if (patch.body != number || !patch.left_cell) continue;
+    for (const Patch<D>& patch : patches) {
+      if (!patch.left_cell) continue;
       for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
         if (body.cell[k] == eroded || body.cell[k] == left) f(body.order[k], body.cell[k] == left);
     }
@@ -238,8 +239,12 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
     c.begin = begin;
     begin += c.kept + c.arrival_count;
   }
-  for (std::size_t b = 0; b < bodies.size(); ++b)
-    write_tail(grid, bodies[b], static_cast<int>(b), eroded_sums, left_sums);
+  std::size_t first = 0, end = 0;
+  for (std::size_t b = 0; b < bodies.size(); ++b, first = end) {
+    while (end < grid.patches.size() && grid.patches[end].body == static_cast<int>(b)) ++end;
+    write_tail(std::span<const Patch<D>>(grid.patches.data() + first, end - first), bodies[b],
+               eroded_sums, left_sums);
+  }
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
     write_list(bodies[static_cast<std::size_t>(patch.body)], patch, changes[p], scratch.leavers);

@@ -1,6 +1,8 @@
 // The part of a simulation that takes bodies in and gives their columns out.
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 #include "mpm/run/simulation_of.hpp"
@@ -93,6 +95,7 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
   body.mean_edge = std::pow(total / static_cast<double>(n), 1.0 / D);
   body.id.resize(n);
   for (std::size_t i = 0; i < n; ++i) body.id[i] = static_cast<std::uint32_t>(i);
+  body.group = static_cast<int>(domain_.bodies.size());
   domain_.bodies.push_back(std::move(body));
   return static_cast<int>(domain_.bodies.size()) - 1;
 }
@@ -170,13 +173,48 @@ double SimulationOf<D>::initial_internal_energy() const {
 }
 
 template <int D>
+void SimulationOf<D>::set_group(int number, int first) {
+  if (first < 0 || number <= first || number >= body_count() || body(first).group != first)
+    throw std::invalid_argument("a group is given by its first body");
+  domain_.bodies[static_cast<std::size_t>(number)].group = first;
+}
+
+template <int D>
 void SimulationOf<D>::set_pair_friction(int a, int b, double mu) {
   if (!(mu >= 0.0 && std::isfinite(mu)))
     throw std::invalid_argument("friction must be a finite number >= 0");
-  const int bodies = static_cast<int>(domain_.bodies.size());
-  if (a < 0 || b < 0 || a >= bodies || b >= bodies || a == b)
-    throw std::invalid_argument("friction needs two bodies");
+  for (const int k : {a, b})
+    if (k < 0 || k >= body_count() || body(k).group != k)
+      throw std::invalid_argument("friction needs two groups, each given by its first body");
   set_friction(domain_.contact_settings, a, b, mu);
+}
+
+template <int D>
+std::vector<PairRecord> SimulationOf<D>::group_pairs() const {
+  std::map<std::pair<int, int>, PairRecord> found;
+  for (const PairRecord& pair : pairs()) {
+    const int a = body(pair.a).group, b = body(pair.b).group;
+    const auto key = std::minmax(a, b);
+    PairRecord& sum = found.try_emplace(key).first->second;
+    sum.a = key.first;
+    sum.b = key.second;
+    ++sum.pairs;
+    sum.friction_work += pair.friction_work;
+    if (pair.first_step >= 0 && (sum.first_step < 0 || pair.first_step < sum.first_step)) {
+      sum.first_step = pair.first_step;
+      sum.first_time = pair.first_time;
+      sum.first_gap = pair.first_gap;
+      sum.first_share = pair.first_share;
+    }
+    const double sign = a < b ? 1.0 : a > b ? -1.0 : 0.0;
+    for (int k = 0; k < 3; ++k) {
+      sum.force[k] += sign * pair.force[k];
+      sum.impulse[k] += sign * pair.impulse[k];
+    }
+  }
+  std::vector<PairRecord> records;
+  for (const auto& [key, sum] : found) records.push_back(sum);
+  return records;
 }
 
 template <int D>

@@ -109,6 +109,10 @@ class Simulation {
   /// prepare().
   virtual void add_load(const std::string& name, int body, bool follows,
                         const std::array<TimeFunction, 3>& value, const Pieces& pieces) = 0;
+  /// Put a body into the group of an earlier one, by that one's number: they have the same
+  /// frictions, and group_pairs() sums over them. Every other body is a group by itself.
+  virtual void set_group(int body, int first) = 0;
+  /// Friction between the bodies of two groups, each given by its first body; of one, if a == b.
   virtual void set_pair_friction(int a, int b, double mu) = 0;
   /// Sort the particles, make the grid, find the first time step. Once, after the last body.
   virtual void prepare() = 0;
@@ -147,6 +151,9 @@ class Simulation {
   virtual std::vector<double> take_history() = 0;
 
   virtual const std::vector<PairRecord>& pairs() const = 0;
+  /// The records of the pairs summed by groups, in the same order. What bodies of one group do to
+  /// each other has no direction: its force and impulse are 0.
+  virtual std::vector<PairRecord> group_pairs() const = 0;
   virtual std::size_t overlapped_nodes() const = 0;
   virtual std::size_t overlapped_nodes_max() const = 0;
   virtual int bodies_per_node_max() const = 0;

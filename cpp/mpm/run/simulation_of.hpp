@@ -20,6 +20,7 @@ class SimulationOf final : public Simulation {
                   const std::array<double, 3>& centre) override;
   void add_load(const std::string& name, int body, bool follows,
                 const std::array<TimeFunction, 3>& value, const Pieces& pieces) override;
+  void set_group(int body, int first) override;
   void set_pair_friction(int a, int b, double mu) override;
   void prepare() override;
   std::int64_t advance(std::int64_t max_steps, double end_time) override;
@@ -52,6 +53,7 @@ class SimulationOf final : public Simulation {
 
   std::vector<double> take_history() override;
   const std::vector<PairRecord>& pairs() const override { return domain_.contact.pairs(); }
+  std::vector<PairRecord> group_pairs() const override;
   std::size_t overlapped_nodes() const override { return domain_.contact.overlapped_nodes(); }
   std::size_t overlapped_nodes_max() const override {
     return domain_.contact.overlapped_nodes_max();

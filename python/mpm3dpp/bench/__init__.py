@@ -107,7 +107,7 @@ def measure(
 
     Args:
         name: see `cases.BENCHES`.
-        size: cells along the edge of a body.
+        size: cells along the edge of a body, or the number of grains.
         threads: how many.
         scheme: "usf", "usl" or "musl".
         steps: how many are timed.

@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import spheres
+
 Array = NDArray[np.float64]
 
 CELL = 1e-3  # [m]
@@ -61,8 +63,8 @@ class Bench:
         name: what the user types.
         about: one line for the user.
         dimension: 2 or 3.
-        size: cells along the edge of a body, if the user gives none.
-        bodies: how many cubes (squares), side by side along x.
+        size: cells along the edge of a body, if the user gives none; of grains, how many.
+        bodies: how many cubes (squares), side by side along x; 0 for grains.
         contact: whether the bodies feel each other.
         twin: name of the benchmark that is measured in turn with this one, for their ratio.
         material: keyword arguments of the core's add_material.
@@ -80,8 +82,14 @@ class Bench:
     state: int = 0
 
     def particles(self, size: int) -> int:
-        """Return the number of particles of all bodies with `size` cells along the edge."""
+        """Return the number of particles of all bodies."""
+        if self.bodies == 0:
+            return spheres.PARTICLES * size
         return int(self.bodies * (PER_AXIS * size) ** self.dimension)
+
+    def body_count(self, size: int) -> int:
+        """Return the number of bodies."""
+        return self.bodies or size
 
 
 BENCHES = {
@@ -108,6 +116,16 @@ BENCHES = {
             twin="two_cubes_apart",
         ),
         Bench("two_cubes_apart", "the same two cubes without contact", 3, 32, bodies=2),
+        Bench(
+            "spheres",
+            "touching balls of 5 cells across, pressed together, contact with friction",
+            3,
+            1000,
+            bodies=0,
+            contact=True,
+            twin="spheres_apart",
+        ),
+        Bench("spheres_apart", "the same balls without contact", 3, 1000, bodies=0),
     )
 }
 
@@ -158,7 +176,7 @@ def make(core: Any, bench: Bench, size: int, threads: int, scheme: str) -> Any:
     Args:
         core: the module `mpm3dpp._core`.
         bench: which one.
-        size: cells along the edge of a body.
+        size: cells along the edge of a body, or the number of grains.
         threads: how many.
         scheme: "usf", "usl" or "musl".
     """
@@ -166,6 +184,8 @@ def make(core: Any, bench: Bench, size: int, threads: int, scheme: str) -> Any:
     material = simulation.add_material(**bench.material)
     volume = np.array([(CELL / PER_AXIS) ** bench.dimension])
     at_rest = np.zeros((1, bench.dimension))
+    if bench.bodies == 0:
+        _add_grains(simulation, material, size, volume, SPEED[scheme])
     # One array at a time: the core has its own copy, and both are counted in the peak.
     for body in range(bench.bodies):
         place = positions(bench.dimension, size, body)
@@ -177,6 +197,16 @@ def make(core: Any, bench: Bench, size: int, threads: int, scheme: str) -> Any:
         del motion
     simulation.prepare()
     return simulation
+
+
+def _add_grains(simulation: Any, material: int, count: int, volume: Array, speed: float) -> None:
+    spacing = CELL / PER_AXIS
+    ball, places = spheres.ball(spacing), spheres.centres(count, spacing)
+    translation = speed * np.array(DIRECTION) / np.linalg.norm(DIRECTION)
+    for body, centre in enumerate(places):
+        points = ball + centre
+        motion = spheres.velocities(points, places.mean(axis=0), spacing, translation)
+        simulation.add_body(f"ball {body}", material, points, motion, volume)
 
 
 def _settings(core: Any, bench: Bench, threads: int, scheme: str) -> Any:

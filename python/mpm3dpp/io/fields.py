@@ -21,6 +21,7 @@ UNITS = {
     "von_mises": "Pa",
     "size": "m",
     "body": "",
+    "grain": "",
     "material": "",
 }
 """Unit of each standard array; the columns of the core bring their own."""
@@ -54,6 +55,12 @@ def three(vectors: np.ndarray) -> np.ndarray:
     return np.column_stack([vectors, np.zeros(len(vectors))])
 
 
+def numbered(names: Sequence[str]) -> tuple[list[str], list[int]]:
+    """Return the different names in their order, and the number of each name in that list."""
+    numbers = {name: k for k, name in enumerate(dict.fromkeys(names))}
+    return list(numbers), [numbers[name] for name in names]
+
+
 def particle_sizes(simulation: Any, dimension: int) -> np.ndarray:
     """Edge length of the square or cube of each particle's volume [m], shape (n,)."""
     volumes = [_flat(simulation.column(b, "volume")) for b in range(simulation.body_count)]
@@ -61,19 +68,21 @@ def particle_sizes(simulation: Any, dimension: int) -> np.ndarray:
 
 
 def frame_arrays(
-    simulation: Any, materials: Sequence[int], fields: Sequence[str] = ()
+    simulation: Any, names: Sequence[str], materials: Sequence[int], fields: Sequence[str] = ()
 ) -> dict[str, np.ndarray]:
     """Every array of the present frame, all bodies one after another in their original order.
 
     Args:
         simulation: the core's `Simulation`.
+        names: of each body; bodies of one name are grains.
         materials: number of the material of each body, one per body.
         fields: names of further columns of the core, e.g. "left_cauchy_green".
 
     Returns:
         name -> array with n rows: position [m] and velocity [m/s] (n, 3), z = 0 in 2D;
         stress [Pa] (n, 6) in the order xx yy zz yz xz xy; pressure and von_mises [Pa] (n,);
-        body and material (n,) int32; each of `fields` with its own number of components,
+        body and material (n,) int32; grain (n,) int32, the body's number among those of its
+        name, if any name comes twice; each of `fields` with its own number of components,
         NaN where the model of a body has no such column.
 
     Raises:
@@ -85,16 +94,23 @@ def frame_arrays(
     def gather(name: str) -> np.ndarray:
         return np.concatenate([simulation.column(b, name) for b in bodies])
 
+    def of_body(numbers: Sequence[int]) -> np.ndarray:
+        return np.repeat(np.asarray(numbers, dtype=np.int32), counts)
+
     stress = gather("stress")
+    different, numbers = numbered(names)
     arrays = {
         "position": three(gather("position")),
         "velocity": three(gather("velocity")),
         "stress": stress,
         "pressure": pressure(stress),
         "von_mises": von_mises(stress),
-        "body": np.repeat(np.arange(len(counts), dtype=np.int32), counts),
-        "material": np.repeat(np.asarray(materials, dtype=np.int32), counts),
+        "body": of_body(numbers),
+        "material": of_body(materials),
     }
+    if len(different) < len(numbers):
+        firsts = [numbers.index(k) for k in range(len(different))]
+        arrays["grain"] = of_body([b - firsts[k] for b, k in enumerate(numbers)])
     for name in fields:
         if name not in arrays:
             arrays[name] = _optional(simulation, name, counts)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import itertools
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
@@ -13,6 +14,7 @@ import numpy as np
 
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import make_folder, writing
+from mpm3dpp.io.fields import numbered
 
 COLUMNS = (
     *("step", "time", "dt", "kinetic", "internal", "plastic", "viscous", "friction", "contact"),
@@ -28,7 +30,7 @@ MOTION = ("motion_work", *(f"motion_impulse_{x}" for x in ("x", "y", "z")))
 """Then the work of prescribed motions, which is part of `external` [J], and their impulse [N s]."""
 
 PAIR_LIMIT = 66
-"""Most pairs that get columns of their own (12 bodies); more go to `contact_pairs.csv`."""
+"""Most pairs that get columns of their own (12 names); more go to `contact_pairs.csv`."""
 
 _AXES = ("x", "y", "z")
 
@@ -43,7 +45,8 @@ class HistoryWriter:
     Args:
         path: the file; its folder is made, an old file replaced.
         columns: the core's `history_columns`.
-        bodies: name of each body.
+        bodies: name of each body. Bodies of one name, grains, are taken together, and what they
+            do to each other has no columns.
         contact: whether the run has contact; without it there are no pairs' columns.
         every: keep the rows whose step is a multiple of this, and the last of each block.
 
@@ -66,14 +69,15 @@ class HistoryWriter:
         own = [*COLUMNS, *NUMERICAL]
         extra = [name for name in columns if name not in own]
         self._where = [columns.index(n) if n in columns else -1 for n in (*own, *extra)]
-        count = len(self._bodies)
-        pairs = [(a, b) for a in range(count) for b in range(a + 1, count)] if contact else []
+        names, numbers = numbered(bodies)
+        firsts = [numbers.index(k) for k in range(len(names))]
+        pairs = list(itertools.combinations(firsts, 2)) if contact else []
         self._pairs = {pair: k for k, pair in enumerate(pairs)} if len(pairs) <= PAIR_LIMIT else {}
         header = [*own, *extra]
         for a, b in self._pairs:
             for kind in ("force", "impulse"):
-                names = f"{self._bodies[a]}_{self._bodies[b]}"
-                header += [f"contact_{kind}_{names}_{x}" for x in _AXES]
+                both = f"{self._bodies[a]}_{self._bodies[b]}"
+                header += [f"contact_{kind}_{both}_{x}" for x in _AXES]
         make_folder(self.path.parent)
         self._table = _Table(self.path, header)
         self._long: _Table | None = None
@@ -89,7 +93,7 @@ class HistoryWriter:
 
         Args:
             rows: the core's `history()`, shape (steps, columns).
-            pairs: the core's `contact_pairs()` after the last of these steps.
+            pairs: the core's `contact_groups()` after the last of these steps.
         """
         if len(rows) == 0:
             return

@@ -23,17 +23,20 @@ Status = Literal["completed", "interrupted", "failed"]
 
 @dataclasses.dataclass
 class PairRecord:
-    """Contact of two bodies over the whole run.
+    """Contact of two bodies, or of the grains of an entry with each other or with others.
 
     Attributes:
-        bodies: their names.
+        bodies: their names; an entry of `grains` is one name, twice for grains among themselves.
+        pairs: how many pairs of single bodies have touched.
         first_time: time of the first contact force [s]; None when they never touched.
         first_gap: distance of the two surfaces at that time [m]; None when never.
-        impulse: impulse on the first body until the end [N s] (per metre in 2D).
+        impulse: impulse on the first body until the end [N s] (per metre in 2D); 0 for grains
+            among themselves.
         friction_work: energy lost by friction [J] (per metre in 2D).
     """
 
     bodies: list[str]
+    pairs: int
     first_time: float | None
     first_gap: float | None
     impulse: list[float]
@@ -57,12 +60,14 @@ class LoadRecord:
 
 @dataclasses.dataclass
 class ContactRecord:
-    """Contact of the whole run: most overlapped nodes, most bodies at a node, pairs, bytes.
+    """Contact of the whole run: bodies, overlapped nodes at the end and at most, pairs, bytes.
 
     `unconverged_nodes` counts the solutions at nodes with several bodies that stopped short of
     the tolerance; 0 is usual.
     """
 
+    bodies: int = 0
+    overlapped_nodes: int = 0
     overlapped_nodes_max: int = 0
     bodies_per_node_max: int = 0
     peak_bytes: int = 0
@@ -144,6 +149,7 @@ def build_manifest(
     case: Mapping[str, Any],
     case_text: str,
     bodies: Sequence[str],
+    parts: Sequence[str] | None = None,
     cell_size: float,
     threads: int,
     wall_time: float,
@@ -161,6 +167,7 @@ def build_manifest(
         case: the whole case as plain data, SI units.
         case_text: text of the case file.
         bodies: name of each body.
+        parts: name under which contact reports each body; grains have one. Default `bodies`.
         cell_size: [m].
         threads: used.
         wall_time: of the whole run [s].
@@ -192,7 +199,7 @@ def build_manifest(
         peak_memory_bytes=peak_memory_bytes(),
         bytes={k: int(v) for k, v in simulation.bytes().items()},
         result_hash=result_hash(simulation),
-        contact=_contact(simulation, bodies),
+        contact=_contact(simulation, parts or bodies),
         loads=_loads(simulation),
         limiter=_limiter(simulation, bodies),
         energies=dict(energies or {}),
@@ -242,19 +249,22 @@ def read_manifest(path: str | Path) -> dict[str, Any]:
         raise CaseError(f"'{path}' is not a manifest of mpm3dpp: {error}") from error
 
 
-def _contact(simulation: Any, bodies: Sequence[str]) -> ContactRecord:
+def _contact(simulation: Any, parts: Sequence[str]) -> ContactRecord:
     summary = simulation.contact_summary()
     pairs = [
         PairRecord(
-            bodies=[bodies[b] for b in pair.bodies],
+            bodies=[parts[b] for b in pair.bodies],
+            pairs=int(pair.pairs),
             first_time=float(pair.first_time),
             first_gap=float(pair.first_gap),
             impulse=[float(v) for v in pair.impulse],
             friction_work=float(pair.friction_work),
         )
-        for pair in simulation.contact_pairs()
+        for pair in simulation.contact_groups()
     ]
     return ContactRecord(
+        bodies=len(parts),
+        overlapped_nodes=int(summary.get("overlapped_nodes", 0)),
         overlapped_nodes_max=int(summary.get("overlapped_nodes_max", 0)),
         bodies_per_node_max=int(summary.get("bodies_per_node_max", 0)),
         peak_bytes=int(summary.get("bytes", 0)),

@@ -2,8 +2,8 @@
 """Writer of `results.vtkhdf`: one growing file with every frame, for ParaView and PyVista.
 
 Format: VTKHDF 2.0 (VTK file formats, "VTKHDF"), temporal PolyData, one vertex per particle,
-float32, uncompressed chunks. Arrays that do not change (cells, body, material, size) are stored
-once and referred to by every frame. A frame counts only after all its bytes are in the file:
+float32, uncompressed chunks. Arrays that do not change (cells, body, grain, material, size) are
+stored once and referred to by every frame. A frame counts only after all its bytes are in the file:
 the number of frames is raised last, so that a killed run leaves every finished frame readable.
 """
 
@@ -21,7 +21,7 @@ import numpy as np
 
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import cannot_write, make_folder, reserve
-from mpm3dpp.io.fields import column_units, frame_arrays, particle_sizes
+from mpm3dpp.io.fields import column_units, frame_arrays, numbered, particle_sizes
 
 if TYPE_CHECKING:
     import h5py
@@ -42,7 +42,8 @@ class ResultsWriter:
 
     Args:
         path: the file, usually `results.vtkhdf`; its folder is made, an old file replaced.
-        bodies: name of each body; the array `body` counts in this order.
+        bodies: name of each body; bodies of one name are the grains of one entry. The array
+            `body` counts the names in this order, `grain` the bodies of a name from 0.
         materials: name of the material of each body.
         dimension: 2 or 3.
         cell_size: edge of a grid cell [m].
@@ -73,8 +74,8 @@ class ResultsWriter:
         self.path = Path(path)
         self.frames = 0
         self._fields = tuple(fields)
-        names = list(dict.fromkeys(materials))
-        self._materials = [names.index(name) for name in materials]
+        self._bodies = list(bodies)
+        names, self._materials = numbered(materials)
         self._dimension = dimension
         self._constant: dict[str, tuple[np.ndarray, int]] = {}
         self._sizes: np.ndarray | None = None
@@ -82,7 +83,7 @@ class ResultsWriter:
         self._meta: dict[str, Any] = {
             "title": title,
             "case_hash": case_hash,
-            "bodies": list(bodies),
+            "bodies": numbered(bodies)[0],
             "materials": names,
             "dimension": dimension,
             "cell_size": float(cell_size),
@@ -104,7 +105,7 @@ class ResultsWriter:
 
     def write(self, simulation: Any) -> None:
         """Append the present state of the core's `Simulation` as a frame."""
-        arrays = frame_arrays(simulation, self._materials, self._fields)
+        arrays = frame_arrays(simulation, self._bodies, self._materials, self._fields)
         if self._sizes is None:
             self._sizes = particle_sizes(simulation, self._dimension)
             self._meta["units"] = column_units(simulation)
@@ -211,7 +212,7 @@ class ResultsWriter:
             offset = self._constant_offset(name, column)
             if offset is None:
                 offset = _put(root["PointData"], name, column)
-                if name in ("body", "material", "size"):
+                if name in ("body", "grain", "material", "size"):
                     self._constant[name] = (column.copy(), offset)
             _put(steps["PointDataOffsets"], name, np.array([offset], dtype=np.int64))
         row = _put(root["FieldData"], "step", np.array([step], dtype=np.int64))

@@ -43,19 +43,19 @@ def preview(case: Any, out: Path) -> Path:
 
 def filled(case: Any) -> tuple[list[str], np.ndarray, np.ndarray, np.ndarray]:
     """All particles of a case: names of bodies, positions (n, 3) [m], sizes (n,) [m], body (n,)."""
-    from mpm3dpp.shapes import fill
+    from mpm3dpp.build import fill_all
 
     dimension = int(case.grid.dimension)
+    names = list(case.parts())
     points, sizes, bodies = [], [], []
-    for k, body in enumerate(case.body.values()):
-        positions, volumes = fill(body, case.grid)
-        whole = np.zeros((len(positions), 3))
-        whole[:, :dimension] = positions
+    for body in fill_all(case):
+        whole = np.zeros((len(body.positions), 3))
+        whole[:, :dimension] = body.positions
         points.append(whole)
-        edge = np.asarray(volumes, dtype=float).reshape(-1) ** (1.0 / dimension)
+        edge = np.asarray(body.volumes, dtype=float).reshape(-1) ** (1.0 / dimension)
         sizes.append(np.broadcast_to(edge, len(whole)))
-        bodies.append(np.full(len(whole), k))
-    return list(case.body), np.concatenate(points), np.concatenate(sizes), np.concatenate(bodies)
+        bodies.append(np.full(len(whole), names.index(body.part)))
+    return names, np.concatenate(points), np.concatenate(sizes), np.concatenate(bodies)
 
 
 def _flat(

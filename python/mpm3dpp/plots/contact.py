@@ -151,8 +151,8 @@ def _first(folder: Path, bodies: list[str]) -> tuple[float, int, int, float | No
     try:
         pairs: list[dict[str, Any]] = read_manifest(folder)["contact"]["pairs"]
         for pair in pairs:
-            if pair["first_time"] is not None:
-                a, b = (bodies.index(name) for name in pair["bodies"])
+            a, b = (bodies.index(name) for name in pair["bodies"])
+            if pair["first_time"] is not None and a != b:
                 found.append((float(pair["first_time"]), a, b, pair["first_gap"]))
     except CaseError:  # a killed run has no manifest
         history = read_history(folder)

@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Many round bodies from one entry of a case: where they stand and how they are filled."""
+
+from .centres import GrainCentres
+from .filling import fill_grain
+from .table import GrainLattice, GrainPacking, Grains
+
+__all__ = ["GrainCentres", "GrainLattice", "GrainPacking", "Grains", "fill_grain"]

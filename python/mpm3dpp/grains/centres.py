@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Centres and radii of grains, one by one: as arrays in Python, as a CSV file beside a case file.
+
+The file's first line names the columns, `x [m],y [m],z [m],radius [m]` in 3D and
+`x [m],y [m],radius [m]` in 2D; the units may be left out. Every other line is a grain.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import SkipValidation
+
+from mpm3dpp.csv_points import Layout, read_points, short
+from mpm3dpp.errors import CaseError, violation
+
+Array = NDArray[np.float64]
+_LARGEST = 1e100
+_GIVE = "see the how-to page of many grains for its columns"
+_LAYOUT = Layout("radius", ("m", "m"), True, "grain", _GIVE)
+
+
+class GrainCentres:
+    """Discs (2D) or spheres (3D), one by one.
+
+    Attributes:
+        centres: [m], shape (n, D).
+        radii: [m], shape (n,).
+        file: the name by which a case file knows them; empty if they come from no file.
+
+    Raises:
+        CaseError: an array has another shape, or numbers that are not finite or radii <= 0.
+    """
+
+    def __init__(self, centres: Any, radii: Any, file: str = "") -> None:
+        self.centres: Array = np.array(centres, dtype=np.float64, order="C")
+        if self.centres.ndim != 2 or self.centres.shape[1] not in (2, 3) or not len(self.centres):
+            rule = "must have the shape (n, 2) or (n, 3), n > 0"
+            raise CaseError(rule, key="grain_centres.centres")
+        self.radii: Array = np.array(radii, dtype=np.float64)
+        if self.radii.shape != (len(self.centres),):
+            raise CaseError("must have one number for each grain", key="grain_centres.radii")
+        self.file = file
+        wrong = self.first_wrong()
+        if wrong is not None:
+            raise CaseError(f"{wrong[1]} (grain {wrong[0]})", key="grain_centres")
+
+    @property
+    def dimension(self) -> int:
+        """Number of coordinates of a centre."""
+        return int(self.centres.shape[1])
+
+    def first_wrong(self) -> tuple[int, str] | None:
+        """Return (number of the grain, rule) of the first one that cannot be."""
+        finite = np.all(np.abs(self.centres) < _LARGEST, axis=1) & (np.abs(self.radii) < _LARGEST)
+        good = finite & (self.radii > 0)
+        if good.all():
+            return None
+        first = int(np.argmin(good))
+        rule = "must have finite numbers" if not finite[first] else "must have a radius > 0"
+        return first, rule
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 (hexadecimal) of the grains, numbers to 12 digits."""
+        table = np.column_stack([self.centres, self.radii]) + 0.0  # No negative zero.
+        line = ",".join(["%.12g"] * table.shape[1])
+        text = "\n".join(line % tuple(row) for row in table.tolist())
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def table(self) -> str:
+        """Return the value of the key `file` of a case file."""
+        return self.file or f"({len(self.radii)} grains, SHA-256 {self.digest})"
+
+
+def read_centres(path: Path, name: str = "") -> GrainCentres:
+    """Read a file of centres and radii.
+
+    Args:
+        path: the file.
+        name: its name in messages and in the case; by default its path.
+
+    Raises:
+        CaseError: the file is missing or malformed; the rule names the line.
+    """
+    name = name or str(path)
+    points = read_points(path, name, _LAYOUT)
+    found = GrainCentres.__new__(GrainCentres)  # Checked below, where the line is known.
+    found.centres = np.ascontiguousarray(points.table[:, : points.dimension])
+    found.radii, found.file = np.ascontiguousarray(points.table[:, points.dimension]), name
+    wrong = found.first_wrong()
+    if wrong is not None:
+        number, line = points.lines[wrong[0]]
+        raise CaseError(f"{wrong[1]}, in line {number} ({short(line)})", _GIVE, value=name)
+    return found
+
+
+class _FromFile:
+    """Annotation of the field: `GrainCentres`, or the name of a file beside the case file."""
+
+    def parse(self, value: Any, info: Any) -> GrainCentres | None:
+        """Return the grains, or raise the violation that pydantic collects."""
+        if value is None or isinstance(value, GrainCentres):
+            return value
+        if not isinstance(value, str):
+            rule = "must be the name of a file of centres and radii"
+            raise violation(rule, 'for example "centres.csv"', value=value)
+        folder = Path((info.context or {}).get("folder", "."))
+        try:
+            return read_centres(folder / value, value)
+        except CaseError as error:
+            raise violation(error.rule, error.remedy, value=value) from None
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        return core_schema.with_info_plain_validator_function(self.parse)
+
+    def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
+        return {"type": "string"}
+
+
+AnyCentres = Annotated[SkipValidation[GrainCentres | None], _FromFile()]

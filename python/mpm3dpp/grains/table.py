@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The table `[grains.NAME]` of a case: thousands of discs or spheres, each a body of its own."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+
+from mpm3dpp.errors import CaseError, Path, violation
+from mpm3dpp.grains.centres import AnyCentres
+from mpm3dpp.grains.packing import MOST_GRAINS, draw_radii, pack
+from mpm3dpp.model import CaseModel, Choice, Count, Exactly, Text
+from mpm3dpp.units import Point, PositiveLength, Quantity, Spin, Vector, VelocityVector
+
+Array = NDArray[np.float64]
+Wrong = tuple[Path, str, str]
+
+WAYS = ("lattice", "packing", "file")
+"""The keys that say where grains stand; exactly one is given."""
+
+_TOUCH = 1e-9  # Equal grains may touch: the spacing may miss the diameter by this share.
+Lengths = Annotated[tuple[float, ...], Vector("m", scalar=True)]
+
+
+class GrainLattice(CaseModel):
+    """Equal grains in rows: one in the middle of each square or cubic cell of a lattice.
+
+    Attributes:
+        lower: the lattice's lower corner [m], D numbers.
+        count: number of grains along each axis, D whole numbers.
+        radius: of the grains [m].
+        spacing: distance of neighbouring centres [m], one number or D; default 2 radius, so that
+            they touch.
+    """
+
+    lower: Point
+    count: list[Count]
+    radius: PositiveLength
+    spacing: Lengths = ()
+
+    @model_validator(mode="after")
+    def _no_overlap(self) -> GrainLattice:
+        for d, spacing in enumerate(self.spacing):
+            if spacing < 2 * self.radius * (1 - _TOUCH):
+                rule = f"must be >= 2 radius = {2 * self.radius:g} m, else the grains overlap"
+                path: Path = ("spacing",) if len(self.spacing) == 1 else ("spacing", d)
+                raise violation(rule, "give a larger spacing", value=spacing, path=path)
+        return self
+
+    def wrong_dimension(self, dimension: int) -> Wrong | None:
+        """Return (path, rule, remedy) of the first key with too few or too many numbers."""
+        for name, given in (("lower", self.lower), ("count", self.count)):
+            if len(given) != dimension:
+                return _needs(name, len(given), dimension)
+        if len(self.spacing) not in (0, 1, dimension):
+            return _needs("spacing", len(self.spacing), dimension)
+        return None
+
+    def place(self, dimension: int) -> tuple[Array, Array]:
+        """Return centres [m], shape (n, D), and radii [m], shape (n,); the last axis is fastest."""
+        spacing = np.broadcast_to(np.asarray(self.spacing or (2 * self.radius,)), (dimension,))
+        axes = [(np.arange(n) + 0.5) * s for n, s in zip(self.count, spacing, strict=True)]
+        mesh = np.meshgrid(*axes, indexing="ij")
+        centres = np.asarray(self.lower) + np.stack([x.ravel() for x in mesh], axis=1)
+        return centres, np.full(len(centres), self.radius)
+
+
+class GrainPacking(CaseModel):
+    """Grains at random places in a box, none overlapping; the same for the same seed.
+
+    Attributes:
+        lower, upper: corners of the box that holds them [m], D numbers.
+        radius: one number [m], or the least and the most, drawn evenly between.
+        count: how many.
+        fraction: in place of `count`, the share of the box that they fill. Up to about 0.55 in 3D
+            and 0.75 in 2D a place is found for all.
+        gap: least distance of two surfaces [m].
+        seed: of the random numbers, a whole number >= 0.
+    """
+
+    lower: Point
+    upper: Point
+    radius: Lengths
+    count: Count | None = None
+    fraction: Annotated[float, Quantity("", "0 < f < 1")] | None = None
+    gap: Annotated[float, Quantity("m", ">= 0")] = 0.0
+    seed: Annotated[int, Exactly(int, 0)] = 0
+
+    @model_validator(mode="after")
+    def _consistent(self) -> GrainPacking:
+        if len(self.radius) not in (1, 2) or not 0 < self.radius[0] <= self.radius[-1]:
+            rule = "must be one length > 0, or two, the smaller first"
+            remedy = 'for example ["1 mm", "2 mm"]'
+            raise violation(rule, remedy, value=list(self.radius), path=("radius",))
+        if (self.count is None) == (self.fraction is None):
+            raise violation("must have either count or fraction", "give one of them")
+        if len(self.lower) != len(self.upper):
+            rule, remedy = "must have as many numbers as lower", "give two in 2D and three in 3D"
+            raise violation(rule, remedy, value=list(self.upper), path=("upper",))
+        for d, (low, high) in enumerate(zip(self.lower, self.upper, strict=True)):
+            if high - low < 2 * self.radius[-1]:
+                rule = f"is {high - low:g} m from lower, less than the largest grain's diameter"
+                remedy = "give a larger box or smaller grains"
+                raise violation(rule, remedy, value=high, path=("upper", d))
+        if len(self.radii()) == 0:
+            rule = "is less than one grain fills"
+            remedy = "give a larger fraction or smaller grains"
+            raise violation(rule, remedy, value=self.fraction, path=("fraction",))
+        return self
+
+    def wrong_dimension(self, dimension: int) -> Wrong | None:
+        """Return (path, rule, remedy) if the corners have too few or too many numbers."""
+        if len(self.lower) != dimension:
+            return _needs("lower", len(self.lower), dimension)
+        return None
+
+    def _volume(self) -> float:
+        """Return what the grains fill together [m^3; in 2D m^2]."""
+        return float(np.prod(np.subtract(self.upper, self.lower))) * (self.fraction or 0.0)
+
+    def radii(self) -> Array:
+        """Return the radii [m], shape (n,), without placing the grains."""
+        numbers = (self.radius[0], self.radius[-1], self.count, self._volume())
+        return draw_radii(*numbers, len(self.lower), self.seed)
+
+    def place(self, dimension: int) -> tuple[Array, Array]:
+        """Return centres [m], shape (n, D), and radii [m], shape (n,).
+
+        Raises:
+            CaseError: they cannot be placed.
+        """
+        numbers = (self.radius[0], self.radius[-1], self.count, self._volume())
+        return pack(self.lower, self.upper, *numbers, self.gap, self.seed)
+
+
+class Grains(CaseModel):
+    """Many discs (2D) or spheres (3D) of one material, each a body of its own: NAME_0000, ...
+
+    Where they stand is given by exactly one of `lattice`, `packing` and `file`.
+
+    Attributes:
+        material: name of their material.
+        lattice: equal grains in rows.
+        packing: grains at random places, of one size or many.
+        file: a CSV file beside the case file with the columns x, y, z (in 2D without z) and
+            radius, in SI units (in Python: `mpm3dpp.GrainCentres`).
+        particles_per_cell: particles per cell along each direction; default 2.
+        spacing: distance of the particles of a grain [m], in place of `particles_per_cell`.
+        align: how the particles stand in each grain: "between" (its centre is in the middle
+            between particles) and "particle" (a particle at its centre) fill equal grains alike;
+            "grid" (on the grid's lattice, as bodies) does not.
+        velocity: initial velocity of all [m/s], D numbers; default zero.
+        angular_velocity: initial spin of each about its own centre [rad/s]: one number in 2D,
+            three in 3D; default zero. Stored as a tuple.
+    """
+
+    material: Text
+    lattice: GrainLattice | None = None
+    packing: GrainPacking | None = None
+    file: AnyCentres = None
+    particles_per_cell: Count | None = None
+    spacing: PositiveLength | None = None
+    align: Annotated[str, Choice(("between", "particle", "grid"))] = "between"
+    velocity: VelocityVector = ()
+    angular_velocity: Spin = ()
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Grains:
+        given = [way for way in WAYS if getattr(self, way) is not None]
+        if len(given) != 1:
+            found = f"it has {' and '.join(given)}" if given else "it has none"
+            rule = "must have exactly one of lattice, packing and file"
+            raise violation(rule, f"{found}; add or remove one")
+        if self.particles_per_cell is not None and self.spacing is not None:
+            rule = "must not be given together with particles_per_cell"
+            raise violation(rule, "keep one of the two", path=("spacing",))
+        if self.particles_per_cell is None and self.spacing is None:
+            self.__dict__["particles_per_cell"] = 2
+        if self.count > MOST_GRAINS:
+            rule = f"would be more than {MOST_GRAINS:,} grains"
+            remedy = "give fewer, or write lengths with their unit (a plain number is in metres)"
+            raise violation(rule, remedy, path=(self.filling,))
+        return self
+
+    @property
+    def filling(self) -> str:
+        """The key that says where the grains stand: "lattice", "packing" or "file"."""
+        return next(way for way in WAYS if getattr(self, way) is not None)
+
+    @property
+    def count(self) -> int:
+        """Number of grains, known without placing them."""
+        if self.lattice is not None:
+            return math.prod(self.lattice.count)
+        if self.packing is not None:
+            return len(self.packing.radii())
+        return 0 if self.file is None else len(self.file.radii)
+
+    def names(self, name: str) -> list[str]:
+        """Return the names of the bodies, `sand_0000`, ... for the entry `sand`."""
+        count = self.count
+        digits = max(4, len(str(count - 1)))
+        return [f"{name}_{k:0{digits}d}" for k in range(count)]
+
+    def particle_spacing(self, grid: Any) -> float:
+        """Return the distance of neighbouring particles [m]."""
+        if self.spacing is not None:
+            return self.spacing
+        return float(grid.cell_size / (self.particles_per_cell or 2))
+
+    def place(self, dimension: int) -> tuple[Array, Array]:
+        """Return centres [m], shape (n, D), and radii [m], shape (n,).
+
+        Raises:
+            CaseError: a packing cannot be made; its key is below the entry.
+        """
+        if self.file is not None:
+            return self.file.centres, self.file.radii
+        try:
+            return (self.lattice or self.packing).place(dimension)  # type: ignore[union-attr]
+        except CaseError as error:
+            raise CaseError(error.rule, error.remedy, key="packing") from None
+
+    def wrong_dimension(self, dimension: int) -> Wrong | None:
+        """Return (path, rule, remedy) of the first key that does not suit 2D or 3D."""
+        if self.file is not None:
+            if self.file.dimension == dimension:
+                return None
+            rule = f"must have {dimension} coordinates, as grid.dimension = {dimension}"
+            return ("file",), rule, f"it has {self.file.dimension}"
+        wrong = (self.lattice or self.packing).wrong_dimension(dimension)  # type: ignore[union-attr]
+        return None if wrong is None else ((self.filling, *wrong[0]), wrong[1], wrong[2])
+
+
+def _needs(name: str, given: int, dimension: int) -> Wrong:
+    rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
+    return (name,), rule, f"it has {given}, give {dimension}"
