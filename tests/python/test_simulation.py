@@ -276,7 +276,8 @@ def test_set_velocity() -> None:
 def test_history_has_a_row_for_each_step() -> None:
     simulation = Simulation(one_block(2, {}, {"end_time": 1e-3}, velocity=(1.0, 0.0)), threads=1)
     names = simulation.core.history_columns
-    assert tuple(names) == (*COLUMNS, *NUMERICAL, *MOTION)
+    grid = ("load_work", "cell_size", "tiles")
+    assert tuple(names) == (*COLUMNS, *NUMERICAL, *grid, *MOTION)
     first = history(simulation)
     assert first["step"].tolist() == [0.0] and first["dt"].tolist() == [0.0]
     assert first["kinetic"][0] == pytest.approx(0.5 * simulation.core.total_mass)
