@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases import BASES, CELL, SCHEMES, block, materials
+from cases import BASES, CELL, block, materials
 from mpm3dpp import Case, CaseError, Contact, Grid, GridBox, GridDoubling, Run, Simulation
 
 SPEED = 4.0
@@ -41,41 +41,30 @@ def history(simulation: Simulation) -> dict[str, np.ndarray]:
     return dict(zip(simulation.core.history_columns, rows.T, strict=True))
 
 
-def spread(simulation: Simulation) -> None:
-    """Make the blocks fly apart along y as they go, so that they need more and more tiles."""
-    for body in ("one", "other"):
-        x, v = (simulation.column(body, c) for c in ("position", "velocity"))
-        v = v.copy()
-        v[:, 1] = 30.0 * (x[:, 1] - 7 * CELL)
-        simulation.set_velocity(body, v)
-
-
 @pytest.mark.parametrize("basis", BASES)
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", ["usf", "musl"])
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_nothing_changes_but_the_cells(dimension: int, scheme: str, basis: str) -> None:
     """The state after the step that doubles is bitwise that of a run that does not double."""
-    ran = {}
-    for doubling in (None, {"tiles": 2 * 2**dimension, "times": 1}):
-        simulation = Simulation(colliding(dimension, doubling, scheme=scheme, basis=basis), 1)
-        spread(simulation)
-        ran[doubling is None] = simulation
-    plain, double = ran[True], ran[False]
-    tiles = []
-    while double.advance(1) and plain.advance(1):
+    plain = Simulation(colliding(dimension, None, scheme=scheme, basis=basis), 1)
+    limit = int(history(plain)["tiles"][-1])
+    doubling = {"tiles": limit, "times": 1}
+    double = Simulation(colliding(dimension, doubling, scheme=scheme, basis=basis), 1)
+    history(double)
+    tiles = limit
+    while tiles <= limit:
+        assert double.advance(1) and plain.advance(1)
         row = history(double)
-        tiles.append(row["tiles"][-1])
+        tiles = row["tiles"][-1]
         for name in ("one", "other"):
             for column in ("position", "velocity", "stress", "volume", "mass"):
                 assert np.array_equal(double.column(name, column), plain.column(name, column))
         assert history(plain)["kinetic"][-1] == row["kinetic"][-1]
-        if row["tiles"][-1] > 2 * 2**dimension:
-            break
+        assert row["cell_size"][-1] == CELL
     double.advance(1)
     row = history(double)
     assert row["cell_size"][-1] == 2.0 * CELL
-    assert row["tiles"][-1] < tiles[-1]
-    assert tiles[0] <= 2 * 2**dimension < tiles[-1]
+    assert row["tiles"][-1] < tiles
     energy = row["kinetic"][-1]
     double.advance(1000)
     row = history(double)
@@ -88,7 +77,7 @@ def test_nothing_changes_but_the_cells(dimension: int, scheme: str, basis: str) 
 def bounced(threads: int) -> Simulation:
     """Return blocks that have met, bounced off each other and lost cells on the way."""
     box = GridBox(lower=(0, 0), upper=(32 * CELL, 16 * CELL), walls="slip")
-    simulation = Simulation(colliding(2, {"tiles": 4, "times": 1}, box), threads)
+    simulation = Simulation(colliding(2, {"tiles": 2, "times": 1}, box), threads)
     simulation.advance(100_000, 0.02)
     return simulation
 
@@ -101,7 +90,7 @@ def test_bodies_meet_after_their_cells_have_doubled() -> None:
     assert row["cell_size"][2] == 2 * CELL
     speeds = [simulation.column(b, "velocity")[:, 0].mean() for b in ("one", "other")]
     assert speeds[0] == pytest.approx(-speeds[1], rel=1e-9)
-    assert -SPEED <= speeds[0] < -0.7 * SPEED  # some of the energy is vibration
+    assert -SPEED <= speeds[0] < -0.5 * SPEED  # the rest is vibration; without doubling 0.67
     (pair,) = simulation.core.contact_pairs()
     assert pair.impulse[0] == pytest.approx(-(SPEED - speeds[0]) * simulation.core.total_mass / 2)
 

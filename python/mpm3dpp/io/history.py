@@ -26,6 +26,10 @@ COLUMNS = (
 NUMERICAL = ("numerical_mapping", "numerical_time")
 """The named parts of `numerical`, which follow."""
 
+GRID = ("load_work", "cell_size", "tiles")
+"""Then the work of loads on surfaces, a part of `external` [J], and the grid: the edge of its cells
+[m] and the tiles in use, those of each body counted."""
+
 MOTION = ("motion_work", *(f"motion_impulse_{x}" for x in ("x", "y", "z")))
 """Then the work of prescribed motions, which is part of `external` [J], and their impulse [N s]."""
 

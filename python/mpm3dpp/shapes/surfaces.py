@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .base import Shape
-from .primitives import _AXES, Box, Cylinder, Disc, Ring, Sphere, Tube
+from .primitives import AXES, Box, Cylinder, Disc, Ring, Sphere, Tube
 from .transforms import Rotate, Translate
 
 Array = NDArray[np.float64]
@@ -135,7 +135,7 @@ def _sphere(radius: float, step: float) -> Surface:
 
 
 def _cylinder(shape: Cylinder | Tube, side: str, step: float) -> Surface:
-    axis, centre = _AXES[shape.axis], np.array(shape.centre)
+    axis, centre = AXES[shape.axis], np.array(shape.centre)
     if side in ("outer", "inner"):
         radius, sign = _radius(shape, side)
         ring = _circle(radius, step)
