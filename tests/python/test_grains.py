@@ -92,6 +92,19 @@ def test_eight_thousand_grains_start_and_are_told_as_one() -> None:
     assert simulation.column("sand_7999", "mass").shape == (33, 1)
 
 
+def test_grains_that_fly_together_converge() -> None:
+    """Up to twelve bodies at a node, and nothing but rounding passes between them."""
+    lattice = 'lattice = { lower = [0, 0, 0], count = [4, 4, 4], radius = "1.05 mm" }\n'
+    more = 'align = "particle"\nvelocity = [30, 20, 10]\n'
+    simulation = Simulation(grains(lattice + more, 3), threads=1)
+    simulation.advance(3)
+    summary = simulation.core.contact_summary()
+    assert summary["bodies_per_node_max"] >= 8
+    assert summary["unconverged_nodes"] == 0
+    v = simulation.column("sand", "velocity")
+    assert np.abs(v / [30.0, 20.0, 10.0] - 1.0).max() < 1e-12
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_packing_overlaps_nowhere_and_is_that_of_its_seed(dimension: int) -> None:
     corner, box = [0.0] * dimension, ["40 mm"] * dimension if dimension == 2 else ["20 mm"] * 3

@@ -92,16 +92,24 @@ void sort_sides(std::span<Side<D>> sides) {
 /// Remove the approach of every closed pair, eqs. (6)-(7), working on Side::momentum; with
 /// friction, hold the tangential motion as far as Coulomb's law allows, eqs. (14)-(15). For two
 /// bodies this is the paper's formula; more are solved together by projected Gauss-Seidel in a
-/// fixed order, to 1e-12 of the largest impulse. `takes_part(pair)` chooses the pairs. Sets
-/// normal_impulse and friction_impulse of every pair (0 for the others). Gives false if it stopped
-/// short of the tolerance.
+/// fixed order, to 1e-12 of the largest impulse or to the rounding of their momenta.
+/// `takes_part(pair)` chooses the pairs. Sets normal_impulse and friction_impulse of every pair (0
+/// for the others). Gives false if it stopped short of the tolerance.
 template <int D, bool with_friction, class Choose>
 bool solve_node(Side<D>* sides, SidePair<D>* pairs, std::uint32_t count, Choose&& takes_part) {
   constexpr int most_sweeps = 20000;
   constexpr double tolerance = 1e-12;
+  // Bodies that move together exert impulses on each other that are rounding: no sweeps settle
+  // them.
+  constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+  double unresolved = 0.0;
   for (std::uint32_t k = 0; k < count; ++k) {
     pairs[k].normal_impulse = 0.0;
     pairs[k].friction_impulse = Vec<double, D>::zero();
+    if (count == 1) continue;
+    const double lighter =
+        std::min(norm(sides[pairs[k].r].momentum), norm(sides[pairs[k].s].momentum));
+    unresolved = std::max(unresolved, rounding * lighter);
   }
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     double change = 0.0, scale = 0.0;
@@ -130,7 +138,7 @@ bool solve_node(Side<D>* sides, SidePair<D>* pairs, std::uint32_t count, Choose&
       r.momentum -= impulse;
       s.momentum += impulse;
     }
-    if (count == 1 || change <= tolerance * scale) return true;
+    if (count == 1 || change <= std::max(tolerance * scale, unresolved)) return true;
   }
   return false;
 }
