@@ -136,8 +136,6 @@ def _check_motion(case: Case, body: Body | Grains, path: Path) -> None:
         remedy = f"for example {example}"
         raise violation(rule, remedy, value=list(spin), path=(*path, "angular_velocity"))
     body.__dict__["angular_velocity"] = spin or (0.0,) * wanted
-    if body.motion is not None:
-        check_motion(case, body, path)
 
 
 def _check_body(case: Case, body: Body, path: Path) -> None:
@@ -152,6 +150,8 @@ def _check_body(case: Case, body: Body, path: Path) -> None:
         value = body.particles.file or "an array"
         raise violation(rule, remedy, value=value, path=(*path, "particles"))
     _check_motion(case, body, path)
+    if body.motion is not None:
+        check_motion(case, body, path)
 
 
 def _check_output(case: Case) -> None:
