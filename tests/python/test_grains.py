@@ -357,3 +357,11 @@ def test_a_wrong_line_of_a_file_is_named(tmp_path: Path) -> None:
         (tmp_path / "case.toml").write_text(CASE.replace("DIM", "2") + 'file = "sand.csv"\n')
         with pytest.raises(CaseError, match=f"(?s){rule}.*line 3|line 3.*{rule}"):
             load_case(tmp_path / "case.toml")
+
+
+def test_the_example_of_the_how_to_page_is_what_check_says() -> None:
+    page = (Path(__file__).parents[2] / "docs/how-to/many-grains.md").read_text()
+    [text] = re.findall(r"```toml\n(.*?)```", page, re.S)
+    [line] = re.findall(r"```text\n(.*?)\n```", page, re.S)
+    case = Case.from_text(text)
+    assert line in echo(case, build(case)).splitlines()
