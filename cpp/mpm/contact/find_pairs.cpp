@@ -5,6 +5,32 @@
 #include "mpm/contact/normal.hpp"
 
 namespace mpm {
+namespace {
+
+// Gaps along the line between the centres wider than this are left as they are (decision 0008).
+constexpr double surely_open = 0.5;  // [cells]
+
+/// D_rs = D_r + D_s of eq. (5) [m], each D the distance from the node to the body's surface along
+/// the unit vector; infinite for a zero vector.
+template <int D>
+double gap_along(const Vec<double, D>& normal, const NormalSource<D>& r, const NormalSource<D>& s,
+                 double cell_size) {
+  if (!(dot(normal, normal) > 0.0)) return std::numeric_limits<double>::infinity();
+  return -cell_size * (r.particles.extent_along(normal) + s.particles.extent_along(-1.0 * normal));
+}
+
+/// The unit vector from the centre of r's particles around the node to that of s's; zero if they
+/// are one.
+template <int D>
+Vec<double, D> between_centres(const NearParticles<D>& r, const NearParticles<D>& s,
+                               unsigned held) {
+  Vec<double, D> n = s.centre() - r.centre();
+  for (int a = 0; a < D; ++a)
+    if (held >> a & 1u) n[a] = 0.0;
+  return normalised(n, 1e-9);
+}
+
+}  // namespace
 
 template <int D>
 void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
@@ -43,16 +69,19 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
       pair.s = s;
       pair.friction = friction(settings, bodies[static_cast<std::size_t>(sides[r].body)].group,
                                bodies[static_cast<std::size_t>(sides[s].body)].group);
+      // Bodies that are well apart along the line between their centres need no better normal.
+      const bool by_gap = settings.detection == Detection::gap;
+      if (by_gap && settings.normal == NormalRule::plane) {
+        pair.normal = between_centres(sources[r].particles, sources[s].particles, node.held);
+        pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
+        if (pair.gap > settings.gap_distance + surely_open * grid.cell_size) continue;
+      }
       pair.normal = pair_normal(sources[r], sources[s], settings.normal, node.held);
       const bool opposed = dot(pair.normal, pair.normal) > 0.0;
-      // D_rs = D_r + D_s, each D the distance from the node to the body's surface along the pair's
-      // normal.
-      pair.gap = opposed ? -grid.cell_size * (sources[r].particles.extent_along(pair.normal) +
-                                              sources[s].particles.extent_along(-1.0 * pair.normal))
-                         : std::numeric_limits<double>::infinity();
+      pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
       pair.closed = opposed &&
                     !(rigid(r) && rigid(s)) &&  // they have no stress that could part them
-                    (settings.detection == Detection::velocity || pair.gap < settings.gap_distance);
+                    (!by_gap || pair.gap < settings.gap_distance);
     }
 }
 

@@ -70,12 +70,32 @@ struct NearParticles {
     T weight;     // mass [kg]; 0 for one out of reach
   };
   std::vector<Lanes> lanes;
+  T mass = T(0.0);                       // of all, by lane [kg]
+  Vec<T, D> moment = Vec<T, D>::zero();  // the same times x
 
   /// Forget all, with room for 8 lanes in each cell from which a node is in reach, so that steps
   /// seldom allocate.
   void clear(int margin) {
     lanes.clear();
+    mass = T(0.0);
+    moment = Vec<T, D>::zero();
     lanes.reserve(8 * static_cast<std::size_t>(power(2 + 2 * margin, D)));
+  }
+
+  void add(const Lanes& p) {
+    mass += p.weight;
+    for (int a = 0; a < D; ++a) moment[a] += p.weight * p.x[a];
+    lanes.push_back(p);
+  }
+
+  /// Mass in reach [kg] and its centre from the node [cells]; zero without mass.
+  double total() const { return sum(mass); }
+  Vec<double, D> centre() const {
+    const double all = total();
+    Vec<double, D> c = Vec<double, D>::zero();
+    if (!(all > 0.0)) return c;
+    for (int a = 0; a < D; ++a) c[a] = sum(moment[a]) / all;
+    return c;
   }
 
   /// How far the body extends from the node along a unit vector: max of x . n + l [cells], eq. (5),
@@ -126,7 +146,7 @@ void collect_near(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& 
         const T edge_now = particle_edge<D>(load(body.volume(), rows), body.mean_edge);
         p.half = select(near, T(0.5 / grid.cell_size) * edge_now,
                         T(-std::numeric_limits<double>::infinity()));
-        to.lanes.push_back(p);
+        to.add(p);
       });
 }
 

@@ -25,13 +25,12 @@ class PlaneFit {
   /// Axes in `held` get no component.
   PlaneFit(const NearParticles<D>& r, const NearParticles<D>& s, unsigned held)
       : r_(r), s_(s), held_(held) {
-    T mass_r(0.0), mass_s(0.0);
-    for (const auto& p : r.lanes) mass_r += p.weight;
-    for (const auto& p : s.lanes) mass_s += p.weight;
-    if (!(sum(mass_r) > 0.0 && sum(mass_s) > 0.0)) return;
-    share_r_ = 1.0 / sum(mass_r);
-    share_s_ = 1.0 / sum(mass_s);
-    // Some five steps; the limit is against rounding that never settles.
+    const double mass_r = r.total(), mass_s = s.total();
+    if (!(mass_r > 0.0 && mass_s > 0.0)) return;
+    share_r_ = 1.0 / mass_r;
+    share_s_ = 1.0 / mass_s;
+    start_between_centres();
+    // Some three steps; the limit is against rounding that never settles.
     constexpr int most_steps = 50;
     for (int k = 0; k < most_steps; ++k) {
       double step[n];
@@ -42,8 +41,10 @@ class PlaneFit {
         size = std::max(size, std::abs(z_[i]));
       }
       if (!(change > 1e-13 * size)) return;
-      const double t = best_length(step);
+      bool settled = false;
+      const double t = best_length(step, settled);
       for (int i = 0; i < n; ++i) z_[i] += t * step[i];
+      if (settled) return;
     }
   }
 
@@ -61,6 +62,20 @@ class PlaneFit {
   static constexpr double softness = 4e-3;
   // Keeps the system regular where no particle is inside the corridor.
   static constexpr double damping = 1e-12;
+
+  /// Start with the plane midway between the bodies' centres of mass, both on the corridor's edges.
+  void start_between_centres() {
+    const Vec<double, D> r = r_.centre(), s = s_.centre();
+    double apart[D], square = 0.0, middle = 0.0;
+    for (int a = 0; a < D; ++a) {
+      apart[a] = held_ >> a & 1u ? 0.0 : s[a] - r[a];
+      square += apart[a] * apart[a];
+      middle += apart[a] * 0.5 * (r[a] + s[a]);
+    }
+    if (!(square > 0.0)) return;
+    for (int a = 0; a < D; ++a) z_[a] = 2.0 * apart[a] / square;
+    z_[D] = -2.0 * middle / square;
+  }
 
   /// f(position, sign, share of the body's mass) over both bodies.
   template <class F>
@@ -105,10 +120,11 @@ class PlaneFit {
   }
 
   /// The length of a step at which the function is least: the root of a slope that is linear piece
-  /// by piece and rises. Roughly is enough: the next step mends the rest.
-  double best_length(const double (&step)[n]) const {
+  /// by piece and rises. Roughly is enough: the next step mends the rest. If the particles inside
+  /// the corridor are the same after the whole step, that has led to the least: `settled`.
+  double best_length(const double (&step)[n], bool& settled) const {
     constexpr int most_trials = 20;
-    constexpr double tolerance = 1e-9;
+    constexpr double tolerance = 0.1;
     double along = 0.0, square = 0.0;
     for (int i = 0; i < D; ++i) {
       along += softness * z_[i] * step[i];
@@ -117,18 +133,26 @@ class PlaneFit {
     double t = 1.0;
     for (int k = 0; k < most_trials; ++k) {
       T slope(0.0), curvature(0.0);
+      auto changed = T(1.0) < T(0.0);
       for_both([&](const Vec<T, D>& x, T sign, T share) {
         const T gain = sign * height(step, x);
-        const T lack = T(1.0) - sign * height(z_, x) - T(t) * gain;
+        const T before = T(1.0) - sign * height(z_, x);
+        const T lack = before - T(t) * gain;
+        const auto was = before > T(0.0), is = lack > T(0.0);
+        changed = changed | (((was & !is) | (is & !was)) & (share > T(0.0)));
         const T pull = select(lack > T(0.0), share, T(0.0)) * gain;
         slope -= pull * lack;
         curvature += pull * gain;
       });
+      if (k == 0 && !any(changed)) {
+        settled = true;
+        return t;
+      }
       const double stiffness = sum(curvature) + square;
       if (!(stiffness > 0.0)) break;
       const double change = (sum(slope) + along + t * square) / stiffness;
       t -= change;
-      if (!(std::abs(change) > tolerance)) break;
+      if (!(std::abs(change) > tolerance * t)) break;
     }
     return t;
   }
