@@ -37,8 +37,8 @@ struct ListScratch {
 };
 
 /// Sort every body's columns by tile and cell, and make patches and lists anew, at the start or
-/// after a change of the grid. Sets the grid's anchor. Throws std::invalid_argument if a particle lies more than 2^19 cells from the
-/// origin.
+/// after a change of the grid. Sets the grid's anchor. Throws std::invalid_argument if a particle
+/// lies more than 2^19 cells from the origin.
 template <int D>
 void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads);
 
