@@ -77,6 +77,12 @@ def sliding_block(
     return figures
 
 
+def infinite_slope(scheme: str, dimension: int, basis: str, across: int = 8) -> list[Figure]:
+    """C4: a block on a slope of 35 degrees with an angle of friction of 25 degrees."""
+    t, _, v, _ = slide(scheme, dimension, basis, 35, math.tan(math.radians(25.0)), across=across)
+    return [judge("C4", "acceleration", slope(t, v))]
+
+
 def sticking_block(
     scheme: str, dimension: int, basis: str, across: int = 8, normal: str = "plane",
     factor: float = 0.25, duration: float = 1.0,

@@ -10,7 +10,7 @@ from typing import Any
 
 from mpm3dpp import _core
 
-from . import bars, column, discs, examples, groups, incline, point
+from . import bars, column, discs, examples, grains, groups, incline, point
 from .figure import Figure
 from .scene import Failed
 
@@ -82,6 +82,7 @@ def _runs() -> Iterator[Run]:
             yield Run("E7", discs.first_touch, scheme, 2, basis)
             yield Run("E8", incline.sliding_block, scheme, 2, basis)
             yield Run("E8", incline.sticking_block, scheme, 2, basis)
+            yield Run("C4", incline.infinite_slope, scheme, 2, basis)
             yield Run("oblique", groups.oblique_impact, scheme, 2, basis)
             yield Run("oblique", groups.oblique_impact, scheme, 2, basis, {"slip": 0.05})
             yield Run("E9", incline.rolling, scheme, 2, basis, {"cells": 8})
@@ -111,6 +112,9 @@ def _runs() -> Iterator[Run]:
 
 
 def _slow_runs() -> Iterator[Run]:
+    for cells in (10, 20):
+        yield Run("C1", grains.hertz_wall, "musl", 3, "gimp", {"cells": cells}, slow=True)
+    yield Run("C2", grains.hertz_chain, "musl", 3, "gimp", {"cells": 10}, slow=True)
     yield Run("S4", examples.tnt_slab, "musl", 2, "gimp", slow=True)
     yield Run("W1", examples.dam_break, "musl", 2, "gimp", slow=True)
     yield Run("G1", examples.sand_column, "musl", 2, "gimp", slow=True)
