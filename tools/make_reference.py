@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from mpm3dpp import case, case_grid, case_parts
+from mpm3dpp import case, case_body, case_grid, case_parts
 from mpm3dpp.detonation import Detonation
 from mpm3dpp.grains import GrainLattice, GrainPacking, Grains
 from mpm3dpp.loads import Load
@@ -43,7 +43,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
         "The models are listed in [materials](materials.md), the named ones in "
         "[library](library.md).",
     ),
-    ("body.NAME", case.Body, ""),
+    ("body.NAME", case_body.Body, ""),
     ("body.NAME.motion", Motion, ""),
     (
         "grains.NAME",

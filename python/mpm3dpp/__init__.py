@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import shapes
-    from .case import Body, Case, Material, load_case
+    from .case import Case, Material, load_case
+    from .case_body import Body
     from .case_grid import Grid, GridBox, GridDoubling, GridKeep, Walls
     from .case_parts import Contact, ContactPair, Output, Run, Viscosity
     from .detonation import Detonation
@@ -34,7 +35,8 @@ if TYPE_CHECKING:
     __version__: str
 
 _HOMES = {
-    "case": ("Body", "Case", "Material", "load_case"),
+    "case": ("Case", "Material", "load_case"),
+    "case_body": ("Body",),
     "case_grid": ("Grid", "GridBox", "GridDoubling", "GridKeep", "Walls"),
     "case_parts": ("Contact", "ContactPair", "Output", "Run", "Viscosity"),
     "detonation": ("Detonation",),

@@ -14,7 +14,8 @@ from .materials import state_columns
 from .motion import check_motion
 
 if TYPE_CHECKING:
-    from .case import Body, Case
+    from .case import Case
+    from .case_body import Body
     from .grains import Grains
     from .materials.material import Material
 

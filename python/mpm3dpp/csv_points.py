@@ -8,13 +8,15 @@ behind a name, `x [m]`, must say so.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import CaseError
+from .errors import CaseError, violation
 
 Array = NDArray[np.float64]
 _COLUMN = re.compile(r"\s*(\w+)\s*(?:\[\s*(.*?)\s*\])?\s*")
@@ -124,3 +126,40 @@ def short(text: str) -> str:
     """Return a line of a file between quotation marks, at most 40 characters."""
     text = " ".join(text.split())
     return f'"{text}"' if len(text) <= 40 else f'"{text[:37]}..."'
+
+
+class FromFile:
+    """Annotation of a field of a case: an object, or the name of a file beside the case file.
+
+    Args:
+        kind: the object's class.
+        read: makes one of a path and a name for messages.
+        what: it is, for messages.
+        example: a name of a file.
+    """
+
+    def __init__(
+        self, kind: type, read: Callable[[Path, str], Any], what: str, example: str
+    ) -> None:
+        self.kind, self.read, self.what, self.example = kind, read, what, example
+
+    def parse(self, value: Any, info: Any) -> Any:
+        """Return the object, or raise the violation that pydantic collects."""
+        if value is None or isinstance(value, self.kind):
+            return value
+        if not isinstance(value, str):
+            rule = f"must be the name of a file of {self.what}"
+            raise violation(rule, f'for example "{self.example}"', value=value)
+        folder = Path((info.context or {}).get("folder", "."))
+        try:
+            return self.read(folder / value, value)
+        except CaseError as error:
+            raise violation(error.rule, error.remedy, value=value) from None
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        return core_schema.with_info_plain_validator_function(self.parse)
+
+    def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
+        return {"type": "string"}

@@ -18,7 +18,8 @@ from .shapes.surfaces import Surface, sides, surface
 from .time_functions import Timed, TimedVector, TimeFunction
 
 if TYPE_CHECKING:
-    from .case import Body, Case
+    from .case import Case
+    from .case_body import Body
 
 Array = NDArray[np.float64]
 _FINER = {2: 8, 3: 4}  # Points of a surface for each spacing of the particles.

@@ -15,7 +15,8 @@ from .time_functions import TimedSpin, TimedVelocity, at, bound
 from .units import Point
 
 if TYPE_CHECKING:
-    from .case import Body, Case
+    from .case import Case
+    from .case_body import Body
 
 Array = NDArray[np.float64]
 

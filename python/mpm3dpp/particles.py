@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import SkipValidation
 
-from .csv_points import Layout, read_points, short
-from .errors import CaseError, violation
+from .csv_points import FromFile, Layout, read_points, short
+from .errors import CaseError
 from .io.disk import writing
 
 Array = NDArray[np.float64]
@@ -142,29 +142,7 @@ def read_particles(path: Path, name: str = "") -> Particles:
     return found
 
 
-class _FromFile:
-    """Annotation of the field: `Particles`, or the name of a file beside the case file."""
-
-    def parse(self, value: Any, info: Any) -> Particles | None:
-        """Return the particles, or raise the violation that pydantic collects."""
-        if value is None or isinstance(value, Particles):
-            return value
-        if not isinstance(value, str):
-            rule = "must be the name of a file of particles"
-            raise violation(rule, 'for example "points.csv"', value=value)
-        folder = Path((info.context or {}).get("folder", "."))
-        try:
-            return read_particles(folder / value, value)
-        except CaseError as error:
-            raise violation(error.rule, error.remedy, value=value) from None
-
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
-        from pydantic_core import core_schema
-
-        return core_schema.with_info_plain_validator_function(self.parse)
-
-    def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
-        return {"type": "string"}
-
-
-AnyParticles = Annotated[SkipValidation[Particles | None], _FromFile()]
+AnyParticles = Annotated[
+    SkipValidation[Particles | None],
+    FromFile(Particles, read_particles, "particles", "points.csv"),
+]

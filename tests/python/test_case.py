@@ -10,7 +10,8 @@ import pytest
 
 import mpm3dpp
 from mpm3dpp.build import build, warnings
-from mpm3dpp.case import Body, Case, Material, load_case
+from mpm3dpp.case import Case, Material, load_case
+from mpm3dpp.case_body import Body
 from mpm3dpp.case_file import locate_keys, parse
 from mpm3dpp.case_grid import Grid, GridBox
 from mpm3dpp.case_parts import Contact, ContactPair, Output, Run

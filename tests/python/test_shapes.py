@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from mpm3dpp.case import Body
+from mpm3dpp.case_body import Body
 from mpm3dpp.case_grid import Grid
 from mpm3dpp.errors import CaseError
 from mpm3dpp.overlap import close_particles

@@ -1,21 +1,13 @@
-// The part of a simulation that takes bodies in and gives their columns out.
+// The part of a simulation that takes bodies in.
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <stdexcept>
 
 #include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
 namespace {
-
-template <int D>
-double speed_of(const Body<D>& body, std::size_t row) {
-  double squared = 0.0;
-  for (int a = 0; a < D; ++a) squared += body.v(a)[row] * body.v(a)[row];
-  return std::sqrt(squared);
-}
 
 void check_finite(std::span<const double> values, const std::string& what) {
   for (const double v : values)
@@ -143,25 +135,6 @@ void SimulationOf<D>::start_motions() {
 }
 
 template <int D>
-void SimulationOf<D>::probe_speeds() {
-  for (PatchSums<D>& s : domain_.sums) s.stress = {};
-  domain_.sums.resize(domain_.grid.patches.size());
-  for (std::size_t p = 0; p < domain_.grid.patches.size(); ++p) {
-    const Patch<D>& patch = domain_.grid.patches[p];
-    const Body<D>& b = domain_.body_of(patch);
-    const Material& material = domain_.materials[static_cast<std::size_t>(b.material)];
-    for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
-      const std::size_t i = b.order[k];
-      const double c =
-          b.rigid ? 0.0 : sound_speed<D>(material, b.columns, b.at, i, domain_.grid.cell_size);
-      double& fastest = domain_.sums[p].stress.fastest;
-      fastest = std::max(fastest, c + speed_of(b, i));
-    }
-  }
-  choose_time_step();
-}
-
-template <int D>
 double SimulationOf<D>::initial_internal_energy() const {
   double total = 0.0;
   for (const Body<D>& b : domain_.bodies) {
@@ -187,115 +160,6 @@ void SimulationOf<D>::set_pair_friction(int a, int b, double mu) {
     if (k < 0 || k >= body_count() || body(k).group != k)
       throw std::invalid_argument("friction needs two groups, each given by its first body");
   set_friction(domain_.contact_settings, a, b, mu);
-}
-
-template <int D>
-std::vector<PairRecord> SimulationOf<D>::group_pairs() const {
-  std::map<std::pair<int, int>, PairRecord> found;
-  for (const PairRecord& pair : pairs()) {
-    const int a = body(pair.a).group, b = body(pair.b).group;
-    const auto key = std::minmax(a, b);
-    PairRecord& sum = found.try_emplace(key).first->second;
-    sum.a = key.first;
-    sum.b = key.second;
-    ++sum.pairs;
-    sum.friction_work += pair.friction_work;
-    if (pair.first_step >= 0 && (sum.first_step < 0 || pair.first_step < sum.first_step)) {
-      sum.first_step = pair.first_step;
-      sum.first_time = pair.first_time;
-      sum.first_gap = pair.first_gap;
-      sum.first_share = pair.first_share;
-    }
-    const double sign = a < b ? 1.0 : a > b ? -1.0 : 0.0;
-    for (int k = 0; k < 3; ++k) {
-      sum.force[k] += sign * pair.force[k];
-      sum.impulse[k] += sign * pair.impulse[k];
-    }
-  }
-  std::vector<PairRecord> records;
-  for (const auto& [key, sum] : found) records.push_back(sum);
-  return records;
-}
-
-template <int D>
-double SimulationOf<D>::total_mass() const {
-  double total = 0.0;
-  for (const Body<D>& b : domain_.bodies)
-    for (std::size_t i = 0; i < b.count(); ++i) total += b.mass()[i];
-  return total;
-}
-
-template <int D>
-double SimulationOf<D>::kinetic_energy() const {
-  double total = 0.0;
-  for (const Body<D>& b : domain_.bodies)
-    for (std::size_t k = 0; k < b.active(); ++k) {
-      const std::size_t i = b.order[k];
-      for (int a = 0; a < D; ++a) total += 0.5 * b.mass()[i] * b.v(a)[i] * b.v(a)[i];
-    }
-  return total;
-}
-
-template <int D>
-std::array<double, 3> SimulationOf<D>::momentum() const {
-  std::array<double, 3> total{};
-  for (const Body<D>& b : domain_.bodies)
-    for (std::size_t k = 0; k < b.active(); ++k) {
-      const std::size_t i = b.order[k];
-      for (std::size_t a = 0; a < D; ++a) total[a] += b.mass()[i] * b.v(static_cast<int>(a))[i];
-    }
-  return total;
-}
-
-template <int D>
-Limiter SimulationOf<D>::limiter() const {
-  Limiter result;
-  if (domain_.sums.size() != domain_.grid.patches.size()) return result;
-  std::size_t fastest = 0;
-  for (std::size_t p = 1; p < domain_.sums.size(); ++p)
-    if (domain_.sums[p].stress.fastest > domain_.sums[fastest].stress.fastest) fastest = p;
-  const Patch<D>& patch = domain_.grid.patches[fastest];
-  const Body<D>& b = body(patch.body);
-  const Material& material = domain_.materials[static_cast<std::size_t>(b.material)];
-  for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
-    const std::size_t i = b.order[k];
-    const double c =
-        b.rigid ? 0.0 : sound_speed<D>(material, b.columns, b.at, i, domain_.grid.cell_size);
-    const double v = speed_of(b, i);
-    if (c + v > result.sound_speed + result.speed || result.body < 0)
-      result = {patch.body, static_cast<std::int64_t>(b.id[i]), c, v};
-  }
-  return result;
-}
-
-template <int D>
-Bytes SimulationOf<D>::bytes() const {
-  Bytes r;
-  for (const Body<D>& b : domain_.bodies) r.particles += b.bytes();
-  r.grid = domain_.grid.node_bytes();
-  if (domain_.has_contact()) r.contact = domain_.contact.bytes();
-  r.other = domain_.sums.capacity() * sizeof(PatchSums<D>) + history_.capacity() * sizeof(double);
-  return r;
-}
-
-template <int D>
-int SimulationOf<D>::column_components(int b, const std::string& name) const {
-  return name == "stress" ? 6 : body(b).columns.info(name).components;
-}
-
-template <int D>
-void SimulationOf<D>::copy_column(int number, const std::string& name, std::span<double> to) const {
-  const Body<D>& b = body(number);
-  const ColumnInfo& info = b.columns.info(name);
-  const auto width = static_cast<std::size_t>(column_components(number, name));
-  if (to.size() != b.count() * width) throw std::invalid_argument("copy_column: wrong size");
-  std::fill(to.begin(), to.end(), 0.0);
-  for (int c = 0; c < info.components; ++c) {
-    const double* from = b.columns.component(info.first + c);
-    // Plane strain keeps xx yy zz xy; the fourth becomes the sixth of xx yy zz yz xz xy.
-    const auto place = static_cast<std::size_t>(name == "stress" && D == 2 && c == 3 ? 5 : c);
-    for (std::size_t k = 0; k < b.count(); ++k) to[b.id[k] * width + place] = from[k];
-  }
 }
 
 template <int D>

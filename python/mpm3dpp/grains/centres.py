@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import SkipValidation
 
-from mpm3dpp.csv_points import Layout, read_points, short
-from mpm3dpp.errors import CaseError, violation
+from mpm3dpp.csv_points import FromFile, Layout, read_points, short
+from mpm3dpp.errors import CaseError
 
 Array = NDArray[np.float64]
 _LARGEST = 1e100
@@ -100,29 +100,7 @@ def read_centres(path: Path, name: str = "") -> GrainCentres:
     return found
 
 
-class _FromFile:
-    """Annotation of the field: `GrainCentres`, or the name of a file beside the case file."""
-
-    def parse(self, value: Any, info: Any) -> GrainCentres | None:
-        """Return the grains, or raise the violation that pydantic collects."""
-        if value is None or isinstance(value, GrainCentres):
-            return value
-        if not isinstance(value, str):
-            rule = "must be the name of a file of centres and radii"
-            raise violation(rule, 'for example "centres.csv"', value=value)
-        folder = Path((info.context or {}).get("folder", "."))
-        try:
-            return read_centres(folder / value, value)
-        except CaseError as error:
-            raise violation(error.rule, error.remedy, value=value) from None
-
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
-        from pydantic_core import core_schema
-
-        return core_schema.with_info_plain_validator_function(self.parse)
-
-    def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
-        return {"type": "string"}
-
-
-AnyCentres = Annotated[SkipValidation[GrainCentres | None], _FromFile()]
+AnyCentres = Annotated[
+    SkipValidation[GrainCentres | None],
+    FromFile(GrainCentres, read_centres, "centres and radii", "centres.csv"),
+]

@@ -16,63 +16,10 @@ import numpy as np
 
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import write_atomically
+from mpm3dpp.io.records import ContactRecord, LoadRecord, PairRecord
 from mpm3dpp.io.result_hash import result_hash
 
 Status = Literal["completed", "interrupted", "failed"]
-
-
-@dataclasses.dataclass
-class PairRecord:
-    """Contact of two bodies, or of the grains of an entry with each other or with others.
-
-    Attributes:
-        bodies: their names; an entry of `grains` is one name, twice for grains among themselves.
-        pairs: how many pairs of single bodies have touched.
-        first_time: time of the first contact force [s]; None when they never touched.
-        first_gap: distance of the two surfaces at that time [m]; None when never.
-        impulse: impulse on the first body until the end [N s] (per metre in 2D); 0 for grains
-            among themselves.
-        friction_work: energy lost by friction [J] (per metre in 2D).
-    """
-
-    bodies: list[str]
-    pairs: int
-    first_time: float | None
-    first_gap: float | None
-    impulse: list[float]
-    friction_work: float
-
-
-@dataclasses.dataclass
-class LoadRecord:
-    """A load on a surface over the whole run.
-
-    Attributes:
-        impulse: that it has given its body until the end [N s] (per metre in 2D).
-        force: of the last step [N] (per metre in 2D).
-        area: on which it acts at the end [m^2; in 2D m times 1 m].
-    """
-
-    impulse: list[float]
-    force: list[float]
-    area: float
-
-
-@dataclasses.dataclass
-class ContactRecord:
-    """Contact of the whole run: bodies, overlapped nodes at the end and at most, pairs, bytes.
-
-    `unconverged_nodes` counts the solutions at nodes with several bodies that stopped short of
-    the tolerance; 0 is usual.
-    """
-
-    bodies: int = 0
-    overlapped_nodes: int = 0
-    overlapped_nodes_max: int = 0
-    bodies_per_node_max: int = 0
-    peak_bytes: int = 0
-    unconverged_nodes: int = 0
-    pairs: list[PairRecord] = dataclasses.field(default_factory=list)
 
 
 @dataclasses.dataclass
