@@ -11,22 +11,24 @@ from mpm3dpp.plots.labels import prefix
 from mpm3dpp.plots.style import PALETTE, new_figure, save, styled
 
 
-def save_used_cells(time: np.ndarray, share: np.ndarray, path: Path) -> Path:
-    """Draw the curve and write it as PNG.
+def save_used_cells(curves: dict[str, tuple[np.ndarray, np.ndarray]], path: Path) -> Path:
+    """Draw curves and write them as PNG.
 
     Args:
-        time: [s], shape (rows,).
-        share: of the box's cells, 0 to 1, shape (rows,).
+        curves: by label, times [s] and shares of the box's cells (0 to 1), both (rows,).
         path: the picture.
     """
-    factor, unit = prefix(float(time.max(initial=0.0)), "s")
+    factor, unit = prefix(max(float(time.max()) for time, _ in curves.values()), "s")
     with styled():
         figure = new_figure(6.0, 3.4)
         axes = figure.add_subplot()
-        axes.plot(factor * time, 100.0 * share, color=PALETTE[0])
+        for colour, (label, (time, share)) in zip(PALETTE, curves.items(), strict=False):
+            marker = "o" if len(time) < 60 else None
+            axes.plot(factor * time, 100 * share, color=colour, label=label, marker=marker, ms=3)
         axes.set_xlabel(f"time [{unit}]")
-        axes.set_ylabel("cells in use [%]")
+        axes.set_ylabel("share of the box's cells [%]")
         axes.set_ylim(bottom=0.0)
         axes.margins(x=0.0)
         axes.grid(True)
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2)
         return save(figure, path)

@@ -14,7 +14,7 @@ from ..folders import thread_count, writable_folder
 from .examples import EXAMPLES, SIZES, chosen, folder_of_cases
 
 STEPS = 100
-"""Steps that are timed without contact, and as many with it."""
+"""Steps that are timed with contact, and as many without it and bonded."""
 
 
 def reproduce(
@@ -32,7 +32,7 @@ def reproduce(
         out: output folder; it is made.
         size: "quick" (coarser, shorter, fewer bodies) or "paper" (the case files as they are).
         only: names of examples, see `EXAMPLES`; none for all whose case files are there.
-        steps: how many are timed without contact, and as many with it.
+        steps: how many are timed with contact, and as many without it and bonded.
         threads: how many; by default OMP_NUM_THREADS, else all cores.
         examples: folder of the example cases; by default those that came with this package.
         quiet: print nothing.
@@ -87,7 +87,8 @@ def _write_numbers(measured: list[Any], size: str, build: dict[str, Any], path: 
     examples = {
         found.example.name: {
             "timed": None if found.timed is None else dataclasses.asdict(found.timed),
-            "used_most": found.used,
+            "cells_held_most": found.held,
+            "cells_of_tiles_most": found.tiles,
             "residual_speed": found.speed,
             "first_gap_cells": {run.label or "run": first_gap(run) for run in found.runs},
             "wrong": found.wrong,

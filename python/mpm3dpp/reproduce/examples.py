@@ -86,7 +86,7 @@ EXAMPLES = {
             "Penetration",
             {"": "02_penetration/case.toml"},
             figures=(9, 10),
-            frames=7,
+            frames=14,
             quick=_coarser(2.0),
             table=paper.PENETRATION,
             timed_from=0.25,  # The projectile is in the plate.

@@ -92,11 +92,14 @@ def _how_timed(found: Measured) -> str:
     if example.timed_from:
         begin = f", from {example.timed_from:.0%} of the end time on"
     return (
-        f"Times here: medians of {len(timed.blocks['on'])} blocks, {timed.steps} steps in all, run "
-        f"in turns without contact and with it{begin}; the ratio is the median over pairs of "
-        "blocks. Without contact (`contact.enabled = false`) the bodies do not see each other. "
-        "Memory here: what the program holds for particles, grid and contact, reserved room "
-        "included; the paper's is that of the whole program, and its M are taken as MiB."
+        f"Times here: medians of {len(timed.blocks['on'])} blocks, {timed.steps} steps in all, "
+        f"taken in turns{begin}; ratios are medians over pairs of blocks. Without contact "
+        "(`contact.enabled = false`) the bodies do not see each other, so that they do not load "
+        "each other either, and a material that would yield has less to do. Bonded "
+        "(`contact.bonded = true`) they have one velocity field, as the method has it without a "
+        "contact algorithm; the paper does not say which of the two it means by disabled. Memory "
+        "here: what the program holds for particles, grid and contact, reserved room included; the "
+        "paper's is that of the whole program, and its M are taken as MiB."
     )
 
 
@@ -124,9 +127,10 @@ def _differences(size: str, build: dict[str, Any]) -> str:
         f"- The machine: {paper.MACHINE}, against {build['machine']}. Compare ratios, not times.",
         "- The paper's figures are described, not shown: they are its publisher's.",
         "- Tiles: this program makes cells in blocks of 4 x 4 x 4 where particles are, for each "
-        "body by itself; the paper's makes single cells and shares them.",
-        "- The direction of contact is that of the plane between the particles of two bodies, the "
-        "paper's is from gradients of mass.",
+        "body by itself; the paper's makes single cells, with nodal values for several bodies only "
+        "where they meet.",
+        "- The direction of contact is that of the plane between the particles of two bodies; the "
+        "paper's comes from the normal vectors of the bodies at the nodes.",
         "- Numbers that the paper does not give, and that the case files choose:",
         *(f"  - {sentence}" for sentence in paper.NOT_GIVEN),
     ]

@@ -98,8 +98,8 @@ FIGURES = {
             10,
             "Time history of percentage of used cells",
             "The paper shows the share of cells in use over time, with a maximum of 13.13 %.",
-            "We count whole tiles of 4 x 4 x 4 cells, those of each body by itself, so that ours "
-            "is larger for the same bodies; and the boxes are not of the same size.",
+            "Ours has the cells that hold a particle, and those of whole tiles of 4 x 4 x 4 cells, "
+            "which is what the program keeps; the boxes are not of the same size.",
         ),
         Figure(
             12,

@@ -14,7 +14,7 @@ from ..plots import first_contact
 from ..plots.frames import save_frame, view_of
 from ..plots.labels import scaled
 from ..plots.used_cells import save_used_cells
-from .runs import Done, Measured, used_cells
+from .runs import Done, Measured, held_cells, tile_cells
 
 
 @dataclass
@@ -77,10 +77,14 @@ def _frames(done: Done, path: Path, shares: tuple[float, ...]) -> list[Picture]:
 
 
 def _used(done: Done, path: Path) -> list[Picture]:
-    found = used_cells(done)
-    if found is None or not len(found[0]):
+    curves = {
+        "cells that hold a particle": held_cells(done),
+        "cells of tiles, each body's counted": tile_cells(done),
+    }
+    if any(not np.isfinite(shares).all() or not len(shares) for _, shares in curves.values()):
         return []
-    return [Picture(save_used_cells(*found, path), f"at most {found[1].max():.2%} of the cells")]
+    most = float(curves["cells that hold a particle"][1].max())
+    return [Picture(save_used_cells(curves, path), f"at most {most:.2%} hold a particle")]
 
 
 def _touch(done: Done, path: Path) -> list[Picture]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The runs of an example: to the end for the pictures, with and without contact for the time."""
+"""The runs of an example: to the end for the pictures, and in turns for the time."""
 
 from __future__ import annotations
 
@@ -12,15 +12,17 @@ from typing import Any
 
 import numpy as np
 
+from .. import case_file
 from ..bench.report import progress
 from ..case import Case
 from ..errors import CaseError, RunError
 from ..io.history import read_history
 from ..io.manifest import read_manifest
 from ..io.results import open_results
+from ..plots.frames import drawn
 from ..run import run_case
 from .examples import Changes, Example, changed, load
-from .timing import Timed, in_turns
+from .timing import TURNS, Timed, in_turns
 
 Say = Callable[[str], None]
 
@@ -51,7 +53,8 @@ class Measured:
         example: which.
         runs: in the order of the figures.
         timed: time and memory; None where the paper has no table.
-        used: most cells in use as a share of the box's; None without a box or a run.
+        held: most cells that hold a particle, as a share of the box's; None if not known.
+        tiles: most cells of tiles, each body's counted, as a share of the box's; likewise.
         speed: residual speed of the projectile [m/s]; None without one.
         wrong: sentences about what could not be done.
     """
@@ -59,7 +62,8 @@ class Measured:
     example: Example
     runs: list[Done] = field(default_factory=list)
     timed: Timed | None = None
-    used: float | None = None
+    held: float | None = None
+    tiles: float | None = None
     speed: float | None = None
     wrong: list[str] = field(default_factory=list)
 
@@ -67,7 +71,7 @@ class Measured:
 def run_example(
     example: Example, cases: Path, out: Path, size: str, steps: int, threads: int, quiet: bool
 ) -> Measured:
-    """Run an example to its end, and time it with contact and without.
+    """Run an example to its end, and time it with contact, without and bonded.
 
     Args:
         example: which.
@@ -94,15 +98,16 @@ def run_example(
             found.wrong.append(str(error))
         found.runs.append(Done(label, case, changes, folder, read_manifest(folder)))
     last = found.runs[-1]
-    found.used = used_most(last)
+    if example.table is not None:
+        found.held, found.tiles = _most(held_cells(last)[1]), _most(tile_cells(last)[1])
     found.speed = residual_speed(last.folder, example.projectile)
     if example.table is not None:
-        say(f"{example.name}: {steps} steps without contact and with it, in turns", quiet)
+        say(f"{example.name}: {steps} steps with contact, without and bonded, in turns", quiet)
         case, changes = loaded[last.label]
         try:
             with progress(quiet) as told:
                 begin = example.timed_from * case.run.end_time
-                found.timed = in_turns(_twins(case, changes), steps, threads, begin, told)
+                found.timed = in_turns(_variants(case, changes), steps, threads, begin, told)
         except RunError as error:
             found.wrong.append(str(error))
     return found
@@ -114,36 +119,44 @@ def say(sentence: str, quiet: bool) -> None:
         print(sentence, file=sys.stderr, flush=True)
 
 
-def _twins(case: Case, changes: Changes) -> dict[str, Case]:
-    """Return the case without contact and with it."""
+def _variants(case: Case, changes: Changes) -> dict[str, Case]:
+    """Return the case for each turn of the timing."""
     path = case.source
     assert path is not None
-    text = path.read_text(encoding="utf-8-sig")
-    key = ("contact", "enabled")
-    return {
-        turn: changed(text, str(path), {**changes, key: on})
-        for turn, on in (("off", False), ("on", True))
-    }
+    text = case_file.read_text(path)
+    return {turn: changed(text, str(path), changes | more) for turn, more in TURNS.items()}
 
 
-def used_cells(done: Done) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return times [s] and the share of the box's cells in tiles that are in use, both (rows,).
+def held_cells(done: Done) -> tuple[np.ndarray, np.ndarray]:
+    """Return the times of the frames [s] and the share of the box's cells that hold a particle.
 
-    None without a box. A tile is 4 x 4 x 4 cells (8 x 8 in 2D), counted once for each body in it.
+    Both (frames,); the shares are NaN without a box.
     """
-    grid = done.case.grid
-    if grid.box is None:
-        return None
-    history = read_history(done.folder)
-    size = history["cell_size"] * (8 if grid.dimension == 2 else 4)
-    volume = math.prod(b - a for a, b in zip(grid.box.lower, grid.box.upper, strict=True))
-    return history["time"], history["tiles"] * size**grid.dimension / volume
+    grid, shares = done.case.grid, []
+    cells = math.prod(grid.box_cells) if grid.box_cells else math.nan
+    with open_results(done.folder) as results:
+        for frame in range(len(results)):
+            places = drawn(results, frame)["position"].astype(float)[:, : grid.dimension]
+            numbers = np.floor((places - np.array(grid.lower)) / grid.cell_size).astype(np.int64)
+            shares.append(len(np.unique(numbers, axis=0)) / cells)
+        return results.times.copy(), np.array(shares)
 
 
-def used_most(done: Done) -> float | None:
-    """Return the most of `used_cells` over the run; None without a box or a step."""
-    found = used_cells(done)
-    return None if found is None or not len(found[1]) else float(found[1].max())
+def tile_cells(done: Done) -> tuple[np.ndarray, np.ndarray]:
+    """Return the times of the steps [s] and the cells of all tiles as a share of the box's.
+
+    Both (rows,); the shares are NaN without a box. A tile is 4 x 4 x 4 cells (8 x 8 in 2D) and is
+    counted once for each body in it, so that the share may be above 1.
+    """
+    grid, history = done.case.grid, read_history(done.folder)
+    cells = math.prod(grid.box_cells) if grid.box_cells else math.nan
+    tile = (history["cell_size"] / grid.cell_size) * (8 if grid.dimension == 2 else 4)
+    return history["time"], history["tiles"] * tile**grid.dimension / cells
+
+
+def _most(shares: np.ndarray) -> float | None:
+    """Return the largest; None where there is none."""
+    return float(shares.max()) if len(shares) and np.isfinite(shares).all() else None
 
 
 def residual_speed(folder: Path, body: str) -> float | None:

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 
 from .paper import Program, Table
 from .runs import Measured
@@ -28,43 +29,41 @@ def comparison(table: Table, measured: Measured, size: str) -> list[str]:
     """
     columns = [_paper_column(table, program) for program in table.programs.values()]
     ours = _our_column(measured)
-    known = {key: None for column in [*columns, ours] for key in column}
+    known = {key for column in [*columns, ours] for key in column}
     order = [key for key in _ROWS if key in known]
     rows = [[key, *[column.get(key, "-") for column in [*columns, ours]]] for key in order]
     head = ["", *[f"{name}, paper" for name in table.programs], f"here, {size}"]
     return markdown(head, rows)
 
 
+_WORDS = {"off": "without contact", "bonded": "bonded", "on": "with contact"}
 _ROWS = (
     "particles",
     "cells of the box",
     "cells in use at most",
-    "time of a step without contact [s]",
-    "time of a step with contact [s]",
-    "time with / without contact",
-    "time per particle without contact [ns]",
-    "time per particle with contact [ns]",
-    "time of a step, mean of the whole run with contact [s]",
-    "memory without contact [MiB]",
-    "memory with contact [MiB]",
-    "memory with / without contact",
-    "memory per particle without contact [bytes]",
-    "memory per particle with contact [bytes]",
-    "... of which particles",
-    "... of which grid",
-    "... of which contact",
+    "cells of tiles at most, each body's counted",
+    *(f"time of a step {word} [s]" for word in _WORDS.values()),
+    "time with contact / without contact",
+    "time with contact / bonded",
+    *(f"time per particle {word} [ns]" for word in _WORDS.values()),
+    "time of a step with contact, mean of the whole run [s]",
+    *(f"memory {word} [MiB]" for word in _WORDS.values()),
+    "memory with contact / without contact",
+    "memory with contact / bonded",
+    *(f"memory per particle {word} [bytes]" for word in _WORDS.values()),
+    *(f"... of which {name} [bytes]" for name in ("particles", "grid", "contact")),
     "memory at the end of the whole run [MiB]",
     "residual speed [m/s]",
 )
 
 
 def _paper_column(table: Table, program: Program) -> dict[str, str]:
-    off, on = program.seconds
+    (off, on), (light, heavy) = program.seconds, program.memory
     column = {
         "particles": f"{table.particles:,}",
         "cells of the box": f"{table.cells:,}",
-        **_times(off, on, on / off, table.particles),
-        **_memories(*(MIB * m for m in program.memory), table.particles),
+        **_times({"off": off, "on": on}, {"off": on / off}, table.particles),
+        **_memories({"off": MIB * light, "on": MIB * heavy}, table.particles),
     }
     if table.used is not None and program is list(table.programs.values())[-1]:
         column["cells in use at most"] = f"{table.used:.2%}"
@@ -79,43 +78,43 @@ def _our_column(measured: Measured) -> dict[str, str]:
     count = manifest["particles"]
     column = {"particles": f"{count:,}"}
     if cells is not None:
-        total = 1
-        for number in cells:
-            total *= number
-        column["cells of the box"] = f"{total:,}"
-    if measured.used is not None:
-        column["cells in use at most"] = f"{measured.used:.2%}"
+        column["cells of the box"] = f"{math.prod(cells):,}"
+    if measured.held is not None:
+        column["cells in use at most"] = f"{measured.held:.2%}"
+    if measured.tiles is not None:
+        column["cells of tiles at most, each body's counted"] = f"{measured.tiles:.2%}"
     mean = 1e-9 * manifest["ns_per_particle_step"] * count
-    column["time of a step, mean of the whole run with contact [s]"] = f"{mean:.4g}"
+    column["time of a step with contact, mean of the whole run [s]"] = f"{mean:.4g}"
     used = sum(manifest["bytes"][name] for name in ("particles", "grid", "contact"))
     column["memory at the end of the whole run [MiB]"] = f"{used / MIB:.2f}"
     if measured.speed is not None:
         column["residual speed [m/s]"] = f"{measured.speed:.0f}"
     timed = measured.timed
     if timed is not None:
-        off, on = (timed.seconds(turn) for turn in TURNS)
-        column |= _times(off, on, timed.ratio(), timed.particles)
-        column |= _memories(*(timed.total(turn) for turn in TURNS), timed.particles)
+        ratios = {turn: timed.ratio(turn) for turn in ("off", "bonded")}
+        column |= _times({turn: timed.seconds(turn) for turn in TURNS}, ratios, timed.particles)
+        column |= _memories({turn: timed.total(turn) for turn in TURNS}, timed.particles)
         for name, size in timed.bytes["on"].items():
-            column[f"... of which {name}"] = f"{size / timed.particles:.1f}"
+            column[f"... of which {name} [bytes]"] = f"{size / timed.particles:.1f}"
     return column
 
 
-def _times(off: float, on: float, ratio: float, particles: int) -> dict[str, str]:
-    return {
-        "time of a step without contact [s]": f"{off:.4g}",
-        "time of a step with contact [s]": f"{on:.4g}",
-        "time with / without contact": f"{ratio:.3f}",
-        "time per particle without contact [ns]": f"{1e9 * off / particles:.0f}",
-        "time per particle with contact [ns]": f"{1e9 * on / particles:.0f}",
-    }
+def _times(seconds: dict[str, float], ratios: dict[str, float], particles: int) -> dict[str, str]:
+    """Return the rows about time: of each turn [s], and of contact over another turn."""
+    rows = {f"time of a step {_WORDS[turn]} [s]": f"{s:.4g}" for turn, s in seconds.items()}
+    for turn, ratio in ratios.items():
+        rows[f"time with contact / {_WORDS[turn]}"] = f"{ratio:.3f}"
+    for turn, s in seconds.items():
+        rows[f"time per particle {_WORDS[turn]} [ns]"] = f"{1e9 * s / particles:.0f}"
+    return rows
 
 
-def _memories(off: float, on: float, particles: int) -> dict[str, str]:
-    return {
-        "memory without contact [MiB]": f"{off / MIB:.2f}",
-        "memory with contact [MiB]": f"{on / MIB:.2f}",
-        "memory with / without contact": f"{on / off:.3f}",
-        "memory per particle without contact [bytes]": f"{off / particles:.0f}",
-        "memory per particle with contact [bytes]": f"{on / particles:.0f}",
-    }
+def _memories(sizes: Mapping[str, float], particles: int) -> dict[str, str]:
+    """Return the rows about memory: of each turn [bytes], and of contact over the others."""
+    rows = {}
+    for turn, size in sizes.items():
+        rows[f"memory {_WORDS[turn]} [MiB]"] = f"{size / MIB:.2f}"
+        rows[f"memory per particle {_WORDS[turn]} [bytes]"] = f"{size / particles:.0f}"
+        if turn != "on":
+            rows[f"memory with contact / {_WORDS[turn]}"] = f"{sizes['on'] / size:.3f}"
+    return rows

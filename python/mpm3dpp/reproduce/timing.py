@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Time and memory of a case with contact and without, measured in turns in one process.
+"""Time and memory of a case with contact, without and bonded, in turns in one process.
 
-Blocks of steps go A B A B, so that what slows the machine for a while slows both.
+Blocks of steps go A B C A B C, so that what slows the machine for a while slows both.
 """
 
 from __future__ import annotations
@@ -16,13 +16,20 @@ from ..bench.worker import advance, timed_block
 from ..case import Case
 from ..errors import RunError
 from ..simulation import Simulation
+from .examples import Changes
 
-TURNS = ("off", "on")
+TURNS: dict[str, Changes] = {
+    "off": {("contact", "enabled"): False},
+    "bonded": {("contact", "enabled"): True, ("contact", "bonded"): True},
+    "on": {("contact", "enabled"): True, ("contact", "bonded"): False},
+}
+"""What is measured in turn: without contact the bodies do not see each other; bonded they have one
+velocity field, which is the method before contact was added to it; and with contact."""
 
 
 @dataclass
 class Timed:
-    """What was measured of a case without contact ("off") and with it ("on").
+    """What was measured of a case in each of `TURNS`.
 
     Attributes:
         particles: count.
@@ -40,10 +47,10 @@ class Timed:
         """Time of a step [s], the median of the blocks."""
         return statistics.median(self.blocks[turn])
 
-    def ratio(self) -> float:
-        """Time with contact over time without, the median over pairs of blocks."""
-        pairs = zip(self.blocks["off"], self.blocks["on"], strict=True)
-        return statistics.median(on / off for off, on in pairs)
+    def ratio(self, turn: str) -> float:
+        """Time with contact over that of another turn, the median over pairs of blocks."""
+        pairs = zip(self.blocks[turn], self.blocks["on"], strict=True)
+        return statistics.median(on / other for other, on in pairs)
 
     def total(self, turn: str) -> int:
         """Memory of particles, grid and contact [bytes]."""
@@ -57,17 +64,17 @@ def in_turns(
     begin: float = 0.0,
     told: Callable[[int, int], None] | None = None,
 ) -> Timed:
-    """Measure a case without contact and with it.
+    """Measure a case in turns.
 
     Args:
-        cases: the two, by "off" and "on".
+        cases: one for each of `TURNS`.
         steps: how many of each are timed, in blocks of nearly equal length.
         threads: how many.
         begin: time reached before steps are timed [s].
         told: called with (parts done, parts in all) as the measurement goes on.
 
     Raises:
-        RunError: one of the two became unstable.
+        RunError: one of them became unstable.
     """
     lengths = block_lengths(steps)
     parts = len(TURNS) * (1 + len(lengths))
