@@ -124,8 +124,9 @@ def cases(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def made(cases: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, dict[str, Any]]:
     """The folder, the page and the numbers of all examples."""
     out = tmp_path_factory.mktemp("out")
-    with pytest.MonkeyPatch.context() as patch:  # The built-in renderer is the quicker one here.
+    with pytest.MonkeyPatch.context() as patch:  # Coarse pictures, for speed.
         patch.setattr(space, "_pyvista_works", lambda: False)
+        patch.setattr(space, "_PIXELS", 200)
         reproduce.reproduce(out, size="paper", steps=6, threads=1, examples=cases)
     return (
         out,

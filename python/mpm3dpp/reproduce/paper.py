@@ -130,6 +130,8 @@ FIGURES = {
 }
 
 NOT_GIVEN = (
+    "all: the number of threads, and whether a compared run without contact has one velocity field "
+    "for all bodies or bodies that do not see each other.",
     "4.1: the constants of the materials, the size of the plate, the erosion or failure of the "
     "plate, the end time and the time step.",
     "4.2: the size of the spheres and the slab, the material's constants, the load, friction, the "

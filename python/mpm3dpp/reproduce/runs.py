@@ -93,7 +93,7 @@ def run_example(
         say(f"{name}: {case.title}", quiet)
         folder = out / name.replace(" ", "_")
         try:
-            run_case(case, folder, threads=threads, quiet=quiet)
+            run_case(case, folder, threads=threads, quiet=quiet, pictures=False)
         except RunError as error:
             found.wrong.append(str(error))
         found.runs.append(Done(label, case, changes, folder, read_manifest(folder)))
