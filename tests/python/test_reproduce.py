@@ -240,7 +240,8 @@ def test_the_velocity_rule_acts_too_early(made: tuple[Path, str, dict[str, Any]]
     assert gaps["velocity"] > 1.0
     assert gaps["gap"] < 0.1
     for rule, gap in gaps.items():
-        assert f"{rule} rule: at the first contact the gap is {gap + 0.0:.2f} cells" in page
+        shown = f"{round(gap, 2) + 0.0:.2f}"
+        assert f"{rule} rule: at the first contact the gap is {shown} cells" in page
 
 
 def test_quick_sizes_are_smaller(cases: Path) -> None:
@@ -266,6 +267,17 @@ def test_the_examples_of_the_package_load(name: str, size: str) -> None:
         pytest.skip("the example is not there")
     for label in example.files:
         load(example, label, folder, size)
+
+
+def test_the_cases_of_an_installed_package_go_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They stand beside its modules; a checkout has them beside its folder python."""
+    package = tmp_path / "python" / "mpm3dpp"
+    monkeypatch.setattr(examples, "__file__", str(package / "reproduce" / "examples.py"))
+    assert examples.folder_of_cases() == tmp_path / "examples"
+    (package / "examples").mkdir(parents=True)
+    assert examples.folder_of_cases() == package / "examples"
 
 
 def test_what_is_missing_is_said_or_refused(cases: Path, tmp_path: Path) -> None:

@@ -146,7 +146,8 @@ def chosen(only: Iterable[str], folder: Path) -> tuple[list[Example], list[Examp
         if name not in EXAMPLES:
             rule = "is not an example of the paper"
             raise CaseError(rule, nearest(name, EXAMPLES), key="--only", value=name)
-    there, missing = [], []
+    there: list[Example] = []
+    missing: list[Example] = []
     for example in EXAMPLES.values():
         if names and example.name not in names:
             continue

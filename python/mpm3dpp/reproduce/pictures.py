@@ -92,7 +92,8 @@ def _touch(done: Done, path: Path) -> list[Picture]:
     gap = first_gap(done)
     if file is None or gap is None:
         return []
-    return [Picture(file, f"{done.label} rule: at the first contact the gap is {gap:.2f} cells")]
+    shown = f"{round(gap, 2) + 0.0:.2f}"  # Never -0.00.
+    return [Picture(file, f"{done.label} rule: at the first contact the gap is {shown} cells")]
 
 
 def first_gap(done: Done) -> float | None:
@@ -101,7 +102,7 @@ def first_gap(done: Done) -> float | None:
     if not pairs:
         return None
     first = min(pairs, key=lambda pair: pair["first_time"])
-    return float(first["first_gap"]) / float(done.manifest["cell_size"]) + 0.0
+    return float(first["first_gap"]) / float(done.manifest["cell_size"])
 
 
 # What draws the figure, and which run of the example it shows.
