@@ -29,3 +29,6 @@ if(NOT SKBUILD)
     file(CREATE_LINK "${entry}" "${CMAKE_BINARY_DIR}/python/mpm3dpp/${entry_name}" SYMBOLIC)
   endforeach()
 endif()
+
+# The cases of the examples go with an installed package, for `mpm3dpp reproduce`.
+install(DIRECTORY examples/ DESTINATION mpm3dpp/examples FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv")

@@ -33,6 +33,7 @@ def run_case(
     threads: int | None = None,
     quiet: bool = True,
     json: bool = False,
+    pictures: bool = True,
 ) -> Manifest:
     """Run a case to its end: results.vtkhdf, history.csv, manifest.json and pictures in a folder.
 
@@ -42,6 +43,7 @@ def run_case(
         threads: how many; by default OMP_NUM_THREADS, else all cores.
         quiet: no progress and no summary.
         json: print the manifest at the end.
+        pictures: make them; `mpm3dpp.plots.plot_results` makes them later.
 
     Raises:
         CaseError: a mistake in the case, or a folder that cannot be written.
@@ -55,10 +57,11 @@ def run_case(
     manifest = _manifest(simulation, status, reason, clock.monotonic() - begin)
     manifest.energies = simulation.summary
     manifest.write(folder)
-    with _pictures_may_fail(quiet or json):
-        from .plots import plot_results
+    if pictures:
+        with _pictures_may_fail(quiet or json):
+            from .plots import plot_results
 
-        plot_results(folder)
+            plot_results(folder)
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:

@@ -22,13 +22,21 @@ def progress(quiet: bool) -> Iterator[Callable[[int, int], None] | None]:
         yield None
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
 
     columns = (
         TextColumn("measuring"),
         BarColumn(bar_width=24),
         TextColumn("{task.completed:.0f} of {task.total:.0f} parts"),
         TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
     )
     # The bar is drawn between two parts only, so that drawing takes no time from what is timed.
     bar = Progress(*columns, console=Console(stderr=True), auto_refresh=False, transient=True)
