@@ -18,9 +18,9 @@ CURVES = Path(__file__).parent / "curves"
 Array = np.ndarray
 
 
-def case_of(name: str, scheme: str, basis: str) -> Case:
+def case_of(name: str, scheme: str, basis: str, file: str = "case.toml") -> Case:
     """Return the case of an example with another scheme or basis."""
-    case = load_case(EXAMPLES / name / "case.toml")
+    case = load_case(EXAMPLES / name / file)
     case.run.scheme, case.grid.basis = scheme, basis
     return case
 

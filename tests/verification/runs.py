@@ -10,7 +10,7 @@ from typing import Any
 
 from mpm3dpp import _core
 
-from . import bars, column, discs, examples, grains, groups, incline, point
+from . import bars, column, discs, examples, grains, groups, hopper, incline, point
 from .figure import Figure
 from .scene import Failed
 
@@ -118,6 +118,7 @@ def _slow_runs() -> Iterator[Run]:
     yield Run("S4", examples.tnt_slab, "musl", 2, "gimp", slow=True)
     yield Run("W1", examples.dam_break, "musl", 2, "gimp", slow=True)
     yield Run("G1", examples.sand_column, "musl", 2, "gimp", slow=True)
+    yield Run("H1", hopper.hopper, "musl", 2, "gimp", slow=True)
     yield Run("Taylor", examples.taylor_bar, "musl", 3, "gimp", slow=True)
     yield Run("Taylor", examples.taylor_bar, "musl", 3, "linear", slow=True)
     for basis in BASES:
