@@ -10,7 +10,7 @@ from typing import Any
 
 from mpm3dpp import _core
 
-from . import bars, column, discs, examples, grains, groups, hopper, incline, point
+from . import bars, column, discs, examples, grains, groups, hopper, incline, point, silo
 from .figure import Figure
 from .scene import Failed
 
@@ -114,6 +114,7 @@ def _runs() -> Iterator[Run]:
 def _slow_runs() -> Iterator[Run]:
     for cells in (10, 20):
         yield Run("C1", grains.hertz_wall, "musl", 3, "gimp", {"cells": cells}, slow=True)
+    yield Run("C3", silo.janssen, "musl", 2, "gimp", slow=True)
     yield Run("C2", grains.hertz_chain, "musl", 3, "gimp", {"cells": 10}, slow=True)
     yield Run("S4", examples.tnt_slab, "musl", 2, "gimp", slow=True)
     yield Run("W1", examples.dam_break, "musl", 2, "gimp", slow=True)
