@@ -45,13 +45,15 @@ def contact_table(manifest: Manifest) -> list[str]:
 def energy_line(manifest: Manifest) -> str:
     """Return the line about the energy that numerics made or lost.
 
-    It is a share of what came in (kinetic energy at the start, or work from outside), or of all
-    energy at the start where most of that is internal, as in a compressed gas or an explosive.
+    It is a share of what came in (kinetic energy at the start, or the most that work from outside
+    had brought), or of all energy at the start where most of that is internal, as in a compressed
+    gas or an explosive.
     """
     energies = manifest.energies
     final, start = energies.get("final", {}), energies.get("initial", {})
     kinetic, internal = start.get("kinetic", 0.0), start.get("internal", 0.0)
-    whole, of_what = max(abs(kinetic), abs(final.get("external", 0.0))), "what came in"
+    work = max(abs(final.get("external", 0.0)), energies.get("external_max", 0.0))
+    whole, of_what = max(abs(kinetic), work), "what came in"
     if abs(internal) > whole:
         whole, of_what = kinetic + abs(internal), "the energy at the start"
     if not final or whole == 0.0:

@@ -31,3 +31,10 @@ def manifest(initial: dict[str, float], final: dict[str, float]) -> Any:
 )
 def test_share_of_energy(initial: dict[str, float], final: dict[str, float], words: str) -> None:
     assert words in energy_line(manifest(initial, final))
+
+
+def test_work_that_has_gone_out_again_came_in() -> None:
+    """A load that a body springs back against ends with little work; the most of it counts."""
+    found = manifest({}, {"external": 10.0, "numerical": -1.0})
+    found.energies["external_max"] = 100.0
+    assert "made 1.00% of what came in" in energy_line(found)

@@ -37,6 +37,7 @@ PAIR_LIMIT = 66
 """Most pairs that get columns of their own (12 names); more go to `contact_pairs.csv`."""
 
 _AXES = ("x", "y", "z")
+_LARGEST = ("residual", "numerical", "external")  # of which the largest size is kept
 
 
 class HistoryWriter:
@@ -119,8 +120,9 @@ class HistoryWriter:
         """Energies of the whole run for the manifest [J], J per metre in 2D.
 
         `initial` and `final` hold every energy of the first and last step,
-        `kinetic_min`, `residual_max` and `numerical_max` the extremes over all steps (absolute
-        values for the last two), `momentum_drift` the largest change of total momentum [N s].
+        `kinetic_min`, `residual_max`, `numerical_max` and `external_max` the extremes over all
+        steps (absolute values for the last three), `momentum_drift` the largest change of total
+        momentum [N s].
         """
         return dict(self._summary)
 
@@ -176,11 +178,11 @@ class HistoryWriter:
         if not new:
             new["initial"] = {name: float(column[name][0]) for name in energies}
             new["kinetic_min"] = float("inf")
-            new["residual_max"] = new["numerical_max"] = new["momentum_drift"] = 0.0
+            new |= dict.fromkeys((*(f"{name}_max" for name in _LARGEST), "momentum_drift"), 0.0)
             self._momentum = momentum[0].copy()
         new["final"] = {name: float(column[name][-1]) for name in energies}
         new["kinetic_min"] = min(new["kinetic_min"], float(column["kinetic"].min()))
-        for name in ("residual", "numerical"):
+        for name in _LARGEST:
             new[f"{name}_max"] = max(new[f"{name}_max"], float(np.abs(column[name]).max()))
         drift = np.linalg.norm(momentum - self._momentum, axis=1).max()
         new["momentum_drift"] = max(new["momentum_drift"], float(drift))
