@@ -226,3 +226,20 @@ def test_of_two_models_the_stronger_action_is_done() -> None:
         assert (failed[:11] == 0).all()
         assert (failed[11:41] == 1).all() or (failed[21:41] == 1).all()
         assert (failed[41:] == 2).all()
+
+
+@pytest.mark.parametrize("lanes", [False, True])
+def test_debris_that_closes_by_more_than_its_first_volume(lanes: bool) -> None:
+    """A torn particle of 90 times its volume has no stress, whatever it closes by in a step.
+
+    p = (A + B E) / (1 + B dV / 2) has a pole at dV = -2 / B, B = 1.97 here, in initial volumes.
+    """
+    eos = ("mie_gruneisen", {"c0": 5350.0, "s": 1.34, "gamma0": 1.97})
+    wide = stretch(0.0225, 0.0225, 0.0225, 67)
+    failure = ("hydrostatic_tension", {"limit": 1e9}, "no_tension")
+    for closing in np.linspace(0.002, 0.006, 41):
+        moves = np.concatenate([wide, stretch(-closing, -closing, -closing, 1)])
+        rows = drive([failure], moves, "elastic", ELASTIC, lanes, eos=eos)
+        assert rows["failed"][-1] == 2.0
+        assert rows["volume"][-2] > 80.0
+        assert rows["stress_xx"][-1] == 0.0
