@@ -44,8 +44,9 @@ template <class T, int D, class Model>
     }
     if (viscosity || damped) speed = damped_speed(speed, damping);
     // Debris of many times its volume may close by more than its initial volume in one step, where
-    // the energy's part of the denominator would pass zero; dense matter stays far from the half.
-    const T implicit = max(T(1.0) + T(0.5) * p.B * change, T(0.5));
+    // the energy's part of the denominator would pass zero; a shock ends below that volume.
+    T implicit = T(1.0) + T(0.5) * p.B * change;
+    implicit = select(V > T(1.0), max(implicit, T(0.5)), implicit);
     const T pressure = (p.A + p.B * energy) / implicit;
     const T mean = T(1.0 / 3.0) * trace(strength);
     const Sym<T, D> stress = strength - Sym<T, D>::isotropic(mean + pressure);
