@@ -11,18 +11,16 @@ namespace mpm {
 /// Fields of a nodal block, each BlockShape::node_stride doubles long. Units: kg, m/s, N.
 /// `velocity` holds momentum [kg m/s] until the shared nodes are summed; `force` holds the velocity
 /// increment of the step [m/s] once the nodes are advanced, and the remapped velocity [m/s] after
-/// the MUSL remap. `dashpot` exists where walls absorb or loads act: factors [kg/s], then forces;
-/// `load` where loads act.
+/// the MUSL remap. `dashpot` exists where walls absorb: factors [kg/s], then forces.
 template <int D>
 struct NodeBlock {
   double* data;
   int stride;
-  static constexpr int fields = 1 + 2 * D;  // without the last two
+  static constexpr int fields = 1 + 2 * D;  // without the last
   double* mass() const { return data; }
   double* velocity(int a) const { return data + (1 + a) * stride; }
   double* force(int a) const { return data + (1 + D + a) * stride; }
   double* dashpot(int a) const { return data + (fields + a) * stride; }
-  double* load(int a) const { return data + (fields + D + a) * stride; }
 };
 
 template <int D>

@@ -44,7 +44,6 @@ void SimulationOf<D>::add_load(const std::string& name, int number, bool follows
     }
   }
   domain_.loads.push_back(std::move(load));
-  domain_.grid.fields = NodeBlock<D>::fields + 2 * D;
 }
 
 template <int D>

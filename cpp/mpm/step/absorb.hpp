@@ -3,6 +3,7 @@
 // the traction -rho c_p v along the normal and -rho c_s v along the face (Lysmer & Kuhlemeyer 1969,
 // eqs. 1-2 with a = b = 1).
 #include "mpm/step/cell_loop.hpp"
+#include "mpm/step/work.hpp"
 
 namespace mpm {
 
@@ -59,17 +60,13 @@ void add_dashpot_forces(const Patch<D>& patch, const NodeBlock<D>& block,
     }
 }
 
-/// Time step x sum over a patch's own nodes of a force . velocity before the nodes were advanced,
-/// and half of force . increment; both give the work of the force over the step.
-struct Work {
-  double first = 0.0, second = 0.0;  // [J]
-};
-template <int D, class Force>
-Work work_of(const NodeBlock<D>& block, const double* own, double time_step, Force&& force) {
+/// The work of the dashpots on a patch's own nodes, once these are advanced.
+template <int D>
+Work work_of_dashpots(const NodeBlock<D>& block, const double* own, double time_step) {
   Work work;
   for (int a = 0; a < D; ++a)
     for (int n = 0; n < block.stride; ++n) {
-      const double f = own[n] * force(a)[n], dv = block.force(a)[n];
+      const double f = own[n] * block.dashpot(a)[n], dv = block.force(a)[n];
       work.first += f * (block.velocity(a)[n] - dv);
       work.second += f * dv;
     }

@@ -1,4 +1,5 @@
 #include "mpm/step/absorb.hpp"
+#include "mpm/step/loads.hpp"
 #include "mpm/step/mirror.hpp"
 #include "mpm/step/prescribed_bodies.hpp"
 #include "mpm/step/stages.hpp"
@@ -55,9 +56,7 @@ void advance_nodes(Domain<D>& domain) {
       }
     }
     Work loads, dashpots;
-    if (loaded) loads = work_of(block, own, dt, [&](int a) { return block.load(a); });
-    if (absorb && patch.at_wall)
-      dashpots = work_of(block, own, dt, [&](int a) { return block.dashpot(a); });
+    if (absorb && patch.at_wall) dashpots = work_of_dashpots(block, own, dt);
     // The mirrored weight went into the force; it is work of gravity.
     double weight_first = 0.0, weight_second = 0.0;
     for_each_mirrored_node(grid, patch, [&](int node, int image, unsigned axes) {
@@ -71,6 +70,7 @@ void advance_nodes(Domain<D>& domain) {
     });
     reflect_at_walls(grid, patch, [&](int a) { return block.velocity(a); });
     reflect_at_walls(grid, patch, [&](int a) { return block.force(a); });
+    if (loaded) loads = work_of_loads(domain, p);
     PatchSums<D>& sums = domain.sums[p];
     sums.force_work = dt * (sum(work) + weight_first) - loads.first - dashpots.first;
     sums.load_first = loads.first;

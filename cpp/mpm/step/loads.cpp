@@ -1,6 +1,43 @@
 #include "mpm/step/loads.hpp"
 
 namespace mpm {
+namespace {
+
+/// f(force [N], nodes) for the pieces of a load that a patch's particles carry; nodes(g) calls
+/// g(node, N) for the nodes around the middle of the piece with their linear functions there.
+template <int D, class F>
+void for_each_loaded_piece(const Domain<D>& domain, std::size_t p, const SurfaceLoad<D>& load,
+                           F&& f) {
+  const TileGrid<D>& grid = domain.grid;
+  const Patch<D>& patch = grid.patches[p];
+  if (load.body != patch.body) return;
+  const Body<D>& body = domain.bodies[static_cast<std::size_t>(patch.body)];
+  const double reach = grid.basis == Basis::gimp ? gimp_half(body.mean_edge / grid.cell_size) : 0.0;
+  for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+    for_each_piece(load, body, cell, [&](std::uint32_t row, std::size_t piece) {
+      Index<D> shift{};  // of the cell that the piece lies in
+      double xi[D];
+      for (int a = 0; a < D; ++a) {
+        const double x = grid.in_cells(body.x(a)[row], a) - cell.cell[a];
+        const double low = std::min(0.0, x - reach), high = std::max(1.0, x + reach);
+        xi[a] = std::clamp(x + load.arm[piece][a] / grid.cell_size, low, high);
+        const auto k = static_cast<std::size_t>(a);
+        shift[k] = xi[a] < 0.0 ? -1 : xi[a] > 1.0 ? 1 : 0;
+        xi[a] -= shift[k];
+      }
+      const int first = cell.first_node + grid.shape.distance(shift);
+      f(load.force_on(piece), [&](auto&& g) {
+        for (int corner = 0; corner < Tile<D>::corners; ++corner) {
+          double N = 1.0;
+          for (int a = 0; a < D; ++a) N *= corner >> a & 1 ? xi[a] : 1.0 - xi[a];
+          g(first + grid.shape.corner_offset[static_cast<std::size_t>(corner)], N);
+        }
+      });
+    });
+  });
+}
+
+}  // namespace
 
 template <int D>
 void start_loads(Domain<D>& domain) {
@@ -14,39 +51,34 @@ void start_loads(Domain<D>& domain) {
 
 template <int D>
 void scatter_loads(Domain<D>& domain, std::size_t p) {
-  const TileGrid<D>& grid = domain.grid;
-  const Patch<D>& patch = grid.patches[p];
-  const Body<D>& body = domain.body_of(patch);
   const NodeBlock<D> block = domain.grid.block(p);
-  const double reach = grid.basis == Basis::gimp ? gimp_half(body.mean_edge / grid.cell_size) : 0.0;
   for (std::size_t l = 0; l < domain.loads.size(); ++l) {
-    const SurfaceLoad<D>& load = domain.loads[l];
-    if (load.body != patch.body) continue;
     Vec<double, D>& total = domain.load_parts[p * domain.loads.size() + l];
-    for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-      for_each_piece(load, body, cell, [&](std::uint32_t row, std::size_t piece) {
-        const Vec<double, D> force = load.force_on(piece);
-        total += force;
-        Index<D> shift{};  // of the cell that the piece lies in
-        double xi[D];
+    for_each_loaded_piece(domain, p, domain.loads[l],
+                          [&](const Vec<double, D>& force, auto&& nodes) {
+                            total += force;
+                            nodes([&](int node, double N) {
+                              for (int a = 0; a < D; ++a) block.force(a)[node] += N * force[a];
+                            });
+                          });
+  }
+}
+
+template <int D>
+Work work_of_loads(Domain<D>& domain, std::size_t p) {
+  const NodeBlock<D> block = domain.grid.block(p);
+  Work work;
+  for (const SurfaceLoad<D>& load : domain.loads)
+    for_each_loaded_piece(domain, p, load, [&](const Vec<double, D>& force, auto&& nodes) {
+      nodes([&](int node, double N) {
         for (int a = 0; a < D; ++a) {
-          const double x = grid.in_cells(body.x(a)[row], a) - cell.cell[a];
-          const double low = std::min(0.0, x - reach), high = std::max(1.0, x + reach);
-          xi[a] = std::clamp(x + load.arm[piece][a] / grid.cell_size, low, high);
-          const auto k = static_cast<std::size_t>(a);
-          shift[k] = xi[a] < 0.0 ? -1 : xi[a] > 1.0 ? 1 : 0;
-          xi[a] -= shift[k];
-        }
-        const int first = cell.first_node + grid.shape.distance(shift);
-        for (int corner = 0; corner < Tile<D>::corners; ++corner) {
-          double N = 1.0;
-          for (int a = 0; a < D; ++a) N *= corner >> a & 1 ? xi[a] : 1.0 - xi[a];
-          const int node = first + grid.shape.corner_offset[static_cast<std::size_t>(corner)];
-          for (int a = 0; a < D; ++a) block.load(a)[node] += N * force[a];
+          const double f = N * force[a], dv = block.force(a)[node];
+          work.first += f * (block.velocity(a)[node] - dv);
+          work.second += f * dv;
         }
       });
     });
-  }
+  return {domain.time_step * work.first, 0.5 * domain.time_step * work.second};
 }
 
 template <int D>
@@ -62,6 +94,8 @@ template void start_loads<2>(Domain<2>&);
 template void start_loads<3>(Domain<3>&);
 template void scatter_loads<2>(Domain<2>&, std::size_t);
 template void scatter_loads<3>(Domain<3>&, std::size_t);
+template Work work_of_loads<2>(Domain<2>&, std::size_t);
+template Work work_of_loads<3>(Domain<3>&, std::size_t);
 template void sum_loads<2>(Domain<2>&);
 template void sum_loads<3>(Domain<3>&);
 

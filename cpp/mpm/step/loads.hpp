@@ -2,6 +2,7 @@
 // Loads on surfaces: from the pieces that particles carry to the nodes, and the pieces along with
 // the particles.
 #include "mpm/step/cell_loop.hpp"
+#include "mpm/step/work.hpp"
 
 namespace mpm {
 
@@ -15,6 +16,10 @@ void start_loads(Domain<D>& domain);
 /// nodes with mass are loaded.
 template <int D>
 void scatter_loads(Domain<D>& domain, std::size_t patch);
+
+/// Their work on a patch, with the velocities and increments of the nodes at the pieces.
+template <int D>
+Work work_of_loads(Domain<D>& domain, std::size_t patch);
 
 /// Force and impulse of each load, added in the order of the patches.
 template <int D>
@@ -41,8 +46,11 @@ void carry_loads(Domain<D>& domain, std::size_t p, Field&& field) {
     if (load.body != patch.body) continue;
     with_basis(grid, body, [&](const auto& basis) {
       for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+        bool loaded = false;
+        for_each_piece(load, body, cell, [&](std::uint32_t, std::size_t) { loaded = true; });
+        if (!loaded) return;
+        const auto velocity = vector_field(basis, cell, field);
         for_each_piece(load, body, cell, [&](std::uint32_t row, std::size_t piece) {
-          const auto velocity = vector_field(basis, cell, field);
           Vec<double, D> xi;
           for (int a = 0; a < D; ++a)
             xi[a] = local_coordinate(grid.in_cells(body.x(a)[row], a), cell.cell[a]);

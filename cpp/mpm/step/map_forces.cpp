@@ -57,10 +57,8 @@ void map_forces(Domain<D>& domain) {
     with_basis(grid, body,
                [&](const auto& basis) { scatter_forces(basis, grid, body, patch, block); });
     if (absorb) scatter_dashpots(grid, body, patch, block);
+    if (loaded) scatter_loads(domain, p);
     fold_at_walls<D>(grid, patch, nullptr, [&](int a) { return block.force(a); });
-    if (!loaded) return;
-    scatter_loads(domain, p);
-    fold_at_walls<D>(grid, patch, nullptr, [&](int a) { return block.load(a); });
   });
   grid.sum_shared_nodes(domain.threads, 1 + D, grid.fields);
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
@@ -69,8 +67,6 @@ void map_forces(Domain<D>& domain) {
       for (int a = 0; a < D; ++a)
         if (axes >> a & 1u) block.force(a)[image] -= mirrored_weight(domain, block, node, a);
     });
-    if (loaded)
-      for (int n = 0; n < D * block.stride; ++n) block.force(0)[n] += block.load(0)[n];
     if (absorb) add_dashpot_forces(grid.patches[p], block, domain.gravity, domain.time_step);
   });
   if (loaded) sum_loads(domain);
