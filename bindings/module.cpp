@@ -90,6 +90,7 @@ NB_MODULE(_core, m) {
       .def_rw("detection", &Settings::detection)
       .def_rw("normal_rule", &Settings::normal_rule)
       .def_rw("gap_distance", &Settings::gap_distance)
+      .def_rw("normal_travel", &Settings::normal_travel)
       .def_rw("friction", &Settings::friction)
       .def_rw("threads", &Settings::threads)
       .def_rw("energy_growth_limit", &Settings::energy_growth_limit);

@@ -219,6 +219,7 @@ def _settings(case: Case, threads: int) -> _core.Settings:
     settings.detection = _core.Detection[case.contact.detection]
     settings.normal_rule = _core.NormalRule[case.contact.normal]
     settings.gap_distance = case.contact.gap_distance
+    settings.normal_travel = case.contact.normal_travel
     settings.friction = case.contact.friction
     settings.threads = threads
     settings.energy_growth_limit = run.energy_growth_limit

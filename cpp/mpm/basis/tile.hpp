@@ -13,6 +13,19 @@ constexpr int power(int base, int exponent) {
   return exponent == 0 ? 1 : base * power(base, exponent - 1);
 }
 
+/// f(index) for every point of a box, its ends included, the first axis fastest.
+template <int D, class F>
+void for_each_index(const Index<D>& low, const Index<D>& high, F&& f) {
+  Index<D> i = low;
+  for (i[D - 1] = low[D - 1]; i[D - 1] <= high[D - 1]; ++i[D - 1])
+    for (i[D - 2] = low[D - 2]; i[D - 2] <= high[D - 2]; ++i[D - 2]) {
+      if constexpr (D == 2)
+        f(i);
+      else
+        for (i[0] = low[0]; i[0] <= high[0]; ++i[0]) f(i);
+    }
+}
+
 template <int D>
 struct Tile {
   static constexpr int cells = D == 3 ? 4 : 8;  // along an edge

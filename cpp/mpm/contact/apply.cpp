@@ -4,45 +4,23 @@
 #include "mpm/contact/contact_grid.hpp"
 
 namespace mpm {
+namespace {
 
-template <int D>
-bool ContactGrid<D>::any_closed(const ContactNode& node) const {
-  const SidePair<D>* pairs = &pairs_[node.first_pair];
-  return std::any_of(pairs, pairs + pair_count(node.sides),
-                     [](const SidePair<D>& pair) { return pair.closed; });
-}
-
-template <int D>
-void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
-  threads.for_each(nodes_.size(), [&](std::size_t n) {
-    const ContactNode& node = nodes_[n];
-    if (!any_closed(node)) return;
-    Side<D>* sides = &sides_[node.first_side];
-    SidePair<D>* pairs = &pairs_[node.first_pair];
-    const std::uint32_t count = pair_count(node.sides);
-    for (std::uint32_t k = 0; k < node.sides; ++k)
-      sides[k].start(sides[k].mapped, Vec<double, D>::zero());
-    const bool converged = solve_node<D, false>(
-        sides, pairs, count, [](const SidePair<D>& pair) { return pair.closed; });
-    if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
-    for (std::uint32_t k = 0; k < node.sides; ++k) {
-      Side<D>& side = sides[k];
-      side.velocity = side.end_velocity();
-      for_each_copy(grid, node, side, [&](std::size_t p, int at) {
-        for (int a = 0; a < D; ++a) grid.block(p).velocity(a)[at] = side.velocity[a];
-      });
-    }
-    for (std::uint32_t k = 0; k < count; ++k) {
-      SidePair<D>& pair = pairs[k];
-      const Side<D>& r = sides[pair.r];
-      const Side<D>& s = sides[pair.s];
-      // Bodies at rest against each other touch too, whatever the rounding of their velocities.
-      const double rounding = 1e-13 * (norm(r.mapped) + norm(s.mapped));
-      pair.touching = pair.closed && (pair.normal_impulse > 0.0 ||
-                                      dot(r.velocity - s.velocity, pair.normal) >= -rounding);
-      pair.acted = pair.normal_impulse > 0.0;
-    }
-  });
+/// Scratch of one thread for the solution at a node with these sides and pairs;
+/// `takes_part(pair)` chooses the pairs that act.
+template <int D, class Choose>
+NodeSolution<D>& solution_of(std::span<const Side<D>> sides, std::span<const SidePair<D>> pairs,
+                             Choose&& takes_part) {
+  thread_local NodeSolution<D> solution;
+  solution.sides.resize(sides.size());
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    solution.sides[k].mass = sides[k].mass;
+    solution.sides[k].prescribed = sides[k].prescribed;
+  }
+  solution.pairs.clear();
+  for (const SidePair<D>& pair : pairs)
+    solution.pairs.push_back({pair.r, pair.s, takes_part(pair), pair.friction, pair.normal});
+  return solution;
 }
 
 /// Gravity along the axes that no wall holds at a node.
@@ -53,104 +31,149 @@ Vec<double, D> free_gravity(const ContactNode& node, Vec<double, D> gravity) {
   return gravity;
 }
 
+}  // namespace
+
 template <int D>
-void ContactGrid<D>::add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity, double time_step,
-                                Threads& threads) {
+bool ContactGrid<D>::any_closed(const ContactNode& node) {
+  return std::ranges::any_of(pairs_of(node), &SidePair<D>::closed);
+}
+
+template <int D>
+template <bool with_friction>
+void ContactGrid<D>::solve(NodeSolution<D>& solution) {
+  if (!solve_node<with_friction>(solution)) unconverged_.fetch_add(1, std::memory_order_relaxed);
+}
+
+template <int D>
+void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
+  threads.for_each(nodes_.size(), [&](std::size_t n) {
+    const ContactNode& node = nodes_[n];
+    if (!any_closed(node)) return;
+    const auto sides = sides_of(node);
+    const auto pairs = pairs_of(node);
+    auto& solution =
+        solution_of<D>(sides, pairs, [](const SidePair<D>& pair) { return pair.closed; });
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      solution.sides[k].start(sides[k].mapped, Vec<double, D>::zero());
+    solve<false>(solution);
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      write(grid, node, sides[k], solution.sides[k].end_velocity(),
+            [](const NodeBlock<D>& block, int a) { return block.velocity(a); });
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      SidePair<D>& pair = pairs[k];
+      const bool pushed = solution.pairs[k].normal_impulse > 0.0;
+      const Vec<double, D> relative =
+          solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
+      // Bodies at rest against each other touch too, whatever the rounding of their velocities.
+      const double rounding = 1e-13 * (norm(sides[pair.r].mapped) + norm(sides[pair.s].mapped));
+      pair.touching = pair.closed && (pushed || dot(relative, pair.normal) >= -rounding);
+      pair.acted = pushed;
+    }
+  });
+}
+
+template <int D>
+void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                                const Vec<double, D>& gravity, double time_step, Threads& threads) {
+  const auto velocity_at = [](const NodeBlock<D>& block, int a) { return block.velocity(a); };
+  const auto force_at = [](const NodeBlock<D>& block, int a) { return block.force(a); };
   threads.for_each(nodes_.size(), [&](std::size_t n) {
     ContactNode& node = nodes_[n];
     if (!any_closed(node)) return;
-    Side<D>* sides = &sides_[node.first_side];
-    SidePair<D>* pairs = &pairs_[node.first_pair];
-    const std::uint32_t count = pair_count(node.sides);
-    auto force_of = [&](const Side<D>& side) {
-      Vec<double, D> f = Vec<double, D>::zero();
-      bool read = false;
-      for_each_copy(grid, node, side, [&](std::size_t p, int at) {
-        if (read) return;
-        for (int a = 0; a < D; ++a)
-          f[a] = node.held >> a & 1u ? 0.0 : grid.block(p).force(a)[at] + side.mass * gravity[a];
-        read = true;
-      });
+    const auto sides = sides_of(node);
+    const auto pairs = pairs_of(node);
+    auto& solution =
+        solution_of<D>(sides, pairs, [](const SidePair<D>& pair) { return pair.touching; });
+    const auto force_of = [&](const Side<D>& side) {
+      Vec<double, D> f = read(grid, side, force_at) + side.mass * gravity;
+      for (int a = 0; a < D; ++a)
+        if (node.held >> a & 1u) f[a] = 0.0;
       return f;
     };
-    for (std::uint32_t k = 0; k < node.sides; ++k) {
-      Side<D>& side = sides[k];
-      if (side.prescribed)
-        side.start(side.velocity + side.increment, Vec<double, D>::zero());
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      const Vec<double, D> velocity = read(grid, sides[k], velocity_at);
+      if (sides[k].prescribed)
+        solution.sides[k].start(velocity + prescribed_increment(grid, bodies, node, sides[k]),
+                                Vec<double, D>::zero());
       else
-        side.start(side.velocity, time_step * force_of(side));
+        solution.sides[k].start(velocity, time_step * force_of(sides[k]));
     }
-    const bool converged = solve_node<D, true>(
-        sides, pairs, count, [](const SidePair<D>& pair) { return pair.touching; });
-    if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
+    solve<true>(solution);
 
+    double friction_first = 0.0;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      SidePair<D>& pair = pairs[k];
+      const SolvedPair<D>& solved = solution.pairs[k];
+      const Vec<double, D> begin =
+          read(grid, sides[pair.r], velocity_at) - read(grid, sides[pair.s], velocity_at);
+      const Vec<double, D> end =
+          solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
+      pair.friction_first = dot(solved.friction_impulse, begin);
+      pair.acted = pair.acted || solved.normal_impulse > 0.0;
+      pair.impulse = -solved.normal_impulse * pair.normal - solved.friction_impulse;
+      pair.friction_work = 0.5 * (pair.friction_first + dot(solved.friction_impulse, end));
+      friction_first += pair.friction_first;
+    }
     double force_work = 0.0, correction = 0.0;
-    for (std::uint32_t k = 0; k < node.sides; ++k) {
+    for (std::size_t k = 0; k < sides.size(); ++k) {
       const Side<D>& side = sides[k];
-      Vec<double, D> contact = side.momentum;  // impulse of the others
+      const Vec<double, D> velocity = read(grid, side, velocity_at);
+      Vec<double, D> contact = solution.sides[k].momentum;  // impulse of the others
       if (!side.prescribed) {
-        const Vec<double, D> change = side.momentum - side.mass * side.velocity;  // of all forces
+        const Vec<double, D> change = contact - side.mass * velocity;  // of all forces
         contact = change - time_step * force_of(side);
         // The node itself has its own mass only.
+        const double own_mass = grid.block(patch_of(side)).mass()[side.node];
         const Vec<double, D> own =
-            change - (time_step * (side.mass - side.mapped_mass)) * free_gravity(node, gravity);
-        correction -= dot(own, side.velocity - side.mapped);
+            change - (time_step * (side.mass - own_mass)) * free_gravity(node, gravity);
+        correction -= dot(own, velocity - side.mapped);
       }
-      force_work += dot(contact, side.velocity);
-      for_each_copy(grid, node, side, [&](std::size_t p, int at) {
+      force_work += dot(contact, velocity);
+      for_each_copy(node, side, grid.shape, [&](std::size_t p, int at) {
         for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] += (1.0 / time_step) * contact[a];
       });
-    }
-    double friction_first = 0.0;
-    for (std::uint32_t k = 0; k < count; ++k) {
-      SidePair<D>& pair = pairs[k];
-      const Side<D>& r = sides[pair.r];
-      const Side<D>& s = sides[pair.s];
-      const Vec<double, D> end = r.end_velocity() - s.end_velocity();
-      pair.friction_first = dot(pair.friction_impulse, r.velocity - s.velocity);
-      pair.acted = pair.acted || pair.normal_impulse > 0.0;
-      pair.impulse = -pair.normal_impulse * pair.normal - pair.friction_impulse;
-      pair.friction_work = 0.5 * (pair.friction_first + dot(pair.friction_impulse, end));
-      friction_first += pair.friction_first;
     }
     node.force_work = force_work;
     node.energy = -(force_work + correction) - friction_first;
   });
 }
 
+/// What the velocity of a prescribed body at a node changes by in this step [m/s].
+template <int D>
+Vec<double, D> ContactGrid<D>::prescribed_increment(const TileGrid<D>& grid,
+                                                    const std::vector<Body<D>>& bodies,
+                                                    const ContactNode& node,
+                                                    const Side<D>& side) const {
+  const Vec<double, D> x = grid.position_of(place_of(grid, node));
+  const Body<D>& body = bodies[static_cast<std::size_t>(side.body)];
+  return from_space<D>(body.motion.increment_at(in_space<D>(x)));
+}
+
 template <int D>
 void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
+  const auto remapped_at = [](const NodeBlock<D>& block, int a) { return block.force(a); };
   threads.for_each(nodes_.size(), [&](std::size_t n) {
     const ContactNode& node = nodes_[n];
     if (!any_closed(node)) return;
-    Side<D>* sides = &sides_[node.first_side];
-    for (std::uint32_t k = 0; k < node.sides; ++k) {
-      Side<D>& side = sides[k];
-      Vec<double, D> remapped = Vec<double, D>::zero();
-      for_each_copy(grid, node, side, [&](std::size_t p, int at) {
-        for (int a = 0; a < D; ++a) remapped[a] = grid.block(p).force(a)[at];
-      });
-      side.start(remapped, Vec<double, D>::zero());
-    }
+    const auto sides = sides_of(node);
     // The impulses of this solution act on the velocities that strain the material only; they are
     // not contact forces.
-    SidePair<D>* pairs = &pairs_[node.first_pair];
-    const bool converged = solve_node<D, false>(
-        sides, pairs, pair_count(node.sides), [](const SidePair<D>& pair) { return pair.closed; });
-    if (!converged) unconverged_.fetch_add(1, std::memory_order_relaxed);
-    for (std::uint32_t k = 0; k < node.sides; ++k) {
-      const Vec<double, D> velocity = sides[k].end_velocity();
-      for_each_copy(grid, node, sides[k], [&](std::size_t p, int at) {
-        for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] = velocity[a];
-      });
-    }
+    auto& solution =
+        solution_of<D>(sides, pairs_of(node), [](const SidePair<D>& pair) { return pair.closed; });
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      solution.sides[k].start(read(grid, sides[k], remapped_at), Vec<double, D>::zero());
+    solve<false>(solution);
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      write(grid, node, sides[k], solution.sides[k].end_velocity(), remapped_at);
   });
 }
 
 template void ContactGrid<2>::adjust_momentum(TileGrid<2>&, Threads&);
 template void ContactGrid<3>::adjust_momentum(TileGrid<3>&, Threads&);
-template void ContactGrid<2>::add_forces(TileGrid<2>&, const Vec<double, 2>&, double, Threads&);
-template void ContactGrid<3>::add_forces(TileGrid<3>&, const Vec<double, 3>&, double, Threads&);
+template void ContactGrid<2>::add_forces(TileGrid<2>&, const std::vector<Body<2>>&,
+                                         const Vec<double, 2>&, double, Threads&);
+template void ContactGrid<3>::add_forces(TileGrid<3>&, const std::vector<Body<3>>&,
+                                         const Vec<double, 3>&, double, Threads&);
 template void ContactGrid<2>::adjust_remapped(TileGrid<2>&, Threads&);
 template void ContactGrid<3>::adjust_remapped(TileGrid<3>&, Threads&);
 

@@ -6,41 +6,34 @@
 #include <limits>
 
 #include "mpm/contact/node_contact.hpp"
-#include "mpm/grid/tile_grid.hpp"
-#include "mpm/particles/body.hpp"
+#include "mpm/contact/node_solver.hpp"
+#include "mpm/contact/separation.hpp"
+#include "mpm/contact/settings.hpp"
 
 namespace mpm {
 
-/// A patch whose block has nodes that belong to a tile: the tile's own patch of a body, or one
-/// beside it. (A tile's own nodes are all but those at its upper ends, which are the next tile's
-/// first.)
-struct TileHolder {
-  std::int32_t body;
-  std::int32_t patch;
-  std::uint8_t neighbour;  // where the tile lies as seen from the patch: Tile<D>::offset
-};
-
-/// Coordinate in a holder's block of a node of the tile.
-template <int D>
-Index<D> seen_from(const TileHolder& holder, Index<D> node) {
-  const Index<D> o = Tile<D>::offset(holder.neighbour);
-  for (int a = 0; a < D; ++a) node[a] += Tile<D>::cells * o[a];
-  return node;
-}
-/// Does a holder's patch have this node (counted from the tile's first) in its block?
-template <int D>
-bool holds_node(const BlockShape<D>& shape, const TileHolder& holder, const Index<D>& node) {
-  return shape.holds(seen_from<D>(holder, node));
-}
-/// The node's number in the holder's block.
-template <int D>
-int node_in_holder(const BlockShape<D>& shape, const TileHolder& holder, const Index<D>& node) {
-  return shape.node(seen_from<D>(holder, node));
-}
+/// A tile whose nodes two or more bodies touch.
 template <int D>
 struct ContactTile {
   Index<D> tile;
   std::uint32_t first_holder, holders;
+  std::uint64_t known = 0;  // the nodes that were overlapped in the last step, by Tile<D>::cell
+  std::uint32_t first_known = 0;  // the first of them, of ContactGrid::known_nodes_
+};
+
+/// When the pairs at a node were found. They are used again until the bodies there have moved by
+/// ContactSettings::normal_travel, or others are there.
+struct KnownNode {
+  std::uint64_t who;  // a number for the bodies and how many particles each has
+  double travel;      // mean of ContactGrid::travel_ over them when their pairs were found [m]
+  std::uint32_t first_pair;  // of ContactGrid::known_
+};
+
+/// The normal and the gap of a pair of bodies at a node.
+template <int D>
+struct KnownPair {
+  Vec<double, D> normal;  // from the body with the lower number
+  double gap;             // [m]
 };
 
 /// What has passed between two bodies since the start.
@@ -65,32 +58,58 @@ struct ContactSums {
       0.0;  // work of contact forces at the velocities that the nodal forces work on
 };
 
+/// A body around a tile, while the tile's overlapped nodes are found.
+template <int D>
+struct TileBody {
+  std::int32_t body;
+  std::uint32_t first_holder, holders;
+  std::uint64_t nodes;  // where it has mass, a bit each by Tile<D>::cell
+  TileParticles<D> particles;
+};
+
+/// The bodies around a tile: scratch of one thread, not counted among the bytes of the contact.
+template <int D>
+struct TileBodies {
+  std::vector<TileBody<D>> bodies;  // the first `count` are in use
+  std::size_t count = 0;
+  std::uint64_t overlapped = 0;  // nodes at which two or more have mass
+  LastPlanes<D> planes;
+
+  std::span<TileBody<D>> all() { return {bodies.data(), count}; }
+  std::span<const TileBody<D>> all() const { return {bodies.data(), count}; }
+  TileBody<D>& with(std::int32_t body) {
+    return *std::ranges::find(all(), body, &TileBody<D>::body);
+  }
+};
+
 template <int D>
 class ContactGrid {
  public:
   /// Find the tiles where bodies may meet, one of them deforming, and mark the patches that have
   /// nodes there. Call when patches were added or removed.
   void connect(TileGrid<D>& grid, const std::vector<Body<D>>& bodies);
+  /// Find all normals and gaps anew, as after a change of the cells.
+  void forget();
 
   /// Find the overlapped nodes with their normals, pairs and gaps, eq. (5). Needs mass and velocity
-  /// at the nodes.
+  /// at the nodes, and the length of the step that begins.
   void find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-            const std::vector<double>& stiffness, const ContactSettings& settings,
+            const std::vector<double>& stiffness, const ContactSettings& settings, double time_step,
             Threads& threads);
 
   /// Remove approaching momentum, eqs. (6)-(7), from the nodal velocities.
   void adjust_momentum(TileGrid<D>& grid, Threads& threads);
   /// Add the contact forces, eqs. (11)-(15), to the nodal forces; `gravity` is the body force per
   /// mass.
-  void add_forces(TileGrid<D>& grid, const Vec<double, D>& gravity, double time_step,
-                  Threads& threads);
+  void add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                  const Vec<double, D>& gravity, double time_step, Threads& threads);
   /// Remove the approach from the remapped velocities (3.6, step 10).
   void adjust_remapped(TileGrid<D>& grid, Threads& threads);
 
   /// Add this step's impulses and work to the records of the pairs and give the sums for the
   /// ledger.
-  ContactSums record(const std::vector<Body<D>>& bodies, double time, double time_step,
-                     std::int64_t step);
+  ContactSums record(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, double time,
+                     double time_step, std::int64_t step);
 
   const std::vector<PairRecord>& pairs() const { return records_; }
   std::size_t overlapped_nodes() const { return nodes_.size(); }
@@ -101,37 +120,97 @@ class ContactGrid {
   std::size_t bytes() const;
 
  private:
-  std::uint32_t sides_at(TileGrid<D>& grid, const ContactTile<D>& tile, const Index<D>& node,
-                         Side<D>* sides);
+  void recall_tiles();
+  /// The bodies around a tile and the nodes at which they overlap.
+  void look_around(const TileGrid<D>& grid, const ContactTile<D>& tile, TileBodies<D>& found) const;
+  /// Where the sides of a node are, their masses and velocities left to be read.
+  void place_sides(TileGrid<D>& grid, const TileBodies<D>& around, ContactNode& node);
+  void read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, ContactNode& node);
+  /// Count the nodes, sides and pairs of all tiles and make room for them.
+  void count(const TileGrid<D>& grid, Threads& threads);
+  /// Add to travel_ what the fastest node of each body says.
+  void add_travel(std::size_t bodies);
+  double travel_at(const ContactNode& node);
+  /// Normals, gaps and frictions of the pairs at the nodes of a tile: those known that still hold,
+  /// else found.
+  void fill_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                  const std::vector<double>& stiffness, const ContactSettings& settings,
+                  std::size_t tile);
+  /// f(patch, node number in its block) for the patches that hold a side's node.
   template <class F>
-  void for_each_copy(const TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
+  void for_each_copy(const ContactNode& node, const Side<D>& side, const BlockShape<D>& shape,
                      F&& f) const;
+  std::size_t patch_of(const Side<D>& side) const {
+    return static_cast<std::size_t>(holders_[side.first_copy].patch);
+  }
+  /// The vector of components `field(block, a)` at a side's node; and write it to all copies.
+  template <class Field>
+  Vec<double, D> read(TileGrid<D>& grid, const Side<D>& side, Field&& field) const;
+  template <class Field>
+  void write(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
+             const Vec<double, D>& value, Field&& field) const;
+  /// Grid coordinates of a node.
+  Index<D> place_of(const TileGrid<D>& grid, const ContactNode& node) const {
+    const Index<D> index = Tile<D>::cell_index(node.cell);
+    Index<D> place = grid.first_cell(tiles_[node.tile].tile);
+    for (std::size_t a = 0; a < D; ++a) place[a] += index[a];
+    return place;
+  }
+  Vec<double, D> prescribed_increment(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                                      const ContactNode& node, const Side<D>& side) const;
+  template <bool with_friction>
+  void solve(NodeSolution<D>& solution);
   /// Normals, gaps and frictions of the pairs at a node whose sides are known.
   void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<double>& stiffness, const ContactSettings& settings,
-                  const ContactNode& node);
+                  TileBodies<D>& around, const ContactNode& node);
+  /// The same from what is known, the gaps with what they have changed by since the last step.
+  void recall_pairs(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
+                    const KnownPair<D>* known, const ContactNode& node);
+  void remember_pairs(const ContactNode& node, KnownPair<D>* known);
+  /// f(pair, known, sign) for the pairs at a node and their entries among those of the node, which
+  /// come by the numbers of the bodies: `sign` is that of the normal.
+  template <class Known, class F>
+  void for_each_known(const ContactNode& node, Known* known, F&& f);
+  void start_pair(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
+                  std::span<const Side<D>> sides, std::uint16_t r, std::uint16_t s,
+                  SidePair<D>& pair) const;
   /// A rigid body meets others with its whole mass, spread over its overlapped nodes; one whose
   /// motion is prescribed mostly with an infinite mass.
   void share_rigid_masses(const std::vector<Body<D>>& bodies);
+  std::size_t number_of(const ContactNode& node) const {
+    return static_cast<std::size_t>(&node - nodes_.data());
+  }
+  std::span<Side<D>> sides_of(const ContactNode& node) {
+    return {&sides_[node.first_side], node.sides};
+  }
+  std::span<SidePair<D>> pairs_of(const ContactNode& node) {
+    return {&pairs_[node.first_pair], pair_count(node.sides)};
+  }
   /// May any pair at a node act? Other nodes stay as they are, to the last bit.
-  bool any_closed(const ContactNode& node) const;
+  bool any_closed(const ContactNode& node);
   PairRecord& record_of(int a, int b);
   void enter(std::size_t record);
   void sort_records();
 
+  NodesWithMass<D> masses_;
   std::vector<TileHolder> holders_;
   std::vector<ContactTile<D>> tiles_;
-  static_assert(Tile<D>::cell_count <= 64);
   struct TileCounts {
     std::uint32_t nodes, sides, pairs;
-    std::uint64_t overlapped;  // the tile's overlapped nodes, a bit each, by Tile<D>::cell
   };
   std::vector<TileCounts> counts_;  // per tile, from the second entry on; then their running sums
   std::vector<ContactNode> nodes_;
   std::vector<Side<D>> sides_;
   std::vector<SidePair<D>> pairs_;
-  std::vector<double> rigid_share_;  // scratch
-  std::vector<PairRecord> records_;  // sorted by (a, b) between steps
+  // Of this step and the last, in the order of nodes_ and of pairs_.
+  std::vector<KnownNode> known_nodes_, last_known_nodes_;
+  std::vector<KnownPair<D>> known_, last_known_;
+  std::vector<double> travel_, fastest_;    // way of each body so far [m], and its speed [m/s]
+  std::vector<ContactTile<D>> last_tiles_;  // scratch
+  double last_time_step_ = 0.0;             // [s]
+  std::vector<double> rigid_share_;         // scratch
+  std::vector<PairRecord> records_;         // sorted by (a, b) between steps
   // Where a pair's record is: open addressing by pair_key, at most half full; 0 is empty, else the
   // record's number + 1.
   std::vector<std::uint32_t> places_;
@@ -142,13 +221,35 @@ class ContactGrid {
 
 template <int D>
 template <class F>
-void ContactGrid<D>::for_each_copy(const TileGrid<D>& grid, const ContactNode& node,
-                                   const Side<D>& side, F&& f) const {
+void ContactGrid<D>::for_each_copy(const ContactNode& node, const Side<D>& side,
+                                   const BlockShape<D>& shape, F&& f) const {
+  f(patch_of(side), static_cast<int>(side.node));
+  if (side.copies == 1) return;
   const Index<D> index = Tile<D>::cell_index(node.cell);
-  for (std::uint32_t h = side.first_copy; h < side.first_copy + side.copies; ++h)
-    if (holds_node<D>(grid.shape, holders_[h], index))
-      f(static_cast<std::size_t>(holders_[h].patch),
-        node_in_holder<D>(grid.shape, holders_[h], index));
+  for (std::uint32_t h = side.first_copy + 1, left = side.copies - 1u; left > 0; ++h) {
+    if (!holds_node<D>(shape, holders_[h], index)) continue;
+    f(static_cast<std::size_t>(holders_[h].patch), node_in_holder<D>(shape, holders_[h], index));
+    --left;
+  }
+}
+
+template <int D>
+template <class Field>
+Vec<double, D> ContactGrid<D>::read(TileGrid<D>& grid, const Side<D>& side, Field&& field) const {
+  const NodeBlock<D> block = grid.block(patch_of(side));
+  Vec<double, D> value;
+  for (int a = 0; a < D; ++a) value[a] = field(block, a)[side.node];
+  return value;
+}
+
+template <int D>
+template <class Field>
+void ContactGrid<D>::write(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
+                           const Vec<double, D>& value, Field&& field) const {
+  for_each_copy(node, side, grid.shape, [&](std::size_t p, int at) {
+    const NodeBlock<D> block = grid.block(p);
+    for (int a = 0; a < D; ++a) field(block, a)[at] = value[a];
+  });
 }
 
 }  // namespace mpm

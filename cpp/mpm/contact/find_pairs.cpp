@@ -30,16 +30,50 @@ Vec<double, D> between_centres(const NearParticles<D>& r, const NearParticles<D>
   return normalised(n, 1e-9);
 }
 
+/// Does a pair pass the test of the gap, eq. (5), if that is asked for?
+template <int D>
+bool may_act(const SidePair<D>& pair, const ContactSettings& settings) {
+  return dot(pair.normal, pair.normal) > 0.0 &&
+         (settings.detection == Detection::velocity || pair.gap < settings.gap_distance);
+}
+
 }  // namespace
+
+template <int D>
+void ContactGrid<D>::start_pair(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
+                                std::span<const Side<D>> sides, std::uint16_t r, std::uint16_t s,
+                                SidePair<D>& pair) const {
+  pair = {};
+  pair.r = r;
+  pair.s = s;
+  pair.friction = friction(settings, bodies[static_cast<std::size_t>(sides[r].body)].group,
+                           bodies[static_cast<std::size_t>(sides[s].body)].group);
+}
+
+template <int D>
+template <class Known, class F>
+void ContactGrid<D>::for_each_known(const ContactNode& node, Known* known, F&& f) {
+  const auto sides = sides_of(node);
+  const auto rank = [&](std::uint16_t k) {
+    return std::ranges::count_if(sides, [&](const Side<D>& x) { return x.body < sides[k].body; });
+  };
+  for (SidePair<D>& pair : pairs_of(node)) {
+    const auto r = rank(pair.r), s = rank(pair.s);
+    const auto low = std::min(r, s), high = std::max(r, s);
+    f(pair, known[low * (2 * node.sides - low - 1) / 2 + high - low - 1], r < s ? 1.0 : -1.0);
+  }
+}
 
 template <int D>
 void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                                 const std::vector<double>& stiffness,
-                                const ContactSettings& settings, const ContactNode& node) {
-  const Side<D>* sides = &sides_[node.first_side];
+                                const ContactSettings& settings, TileBodies<D>& around,
+                                const ContactNode& node) {
+  const auto sides = sides_of(node);
   const auto rigid = [&](std::uint32_t k) {
     return bodies[static_cast<std::size_t>(sides[k].body)].rigid;
   };
+  const Index<D> index = Tile<D>::cell_index(node.cell);
   // Scratch of one thread, not counted among the bytes of the contact.
   thread_local std::vector<NormalSource<D>> sources;
   if (sources.size() < node.sides) sources.resize(node.sides);
@@ -50,25 +84,23 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
     source.stiffness = stiffness[b];
     source.particles.clear(grid.shape.margin);
     Vec<double, D> gradient = Vec<double, D>::zero();
-    for_each_copy(grid, node, sides[k], [&](std::size_t p, int at) {
-      collect_near(grid, bodies[b], grid.patches[p], at, source.particles);
-      if (settings.normal != NormalRule::plane)
-        gradient += mass_gradient(grid, bodies[b], grid.patches[p], at);
-    });
+    TileBody<D>& at = around.with(sides[k].body);
+    const double edge = bodies[b].mean_edge / grid.cell_size;
+    collect_near<D>(at.particles, index, support(grid.basis, edge), source.particles);
+    if (settings.normal != NormalRule::plane)
+      gradient = mass_gradient<D>(at.particles, index, grid, edge);
     // A wall mirrors the body, so its surface is normal to the wall there.
     for (int a = 0; a < D; ++a)
       if (node.held >> a & 1u) gradient[a] = 0.0;
     source.normal = weighted_normal(gradient, sides[k].mass, grid.cell_size);
   }
-  std::uint32_t at = node.first_pair;
+  SidePair<D>* next = &pairs_[node.first_pair];
   for (std::uint16_t r = 0; r < node.sides; ++r)
     for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
-      SidePair<D>& pair = pairs_[at++];
-      pair = {};
-      pair.r = r;
-      pair.s = s;
-      pair.friction = friction(settings, bodies[static_cast<std::size_t>(sides[r].body)].group,
-                               bodies[static_cast<std::size_t>(sides[s].body)].group);
+      SidePair<D>& pair = *next++;
+      start_pair(bodies, settings, sides, r, s, pair);
+      pair.gap = std::numeric_limits<double>::infinity();
+      if (rigid(r) && rigid(s)) continue;  // they have no stress that could part them
       // Bodies that are well apart along the line between their centres need no better normal.
       const bool by_gap = settings.detection == Detection::gap;
       if (by_gap && settings.normal == NormalRule::plane) {
@@ -76,20 +108,49 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
         pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
         if (pair.gap > settings.gap_distance + surely_open * grid.cell_size) continue;
       }
-      pair.normal = pair_normal(sources[r], sources[s], settings.normal, node.held);
-      const bool opposed = dot(pair.normal, pair.normal) > 0.0;
+      around.planes.with(sources[r].body, sources[s].body, index, [&](Plane<D>& last) {
+        pair.normal = pair_normal(sources[r], sources[s], settings.normal, node.held, last);
+      });
       pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
-      pair.closed = opposed &&
-                    !(rigid(r) && rigid(s)) &&  // they have no stress that could part them
-                    (!by_gap || pair.gap < settings.gap_distance);
+      pair.closed = may_act(pair, settings);
     }
 }
 
+template <int D>
+void ContactGrid<D>::remember_pairs(const ContactNode& node, KnownPair<D>* known) {
+  for_each_known(node, known, [](const SidePair<D>& pair, KnownPair<D>& to, double sign) {
+    to = {sign * pair.normal, pair.gap};
+  });
+}
+
+template <int D>
+void ContactGrid<D>::recall_pairs(const std::vector<Body<D>>& bodies,
+                                  const ContactSettings& settings, const KnownPair<D>* known,
+                                  const ContactNode& node) {
+  const auto sides = sides_of(node);
+  SidePair<D>* next = &pairs_[node.first_pair];
+  for (std::uint16_t r = 0; r < node.sides; ++r)
+    for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s)
+      start_pair(bodies, settings, sides, r, s, *next++);
+  for_each_known(node, known, [&](SidePair<D>& pair, const KnownPair<D>& last, double sign) {
+    pair.normal = sign * last.normal;
+    const Vec<double, D> parting = sides[pair.s].mapped - sides[pair.r].mapped;
+    pair.gap = last.gap + last_time_step_ * dot(parting, pair.normal);
+    pair.closed = may_act(pair, settings);
+  });
+}
+
+template void ContactGrid<2>::remember_pairs(const ContactNode&, KnownPair<2>*);
+template void ContactGrid<2>::recall_pairs(const std::vector<Body<2>>&, const ContactSettings&,
+                                           const KnownPair<2>*, const ContactNode&);
 template void ContactGrid<2>::find_pairs(const TileGrid<2>&, const std::vector<Body<2>>&,
                                          const std::vector<double>&, const ContactSettings&,
-                                         const ContactNode&);
+                                         TileBodies<2>&, const ContactNode&);
+template void ContactGrid<3>::remember_pairs(const ContactNode&, KnownPair<3>*);
+template void ContactGrid<3>::recall_pairs(const std::vector<Body<3>>&, const ContactSettings&,
+                                           const KnownPair<3>*, const ContactNode&);
 template void ContactGrid<3>::find_pairs(const TileGrid<3>&, const std::vector<Body<3>>&,
                                          const std::vector<double>&, const ContactSettings&,
-                                         const ContactNode&);
+                                         TileBodies<3>&, const ContactNode&);
 
 }  // namespace mpm

@@ -2,30 +2,29 @@
 // The normal of a pair of bodies at a node.
 #include <algorithm>
 
-#include "mpm/contact/contact_grid.hpp"
 #include "mpm/contact/separation.hpp"
+#include "mpm/contact/settings.hpp"
 
 namespace mpm {
 
-/// Sum of m_p grad N_ip [kg/m] over the particles of a patch around one of its nodes; it points out
-/// of the body.
+/// Sum of m_p grad N_ip [kg/m] over the particles of a body around a node, counted from the tile's
+/// first; it points out of the body. `edge` is the particles' edge at the start [cells].
 template <int D>
-Vec<double, D> mass_gradient(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
-                             int node) {
+Vec<double, D> mass_gradient(const TileParticles<D>& particles, const Index<D>& node,
+                             const TileGrid<D>& grid, double edge) {
   using T = Batch<native_lanes>;
   Vec<T, D> total = Vec<T, D>::zero();
-  with_basis(grid.basis, grid.shape, body.mean_edge / grid.cell_size, [&](const auto& basis) {
-    for_particles_around(
-        grid, body, patch, node, [&](const Index<D>& place, const Vec<T, D>& xi, const auto& rows) {
-          const T mass =
-              select(first_lanes<native_lanes>(rows.count), load(body.mass(), rows), T(0.0));
-          for (int a = 0; a < D; ++a) {
-            T g = mass;
-            for (int b = 0; b < D; ++b)
-              g = g * (b == a ? basis.slope(place[b], xi[b]) : basis.factor(place[b], xi[b]));
-            total[a] += g;
-          }
-        });
+  with_basis(grid.basis, grid.shape, edge, [&](const auto& basis) {
+    particles.around(node, [&](const Index<D>& place, const auto& lanes) {
+      for (int a = 0; a < D; ++a) {
+        T g = lanes.mass;
+        for (int b = 0; b < D; ++b) {
+          const int e = place[static_cast<std::size_t>(b)];
+          g = g * (b == a ? basis.slope(e, lanes.xi[b]) : basis.factor(e, lanes.xi[b]));
+        }
+        total[a] += g;
+      }
+    });
   });
   Vec<double, D> r;
   for (int a = 0; a < D; ++a) r[a] = sum(total[a]) / grid.cell_size;
@@ -51,10 +50,11 @@ struct NormalSource {
   Vec<double, D> normal;  // from the gradient of mass (weighted_normal); zero for `plane`
 };
 
-/// The unit normal from body r to body s by the chosen rule; zero if there is none.
+/// The unit normal from body r to body s by the chosen rule; zero if there is none. `plane` is for
+/// separating_normal.
 template <int D>
 Vec<double, D> pair_normal(const NormalSource<D>& r, const NormalSource<D>& s, NormalRule rule,
-                           unsigned held) {
+                           unsigned held, Plane<D>& plane) {
   constexpr double parallel = 1e-6;  // normals that differ by less give no direction
   const bool r_is_first = r.body < s.body;
   const bool r_is_stiffer = r.stiffness != s.stiffness ? r.stiffness > s.stiffness : r_is_first;
@@ -63,7 +63,7 @@ Vec<double, D> pair_normal(const NormalSource<D>& r, const NormalSource<D>& s, N
   };
   switch (rule) {
     case NormalRule::plane:
-      return separating_normal(r.particles, s.particles, held);
+      return separating_normal(r.particles, s.particles, held, plane);
     case NormalRule::pair:
       return normalised(r.normal - s.normal, parallel);
     case NormalRule::first:

@@ -59,9 +59,14 @@ void ContactGrid<D>::sort_records() {
 }
 
 template <int D>
-ContactSums ContactGrid<D>::record(const std::vector<Body<D>>& bodies, double time,
-                                   double time_step, std::int64_t step) {
+ContactSums ContactGrid<D>::record(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                                   double time, double time_step, std::int64_t step) {
   ContactSums sums;
+  // Mass of a side's node over that of a particle.
+  const auto share = [&](const Side<D>& side) {
+    return grid.block(patch_of(side)).mass()[side.node] /
+           bodies[static_cast<std::size_t>(side.body)].mean_mass;
+  };
   const std::size_t known = records_.size();
   for (auto& r : records_) std::fill(std::begin(r.force), std::end(r.force), 0.0);
   for (const ContactNode& node : nodes_) {
@@ -77,15 +82,14 @@ ContactSums ContactGrid<D>::record(const std::vector<Body<D>>& bodies, double ti
       const double sign =
           side_r.body < side_s.body ? 1.0 : -1.0;  // records hold what acts on the first
       // A node that a body has only just reached tells nothing about when and where they met.
-      const double lighter =
-          std::min(side_r.mapped_mass / bodies[static_cast<std::size_t>(side_r.body)].mean_mass,
-                   side_s.mapped_mass / bodies[static_cast<std::size_t>(side_s.body)].mean_mass);
-      if (lighter > least_share && (r.first_step < 0 || r.first_step == step) &&
-          lighter > r.first_share) {
-        r.first_step = step;
-        r.first_time = time;
-        r.first_gap = pair.gap;
-        r.first_share = lighter;
+      if (r.first_step < 0 || r.first_step == step) {
+        const double lighter = std::min(share(side_r), share(side_s));
+        if (lighter > std::max(least_share, r.first_share)) {
+          r.first_step = step;
+          r.first_time = time;
+          r.first_gap = pair.gap;
+          r.first_share = lighter;
+        }
       }
       for (int a = 0; a < D; ++a) {
         r.impulse[a] += sign * pair.impulse[a];
@@ -102,16 +106,17 @@ ContactSums ContactGrid<D>::record(const std::vector<Body<D>>& bodies, double ti
 
 template <int D>
 std::size_t ContactGrid<D>::bytes() const {
-  return holders_.capacity() * sizeof(TileHolder) + tiles_.capacity() * sizeof(ContactTile<D>) +
+  return masses_.bytes() + holders_.capacity() * sizeof(TileHolder) +
+         (tiles_.capacity() + last_tiles_.capacity()) * sizeof(ContactTile<D>) +
          counts_.capacity() * sizeof(TileCounts) + nodes_.capacity() * sizeof(ContactNode) +
          sides_.capacity() * sizeof(Side<D>) + pairs_.capacity() * sizeof(SidePair<D>) +
          records_.capacity() * sizeof(PairRecord) + places_.capacity() * sizeof(std::uint32_t);
 }
 
-template ContactSums ContactGrid<2>::record(const std::vector<Body<2>>&, double, double,
-                                            std::int64_t);
-template ContactSums ContactGrid<3>::record(const std::vector<Body<3>>&, double, double,
-                                            std::int64_t);
+template ContactSums ContactGrid<2>::record(TileGrid<2>&, const std::vector<Body<2>>&, double,
+                                            double, std::int64_t);
+template ContactSums ContactGrid<3>::record(TileGrid<3>&, const std::vector<Body<3>>&, double,
+                                            double, std::int64_t);
 template std::size_t ContactGrid<2>::bytes() const;
 template std::size_t ContactGrid<3>::bytes() const;
 

@@ -4,12 +4,31 @@
 // gradients of mass are oblique (Nairn, Hammerquist & Smith 2020, who fit it by logistic
 // regression). Here it is the plane of the support-vector machine with squared loss (Cortes &
 // Vapnik 1995), found by Newton's method with a line search (Keerthi & DeCoste 2005).
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mpm/contact/near_particles.hpp"
 #include "mpm/math/cholesky.hpp"
 
 namespace mpm {
+
+/// A plane a . x + b = 0, x in cells; none if a is zero. a points from one body to another and has
+/// the inverse of the half width of the corridor between them as its length.
+template <int D>
+struct Plane {
+  Vec<double, D> a = Vec<double, D>::zero();  // [1/cell]
+  double b = 0.0;
+
+  bool exists() const { return dot(a, a) > 0.0; }
+  /// The same plane when x counts from another origin.
+  Plane seen_from(const Index<D>& origin) const {
+    Plane plane = *this;
+    for (int k = 0; k < D; ++k) plane.b += a[k] * origin[static_cast<std::size_t>(k)];
+    return plane;
+  }
+  Plane reversed() const { return {-1.0 * a, -b}; }
+};
 
 /// The fit of a plane a . x + b = 0, x in cells from the node, to the particles of two bodies: the
 /// least of
@@ -22,37 +41,31 @@ class PlaneFit {
   static constexpr int n = D + 1;
 
  public:
-  /// Axes in `held` get no component.
-  PlaneFit(const NearParticles<D>& r, const NearParticles<D>& s, unsigned held)
+  /// Axes in `held` get no component. A plane near the answer saves steps, and changes nothing
+  /// else.
+  PlaneFit(const NearParticles<D>& r, const NearParticles<D>& s, unsigned held,
+           const Plane<D>& start)
       : r_(r), s_(s), held_(held) {
     const double mass_r = r.total(), mass_s = s.total();
     if (!(mass_r > 0.0 && mass_s > 0.0)) return;
     share_r_ = 1.0 / mass_r;
     share_s_ = 1.0 / mass_s;
-    start_between_centres();
-    // Some three steps; the limit is against rounding that never settles.
-    constexpr int most_steps = 50;
-    for (int k = 0; k < most_steps; ++k) {
-      double step[n];
-      newton_step(step);
-      double change = 0.0, size = 0.0;
-      for (int i = 0; i < n; ++i) {
-        change = std::max(change, std::abs(step[i]));
-        size = std::max(size, std::abs(z_[i]));
-      }
-      if (!(change > 1e-13 * size)) return;
-      bool settled = false;
-      const double t = best_length(step, settled);
-      for (int i = 0; i < n; ++i) z_[i] += t * step[i];
-      if (settled) return;
+    inside_.assign(r.lanes.size() + s.lanes.size(), T(0.0));
+    if (start.exists()) {
+      for (int i = 0; i < D; ++i) z_[i] = held >> i & 1u ? 0.0 : start.a[i];
+      z_[D] = start.b;
+    } else {
+      start_between_centres();
     }
+    find_least();
   }
 
-  /// The gradient a [1/cell] of the plane; zero where a body has no particles.
-  Vec<double, D> gradient() const {
-    Vec<double, D> a;
-    for (int i = 0; i < D; ++i) a[i] = z_[i];
-    return a;
+  /// None where a body has no particles.
+  Plane<D> plane() const {
+    Plane<D> plane;
+    for (int i = 0; i < D; ++i) plane.a[i] = z_[i];
+    plane.b = z_[D];
+    return plane;
   }
 
  private:
@@ -77,11 +90,41 @@ class PlaneFit {
     z_[D] = -2.0 * middle / square;
   }
 
-  /// f(position, sign, share of the body's mass) over both bodies.
+  /// Newton's method. Between the places where a particle enters or leaves the corridor the
+  /// function is a quadratic; once its least has the same particles inside as before, that is the
+  /// answer.
+  void find_least() {
+    // Some three steps; the limit is against rounding that never settles.
+    constexpr int most_steps = 50;
+    bool changed = false;
+    double value = classify(z_, changed);
+    for (int k = 0; k < most_steps; ++k) {
+      double z[n], step[n], change = 0.0, size = 0.0;
+      least_of_quadratic(z);
+      for (int i = 0; i < n; ++i) {
+        step[i] = z[i] - z_[i];
+        change = std::max(change, std::abs(step[i]));
+        size = std::max(size, std::abs(z_[i]));
+      }
+      double there = classify(z, changed);
+      const bool settled = !changed || !(change > 1e-13 * size);
+      if (!settled && !(there < value)) {  // too long a step
+        const double t = best_length(step);
+        for (int i = 0; i < n; ++i) z[i] = z_[i] + t * step[i];
+        there = classify(z, changed);
+      }
+      std::copy(z, z + n, z_);
+      value = there;
+      if (settled) return;
+    }
+  }
+
+  /// f(position, sign, share of the body's mass, share of it that is inside) over both bodies.
   template <class F>
-  void for_both(F&& f) const {
-    for (const auto& p : r_.lanes) f(p.x, T(-1.0), T(share_r_) * p.weight);
-    for (const auto& p : s_.lanes) f(p.x, T(1.0), T(share_s_) * p.weight);
+  void for_both(F&& f) {
+    T* inside = inside_.data();
+    for (const auto& p : r_.lanes) f(p.x, T(-1.0), T(share_r_) * p.weight, *inside++);
+    for (const auto& p : s_.lanes) f(p.x, T(1.0), T(share_s_) * p.weight, *inside++);
   }
   static T height(const double (&z)[n], const Vec<T, D>& x) {
     T y(z[D]);
@@ -89,40 +132,57 @@ class PlaneFit {
     return y;
   }
 
-  /// Newton's step from the gradient and the curvature at the present plane.
-  void newton_step(double (&step)[n]) const {
-    T slope[n], curvature[n][n];
+  /// Which particles are inside a plane's corridor or beyond; gives the function there, and whether
+  /// they are others than before.
+  double classify(const double (&z)[n], bool& changed) {
+    T lacks(0.0);
+    auto others = T(1.0) < T(0.0);
+    for_both([&](const Vec<T, D>& x, T sign, T share, T& inside) {
+      const T lack = T(1.0) - sign * height(z, x);
+      const T now = select(lack > T(0.0), share, T(0.0));
+      others = others | (now < inside) | (now > inside);
+      inside = now;
+      lacks += now * lack * lack;
+    });
+    changed = any(others);
+    double value = sum(lacks);
+    for (int i = 0; i < D; ++i) value += softness * z[i] * z[i];
+    return 0.5 * value;
+  }
+
+  /// The least of the function as it were if those inside now always were. It does not depend on
+  /// where the search started.
+  void least_of_quadratic(double (&z)[n]) {
+    T second[D][D], first[n];  // sums of share x x^T, and of sign share (x, 1)
+    T mean[n];                 // and of share (x, 1)
     for (int i = 0; i < n; ++i) {
-      slope[i] = T(0.0);
-      for (int j = 0; j <= i; ++j) curvature[i][j] = T(0.0);
+      first[i] = mean[i] = T(0.0);
+      for (int j = 0; j <= i && i < D; ++j) second[i][j] = T(0.0);
     }
-    for_both([&](const Vec<T, D>& x, T sign, T share) {
-      const T lack = T(1.0) - sign * height(z_, x);
-      const T weight = select(lack > T(0.0), share, T(0.0));
-      const T pull = sign * weight * lack;
-      T point[n];
-      for (int a = 0; a < D; ++a) point[a] = x[a];
-      point[D] = T(1.0);
-      for (int i = 0; i < n; ++i) {
-        slope[i] += pull * point[i];
-        const T row = weight * point[i];
-        for (int j = 0; j <= i; ++j) curvature[i][j] += row * point[j];
+    for_both([&](const Vec<T, D>& x, T sign, T, const T& inside) {
+      first[D] += sign * inside;
+      mean[D] += inside;
+      for (int i = 0; i < D; ++i) {
+        const T moment = inside * x[i];
+        first[i] += sign * moment;
+        mean[i] += moment;
+        for (int j = 0; j <= i; ++j) second[i][j] += moment * x[j];
       }
     });
     double A[n][n] = {};
-    auto fixed = [&](int i) { return i < D && (held_ >> i & 1u); };
+    const auto fixed = [&](int i) { return i < D && (held_ >> i & 1u); };
     for (int i = 0; i < n; ++i) {
-      step[i] = fixed(i) ? 0.0 : sum(slope[i]) - (i < D ? softness * z_[i] : 0.0);
-      for (int j = 0; j <= i; ++j) A[i][j] = fixed(i) || fixed(j) ? 0.0 : sum(curvature[i][j]);
+      z[i] = fixed(i) ? 0.0 : sum(first[i]);
+      for (int j = 0; j <= i; ++j)
+        A[i][j] = fixed(i) || fixed(j) ? 0.0 : sum(i < D ? second[i][j] : mean[j]);
       A[i][i] = fixed(i) ? 1.0 : A[i][i] + (i < D ? softness : damping);
     }
-    solve_symmetric(A, step);
+    solve_symmetric(A, z);
   }
 
   /// The length of a step at which the function is least: the root of a slope that is linear piece
-  /// by piece and rises. Roughly is enough: the next step mends the rest. If the particles inside
-  /// the corridor are the same after the whole step, that has led to the least: `settled`.
-  double best_length(const double (&step)[n], bool& settled) const {
+  /// by piece and rises. Roughly is enough: the next step mends the rest.
+  double best_length(const double (&step)[n]) {
     constexpr int most_trials = 20;
     constexpr double tolerance = 0.1;
     double along = 0.0, square = 0.0;
@@ -133,21 +193,13 @@ class PlaneFit {
     double t = 1.0;
     for (int k = 0; k < most_trials; ++k) {
       T slope(0.0), curvature(0.0);
-      auto changed = T(1.0) < T(0.0);
-      for_both([&](const Vec<T, D>& x, T sign, T share) {
+      for_both([&](const Vec<T, D>& x, T sign, T share, const T&) {
         const T gain = sign * height(step, x);
-        const T before = T(1.0) - sign * height(z_, x);
-        const T lack = before - T(t) * gain;
-        const auto was = before > T(0.0), is = lack > T(0.0);
-        changed = changed | (((was & !is) | (is & !was)) & (share > T(0.0)));
+        const T lack = T(1.0) - sign * height(z_, x) - T(t) * gain;
         const T pull = select(lack > T(0.0), share, T(0.0)) * gain;
         slope -= pull * lack;
         curvature += pull * gain;
       });
-      if (k == 0 && !any(changed)) {
-        settled = true;
-        return t;
-      }
       const double stiffness = sum(curvature) + square;
       if (!(stiffness > 0.0)) break;
       const double change = (sum(slope) + along + t * square) / stiffness;
@@ -162,17 +214,47 @@ class PlaneFit {
   unsigned held_;
   double share_r_ = 0.0, share_s_ = 0.0;
   double z_[n] = {};
+  // Of each lane the share that is inside; kept, so that fits do not allocate.
+  static inline thread_local std::vector<T> inside_;
 };
 
 /// The unit normal from r to s of the plane that separates their particles; zero if none does. All
 /// particles lie within 1.5 cells of the node along each axis, so the corridor of two separate
 /// bodies has a half width below 1.5 sqrt(3) = 2.6 cells; a much wider one means that the bodies
-/// fill the same place.
+/// fill the same place. `plane` is where to start, if it exists, and then the plane that was found.
 template <int D>
 Vec<double, D> separating_normal(const NearParticles<D>& r, const NearParticles<D>& s,
-                                 unsigned held) {
+                                 unsigned held, Plane<D>& plane) {
   constexpr double widest = 4.0;  // half width [cells]
-  return normalised(PlaneFit<D>(r, s, held).gradient(), 1.0 / widest);
+  plane = PlaneFit<D>(r, s, held, plane).plane();
+  return normalised(plane.a, 1.0 / widest);
 }
+
+/// The planes between the bodies around one tile that were found last, x from the tile's first
+/// node.
+template <int D>
+class LastPlanes {
+ public:
+  void forget() { known_.clear(); }
+  /// f(plane) with the plane from body r to body s, x from a node, which f may change.
+  template <class F>
+  void with(int r, int s, Index<D> node, F&& f) {
+    auto at = std::ranges::find(known_, std::pair(std::min(r, s), std::max(r, s)), &Known::bodies);
+    if (at == known_.end()) at = known_.insert(at, {std::pair(std::min(r, s), std::max(r, s)), {}});
+    Plane<D> plane = at->plane.seen_from(node);
+    if (r > s) plane = plane.reversed();
+    f(plane);
+    if (r > s) plane = plane.reversed();
+    for (auto& i : node) i = -i;
+    at->plane = plane.seen_from(node);
+  }
+
+ private:
+  struct Known {
+    std::pair<int, int> bodies;
+    Plane<D> plane;
+  };
+  std::vector<Known> known_;
+};
 
 }  // namespace mpm

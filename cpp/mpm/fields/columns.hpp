@@ -71,9 +71,10 @@ class Columns {
   }
 
  private:
-  // Columns a multiple of 4096 bytes apart would all fall into the same cache sets: stagger them by
-  // three lines. Whole pages between them would double the memory of small bodies, which stay off
-  // such multiples instead.
+  // At least eight rows more, so that whole vectors may be read at the end. Columns a multiple of
+  // 4096 bytes apart would all fall into the same cache sets: stagger them by three lines. Whole
+  // pages between them would double the memory of small bodies, which stay off such multiples
+  // instead.
   static std::size_t padded(std::size_t rows) {
     constexpr std::size_t page = 4096 / sizeof(double), stagger = 3 * cache_line / sizeof(double);
     const std::size_t lines = (rows + 15) / 8 * 8, beyond = lines % page;

@@ -13,20 +13,26 @@ template <int W>
 struct LaneRows {
   std::uint32_t row[W];
   int count;
-  bool contiguous;  // W rows in sequence
+  bool contiguous;  // the rows are in sequence
 
   LaneRows(const std::uint32_t* rows, std::size_t available) {
     count = available < W ? static_cast<int>(available) : W;
     for (int k = 0; k < W; ++k) row[k] = rows[k < count ? k : count - 1];
-    contiguous = count == W;
+    contiguous = true;
     for (int k = 1; k < W; ++k)
-      contiguous = contiguous && row[k] == row[0] + static_cast<std::uint32_t>(k);
+      contiguous = contiguous && (k >= count || row[k] == row[0] + static_cast<std::uint32_t>(k));
   }
 };
 
+/// Columns have room for W rows behind their last (Columns).
 template <int W>
 Batch<W> load(const double* column, const LaneRows<W>& rows) {
-  if (rows.contiguous) return Batch<W>::load(column + rows.row[0]);
+  if (rows.contiguous) {
+    const auto b = Batch<W>::load(column + rows.row[0]);
+    return rows.count == W
+               ? b
+               : select(first_lanes<W>(rows.count), b, Batch<W>(column[rows.row[W - 1]]));
+  }
   Batch<W> b;
   for (int k = 0; k < W; ++k) b.v[k] = column[rows.row[k]];
   return b;
@@ -36,7 +42,7 @@ inline double load(const double* column, const LaneRows<1>& rows) { return colum
 
 template <int W>
 void store(double* column, const LaneRows<W>& rows, Batch<W> value) {
-  if (rows.contiguous) {
+  if (rows.contiguous && rows.count == W) {
     value.store(column + rows.row[0]);
     return;
   }

@@ -79,6 +79,10 @@ double sound_speed(const Material& material, const Columns& columns, const Mater
   const auto value = [&](int component) { return columns.component(component)[row]; };
   Sym<double, D> stress;
   for (int c = 0; c < Sym<double, D>::size; ++c) stress.c[c] = value(at.stress + c);
+  // No waves run in loose matter: torn particles that gape (apply_failure.hpp).
+  if (at.failed >= 0 && value(at.failed) >= static_cast<double>(FailureAction::no_tension) &&
+      trace(stress) >= 0.0)
+    return 0.0;
   const double J = value(at.volume) * material.density / value(at.mass);
   return std::visit(
       [&]<class Model>(const Model& model) {

@@ -108,23 +108,31 @@ Batch<W> sqrt(Batch<W> a) {
   return r;
 }
 
+/// A bit for each lane, set where the condition holds.
+template <int W>
+std::uint64_t lane_bits(Mask<W> m) {
+#if defined(__AVX__)
+  if constexpr (W == 4)
+    return static_cast<std::uint64_t>(_mm256_movemask_pd(reinterpret_cast<__m256d>(m.v)));
+#endif
+  std::uint64_t bits = 0;
+  for (int k = 0; k < W; ++k) bits |= m.v[k] != 0 ? std::uint64_t{1} << k : 0;
+  return bits;
+}
+
 /// True if the condition holds in any lane.
 template <int W>
 bool any(Mask<W> m) {
-#if defined(__AVX__)
-  if constexpr (W == 4) return _mm256_movemask_pd(reinterpret_cast<__m256d>(m.v)) != 0;
-#endif
-  std::int64_t bits = 0;
-  for (int k = 0; k < W; ++k) bits |= m.v[k];
-  return bits != 0;
+  return lane_bits(m) != 0;
 }
 
 /// The lanes before `count`.
 template <int W>
 Mask<W> first_lanes(int count) {
-  Mask<W> m;
-  for (int k = 0; k < W; ++k) m.v[k] = k < count ? -1 : 0;
-  return m;
+  using Bits = typename Mask<W>::Vector;
+  Bits lane;
+  for (int k = 0; k < W; ++k) lane[k] = k;
+  return {lane < Bits{} + count};
 }
 
 /// Sum over the lanes, in the order of the lanes.

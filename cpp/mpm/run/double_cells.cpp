@@ -30,6 +30,7 @@ void SimulationOf<D>::double_cells() {
   for (int& cells : grid.walls.cells) cells /= 2;
   grid.release_nodes();
   make_lists(grid, domain_.bodies, domain_.threads);
+  domain_.contact.forget();
   if (domain_.has_contact()) domain_.contact.connect(grid, domain_.bodies);
   probe_speeds();
 }

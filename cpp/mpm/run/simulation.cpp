@@ -21,6 +21,8 @@ void check(const Settings& s) {
         "time_step_factor must lie in (0, 1]");
   check(s.threads >= 1, "threads must be >= 1");
   check(s.friction >= 0.0 && std::isfinite(s.friction), "friction must be a finite number >= 0");
+  check(s.normal_travel >= 0.0 && std::isfinite(s.normal_travel),
+        "normal_travel must be a finite number >= 0");
   check(s.gap_distance >= 0.0 && std::isfinite(s.gap_distance),
         "gap_distance must be a finite number >= 0");
   for (std::size_t a = 0; a < 3; ++a) {
@@ -95,6 +97,7 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
   domain_.contact_settings.detection = settings.detection;
   domain_.contact_settings.normal = settings.normal_rule;
   domain_.contact_settings.gap_distance = settings.gap_distance;
+  domain_.contact_settings.normal_travel = settings.normal_travel;
   domain_.contact_settings.friction = settings.friction;
   domain_.threads.resize(settings.threads);
   for (std::size_t k = 0; k < stages_.size(); ++k) timers_.name(k, stages_[k].name);
@@ -161,8 +164,8 @@ void SimulationOf<D>::make_step(double time_after) {
   ++domain_.step;
   ContactSums contacts;
   if (domain_.has_contact())
-    contacts =
-        domain_.contact.record(domain_.bodies, domain_.time, domain_.time_step, domain_.step);
+    contacts = domain_.contact.record(domain_.grid, domain_.bodies, domain_.time, domain_.time_step,
+                                      domain_.step);
   ledger_.add(domain_.sums, contacts, domain_.eroded, domain_.left,
               settings_.scheme == Scheme::usf);
   write_history_row();
@@ -174,7 +177,8 @@ void SimulationOf<D>::make_step(double time_after) {
 
 template <int D>
 void SimulationOf<D>::choose_time_step() {
-  double fastest = 0.0;
+  // Where neither waves nor particles are fast, nothing falls further than about a cell.
+  double fastest = std::sqrt(norm(domain_.gravity) * settings_.cell_size);
   for (const PatchSums<D>& s : domain_.sums) fastest = std::max(fastest, s.stress.fastest);
   next_time_step_ = settings_.time_step_factor * settings_.cell_size / fastest;
 }

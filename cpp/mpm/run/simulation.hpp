@@ -38,7 +38,8 @@ struct Settings {
   bool bonded = false;  // all bodies move with one velocity field
   Detection detection = Detection::gap;
   NormalRule normal_rule = NormalRule::plane;
-  double gap_distance = 0.0;  // [m]
+  double gap_distance = 0.0;    // [m]
+  double normal_travel = 0.05;  // [cells]
   double friction = 0.0;
   int threads = 1;
   double energy_growth_limit = 0.0;  // fraction of the largest energy brought in

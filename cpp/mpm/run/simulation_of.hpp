@@ -67,6 +67,7 @@ class SimulationOf final : public Simulation {
   std::array<double, 3> momentum() const;
   void start_motions();
   double initial_internal_energy() const;
+  double wave_speed(const Body<D>& b, std::size_t row) const;
   void probe_speeds();  // finds the next time step from the present state
   void make_step(double time_after);
   void choose_time_step();

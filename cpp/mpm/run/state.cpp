@@ -18,6 +18,14 @@ double speed_of(const Body<D>& body, std::size_t row) {
 
 }  // namespace
 
+/// Of the fastest wave in a particle [m/s]; 0 in a rigid body, which limits no time step.
+template <int D>
+double SimulationOf<D>::wave_speed(const Body<D>& b, std::size_t row) const {
+  if (b.rigid) return 0.0;
+  const Material& material = domain_.materials[static_cast<std::size_t>(b.material)];
+  return sound_speed<D>(material, b.columns, b.at, row, domain_.grid.cell_size);
+}
+
 template <int D>
 void SimulationOf<D>::probe_speeds() {
   for (PatchSums<D>& s : domain_.sums) s.stress = {};
@@ -25,13 +33,10 @@ void SimulationOf<D>::probe_speeds() {
   for (std::size_t p = 0; p < domain_.grid.patches.size(); ++p) {
     const Patch<D>& patch = domain_.grid.patches[p];
     const Body<D>& b = domain_.body_of(patch);
-    const Material& material = domain_.materials[static_cast<std::size_t>(b.material)];
     for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
       const std::size_t i = b.order[k];
-      const double c =
-          b.rigid ? 0.0 : sound_speed<D>(material, b.columns, b.at, i, domain_.grid.cell_size);
       double& fastest = domain_.sums[p].stress.fastest;
-      fastest = std::max(fastest, c + speed_of(b, i));
+      fastest = std::max(fastest, wave_speed(b, i) + speed_of(b, i));
     }
   }
   choose_time_step();
@@ -104,12 +109,9 @@ Limiter SimulationOf<D>::limiter() const {
     if (domain_.sums[p].stress.fastest > domain_.sums[fastest].stress.fastest) fastest = p;
   const Patch<D>& patch = domain_.grid.patches[fastest];
   const Body<D>& b = body(patch.body);
-  const Material& material = domain_.materials[static_cast<std::size_t>(b.material)];
   for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
     const std::size_t i = b.order[k];
-    const double c =
-        b.rigid ? 0.0 : sound_speed<D>(material, b.columns, b.at, i, domain_.grid.cell_size);
-    const double v = speed_of(b, i);
+    const double c = wave_speed(b, i), v = speed_of(b, i);
     if (c + v > result.sound_speed + result.speed || result.body < 0)
       result = {patch.body, static_cast<std::int64_t>(b.id[i]), c, v};
   }

@@ -22,7 +22,7 @@ template <int D>
 void contact_momentum(Domain<D>& domain) {
   if (!domain.has_contact()) return;
   domain.contact.find(domain.grid, domain.bodies, domain.stiffness, domain.contact_settings,
-                      domain.threads);
+                      domain.time_step, domain.threads);
   domain.contact.adjust_momentum(domain.grid, domain.threads);
   reflect(domain, [](const NodeBlock<D>& block, int a) { return block.velocity(a); });
 }
@@ -30,7 +30,8 @@ void contact_momentum(Domain<D>& domain) {
 template <int D>
 void contact_forces(Domain<D>& domain) {
   if (domain.has_contact())
-    domain.contact.add_forces(domain.grid, domain.gravity, domain.time_step, domain.threads);
+    domain.contact.add_forces(domain.grid, domain.bodies, domain.gravity, domain.time_step,
+                              domain.threads);
 }
 
 template <int D>

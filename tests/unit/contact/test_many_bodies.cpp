@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "check.hpp"
-#include "mpm/contact/node_contact.hpp"
+#include "mpm/contact/node_solver.hpp"
 
 namespace {
 
@@ -14,16 +14,19 @@ using namespace mpm;
 
 template <int D>
 struct Crowd {
-  std::vector<Side<D>> sides;
-  std::vector<SidePair<D>> pairs;
+  NodeSolution<D> node;
+  std::vector<SolvedSide<D>>& sides = node.sides;
+  std::vector<SolvedPair<D>>& pairs = node.pairs;
+
+  Crowd(const Crowd& other) : node(other.node) {}
 
   /// `count` bodies around a node, each seen from the node in another direction, moving at random.
-  Crowd(std::mt19937_64& random, std::size_t count, double friction) : sides(count) {
+  Crowd(std::mt19937_64& random, std::size_t count, double friction) {
+    sides.resize(count);
     std::uniform_real_distribution<double> mass(0.5, 5.0), any(-1.0, 1.0);
     std::vector<Vec<double, D>> centre(count);
     for (std::size_t k = 0; k < count; ++k) {
       sides[k] = {};
-      sides[k].body = static_cast<int>(k);
       sides[k].mass = mass(random);
       for (int a = 0; a < D; ++a) sides[k].momentum[a] = sides[k].mass * any(random);
       bool apart = false;  // bodies do not sit inside one another: at least 35 degrees apart
@@ -36,10 +39,10 @@ struct Crowd {
     }
     for (std::size_t r = 0; r < count; ++r)
       for (std::size_t s = r + 1; s < count; ++s) {
-        SidePair<D> pair{};
+        SolvedPair<D> pair{};
         pair.r = static_cast<std::uint16_t>(r);
         pair.s = static_cast<std::uint16_t>(s);
-        pair.closed = true;
+        pair.takes_part = true;
         pair.friction = friction;
         pair.normal = normalised(centre[s] - centre[r]);
         pairs.push_back(pair);
@@ -48,9 +51,7 @@ struct Crowd {
 
   template <bool with_friction>
   bool solve() {
-    return solve_node<D, with_friction>(sides.data(), pairs.data(),
-                                        static_cast<std::uint32_t>(pairs.size()),
-                                        [](const SidePair<D>& p) { return p.closed; });
+    return solve_node<with_friction>(node);
   }
 
   /// The same bodies under other numbers: body k becomes body number[k]; pairs in the order of the
@@ -58,7 +59,7 @@ struct Crowd {
   Crowd renumbered(const std::vector<std::size_t>& number) const {
     Crowd other = *this;
     for (std::size_t k = 0; k < sides.size(); ++k) other.sides[number[k]] = sides[k];
-    for (SidePair<D>& pair : other.pairs) {
+    for (SolvedPair<D>& pair : other.pairs) {
       pair.r = static_cast<std::uint16_t>(number[pair.r]);
       pair.s = static_cast<std::uint16_t>(number[pair.s]);
       if (pair.r < pair.s) continue;
@@ -96,7 +97,7 @@ void check_crowd(mpm::testing::Report& report, Crowd<D> crowd, std::mt19937_64& 
   CHECK(crowd.kinetic() <= start.kinetic() * (1.0 + 1e-12), crowd.kinetic(), start.kinetic(),
         bodies);
   for (const auto& pair : crowd.pairs) {
-    const Side<D>&r = crowd.sides[pair.r], &s = crowd.sides[pair.s];
+    const SolvedSide<D>&r = crowd.sides[pair.r], &s = crowd.sides[pair.s];
     const Vec<double, D> relative = (1.0 / r.mass) * r.momentum - (1.0 / s.mass) * s.momentum;
     const double approach = dot(relative, pair.normal);
     CHECK(approach <= tolerance, approach, bodies);
@@ -126,9 +127,10 @@ void check_crowd(mpm::testing::Report& report, Crowd<D> crowd, std::mt19937_64& 
 /// between them is rounding.
 template <int D, bool with_friction>
 void check_together(mpm::testing::Report& report, Crowd<D> crowd) {
-  for (Side<D>& side : crowd.sides)
+  for (std::size_t k = 0; k < crowd.sides.size(); ++k)
     for (int a = 0; a < D; ++a)
-      side.momentum[a] = side.mass * (30.0 - 10.0 * a) * (1.0 + 1e-16 * side.body);
+      crowd.sides[k].momentum[a] =
+          crowd.sides[k].mass * (30.0 - 10.0 * a) * (1.0 + 1e-16 * static_cast<double>(k));
   const Crowd<D> before = crowd;
   CHECK(crowd.template solve<with_friction>());
   for (std::size_t k = 0; k < crowd.sides.size(); ++k) {
@@ -165,7 +167,7 @@ void test_many_bodies(mpm::testing::Report& report) {
   }
   for (auto& pair : row.pairs) {
     pair.normal = {{1.0, 0.0}};
-    pair.closed = pair.s == pair.r + 1;
+    pair.takes_part = pair.s == pair.r + 1;
   }
   row.solve<false>();
   for (const auto& side : row.sides) CHECK_CLOSE(side.momentum[0], 0.2, 1e-10);

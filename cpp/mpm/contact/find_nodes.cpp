@@ -1,0 +1,265 @@
+// The overlapped nodes of a step: who has mass there.
+#include <algorithm>
+#include <bit>
+
+#include "mpm/contact/contact_grid.hpp"
+
+namespace mpm {
+namespace {
+
+/// Room for more than is needed now, so that numbers which creep up seldom allocate.
+template <class T>
+void resize(std::vector<T>& v, std::size_t size) {
+  if (size > v.capacity()) v.reserve(size + size / 8);
+  v.resize(size);
+}
+
+/// A hash that goes on with another number (Knuth 1973, section 6.4).
+std::uint64_t mix(std::uint64_t hash, std::uint64_t x) {
+  hash = (hash ^ x) * 0x9E3779B97F4A7C15u;
+  return hash ^ hash >> 32;
+}
+
+template <int D>
+TileBodies<D>& bodies_around() {
+  thread_local TileBodies<D> around;
+  return around;
+}
+
+}  // namespace
+
+template <int D>
+void ContactGrid<D>::look_around(const TileGrid<D>& grid, const ContactTile<D>& tile,
+                                 TileBodies<D>& found) const {
+  found.count = 0;
+  found.planes.forget();
+  std::uint64_t once = 0;
+  found.overlapped = 0;
+  const std::uint32_t end = tile.first_holder + tile.holders;
+  for (std::uint32_t h = tile.first_holder; h < end;) {
+    if (found.count == found.bodies.size()) found.bodies.emplace_back();
+    TileBody<D>& at = found.bodies[found.count++];
+    at.body = holders_[h].body;
+    at.first_holder = h;
+    at.nodes = 0;
+    for (; h < end && holders_[h].body == at.body; ++h)
+      at.nodes |= masses_.in_tile(grid.shape, holders_[h]);
+    at.holders = h - at.first_holder;
+    found.overlapped |= once & at.nodes;
+    once |= at.nodes;
+  }
+  if (!grid.walls.exist) return;
+  for (std::uint64_t left = found.overlapped; left != 0; left &= left - 1) {
+    const int cell = std::countr_zero(left);
+    Index<D> node = Tile<D>::cell_index(cell), image;
+    for (std::size_t a = 0; a < D; ++a) node[a] += grid.first_cell(tile.tile)[a];
+    // A node beyond a slip wall follows its image.
+    if (grid.walls.mirrored(node, image)) found.overlapped &= ~(std::uint64_t{1} << cell);
+  }
+}
+
+template <int D>
+void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around,
+                                 ContactNode& node) {
+  const Index<D> index = Tile<D>::cell_index(node.cell);
+  node.sides = 0;
+  for (const TileBody<D>& at : around.all()) {
+    if (!(at.nodes >> node.cell & 1u)) continue;
+    Side<D>& side = sides_[node.first_side + node.sides++];
+    side.body = at.body;
+    side.copies = 0;
+    for (std::uint32_t h = at.first_holder; h < at.first_holder + at.holders; ++h)
+      if (holds_node<D>(grid.shape, holders_[h], index) && side.copies++ == 0) side.first_copy = h;
+    side.node =
+        static_cast<std::uint16_t>(node_in_holder<D>(grid.shape, holders_[side.first_copy], index));
+    const NodeBlock<D> block = grid.block(patch_of(side));
+    __builtin_prefetch(block.mass() + side.node);
+    for (int a = 0; a < D; ++a) __builtin_prefetch(block.velocity(a) + side.node);
+  }
+}
+
+template <int D>
+void ContactGrid<D>::read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                                ContactNode& node) {
+  node.held = static_cast<std::uint8_t>(grid.walls.held(place_of(grid, node)));
+  node.energy = node.force_work = 0.0;
+  std::uint64_t who = 0;
+  for (Side<D>& side : sides_of(node)) {
+    const auto b = static_cast<std::size_t>(side.body);
+    who = mix(mix(who, b), bodies[b].active());
+    side.prescribed = bodies[b].prescribed;
+    side.mass = grid.block(patch_of(side)).mass()[side.node];
+    side.mapped =
+        read(grid, side, [](const NodeBlock<D>& block, int a) { return block.velocity(a); });
+  }
+  known_nodes_[number_of(node)].who = who;
+  sort_sides(sides_of(node));
+}
+
+template <int D>
+void ContactGrid<D>::count(const TileGrid<D>& grid, Threads& threads) {
+  counts_.assign(tiles_.size() + 1, {});
+  threads.for_each(tiles_.size(), [&](std::size_t t) {
+    TileBodies<D>& around = bodies_around<D>();
+    look_around(grid, tiles_[t], around);
+    TileCounts c{};
+    for (std::uint64_t left = around.overlapped; left != 0; left &= left - 1) {
+      const int cell = std::countr_zero(left);
+      std::uint32_t sides = 0;
+      for (const TileBody<D>& at : around.all()) sides += at.nodes >> cell & 1u ? 1u : 0u;
+      ++c.nodes;
+      c.sides += sides;
+      c.pairs += pair_count(sides);
+    }
+    counts_[t + 1] = c;
+  });
+  for (std::size_t t = 1; t < counts_.size(); ++t) {
+    counts_[t].nodes += counts_[t - 1].nodes;
+    counts_[t].sides += counts_[t - 1].sides;
+    counts_[t].pairs += counts_[t - 1].pairs;
+  }
+  std::swap(known_, last_known_);
+  std::swap(known_nodes_, last_known_nodes_);
+  resize(nodes_, counts_.back().nodes);
+  resize(sides_, counts_.back().sides);
+  resize(pairs_, counts_.back().pairs);
+  resize(known_nodes_, counts_.back().nodes);
+  resize(known_, counts_.back().pairs);
+  nodes_max_ = std::max(nodes_max_, nodes_.size());
+}
+
+template <int D>
+void ContactGrid<D>::add_travel(std::size_t bodies) {
+  travel_.resize(bodies, 0.0);
+  fastest_.assign(bodies, 0.0);
+  for (const Side<D>& side : sides_) {
+    double& fastest = fastest_[static_cast<std::size_t>(side.body)];
+    fastest = std::max(fastest, dot(side.mapped, side.mapped));
+  }
+  for (std::size_t b = 0; b < bodies; ++b) travel_[b] += last_time_step_ * std::sqrt(fastest_[b]);
+}
+
+template <int D>
+double ContactGrid<D>::travel_at(const ContactNode& node) {
+  double sum = 0.0;
+  for (const Side<D>& side : sides_of(node)) sum += travel_[static_cast<std::size_t>(side.body)];
+  return sum / node.sides;
+}
+
+template <int D>
+void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                                const std::vector<double>& stiffness,
+                                const ContactSettings& settings, std::size_t t) {
+  ContactTile<D>& tile = tiles_[t];
+  const std::span<ContactNode> nodes(&nodes_[counts_[t].nodes],
+                                     counts_[t + 1].nodes - counts_[t].nodes);
+  std::uint64_t overlapped = 0, unknown = 0;
+  for (const ContactNode& node : nodes) {
+    const std::uint64_t bit = std::uint64_t{1} << node.cell;
+    overlapped |= bit;
+    KnownNode& now = known_nodes_[number_of(node)];
+    now.first_pair = node.first_pair;
+    now.travel = travel_at(node);
+    if (tile.known & bit) {
+      const int before = std::popcount(tile.known & (bit - 1));
+      const KnownNode& last =
+          last_known_nodes_[tile.first_known + static_cast<std::uint32_t>(before)];
+      if (last.who == now.who &&
+          now.travel - last.travel <= settings.normal_travel * grid.cell_size) {
+        now.travel = last.travel;
+        recall_pairs(bodies, settings, &last_known_[last.first_pair], node);
+        continue;
+      }
+    }
+    unknown |= bit;
+  }
+  if (unknown != 0) {
+    TileBodies<D>& around = bodies_around<D>();
+    look_around(grid, tile, around);
+    for (TileBody<D>& at : around.all())
+      at.particles.gather(grid, bodies[static_cast<std::size_t>(at.body)], tile.tile,
+                          {&holders_[at.first_holder], at.holders}, at.nodes & unknown);
+    for (const ContactNode& node : nodes)
+      if (unknown >> node.cell & 1u) find_pairs(grid, bodies, stiffness, settings, around, node);
+  }
+  for (const ContactNode& node : nodes) remember_pairs(node, &known_[node.first_pair]);
+  tile.known = overlapped;
+  tile.first_known = counts_[t].nodes;
+}
+
+template <int D>
+void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                          const std::vector<double>& stiffness, const ContactSettings& settings,
+                          double time_step, Threads& threads) {
+  masses_.find(grid, threads);
+  count(grid, threads);
+  threads.for_each(tiles_.size(), [&](std::size_t t) {
+    TileCounts c = counts_[t];
+    if (c.nodes == counts_[t + 1].nodes) return;
+    TileBodies<D>& around = bodies_around<D>();
+    look_around(grid, tiles_[t], around);
+    for (std::uint64_t left = around.overlapped; left != 0; left &= left - 1) {
+      ContactNode& node = nodes_[c.nodes++];
+      node.cell = static_cast<std::uint8_t>(std::countr_zero(left));
+      node.tile = static_cast<std::uint32_t>(t);
+      node.first_side = c.sides;
+      node.first_pair = c.pairs;
+      place_sides(grid, around, node);
+      c.sides += node.sides;
+      c.pairs += pair_count(node.sides);
+    }
+    for (std::uint32_t n = counts_[t].nodes; n < c.nodes; ++n) read_sides(grid, bodies, nodes_[n]);
+  });
+  add_travel(bodies.size());
+  threads.for_each(tiles_.size(),
+                   [&](std::size_t t) { fill_pairs(grid, bodies, stiffness, settings, t); });
+  last_time_step_ = time_step;
+  share_rigid_masses(bodies);
+  for (const ContactNode& node : nodes_)
+    bodies_max_ = std::max(bodies_max_, static_cast<int>(node.sides));
+}
+
+/// Give bodies whose motion is prescribed the masses with which they meet the others at a node:
+/// infinite ones, so that the reduced mass is that of the others; but where such a body has less
+/// than a tenth of the others' volume at the node, in proportion, so that a node which it has only
+/// just reached, inside the others, is not held.
+template <int D>
+void harden(const std::vector<Body<D>>& bodies, std::span<Side<D>> sides) {
+  constexpr double full = 0.1;
+  const auto density = [&](const Side<D>& side) {
+    return bodies[static_cast<std::size_t>(side.body)].initial_density;
+  };
+  double mass = 0.0, volume = 0.0;
+  for (const Side<D>& side : sides)
+    if (!side.prescribed) {
+      mass += side.mass;
+      volume += side.mass / density(side);
+    }
+  for (Side<D>& side : sides) {
+    if (!side.prescribed) continue;
+    const double share = side.mass / density(side) / (full * volume);
+    side.mass =
+        share < 1.0 ? mass * share / (1.0 - share) : std::numeric_limits<double>::infinity();
+  }
+}
+
+template <int D>
+void ContactGrid<D>::share_rigid_masses(const std::vector<Body<D>>& bodies) {
+  if (std::none_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.rigid; })) return;
+  rigid_share_.assign(bodies.size(), 0.0);
+  for (const ContactNode& node : nodes_) harden(bodies, sides_of(node));
+  for (const Side<D>& side : sides_) rigid_share_[static_cast<std::size_t>(side.body)] += side.mass;
+  for (Side<D>& side : sides_) {
+    const auto b = static_cast<std::size_t>(side.body);
+    if (bodies[b].rigid && !side.prescribed) side.mass /= rigid_share_[b] / bodies[b].total_mass;
+  }
+}
+
+template void ContactGrid<2>::find(TileGrid<2>&, const std::vector<Body<2>>&,
+                                   const std::vector<double>&, const ContactSettings&, double,
+                                   Threads&);
+template void ContactGrid<3>::find(TileGrid<3>&, const std::vector<Body<3>>&,
+                                   const std::vector<double>&, const ContactSettings&, double,
+                                   Threads&);
+
+}  // namespace mpm

@@ -1,0 +1,106 @@
+#pragma once
+// The impulses between any number of bodies at one node.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "mpm/math/vec.hpp"
+
+namespace mpm {
+
+/// One body at a node while its contacts are solved.
+template <int D>
+struct SolvedSide {
+  double mass;              // [kg]; infinite or nearly so for a prescribed body
+  bool prescribed;          // the body moves as it does, whatever pushes it
+  Vec<double, D> momentum;  // [kg m/s]; of a prescribed body what it has been pushed with
+  Vec<double, D> base;      // velocity of a prescribed body, else 0 [m/s]
+
+  /// Give it a velocity and an impulse to start from.
+  void start(const Vec<double, D>& v, const Vec<double, D>& impulse) {
+    base = prescribed ? v : Vec<double, D>::zero();
+    momentum = prescribed ? Vec<double, D>::zero() : mass * v + impulse;
+  }
+  /// Velocity in the solver.
+  Vec<double, D> working_velocity() const { return base + (1.0 / mass) * momentum; }
+  /// Velocity that comes of it.
+  Vec<double, D> end_velocity() const { return prescribed ? base : (1.0 / mass) * momentum; }
+};
+
+/// Two bodies at a node while its contacts are solved.
+template <int D>
+struct SolvedPair {
+  std::uint16_t r, s;                                        // sides, by number
+  bool takes_part;                                           // else nothing acts between the two
+  double friction;                                           // coefficient of friction
+  Vec<double, D> normal;                                     // from r to s
+  double normal_impulse = 0.0;                               // [N s]
+  Vec<double, D> friction_impulse = Vec<double, D>::zero();  // on s [N s]
+};
+
+/// The bodies at a node and the pairs of them.
+template <int D>
+struct NodeSolution {
+  std::vector<SolvedSide<D>> sides;
+  std::vector<SolvedPair<D>> pairs;
+};
+
+/// m_r m_s / (m_r + m_s); one of the two may be infinite.
+inline double reduced_mass(double r, double s) {
+  if (std::isinf(r)) return s;
+  return std::isinf(s) ? r : r * s / (r + s);
+}
+
+/// Remove the approach of every pair that takes part, eqs. (6)-(7), working on
+/// SolvedSide::momentum; with friction, hold the tangential motion as far as Coulomb's law allows,
+/// eqs. (14)-(15). For two bodies this is the paper's formula; more are solved together by
+/// projected Gauss-Seidel in a fixed order, to 1e-12 of the largest impulse or to the rounding of
+/// their momenta. Pairs come in without impulses. Gives false if it stopped short of the tolerance.
+template <bool with_friction, int D>
+bool solve_node(NodeSolution<D>& node) {
+  auto& [sides, pairs] = node;
+  constexpr int most_sweeps = 20000;
+  constexpr double tolerance = 1e-12;
+  // Bodies that move together exert impulses on each other that are rounding: no sweeps settle
+  // them.
+  constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+  double unresolved = 0.0;
+  if (pairs.size() > 1)
+    for (const SolvedPair<D>& pair : pairs) {
+      const double lighter = std::min(norm(sides[pair.r].momentum), norm(sides[pair.s].momentum));
+      unresolved = std::max(unresolved, rounding * lighter);
+    }
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    double change = 0.0, scale = 0.0;
+    for (SolvedPair<D>& pair : pairs) {
+      if (!pair.takes_part) continue;
+      SolvedSide<D>& r = sides[pair.r];
+      SolvedSide<D>& s = sides[pair.s];
+      const double m_rs = reduced_mass(r.mass, s.mass);
+      const Vec<double, D> relative = r.working_velocity() - s.working_velocity();
+      const double normal = std::max(pair.normal_impulse + m_rs * dot(relative, pair.normal), 0.0);
+      Vec<double, D> impulse = (normal - pair.normal_impulse) * pair.normal;
+      change = std::max(change, std::abs(normal - pair.normal_impulse));
+      scale = std::max(scale, normal);
+      pair.normal_impulse = normal;
+      if constexpr (with_friction) {
+        Vec<double, D> slip = relative - dot(relative, pair.normal) * pair.normal;
+        Vec<double, D> hold = pair.friction_impulse + m_rs * slip;
+        const double limit = pair.friction * normal, needed = norm(hold);
+        if (needed > limit) hold = (limit / needed) * hold;
+        const Vec<double, D> difference = hold - pair.friction_impulse;
+        change = std::max(change, norm(difference));
+        pair.friction_impulse = hold;
+        impulse += difference;
+      }
+      r.momentum -= impulse;
+      s.momentum += impulse;
+    }
+    if (pairs.size() == 1 || change <= std::max(tolerance * scale, unresolved)) return true;
+  }
+  return false;
+}
+
+}  // namespace mpm

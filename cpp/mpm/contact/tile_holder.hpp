@@ -1,0 +1,85 @@
+#pragma once
+// Which patches have a tile's nodes in their blocks, and at which of them their bodies have mass.
+#include <cstdint>
+
+#include "mpm/grid/tile_grid.hpp"
+#include "mpm/math/batch.hpp"
+
+namespace mpm {
+
+/// A patch whose block has nodes that belong to a tile: the tile's own patch of a body, or one
+/// beside it. (A tile's own nodes are all but those at its upper ends, which are the next tile's
+/// first.)
+struct TileHolder {
+  std::int32_t body;
+  std::int32_t patch;
+  std::uint8_t neighbour;  // where the tile lies as seen from the patch: Tile<D>::offset
+};
+
+/// Coordinate in a holder's block of a node of the tile.
+template <int D>
+Index<D> seen_from(const TileHolder& holder, Index<D> node) {
+  const Index<D> o = Tile<D>::offset(holder.neighbour);
+  for (std::size_t a = 0; a < D; ++a) node[a] += Tile<D>::cells * o[a];
+  return node;
+}
+/// Does a holder's patch have this node (counted from the tile's first) in its block?
+template <int D>
+bool holds_node(const BlockShape<D>& shape, const TileHolder& holder, const Index<D>& node) {
+  return shape.holds(seen_from<D>(holder, node));
+}
+/// The node's number in the holder's block.
+template <int D>
+int node_in_holder(const BlockShape<D>& shape, const TileHolder& holder, const Index<D>& node) {
+  return shape.node(seen_from<D>(holder, node));
+}
+
+/// The nodes at which bodies have mass, a bit each, of the blocks of all patches that have nodes
+/// where bodies may meet.
+template <int D>
+class NodesWithMass {
+ public:
+  void find(TileGrid<D>& grid, Threads& threads) {
+    words_ = static_cast<std::size_t>(grid.shape.node_stride) / 64 + 2;  // one to read beyond
+    bits_.assign(grid.patches.size() * words_, 0);
+    threads.for_each(grid.patches.size(), [&](std::size_t p) {
+      if (!grid.patches[p].in_contact) return;
+      const double* mass = grid.block(p).mass();
+      std::uint64_t* bits = &bits_[p * words_];
+      for (int n = 0; n < grid.shape.node_stride; n += native_lanes)
+        bits[n / 64] |= lane_bits(Batch<native_lanes>::load(mass + n) > 0.0) << n % 64;
+    });
+  }
+
+  /// Those of a tile's nodes, a bit each by Tile<D>::cell, that are in a holder's block.
+  std::uint64_t in_tile(const BlockShape<D>& shape, const TileHolder& holder) const {
+    static_assert(Tile<D>::cell_count <= 64);
+    const int cells = Tile<D>::cells;
+    const Index<D> o = Tile<D>::offset(holder.neighbour);
+    Index<D> low, high;
+    for (std::size_t a = 0; a < D; ++a) {
+      low[a] = std::max(0, -shape.margin - cells * o[a]);
+      high[a] = std::min(cells - 1, cells + shape.margin - cells * o[a]);
+    }
+    const std::uint64_t row_bits = (std::uint64_t{1} << (high[0] - low[0] + 1)) - 1;
+    const std::uint64_t* bits = &bits_[static_cast<std::size_t>(holder.patch) * words_];
+    std::uint64_t nodes = 0;
+    const int layer = node_in_holder<D>(shape, holder, low), cell = Tile<D>::cell(low);
+    for (int z = 0; z <= (D == 3 ? high[D - 1] - low[D - 1] : 0); ++z)
+      for (int y = 0; y <= high[1] - low[1]; ++y) {
+        const int n = layer + (z * shape.nodes + y) * shape.nodes;
+        const std::uint64_t* word = bits + n / 64;
+        const std::uint64_t here = word[0] >> n % 64 | (n % 64 ? word[1] << (64 - n % 64) : 0);
+        nodes |= (here & row_bits) << (cell + (z * cells + y) * cells);
+      }
+    return nodes;
+  }
+
+  std::size_t bytes() const { return bits_.capacity() * sizeof(std::uint64_t); }
+
+ private:
+  std::size_t words_ = 0;  // of a patch
+  std::vector<std::uint64_t> bits_;
+};
+
+}  // namespace mpm
