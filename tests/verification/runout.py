@@ -20,8 +20,8 @@ RADIUS, SPREAD = 0.01, 0.2  # mean radius [m], and by what share the radii diffe
 DENSITY, YOUNG, POISSON, FRICTION, GRAVITY = 1000.0, 5e5, 0.3, 0.5, 9.81
 SETTLE = 0.3  # [s]
 LAW = 1.2
-"""Run-out (L - L0) / L0 over the aspect a = H0 / L0, below 2.3 (Lube et al. 2005) or 3 (Lajeunesse et
-al. 2005)."""
+"""Run-out (L - L0) / L0 over the aspect H0 / L0, which is below 2.3 (Lube et al. 2005) or 3
+(Lajeunesse et al. 2005)."""
 GATE_SPEED = 4.0  # [m/s]: twice that of the discs that follow it
 
 
