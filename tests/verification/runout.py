@@ -147,9 +147,10 @@ def run_out(
     run, touching = (
         (end / column.width - 1) / aspect for end in (column.front(), column.hanging_together())
     )
+    name, left = "height left over the first one", column.height() / high
     return [
         judge("C7", "run-out over the law's", run / LAW, remark=f"{run:.2f} a, a = {aspect:.2f}"),
-        judge("C7", "height left over the first one", column.height() / high),
+        judge("C7", name, left) if aspect < 1.15 else report(name, left),
         report("run-out of discs less than d/10 apart, over the law's", touching / LAW),
         report("kinetic energy left, over the energy at rest", _speed(column) / (GRAVITY * high)),
         judge("C7", "energy residual over gravity's work",

@@ -134,7 +134,8 @@ def _slow_runs() -> Iterator[Run]:
         yield Run("C5", rolling.rolling_on_discs, "musl", 2, "gimp", {"cells": cells}, slow=True)
     for cells in (10, 40):
         yield Run("C6", chain.disc_column, "musl", 2, "gimp", {"cells": cells}, slow=True)
-    yield Run("C7", runout.run_out, "musl", 2, "gimp", slow=True)
+    for aspect in (1.0, 2.0):
+        yield Run("C7", runout.run_out, "musl", 2, "gimp", {"aspect": aspect}, slow=True)
     yield Run("C3", silo.janssen, "musl", 2, "gimp", slow=True)
     yield Run("C2", grains.hertz_chain, "musl", 3, "gimp", {"cells": 10}, slow=True)
     yield Run("S4", examples.tnt_slab, "musl", 2, "gimp", slow=True)
