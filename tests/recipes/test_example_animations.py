@@ -54,7 +54,7 @@ def test_the_case_wants_an_animation_of_some_frames(name: str) -> None:
     ("make", "duration"),
     [
         (lambda: penetration(3), 2e-6),
-        pytest.param(lambda: spheres(1), 1e-6, marks=pytest.mark.slow),
+        (lambda: spheres(1), 1e-6),
         (short, 2e-4),
         (few_grains, 2e-3),
     ],
@@ -67,6 +67,7 @@ def test_a_run_ends_with_an_animation(
     duration: float,
 ) -> None:
     monkeypatch.setattr(space, "_pyvista_works", lambda: False)  # seconds a frame
+    monkeypatch.setattr(space, "PIXELS", 300)
     case = ends_soon(make(), duration)
     run_case(case, tmp_path, threads=1)
     with Image.open(tmp_path / "animation.gif") as animation:

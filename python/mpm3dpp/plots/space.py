@@ -65,7 +65,7 @@ def render(
     colours: np.ndarray,
     lower: np.ndarray,
     upper: np.ndarray,
-    pixels: int = PIXELS,
+    pixels: int | None = None,
 ) -> tuple[np.ndarray, Camera]:
     """Balls of the particles' sizes, seen from `camera_for` the box.
 
@@ -74,12 +74,12 @@ def render(
         sizes: edge of each particle's cube (n,) [m]; the ball has this diameter.
         colours: (n, 3), 0 to 1.
         lower, upper: corners of the box in view [m].
-        pixels: of the image's longer side.
+        pixels: of the image's longer side; default `PIXELS`.
 
     Returns:
         image (height, width, 4), 0 to 1, transparent background, row 0 the highest; camera.
     """
-    camera = camera_for(lower, upper)
+    camera, pixels = camera_for(lower, upper), pixels or PIXELS
     seen = np.isfinite(points).all(axis=1)
     points, sizes, colours = points[seen], sizes[seen], colours[seen]
     if len(points) == 0:
