@@ -52,7 +52,8 @@ class Output(CaseModel):
         history_every: steps between two rows of the history table.
         fields: columns to write beyond position, velocity, stress, pressure, von_mises, body and
             material, for example "volume" or a state column of a material.
-        picture: the column that colours the picture.
+        picture: the column that colours the picture and the animation.
+        animation: whether a run ends with an animation of its frames, `animation.gif`.
     """
 
     frames: Annotated[int, Exactly(int, 1, 100_000)] | None = None
@@ -60,6 +61,7 @@ class Output(CaseModel):
     history_every: Count = 1
     fields: list[Text] = Field(default_factory=list)
     picture: Text = "von_mises"
+    animation: Flag = False
 
     @model_validator(mode="after")
     def _frames_or_interval(self) -> Output:

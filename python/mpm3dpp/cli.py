@@ -151,7 +151,10 @@ def import_(
 def plot(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of a run.")],
     frame: Annotated[int, typer.Option(help="Frame; negative counts from the end.")] = -1,
-    animation: Annotated[bool, typer.Option("--animation", help="Also animation.gif.")] = False,
+    animation: Annotated[
+        bool | None,
+        typer.Option("--animation/--no-animation", help="animation.gif; default as the case."),
+    ] = None,
     colour: Annotated[str | None, typer.Option(help="Column that colours particles.")] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the pictures.")] = None,
 ) -> None:

@@ -193,6 +193,8 @@ EDITS: list[tuple[str, ...]] = [
      '"volume"'),
     ("unknown picture", "frames = 10", 'picture = "von_mieses"', "output.picture", "column",
      '"von_mises"'),
+    ("animation in quotes", "frames = 10", 'animation = "yes"', "output.animation",
+     "true or false", "such as true"),
     ("picture of a column not written", "frames = 10", 'picture = "volume"', "output.picture",
      "column", 'add it to output.fields: fields = ["volume"]'),
     ("duplicate key", END, END + "\n" + END, "end_time", "given twice", "keep one"),

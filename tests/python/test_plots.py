@@ -201,3 +201,16 @@ def test_preview(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dimension: int
     path = plots.preview(case, tmp_path)
     assert path == tmp_path / "preview.png"
     pixels(path)
+
+
+def test_fewer_pixels_show_the_same(without_pyvista: None) -> None:
+    """Half the pixels: the image is half as large, and as much of it is covered by the ball."""
+    points, colours = np.zeros((1, 3)), np.array([[1.0, 0.0, 0.0]])
+    lower, upper = -np.ones(3), np.ones(3)
+    images = [
+        space.render(points, np.ones(1), colours, lower, upper, pixels)[0] for pixels in (800, 400)
+    ]
+    assert max(images[0].shape) == 800
+    assert max(images[1].shape) == 400
+    shares = [float((image[..., 3] > 0.0).mean()) for image in images]
+    assert shares[1] == pytest.approx(shares[0], rel=0.02)  # a pixel along the edge

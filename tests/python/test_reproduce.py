@@ -126,7 +126,7 @@ def made(cases: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, s
     out = tmp_path_factory.mktemp("out")
     with pytest.MonkeyPatch.context() as patch:  # Coarse pictures, for speed.
         patch.setattr(space, "_pyvista_works", lambda: False)
-        patch.setattr(space, "_PIXELS", 200)
+        patch.setattr(space, "PIXELS", 200)
         reproduce.reproduce(out, size="paper", steps=6, threads=1, examples=cases)
     return (
         out,

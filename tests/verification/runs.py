@@ -10,7 +10,21 @@ from typing import Any
 
 from mpm3dpp import _core
 
-from . import bars, column, discs, examples, grains, groups, hopper, incline, point, silo
+from . import (
+    bars,
+    chain,
+    column,
+    discs,
+    examples,
+    grains,
+    groups,
+    hopper,
+    incline,
+    point,
+    rolling,
+    runout,
+    silo,
+)
 from .figure import Figure
 from .scene import Failed
 
@@ -83,6 +97,8 @@ def _runs() -> Iterator[Run]:
             yield Run("E8", incline.sliding_block, scheme, 2, basis)
             yield Run("E8", incline.sticking_block, scheme, 2, basis)
             yield Run("C4", incline.infinite_slope, scheme, 2, basis)
+            yield Run("C5", rolling.rolling_on_discs, scheme, 2, basis, {"cells": 8})
+            yield Run("C6", chain.disc_column, scheme, 2, basis)
             yield Run("oblique", groups.oblique_impact, scheme, 2, basis)
             yield Run("oblique", groups.oblique_impact, scheme, 2, basis, {"slip": 0.05})
             yield Run("E9", incline.rolling, scheme, 2, basis, {"cells": 8})
@@ -114,6 +130,12 @@ def _runs() -> Iterator[Run]:
 def _slow_runs() -> Iterator[Run]:
     for cells in (10, 20):
         yield Run("C1", grains.hertz_wall, "musl", 3, "gimp", {"cells": cells}, slow=True)
+    for cells in (16, 32):
+        yield Run("C5", rolling.rolling_on_discs, "musl", 2, "gimp", {"cells": cells}, slow=True)
+    for cells in (10, 40):
+        yield Run("C6", chain.disc_column, "musl", 2, "gimp", {"cells": cells}, slow=True)
+    for aspect in (1.0, 2.0):
+        yield Run("C7", runout.run_out, "musl", 2, "gimp", {"aspect": aspect}, slow=True)
     yield Run("C3", silo.janssen, "musl", 2, "gimp", slow=True)
     yield Run("C2", grains.hertz_chain, "musl", 3, "gimp", {"cells": 10}, slow=True)
     yield Run("S4", examples.tnt_slab, "musl", 2, "gimp", slow=True)

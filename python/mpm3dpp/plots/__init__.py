@@ -13,7 +13,7 @@ from typing import Any
 def plot_results(
     folder: str | Path,
     frame: int = -1,
-    animation: bool = False,
+    animation: bool | None = None,
     colour: str | None = None,
     out: str | Path | None = None,
 ) -> list[Path]:
@@ -22,7 +22,8 @@ def plot_results(
     Args:
         folder: output folder of the run.
         frame: number of the frame; negative numbers count from the end.
-        animation: also write `animation.gif` with all frames.
+        animation: also write `animation.gif` with all frames; default the case's
+            `output.animation`.
         colour: array that colours the particles ("von_mises", "pressure", "speed", "body",
             "velocity_x", "stress_xy", ... or any stored field); default the case's
             `output.picture`, else "von_mises".

@@ -138,7 +138,7 @@ def _draw_flat(
 def _draw_space(
     results: Results, arrays: dict[str, np.ndarray], colour: str, view: View, dpi: float
 ) -> Figure:
-    from mpm3dpp.plots.space import draw_box_axes, render
+    from mpm3dpp.plots.space import PIXELS, draw_box_axes, render
 
     colours, mappable = paint(arrays, results, colour, view)
     image, camera = render(
@@ -147,6 +147,7 @@ def _draw_space(
         colours,
         view.lower,
         view.upper,
+        round(PIXELS * dpi / DPI),
     )
     height, width = image.shape[:2]
     figure = new_figure(*paper(width / height), dpi)

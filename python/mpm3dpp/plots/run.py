@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.history import read_history
@@ -12,14 +13,16 @@ from mpm3dpp.io.results import open_results
 
 
 def plot_results(
-    folder: Path, frame: int, animation: bool, colour: str | None, out: Path | None
+    folder: Path, frame: int, animation: bool | None, colour: str | None, out: Path | None
 ) -> list[Path]:
     """See `mpm3dpp.plots.plot_results`."""
     from mpm3dpp.plots.frames import save_frame
 
     source = folder if folder.is_dir() else folder.parent
     out = out or source
-    colour = colour or _picture(source)
+    wishes = _output(source)
+    colour = colour or wishes.get("picture") or "von_mises"
+    animation = bool(wishes.get("animation")) if animation is None else animation
     made = []
     with open_results(folder) as results:
         count = len(results)
@@ -45,10 +48,10 @@ def plot_results(
     return made
 
 
-def _picture(folder: Path) -> str:
-    """The array that the case wants to see, von Mises stress where it does not say."""
+def _output(folder: Path) -> dict[str, Any]:
+    """The table `output` of the case that was run; empty where there is no manifest."""
     try:
         case = read_manifest(folder).get("case") or {}
     except CaseError:
-        return "von_mises"
-    return (case.get("output") or {}).get("picture") or "von_mises"
+        return {}
+    return case.get("output") or {}

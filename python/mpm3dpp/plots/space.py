@@ -17,7 +17,7 @@ from mpm3dpp.plots.raster import balls
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_PIXELS = 1800  # longer side of the image, larger than it is shown, which smooths the edges
+PIXELS = 1800  # longer side of the image, larger than it is shown, which smooths the edges
 
 _PROBE = """
 import pyvista
@@ -65,6 +65,7 @@ def render(
     colours: np.ndarray,
     lower: np.ndarray,
     upper: np.ndarray,
+    pixels: int | None = None,
 ) -> tuple[np.ndarray, Camera]:
     """Balls of the particles' sizes, seen from `camera_for` the box.
 
@@ -73,18 +74,19 @@ def render(
         sizes: edge of each particle's cube (n,) [m]; the ball has this diameter.
         colours: (n, 3), 0 to 1.
         lower, upper: corners of the box in view [m].
+        pixels: of the image's longer side; default `PIXELS`.
 
     Returns:
         image (height, width, 4), 0 to 1, transparent background, row 0 the highest; camera.
     """
-    camera = camera_for(lower, upper)
+    camera, pixels = camera_for(lower, upper), pixels or PIXELS
     seen = np.isfinite(points).all(axis=1)
     points, sizes, colours = points[seen], sizes[seen], colours[seen]
     if len(points) == 0:
         return np.zeros((100, round(100 * camera.width / camera.height), 4)), camera
     if _pyvista_works():
-        return _with_pyvista(points, sizes, colours, camera), camera
-    scale = _PIXELS / max(camera.width, camera.height)
+        return _with_pyvista(points, sizes, colours, camera, pixels), camera
+    scale = pixels / max(camera.width, camera.height)
     away = (points - camera.centre) * scale
     shape = (round(camera.height * scale), round(camera.width * scale))
     centres = np.column_stack([away @ camera.right, away @ camera.up])
@@ -151,14 +153,14 @@ def _pyvista_works() -> bool:
 
 
 def _with_pyvista(
-    points: np.ndarray, sizes: np.ndarray, colours: np.ndarray, camera: Camera
+    points: np.ndarray, sizes: np.ndarray, colours: np.ndarray, camera: Camera, pixels: int
 ) -> np.ndarray:
     import pyvista
     from vtkmodules.vtkCommonCore import vtkLogger
 
     # without a display VTK warns of it, then draws all the same
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-    scale = _PIXELS / max(camera.width, camera.height)
+    scale = pixels / max(camera.width, camera.height)
     window = (round(camera.width * scale), round(camera.height * scale))
     unit = 1.0 / max(camera.width, camera.height)  # lengths near 1 suit the depth buffer
     plotter = pyvista.Plotter(off_screen=True, window_size=list(window))
