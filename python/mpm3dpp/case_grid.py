@@ -57,7 +57,7 @@ class GridBox(CaseModel):
 
 
 class GridDoubling(CaseModel):
-    """When the cells double: the moving grid of Ma, Zhang & Huang 2010, section 3.5.
+    """When the cells double, as the moving grid of Ma, Zhang & Huang 2010, section 3.5, ends.
 
     Mass, momentum and energy of the particles stay as they are. A box must have an even number of
     cells along each axis each time.

@@ -107,8 +107,8 @@ class Contact(CaseModel):
             of mass, of both ("pair") or one ("first", "second", "stiffer").
         friction: Coulomb coefficient of all pairs not listed in `pair`.
         gap_distance: bodies closer than this touch [m].
-        normal_travel: the direction and gap of a contact are found anew when its bodies have moved
-            this far [cells]; 0: in every step, which takes longer.
+        normal_travel: the direction and gap of a contact are found anew when its two bodies
+            together have moved this far [cells]; 0: in every step, which takes longer.
         pair: coefficients of single pairs; a pair of bodies wins over a pair of materials, and
             a later entry over an earlier one.
     """
@@ -119,5 +119,5 @@ class Contact(CaseModel):
     normal: Annotated[str, Choice(("plane", "pair", "first", "second", "stiffer"))] = "plane"
     friction: NonNegative = 0.0
     gap_distance: Annotated[float, Quantity("m", ">= 0")] = 0.0
-    normal_travel: NonNegative = 0.05
+    normal_travel: Annotated[float, Quantity("", "0 <= f <= 0.25")] = 0.1
     pair: list[ContactPair] = Field(default_factory=list)

@@ -60,17 +60,20 @@ class Pieces:
     Attributes:
         particles: their numbers in the order of filling, shape (n,).
         areas: outward area vectors [m^2; in 2D m times 1 m], shape (n, D).
+        sizes: areas [the same], shape (n,); more than the length of the vector where a particle
+            carries parts of the side that are not parallel.
         arms: from the particle to the middle of its piece [m], shape (n, D).
     """
 
     particles: NDArray[np.uint32]
     areas: Array
+    sizes: Array
     arms: Array
 
     @property
     def area(self) -> float:
         """Sum of the areas [m^2; in 2D m times 1 m]."""
-        return float(np.linalg.norm(self.areas, axis=1).sum())
+        return float(self.sizes.sum())
 
 
 def check_loads(case: Case) -> None:
@@ -154,9 +157,10 @@ def _share(side: Surface, owner: NDArray[np.int64], positions: Array) -> Pieces:
         columns = [np.bincount(place, v, len(particles)) for v in values.T]
         return np.stack(columns, axis=1)
 
-    middle = added(size[:, None] * side.points) / np.bincount(place, size)[:, None]
+    sizes = np.bincount(place, size)
+    middle = added(size[:, None] * side.points) / sizes[:, None]
     arms = middle - positions[particles]
-    return Pieces(particles.astype(np.uint32), added(side.areas), arms)
+    return Pieces(particles.astype(np.uint32), added(side.areas), sizes, arms)
 
 
 def nearest_particles(
@@ -207,6 +211,6 @@ def add_load(core: Any, case: Case, name: str, body: int, found: Pieces) -> None
     follows, areas = load.pressure is not None, np.ascontiguousarray(found.areas)
     arms, particles = np.ascontiguousarray(found.arms), found.particles.tolist()
     try:
-        core.add_load(name, body, follows, functions, particles, areas, arms)
+        core.add_load(name, body, follows, functions, particles, areas, found.sizes, arms)
     except ValueError as error:
         raise case.error(("load", name), f"is refused: {error}") from None

@@ -33,14 +33,19 @@ def test_bodies_move_as_with_planes_of_every_step(scheme: str, dimension: int) -
     case = three_blocks(dimension, scheme)
     start = velocities(after(case, 0.0, 0))
     every = velocities(after(case, 0.0, steps))
-    kept = velocities(after(case, 0.05, steps))
+    kept = velocities(after(case, 0.1, steps))
     changed = np.abs(every - start).max()
     assert changed > 0.0
     assert 0.0 < np.abs(kept - every).max() < 0.01 * changed
 
 
 def test_the_way_counts_from_when_a_plane_was_found() -> None:
-    """So short a way that no plane lasts a step: the same bits as planes of every step."""
+    """No plane lasts a step on so short a way: the same bits as planes of every step.
+
+    And planes that last 0.1 cells are not those that last 0.25: the way of several steps counts.
+    """
     case = three_blocks(2, "musl")
     every, hardly = after(case, 0.0, 60), after(case, 1e-9, 60)
     assert velocities(every).tobytes() == velocities(hardly).tobytes()
+    short, long = after(case, 0.1, 60), after(case, 0.25, 60)
+    assert velocities(short).tobytes() != velocities(long).tobytes()

@@ -28,6 +28,7 @@
   X(two_bodies) \
   X(many_bodies) \
   X(separation) \
+  X(tile_holder) \
   X(no_allocation) \
   /* end */
 // clang-format on

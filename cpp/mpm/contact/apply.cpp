@@ -99,6 +99,7 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
         solution.sides[k].start(velocity, time_step * force_of(sides[k]));
     }
     solve<true>(solution);
+    move_gaps(node, solution, time_step);
 
     double friction_first = 0.0;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -156,6 +157,14 @@ void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
     const ContactNode& node = nodes_[n];
     if (!any_closed(node)) return;
     const auto sides = sides_of(node);
+    // The slip at the end of the step is that of the particles. The nodes' own increments, forces
+    // over masses that may be next to nothing, reach the particles only in part.
+    for (SidePair<D>& pair : pairs_of(node)) {
+      const Vec<double, D> slip =
+          read(grid, sides[pair.r], remapped_at) - read(grid, sides[pair.s], remapped_at);
+      const Vec<double, D> friction = dot(pair.impulse, pair.normal) * pair.normal - pair.impulse;
+      pair.friction_work = 0.5 * (pair.friction_first + dot(friction, slip));
+    }
     // The impulses of this solution act on the velocities that strain the material only; they are
     // not contact forces.
     auto& solution =

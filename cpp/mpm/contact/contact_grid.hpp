@@ -21,12 +21,12 @@ struct ContactTile {
   std::uint32_t first_known = 0;  // the first of them, of ContactGrid::known_nodes_
 };
 
-/// When the pairs at a node were found. They are used again until the bodies there have moved by
-/// ContactSettings::normal_travel, or others are there.
+/// An overlapped node of the last step. Its pairs are used again until the bodies of one of them
+/// have moved by ContactSettings::normal_travel, or others are there.
 struct KnownNode {
-  std::uint64_t who;  // a number for the bodies and how many particles each has
-  double travel;      // mean of ContactGrid::travel_ over them when their pairs were found [m]
+  std::uint64_t who;         // a number for the bodies and how many particles each has
   std::uint32_t first_pair;  // of ContactGrid::known_
+  bool solved;               // its contacts were solved, and the gaps are those after the step
 };
 
 /// The normal and the gap of a pair of bodies at a node.
@@ -34,6 +34,7 @@ template <int D>
 struct KnownPair {
   Vec<double, D> normal;  // from the body with the lower number
   double gap;             // [m]
+  double travel;          // of both bodies (ContactGrid::travel_) when it was found [m]
 };
 
 /// What has passed between two bodies since the start.
@@ -130,7 +131,9 @@ class ContactGrid {
   void count(const TileGrid<D>& grid, Threads& threads);
   /// Add to travel_ what the fastest node of each body says.
   void add_travel(std::size_t bodies);
-  double travel_at(const ContactNode& node);
+  /// Take over what is known of the pairs at a node, if it still holds; else false.
+  bool recall(const std::vector<Body<D>>& bodies, const ContactSettings& settings, double cell_size,
+              const KnownNode& last, const ContactNode& node);
   /// Normals, gaps and frictions of the pairs at the nodes of a tile: those known that still hold,
   /// else found.
   void fill_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
@@ -164,10 +167,10 @@ class ContactGrid {
   void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<double>& stiffness, const ContactSettings& settings,
                   TileBodies<D>& around, const ContactNode& node);
-  /// The same from what is known, the gaps with what they have changed by since the last step.
-  void recall_pairs(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
-                    const KnownPair<D>* known, const ContactNode& node);
-  void remember_pairs(const ContactNode& node, KnownPair<D>* known);
+  void remember_pairs(const ContactNode& node);
+  double travel_of(const ContactNode& node, const SidePair<D>& pair) const;
+  /// Change the gaps that are known by what the bodies do in this step.
+  void move_gaps(const ContactNode& node, const NodeSolution<D>& solution, double time_step);
   /// f(pair, known, sign) for the pairs at a node and their entries among those of the node, which
   /// come by the numbers of the bodies: `sign` is that of the normal.
   template <class Known, class F>

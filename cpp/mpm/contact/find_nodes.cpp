@@ -140,18 +140,11 @@ void ContactGrid<D>::add_travel(std::size_t bodies) {
 }
 
 template <int D>
-double ContactGrid<D>::travel_at(const ContactNode& node) {
-  double sum = 0.0;
-  for (const Side<D>& side : sides_of(node)) sum += travel_[static_cast<std::size_t>(side.body)];
-  return sum / node.sides;
-}
-
-template <int D>
 void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                                 const std::vector<double>& stiffness,
                                 const ContactSettings& settings, std::size_t t) {
   ContactTile<D>& tile = tiles_[t];
-  const std::span<ContactNode> nodes(&nodes_[counts_[t].nodes],
+  const std::span<ContactNode> nodes(nodes_.data() + counts_[t].nodes,
                                      counts_[t + 1].nodes - counts_[t].nodes);
   std::uint64_t overlapped = 0, unknown = 0;
   for (const ContactNode& node : nodes) {
@@ -159,17 +152,12 @@ void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<
     overlapped |= bit;
     KnownNode& now = known_nodes_[number_of(node)];
     now.first_pair = node.first_pair;
-    now.travel = travel_at(node);
+    now.solved = false;
     if (tile.known & bit) {
       const int before = std::popcount(tile.known & (bit - 1));
       const KnownNode& last =
           last_known_nodes_[tile.first_known + static_cast<std::uint32_t>(before)];
-      if (last.who == now.who &&
-          now.travel - last.travel <= settings.normal_travel * grid.cell_size) {
-        now.travel = last.travel;
-        recall_pairs(bodies, settings, &last_known_[last.first_pair], node);
-        continue;
-      }
+      if (last.who == now.who && recall(bodies, settings, grid.cell_size, last, node)) continue;
     }
     unknown |= bit;
   }
@@ -180,9 +168,11 @@ void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<
       at.particles.gather(grid, bodies[static_cast<std::size_t>(at.body)], tile.tile,
                           {&holders_[at.first_holder], at.holders}, at.nodes & unknown);
     for (const ContactNode& node : nodes)
-      if (unknown >> node.cell & 1u) find_pairs(grid, bodies, stiffness, settings, around, node);
+      if (unknown >> node.cell & 1u) {
+        find_pairs(grid, bodies, stiffness, settings, around, node);
+        remember_pairs(node);
+      }
   }
-  for (const ContactNode& node : nodes) remember_pairs(node, &known_[node.first_pair]);
   tile.known = overlapped;
   tile.first_known = counts_[t].nodes;
 }
@@ -217,42 +207,6 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   share_rigid_masses(bodies);
   for (const ContactNode& node : nodes_)
     bodies_max_ = std::max(bodies_max_, static_cast<int>(node.sides));
-}
-
-/// Give bodies whose motion is prescribed the masses with which they meet the others at a node:
-/// infinite ones, so that the reduced mass is that of the others; but where such a body has less
-/// than a tenth of the others' volume at the node, in proportion, so that a node which it has only
-/// just reached, inside the others, is not held.
-template <int D>
-void harden(const std::vector<Body<D>>& bodies, std::span<Side<D>> sides) {
-  constexpr double full = 0.1;
-  const auto density = [&](const Side<D>& side) {
-    return bodies[static_cast<std::size_t>(side.body)].initial_density;
-  };
-  double mass = 0.0, volume = 0.0;
-  for (const Side<D>& side : sides)
-    if (!side.prescribed) {
-      mass += side.mass;
-      volume += side.mass / density(side);
-    }
-  for (Side<D>& side : sides) {
-    if (!side.prescribed) continue;
-    const double share = side.mass / density(side) / (full * volume);
-    side.mass =
-        share < 1.0 ? mass * share / (1.0 - share) : std::numeric_limits<double>::infinity();
-  }
-}
-
-template <int D>
-void ContactGrid<D>::share_rigid_masses(const std::vector<Body<D>>& bodies) {
-  if (std::none_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.rigid; })) return;
-  rigid_share_.assign(bodies.size(), 0.0);
-  for (const ContactNode& node : nodes_) harden(bodies, sides_of(node));
-  for (const Side<D>& side : sides_) rigid_share_[static_cast<std::size_t>(side.body)] += side.mass;
-  for (Side<D>& side : sides_) {
-    const auto b = static_cast<std::size_t>(side.body);
-    if (bodies[b].rigid && !side.prescribed) side.mass /= rigid_share_[b] / bodies[b].total_mass;
-  }
 }
 
 template void ContactGrid<2>::find(TileGrid<2>&, const std::vector<Body<2>>&,

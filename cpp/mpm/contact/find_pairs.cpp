@@ -117,38 +117,66 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
 }
 
 template <int D>
-void ContactGrid<D>::remember_pairs(const ContactNode& node, KnownPair<D>* known) {
-  for_each_known(node, known, [](const SidePair<D>& pair, KnownPair<D>& to, double sign) {
-    to = {sign * pair.normal, pair.gap};
-  });
+double ContactGrid<D>::travel_of(const ContactNode& node, const SidePair<D>& pair) const {
+  const Side<D>* sides = &sides_[node.first_side];
+  return travel_[static_cast<std::size_t>(sides[pair.r].body)] +
+         travel_[static_cast<std::size_t>(sides[pair.s].body)];
 }
 
 template <int D>
-void ContactGrid<D>::recall_pairs(const std::vector<Body<D>>& bodies,
-                                  const ContactSettings& settings, const KnownPair<D>* known,
-                                  const ContactNode& node) {
+void ContactGrid<D>::remember_pairs(const ContactNode& node) {
+  for_each_known(node, &known_[node.first_pair],
+                 [&](const SidePair<D>& pair, KnownPair<D>& known, double sign) {
+                   known = {sign * pair.normal, pair.gap, travel_of(node, pair)};
+                 });
+}
+
+template <int D>
+bool ContactGrid<D>::recall(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
+                            double cell_size, const KnownNode& last, const ContactNode& node) {
   const auto sides = sides_of(node);
   SidePair<D>* next = &pairs_[node.first_pair];
   for (std::uint16_t r = 0; r < node.sides; ++r)
     for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s)
       start_pair(bodies, settings, sides, r, s, *next++);
-  for_each_known(node, known, [&](SidePair<D>& pair, const KnownPair<D>& last, double sign) {
-    pair.normal = sign * last.normal;
-    const Vec<double, D> parting = sides[pair.s].mapped - sides[pair.r].mapped;
-    pair.gap = last.gap + last_time_step_ * dot(parting, pair.normal);
-    pair.closed = may_act(pair, settings);
-  });
+  std::copy_n(&last_known_[last.first_pair], pair_count(node.sides), &known_[node.first_pair]);
+  bool holds = true;
+  for_each_known(
+      node, &known_[node.first_pair], [&](SidePair<D>& pair, KnownPair<D>& known, double sign) {
+        pair.normal = sign * known.normal;
+        // Without contact the velocities of now are those with which the last step ended.
+        const Vec<double, D> parting = sides[pair.s].mapped - sides[pair.r].mapped;
+        if (!last.solved) known.gap += last_time_step_ * dot(parting, pair.normal);
+        pair.gap = known.gap;
+        pair.closed = may_act(pair, settings);
+        holds = holds && travel_of(node, pair) - known.travel <= settings.normal_travel * cell_size;
+      });
+  return holds;
 }
 
-template void ContactGrid<2>::remember_pairs(const ContactNode&, KnownPair<2>*);
-template void ContactGrid<2>::recall_pairs(const std::vector<Body<2>>&, const ContactSettings&,
-                                           const KnownPair<2>*, const ContactNode&);
+template <int D>
+void ContactGrid<D>::move_gaps(const ContactNode& node, const NodeSolution<D>& solution,
+                               double time_step) {
+  known_nodes_[number_of(node)].solved = true;
+  for_each_known(
+      node, &known_[node.first_pair], [&](const SidePair<D>& pair, KnownPair<D>& known, double) {
+        const Vec<double, D> parting =
+            solution.sides[pair.s].end_velocity() - solution.sides[pair.r].end_velocity();
+        known.gap += time_step * dot(parting, pair.normal);
+      });
+}
+
+template void ContactGrid<2>::remember_pairs(const ContactNode&);
+template bool ContactGrid<2>::recall(const std::vector<Body<2>>&, const ContactSettings&, double,
+                                     const KnownNode&, const ContactNode&);
+template void ContactGrid<2>::move_gaps(const ContactNode&, const NodeSolution<2>&, double);
 template void ContactGrid<2>::find_pairs(const TileGrid<2>&, const std::vector<Body<2>>&,
                                          const std::vector<double>&, const ContactSettings&,
                                          TileBodies<2>&, const ContactNode&);
-template void ContactGrid<3>::remember_pairs(const ContactNode&, KnownPair<3>*);
-template void ContactGrid<3>::recall_pairs(const std::vector<Body<3>>&, const ContactSettings&,
-                                           const KnownPair<3>*, const ContactNode&);
+template void ContactGrid<3>::remember_pairs(const ContactNode&);
+template bool ContactGrid<3>::recall(const std::vector<Body<3>>&, const ContactSettings&, double,
+                                     const KnownNode&, const ContactNode&);
+template void ContactGrid<3>::move_gaps(const ContactNode&, const NodeSolution<3>&, double);
 template void ContactGrid<3>::find_pairs(const TileGrid<3>&, const std::vector<Body<3>>&,
                                          const std::vector<double>&, const ContactSettings&,
                                          TileBodies<3>&, const ContactNode&);

@@ -23,6 +23,10 @@ struct SolvedSide {
     base = prescribed ? v : Vec<double, D>::zero();
     momentum = prescribed ? Vec<double, D>::zero() : mass * v + impulse;
   }
+  /// Of its momentum; a prescribed one has no end of it.
+  double size() const {
+    return prescribed ? std::numeric_limits<double>::infinity() : norm(momentum);
+  }
   /// Velocity in the solver.
   Vec<double, D> working_velocity() const { return base + (1.0 / mass) * momentum; }
   /// Velocity that comes of it.
@@ -69,7 +73,7 @@ bool solve_node(NodeSolution<D>& node) {
   double unresolved = 0.0;
   if (pairs.size() > 1)
     for (const SolvedPair<D>& pair : pairs) {
-      const double lighter = std::min(norm(sides[pair.r].momentum), norm(sides[pair.s].momentum));
+      const double lighter = std::min(sides[pair.r].size(), sides[pair.s].size());
       unresolved = std::max(unresolved, rounding * lighter);
     }
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {

@@ -106,11 +106,11 @@ ContactSums ContactGrid<D>::record(TileGrid<D>& grid, const std::vector<Body<D>>
 
 template <int D>
 std::size_t ContactGrid<D>::bytes() const {
-  return masses_.bytes() + holders_.capacity() * sizeof(TileHolder) +
-         (tiles_.capacity() + last_tiles_.capacity()) * sizeof(ContactTile<D>) +
-         counts_.capacity() * sizeof(TileCounts) + nodes_.capacity() * sizeof(ContactNode) +
-         sides_.capacity() * sizeof(Side<D>) + pairs_.capacity() * sizeof(SidePair<D>) +
-         records_.capacity() * sizeof(PairRecord) + places_.capacity() * sizeof(std::uint32_t);
+  const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return masses_.bytes() + size(holders_) + size(tiles_) + size(last_tiles_) + size(counts_) +
+         size(nodes_) + size(sides_) + size(pairs_) + size(known_nodes_) + size(last_known_nodes_) +
+         size(known_) + size(last_known_) + size(travel_) + size(fastest_) + size(rigid_share_) +
+         size(records_) + size(places_);
 }
 
 template ContactSums ContactGrid<2>::record(TileGrid<2>&, const std::vector<Body<2>>&, double,

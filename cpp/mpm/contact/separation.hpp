@@ -112,6 +112,7 @@ class PlaneFit {
         const double t = best_length(step);
         for (int i = 0; i < n; ++i) z[i] = z_[i] + t * step[i];
         there = classify(z, changed);
+        if (!(there < value)) return;  // as near as rounding lets it come
       }
       std::copy(z, z + n, z_);
       value = there;

@@ -21,13 +21,13 @@ T particle_edge(T volume, double mean_edge) {
   } else {
     const T ratio = volume * T(1.0 / (mean_edge * mean_edge * mean_edge));
     T y(1.0);
-    const auto halley = [&] {
-      const T cube = y * y * y;
-      y = y * (cube + T(2.0) * ratio) / (T(2.0) * cube + ratio);
+    const auto halley = [&](T z) {
+      const T cube = z * z * z;
+      return z * (cube + T(2.0) * ratio) / (T(2.0) * cube + ratio);
     };
-    halley();
-    halley();
-    if (any((ratio < T(0.5)) | (ratio > T(2.0)))) halley();
+    y = halley(halley(y));
+    const auto far = (ratio < T(0.5)) | (ratio > T(2.0));
+    if (any(far)) y = select(far, halley(y), y);
     return T(mean_edge) * y;
   }
 }

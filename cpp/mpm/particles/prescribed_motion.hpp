@@ -12,6 +12,7 @@ namespace mpm {
 struct PrescribedMotion {
   std::array<TimeFunction, 3> velocity{}, spin{};  // [m/s], [rad/s]
   bool moves = false;                              // some function does not vanish
+  double radius = 0.0;      // distance of its farthest particle from the centre [m]
   RigidMotion before, now;  // of the last step and of this one; `now.centre` is at its start [m]
 
   void start(const Vector3& centre, double time) {
@@ -30,6 +31,15 @@ struct PrescribedMotion {
       now.velocity.c[a] = velocity[a].mean(from, to);
       now.spin.c[a] = spin[a].mean(from, to);
     }
+  }
+  /// Bound of the speed of the body's particles in a step from `from` to `to` [m/s].
+  double speed(double from, double to) const {
+    Vector3 v, w;
+    for (std::size_t a = 0; a < 3; ++a) {
+      v.c[a] = velocity[a].mean(from, to);
+      w.c[a] = spin[a].mean(from, to);
+    }
+    return norm(v) + radius * norm(w);
   }
   /// Change of the velocity from the last step to this one, at a point [m/s].
   Vector3 increment_at(const Vector3& x) const {

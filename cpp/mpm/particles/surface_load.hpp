@@ -66,6 +66,7 @@ struct SurfaceLoad {
   std::array<TimeFunction, D> value;  // the pressure, as the first, or the traction [Pa]
   std::vector<std::uint32_t> piece;   // 1 + number of a particle's piece, in the user's order; or 0
   std::vector<Vec<double, D>> area;   // outward area vectors [m^2]
+  std::vector<double> size;           // areas [m^2]: at an edge of the body more than |area|
   std::vector<Vec<double, D>> arm;    // from the particle to the middle of its piece [m]
 
   Vec<double, D> stress = Vec<double, D>::zero();   // mean of the value over the step [Pa]
@@ -73,12 +74,14 @@ struct SurfaceLoad {
   Vec<double, D> impulse = Vec<double, D>::zero();  // so far [N s]
 
   Vec<double, D> force_on(std::size_t k) const {
-    return follows ? -stress[0] * area[k] : norm(area[k]) * stress;
+    return follows ? -stress[0] * area[k] : size[k] * stress;
   }
   /// Take a piece along with its particle: da = cof(F) dA (Nanson), dx = F dX; L as above.
   void carry(std::size_t k, const Mat<double, D>& L) {
     const Mat<double, D> F = deformation(L);
+    const double before = norm(area[k]);
     area[k] = product(cofactor(F), area[k]);
+    if (before > 0.0) size[k] *= norm(area[k]) / before;
     arm[k] = product(F, arm[k]);
   }
 };

@@ -110,6 +110,9 @@ void SimulationOf<D>::set_motion(int number, const std::array<TimeFunction, 3>& 
                                  const std::array<double, 3>& centre) {
   if (prepared_) throw std::invalid_argument("motions must be set before prepare()");
   Body<D>& b = domain_.bodies.at(static_cast<std::size_t>(number));
+  for (const SurfaceLoad<D>& load : domain_.loads)
+    if (load.body == number)
+      throw std::invalid_argument(b.name + ": it has a load, which acts on bodies that deform");
   check_functions(velocity, b.name + ": velocity");
   check_functions(spin, b.name + ": spin");
   check_finite(centre, b.name + ": centre");
@@ -125,9 +128,11 @@ template <int D>
 void SimulationOf<D>::start_motions() {
   for (Body<D>& b : domain_.bodies) {
     if (!b.prescribed) continue;
+    b.motion.radius = 0.0;
     for (std::size_t i = 0; i < b.count(); ++i) {
       Vec<double, D> x;
       for (int a = 0; a < D; ++a) x[a] = b.x(a)[i];
+      b.motion.radius = std::max(b.motion.radius, norm(in_space<D>(x) - b.motion.now.centre));
       const Vector3 v = b.motion.now.velocity_at(in_space<D>(x));
       for (int a = 0; a < D; ++a) b.v(a)[i] = v[a];
     }
@@ -149,6 +154,9 @@ template <int D>
 void SimulationOf<D>::set_group(int number, int first) {
   if (first < 0 || number <= first || number >= body_count() || body(first).group != first)
     throw std::invalid_argument("a group is given by its first body");
+  for (const Body<D>& b : domain_.bodies)
+    if (&b != &body(number) && b.group == number)
+      throw std::invalid_argument("a body with a group of its own cannot join another");
   domain_.bodies[static_cast<std::size_t>(number)].group = first;
 }
 
@@ -177,6 +185,7 @@ void SimulationOf<D>::set_velocity(int number, std::span<const double> velocitie
   ledger_.kinetic = kinetic_energy();
   ledger_.momentum = momentum();
   probe_speeds();
+  domain_.contact.forget();  // gaps change with the velocities that particles had
 }
 
 template <int D>

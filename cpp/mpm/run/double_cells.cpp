@@ -1,4 +1,5 @@
-// The moving grid: where debris spreads, the cells double. Ma, Zhang & Huang 2010, section 3.5.
+// The moving grid: where debris spreads, the cells double, as in the last step of Ma, Zhang & Huang
+// 2010, section 3.5. The rest of theirs an unbounded grid does not need; when to double is ours.
 #include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
@@ -30,6 +31,7 @@ void SimulationOf<D>::double_cells() {
   for (int& cells : grid.walls.cells) cells /= 2;
   grid.release_nodes();
   make_lists(grid, domain_.bodies, domain_.threads);
+  for (Patch<D>& patch : grid.patches) patch.left_cell = true;  // what has just failed still leaves
   domain_.contact.forget();
   if (domain_.has_contact()) domain_.contact.connect(grid, domain_.bodies);
   probe_speeds();

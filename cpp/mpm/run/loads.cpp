@@ -17,8 +17,8 @@ void SimulationOf<D>::add_load(const std::string& name, int number, bool follows
   check(!body.rigid, "its body is rigid, and a load acts on bodies that deform");
   const std::size_t n = pieces.particles.size();
   check(n > 0, "no particle carries a piece of the surface");
-  check(pieces.areas.size() == n * D && pieces.arms.size() == n * D,
-        "areas and arms must be (pieces, D)");
+  check(pieces.areas.size() == n * D && pieces.arms.size() == n * D && pieces.sizes.size() == n,
+        "areas and arms must be (pieces, D), sizes (pieces,)");
   SurfaceLoad<D> load;
   load.name = name;
   load.body = number;
@@ -30,6 +30,9 @@ void SimulationOf<D>::add_load(const std::string& name, int number, bool follows
   load.piece.assign(body.count(), 0);
   load.area.resize(n);
   load.arm.resize(n);
+  load.size.assign(pieces.sizes.begin(), pieces.sizes.end());
+  for (const double size : load.size)
+    check(size > 0.0 && std::isfinite(size), "sizes must be finite numbers > 0");
   for (std::size_t k = 0; k < n; ++k) {
     const std::uint32_t particle = pieces.particles[k];
     check(particle < body.count(), "there is no such particle");
@@ -56,7 +59,10 @@ std::vector<LoadRecord> SimulationOf<D>::loads() const {
       record.force[a] = load.force[static_cast<int>(a)];
       record.impulse[a] = load.impulse[static_cast<int>(a)];
     }
-    for (const auto& area : load.area) record.area += norm(area);
+    const Body<D>& on = body(load.body);
+    for (std::size_t k = 0; k < on.active(); ++k)
+      if (const std::uint32_t piece = load.piece[on.id[on.order[k]]])
+        record.area += load.size[piece - 1];
   }
   return records;
 }

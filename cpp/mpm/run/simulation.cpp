@@ -21,8 +21,9 @@ void check(const Settings& s) {
         "time_step_factor must lie in (0, 1]");
   check(s.threads >= 1, "threads must be >= 1");
   check(s.friction >= 0.0 && std::isfinite(s.friction), "friction must be a finite number >= 0");
-  check(s.normal_travel >= 0.0 && std::isfinite(s.normal_travel),
-        "normal_travel must be a finite number >= 0");
+  // Beyond it a pair that was found well apart could meet along a normal that is not one of
+  // contact.
+  check(s.normal_travel >= 0.0 && s.normal_travel <= 0.25, "normal_travel must lie in [0, 0.25]");
   check(s.gap_distance >= 0.0 && std::isfinite(s.gap_distance),
         "gap_distance must be a finite number >= 0");
   for (std::size_t a = 0; a < 3; ++a) {
@@ -180,7 +181,14 @@ void SimulationOf<D>::choose_time_step() {
   // Where neither waves nor particles are fast, nothing falls further than about a cell.
   double fastest = std::sqrt(norm(domain_.gravity) * settings_.cell_size);
   for (const PatchSums<D>& s : domain_.sums) fastest = std::max(fastest, s.stress.fastest);
-  next_time_step_ = settings_.time_step_factor * settings_.cell_size / fastest;
+  const double way = settings_.time_step_factor * settings_.cell_size;
+  next_time_step_ = way / fastest;
+  // Prescribed motions may have jumps.
+  for (const Body<D>& b : domain_.bodies)
+    if (b.prescribed && b.motion.moves) {
+      const double speed = b.motion.speed(domain_.time, domain_.time + next_time_step_);
+      next_time_step_ = std::min(next_time_step_, way / speed);
+    }
 }
 
 template <int D>

@@ -38,8 +38,8 @@ struct Settings {
   bool bonded = false;  // all bodies move with one velocity field
   Detection detection = Detection::gap;
   NormalRule normal_rule = NormalRule::plane;
-  double gap_distance = 0.0;    // [m]
-  double normal_travel = 0.05;  // [cells]
+  double gap_distance = 0.0;                               // [m]
+  double normal_travel = ContactSettings{}.normal_travel;  // [cells]
   double friction = 0.0;
   int threads = 1;
   double energy_growth_limit = 0.0;  // fraction of the largest energy brought in
@@ -74,13 +74,14 @@ struct LoadRecord {
   std::string name;
   std::array<double, 3> force{};    // of the last step [N]
   std::array<double, 3> impulse{};  // since the start [N s]
-  double area = 0.0;                // sum over the pieces [m^2]
+  double area = 0.0;                // of the pieces on which it still acts [m^2]
 };
 
 /// The pieces of a surface on which a load acts, each with its particle.
 struct Pieces {
   std::span<const std::uint32_t> particles;  // in the order in which the user gave them
   std::span<const double> areas;             // outward area vectors [m^2], (pieces, D)
+  std::span<const double> sizes;             // areas [m^2], (pieces,)
   std::span<const double> arms;              // from the particle to the piece [m], (pieces, D)
 };
 

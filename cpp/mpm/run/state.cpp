@@ -28,7 +28,7 @@ double SimulationOf<D>::wave_speed(const Body<D>& b, std::size_t row) const {
 
 template <int D>
 void SimulationOf<D>::probe_speeds() {
-  for (PatchSums<D>& s : domain_.sums) s.stress = {};
+  for (PatchSums<D>& s : domain_.sums) s.stress.fastest = 0.0;
   domain_.sums.resize(domain_.grid.patches.size());
   for (std::size_t p = 0; p < domain_.grid.patches.size(); ++p) {
     const Patch<D>& patch = domain_.grid.patches[p];

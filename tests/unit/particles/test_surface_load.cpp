@@ -32,6 +32,7 @@ void check_dimension(mpm::testing::Report& report) {
     const Vec<double, D> area = any_vector<D>(random), arm = any_vector<D>(random);
     load.area = {area, area};
     load.arm = {arm, arm};
+    load.size = {2.0 * norm(area), 2.0 * norm(area)};
     // The volume of a prism grows by det F.
     load.carry(0, L);
     const double J = determinant(deformation(L));
@@ -39,9 +40,11 @@ void check_dimension(mpm::testing::Report& report) {
     double trace = 0.0;
     for (int i = 0; i < D; ++i) trace += L[i][i];
     CHECK_CLOSE(J, std::exp(trace), 0.02);  // of second order in 0.1
+    CHECK_CLOSE(load.size[0], 2.0 * norm(load.area[0]), 1e-14);
     // A rotation changes no length and no angle.
     load.carry(1, spin);
     CHECK_CLOSE(norm(load.area[1]), norm(area), 1e-14);
+    CHECK_CLOSE(load.size[1], 2.0 * norm(area), 1e-14);
     CHECK_CLOSE(norm(load.arm[1]), norm(arm), 1e-14);
     CHECK_CLOSE(dot(load.area[1], load.arm[1]), dot(area, arm), 1e-14);
   }

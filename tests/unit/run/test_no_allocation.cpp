@@ -108,7 +108,9 @@ std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& m
   } else if (motion.gravity[1] != 0.0) {
     const std::uint32_t particles[] = {0, 1, 2};
     const std::vector<double> vectors(3 * static_cast<std::size_t>(dimension), 0.25);
-    simulation->add_load("load", 0, true, {TimeFunction(10.0)}, {particles, vectors, vectors});
+    const double sizes[] = {0.5, 0.5, 0.5};
+    simulation->add_load("load", 0, true, {TimeFunction(10.0)},
+                         {particles, vectors, sizes, vectors});
   }
   simulation->prepare();
   return simulation;

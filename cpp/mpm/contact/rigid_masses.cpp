@@ -1,0 +1,50 @@
+// The masses with which bodies that do not deform meet others at a node.
+#include <algorithm>
+
+#include "mpm/contact/contact_grid.hpp"
+
+namespace mpm {
+namespace {
+
+/// Give bodies whose motion is prescribed the masses with which they meet the others at a node:
+/// infinite ones, so that the reduced mass is that of the others; but where such a body has less
+/// than a tenth of the others' volume at the node, in proportion, so that a node which it has only
+/// just reached, inside the others, is not held.
+template <int D>
+void harden(const std::vector<Body<D>>& bodies, std::span<Side<D>> sides) {
+  constexpr double full = 0.1;
+  const auto density = [&](const Side<D>& side) {
+    return bodies[static_cast<std::size_t>(side.body)].initial_density;
+  };
+  double mass = 0.0, volume = 0.0;
+  for (const Side<D>& side : sides)
+    if (!side.prescribed) {
+      mass += side.mass;
+      volume += side.mass / density(side);
+    }
+  for (Side<D>& side : sides) {
+    if (!side.prescribed) continue;
+    const double share = side.mass / density(side) / (full * volume);
+    side.mass =
+        share < 1.0 ? mass * share / (1.0 - share) : std::numeric_limits<double>::infinity();
+  }
+}
+
+}  // namespace
+
+template <int D>
+void ContactGrid<D>::share_rigid_masses(const std::vector<Body<D>>& bodies) {
+  if (std::none_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.rigid; })) return;
+  rigid_share_.assign(bodies.size(), 0.0);
+  for (const ContactNode& node : nodes_) harden(bodies, sides_of(node));
+  for (const Side<D>& side : sides_) rigid_share_[static_cast<std::size_t>(side.body)] += side.mass;
+  for (Side<D>& side : sides_) {
+    const auto b = static_cast<std::size_t>(side.body);
+    if (bodies[b].rigid && !side.prescribed) side.mass /= rigid_share_[b] / bodies[b].total_mass;
+  }
+}
+
+template void ContactGrid<2>::share_rigid_masses(const std::vector<Body<2>>&);
+template void ContactGrid<3>::share_rigid_masses(const std::vector<Body<3>>&);
+
+}  // namespace mpm
