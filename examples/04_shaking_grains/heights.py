@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-import sys
+import argparse
 from pathlib import Path
 
 import matplotlib
@@ -30,8 +30,13 @@ def heights(folder: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def main() -> None:
     """Print a table and draw `heights.png` beside the results."""
-    folder = Path(sys.argv[1])
-    times, big, mean = heights(folder)
+    parser = argparse.ArgumentParser(description="Heights of the big grains.")
+    parser.add_argument("results", type=Path, help="folder of results, as of `mpm3dpp run`")
+    folder = parser.parse_args().results
+    try:
+        times, big, mean = heights(folder)
+    except mpm3dpp.CaseError as error:
+        parser.error(str(error))
     print("time [s]  big [mm]  all [mm]  big over all")
     for row in zip(times, 1e3 * big, 1e3 * mean, big / mean, strict=True):
         print("{:8.3f}  {:8.2f}  {:8.2f}  {:12.3f}".format(*row))

@@ -7,12 +7,12 @@ default the case's own.
 
 from __future__ import annotations
 
-import sys
+import argparse
 from dataclasses import dataclass
 
 import numpy as np
 
-from mpm3dpp import Case, Simulation, load_case
+from mpm3dpp import Case, CaseError, Simulation, load_case
 
 GRAVITY = 9.81
 C, K = 1.03, 1.4
@@ -41,6 +41,9 @@ class Discharge:
     def rate(self, first: float = 0.04, last: float = 0.5) -> float:
         """Return the slope of the mass that has left between two shares of all [kg/(m s)]."""
         part = (self.left >= first * self.total) & (self.left <= last * self.total)
+        if part.sum() < 3:
+            rule = f"has let out {self.left[-1] / self.total:.1%} of its grains, too few for a rate"
+            raise CaseError(rule, "give a longer TIME", key="the hopper")
         return float(np.polyfit(self.time[part], self.left[part], 1)[0])
 
     def beverloo(self, c: float = C, k: float = K) -> float:
@@ -82,12 +85,21 @@ def discharge(
 
 def main() -> None:
     """Print the mass over time, the rate and Beverloo's."""
-    case, until = load_case(sys.argv[1]), float(sys.argv[2])
-    own = case.body["funnel"].shape.outlet_radius / case.grains["sand"].packing.radius[0]
-    for diameters in [float(text) for text in sys.argv[3:]] or [own]:
-        found = discharge(with_outlet(case, diameters), until, show=True)
-        print(f"D/d = {diameters:g}: {found.rate():.1f} kg/(m s), bed {found.density:.0f} kg/m^3, "
-              f"Beverloo {found.beverloo():.1f} kg/(m s)", flush=True)  # fmt: skip
+    parser = argparse.ArgumentParser(description="Rate of a hopper beside Beverloo's law.")
+    parser.add_argument("case", help="a case file such as examples/05_hopper/case_small.toml")
+    parser.add_argument("time", type=float, help="how long each run goes on [s], 0.3 or more")
+    parser.add_argument("outlets", type=float, nargs="*", metavar="D/d",
+                        help="outlets in grain diameters; by default the case's own")  # fmt: skip
+    given = parser.parse_args()
+    try:
+        case = load_case(given.case)
+        own = case.body["funnel"].shape.outlet_radius / case.grains["sand"].packing.radius[0]
+        for diameters in given.outlets or [own]:
+            found = discharge(with_outlet(case, diameters), given.time, show=True)
+            print(f"D/d = {diameters:g}: {found.rate():.1f} kg/(m s), bed {found.density:.0f} "
+                  f"kg/m^3, Beverloo {found.beverloo():.1f} kg/(m s)", flush=True)  # fmt: skip
+    except CaseError as error:
+        parser.error(str(error))
 
 
 if __name__ == "__main__":

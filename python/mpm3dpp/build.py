@@ -16,6 +16,7 @@ from .grains import Grains, fill_grain
 from .grains.packing import ball_volume
 from .placement import check_box, check_overlap
 from .shapes import fill, reference_volume
+from .shapes.filling import LENGTHS_REMEDY, MOST_PARTICLES
 
 MASS_WARNING = 0.05  # Relative mass error above which a run warns ...
 MASS_ERROR = 0.5  # ... and above which it does not start.
@@ -128,6 +129,10 @@ def _filled_grains(case: Case, part: str, grains: Grains) -> list[FilledBody]:
     try:
         centres, radii = grains.place(grid.dimension)
         volumes = ball_volume(radii, grid.dimension).tolist()
+        wanted = sum(volumes) / spacing**grid.dimension
+        if wanted > MOST_PARTICLES:
+            rule = f"would need some {wanted:.0e} particles, {spacing:.3g} m apart"
+            raise CaseError(rule, LENGTHS_REMEDY)
         for k, name in enumerate(grains.names(part)):
             radius = float(radii[k])
             positions = fill_grain(centres[k], radius, spacing, grains.align, grid, made)

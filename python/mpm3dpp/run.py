@@ -57,17 +57,20 @@ def run_case(
     manifest = _manifest(simulation, status, reason, clock.monotonic() - begin)
     manifest.energies = simulation.summary
     manifest.write(folder)
-    if pictures:
-        with _pictures_may_fail(quiet or json):
-            from .plots import plot_results
-
-            plot_results(folder)
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
         lines = [*contact_table(manifest), *load_lines(manifest), *gone_lines(manifest)]
         lines += [energy_line(manifest)]
-        print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]))
+        print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]), flush=True)
+    if pictures:
+        if not (quiet or json):
+            later = f"Ctrl-C leaves them out, `mpm3dpp plot {folder}` makes them later"
+            print(f"drawing pictures ({later})", file=sys.stderr, flush=True)
+        with _pictures_may_fail(quiet or json):
+            from .plots import plot_results
+
+            plot_results(folder)
     if status == "failed":
         raise RunError(f"{reason}; frames and history up to then are in {folder}")
     if status == "interrupted":

@@ -298,6 +298,7 @@ MISTAKES = [
     (LATTICE.replace("[3, 2]", "[3]"), "grains.sand.lattice.count", "must have 2 numbers"),
     (LATTICE.replace(" }", ', spacing = "4 mm" }'), "lattice.spacing", "must be >= 2 radius"),
     (LATTICE.replace("2.5 mm", "0.1 mm"), "grains.sand.lattice", "holds no particle"),
+    (LATTICE.replace("2.5 mm", "2500 m"), "grains.sand.lattice", "would need some"),
     (LATTICE.replace("[3, 2]", "[4294967296, 4294967296]"), "grains.sand", "more than 10,000,000"),
     ('file = "none.csv"\n', "grains.sand.file", "is not a file"),
     (LATTICE + PLATE.replace("plate", "sand"), "grains.sand", "has the name of a body"),

@@ -53,7 +53,7 @@ def first_contact(folder: Path, out: Path | None = None) -> Path | None:
         frame = int(after[0]) if len(after) else len(results) - 1
         path = out or folder / "first_contact.png"
         with styled():
-            return _draw(results, frame, a, b, recorded, path)
+            return _draw(results, frame, time, a, b, recorded, path)
 
 
 def measure_gap(
@@ -165,7 +165,9 @@ def _first(folder: Path, bodies: list[str]) -> tuple[float, int, int, float | No
     return min(found, key=lambda f: f[:3], default=None)
 
 
-def _draw(results: Results, frame: int, a: int, b: int, recorded: float | None, path: Path) -> Path:
+def _draw(
+    results: Results, frame: int, time: float, a: int, b: int, recorded: float | None, path: Path
+) -> Path:
     arrays = drawn(results, frame)
     if not {a, b} <= set(arrays["body"].tolist()):  # One of them has eroded as it touched.
         arrays = results.arrays(frame)
@@ -192,10 +194,10 @@ def _draw(results: Results, frame: int, a: int, b: int, recorded: float | None, 
 
         image, camera = render(points, sizes, colours, view.lower, view.upper)
         draw_box_axes(whole, image, camera, view.lower, view.upper)
-    whole.set_title(
-        "first contact force: " + at_time(float(results.times[frame]), float(results.times[-1])),
-        loc="left",
-    )
+    end, shown = float(results.times[-1]), float(results.times[frame])
+    force, drawn_at = at_time(time, end), at_time(shown, end)
+    title = f"{results.bodies[a]} and {results.bodies[b]}: first contact force, {force}"
+    whole.set_title(title if force == drawn_at else f"{title}\ndrawn at {drawn_at}", loc="left")
     if results.dimension == 2 and len(results.bodies) <= 3:
         legend_of_bodies(
             whole, results.bodies, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3

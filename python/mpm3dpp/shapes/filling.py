@@ -14,9 +14,14 @@ from ..errors import CaseError
 from .base import SURFACE_TOLERANCE, Points, Shape
 
 _CHUNK = 1 << 18  # Points looked at together: some 20 MB of temporary arrays.
-# Lattice points in the bounds of one shape: four times what the memory holds as particles of 150
-# bytes, for shapes that fill their bounds badly.
-_MOST = 4 * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 150
+MOST_PARTICLES = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 150
+"""What the memory of this machine holds of them, of 150 bytes each."""
+LENGTHS_REMEDY = (
+    "write lengths with their unit (a plain number is in metres), or give a larger grid.cell_size"
+)
+# Lattice points in the bounds of one shape: four times as many, for shapes that fill their bounds
+# badly.
+_MOST = 4 * MOST_PARTICLES
 _QUADRATURE = {2: 1 << 21, 3: 1 << 22}  # Lattice points for a volume without a formula.
 
 
@@ -31,11 +36,7 @@ class _Lattice:
         if not points < _MOST:
             size = " x ".join(f"{x:.3g} m" for x in upper - lower)
             rule = f"is {size} in size and would need some {points:.0e} particles"
-            remedy = (
-                "write lengths with their unit (a plain number is in metres), or give a larger "
-                "grid.cell_size"
-            )
-            raise CaseError(rule, remedy, key="shape")
+            raise CaseError(rule, LENGTHS_REMEDY, key="shape")
         self.axes = [
             origin[d] + (first[d] + np.arange(int(count[d])) + 0.5) * spacing[d]
             for d in range(len(lower))
