@@ -111,7 +111,8 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
           solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
       pair.friction_first = dot(solved.friction_impulse, begin);
       pair.acted = pair.acted || solved.normal_impulse > 0.0;
-      pair.impulse = -solved.normal_impulse * pair.normal - solved.friction_impulse;
+      pair.normal_impulse = solved.normal_impulse;
+      pair.friction_impulse = solved.friction_impulse;
       pair.friction_work = 0.5 * (pair.friction_first + dot(solved.friction_impulse, end));
       friction_first += pair.friction_first;
     }
@@ -162,8 +163,7 @@ void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
     for (SidePair<D>& pair : pairs_of(node)) {
       const Vec<double, D> slip =
           read(grid, sides[pair.r], remapped_at) - read(grid, sides[pair.s], remapped_at);
-      const Vec<double, D> friction = dot(pair.impulse, pair.normal) * pair.normal - pair.impulse;
-      pair.friction_work = 0.5 * (pair.friction_first + dot(friction, slip));
+      pair.friction_work = 0.5 * (pair.friction_first + dot(pair.friction_impulse, slip));
     }
     // The impulses of this solution act on the velocities that strain the material only; they are
     // not contact forces.

@@ -25,16 +25,20 @@ struct Side {
 /// Two bodies at an overlapped node.
 template <int D>
 struct SidePair {
-  std::uint16_t r, s;      // sides of the node, by number
-  bool closed;             // the gap test, eq. (5), has passed
-  bool touching;           // closed, and approaching or at rest: forces may act
-  bool acted;              // an impulse of eqs. (6)-(7) or (11)-(15) has acted in this step
-  double friction;         // coefficient of friction
-  double gap;              // distance of the two surfaces along the normal [m]
-  Vec<double, D> normal;   // from r to s
-  Vec<double, D> impulse;  // on r, over this step [N s]
-  double friction_work;    // over this step, with the mean slip [J]
-  double friction_first;   // the same with the slip at its start [J]
+  std::uint16_t r, s;     // sides of the node, by number
+  bool closed;            // the gap test, eq. (5), has passed
+  bool touching;          // closed, and approaching or at rest: forces may act
+  bool acted;             // an impulse of eqs. (6)-(7) or (11)-(15) has acted in this step
+  double friction;        // coefficient of friction
+  double gap;             // distance of the two surfaces along the normal [m]
+  Vec<double, D> normal;  // from r to s
+  double normal_impulse;  // over this step [N s]
+  Vec<double, D> friction_impulse;  // on s, over this step [N s]
+  double friction_work;             // over this step, with the mean slip [J]
+  double friction_first;            // the same with the slip at its start [J]
+
+  /// On r, over this step [N s].
+  Vec<double, D> impulse() const { return -normal_impulse * normal - friction_impulse; }
 };
 
 /// An overlapped node: its sides and its pairs.

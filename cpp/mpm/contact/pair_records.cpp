@@ -91,9 +91,10 @@ ContactSums ContactGrid<D>::record(TileGrid<D>& grid, const std::vector<Body<D>>
           r.first_share = lighter;
         }
       }
+      const Vec<double, D> impulse = pair.impulse();
       for (int a = 0; a < D; ++a) {
-        r.impulse[a] += sign * pair.impulse[a];
-        r.force[a] += sign * pair.impulse[a] / time_step;
+        r.impulse[a] += sign * impulse[a];
+        r.force[a] += sign * impulse[a] / time_step;
       }
       r.friction_work += pair.friction_work;
       sums.friction += pair.friction_work;
