@@ -108,7 +108,8 @@ class Contact(CaseModel):
         friction: Coulomb coefficient of all pairs not listed in `pair`.
         gap_distance: bodies closer than this touch [m].
         normal_travel: the direction and gap of a contact are found anew when its two bodies
-            together have moved this far [cells]; 0: in every step, which takes longer.
+            together have moved this far [cells]; 0: in every step. 0.1 saves half of the time of
+            contact where grains move little, and costs one or two per cent of accuracy.
         pair: coefficients of single pairs; a pair of bodies wins over a pair of materials, and
             a later entry over an earlier one.
     """
@@ -119,5 +120,5 @@ class Contact(CaseModel):
     normal: Annotated[str, Choice(("plane", "pair", "first", "second", "stiffer"))] = "plane"
     friction: NonNegative = 0.0
     gap_distance: Annotated[float, Quantity("m", ">= 0")] = 0.0
-    normal_travel: Annotated[float, Quantity("", "0 <= f <= 0.25")] = 0.1
+    normal_travel: Annotated[float, Quantity("", "0 <= f <= 0.25")] = 0.0
     pair: list[ContactPair] = Field(default_factory=list)

@@ -21,7 +21,7 @@ struct ContactSettings {
   NormalRule normal = NormalRule::plane;
   double gap_distance = 0.0;  // D of eq. (5) [m]
   // A normal and a gap are found anew when the two bodies together have moved by this [cells].
-  double normal_travel = 0.1;
+  double normal_travel = 0.0;
   double friction = 0.0;                                        // default coefficient
   std::vector<std::pair<std::uint64_t, double>> pair_friction;  // by pair_key of groups, sorted
 };
