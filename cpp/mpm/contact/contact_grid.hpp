@@ -206,6 +206,7 @@ class ContactGrid {
   std::vector<ContactNode> nodes_;
   std::vector<Side<D>> sides_;
   std::vector<SidePair<D>> pairs_;
+  bool keeps_ = false;  // pairs are kept from step to step: ContactSettings::normal_travel > 0
   // Of this step and the last, in the order of nodes_ and of pairs_.
   std::vector<KnownNode> known_nodes_, last_known_nodes_;
   std::vector<KnownPair<D>> known_, last_known_;

@@ -92,7 +92,7 @@ void ContactGrid<D>::read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& b
     side.mapped =
         read(grid, side, [](const NodeBlock<D>& block, int a) { return block.velocity(a); });
   }
-  known_nodes_[number_of(node)].who = who;
+  if (keeps_) known_nodes_[number_of(node)].who = who;
   sort_sides(sides_of(node));
 }
 
@@ -123,8 +123,8 @@ void ContactGrid<D>::count(const TileGrid<D>& grid, Threads& threads) {
   resize(nodes_, counts_.back().nodes);
   resize(sides_, counts_.back().sides);
   resize(pairs_, counts_.back().pairs);
-  resize(known_nodes_, counts_.back().nodes);
-  resize(known_, counts_.back().pairs);
+  resize(known_nodes_, keeps_ ? counts_.back().nodes : 0);
+  resize(known_, keeps_ ? counts_.back().pairs : 0);
   nodes_max_ = std::max(nodes_max_, nodes_.size());
 }
 
@@ -150,6 +150,8 @@ void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<
   for (const ContactNode& node : nodes) {
     const std::uint64_t bit = std::uint64_t{1} << node.cell;
     overlapped |= bit;
+    unknown |= bit;
+    if (!keeps_) continue;
     KnownNode& now = known_nodes_[number_of(node)];
     now.first_pair = node.first_pair;
     now.solved = false;
@@ -157,9 +159,9 @@ void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<
       const int before = std::popcount(tile.known & (bit - 1));
       const KnownNode& last =
           last_known_nodes_[tile.first_known + static_cast<std::uint32_t>(before)];
-      if (last.who == now.who && recall(bodies, settings, grid.cell_size, last, node)) continue;
+      if (last.who == now.who && recall(bodies, settings, grid.cell_size, last, node))
+        unknown &= ~bit;
     }
-    unknown |= bit;
   }
   if (unknown != 0) {
     TileBodies<D>& around = bodies_around<D>();
@@ -170,10 +172,10 @@ void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<
     for (const ContactNode& node : nodes)
       if (unknown >> node.cell & 1u) {
         find_pairs(grid, bodies, stiffness, settings, around, node);
-        remember_pairs(node);
+        if (keeps_) remember_pairs(node);
       }
   }
-  tile.known = overlapped;
+  tile.known = keeps_ ? overlapped : 0;
   tile.first_known = counts_[t].nodes;
 }
 
@@ -181,6 +183,7 @@ template <int D>
 void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                           const std::vector<double>& stiffness, const ContactSettings& settings,
                           double time_step, Threads& threads) {
+  keeps_ = settings.normal_travel > 0.0;
   masses_.find(grid, threads);
   count(grid, threads);
   threads.for_each(tiles_.size(), [&](std::size_t t) {
@@ -200,7 +203,7 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     }
     for (std::uint32_t n = counts_[t].nodes; n < c.nodes; ++n) read_sides(grid, bodies, nodes_[n]);
   });
-  add_travel(bodies.size());
+  if (keeps_) add_travel(bodies.size());
   threads.for_each(tiles_.size(),
                    [&](std::size_t t) { fill_pairs(grid, bodies, stiffness, settings, t); });
   last_time_step_ = time_step;

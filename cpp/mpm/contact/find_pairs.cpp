@@ -157,6 +157,7 @@ bool ContactGrid<D>::recall(const std::vector<Body<D>>& bodies, const ContactSet
 template <int D>
 void ContactGrid<D>::move_gaps(const ContactNode& node, const NodeSolution<D>& solution,
                                double time_step) {
+  if (!keeps_) return;
   known_nodes_[number_of(node)].solved = true;
   for_each_known(
       node, &known_[node.first_pair], [&](const SidePair<D>& pair, KnownPair<D>& known, double) {
