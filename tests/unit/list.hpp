@@ -25,6 +25,7 @@
   X(plane_strain) \
   X(mohr_coulomb) \
   X(surface_load) \
+  X(blocks) \
   X(two_bodies) \
   X(many_bodies) \
   X(separation) \

@@ -1,85 +1,100 @@
 #pragma once
-// The nodes of a patch's block: those of its tile's cells and, for a basis that reaches further, a
-// margin around them. Node i of an axis runs from -margin to cells + margin, 0 being the tile's
-// first node.
-#include <vector>
+// The nodes of a patch's block: a box about the cells that hold the body's particles, with a margin
+// around it for a basis that reaches further. Nodes are counted from the tile's first.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 
 #include "mpm/basis/tile.hpp"
 
 namespace mpm {
 
-/// The nodes of a block that the same neighbours share: region r of {-1,0,1}^D holds the nodes
-/// shared with the lower neighbour (-1), with none (0) or with the upper one (1) along each axis.
-/// Numbered as the neighbours are.
-struct Region {
-  std::vector<std::int32_t> nodes;  // node numbers in the block
-  std::vector<std::int32_t>
-      sharers;  // neighbours that share them, in the order of the tiles, itself left out
-};
-
 template <int D>
 struct BlockShape {
-  int margin = 0;
-  int nodes = 0;  // along an axis
-  int node_count = 0;
+  Index<D> low{};       // the block's first node
+  Index<D> nodes{};     // how many along each axis
+  int node_count = 0;   // 0 without particles
   int node_stride = 0;  // length of one field [doubles], a whole number of cache lines
   std::array<int, Tile<D>::corners> corner_offset{};  // from a cell's first node to its corners
-  std::array<Region, Tile<D>::neighbours> regions;
-  std::array<int, Tile<D>::neighbours>
-      shift{};  // node number here + shift = number in the neighbour's block
-  std::vector<std::uint8_t> region_of_node;
 
   static constexpr int margin_max = 1;
-  static constexpr int stride_max = (power(Tile<D>::cells + 1 + 2 * margin_max, D) + 7) / 8 * 8;
+  static constexpr int count_max(int margin) {
+    return power(Tile<D>::cells + 1 + 2 * margin, D);
+  }
+  static constexpr int stride_max = (count_max(margin_max) + 7) / 8 * 8;
 
-  explicit BlockShape(int margin_nodes = 0)
-      : margin(margin_nodes), nodes(Tile<D>::cells + 1 + 2 * margin_nodes) {
-    using T = Tile<D>;
-    node_count = power(nodes, D);
+  BlockShape() = default;
+  /// Of the nodes from `first` to `last`.
+  BlockShape(const Index<D>& first, const Index<D>& last) : low(first), node_count(1) {
+    for (std::size_t a = 0; a < D; ++a) node_count *= nodes[a] = last[a] - first[a] + 1;
     node_stride = (node_count + 7) / 8 * 8;
-    for (int k = 0; k < T::corners; ++k)
-      corner_offset[static_cast<std::size_t>(k)] = distance(T::corner(k));
-    region_of_node.resize(static_cast<std::size_t>(node_count));
-    for (int n = 0; n < node_count; ++n) {
-      const Index<D> i = index(n);
-      Index<D> r{};
-      for (int a = 0; a < D; ++a) r[a] = i[a] <= margin ? -1 : (i[a] >= T::cells - margin ? 1 : 0);
-      const auto k = static_cast<std::size_t>(T::neighbour(r));
-      region_of_node[static_cast<std::size_t>(n)] = static_cast<std::uint8_t>(k);
-      regions[k].nodes.push_back(n);
+    for (int k = 0; k < Tile<D>::corners; ++k)
+      corner_offset[static_cast<std::size_t>(k)] = distance(Tile<D>::corner(k));
+  }
+  /// Of a tile whose cells all hold particles.
+  static BlockShape whole(int margin) {
+    Index<D> first, last;
+    first.fill(-margin);
+    last.fill(Tile<D>::cells + margin);
+    return {first, last};
+  }
+  /// Of the cells that hold particles, a bit each by Tile<D>::cell.
+  static BlockShape around(std::uint64_t occupied, int margin) {
+    if (occupied == 0) return {};
+    Index<D> first, last;
+    for (std::size_t a = 0; a < D; ++a) {
+      int i = 0, j = Tile<D>::cells - 1;
+      while (!(occupied & Tile<D>::slice(a, i))) ++i;
+      while (!(occupied & Tile<D>::slice(a, j))) --j;
+      first[a] = i - margin;
+      last[a] = j + 1 + margin;
     }
-    for (int k = 0; k < T::neighbours; ++k) {
-      const Index<D> r = T::offset(k);
-      shift[static_cast<std::size_t>(k)] = -T::cells * distance(r);
-      for (int s = 0; s < T::neighbours; ++s) {
-        const Index<D> o = T::offset(s);
-        bool shares = s != T::self;
-        for (int a = 0; a < D; ++a) shares = shares && (o[a] == 0 || o[a] == r[a]);
-        if (shares) regions[static_cast<std::size_t>(k)].sharers.push_back(s);
-      }
+    return {first, last};
+  }
+
+  Index<D> last() const {
+    Index<D> i;
+    for (std::size_t a = 0; a < D; ++a) i[a] = low[a] + nodes[a] - 1;
+    return i;
+  }
+  /// Of all nodes from the least of both to the greatest.
+  BlockShape joined_with(const BlockShape& other) const {
+    if (node_count == 0) return other;
+    if (other.node_count == 0) return *this;
+    Index<D> first, end;
+    for (std::size_t a = 0; a < D; ++a) {
+      first[a] = std::min(low[a], other.low[a]);
+      end[a] = std::max(last()[a], other.last()[a]);
     }
+    return {first, end};
+  }
+  bool operator==(const BlockShape& other) const {
+    return low == other.low && nodes == other.nodes;
   }
 
   /// Difference of node numbers for a difference of coordinates.
   int distance(const Index<D>& i) const {
     int n = 0;
-    for (int a = D - 1; a >= 0; --a) n = n * nodes + i[a];
+    for (std::size_t a = D; a-- > 0;) n = n * nodes[a] + i[a];
     return n;
   }
-  /// Number in the block of the node with these coordinates from the tile's first node, and back.
+  /// Number in the block of the node with these coordinates, and back.
   int node(Index<D> i) const {
-    for (int a = 0; a < D; ++a) i[a] += margin;
+    for (std::size_t a = 0; a < D; ++a) i[a] -= low[a];
     return distance(i);
   }
   Index<D> index(int n) const {
     Index<D> i{};
-    for (int a = 0; a < D; ++a, n /= nodes) i[a] = n % nodes - margin;
+    for (std::size_t a = 0; a < D; ++a) {
+      i[a] = n % nodes[a] + low[a];
+      n /= nodes[a];
+    }
     return i;
   }
   bool holds(const Index<D>& i) const {
     bool inside = true;
-    for (int a = 0; a < D; ++a)
-      inside = inside && i[a] >= -margin && i[a] <= Tile<D>::cells + margin;
+    for (std::size_t a = 0; a < D; ++a)
+      inside = inside && i[a] >= low[a] && i[a] < low[a] + nodes[a];
     return inside;
   }
 };

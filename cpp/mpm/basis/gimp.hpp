@@ -119,7 +119,7 @@ struct Gimp {
     return w;
   }
   Field field(const double* first_node) const {
-    return {first_node - reach(), shape.nodes, shape.nodes * shape.nodes};
+    return {first_node - reach(), shape.nodes[0], shape.nodes[0] * shape.nodes[1]};
   }
 
   /// N_ip over the nodes in reach; xi[a * stride] is the position in the cell along axis a.
@@ -136,8 +136,9 @@ struct Gimp {
   }
   void add_to_nodes(double* first_node, const Nodes& value) const {
     double* first = first_node - reach();
+    const int row = shape.nodes[0], layer = row * shape.nodes[1];
     for (int k = 0; k < Nodes::rows; ++k) {
-      double* to = first + (k % 4) * shape.nodes + (k / 4) * shape.nodes * shape.nodes;
+      double* to = first + (k % 4) * row + (k / 4) * layer;
       typename Nodes::Row sum = Nodes::Row::load(to);
       sum.add(1.0, value.row[k]);
       sum.store(to);

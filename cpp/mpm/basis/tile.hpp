@@ -44,6 +44,13 @@ struct Tile {
     for (int a = 0; a < D; ++a, n /= cells) i[a] = n % cells;
     return i;
   }
+  /// The cells with coordinate i along an axis, a bit each.
+  static constexpr std::uint64_t slice(std::size_t axis, int i) {
+    constexpr std::array<std::uint64_t, 3> first =
+        D == 3 ? std::array<std::uint64_t, 3>{0x1111111111111111, 0x000F000F000F000F, 0xFFFF}
+               : std::array<std::uint64_t, 3>{0x0101010101010101, 0xFF};
+    return first[axis] << i * power(cells, static_cast<int>(axis));
+  }
   /// Offset -1, 0, 1 along each axis of neighbour k, and back. Neighbours are numbered in the order
   /// of the tiles.
   static constexpr Index<D> offset(int k) {

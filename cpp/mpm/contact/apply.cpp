@@ -131,7 +131,7 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
         correction -= dot(own, velocity - side.mapped);
       }
       force_work += dot(contact, velocity);
-      for_each_copy(node, side, grid.shape, [&](std::size_t p, int at) {
+      for_each_copy(node, side, grid, [&](std::size_t p, int at) {
         for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] += (1.0 / time_step) * contact[a];
       });
     }

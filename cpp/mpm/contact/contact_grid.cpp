@@ -7,10 +7,10 @@ namespace {
 
 /// Does a block reach any node that belongs to neighbour k?
 template <int D>
-bool reaches(const BlockShape<D>& shape, int k) {
+bool reaches(int margin, int k) {
   bool any = true;
   const Index<D> o = Tile<D>::offset(k);
-  for (int a = 0; a < D; ++a) any = any && (o[a] >= 0 || shape.margin > 0);
+  for (int a = 0; a < D; ++a) any = any && (o[a] >= 0 || margin > 0);
   return any;
 }
 
@@ -30,7 +30,7 @@ void ContactGrid<D>::connect(TileGrid<D>& grid, const std::vector<Body<D>>& bodi
   };
   for (std::size_t p = 0; p < grid.patches.size(); ++p)
     for (int k = 0; k < Tile<D>::neighbours; ++k)
-      if (reaches<D>(grid.shape, k))
+      if (reaches<D>(grid.margin(), k))
         holders_.push_back(
             {grid.patches[p].body, static_cast<std::int32_t>(p), static_cast<std::uint8_t>(k)});
   std::sort(holders_.begin(), holders_.end(), [&](const TileHolder& x, const TileHolder& y) {

@@ -141,7 +141,7 @@ class ContactGrid {
                   std::size_t tile);
   /// f(patch, node number in its block) for the patches that hold a side's node.
   template <class F>
-  void for_each_copy(const ContactNode& node, const Side<D>& side, const BlockShape<D>& shape,
+  void for_each_copy(const ContactNode& node, const Side<D>& side, const TileGrid<D>& grid,
                      F&& f) const;
   std::size_t patch_of(const Side<D>& side) const {
     return static_cast<std::size_t>(holders_[side.first_copy].patch);
@@ -226,13 +226,13 @@ class ContactGrid {
 template <int D>
 template <class F>
 void ContactGrid<D>::for_each_copy(const ContactNode& node, const Side<D>& side,
-                                   const BlockShape<D>& shape, F&& f) const {
+                                   const TileGrid<D>& grid, F&& f) const {
   f(patch_of(side), static_cast<int>(side.node));
   if (side.copies == 1) return;
   const Index<D> index = Tile<D>::cell_index(node.cell);
   for (std::uint32_t h = side.first_copy + 1, left = side.copies - 1u; left > 0; ++h) {
-    if (!holds_node<D>(shape, holders_[h], index)) continue;
-    f(static_cast<std::size_t>(holders_[h].patch), node_in_holder<D>(shape, holders_[h], index));
+    if (!holds_node<D>(grid, holders_[h], index)) continue;
+    f(static_cast<std::size_t>(holders_[h].patch), node_in_holder<D>(grid, holders_[h], index));
     --left;
   }
 }
@@ -250,7 +250,7 @@ template <int D>
 template <class Field>
 void ContactGrid<D>::write(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
                            const Vec<double, D>& value, Field&& field) const {
-  for_each_copy(node, side, grid.shape, [&](std::size_t p, int at) {
+  for_each_copy(node, side, grid, [&](std::size_t p, int at) {
     const NodeBlock<D> block = grid.block(p);
     for (int a = 0; a < D; ++a) field(block, a)[at] = value[a];
   });

@@ -43,7 +43,7 @@ void ContactGrid<D>::look_around(const TileGrid<D>& grid, const ContactTile<D>& 
     at.first_holder = h;
     at.nodes = 0;
     for (; h < end && holders_[h].body == at.body; ++h)
-      at.nodes |= masses_.in_tile(grid.shape, holders_[h]);
+      at.nodes |= masses_.in_tile(grid, holders_[h]);
     at.holders = h - at.first_holder;
     found.overlapped |= once & at.nodes;
     once |= at.nodes;
@@ -69,9 +69,9 @@ void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around,
     side.body = at.body;
     side.copies = 0;
     for (std::uint32_t h = at.first_holder; h < at.first_holder + at.holders; ++h)
-      if (holds_node<D>(grid.shape, holders_[h], index) && side.copies++ == 0) side.first_copy = h;
+      if (holds_node<D>(grid, holders_[h], index) && side.copies++ == 0) side.first_copy = h;
     side.node =
-        static_cast<std::uint16_t>(node_in_holder<D>(grid.shape, holders_[side.first_copy], index));
+        static_cast<std::uint16_t>(node_in_holder<D>(grid, holders_[side.first_copy], index));
     const NodeBlock<D> block = grid.block(patch_of(side));
     __builtin_prefetch(block.mass() + side.node);
     for (int a = 0; a < D; ++a) __builtin_prefetch(block.velocity(a) + side.node);

@@ -14,7 +14,7 @@ Vec<double, D> mass_gradient(const TileParticles<D>& particles, const Index<D>& 
                              const TileGrid<D>& grid, double edge) {
   using T = Batch<native_lanes>;
   Vec<T, D> total = Vec<T, D>::zero();
-  with_basis(grid.basis, grid.shape, edge, [&](const auto& basis) {
+  with_basis<D>(grid.basis, {}, edge, [&](const auto& basis) {
     particles.around(node, [&](const Index<D>& place, const auto& lanes) {
       for (int a = 0; a < D; ++a) {
         T g = lanes.mass;

@@ -16,6 +16,10 @@ struct TileHolder {
   std::uint8_t neighbour;  // where the tile lies as seen from the patch: Tile<D>::offset
 };
 
+template <int D>
+const BlockShape<D>& shape_of(const TileGrid<D>& grid, const TileHolder& holder) {
+  return grid.patches[static_cast<std::size_t>(holder.patch)].shape;
+}
 /// Coordinate in a holder's block of a node of the tile.
 template <int D>
 Index<D> seen_from(const TileHolder& holder, Index<D> node) {
@@ -25,13 +29,13 @@ Index<D> seen_from(const TileHolder& holder, Index<D> node) {
 }
 /// Does a holder's patch have this node (counted from the tile's first) in its block?
 template <int D>
-bool holds_node(const BlockShape<D>& shape, const TileHolder& holder, const Index<D>& node) {
-  return shape.holds(seen_from<D>(holder, node));
+bool holds_node(const TileGrid<D>& grid, const TileHolder& holder, const Index<D>& node) {
+  return shape_of(grid, holder).holds(seen_from<D>(holder, node));
 }
 /// The node's number in the holder's block.
 template <int D>
-int node_in_holder(const BlockShape<D>& shape, const TileHolder& holder, const Index<D>& node) {
-  return shape.node(seen_from<D>(holder, node));
+int node_in_holder(const TileGrid<D>& grid, const TileHolder& holder, const Index<D>& node) {
+  return shape_of(grid, holder).node(seen_from<D>(holder, node));
 }
 
 /// The nodes at which bodies have mass, a bit each, of the blocks of all patches that have nodes
@@ -40,37 +44,37 @@ template <int D>
 class NodesWithMass {
  public:
   void find(TileGrid<D>& grid, Threads& threads) {
-    words_ = static_cast<std::size_t>(grid.shape.node_stride) / 64 + 2;  // one to read beyond
+    words_ = static_cast<std::size_t>(BlockShape<D>::count_max(grid.margin())) / 64 + 2;  // one to read beyond
     bits_.assign(grid.patches.size() * words_, 0);
     threads.for_each(grid.patches.size(), [&](std::size_t p) {
       if (!grid.patches[p].in_contact) return;
-      const double* mass = grid.block(p).mass();
+      const NodeBlock<D> block = grid.block(p);
       std::uint64_t* bits = &bits_[p * words_];
-      for (int n = 0; n < grid.shape.node_stride; n += native_lanes)
-        bits[n / 64] |= lane_bits(Batch<native_lanes>::load(mass + n) > 0.0) << n % 64;
+      for (int n = 0; n < block.stride; n += native_lanes)
+        bits[n / 64] |= lane_bits(Batch<native_lanes>::load(block.mass() + n) > 0.0) << n % 64;
     });
   }
 
   /// Those of a tile's nodes, a bit each by Tile<D>::cell, that are in a holder's block.
-  std::uint64_t in_tile(const BlockShape<D>& shape, const TileHolder& holder) const {
+  std::uint64_t in_tile(const TileGrid<D>& grid, const TileHolder& holder) const {
     static_assert(Tile<D>::cell_count <= 64);
     const int cells = Tile<D>::cells;
-    const Index<D> o = Tile<D>::offset(holder.neighbour);
+    const BlockShape<D>& shape = shape_of(grid, holder);
+    const Index<D> o = Tile<D>::offset(holder.neighbour), last = shape.last();
     Index<D> low, high;
     for (std::size_t a = 0; a < D; ++a) {
-      low[a] = std::max(0, -shape.margin - cells * o[a]);
-      high[a] = std::min(cells - 1, cells + shape.margin - cells * o[a]);
+      low[a] = std::max(0, shape.low[a] - cells * o[a]);
+      high[a] = std::min(cells - 1, last[a] - cells * o[a]);
+      if (low[a] > high[a]) return 0;
     }
-    const std::uint64_t row_bits = (std::uint64_t{1} << (high[0] - low[0] + 1)) - 1;
+    const std::uint64_t row = low_bits(high[0] - low[0] + 1);
     const std::uint64_t* bits = &bits_[static_cast<std::size_t>(holder.patch) * words_];
     std::uint64_t nodes = 0;
-    const int layer = node_in_holder<D>(shape, holder, low), cell = Tile<D>::cell(low);
+    const int layer = node_in_holder<D>(grid, holder, low), cell = Tile<D>::cell(low);
     for (int z = 0; z <= (D == 3 ? high[D - 1] - low[D - 1] : 0); ++z)
       for (int y = 0; y <= high[1] - low[1]; ++y) {
-        const int n = layer + (z * shape.nodes + y) * shape.nodes;
-        const std::uint64_t* word = bits + n / 64;
-        const std::uint64_t here = word[0] >> n % 64 | (n % 64 ? word[1] << (64 - n % 64) : 0);
-        nodes |= (here & row_bits) << (cell + (z * cells + y) * cells);
+        const int n = layer + (z * shape.nodes[1] + y) * shape.nodes[0];
+        nodes |= (bits_from(bits, n) & row) << (cell + (z * cells + y) * cells);
       }
     return nodes;
   }

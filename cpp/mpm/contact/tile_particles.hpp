@@ -47,7 +47,7 @@ class TileParticles {
   /// Forget all and take what is around these nodes of another tile, a bit each by Tile<D>::cell.
   void gather(const TileGrid<D>& grid, const Body<D>& body, const Index<D>& tile,
               std::span<const TileHolder> holders, std::uint64_t nodes) {
-    margin_ = grid.shape.margin;
+    margin_ = grid.margin();
     edge_ = Tile<D>::cells + 1 + 2 * margin_;
     patch_.fill(nullptr);
     for (const TileHolder& h : holders)

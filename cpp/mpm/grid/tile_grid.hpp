@@ -20,7 +20,6 @@ class TileGrid {
   Vec<double, D> origin = Vec<double, D>::zero();  // position of node 0 [m]
   double cell_size = 0.0;                          // [m]
   Basis basis = Basis::linear;                     // set by `use`
-  BlockShape<D> shape;                             // of every patch's block
   // Cell at the lower corner of tile 0. Tied to the particles' first place, so that a problem
   // shifted by whole cells is cut into the same tiles and gives the same bits.
   Index<D> anchor{};
@@ -63,26 +62,26 @@ class TileGrid {
     return c;
   }
 
-  void use(Basis chosen) {
-    basis = chosen;
-    shape = BlockShape<D>(margin_of(chosen));
-  }
-  std::size_t block_size() const {
-    return static_cast<std::size_t>(fields) * static_cast<std::size_t>(shape.node_stride);
-  }
+  /// Nodes beyond a cell's own that its particles reach.
+  int margin() const { return margin_of(basis); }
   NodeBlock<D> block(std::size_t patch) {
-    return {node_memory_.data() + patch * block_size(), shape.node_stride};
+    return {node_memory_.data() + patches[patch].memory, patches[patch].shape.node_stride};
   }
-  /// What one patch needs of memory.
-  std::size_t patch_bytes() const { return block_size() * sizeof(double) + sizeof(Patch<D>); }
+  /// What the patches and their nodes need now.
+  std::size_t needed_bytes() const {
+    return needed_ * sizeof(double) + patches.size() * sizeof(Patch<D>);
+  }
   void release_nodes() { node_memory_.release_and_allocate(0); }
   std::size_t node_bytes() const {
-    return node_memory_.bytes() + patches.capacity() * sizeof(Patch<D>);
+    return node_memory_.bytes() + patches.capacity() * sizeof(Patch<D>) +
+           shapes_.capacity() * sizeof(BlockShape<D>);
   }
 
-  /// Find neighbours, owners of shared nodes, walls; make room for the nodes. Call when patches
-  /// were added or removed.
+  /// Find neighbours. Call when patches were added or removed.
   void connect();
+  /// Cut the blocks to the cells that hold particles, find the owners of shared nodes and the walls,
+  /// and make room for the nodes. Call when particles have changed cells.
+  void cut_blocks(Threads& threads);
   /// The patch of a body in a tile, or -1.
   int find(int body, const Index<D>& tile) const;
 
@@ -94,10 +93,16 @@ class TileGrid {
  private:
   bool before(const Patch<D>& p, int body, const Index<D>& tile) const;
   void choose_leaders();
+  bool find_shapes(Threads& threads);
   template <class F>
   void for_each_follower(Threads& threads, F&& f);
+  template <class F>
+  void for_each_neighbour(const Patch<D>& patch, int first, int last, F&& f);
 
   AlignedArray<double> node_memory_;
+  std::size_t needed_ = 0;     // of it [doubles]
+  bool blocks_known_ = false;  // since patches were added or removed
+  std::vector<BlockShape<D>> shapes_;
   std::vector<std::uint32_t> by_tile_;  // if bonded: all patches, by tile, then by body
   std::vector<std::uint32_t> leaders_;  // those whose nodes are summed with their neighbours'
 };

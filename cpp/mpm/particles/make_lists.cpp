@@ -105,6 +105,7 @@ void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
     add_patches(grid, body, static_cast<int>(b));
   }
   grid.connect();
+  grid.cut_blocks(threads);
 }
 
 template void make_lists<2>(TileGrid<2>&, std::vector<Body<2>>&, Threads&);

@@ -250,6 +250,7 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
     write_list(bodies[static_cast<std::size_t>(patch.body)], patch, changes[p], scratch.leavers);
   });
   for (auto& body : bodies) std::swap(body.order, body.next_order);
+  grid.cut_blocks(threads);
   return changed;
 }
 

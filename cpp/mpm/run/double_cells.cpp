@@ -10,7 +10,7 @@ template <int D>
 bool SimulationOf<D>::must_double() const {
   const TileGrid<D>& grid = domain_.grid;
   if (doublings_ >= settings_.doubling_times) return false;
-  const std::size_t tiles = grid.patches.size(), bytes = tiles * grid.patch_bytes();
+  const std::size_t tiles = grid.patches.size(), bytes = grid.needed_bytes();
   const bool many = settings_.doubling_tiles > 0 && tiles > settings_.doubling_tiles;
   const bool large = settings_.doubling_bytes > 0 && bytes > settings_.doubling_bytes;
   if (!many && !large) return false;

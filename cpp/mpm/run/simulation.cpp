@@ -79,7 +79,7 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
     : settings_(settings), stages_(stages_of<D>(settings.scheme)) {
   TileGrid<D>& grid = domain_.grid;
   grid.cell_size = settings.cell_size;
-  grid.use(settings.basis);
+  grid.basis = settings.basis;
   grid.bonded = settings.bonded;
   grid.walls.exist = settings.box_cells[0] > 0;
   grid.keep.exist = settings.keep;

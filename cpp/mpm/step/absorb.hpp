@@ -31,7 +31,7 @@ void scatter_dashpots(const TileGrid<D>& grid, const Body<D>& body, const Patch<
               share *= corner >> a & 1 ? xi : 1.0 - xi;
             }
             const int node =
-                cell.first_node + grid.shape.corner_offset[static_cast<std::size_t>(corner)];
+                cell.first_node + patch.shape.corner_offset[static_cast<std::size_t>(corner)];
             for (int a = 0; a < D; ++a)
               block.dashpot(a)[node] +=
                   share * (a == normal ? body.pressure_impedance : body.shear_impedance);

@@ -9,11 +9,8 @@ namespace {
 
 /// 1 at the nodes that a patch owns, 0 at those that another patch counts.
 template <int D>
-void ownership(const BlockShape<D>& shape, const Patch<D>& patch, double* own) {
-  for (int n = 0; n < shape.node_stride; ++n) own[n] = 0.0;
-  for (int n = 0; n < shape.node_count; ++n)
-    own[n] =
-        static_cast<double>(patch.owned >> shape.region_of_node[static_cast<std::size_t>(n)] & 1u);
+void ownership(const Patch<D>& patch, double* own) {
+  for (int n = 0; n < patch.shape.node_stride; ++n) own[n] = patch.owned[n] ? 1.0 : 0.0;
 }
 
 }  // namespace
@@ -38,7 +35,7 @@ void advance_nodes(Domain<D>& domain) {
         if (held >> a & 1u) block.force(a)[node] = -block.mass()[node] * domain.gravity[a];
     });
     alignas(cache_line) double own[BlockShape<D>::stride_max];
-    ownership(grid.shape, patch, own);
+    ownership(patch, own);
     for_each_mirrored_node(grid, patch, [&](int node, int, unsigned) { own[node] = 0.0; });
     T work(0.0), gravity_first(0.0), gravity_second(0.0);
     for (int n = 0; n < block.stride; n += native_lanes) {

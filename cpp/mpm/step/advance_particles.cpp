@@ -15,7 +15,7 @@ void advance_particles(Domain<D>& domain) {
     const NodeBlock<D> block = grid.block(p);
     T kinetic(0.0), second_order(0.0);
     Vec<T, D> momentum = Vec<T, D>::zero();
-    with_basis(grid, body, [&](const auto& basis) {
+    with_basis(grid, body, patch, [&](const auto& basis) {
       for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
         const auto increment = vector_field(basis, cell, [&](int a) { return block.force(a); });
         for_each_group(cell, [&](const LaneRows<W>& rows) {

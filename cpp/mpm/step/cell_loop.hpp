@@ -21,7 +21,7 @@ void for_each_cell(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>&
   const Index<D> first = grid.first_cell(patch.tile);
   patch.for_each_cell([&](int c, std::uint32_t begin, std::uint32_t end) {
     const Index<D> local = Tile<D>::cell_index(c);
-    CellRange<D> range{first, grid.shape.node(local), body.order.data() + begin, end - begin};
+    CellRange<D> range{first, patch.shape.node(local), body.order.data() + begin, end - begin};
     for (int a = 0; a < D; ++a) range.cell[a] += local[a];
     f(range);
   });
@@ -45,10 +45,10 @@ Vec<Batch<native_lanes>, D> local_position(const TileGrid<D>& grid, const Body<D
   return xi;
 }
 
-/// f(basis object) for the basis of the grid and the size of a body's particles.
+/// f(basis object) for the basis of the grid, a patch's block and the size of a body's particles.
 template <int D, class F>
-void with_basis(const TileGrid<D>& grid, const Body<D>& body, F&& f) {
-  with_basis(grid.basis, grid.shape, body.mean_edge / grid.cell_size, std::forward<F>(f));
+void with_basis(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch, F&& f) {
+  with_basis(grid.basis, patch.shape, body.mean_edge / grid.cell_size, std::forward<F>(f));
 }
 
 /// Fields of the D components of a nodal vector on a cell; `component(a)` is the first double of
@@ -71,8 +71,8 @@ template <int D, class F>
 void for_each_held_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
   if (!patch.at_wall) return;
   const Index<D> first = grid.first_cell(patch.tile);
-  for (int n = 0; n < grid.shape.node_count; ++n) {
-    Index<D> node = grid.shape.index(n);
+  for (int n = 0; n < patch.shape.node_count; ++n) {
+    Index<D> node = patch.shape.index(n);
     for (int a = 0; a < D; ++a) node[a] += first[a];
     if (const unsigned held = grid.walls.held(node)) f(n, held);
   }

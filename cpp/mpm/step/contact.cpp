@@ -9,7 +9,7 @@ namespace {
 template <int D, class Field>
 void reflect(Domain<D>& domain, Field&& field) {
   TileGrid<D>& grid = domain.grid;
-  if (!grid.walls.exist || grid.shape.margin == 0) return;
+  if (!grid.walls.exist || grid.margin() == 0) return;
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const NodeBlock<D> block = grid.block(p);
     reflect_at_walls(grid, grid.patches[p], [&](int a) { return field(block, a); });

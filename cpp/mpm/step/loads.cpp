@@ -25,12 +25,12 @@ void for_each_loaded_piece(const Domain<D>& domain, std::size_t p, const Surface
         shift[k] = xi[a] < 0.0 ? -1 : xi[a] > 1.0 ? 1 : 0;
         xi[a] -= shift[k];
       }
-      const int first = cell.first_node + grid.shape.distance(shift);
+      const int first = cell.first_node + patch.shape.distance(shift);
       f(load.force_on(piece), [&](auto&& g) {
         for (int corner = 0; corner < Tile<D>::corners; ++corner) {
           double N = 1.0;
           for (int a = 0; a < D; ++a) N *= corner >> a & 1 ? xi[a] : 1.0 - xi[a];
-          g(first + grid.shape.corner_offset[static_cast<std::size_t>(corner)], N);
+          g(first + patch.shape.corner_offset[static_cast<std::size_t>(corner)], N);
         }
       });
     });

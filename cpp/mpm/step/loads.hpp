@@ -44,7 +44,7 @@ void carry_loads(Domain<D>& domain, std::size_t p, Field&& field) {
   const double scale = domain.time_step / grid.cell_size;
   for (SurfaceLoad<D>& load : domain.loads) {
     if (load.body != patch.body) continue;
-    with_basis(grid, body, [&](const auto& basis) {
+    with_basis(grid, body, patch, [&](const auto& basis) {
       for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
         bool loaded = false;
         for_each_piece(load, body, cell, [&](std::uint32_t, std::size_t) { loaded = true; });

@@ -54,7 +54,7 @@ void map_forces(Domain<D>& domain) {
     clear_fields(block, 1 + D, grid.fields);
     const Body<D>& body = domain.body_of(patch);
     if (body.rigid) return;  // It has no stress.
-    with_basis(grid, body,
+    with_basis(grid, body, patch,
                [&](const auto& basis) { scatter_forces(basis, grid, body, patch, block); });
     if (absorb) scatter_dashpots(grid, body, patch, block);
     if (loaded) scatter_loads(domain, p);

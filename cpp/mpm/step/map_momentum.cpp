@@ -14,7 +14,7 @@ void map_momentum(Domain<D>& domain) {
     clear_fields(block, 0, 1 + D);
     const Body<D>& body = domain.body_of(patch);
     if (body.prescribed && !patch.in_contact) return;  // Nobody asks for its nodes.
-    with_basis(grid, body, [&](const auto& basis) {
+    with_basis(grid, body, patch, [&](const auto& basis) {
       scatter_momentum<true>(basis, grid, body, patch, block.mass(),
                              [&](int a) { return block.velocity(a); });
     });

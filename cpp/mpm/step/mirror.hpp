@@ -11,8 +11,8 @@ namespace mpm {
 /// f(node, image, axes) for the nodes of a block that lie beyond slip walls.
 template <int D, class F>
 void for_each_mirrored_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
-  const BlockShape<D>& shape = grid.shape;
-  if (!patch.at_wall || shape.margin == 0) return;
+  const BlockShape<D>& shape = patch.shape;
+  if (!patch.at_wall || grid.margin() == 0) return;
   const Index<D> first = grid.first_cell(patch.tile);
   for (int n = 0; n < shape.node_count; ++n) {
     Index<D> node = shape.index(n), image;

@@ -15,7 +15,7 @@ void move_particles(Domain<D>& domain) {
     if (body.rigid) return;
     const NodeBlock<D> block = grid.block(p);
     auto left = T(1.0) < T(0.0);
-    with_basis(grid, body, [&](const auto& basis) {
+    with_basis(grid, body, patch, [&](const auto& basis) {
       for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
         const auto velocity = vector_field(basis, cell, [&](int a) { return block.velocity(a); });
         for_each_group(cell, [&](const LaneRows<W>& rows) {

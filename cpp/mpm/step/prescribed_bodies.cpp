@@ -55,11 +55,11 @@ void advance_prescribed_nodes(Domain<D>& domain, std::size_t p) {
   const NodeBlock<D> block = domain.grid.block(p);
   const Index<D> first = grid.first_cell(patch.tile);
   PatchSums<D>& sums = domain.sums[p];
-  for (int n = 0; n < grid.shape.node_count; ++n) {
-    Index<D> node = grid.shape.index(n);
+  for (int n = 0; n < patch.shape.node_count; ++n) {
+    Index<D> node = patch.shape.index(n);
     for (int a = 0; a < D; ++a) node[a] += first[a];
     const Vector3 dv = motion.increment_at(in_space<D>(grid.position_of(node)));
-    const bool own = patch.owned >> grid.shape.region_of_node[static_cast<std::size_t>(n)] & 1u;
+    const bool own = patch.owned[n];
     for (int a = 0; a < D; ++a) {
       const double pushed = own ? domain.time_step * block.force(a)[n] : 0.0;  // [N s]
       sums.force_work += pushed * block.velocity(a)[n];

@@ -11,8 +11,8 @@ template <int D, class Field>
 void set_rigid_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const RigidMotion& motion,
                         Field&& field) {
   const Index<D> first = grid.first_cell(patch.tile);
-  for (int n = 0; n < grid.shape.node_count; ++n) {
-    Index<D> node = grid.shape.index(n);
+  for (int n = 0; n < patch.shape.node_count; ++n) {
+    Index<D> node = patch.shape.index(n);
     for (int a = 0; a < D; ++a) node[a] += first[a];
     const Vector3 v = motion.velocity_at(in_space<D>(grid.position_of(node)));
     for (int a = 0; a < D; ++a) field(a)[n] = v[a];

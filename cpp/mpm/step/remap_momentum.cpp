@@ -13,7 +13,7 @@ void remap_momentum(Domain<D>& domain) {
     clear_fields(block, 1 + D, 1 + 2 * D);
     const Body<D>& body = domain.body_of(patch);
     if (body.prescribed) return;
-    with_basis(grid, body, [&](const auto& basis) {
+    with_basis(grid, body, patch, [&](const auto& basis) {
       scatter_momentum<false>(basis, grid, body, patch, block.mass(),
                               [&](int a) { return block.force(a); });
     });

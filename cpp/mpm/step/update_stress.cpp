@@ -23,7 +23,7 @@ void update_patch(Domain<D>& domain, std::size_t p, bool forces_follow, Field&& 
     update_block<T>(material, body.columns, body.at, block, settings, domain.sums[p].stress);
     block.count = 0;
   };
-  with_basis(grid, body, [&](const auto& basis) {
+  with_basis(grid, body, patch, [&](const auto& basis) {
     for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
       const auto velocity = vector_field(basis, cell, field);
       for_each_group(cell, [&](const LaneRows<W>& rows) {

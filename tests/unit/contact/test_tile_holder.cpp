@@ -15,29 +15,32 @@ void check_nodes(mpm::testing::Report& report, Basis basis) {
   std::bernoulli_distribution has_mass(0.4);
   TileGrid<D> grid;
   grid.cell_size = 1.0;
-  grid.use(basis);
+  grid.basis = basis;
   grid.patches.resize(2);
   for (Patch<D>& patch : grid.patches) patch.in_contact = true;
+  grid.patches[0].occupied = random();  // all over the tile
+  grid.patches[1].occupied = Tile<D>::slice(0, 1) & Tile<D>::slice(1, 2);  // a row or one cell
   grid.patches[1].body = 1;
-  grid.connect();
-  for (std::size_t p = 0; p < 2; ++p)
-    for (int n = 0; n < grid.shape.node_stride; ++n)
-      grid.block(p).mass()[n] = has_mass(random) ? 0.5 : 0.0;
   Threads threads(1);
+  grid.connect();
+  grid.cut_blocks(threads);
+  for (std::size_t p = 0; p < 2; ++p)
+    for (int n = 0; n < grid.patches[p].shape.node_stride; ++n)
+      grid.block(p).mass()[n] = has_mass(random) ? 0.5 : 0.0;
   NodesWithMass<D> masses;
   masses.find(grid, threads);
   for (int patch = 0; patch < 2; ++patch)
     for (int k = 0; k < Tile<D>::neighbours; ++k) {
       const TileHolder holder{patch, patch, static_cast<std::uint8_t>(k)};
       bool reached = true;
-      for (const int o : Tile<D>::offset(k)) reached = reached && (o >= 0 || grid.shape.margin > 0);
+      for (const int o : Tile<D>::offset(k)) reached = reached && (o >= 0 || grid.margin() > 0);
       if (!reached) continue;
-      const std::uint64_t found = masses.in_tile(grid.shape, holder);
+      const std::uint64_t found = masses.in_tile(grid, holder);
       for (int cell = 0; cell < Tile<D>::cell_count; ++cell) {
         const Index<D> node = Tile<D>::cell_index(cell);
-        const bool expected = holds_node<D>(grid.shape, holder, node) &&
+        const bool expected = holds_node<D>(grid, holder, node) &&
                               grid.block(static_cast<std::size_t>(patch))
-                                      .mass()[node_in_holder<D>(grid.shape, holder, node)] > 0.0;
+                                      .mass()[node_in_holder<D>(grid, holder, node)] > 0.0;
         CHECK((found >> cell & 1u) == (expected ? 1u : 0u), patch, k, cell);
       }
     }

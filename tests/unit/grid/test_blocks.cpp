@@ -1,0 +1,96 @@
+// Blocks cut to the occupied cells: every node is held by all patches whose cells reach it, owned by
+// the first of them, and holds their sum.
+#include <map>
+#include <random>
+
+#include "check.hpp"
+#include "mpm/grid/tile_grid.hpp"
+
+namespace {
+
+using namespace mpm;
+
+/// Two bodies in 3^D tiles, some cells occupied at random; bonded or not.
+template <int D>
+void check_sums(mpm::testing::Report& report, Basis basis, bool bonded) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  Threads threads(2);
+  TileGrid<D> grid;
+  grid.cell_size = 1.0;
+  grid.basis = basis;
+  grid.bonded = bonded;
+  Index<D> low, high;
+  low.fill(-1);
+  high.fill(1);
+  for (int body = 0; body < 2; ++body)
+    for_each_index<D>(low, high, [&](const Index<D>& tile) {
+      if (random() % 5 == 0) return;
+      Patch<D>& patch = grid.patches.emplace_back();
+      patch.body = body;
+      patch.tile = tile;
+      const auto some = static_cast<unsigned>(random() % 5);  // sparse, so that blocks differ
+      patch.occupied = some == 0 ? 0 : random();
+      for (unsigned k = 1; k < some; ++k) patch.occupied &= random();
+    });
+  grid.connect();
+  grid.cut_blocks(threads);
+
+  using Key = std::pair<int, Index<D>>;  // the field, by body unless bonded, and the node
+  std::map<Key, std::vector<double>> given;
+  std::map<Key, int> owners;
+  const auto for_each_node = [&](auto&& f) {
+    for (std::size_t p = 0; p < grid.patches.size(); ++p) {
+      const Patch<D>& patch = grid.patches[p];
+      for (int n = 0; n < patch.shape.node_count; ++n) {
+        Index<D> node = patch.shape.index(n);
+        for (std::size_t a = 0; a < D; ++a) node[a] += grid.first_cell(patch.tile)[a];
+        f(p, n, Key{bonded ? 0 : patch.body, node});
+      }
+    }
+  };
+  for_each_node([&](std::size_t p, int n, const Key& key) {
+    const double mass = any(random);
+    grid.block(p).mass()[n] = mass;
+    grid.block(p).velocity(0)[n] = 2.0 * mass;
+    given[key].push_back(mass);
+    owners[key] += grid.patches[p].owned[n];
+  });
+  grid.sum_shared_nodes(threads, 0, 2);
+  for_each_node([&](std::size_t p, int n, const Key& key) {
+    double sum = 0.0;
+    for (const double m : given[key]) sum += m;
+    CHECK_CLOSE(grid.block(p).mass()[n], sum, 1e-14 * 16);
+    CHECK_EQUAL(grid.block(p).velocity(0)[n], 2.0 * grid.block(p).mass()[n]);
+    CHECK_EQUAL(owners[key], 1);
+  });
+
+  // All nodes in reach of an occupied cell are there, and no smaller box holds them.
+  for (std::size_t p = 0; p < grid.patches.size(); ++p) {
+    const Patch<D>& patch = grid.patches[p];
+    if (patch.leader == p && bonded) continue;
+    Index<D> first, last;
+    first.fill(99);
+    last.fill(-99);
+    for (int c = 0; c < Tile<D>::cell_count; ++c)
+      for (std::size_t a = 0; a < D && (patch.occupied >> c & 1u); ++a) {
+        first[a] = std::min(first[a], Tile<D>::cell_index(c)[a] - grid.margin());
+        last[a] = std::max(last[a], Tile<D>::cell_index(c)[a] + 1 + grid.margin());
+      }
+    if (patch.occupied == 0) {
+      CHECK_EQUAL(patch.shape.node_count, 0);
+    } else {
+      CHECK(patch.shape.low == first && patch.shape.last() == last, p);
+    }
+  }
+}
+
+}  // namespace
+
+void test_blocks(mpm::testing::Report& report) {
+  for (const Basis basis : {Basis::linear, Basis::gimp})
+    for (const bool bonded : {false, true}) {
+      check_sums<2>(report, basis, bonded);
+      check_sums<3>(report, basis, bonded);
+    }
+}
