@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "mpm/fields/aligned.hpp"
@@ -34,20 +33,17 @@ class Columns {
 
   void allocate(std::size_t rows) {
     rows_ = rows;
-    // One spare component lets a permutation gather into it and then swap pointers, without copying
-    // back.
-    const auto slots = static_cast<std::size_t>(component_count()) + 1;
     stride_ = padded(rows);
-    memory_.release_and_allocate(slots * stride_);
-    components_.resize(slots);
-    for (std::size_t c = 0; c < slots; ++c) components_[c] = memory_.data() + c * stride_;
+    memory_.release_and_allocate(static_cast<std::size_t>(component_count()) * stride_);
   }
 
   std::size_t rows() const { return rows_; }
   std::size_t bytes() const { return memory_.bytes(); }
   const std::vector<ColumnInfo>& infos() const { return infos_; }
-  double* component(int c) { return components_[static_cast<std::size_t>(c)]; }
-  const double* component(int c) const { return components_[static_cast<std::size_t>(c)]; }
+  double* component(int c) { return memory_.data() + static_cast<std::size_t>(c) * stride_; }
+  const double* component(int c) const {
+    return memory_.data() + static_cast<std::size_t>(c) * stride_;
+  }
 
   /// The column's description; throws std::invalid_argument for an unknown name, with those that
   /// there are.
@@ -57,13 +53,6 @@ class Columns {
     std::string known;
     for (const auto& i : infos_) known += (known.empty() ? "" : ", ") + i.name;
     throw std::invalid_argument("no column is named " + std::string(name) + "; there are " + known);
-  }
-
-  /// One component of room, to gather a permuted component into before `swap_with_spare` puts it in
-  /// place.
-  double* spare() { return components_.back(); }
-  void swap_with_spare(int c) {
-    std::swap(components_.back(), components_[static_cast<std::size_t>(c)]);
   }
 
   int component_count() const {
@@ -84,7 +73,6 @@ class Columns {
   }
 
   std::vector<ColumnInfo> infos_;
-  std::vector<double*> components_;
   AlignedArray<double> memory_;
   std::size_t rows_ = 0, stride_ = 0;
 };

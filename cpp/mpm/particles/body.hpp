@@ -19,12 +19,10 @@ struct Body {
   int position = 0;               // first component of each column; position [m], D components
   MaterialColumns at{};           // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
   std::vector<std::uint32_t> id;  // place of each particle in the order in which the user gave them
-  std::vector<std::uint32_t> order;       // particles by patch, then by cell, then by row; behind
-                                          // them those that are gone, which no patch holds
-  std::vector<std::uint32_t> next_order;  // the list being made
-  std::vector<std::uint8_t> cell;         // scratch: cell in its tile of each entry of `order`
-  double initial_density = 0.0;           // [kg/m^3]
-  double mean_mass = 0.0;                 // of a particle at the start [kg]
+  std::vector<std::uint32_t> order;  // particles by patch, then by cell, then by row; behind them
+                                     // those that are gone, which no patch holds
+  double initial_density = 0.0;      // [kg/m^3]
+  double mean_mass = 0.0;            // of a particle at the start [kg]
   double mean_edge = 0.0;   // edge of a square or cube of the mean initial particle volume [m]
   double total_mass = 0.0;  // [kg]
   bool rigid = false;       // its particles move as one
@@ -48,9 +46,7 @@ struct Body {
   const double* stress(int k) const { return columns.component(at.stress + k); }
 
   std::size_t bytes() const {
-    return columns.bytes() +
-           (id.capacity() + order.capacity() + next_order.capacity()) * sizeof(std::uint32_t) +
-           cell.capacity();
+    return columns.bytes() + (id.capacity() + order.capacity()) * sizeof(std::uint32_t);
   }
 };
 

@@ -1,6 +1,8 @@
 #pragma once
 // Which particles lie in which cell: made once, then mended where particles have moved. Columns are
 // put back in order only when that pays; correctness never depends on it.
+#include <limits>
+
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/particles/body.hpp"
 
@@ -24,23 +26,38 @@ struct Gone {
   double momentum[D] = {};                  // [kg m/s]
 };
 
-/// Reused from step to step, so that a step allocates nothing.
+/// Reused from step to step, so that a step allocates nothing, and by one body after another.
 template <int D>
 struct ListScratch {
   struct Change {
     std::uint32_t kept, arrival_begin, arrival_count, begin;
   };
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   std::vector<Leaver<D>> leavers;
   std::vector<Change> changes;  // one per patch
   std::vector<Patch<D>> merged;
   std::vector<std::size_t> moved;  // one per patch
+  // The lists being made of those bodies whose particles have left their cells.
+  std::vector<std::size_t> first;    // where each body's list begins, or none
+  std::vector<std::uint32_t> order;  // the lists
+  std::vector<std::uint8_t> cell;    // the cell in its tile of each entry of the lists before
+  AlignedArray<double> column;       // one component, while it is sorted
+
+  std::uint32_t* order_of(int body) { return &order[first[static_cast<std::size_t>(body)]]; }
+  std::uint8_t* cell_of(int body) { return &cell[first[static_cast<std::size_t>(body)]]; }
+  bool changes_list_of(int body) const { return first[static_cast<std::size_t>(body)] != none; }
+  /// Those of numbers by particle.
+  std::size_t bytes() const {
+    return order.capacity() * sizeof(std::uint32_t) + cell.capacity() + column.bytes();
+  }
 };
 
 /// Sort every body's columns by tile and cell, and make patches and lists anew, at the start or
 /// after a change of the grid. Sets the grid's anchor. Throws std::invalid_argument if a particle
 /// lies more than 2^19 cells from the origin.
 template <int D>
-void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads);
+void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
+                ListScratch<D>& scratch);
 
 /// In the column `failed`, beside the values of FailureAction: the particle has left the region
 /// that is kept.
@@ -54,10 +71,10 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
 
 /// Put the columns of a body into the order of its list.
 template <int D>
-void sort_columns(Body<D>& body, Threads& threads);
+void sort_columns(Body<D>& body, Threads& threads, ListScratch<D>& scratch);
 
 /// The same for the bodies whose particles have moved about so much that it pays.
 template <int D>
-void sort_disordered(std::vector<Body<D>>& bodies, Threads& threads);
+void sort_disordered(std::vector<Body<D>>& bodies, Threads& threads, ListScratch<D>& scratch);
 
 }  // namespace mpm

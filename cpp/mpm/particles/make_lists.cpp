@@ -61,7 +61,8 @@ void add_patches(TileGrid<D>& grid, const Body<D>& body, int body_number) {
 }  // namespace
 
 template <int D>
-void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads) {
+void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
+                ListScratch<D>& scratch) {
   constexpr double furthest = 1 << 20;  // cells; within the 19 bits of a key's tile coordinates
   grid.anchor.fill(std::numeric_limits<std::int32_t>::max());
   for (auto& body : bodies) {
@@ -99,16 +100,14 @@ void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
       });
       for (std::size_t i = 0; i < n; ++i) body.order[i] = keys[i].row;
     }
-    body.next_order.resize(body.count());
-    body.cell.resize(body.count());
-    sort_columns(body, threads);
+    sort_columns(body, threads, scratch);
     add_patches(grid, body, static_cast<int>(b));
   }
   grid.connect();
   grid.cut_blocks(threads);
 }
 
-template void make_lists<2>(TileGrid<2>&, std::vector<Body<2>>&, Threads&);
-template void make_lists<3>(TileGrid<3>&, std::vector<Body<3>>&, Threads&);
+template void make_lists<2>(TileGrid<2>&, std::vector<Body<2>>&, Threads&, ListScratch<2>&);
+template void make_lists<3>(TileGrid<3>&, std::vector<Body<3>>&, Threads&, ListScratch<3>&);
 
 }  // namespace mpm

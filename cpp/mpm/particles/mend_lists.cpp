@@ -30,7 +30,8 @@ bool keeps(const TileGrid<D>& grid, const Body<D>& body, std::uint32_t row) {
 /// Note the cell of each particle of a patch, or that it is outside or gone; returns how many have
 /// changed cell.
 template <int D>
-std::size_t classify(const TileGrid<D>& grid, Body<D>& body, const Patch<D>& patch) {
+std::size_t classify(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
+                     std::uint8_t* cells) {
   const Index<D> first = grid.first_cell(patch.tile);
   const double* failed = body.at.failed >= 0 ? body.columns.component(body.at.failed) : nullptr;
   std::size_t changed = 0;
@@ -47,7 +48,7 @@ std::size_t classify(const TileGrid<D>& grid, Body<D>& body, const Patch<D>& pat
           failed && failed[body.order[k]] >= static_cast<double>(FailureAction::erode);
       const bool stays = body.rigid ? !body.leaves : keeps(grid, body, body.order[k]);
       const int now = erodes ? eroded : !stays ? left : inside ? Tile<D>::cell(local) : outside;
-      body.cell[k] = static_cast<std::uint8_t>(now);
+      cells[k] = static_cast<std::uint8_t>(now);
       changed += now != old_cell;
     }
   });
@@ -56,13 +57,15 @@ std::size_t classify(const TileGrid<D>& grid, Body<D>& body, const Patch<D>& pat
 
 template <int D>
 void find_leavers(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                  std::vector<Leaver<D>>& leavers) {
+                  ListScratch<D>& scratch) {
+  auto& leavers = scratch.leavers;
   leavers.clear();
   for (const Patch<D>& patch : grid.patches) {
     if (!patch.left_cell) continue;
     const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
+    const std::uint8_t* cells = scratch.cell_of(patch.body);
     for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
-      if (body.cell[k] != outside) continue;
+      if (cells[k] != outside) continue;
       const Index<D> cell = cell_of_row(grid, body, body.order[k]);
       const Index<D> tile = grid.tile_of(cell);
       const Index<D> first = grid.first_cell(tile);
@@ -117,9 +120,10 @@ bool merge_new_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
 
 /// Write a patch's new list: the particles it keeps and those that come, by cell, then by row.
 template <int D>
-void write_list(Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::Change& change,
-                const std::vector<Leaver<D>>& leavers) {
-  std::uint32_t* to = body.next_order.data() + change.begin;
+void write_list(const Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::Change& change,
+                ListScratch<D>& scratch) {
+  std::uint32_t* to = scratch.order_of(patch.body) + change.begin;
+  std::uint8_t* cell = scratch.cell_of(patch.body);
   if (!patch.left_cell && change.arrival_count == 0) {
     std::memcpy(to, body.order.data() + patch.begin, patch.count * sizeof(std::uint32_t));
     patch.begin = change.begin;
@@ -127,24 +131,24 @@ void write_list(Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::C
   }
   if (!patch.left_cell)
     patch.for_each_cell([&](int c, std::uint32_t begin, std::uint32_t end) {
-      std::memset(body.cell.data() + begin, c, end - begin);
+      std::memset(cell + begin, c, end - begin);
     });
-  const Leaver<D>* arrival = leavers.data() + change.arrival_begin;
+  const Leaver<D>* arrival = scratch.leavers.data() + change.arrival_begin;
   constexpr int cells = Tile<D>::cell_count;
   std::array<std::uint32_t, cells + 1> begin{};
   for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-    if (body.cell[k] < left) ++begin[body.cell[k] + std::size_t{1}];
+    if (cell[k] < left) ++begin[cell[k] + std::size_t{1}];
   for (std::uint32_t k = 0; k < change.arrival_count; ++k)
     ++begin[arrival[k].cell + std::size_t{1}];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   auto next = begin;
-  auto put = [&](std::uint8_t cell, std::uint32_t row) {
-    std::uint32_t at = next[cell]++;
-    for (; at > begin[cell] && to[at - 1] > row; --at) to[at] = to[at - 1];
+  auto put = [&](std::uint8_t c, std::uint32_t row) {
+    std::uint32_t at = next[c]++;
+    for (; at > begin[c] && to[at - 1] > row; --at) to[at] = to[at - 1];
     to[at] = row;
   };
   for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-    if (body.cell[k] < left) put(body.cell[k], body.order[k]);
+    if (cell[k] < left) put(cell[k], body.order[k]);
   for (std::uint32_t k = 0; k < change.arrival_count; ++k) put(arrival[k].cell, arrival[k].row);
 
   patch.begin = change.begin;
@@ -174,20 +178,20 @@ void take_out(const Body<D>& body, std::uint32_t row, Gone<D>& sums) {
 
 /// The end of a body's new list, behind all patches: what goes now, then what has gone before.
 template <int D>
-void write_tail(std::span<const Patch<D>> patches, Body<D>& body, Gone<D>& eroded_sums,
-                Gone<D>& left_sums) {
-  if (body.at.recoverable < 0) return;
+void write_tail(std::span<const Patch<D>> patches, Body<D>& body, const std::uint8_t* cell,
+                std::uint32_t* order, Gone<D>& eroded_sums, Gone<D>& left_sums) {
   const std::size_t before = body.gone, n = body.count();
   std::size_t now = 0;
   const auto each = [&](auto&& f) {
     for (const Patch<D>& patch : patches) {
       if (!patch.left_cell) continue;
       for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-        if (body.cell[k] == eroded || body.cell[k] == left) f(body.order[k], body.cell[k] == left);
+        if (cell[k] == eroded || cell[k] == left) f(body.order[k], cell[k] == left);
     }
   };
   each([&](std::uint32_t, bool) { ++now; });
-  std::uint32_t* to = body.next_order.data() + (n - before - now);
+  if (before + now == 0) return;
+  std::uint32_t* to = order + (n - before - now);
   each([&](std::uint32_t row, bool leaves) {
     take_out(body, row, leaves ? left_sums : eroded_sums);
     if (leaves) body.columns.component(body.at.failed)[row] = left_region;
@@ -197,37 +201,37 @@ void write_tail(std::span<const Patch<D>> patches, Body<D>& body, Gone<D>& erode
   body.gone = before + now;
 }
 
-}  // namespace
-
+/// Room for the lists of the bodies whose particles have left their cells; false if there are none.
 template <int D>
-bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
-                ListScratch<D>& scratch, Gone<D>& eroded_sums, Gone<D>& left_sums) {
-  bool any_left = false;
-  for (const auto& p : grid.patches) any_left = any_left || p.left_cell;
-  if (!any_left) return false;
+bool make_room(const std::vector<Patch<D>>& patches, const std::vector<Body<D>>& bodies,
+               ListScratch<D>& scratch) {
+  scratch.first.assign(bodies.size(), scratch.none);
+  std::size_t total = 0;
+  for (const Patch<D>& patch : patches) {
+    if (!patch.left_cell || scratch.changes_list_of(patch.body)) continue;
+    const auto b = static_cast<std::size_t>(patch.body);
+    scratch.first[b] = total;
+    total += bodies[b].count();
+  }
+  if (total > scratch.order.size()) scratch.order.resize(total);
+  if (total > scratch.cell.size()) scratch.cell.resize(total);
+  return total > 0;
+}
 
-  scratch.moved.assign(grid.patches.size(), 0);
-  threads.for_each(grid.patches.size(), [&](std::size_t p) {
-    const Patch<D>& patch = grid.patches[p];
-    if (patch.left_cell)
-      scratch.moved[p] = classify(grid, bodies[static_cast<std::size_t>(patch.body)], patch);
-  });
-  for (std::size_t p = 0; p < grid.patches.size(); ++p)
-    bodies[static_cast<std::size_t>(grid.patches[p].body)].moved += scratch.moved[p];
-  find_leavers(grid, bodies, scratch.leavers);
-  const bool changed = merge_new_patches(grid, scratch);
-
+/// How many particles each patch keeps and gets, and where its list begins.
+template <int D>
+void count_changes(const std::vector<Patch<D>>& patches, ListScratch<D>& scratch) {
   auto& changes = scratch.changes;
-  changes.assign(grid.patches.size(), {});
+  changes.assign(patches.size(), {});
   std::uint32_t arrival = 0, begin = 0;
   const auto total = static_cast<std::uint32_t>(scratch.leavers.size());
-  for (std::size_t p = 0; p < grid.patches.size(); ++p) {
-    const Patch<D>& patch = grid.patches[p];
-    if (p == 0 || grid.patches[p - 1].body != patch.body) begin = 0;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const Patch<D>& patch = patches[p];
+    if (p == 0 || patches[p - 1].body != patch.body) begin = 0;
     auto& c = changes[p];
     c.kept = patch.count;
     if (patch.left_cell) {
-      const auto& cell = bodies[static_cast<std::size_t>(patch.body)].cell;
+      const std::uint8_t* cell = scratch.cell_of(patch.body);
       for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
         c.kept -= cell[k] >= left;
     }
@@ -239,17 +243,44 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
     c.begin = begin;
     begin += c.kept + c.arrival_count;
   }
+}
+
+}  // namespace
+
+template <int D>
+bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
+                ListScratch<D>& scratch, Gone<D>& eroded_sums, Gone<D>& left_sums) {
+  if (!make_room(grid.patches, bodies, scratch)) return false;
+  scratch.moved.assign(grid.patches.size(), 0);
+  threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const Patch<D>& patch = grid.patches[p];
+    if (patch.left_cell)
+      scratch.moved[p] = classify(grid, bodies[static_cast<std::size_t>(patch.body)], patch,
+                                  scratch.cell_of(patch.body));
+  });
+  for (std::size_t p = 0; p < grid.patches.size(); ++p)
+    bodies[static_cast<std::size_t>(grid.patches[p].body)].moved += scratch.moved[p];
+  find_leavers(grid, bodies, scratch);
+  const bool changed = merge_new_patches(grid, scratch);
+  count_changes(grid.patches, scratch);
   std::size_t first = 0, end = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b, first = end) {
-    while (end < grid.patches.size() && grid.patches[end].body == static_cast<int>(b)) ++end;
-    write_tail(std::span<const Patch<D>>(grid.patches.data() + first, end - first), bodies[b],
-               eroded_sums, left_sums);
+    const int number = static_cast<int>(b);
+    while (end < grid.patches.size() && grid.patches[end].body == number) ++end;
+    if (scratch.changes_list_of(number) && bodies[b].at.recoverable >= 0)
+      write_tail(std::span<const Patch<D>>(grid.patches.data() + first, end - first), bodies[b],
+                 scratch.cell_of(number), scratch.order_of(number), eroded_sums, left_sums);
   }
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
-    write_list(bodies[static_cast<std::size_t>(patch.body)], patch, changes[p], scratch.leavers);
+    if (scratch.changes_list_of(patch.body))
+      write_list(bodies[static_cast<std::size_t>(patch.body)], patch, scratch.changes[p], scratch);
   });
-  for (auto& body : bodies) std::swap(body.order, body.next_order);
+  threads.for_each(bodies.size(), [&](std::size_t b) {
+    const int number = static_cast<int>(b);
+    if (scratch.changes_list_of(number))
+      std::copy_n(scratch.order_of(number), bodies[b].order.size(), bodies[b].order.data());
+  });
   grid.cut_blocks(threads);
   return changed;
 }

@@ -30,7 +30,7 @@ void SimulationOf<D>::double_cells() {
   grid.cell_size = settings_.cell_size;
   for (int& cells : grid.walls.cells) cells /= 2;
   grid.release_nodes();
-  make_lists(grid, domain_.bodies, domain_.threads);
+  make_lists(grid, domain_.bodies, domain_.threads, domain_.list_scratch);
   for (Patch<D>& patch : grid.patches) patch.left_cell = true;  // what has just failed still leaves
   domain_.contact.forget();
   if (domain_.has_contact()) domain_.contact.connect(grid, domain_.bodies);

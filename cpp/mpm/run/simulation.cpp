@@ -109,7 +109,7 @@ template <int D>
 void SimulationOf<D>::prepare() {
   check(!prepared_, "prepare() has been called already");
   check(!domain_.bodies.empty(), "there is no body");
-  make_lists(domain_.grid, domain_.bodies, domain_.threads);
+  make_lists(domain_.grid, domain_.bodies, domain_.threads, domain_.list_scratch);
   if (domain_.has_contact()) domain_.contact.connect(domain_.grid, domain_.bodies);
   domain_.sums.resize(domain_.grid.patches.size());
   const auto& bodies = domain_.bodies;

@@ -122,6 +122,7 @@ template <int D>
 Bytes SimulationOf<D>::bytes() const {
   Bytes r;
   for (const Body<D>& b : domain_.bodies) r.particles += b.bytes();
+  r.particles += domain_.list_scratch.bytes();
   r.grid = domain_.grid.node_bytes();
   if (domain_.has_contact()) r.contact = domain_.contact.bytes();
   r.other = domain_.sums.capacity() * sizeof(PatchSums<D>) + history_.capacity() * sizeof(double);
