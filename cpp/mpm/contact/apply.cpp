@@ -45,10 +45,24 @@ void ContactGrid<D>::solve(NodeSolution<D>& solution) {
 }
 
 template <int D>
-void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
+template <class F>
+void ContactGrid<D>::for_each_closed(TileGrid<D>& grid, Threads& threads, int first, int last,
+                                     F&& f) {
+  constexpr std::size_t ahead = 6;
   threads.for_each(nodes_.size(), [&](std::size_t n) {
-    const ContactNode& node = nodes_[n];
-    if (!any_closed(node)) return;
+    if (n + ahead < nodes_.size() && any_closed(nodes_[n + ahead]))
+      for (const Side<D>& side : sides_of(nodes_[n + ahead])) {
+        const NodeBlock<D> block = grid.block(patch_of(side));
+        for (int k = first; k < last; ++k)
+          __builtin_prefetch(block.data + k * block.stride + side.node);
+      }
+    if (any_closed(nodes_[n])) f(nodes_[n]);
+  });
+}
+
+template <int D>
+void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
+  for_each_closed(grid, threads, 1, 1 + D, [&](const ContactNode& node) {
     const auto sides = sides_of(node);
     const auto pairs = pairs_of(node);
     auto& solution =
@@ -77,9 +91,7 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
                                 const Vec<double, D>& gravity, double time_step, Threads& threads) {
   const auto velocity_at = [](const NodeBlock<D>& block, int a) { return block.velocity(a); };
   const auto force_at = [](const NodeBlock<D>& block, int a) { return block.force(a); };
-  threads.for_each(nodes_.size(), [&](std::size_t n) {
-    ContactNode& node = nodes_[n];
-    if (!any_closed(node)) return;
+  for_each_closed(grid, threads, 0, 1 + 2 * D, [&](ContactNode& node) {
     const auto sides = sides_of(node);
     const auto pairs = pairs_of(node);
     auto& solution =
@@ -148,15 +160,13 @@ Vec<double, D> ContactGrid<D>::prescribed_increment(const TileGrid<D>& grid,
                                                     const Side<D>& side) const {
   const Vec<double, D> x = grid.position_of(place_of(grid, node));
   const Body<D>& body = bodies[static_cast<std::size_t>(side.body)];
-  return from_space<D>(body.motion.increment_at(in_space<D>(x)));
+  return from_space<D>(body.motion->increment_at(in_space<D>(x)));
 }
 
 template <int D>
 void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
   const auto remapped_at = [](const NodeBlock<D>& block, int a) { return block.force(a); };
-  threads.for_each(nodes_.size(), [&](std::size_t n) {
-    const ContactNode& node = nodes_[n];
-    if (!any_closed(node)) return;
+  for_each_closed(grid, threads, 1 + D, 1 + 2 * D, [&](const ContactNode& node) {
     const auto sides = sides_of(node);
     // The slip at the end of the step is that of the particles. The nodes' own increments, forces
     // over masses that may be next to nothing, reach the particles only in part.

@@ -30,9 +30,7 @@ void ContactGrid<D>::connect(TileGrid<D>& grid, const std::vector<Body<D>>& bodi
   };
   for (std::size_t p = 0; p < grid.patches.size(); ++p)
     for (int k = 0; k < Tile<D>::neighbours; ++k)
-      if (reaches<D>(grid.margin(), k))
-        holders_.push_back(
-            {grid.patches[p].body, static_cast<std::int32_t>(p), static_cast<std::uint8_t>(k)});
+      if (reaches<D>(grid.margin(), k)) holders_.emplace_back(grid.patches[p].body, p, k);
   std::sort(holders_.begin(), holders_.end(), [&](const TileHolder& x, const TileHolder& y) {
     const Index<D> tx = tile_of(x), ty = tile_of(y);
     if (tx != ty) return tile_less<D>(tx, ty);
@@ -56,11 +54,11 @@ void ContactGrid<D>::connect(TileGrid<D>& grid, const std::vector<Body<D>>& bodi
       holders_[kept++] = holders_[k];
     }
   }
-  holders_.resize(kept);
+  holders_.erase(holders_.begin() + kept, holders_.end());
   recall_tiles();
   // One body's tiles follow one another, so that its nodes and particles are at hand.
   std::sort(tiles_.begin(), tiles_.end(), [&](const ContactTile<D>& x, const ContactTile<D>& y) {
-    const std::int32_t px = holders_[x.first_holder].patch, py = holders_[y.first_holder].patch;
+    const std::uint32_t px = holders_[x.first_holder].patch, py = holders_[y.first_holder].patch;
     return px != py ? px < py : x.first_holder < y.first_holder;
   });
 }

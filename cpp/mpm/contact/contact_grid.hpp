@@ -192,6 +192,10 @@ class ContactGrid {
   }
   /// May any pair at a node act? Other nodes stay as they are, to the last bit.
   bool any_closed(const ContactNode& node);
+  /// f(node) for those nodes. The memory is told in time which of the fields [first, last) of the
+  /// blocks they read.
+  template <class F>
+  void for_each_closed(TileGrid<D>& grid, Threads& threads, int first, int last, F&& f);
   PairRecord& record_of(int a, int b);
   void enter(std::size_t record);
   void sort_records();

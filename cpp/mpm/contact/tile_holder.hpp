@@ -12,8 +12,13 @@ namespace mpm {
 /// first.)
 struct TileHolder {
   std::int32_t body;
-  std::int32_t patch;
-  std::uint8_t neighbour;  // where the tile lies as seen from the patch: Tile<D>::offset
+  std::uint32_t patch : 27;
+  std::uint32_t neighbour : 5;  // where the tile lies as seen from the patch: Tile<D>::offset
+
+  TileHolder(int of_body, std::size_t number, int tile)
+      : body(of_body),
+        patch(static_cast<std::uint32_t>(number) & 0x7FFFFFFu),
+        neighbour(static_cast<std::uint32_t>(tile) & 31u) {}
 };
 
 template <int D>
@@ -44,7 +49,8 @@ template <int D>
 class NodesWithMass {
  public:
   void find(TileGrid<D>& grid, Threads& threads) {
-    words_ = static_cast<std::size_t>(BlockShape<D>::count_max(grid.margin())) / 64 + 2;  // one to read beyond
+    words_ = static_cast<std::size_t>(BlockShape<D>::count_max(grid.margin())) / 64 +
+             2;  // one to read beyond
     bits_.assign(grid.patches.size() * words_, 0);
     threads.for_each(grid.patches.size(), [&](std::size_t p) {
       if (!grid.patches[p].in_contact) return;

@@ -33,13 +33,17 @@ void for_each_shared_row(const Patch<D>& p, const Patch<D>& q, F&& f) {
     high[a] = std::min(p_last[a], q_last[a] - shift[a]);
     if (low[a] > high[a]) return;
   }
-  const int count = high[0] - low[0] + 1;
-  high[0] = low[0];
-  for_each_index<D>(low, high, [&](const Index<D>& node) {
-    Index<D> there;
-    for (std::size_t a = 0; a < D; ++a) there[a] = node[a] + shift[a];
-    f(p.shape.node(node), q.shape.node(there), count);
-  });
+  const int p_first = p.shape.node(low), count = high[0] - low[0] + 1;
+  Index<D> rows;
+  for (std::size_t a = 0; a < D; ++a) {
+    rows[a] = high[a] - low[a];
+    low[a] += shift[a];
+  }
+  const int q_first = q.shape.node(low);
+  for (int z = 0; z <= (D == 3 ? rows[D - 1] : 0); ++z)
+    for (int y = 0; y <= rows[1]; ++y)
+      f(p_first + (z * p.shape.nodes[1] + y) * p.shape.nodes[0],
+        q_first + (z * q.shape.nodes[1] + y) * q.shape.nodes[0], count);
 }
 
 /// f(k) for every bit that is set, or for the numbers up to `count` if all are.
@@ -53,24 +57,21 @@ void for_each_bit(std::uint64_t bits, int count, F&& f) {
 
 }  // namespace
 
-/// Find the shapes of the blocks; true if any has changed.
+/// Find the shapes of the blocks; false if none has changed.
 template <int D>
 bool TileGrid<D>::find_shapes(Threads& threads) {
-  shapes_.resize(patches.size());
+  std::atomic<bool> changed = bonded;
   threads.for_each(patches.size(), [&](std::size_t p) {
-    shapes_[p] = BlockShape<D>::around(patches[p].occupied, margin());
+    const auto shape = BlockShape<D>::around(patches[p].occupied, margin());
+    if (patches[p].shape == shape) return;
+    patches[p].shape = shape;
+    changed.store(true, std::memory_order_relaxed);
   });
   if (bonded)
     for (const std::uint32_t p : by_tile_) {
-      BlockShape<D>& all = shapes_[patches[p].leader];
-      all = all.joined_with(shapes_[p]);
+      BlockShape<D>& all = patches[patches[p].leader].shape;
+      all = all.joined_with(patches[p].shape);
     }
-  std::atomic<bool> changed = false;
-  threads.for_each(patches.size(), [&](std::size_t p) {
-    if (patches[p].shape == shapes_[p]) return;
-    patches[p].shape = shapes_[p];
-    changed.store(true, std::memory_order_relaxed);
-  });
   return changed;
 }
 
@@ -83,7 +84,7 @@ void TileGrid<D>::cut_blocks(Threads& threads) {
     patch.memory = needed_;
     needed_ += static_cast<std::size_t>(fields * patch.shape.node_stride);
   }
-  if (needed_ > node_memory_.size()) node_memory_.release_and_allocate(needed_ + needed_ / 8);
+  if (needed_ > node_memory_.size()) node_memory_.release_and_allocate(needed_ + needed_ / 16);
   threads.for_each(patches.size(), [&](std::size_t p) {
     Patch<D>& patch = patches[p];
     patch.at_wall = box_touches_wall(*this, patch);
@@ -140,16 +141,15 @@ void TileGrid<D>::sum_shared_nodes(Threads& threads, int first, int last) {
   // this pass.
   threads.for_each(leaders_.size(), [&](std::size_t leader) {
     const Patch<D>& patch = patches[leaders_[leader]];
-    for_each_neighbour(
-        patch, Tile<D>::self + 1, Tile<D>::neighbours, [&](const Patch<D>& later) {
-          for_each_shared_row(patch, later, [&](int here, int there, int count) {
-            const std::uint64_t mine = patch.owned.row(here, count);
-            if (mine == 0) return;
-            each_field(patch, later, [&](double* to, const double* from) {
-              for_each_bit(mine, count, [&](int n) { to[here + n] += from[there + n]; });
-            });
-          });
+    for_each_neighbour(patch, Tile<D>::self + 1, Tile<D>::neighbours, [&](const Patch<D>& later) {
+      for_each_shared_row(patch, later, [&](int here, int there, int count) {
+        const std::uint64_t mine = patch.owned.row(here, count);
+        if (mine == 0) return;
+        each_field(patch, later, [&](double* to, const double* from) {
+          for_each_bit(mine, count, [&](int n) { to[here + n] += from[there + n]; });
         });
+      });
+    });
   });
   threads.for_each(leaders_.size(), [&](std::size_t leader) {
     const Patch<D>& patch = patches[leaders_[leader]];

@@ -73,14 +73,13 @@ class TileGrid {
   }
   void release_nodes() { node_memory_.release_and_allocate(0); }
   std::size_t node_bytes() const {
-    return node_memory_.bytes() + patches.capacity() * sizeof(Patch<D>) +
-           shapes_.capacity() * sizeof(BlockShape<D>);
+    return node_memory_.bytes() + patches.capacity() * sizeof(Patch<D>);
   }
 
   /// Find neighbours. Call when patches were added or removed.
   void connect();
-  /// Cut the blocks to the cells that hold particles, find the owners of shared nodes and the walls,
-  /// and make room for the nodes. Call when particles have changed cells.
+  /// Cut the blocks to the cells that hold particles, find the owners of shared nodes and the
+  /// walls, and make room for the nodes. Call when particles have changed cells.
   void cut_blocks(Threads& threads);
   /// The patch of a body in a tile, or -1.
   int find(int body, const Index<D>& tile) const;
@@ -100,9 +99,8 @@ class TileGrid {
   void for_each_neighbour(const Patch<D>& patch, int first, int last, F&& f);
 
   AlignedArray<double> node_memory_;
-  std::size_t needed_ = 0;     // of it [doubles]
-  bool blocks_known_ = false;  // since patches were added or removed
-  std::vector<BlockShape<D>> shapes_;
+  std::size_t needed_ = 0;              // of it [doubles]
+  bool blocks_known_ = false;           // since patches were added or removed
   std::vector<std::uint32_t> by_tile_;  // if bonded: all patches, by tile, then by body
   std::vector<std::uint32_t> leaders_;  // those whose nodes are summed with their neighbours'
 };

@@ -1,6 +1,7 @@
 #pragma once
 // A body: its particles as columns, and the list that keeps the particles of one cell together.
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,7 @@ struct Body {
   double total_mass = 0.0;  // [kg]
   bool rigid = false;       // its particles move as one
   bool prescribed = false;  // and by `motion`, whatever acts on them; it is rigid then
-  PrescribedMotion motion;
+  std::unique_ptr<PrescribedMotion> motion;  // none for the thousands of bodies that are free
   double pressure_impedance = 0.0, shear_impedance = 0.0;  // rho c of the start [kg/(m^2 s)]
   std::size_t moved = 0;  // changes of cell since the columns were last sorted
   bool leaves = false;    // a rigid body that leaves the region that is kept, as a whole

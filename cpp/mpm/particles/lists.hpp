@@ -35,7 +35,7 @@ struct ListScratch {
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   std::vector<Leaver<D>> leavers;
   std::vector<Change> changes;  // one per patch
-  std::vector<Patch<D>> merged;
+  std::vector<Patch<D>> added;
   std::vector<std::size_t> moved;  // one per patch
   // The lists being made of those bodies whose particles have left their cells.
   std::vector<std::size_t> first;    // where each body's list begins, or none

@@ -85,35 +85,28 @@ void find_leavers(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
 /// has changed.
 template <int D>
 bool merge_new_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
-  const auto& leavers = scratch.leavers;
-  bool missing = false;
-  for (std::size_t k = 0; k < leavers.size() && !missing; ++k)
-    missing = grid.find(leavers[k].body, leavers[k].tile) < 0;
-  if (!missing) return false;
-  auto& merged = scratch.merged;
-  merged.clear();
-  std::size_t k = 0;
-  auto add_before = [&](const Patch<D>* patch) {
-    for (; k < leavers.size(); ++k) {
-      const auto& l = leavers[k];
-      if (patch && !patch_less<D>(l.body, l.tile, patch->body, patch->tile)) return;
-      if (!merged.empty() && merged.back().body == l.body && merged.back().tile == l.tile) continue;
-      Patch<D> p;
-      p.body = l.body;
-      p.tile = l.tile;
-      merged.push_back(p);
-    }
-  };
-  for (const Patch<D>& patch : grid.patches) {
-    add_before(&patch);
-    bool entered = false;
-    for (; k < leavers.size() && leavers[k].body == patch.body && leavers[k].tile == patch.tile;
-         ++k)
-      entered = true;
-    if (patch.count > 0 || entered) merged.push_back(patch);
+  const auto no_patch = [&](const Leaver<D>& l) { return grid.find(l.body, l.tile) < 0; };
+  if (std::none_of(scratch.leavers.begin(), scratch.leavers.end(), no_patch)) return false;
+  auto &patches = grid.patches, &added = scratch.added;
+  std::erase_if(patches, [](const Patch<D>& patch) { return patch.count == 0; });
+  added.clear();
+  for (const Leaver<D>& l : scratch.leavers) {
+    if (!added.empty() && added.back().body == l.body && added.back().tile == l.tile) continue;
+    if (!no_patch(l)) continue;
+    Patch<D>& patch = added.emplace_back();
+    patch.body = l.body;
+    patch.tile = l.tile;
   }
-  add_before(nullptr);
-  std::swap(grid.patches, merged);
+  std::size_t from = patches.size(), to = from + added.size(), next = added.size();
+  patches.resize(to);
+  while (next > 0) {
+    const Patch<D>& last = added[next - 1];
+    if (from > 0 &&
+        patch_less<D>(last.body, last.tile, patches[from - 1].body, patches[from - 1].tile))
+      patches[--to] = patches[--from];
+    else
+      patches[--to] = added[--next];
+  }
   grid.connect();
   return true;
 }

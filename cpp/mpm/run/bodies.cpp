@@ -117,9 +117,10 @@ void SimulationOf<D>::set_motion(int number, const std::array<TimeFunction, 3>& 
   check_functions(spin, b.name + ": spin");
   check_finite(centre, b.name + ": centre");
   b.rigid = b.prescribed = true;
-  b.motion.velocity = velocity;
-  b.motion.spin = spin;
-  b.motion.start({centre[0], centre[1], D == 3 ? centre[2] : 0.0}, domain_.time);
+  b.motion = std::make_unique<PrescribedMotion>();
+  b.motion->velocity = velocity;
+  b.motion->spin = spin;
+  b.motion->start({centre[0], centre[1], D == 3 ? centre[2] : 0.0}, domain_.time);
   domain_.stiffness[static_cast<std::size_t>(number)] = std::numeric_limits<double>::infinity();
 }
 
@@ -128,12 +129,12 @@ template <int D>
 void SimulationOf<D>::start_motions() {
   for (Body<D>& b : domain_.bodies) {
     if (!b.prescribed) continue;
-    b.motion.radius = 0.0;
+    b.motion->radius = 0.0;
     for (std::size_t i = 0; i < b.count(); ++i) {
       Vec<double, D> x;
       for (int a = 0; a < D; ++a) x[a] = b.x(a)[i];
-      b.motion.radius = std::max(b.motion.radius, norm(in_space<D>(x) - b.motion.now.centre));
-      const Vector3 v = b.motion.now.velocity_at(in_space<D>(x));
+      b.motion->radius = std::max(b.motion->radius, norm(in_space<D>(x) - b.motion->now.centre));
+      const Vector3 v = b.motion->now.velocity_at(in_space<D>(x));
       for (int a = 0; a < D; ++a) b.v(a)[i] = v[a];
     }
   }

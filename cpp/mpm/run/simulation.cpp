@@ -158,7 +158,7 @@ void SimulationOf<D>::make_step(double time_after) {
     domain_.gravity[static_cast<int>(a)] =
         domain_.gravity_of_time[a].mean(domain_.time, time_after);
   for (Body<D>& b : domain_.bodies)
-    if (b.prescribed) b.motion.begin_step(domain_.time, time_after);
+    if (b.prescribed) b.motion->begin_step(domain_.time, time_after);
   for (std::size_t k = 0; k < stages_.size(); ++k)
     timers_.time(k, [&] { stages_[k].run(domain_); });
   domain_.time = time_after;
@@ -185,8 +185,8 @@ void SimulationOf<D>::choose_time_step() {
   next_time_step_ = way / fastest;
   // Prescribed motions may have jumps.
   for (const Body<D>& b : domain_.bodies)
-    if (b.prescribed && b.motion.moves) {
-      const double speed = b.motion.speed(domain_.time, domain_.time + next_time_step_);
+    if (b.prescribed && b.motion->moves) {
+      const double speed = b.motion->speed(domain_.time, domain_.time + next_time_step_);
       next_time_step_ = std::min(next_time_step_, way / speed);
     }
 }

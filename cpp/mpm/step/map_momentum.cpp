@@ -26,7 +26,7 @@ void map_momentum(Domain<D>& domain) {
     const auto velocity = [&](int a) { return block.velocity(a); };
     const Body<D>& body = domain.body_of(grid.patches[p]);
     if (body.prescribed) {
-      set_rigid_velocity(grid, grid.patches[p], body.motion.before, velocity);
+      set_rigid_velocity(grid, grid.patches[p], body.motion->before, velocity);
       return;
     }
     momentum_to_velocity(grid, grid.patches[p], block, velocity);

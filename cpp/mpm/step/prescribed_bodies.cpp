@@ -10,7 +10,7 @@ namespace {
 template <int D>
 void move_patch(const TileGrid<D>& grid, Body<D>& body, Patch<D>& patch, const Matrix3& turned,
                 double time_step, PatchSums<D>& sums) {
-  const RigidMotion& motion = body.motion.now;
+  const RigidMotion& motion = body.motion->now;
   const bool turns = dot(motion.spin, motion.spin) > 0.0;
   const Vector3 centre = motion.centre + time_step * motion.velocity;
   double kinetic = 0.0, fastest = 0.0;
@@ -51,7 +51,7 @@ void advance_prescribed_nodes(Domain<D>& domain, std::size_t p) {
   const auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   if (!patch.in_contact) return;
-  const PrescribedMotion& motion = domain.body_of(patch).motion;
+  const PrescribedMotion& motion = *domain.body_of(patch).motion;
   const NodeBlock<D> block = domain.grid.block(p);
   const Index<D> first = grid.first_cell(patch.tile);
   PatchSums<D>& sums = domain.sums[p];
@@ -79,12 +79,12 @@ void move_prescribed_bodies(Domain<D>& domain) {
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
     Body<D>& body = domain.body_of(patch);
-    if (!body.prescribed || !body.motion.moves) return;
-    const Matrix3 turned = rotation(domain.time_step * body.motion.now.spin);
+    if (!body.prescribed || !body.motion->moves) return;
+    const Matrix3 turned = rotation(domain.time_step * body.motion->now.spin);
     move_patch(grid, body, patch, turned, domain.time_step, domain.sums[p]);
   });
   for (Body<D>& body : domain.bodies)
-    if (body.prescribed) body.motion.now.centre += domain.time_step * body.motion.now.velocity;
+    if (body.prescribed) body.motion->now.centre += domain.time_step * body.motion->now.velocity;
 }
 
 template void advance_prescribed_nodes<2>(Domain<2>&, std::size_t);

@@ -18,7 +18,7 @@ void check_nodes(mpm::testing::Report& report, Basis basis) {
   grid.basis = basis;
   grid.patches.resize(2);
   for (Patch<D>& patch : grid.patches) patch.in_contact = true;
-  grid.patches[0].occupied = random();  // all over the tile
+  grid.patches[0].occupied = random();                                     // all over the tile
   grid.patches[1].occupied = Tile<D>::slice(0, 1) & Tile<D>::slice(1, 2);  // a row or one cell
   grid.patches[1].body = 1;
   Threads threads(1);
@@ -31,7 +31,7 @@ void check_nodes(mpm::testing::Report& report, Basis basis) {
   masses.find(grid, threads);
   for (int patch = 0; patch < 2; ++patch)
     for (int k = 0; k < Tile<D>::neighbours; ++k) {
-      const TileHolder holder{patch, patch, static_cast<std::uint8_t>(k)};
+      const TileHolder holder(patch, static_cast<std::size_t>(patch), k);
       bool reached = true;
       for (const int o : Tile<D>::offset(k)) reached = reached && (o >= 0 || grid.margin() > 0);
       if (!reached) continue;
