@@ -11,6 +11,7 @@ import numpy as np
 from .build import FilledBody, by_part, warnings
 from .case import Case
 from .case_notes import notes
+from .echo_conditions import condition_lines, load_in_words, motion_in_words
 from .loads import pieces
 from .materials import Failure, catalogue
 from .plots.labels import scaled
@@ -79,13 +80,6 @@ def material_lines(case: Case) -> list[str]:
     return lines
 
 
-def _motion_in_words(case: Case, body: str) -> str:
-    motion = case.body[body].motion
-    if motion is None:
-        return ""
-    return ", moves as prescribed" if motion.moves else ", fixed"
-
-
 def _body_line(case: Case, body: FilledBody, per_metre: str) -> str:
     against = "exact" if body.volume_is_exact else "measured on a fine lattice"
     source = f"{body.mass_error:+.3%} of the shape's ({against})"
@@ -94,7 +88,7 @@ def _body_line(case: Case, body: FilledBody, per_metre: str) -> str:
     return (
         f"body {body.name}: {len(body.positions):,} particles {body.spacing:.4g} m apart, "
         f"{body.material}, mass {body.mass:.6g} kg{per_metre}, {source}"
-        f"{_motion_in_words(case, body.name)}"
+        f"{motion_in_words(case, body.name)}"
     )
 
 
@@ -126,8 +120,8 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         [body] = [body for body in bodies if body.name == load.body]
         found = pieces(case, name, body.positions, body.spacing)
         lines.append(
-            f"load {name}: on {load.side} of {load.body}, {found.area:.6g} m^2{per_metre}, carried "
-            f"by {len(found.particles):,} particles"
+            f"load {name}: {load_in_words(case, name)} on {load.side} of {load.body}, "
+            f"{found.area:.6g} m^2{per_metre}, carried by {len(found.particles):,} particles"
         )
     lines += material_lines(case)
     particles = sum(len(body.positions) for body in bodies)
@@ -143,6 +137,7 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         f"about {memory / 2**20:,.1f} MiB",
         f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
         f"{bounds}, {case.grid.basis} basis",
+        *condition_lines(case),
         f"contact: {contact}",
         f"time: {case.run.scheme}, end {case.run.end_time:.6g} s, "
         f"step about {time_step(case, bodies):.3g} s, "

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The echo says what holds, drives and removes the bodies."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mpm3dpp import load_case
+from mpm3dpp.build import build
+from mpm3dpp.case_grid import GridDoubling
+from mpm3dpp.echo import echo
+from mpm3dpp.echo_conditions import doublings
+
+CASE = """
+[grid]
+dimension = 2
+cell_size = "10 mm"
+box = { lower = [0, 0], upper = ["480 mm", "240 mm"], walls = { x_min = "slip", y_min = "fixed" } }
+keep = { lower = ["-1 m", "-2 m"], upper = ["5 m", "6 m"] }
+doubling = { tiles = 2000 }
+[run]
+end_time = "1 ms"
+gravity = [0, { sine = { amplitude = "3 m/s^2", frequency = "15 Hz", mean = "-9.81 m/s^2" } }]
+[material.any]
+density = 1000
+strength = { elastic = { E = "1 MPa", nu = 0.3 } }
+[material.hard]
+density = 1000
+strength = { rigid = {} }
+[body.block]
+material = "any"
+shape = { box = { lower = ["100 mm", "100 mm"], upper = ["200 mm", "200 mm"] } }
+[body.piston]
+material = "hard"
+motion = { velocity = [0, { ramp = { from = 0, to = "-5 m/s", end = "2 ms" } }] }
+shape = { box = { lower = ["100 mm", "200 mm"], upper = ["200 mm", "220 mm"] } }
+[load.push]
+body = "block"
+side = "x_min"
+pressure = "2 kPa"
+[contact]
+friction = 0.1
+[[contact.pair]]
+bodies = ["block", "piston"]
+friction = 0.4
+[[contact.pair]]
+materials = ["any", "hard"]
+friction = 0.2
+"""
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory) -> str:
+    path: Path = tmp_path_factory.mktemp("echo") / "case.toml"
+    path.write_text(CASE)
+    case = load_case(path)
+    return echo(case, build(case))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "walls: x_min slip, x_max free, y_min fixed, y_max free",
+        "keep: x > -1 m, x < 5 m, y > -2 m, y < 6 m; particles outside are taken out",
+        # 48 x 24 cells can be halved three times.
+        "doubling: beyond 2,000 tiles, 3 times at most, to cells of 0.08 m",
+        "gravity: (0 m/s^2, -9.81 m/s^2 + 3 m/s^2 sin at 15 Hz)",
+        "load push: pressure 2 kPa on x_min of block, 0.1 m^2 per metre, carried by 20 particles",
+        "friction: 0.4 between block and piston",
+        "friction: 0.2 between all any and all hard",
+    ],
+)
+def test_conditions(shown: str, line: str) -> None:
+    assert line in shown.splitlines()
+
+
+def test_motion(shown: str) -> None:
+    assert "moves as prescribed: velocity (0 m/s, 0 m/s to -5 m/s from 0 s to 2 ms)" in shown
+
+
+def test_doublings_of_a_box_and_without() -> None:
+    doubling = GridDoubling(tiles=10, times=4)
+    assert doublings(None, doubling) == 4
+    assert doublings((32, 64), doubling) == 4
+    assert doublings((6, 64), doubling) == 1
