@@ -102,8 +102,9 @@ def _listed(values: list[float]) -> str:
 def speed_line(manifest: Manifest) -> str:
     """Return the line about speed and memory."""
     used = sum(manifest.bytes.values()) / max(1, manifest.particles)
+    threads = "1 thread" if manifest.threads == 1 else f"{manifest.threads} threads"
     return (
         f"{manifest.status}: {manifest.steps:,} steps of {manifest.particles:,} particles in "
         f"{manifest.wall_time:.1f} s, {manifest.ns_per_particle_step:.1f} ns per particle-step on "
-        f"{manifest.threads} threads, {used:.0f} bytes per particle"
+        f"{threads}, {used:.0f} bytes per particle"
     )
