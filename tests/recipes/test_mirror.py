@@ -75,3 +75,24 @@ def test_the_ledger_closes_at_a_wall_that_gravity_presses_on() -> None:
     assert abs(errors[0]) < 0.02
     assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.1)
     assert errors[1] / errors[2] == pytest.approx(2.0, rel=0.1)
+
+
+@pytest.mark.parametrize("scheme", ["musl", "usf"])
+def test_tiles_do_not_matter_at_a_wall_that_gravity_presses_on(scheme: str) -> None:
+    """A mushroom on the floor, cut into other tiles by where another body begins, moves the same.
+
+    The blocks of its cap beside the stem do not reach the node beyond the wall.
+    """
+    corners = [[0.9, 0.0], [1.5, 0.0], [1.5, 0.1], [1.9, 0.1], [1.9, 0.4], [0.5, 0.4], [0.5, 0.1]]
+    mushroom = {"polygon": {"points": [*corners, [0.9, 0.1]]}}
+    motions = []
+    for k in range(8):  # the edge of a tile in cells
+        bodies = {
+            "post": block([0.1 * k, 1.5], [0.1 * k + 0.2, 1.7], [0.0, 0.0]),
+            "mushroom": Body(material="solid", shape=mushroom, velocity=[0.0, -5.0]),
+        }
+        simulation = run(bodies, -1.0, "gimp", scheme, gravity=-500.0, steps=30)
+        motions.append(simulation.column("mushroom", "velocity"))
+    assert motions[0][:, 1].max() - motions[0][:, 1].min() > 1.0  # the floor has stopped a part
+    for motion in motions[1:]:
+        assert np.abs(motion - motions[0]).max() < 1e-10

@@ -56,14 +56,10 @@ void advance_nodes(Domain<D>& domain) {
     if (absorb && patch.at_wall) dashpots = work_of_dashpots(block, own, dt);
     // The mirrored weight went into the force; it is work of gravity.
     double weight_first = 0.0, weight_second = 0.0;
-    for_each_mirrored_node(grid, patch, [&](int node, int image, unsigned axes) {
-      for (int a = 0; a < D; ++a) {
-        if (!(axes >> a & 1u)) continue;
-        const double weight = own[image] * mirrored_weight(domain, block, node, a);
-        const double dv = block.force(a)[image];
-        weight_first += weight * (block.velocity(a)[image] - dv);
-        weight_second += weight * dv;
-      }
+    for_each_mirrored_weight(domain, patch, block, [&](int image, int a, double weight) {
+      const double dv = block.force(a)[image];
+      weight_first += weight * (block.velocity(a)[image] - dv);
+      weight_second += weight * dv;
     });
     reflect_at_walls(grid, patch, [&](int a) { return block.velocity(a); });
     reflect_at_walls(grid, patch, [&](int a) { return block.force(a); });

@@ -53,6 +53,7 @@ void map_forces(Domain<D>& domain) {
     const NodeBlock<D> block = grid.block(p);
     clear_fields(block, 1 + D, grid.fields);
     const Body<D>& body = domain.body_of(patch);
+    if (!body.prescribed) subtract_mirrored_weight(domain, patch, block);
     if (body.rigid) return;  // It has no stress.
     with_basis(grid, body, patch,
                [&](const auto& basis) { scatter_forces(basis, grid, body, patch, block); });
@@ -61,14 +62,10 @@ void map_forces(Domain<D>& domain) {
     fold_at_walls<D>(grid, patch, nullptr, [&](int a) { return block.force(a); });
   });
   grid.sum_shared_nodes(domain.threads, 1 + D, grid.fields);
-  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
-    const NodeBlock<D> block = grid.block(p);
-    for_each_mirrored_node(grid, grid.patches[p], [&](int node, int image, unsigned axes) {
-      for (int a = 0; a < D; ++a)
-        if (axes >> a & 1u) block.force(a)[image] -= mirrored_weight(domain, block, node, a);
+  if (absorb)
+    domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+      add_dashpot_forces(grid.patches[p], grid.block(p), domain.gravity, domain.time_step);
     });
-    if (absorb) add_dashpot_forces(grid.patches[p], block, domain.gravity, domain.time_step);
-  });
   if (loaded) sum_loads(domain);
 }
 

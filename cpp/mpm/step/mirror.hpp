@@ -45,6 +45,27 @@ double mirrored_weight(const Domain<D>& domain, const NodeBlock<D>& block, int n
   return 2.0 * block.mass()[node] * domain.gravity[axis];
 }
 
+/// f(image, axis, weight) for what `mirrored_weight` gives, each once: by the patch that owns the
+/// node beyond the wall. Not every patch that holds the image holds that node as well.
+template <int D, class F>
+void for_each_mirrored_weight(const Domain<D>& domain, const Patch<D>& patch,
+                              const NodeBlock<D>& block, F&& f) {
+  for_each_mirrored_node(domain.grid, patch, [&](int node, int image, unsigned axes) {
+    if (!patch.owned[node]) return;
+    for (int a = 0; a < D; ++a)
+      if (axes >> a & 1u) f(image, a, mirrored_weight(domain, block, node, a));
+  });
+}
+
+/// Before the shared nodes are summed, so that every patch that holds an image has its force.
+template <int D>
+void subtract_mirrored_weight(const Domain<D>& domain, const Patch<D>& patch,
+                              const NodeBlock<D>& block) {
+  for_each_mirrored_weight(domain, patch, block, [&](int image, int a, double weight) {
+    block.force(a)[image] -= weight;
+  });
+}
+
 /// When the nodes have their velocities: those beyond the walls take their images'.
 template <int D, class Field>
 void reflect_at_walls(const TileGrid<D>& grid, const Patch<D>& patch, Field&& field) {
