@@ -34,11 +34,6 @@ Vec<double, D> free_gravity(const ContactNode& node, Vec<double, D> gravity) {
 }  // namespace
 
 template <int D>
-bool ContactGrid<D>::any_closed(const ContactNode& node) {
-  return std::ranges::any_of(pairs_of(node), &SidePair<D>::closed);
-}
-
-template <int D>
 template <bool with_friction>
 void ContactGrid<D>::solve(NodeSolution<D>& solution) {
   if (!solve_node<with_friction>(solution)) unconverged_.fetch_add(1, std::memory_order_relaxed);
@@ -49,22 +44,30 @@ template <class F>
 void ContactGrid<D>::for_each_closed(TileGrid<D>& grid, Threads& threads, int first, int last,
                                      F&& f) {
   constexpr std::size_t ahead = 6;
-  threads.for_each(nodes_.size(), [&](std::size_t n) {
-    if (n + ahead < nodes_.size() && any_closed(nodes_[n + ahead]))
-      for (const Side<D>& side : sides_of(nodes_[n + ahead])) {
-        const NodeBlock<D> block = grid.block(patch_of(side));
-        for (int k = first; k < last; ++k)
-          __builtin_prefetch(block.data + k * block.stride + side.node);
-      }
-    if (any_closed(nodes_[n])) f(nodes_[n]);
+  const auto fetch = [&](Part& part, const ContactNode& node) {
+    if (!part.any_closed(node)) return;
+    for (const Side<D>& side : part.sides_of(node)) {
+      const NodeBlock<D> block = grid.block(patch_of(side));
+      for (int k = first; k < last; ++k)
+        __builtin_prefetch(block.data + k * block.stride + side.node);
+    }
+  };
+  threads.for_each(parts_.size(), [&](std::size_t p) {
+    Part& part = parts_[p];
+    const std::size_t count = part.nodes.size();
+    for (std::size_t n = 0; n < std::min(ahead, count); ++n) fetch(part, part.nodes[n]);
+    for (std::size_t n = 0; n < count; ++n) {
+      if (n + ahead < count) fetch(part, part.nodes[n + ahead]);
+      if (part.any_closed(part.nodes[n])) f(part, part.nodes[n]);
+    }
   });
 }
 
 template <int D>
 void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
-  for_each_closed(grid, threads, 1, 1 + D, [&](const ContactNode& node) {
-    const auto sides = sides_of(node);
-    const auto pairs = pairs_of(node);
+  for_each_closed(grid, threads, 1, 1 + D, [&](Part& part, const ContactNode& node) {
+    const auto sides = part.sides_of(node);
+    const auto pairs = part.pairs_of(node);
     auto& solution =
         solution_of<D>(sides, pairs, [](const SidePair<D>& pair) { return pair.closed; });
     for (std::size_t k = 0; k < sides.size(); ++k)
@@ -91,9 +94,9 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
                                 const Vec<double, D>& gravity, double time_step, Threads& threads) {
   const auto velocity_at = [](const NodeBlock<D>& block, int a) { return block.velocity(a); };
   const auto force_at = [](const NodeBlock<D>& block, int a) { return block.force(a); };
-  for_each_closed(grid, threads, 0, 1 + 2 * D, [&](ContactNode& node) {
-    const auto sides = sides_of(node);
-    const auto pairs = pairs_of(node);
+  for_each_closed(grid, threads, 0, 1 + 2 * D, [&](Part& part, ContactNode& node) {
+    const auto sides = part.sides_of(node);
+    const auto pairs = part.pairs_of(node);
     auto& solution =
         solution_of<D>(sides, pairs, [](const SidePair<D>& pair) { return pair.touching; });
     const auto force_of = [&](const Side<D>& side) {
@@ -111,7 +114,7 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
         solution.sides[k].start(velocity, time_step * force_of(sides[k]));
     }
     solve<true>(solution);
-    move_gaps(node, solution, time_step);
+    move_gaps(part, node, solution, time_step);
 
     double friction_first = 0.0;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -166,19 +169,19 @@ Vec<double, D> ContactGrid<D>::prescribed_increment(const TileGrid<D>& grid,
 template <int D>
 void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
   const auto remapped_at = [](const NodeBlock<D>& block, int a) { return block.force(a); };
-  for_each_closed(grid, threads, 1 + D, 1 + 2 * D, [&](const ContactNode& node) {
-    const auto sides = sides_of(node);
+  for_each_closed(grid, threads, 1 + D, 1 + 2 * D, [&](Part& part, const ContactNode& node) {
+    const auto sides = part.sides_of(node);
     // The slip at the end of the step is that of the particles. The nodes' own increments, forces
     // over masses that may be next to nothing, reach the particles only in part.
-    for (SidePair<D>& pair : pairs_of(node)) {
+    for (SidePair<D>& pair : part.pairs_of(node)) {
       const Vec<double, D> slip =
           read(grid, sides[pair.r], remapped_at) - read(grid, sides[pair.s], remapped_at);
       pair.friction_work = 0.5 * (pair.friction_first + dot(pair.friction_impulse, slip));
     }
     // The impulses of this solution act on the velocities that strain the material only; they are
     // not contact forces.
-    auto& solution =
-        solution_of<D>(sides, pairs_of(node), [](const SidePair<D>& pair) { return pair.closed; });
+    auto& solution = solution_of<D>(sides, part.pairs_of(node),
+                                    [](const SidePair<D>& pair) { return pair.closed; });
     for (std::size_t k = 0; k < sides.size(); ++k)
       solution.sides[k].start(read(grid, sides[k], remapped_at), Vec<double, D>::zero());
     solve<false>(solution);

@@ -1,11 +1,12 @@
 #include "mpm/contact/contact_grid.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace mpm {
 namespace {
 
-/// Does a block reach any node that belongs to neighbour k?
+/// May a block reach any node that belongs to neighbour k?
 template <int D>
 bool reaches(int margin, int k) {
   bool any = true;
@@ -18,6 +19,8 @@ bool reaches(int margin, int k) {
 
 template <int D>
 void ContactGrid<D>::connect(TileGrid<D>& grid, const std::vector<Body<D>>& bodies) {
+  if (grid.patches.size() > TileHolder::patches_max)
+    throw std::length_error("bodies lie in more than 134 million tiles; give larger cells");
   holders_.clear();
   std::swap(last_tiles_, tiles_);
   tiles_.clear();
@@ -76,6 +79,7 @@ void ContactGrid<D>::recall_tiles() {
     if (last == last_tiles_.end()) return;
     if (last->tile != tile.tile) continue;
     tile.known = last->known;
+    tile.known_part = last->known_part;
     tile.first_known = last->first_known;
   }
 }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "mpm/contact/node_contact.hpp"
+#include "mpm/contact/contact_part.hpp"
 #include "mpm/contact/node_solver.hpp"
 #include "mpm/contact/separation.hpp"
 #include "mpm/contact/settings.hpp"
@@ -18,23 +18,8 @@ struct ContactTile {
   Index<D> tile;
   std::uint32_t first_holder, holders;
   std::uint64_t known = 0;  // the nodes that were overlapped in the last step, by Tile<D>::cell
-  std::uint32_t first_known = 0;  // the first of them, of ContactGrid::known_nodes_
-};
-
-/// An overlapped node of the last step. Its pairs are used again until the bodies of one of them
-/// have moved by ContactSettings::normal_travel, or others are there.
-struct KnownNode {
-  std::uint64_t who;         // a number for the bodies and how many particles each has
-  std::uint32_t first_pair;  // of ContactGrid::known_
-  bool solved;               // its contacts were solved, and the gaps are those after the step
-};
-
-/// The normal and the gap of a pair of bodies at a node.
-template <int D>
-struct KnownPair {
-  Vec<double, D> normal;  // from the body with the lower number
-  double gap;             // [m]
-  double travel;          // of both bodies (ContactGrid::travel_) when it was found [m]
+  std::uint32_t known_part = 0;   // where they are known: a number of ContactGrid::parts_
+  std::uint32_t first_known = 0;  // the first of them, of ContactPart::known_nodes
 };
 
 /// What has passed between two bodies since the start.
@@ -86,8 +71,8 @@ struct TileBodies {
 template <int D>
 class ContactGrid {
  public:
-  /// Find the tiles where bodies may meet, one of them deforming, and mark the patches that have
-  /// nodes there. Call when patches were added or removed.
+  /// Find the tiles where bodies may meet, one of them deforming, and mark the patches that may
+  /// have nodes there. Call when patches were added or removed.
   void connect(TileGrid<D>& grid, const std::vector<Body<D>>& bodies);
   /// Find all normals and gaps anew, as after a change of the cells.
   void forget();
@@ -113,7 +98,7 @@ class ContactGrid {
                      double time_step, std::int64_t step);
 
   const std::vector<PairRecord>& pairs() const { return records_; }
-  std::size_t overlapped_nodes() const { return nodes_.size(); }
+  std::size_t overlapped_nodes() const { return overlapped_; }
   std::size_t overlapped_nodes_max() const { return nodes_max_; }
   int bodies_per_node_max() const { return bodies_max_; }
   /// Solutions at nodes with several bodies that stopped short of the tolerance, since the start.
@@ -121,24 +106,27 @@ class ContactGrid {
   std::size_t bytes() const;
 
  private:
+  using Part = ContactPart<D>;
   void recall_tiles();
   /// The bodies around a tile and the nodes at which they overlap.
   void look_around(const TileGrid<D>& grid, const ContactTile<D>& tile, TileBodies<D>& found) const;
   /// Where the sides of a node are, their masses and velocities left to be read.
-  void place_sides(TileGrid<D>& grid, const TileBodies<D>& around, ContactNode& node);
-  void read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, ContactNode& node);
-  /// Count the nodes, sides and pairs of all tiles and make room for them.
-  void count(const TileGrid<D>& grid, Threads& threads);
+  void place_sides(TileGrid<D>& grid, const TileBodies<D>& around, Part& part, ContactNode& node);
+  void read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, Part& part,
+                  ContactNode& node);
+  /// The overlapped nodes of a tile, their sides read and their pairs empty.
+  void add_nodes(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, std::size_t tile,
+                 const TileBodies<D>& around, Part& part);
   /// Add to travel_ what the fastest node of each body says.
   void add_travel(std::size_t bodies);
   /// Take over what is known of the pairs at a node, if it still holds; else false.
   bool recall(const std::vector<Body<D>>& bodies, const ContactSettings& settings, double cell_size,
-              const KnownNode& last, const ContactNode& node);
-  /// Normals, gaps and frictions of the pairs at the nodes of a tile: those known that still hold,
-  /// else found.
+              const ContactTile<D>& tile, Part& part, const ContactNode& node);
+  /// Normals, gaps and frictions of the pairs at the nodes of a tile, those of a part from the
+  /// first-th on: known ones that still hold, else found.
   void fill_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<double>& stiffness, const ContactSettings& settings,
-                  std::size_t tile);
+                  std::size_t tile, TileBodies<D>& around, std::size_t part, std::size_t first);
   /// f(patch, node number in its block) for the patches that hold a side's node.
   template <class F>
   void for_each_copy(const ContactNode& node, const Side<D>& side, const TileGrid<D>& grid,
@@ -166,34 +154,24 @@ class ContactGrid {
   /// Normals, gaps and frictions of the pairs at a node whose sides are known.
   void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<double>& stiffness, const ContactSettings& settings,
-                  TileBodies<D>& around, const ContactNode& node);
-  void remember_pairs(const ContactNode& node);
-  double travel_of(const ContactNode& node, const SidePair<D>& pair) const;
+                  TileBodies<D>& around, Part& part, const ContactNode& node);
+  void remember_pairs(Part& part, const ContactNode& node);
+  double travel_of(std::span<const Side<D>> sides, const SidePair<D>& pair) const;
   /// Change the gaps that are known by what the bodies do in this step.
-  void move_gaps(const ContactNode& node, const NodeSolution<D>& solution, double time_step);
+  void move_gaps(Part& part, const ContactNode& node, const NodeSolution<D>& solution,
+                 double time_step);
   /// f(pair, known, sign) for the pairs at a node and their entries among those of the node, which
   /// come by the numbers of the bodies: `sign` is that of the normal.
   template <class Known, class F>
-  void for_each_known(const ContactNode& node, Known* known, F&& f);
+  void for_each_known(Part& part, const ContactNode& node, Known* known, F&& f);
   void start_pair(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
                   std::span<const Side<D>> sides, std::uint16_t r, std::uint16_t s,
                   SidePair<D>& pair) const;
   /// A rigid body meets others with its whole mass, spread over its overlapped nodes; one whose
   /// motion is prescribed mostly with an infinite mass.
   void share_rigid_masses(const std::vector<Body<D>>& bodies);
-  std::size_t number_of(const ContactNode& node) const {
-    return static_cast<std::size_t>(&node - nodes_.data());
-  }
-  std::span<Side<D>> sides_of(const ContactNode& node) {
-    return {&sides_[node.first_side], node.sides};
-  }
-  std::span<SidePair<D>> pairs_of(const ContactNode& node) {
-    return {&pairs_[node.first_pair], pair_count(node.sides)};
-  }
-  /// May any pair at a node act? Other nodes stay as they are, to the last bit.
-  bool any_closed(const ContactNode& node);
-  /// f(node) for those nodes. The memory is told in time which of the fields [first, last) of the
-  /// blocks they read.
+  /// f(part, node) for the nodes where any pair may act. The memory is told in time which of the
+  /// fields [first, last) of the blocks they read.
   template <class F>
   void for_each_closed(TileGrid<D>& grid, Threads& threads, int first, int last, F&& f);
   PairRecord& record_of(int a, int b);
@@ -203,17 +181,8 @@ class ContactGrid {
   NodesWithMass<D> masses_;
   std::vector<TileHolder> holders_;
   std::vector<ContactTile<D>> tiles_;
-  struct TileCounts {
-    std::uint32_t nodes, sides, pairs;
-  };
-  std::vector<TileCounts> counts_;  // per tile, from the second entry on; then their running sums
-  std::vector<ContactNode> nodes_;
-  std::vector<Side<D>> sides_;
-  std::vector<SidePair<D>> pairs_;
+  std::vector<Part> parts_;
   bool keeps_ = false;  // pairs are kept from step to step: ContactSettings::normal_travel > 0
-  // Of this step and the last, in the order of nodes_ and of pairs_.
-  std::vector<KnownNode> known_nodes_, last_known_nodes_;
-  std::vector<KnownPair<D>> known_, last_known_;
   std::vector<double> travel_, fastest_;    // way of each body so far [m], and its speed [m/s]
   std::vector<ContactTile<D>> last_tiles_;  // scratch
   double last_time_step_ = 0.0;             // [s]
@@ -222,7 +191,7 @@ class ContactGrid {
   // Where a pair's record is: open addressing by pair_key, at most half full; 0 is empty, else the
   // record's number + 1.
   std::vector<std::uint32_t> places_;
-  std::size_t nodes_max_ = 0;
+  std::size_t overlapped_ = 0, nodes_max_ = 0;
   int bodies_max_ = 0;
   std::atomic<std::size_t> unconverged_{0};
 };

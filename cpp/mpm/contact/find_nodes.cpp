@@ -1,18 +1,12 @@
 // The overlapped nodes of a step: who has mass there.
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "mpm/contact/contact_grid.hpp"
 
 namespace mpm {
 namespace {
-
-/// Room for more than is needed now, so that numbers which creep up seldom allocate.
-template <class T>
-void resize(std::vector<T>& v, std::size_t size) {
-  if (size > v.capacity()) v.reserve(size + size / 8);
-  v.resize(size);
-}
 
 /// A hash that goes on with another number (Knuth 1973, section 6.4).
 std::uint64_t mix(std::uint64_t hash, std::uint64_t x) {
@@ -59,13 +53,14 @@ void ContactGrid<D>::look_around(const TileGrid<D>& grid, const ContactTile<D>& 
 }
 
 template <int D>
-void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around,
+void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around, Part& part,
                                  ContactNode& node) {
   const Index<D> index = Tile<D>::cell_index(node.cell);
   node.sides = 0;
   for (const TileBody<D>& at : around.all()) {
     if (!(at.nodes >> node.cell & 1u)) continue;
-    Side<D>& side = sides_[node.first_side + node.sides++];
+    ++node.sides;
+    Side<D>& side = part.sides.emplace_back();
     side.body = at.body;
     side.copies = 0;
     for (std::uint32_t h = at.first_holder; h < at.first_holder + at.holders; ++h)
@@ -79,12 +74,12 @@ void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around,
 }
 
 template <int D>
-void ContactGrid<D>::read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+void ContactGrid<D>::read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, Part& part,
                                 ContactNode& node) {
   node.held = static_cast<std::uint8_t>(grid.walls.held(place_of(grid, node)));
   node.energy = node.force_work = 0.0;
   std::uint64_t who = 0;
-  for (Side<D>& side : sides_of(node)) {
+  for (Side<D>& side : part.sides_of(node)) {
     const auto b = static_cast<std::size_t>(side.body);
     who = mix(mix(who, b), bodies[b].active());
     side.prescribed = bodies[b].prescribed;
@@ -92,91 +87,74 @@ void ContactGrid<D>::read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& b
     side.mapped =
         read(grid, side, [](const NodeBlock<D>& block, int a) { return block.velocity(a); });
   }
-  if (keeps_) known_nodes_[number_of(node)].who = who;
-  sort_sides(sides_of(node));
+  if (keeps_) part.known_of(node).who = who;
+  sort_sides(part.sides_of(node));
 }
 
 template <int D>
-void ContactGrid<D>::count(const TileGrid<D>& grid, Threads& threads) {
-  counts_.assign(tiles_.size() + 1, {});
-  threads.for_each(tiles_.size(), [&](std::size_t t) {
-    TileBodies<D>& around = bodies_around<D>();
-    look_around(grid, tiles_[t], around);
-    TileCounts c{};
-    for (std::uint64_t left = around.overlapped; left != 0; left &= left - 1) {
-      const int cell = std::countr_zero(left);
-      std::uint32_t sides = 0;
-      for (const TileBody<D>& at : around.all()) sides += at.nodes >> cell & 1u ? 1u : 0u;
-      ++c.nodes;
-      c.sides += sides;
-      c.pairs += pair_count(sides);
-    }
-    counts_[t + 1] = c;
-  });
-  for (std::size_t t = 1; t < counts_.size(); ++t) {
-    counts_[t].nodes += counts_[t - 1].nodes;
-    counts_[t].sides += counts_[t - 1].sides;
-    counts_[t].pairs += counts_[t - 1].pairs;
+void ContactGrid<D>::add_nodes(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                               std::size_t tile, const TileBodies<D>& around, Part& part) {
+  const std::size_t first = part.nodes.size();
+  std::size_t sides = 0, pairs = 0;
+  for (std::uint64_t left = around.overlapped; left != 0; left &= left - 1) {
+    const int cell = std::countr_zero(left);
+    std::uint32_t here = 0;
+    for (const TileBody<D>& at : around.all()) here += at.nodes >> cell & 1u ? 1u : 0u;
+    sides += here;
+    pairs += pair_count(here);
+    part.bodies_max = std::max(part.bodies_max, static_cast<int>(here));
   }
-  std::swap(known_, last_known_);
-  std::swap(known_nodes_, last_known_nodes_);
-  resize(nodes_, counts_.back().nodes);
-  resize(sides_, counts_.back().sides);
-  resize(pairs_, counts_.back().pairs);
-  resize(known_nodes_, keeps_ ? counts_.back().nodes : 0);
-  resize(known_, keeps_ ? counts_.back().pairs : 0);
-  nodes_max_ = std::max(nodes_max_, nodes_.size());
+  const auto nodes = static_cast<std::size_t>(std::popcount(around.overlapped));
+  part.overlapped += nodes;
+  part.reserve(nodes, sides, pairs);
+  if (keeps_) part.known_nodes.resize(first + nodes);
+  for (std::uint64_t left = around.overlapped; left != 0; left &= left - 1) {
+    ContactNode& node = part.nodes.emplace_back();
+    node.cell = static_cast<std::uint8_t>(std::countr_zero(left));
+    node.tile = static_cast<std::uint32_t>(tile);
+    node.first_side = static_cast<std::uint32_t>(part.sides.size());
+    node.first_pair = static_cast<std::uint32_t>(part.pairs.size());
+    place_sides(grid, around, part, node);
+    part.pairs.resize(part.pairs.size() + pair_count(node.sides));
+  }
+  if (keeps_) part.known.resize(part.pairs.size());
+  for (std::size_t n = first; n < part.nodes.size(); ++n)
+    read_sides(grid, bodies, part, part.nodes[n]);
 }
 
 template <int D>
 void ContactGrid<D>::add_travel(std::size_t bodies) {
   travel_.resize(bodies, 0.0);
-  fastest_.assign(bodies, 0.0);
-  for (const Side<D>& side : sides_) {
-    double& fastest = fastest_[static_cast<std::size_t>(side.body)];
-    fastest = std::max(fastest, dot(side.mapped, side.mapped));
-  }
-  for (std::size_t b = 0; b < bodies; ++b) travel_[b] += last_time_step_ * std::sqrt(fastest_[b]);
+  fastest_.resize(bodies, 0.0);
+  for (std::size_t b = 0; b < bodies; ++b)
+    travel_[b] += last_time_step_ * std::sqrt(std::exchange(fastest_[b], 0.0));
 }
 
 template <int D>
 void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                                 const std::vector<double>& stiffness,
-                                const ContactSettings& settings, std::size_t t) {
+                                const ContactSettings& settings, std::size_t t,
+                                TileBodies<D>& around, std::size_t p, std::size_t first) {
   ContactTile<D>& tile = tiles_[t];
-  const std::span<ContactNode> nodes(nodes_.data() + counts_[t].nodes,
-                                     counts_[t + 1].nodes - counts_[t].nodes);
-  std::uint64_t overlapped = 0, unknown = 0;
-  for (const ContactNode& node : nodes) {
-    const std::uint64_t bit = std::uint64_t{1} << node.cell;
-    overlapped |= bit;
-    unknown |= bit;
-    if (!keeps_) continue;
-    KnownNode& now = known_nodes_[number_of(node)];
-    now.first_pair = node.first_pair;
-    now.solved = false;
-    if (tile.known & bit) {
-      const int before = std::popcount(tile.known & (bit - 1));
-      const KnownNode& last =
-          last_known_nodes_[tile.first_known + static_cast<std::uint32_t>(before)];
-      if (last.who == now.who && recall(bodies, settings, grid.cell_size, last, node))
-        unknown &= ~bit;
-    }
-  }
-  if (unknown != 0) {
-    TileBodies<D>& around = bodies_around<D>();
-    look_around(grid, tile, around);
-    for (TileBody<D>& at : around.all())
-      at.particles.gather(grid, bodies[static_cast<std::size_t>(at.body)], tile.tile,
-                          {&holders_[at.first_holder], at.holders}, at.nodes & unknown);
+  Part& part = parts_[p];
+  const std::span<ContactNode> nodes(part.nodes.begin() + static_cast<std::ptrdiff_t>(first),
+                                     part.nodes.end());
+  std::uint64_t unknown = around.overlapped;
+  if (keeps_)
     for (const ContactNode& node : nodes)
-      if (unknown >> node.cell & 1u) {
-        find_pairs(grid, bodies, stiffness, settings, around, node);
-        if (keeps_) remember_pairs(node);
-      }
-  }
-  tile.known = keeps_ ? overlapped : 0;
-  tile.first_known = counts_[t].nodes;
+      if (recall(bodies, settings, grid.cell_size, tile, part, node))
+        unknown &= ~(std::uint64_t{1} << node.cell);
+  for (TileBody<D>& at : around.all())
+    at.particles.gather(grid, bodies[static_cast<std::size_t>(at.body)], tile.tile,
+                        {&holders_[at.first_holder], at.holders}, at.nodes & unknown);
+  for (const ContactNode& node : nodes)
+    if (unknown >> node.cell & 1u) {
+      find_pairs(grid, bodies, stiffness, settings, around, part, node);
+      if (keeps_) remember_pairs(part, node);
+    }
+  tile.known = keeps_ ? around.overlapped : 0;
+  tile.known_part = static_cast<std::uint32_t>(p);
+  tile.first_known = static_cast<std::uint32_t>(first);
 }
 
 template <int D>
@@ -185,31 +163,49 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                           double time_step, Threads& threads) {
   keeps_ = settings.normal_travel > 0.0;
   masses_.find(grid, threads);
-  count(grid, threads);
-  threads.for_each(tiles_.size(), [&](std::size_t t) {
-    TileCounts c = counts_[t];
-    if (c.nodes == counts_[t + 1].nodes) return;
-    TileBodies<D>& around = bodies_around<D>();
-    look_around(grid, tiles_[t], around);
-    for (std::uint64_t left = around.overlapped; left != 0; left &= left - 1) {
-      ContactNode& node = nodes_[c.nodes++];
-      node.cell = static_cast<std::uint8_t>(std::countr_zero(left));
-      node.tile = static_cast<std::uint32_t>(t);
-      node.first_side = c.sides;
-      node.first_pair = c.pairs;
-      place_sides(grid, around, node);
-      c.sides += node.sides;
-      c.pairs += pair_count(node.sides);
-    }
-    for (std::uint32_t n = counts_[t].nodes; n < c.nodes; ++n) read_sides(grid, bodies, nodes_[n]);
-  });
   if (keeps_) add_travel(bodies.size());
-  threads.for_each(tiles_.size(),
-                   [&](std::size_t t) { fill_pairs(grid, bodies, stiffness, settings, t); });
   last_time_step_ = time_step;
+  // Few parts, so that their sizes hardly change; enough to share them out evenly.
+  constexpr std::size_t least_tiles = 32, per_thread = 8;
+  const std::size_t parts = std::clamp(tiles_.size() / least_tiles, std::size_t{1},
+                                       per_thread * static_cast<std::size_t>(threads.count()));
+  const auto first_tile = [&](std::size_t p) { return p * tiles_.size() / parts; };
+  if (parts > parts_.size()) parts_.resize(parts);  // no part goes: it may know of another's tiles
+  for (Part& part : parts_) part.start();
+  threads.for_each(parts, [&](std::size_t p) {
+    Part& part = parts_[p];
+    for (std::size_t t = first_tile(p); t < first_tile(p + 1); ++t) {
+      TileBodies<D>& around = bodies_around<D>();
+      look_around(grid, tiles_[t], around);
+      if (around.overlapped == 0) {
+        tiles_[t].known = 0;
+        continue;
+      }
+      const std::size_t first = part.nodes.size();
+      add_nodes(grid, bodies, t, around, part);
+      fill_pairs(grid, bodies, stiffness, settings, t, around, p, first);
+      // A rigid body's mass is spread over all its nodes, so they stay.
+      if (!keeps_)
+        part.leave_out(first, [&](const ContactNode& node) {
+          return part.any_closed(node) ||
+                 std::ranges::any_of(part.sides_of(node), [&](const Side<D>& side) {
+                   return bodies[static_cast<std::size_t>(side.body)].rigid && !side.prescribed;
+                 });
+        });
+    }
+  });
+  overlapped_ = 0;
+  for (const Part& part : parts_) {
+    overlapped_ += part.overlapped;
+    bodies_max_ = std::max(bodies_max_, part.bodies_max);
+    if (keeps_)
+      for (const Side<D>& side : part.sides) {
+        double& fastest = fastest_[static_cast<std::size_t>(side.body)];
+        fastest = std::max(fastest, dot(side.mapped, side.mapped));
+      }
+  }
+  nodes_max_ = std::max(nodes_max_, overlapped_);
   share_rigid_masses(bodies);
-  for (const ContactNode& node : nodes_)
-    bodies_max_ = std::max(bodies_max_, static_cast<int>(node.sides));
 }
 
 template void ContactGrid<2>::find(TileGrid<2>&, const std::vector<Body<2>>&,

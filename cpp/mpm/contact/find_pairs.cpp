@@ -1,4 +1,5 @@
 // The pairs of bodies at a node: normals, gaps, eq. (5), and frictions.
+#include <bit>
 #include <vector>
 
 #include "mpm/contact/contact_grid.hpp"
@@ -52,12 +53,12 @@ void ContactGrid<D>::start_pair(const std::vector<Body<D>>& bodies, const Contac
 
 template <int D>
 template <class Known, class F>
-void ContactGrid<D>::for_each_known(const ContactNode& node, Known* known, F&& f) {
-  const auto sides = sides_of(node);
+void ContactGrid<D>::for_each_known(Part& part, const ContactNode& node, Known* known, F&& f) {
+  const auto sides = part.sides_of(node);
   const auto rank = [&](std::uint16_t k) {
     return std::ranges::count_if(sides, [&](const Side<D>& x) { return x.body < sides[k].body; });
   };
-  for (SidePair<D>& pair : pairs_of(node)) {
+  for (SidePair<D>& pair : part.pairs_of(node)) {
     const auto r = rank(pair.r), s = rank(pair.s);
     const auto low = std::min(r, s), high = std::max(r, s);
     f(pair, known[low * (2 * node.sides - low - 1) / 2 + high - low - 1], r < s ? 1.0 : -1.0);
@@ -67,9 +68,9 @@ void ContactGrid<D>::for_each_known(const ContactNode& node, Known* known, F&& f
 template <int D>
 void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                                 const std::vector<double>& stiffness,
-                                const ContactSettings& settings, TileBodies<D>& around,
+                                const ContactSettings& settings, TileBodies<D>& around, Part& part,
                                 const ContactNode& node) {
-  const auto sides = sides_of(node);
+  const auto sides = part.sides_of(node);
   const auto rigid = [&](std::uint32_t k) {
     return bodies[static_cast<std::size_t>(sides[k].body)].rigid;
   };
@@ -94,7 +95,7 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
       if (node.held >> a & 1u) gradient[a] = 0.0;
     source.normal = weighted_normal(gradient, sides[k].mass, grid.cell_size);
   }
-  SidePair<D>* next = &pairs_[node.first_pair];
+  SidePair<D>* next = &part.pairs[node.first_pair];
   for (std::uint16_t r = 0; r < node.sides; ++r)
     for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
       SidePair<D>& pair = *next++;
@@ -117,69 +118,82 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
 }
 
 template <int D>
-double ContactGrid<D>::travel_of(const ContactNode& node, const SidePair<D>& pair) const {
-  const Side<D>* sides = &sides_[node.first_side];
+double ContactGrid<D>::travel_of(std::span<const Side<D>> sides, const SidePair<D>& pair) const {
   return travel_[static_cast<std::size_t>(sides[pair.r].body)] +
          travel_[static_cast<std::size_t>(sides[pair.s].body)];
 }
 
 template <int D>
-void ContactGrid<D>::remember_pairs(const ContactNode& node) {
-  for_each_known(node, &known_[node.first_pair],
+void ContactGrid<D>::remember_pairs(Part& part, const ContactNode& node) {
+  for_each_known(part, node, &part.known[node.first_pair],
                  [&](const SidePair<D>& pair, KnownPair<D>& known, double sign) {
-                   known = {sign * pair.normal, pair.gap, travel_of(node, pair)};
+                   const double travel = travel_of(part.sides_of(node), pair);
+                   known = {sign * pair.normal, pair.gap, travel};
                  });
 }
 
 template <int D>
 bool ContactGrid<D>::recall(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
-                            double cell_size, const KnownNode& last, const ContactNode& node) {
-  const auto sides = sides_of(node);
-  SidePair<D>* next = &pairs_[node.first_pair];
+                            double cell_size, const ContactTile<D>& tile, Part& part,
+                            const ContactNode& node) {
+  KnownNode& now = part.known_of(node);
+  now.first_pair = node.first_pair;
+  now.solved = false;
+  const std::uint64_t bit = std::uint64_t{1} << node.cell;
+  if (!(tile.known & bit)) return false;
+  const Part& before = parts_[tile.known_part];
+  const auto place = static_cast<std::uint32_t>(std::popcount(tile.known & (bit - 1)));
+  const KnownNode& last = before.last_known_nodes[tile.first_known + place];
+  if (last.who != now.who) return false;
+  const auto sides = part.sides_of(node);
+  SidePair<D>* next = &part.pairs[node.first_pair];
   for (std::uint16_t r = 0; r < node.sides; ++r)
     for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s)
       start_pair(bodies, settings, sides, r, s, *next++);
-  std::copy_n(&last_known_[last.first_pair], pair_count(node.sides), &known_[node.first_pair]);
+  std::copy_n(&before.last_known[last.first_pair], pair_count(node.sides),
+              &part.known[node.first_pair]);
   bool holds = true;
-  for_each_known(
-      node, &known_[node.first_pair], [&](SidePair<D>& pair, KnownPair<D>& known, double sign) {
-        pair.normal = sign * known.normal;
-        // Without contact the velocities of now are those with which the last step ended.
-        const Vec<double, D> parting = sides[pair.s].mapped - sides[pair.r].mapped;
-        if (!last.solved) known.gap += last_time_step_ * dot(parting, pair.normal);
-        pair.gap = known.gap;
-        pair.closed = may_act(pair, settings);
-        holds = holds && travel_of(node, pair) - known.travel <= settings.normal_travel * cell_size;
-      });
+  for_each_known(part, node, &part.known[node.first_pair],
+                 [&](SidePair<D>& pair, KnownPair<D>& known, double sign) {
+                   pair.normal = sign * known.normal;
+                   // Without contact the velocities of now are those with which the last step
+                   // ended.
+                   const Vec<double, D> parting = sides[pair.s].mapped - sides[pair.r].mapped;
+                   if (!last.solved) known.gap += last_time_step_ * dot(parting, pair.normal);
+                   pair.gap = known.gap;
+                   pair.closed = may_act(pair, settings);
+                   holds = holds && travel_of(sides, pair) - known.travel <=
+                                        settings.normal_travel * cell_size;
+                 });
   return holds;
 }
 
 template <int D>
-void ContactGrid<D>::move_gaps(const ContactNode& node, const NodeSolution<D>& solution,
+void ContactGrid<D>::move_gaps(Part& part, const ContactNode& node, const NodeSolution<D>& solution,
                                double time_step) {
   if (!keeps_) return;
-  known_nodes_[number_of(node)].solved = true;
-  for_each_known(
-      node, &known_[node.first_pair], [&](const SidePair<D>& pair, KnownPair<D>& known, double) {
-        const Vec<double, D> parting =
-            solution.sides[pair.s].end_velocity() - solution.sides[pair.r].end_velocity();
-        known.gap += time_step * dot(parting, pair.normal);
-      });
+  part.known_of(node).solved = true;
+  for_each_known(part, node, &part.known[node.first_pair],
+                 [&](const SidePair<D>& pair, KnownPair<D>& known, double) {
+                   const Vec<double, D> parting = solution.sides[pair.s].end_velocity() -
+                                                  solution.sides[pair.r].end_velocity();
+                   known.gap += time_step * dot(parting, pair.normal);
+                 });
 }
 
-template void ContactGrid<2>::remember_pairs(const ContactNode&);
+template void ContactGrid<2>::remember_pairs(Part&, const ContactNode&);
 template bool ContactGrid<2>::recall(const std::vector<Body<2>>&, const ContactSettings&, double,
-                                     const KnownNode&, const ContactNode&);
-template void ContactGrid<2>::move_gaps(const ContactNode&, const NodeSolution<2>&, double);
+                                     const ContactTile<2>&, Part&, const ContactNode&);
+template void ContactGrid<2>::move_gaps(Part&, const ContactNode&, const NodeSolution<2>&, double);
 template void ContactGrid<2>::find_pairs(const TileGrid<2>&, const std::vector<Body<2>>&,
                                          const std::vector<double>&, const ContactSettings&,
-                                         TileBodies<2>&, const ContactNode&);
-template void ContactGrid<3>::remember_pairs(const ContactNode&);
+                                         TileBodies<2>&, Part&, const ContactNode&);
+template void ContactGrid<3>::remember_pairs(Part&, const ContactNode&);
 template bool ContactGrid<3>::recall(const std::vector<Body<3>>&, const ContactSettings&, double,
-                                     const KnownNode&, const ContactNode&);
-template void ContactGrid<3>::move_gaps(const ContactNode&, const NodeSolution<3>&, double);
+                                     const ContactTile<3>&, Part&, const ContactNode&);
+template void ContactGrid<3>::move_gaps(Part&, const ContactNode&, const NodeSolution<3>&, double);
 template void ContactGrid<3>::find_pairs(const TileGrid<3>&, const std::vector<Body<3>>&,
                                          const std::vector<double>&, const ContactSettings&,
-                                         TileBodies<3>&, const ContactNode&);
+                                         TileBodies<3>&, Part&, const ContactNode&);
 
 }  // namespace mpm

@@ -69,14 +69,13 @@ ContactSums ContactGrid<D>::record(TileGrid<D>& grid, const std::vector<Body<D>>
   };
   const std::size_t known = records_.size();
   for (auto& r : records_) std::fill(std::begin(r.force), std::end(r.force), 0.0);
-  for (const ContactNode& node : nodes_) {
+  const auto add = [&](Part& part, const ContactNode& node) {
     sums.energy += node.energy;
     sums.force_work += node.force_work;
-    for (std::uint32_t k = 0; k < pair_count(node.sides); ++k) {
-      const SidePair<D>& pair = pairs_[node.first_pair + k];
+    for (const SidePair<D>& pair : part.pairs_of(node)) {
       if (!pair.acted) continue;
-      const Side<D>& side_r = sides_[node.first_side + pair.r];
-      const Side<D>& side_s = sides_[node.first_side + pair.s];
+      const Side<D>& side_r = part.sides_of(node)[pair.r];
+      const Side<D>& side_s = part.sides_of(node)[pair.s];
       PairRecord& r =
           record_of(std::min(side_r.body, side_s.body), std::max(side_r.body, side_s.body));
       const double sign =
@@ -100,7 +99,9 @@ ContactSums ContactGrid<D>::record(TileGrid<D>& grid, const std::vector<Body<D>>
       sums.friction += pair.friction_work;
       sums.friction_first += pair.friction_first;
     }
-  }
+  };
+  for (Part& part : parts_)
+    for (const ContactNode& node : part.nodes) add(part, node);
   if (records_.size() > known) sort_records();
   return sums;
 }
@@ -108,10 +109,10 @@ ContactSums ContactGrid<D>::record(TileGrid<D>& grid, const std::vector<Body<D>>
 template <int D>
 std::size_t ContactGrid<D>::bytes() const {
   const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return masses_.bytes() + size(holders_) + size(tiles_) + size(last_tiles_) + size(counts_) +
-         size(nodes_) + size(sides_) + size(pairs_) + size(known_nodes_) + size(last_known_nodes_) +
-         size(known_) + size(last_known_) + size(travel_) + size(fastest_) + size(rigid_share_) +
-         size(records_) + size(places_);
+  std::size_t parts = 0;
+  for (const Part& part : parts_) parts += part.bytes();
+  return masses_.bytes() + parts + size(holders_) + size(tiles_) + size(last_tiles_) +
+         size(travel_) + size(fastest_) + size(rigid_share_) + size(records_) + size(places_);
 }
 
 template ContactSums ContactGrid<2>::record(TileGrid<2>&, const std::vector<Body<2>>&, double,

@@ -36,12 +36,16 @@ template <int D>
 void ContactGrid<D>::share_rigid_masses(const std::vector<Body<D>>& bodies) {
   if (std::none_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.rigid; })) return;
   rigid_share_.assign(bodies.size(), 0.0);
-  for (const ContactNode& node : nodes_) harden(bodies, sides_of(node));
-  for (const Side<D>& side : sides_) rigid_share_[static_cast<std::size_t>(side.body)] += side.mass;
-  for (Side<D>& side : sides_) {
-    const auto b = static_cast<std::size_t>(side.body);
-    if (bodies[b].rigid && !side.prescribed) side.mass /= rigid_share_[b] / bodies[b].total_mass;
+  for (Part& part : parts_) {
+    for (const ContactNode& node : part.nodes) harden(bodies, part.sides_of(node));
+    for (const Side<D>& side : part.sides)
+      rigid_share_[static_cast<std::size_t>(side.body)] += side.mass;
   }
+  for (Part& part : parts_)
+    for (Side<D>& side : part.sides) {
+      const auto b = static_cast<std::size_t>(side.body);
+      if (bodies[b].rigid && !side.prescribed) side.mass /= rigid_share_[b] / bodies[b].total_mass;
+    }
 }
 
 template void ContactGrid<2>::share_rigid_masses(const std::vector<Body<2>>&);

@@ -7,17 +7,19 @@
 
 namespace mpm {
 
-/// A patch whose block has nodes that belong to a tile: the tile's own patch of a body, or one
-/// beside it. (A tile's own nodes are all but those at its upper ends, which are the next tile's
-/// first.)
+/// A patch whose block may have nodes that belong to a tile: the tile's own patch of a body, or one
+/// beside it, as far as its cells go now. (A tile's own nodes are all but those at its upper ends,
+/// which are the next tile's first.)
 struct TileHolder {
   std::int32_t body;
   std::uint32_t patch : 27;
   std::uint32_t neighbour : 5;  // where the tile lies as seen from the patch: Tile<D>::offset
 
+  static constexpr std::size_t patches_max = std::size_t{1} << 27;
+
   TileHolder(int of_body, std::size_t number, int tile)
       : body(of_body),
-        patch(static_cast<std::uint32_t>(number) & 0x7FFFFFFu),
+        patch(static_cast<std::uint32_t>(number) & (patches_max - 1)),
         neighbour(static_cast<std::uint32_t>(tile) & 31u) {}
 };
 

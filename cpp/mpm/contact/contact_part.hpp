@@ -1,0 +1,104 @@
+#pragma once
+// The overlapped nodes of some tiles that follow one another: what one thread finds and solves at a
+// time.
+#include <vector>
+
+#include "mpm/contact/node_contact.hpp"
+
+namespace mpm {
+
+/// An overlapped node of the last step. Its pairs are used again until the bodies of one of them
+/// have moved by ContactSettings::normal_travel, or others are there.
+struct KnownNode {
+  std::uint64_t who;         // a number for the bodies and how many particles each has
+  std::uint32_t first_pair;  // of ContactPart::known
+  bool solved;               // its contacts were solved, and the gaps are those after the step
+};
+
+/// The normal and the gap of a pair of bodies at a node.
+template <int D>
+struct KnownPair {
+  Vec<double, D> normal;  // from the body with the lower number
+  double gap;             // [m]
+  double travel;          // of both bodies (ContactGrid::travel_) when it was found [m]
+};
+
+/// Nodes where bodies may act on each other. Those at which all are apart are counted and left out,
+/// unless pairs are kept from step to step.
+template <int D>
+struct ContactPart {
+  std::vector<ContactNode> nodes;
+  std::vector<Side<D>> sides;
+  std::vector<SidePair<D>> pairs;
+  std::size_t overlapped = 0;  // nodes, those left out too
+  int bodies_max = 0;          // at a node
+  // Where pairs are kept: of this step and the last, in the order of `nodes` and of `pairs`.
+  std::vector<KnownNode> known_nodes, last_known_nodes;
+  std::vector<KnownPair<D>> known, last_known;
+
+  std::span<Side<D>> sides_of(const ContactNode& node) {
+    return {&sides[node.first_side], node.sides};
+  }
+  std::span<SidePair<D>> pairs_of(const ContactNode& node) {
+    return {&pairs[node.first_pair], pair_count(node.sides)};
+  }
+  /// May any pair at a node act? Other nodes stay as they are, to the last bit.
+  bool any_closed(const ContactNode& node) {
+    return std::ranges::any_of(pairs_of(node), &SidePair<D>::closed);
+  }
+  KnownNode& known_of(const ContactNode& node) {
+    return known_nodes[static_cast<std::size_t>(&node - nodes.data())];
+  }
+
+  void start() {
+    nodes.clear();
+    sides.clear();
+    pairs.clear();
+    overlapped = 0;
+    bodies_max = 0;
+    std::swap(known, last_known);
+    std::swap(known_nodes, last_known_nodes);
+    known.clear();
+    known_nodes.clear();
+  }
+  /// Room for nodes, sides and pairs beyond those that are there, and some to spare, so that
+  /// numbers which creep up seldom allocate.
+  void reserve(std::size_t more_nodes, std::size_t more_sides, std::size_t more_pairs) {
+    const auto grow = [](auto& v, std::size_t more) {
+      const std::size_t size = v.size() + more;
+      if (size > v.capacity()) v.reserve(size + std::max<std::size_t>(size / 8, 32));
+    };
+    grow(nodes, more_nodes);
+    grow(sides, more_sides);
+    grow(pairs, more_pairs);
+  }
+  /// Leave out the nodes from the first-th on for which `stays(node)` does not hold.
+  template <class F>
+  void leave_out(std::size_t first, F&& stays) {
+    if (first == nodes.size()) return;
+    std::size_t kept = first;
+    std::uint32_t side = nodes[first].first_side, pair = nodes[first].first_pair;
+    for (std::size_t n = first; n < nodes.size(); ++n) {
+      ContactNode node = nodes[n];
+      if (!stays(node)) continue;
+      std::ranges::copy(sides_of(node), &sides[side]);
+      std::ranges::copy(pairs_of(node), &pairs[pair]);
+      node.first_side = side;
+      node.first_pair = pair;
+      side += node.sides;
+      pair += pair_count(node.sides);
+      nodes[kept++] = node;
+    }
+    nodes.resize(kept);
+    sides.resize(side);
+    pairs.resize(pair);
+  }
+
+  std::size_t bytes() const {
+    const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+    return sizeof(*this) + size(nodes) + size(sides) + size(pairs) + size(known_nodes) +
+           size(last_known_nodes) + size(known) + size(last_known);
+  }
+};
+
+}  // namespace mpm
