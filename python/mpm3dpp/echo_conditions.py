@@ -15,19 +15,24 @@ Quantity = float | TimeFunction
 
 
 def in_words(value: Quantity, unit: str) -> str:
-    """Return a quantity that may depend on time, with its unit: `2 mm/s`, `0 to 5 MPa in 1 ms`."""
+    """Return a quantity that may depend on time: `2 mm/s`, `0 Pa to 5 MPa from 0 s to 1 ms`."""
     if not isinstance(value, TimeFunction):
         return _number(value, unit)
     parts = []
     if value.times:
         first, last = (_number(v, unit) for v in (value.values[0], value.values[-1]))
         span = " to ".join(_number(t, "s") for t in (value.times[0], value.times[-1]))
-        parts.append(f"{first} to {last} from {span}")
+        if len(value.values) == 2:
+            parts.append(f"{first} to {last} from {span}")
+        else:
+            least, most = (_number(f(value.values), unit) for f in (min, max))
+            parts.append(f"{len(value.values)} values of {least} to {most} from {span}")
     if value.mean:
         parts.append(_number(value.mean, unit))
     if value.amplitude:
         wave = f"{_number(value.amplitude, unit)} sin at {_number(value.frequency, 'Hz')}"
-        parts.append(wave)
+        phase = f", {math.degrees(value.phase):g} deg ahead" if value.phase else ""
+        parts.append(wave + phase)
     return " + ".join(parts) or _number(0.0, unit)
 
 

@@ -11,7 +11,8 @@ from mpm3dpp import load_case
 from mpm3dpp.build import build
 from mpm3dpp.case_grid import GridDoubling
 from mpm3dpp.echo import echo
-from mpm3dpp.echo_conditions import doublings
+from mpm3dpp.echo_conditions import doublings, in_words
+from mpm3dpp.time_functions import TimeFunction
 
 CASE = """
 [grid]
@@ -78,6 +79,26 @@ def test_conditions(shown: str, line: str) -> None:
 
 def test_motion(shown: str) -> None:
     assert "moves as prescribed: velocity (0 m/s, 0 m/s to -5 m/s from 0 s to 2 ms)" in shown
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (2e6, "2 MPa"),
+        (0.0, "0 Pa"),
+        (
+            {"times": ["0 s", "1 ms", "2 ms"], "values": [0, "5 MPa", 0]},
+            "3 values of 0 Pa to 5 MPa from 0 s to 2 ms",
+        ),
+        (
+            {"sine": {"amplitude": "3 Pa", "frequency": "2 Hz", "phase": "90 deg"}},
+            "3 Pa sin at 2 Hz, 90 deg ahead",
+        ),
+    ],
+)
+def test_quantities_in_words(given: object, said: str) -> None:
+    value = TimeFunction.parse(given, "Pa")
+    assert in_words(value, "Pa") == said
 
 
 def test_doublings_of_a_box_and_without() -> None:

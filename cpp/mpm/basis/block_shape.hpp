@@ -18,9 +18,7 @@ struct BlockShape {
   std::array<int, Tile<D>::corners> corner_offset{};  // from a cell's first node to its corners
 
   static constexpr int margin_max = 1;
-  static constexpr int count_max(int margin) {
-    return power(Tile<D>::cells + 1 + 2 * margin, D);
-  }
+  static constexpr int count_max(int margin) { return power(Tile<D>::cells + 1 + 2 * margin, D); }
   static constexpr int stride_max = (count_max(margin_max) + 7) / 8 * 8;
 
   BlockShape() = default;
@@ -30,13 +28,6 @@ struct BlockShape {
     node_stride = (node_count + 7) / 8 * 8;
     for (int k = 0; k < Tile<D>::corners; ++k)
       corner_offset[static_cast<std::size_t>(k)] = distance(Tile<D>::corner(k));
-  }
-  /// Of a tile whose cells all hold particles.
-  static BlockShape whole(int margin) {
-    Index<D> first, last;
-    first.fill(-margin);
-    last.fill(Tile<D>::cells + margin);
-    return {first, last};
   }
   /// Of the cells that hold particles, a bit each by Tile<D>::cell.
   static BlockShape around(std::uint64_t occupied, int margin) {

@@ -37,4 +37,11 @@ class AlignedArray {
   std::size_t size_ = 0;
 };
 
+/// Let an array of scratch hold n; its content is lost. It gets `room`, so that numbers which creep
+/// up seldom allocate.
+template <class T>
+void make_room(AlignedArray<T>& array, std::size_t n, std::size_t room) {
+  if (n > array.size()) array.release_and_allocate(room);
+}
+
 }  // namespace mpm

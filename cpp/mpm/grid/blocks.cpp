@@ -84,7 +84,7 @@ void TileGrid<D>::cut_blocks(Threads& threads) {
     patch.memory = needed_;
     needed_ += static_cast<std::size_t>(fields * patch.shape.node_stride);
   }
-  if (needed_ > node_memory_.size()) node_memory_.release_and_allocate(needed_ + needed_ / 16);
+  make_room(node_memory_, needed_, needed_ + needed_ / 16);
   threads.for_each(patches.size(), [&](std::size_t p) {
     Patch<D>& patch = patches[p];
     patch.at_wall = box_touches_wall(*this, patch);

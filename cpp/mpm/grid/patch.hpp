@@ -36,13 +36,14 @@ struct Patch {
   std::array<std::int32_t, Tile<D>::neighbours>
       neighbour{};  // patches of the same body around it, -1 if none; of a leader if bonded
   std::uint32_t leader =
-      0;                    // where the bodies are bonded: the first patch of the tile; else itself
-  BlockShape<D> shape;      // of its block; a leader's holds those of all that it leads
-  std::size_t memory = 0;   // where its block begins in the grid's memory [doubles]
-  NodeBits<D> owned;        // nodes that no earlier patch of the body holds
-  bool at_wall = false;     // its block has nodes on a wall
-  bool left_cell = false;   // a particle has left its cell since the lists were made
-  bool in_contact = false;  // its block has nodes where bodies may meet
+      0;                   // where the bodies are bonded: the first patch of the tile; else itself
+  BlockShape<D> shape;     // of its block; a leader's holds those of all that it leads
+  std::size_t memory = 0;  // where its block begins in the grid's memory [doubles]
+  NodeBits<D> owned;       // nodes that no earlier patch of the body holds; of a leader, no earlier
+                           // leader; none of one that is led
+  bool at_wall = false;    // its block has nodes on a wall
+  bool left_cell = false;  // a particle has left its cell since the lists were made
+  bool in_contact = false;  // its block may have nodes where bodies meet
 
   /// f(cell, first, last): every occupied cell with its range in the body's order list.
   template <class F>

@@ -2,7 +2,6 @@
 // The sparse, unbounded grid: patches sorted by body and tile, who their neighbours are, and the
 // memory of their nodes.
 #include <cmath>
-#include <span>
 #include <vector>
 
 #include "mpm/fields/aligned.hpp"
@@ -19,7 +18,7 @@ class TileGrid {
  public:
   Vec<double, D> origin = Vec<double, D>::zero();  // position of node 0 [m]
   double cell_size = 0.0;                          // [m]
-  Basis basis = Basis::linear;                     // set by `use`
+  Basis basis = Basis::linear;                     // of all bodies
   // Cell at the lower corner of tile 0. Tied to the particles' first place, so that a problem
   // shifted by whole cells is cut into the same tiles and gives the same bits.
   Index<D> anchor{};
@@ -76,7 +75,8 @@ class TileGrid {
     return node_memory_.bytes() + patches.capacity() * sizeof(Patch<D>);
   }
 
-  /// Find neighbours. Call when patches were added or removed.
+  /// Find neighbours. Call when patches were added or removed; there are no blocks then until they
+  /// have been cut.
   void connect();
   /// Cut the blocks to the cells that hold particles, find the owners of shared nodes and the
   /// walls, and make room for the nodes. Call when particles have changed cells.
@@ -100,7 +100,7 @@ class TileGrid {
 
   AlignedArray<double> node_memory_;
   std::size_t needed_ = 0;              // of it [doubles]
-  bool blocks_known_ = false;           // since patches were added or removed
+  bool blocks_known_ = false;           // the blocks are those of the patches there are
   std::vector<std::uint32_t> by_tile_;  // if bonded: all patches, by tile, then by body
   std::vector<std::uint32_t> leaders_;  // those whose nodes are summed with their neighbours'
 };

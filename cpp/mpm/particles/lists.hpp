@@ -26,7 +26,7 @@ struct Gone {
   double momentum[D] = {};                  // [kg m/s]
 };
 
-/// Reused from step to step, so that a step allocates nothing, and by one body after another.
+/// Reused from step to step, so that a step allocates nothing, and shared by all bodies.
 template <int D>
 struct ListScratch {
   struct Change {
@@ -38,18 +38,16 @@ struct ListScratch {
   std::vector<Patch<D>> added;
   std::vector<std::size_t> moved;  // one per patch
   // The lists being made of those bodies whose particles have left their cells.
-  std::vector<std::size_t> first;    // where each body's list begins, or none
-  std::vector<std::uint32_t> order;  // the lists
-  std::vector<std::uint8_t> cell;    // the cell in its tile of each entry of the lists before
-  AlignedArray<double> column;       // one component, while it is sorted
+  std::vector<std::size_t> first;     // where each body's list begins, or none
+  AlignedArray<std::uint32_t> order;  // the lists; or the numbers of one body, while it is sorted
+  AlignedArray<std::uint8_t> cell;    // the cell in its tile of each entry of the lists before
+  AlignedArray<double> column;        // one component, while it is sorted
 
-  std::uint32_t* order_of(int body) { return &order[first[static_cast<std::size_t>(body)]]; }
-  std::uint8_t* cell_of(int body) { return &cell[first[static_cast<std::size_t>(body)]]; }
+  std::uint32_t* order_of(int body) { return order.data() + first[static_cast<std::size_t>(body)]; }
+  std::uint8_t* cell_of(int body) { return cell.data() + first[static_cast<std::size_t>(body)]; }
   bool changes_list_of(int body) const { return first[static_cast<std::size_t>(body)] != none; }
-  /// Those of numbers by particle.
-  std::size_t bytes() const {
-    return order.capacity() * sizeof(std::uint32_t) + cell.capacity() + column.bytes();
-  }
+  /// Of what goes with the particles; leavers and what goes with the patches is not counted.
+  std::size_t bytes() const { return order.bytes() + cell.bytes() + column.bytes(); }
 };
 
 /// Sort every body's columns by tile and cell, and make patches and lists anew, at the start or

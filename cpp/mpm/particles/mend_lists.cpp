@@ -192,22 +192,24 @@ void write_tail(std::span<const Patch<D>> patches, Body<D>& body, const std::uin
   });
   std::memcpy(to, body.order.data() + (n - before), before * sizeof(std::uint32_t));
   body.gone = before + now;
+  std::memcpy(body.order.data() + (n - body.gone), order + (n - body.gone), now * sizeof(*order));
 }
 
 /// Room for the lists of the bodies whose particles have left their cells; false if there are none.
 template <int D>
-bool make_room(const std::vector<Patch<D>>& patches, const std::vector<Body<D>>& bodies,
-               ListScratch<D>& scratch) {
+bool find_changes(const std::vector<Patch<D>>& patches, const std::vector<Body<D>>& bodies,
+                  ListScratch<D>& scratch) {
   scratch.first.assign(bodies.size(), scratch.none);
-  std::size_t total = 0;
+  std::size_t total = 0, all = 0;
+  for (const Body<D>& body : bodies) all += body.count();
   for (const Patch<D>& patch : patches) {
     if (!patch.left_cell || scratch.changes_list_of(patch.body)) continue;
     const auto b = static_cast<std::size_t>(patch.body);
     scratch.first[b] = total;
     total += bodies[b].count();
   }
-  if (total > scratch.order.size()) scratch.order.resize(total);
-  if (total > scratch.cell.size()) scratch.cell.resize(total);
+  make_room(scratch.order, total, std::min(2 * total, all));
+  make_room(scratch.cell, total, std::min(2 * total, all));
   return total > 0;
 }
 
@@ -243,7 +245,7 @@ void count_changes(const std::vector<Patch<D>>& patches, ListScratch<D>& scratch
 template <int D>
 bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
                 ListScratch<D>& scratch, Gone<D>& eroded_sums, Gone<D>& left_sums) {
-  if (!make_room(grid.patches, bodies, scratch)) return false;
+  if (!find_changes(grid.patches, bodies, scratch)) return false;
   scratch.moved.assign(grid.patches.size(), 0);
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
@@ -269,10 +271,11 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
     if (scratch.changes_list_of(patch.body))
       write_list(bodies[static_cast<std::size_t>(patch.body)], patch, scratch.changes[p], scratch);
   });
-  threads.for_each(bodies.size(), [&](std::size_t b) {
-    const int number = static_cast<int>(b);
-    if (scratch.changes_list_of(number))
-      std::copy_n(scratch.order_of(number), bodies[b].order.size(), bodies[b].order.data());
+  threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const Patch<D>& patch = grid.patches[p];
+    if (scratch.changes_list_of(patch.body))
+      std::copy_n(scratch.order_of(patch.body) + patch.begin, patch.count,
+                  bodies[static_cast<std::size_t>(patch.body)].order.data() + patch.begin);
   });
   grid.cut_blocks(threads);
   return changed;

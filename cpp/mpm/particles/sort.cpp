@@ -23,8 +23,8 @@ void sort_columns(Body<D>& body, Threads& threads, ListScratch<D>& scratch) {
       std::copy(room + begin, room + end, values + begin);
     });
   };
-  if (scratch.column.size() < n) scratch.column.release_and_allocate(n);
-  if (scratch.order.size() < n) scratch.order.resize(n);
+  make_room(scratch.column, n, n);
+  make_room(scratch.order, n, n);
   for (int c = 0; c < body.columns.component_count(); ++c)
     sort(body.columns.component(c), scratch.column.data());
   sort(body.id.data(), scratch.order.data());

@@ -83,8 +83,8 @@ void check_basis(mpm::testing::Report& report, const B& basis) {
 void test_basis(mpm::testing::Report& report) {
   for (const Basis basis : {Basis::linear, Basis::gimp})
     for (const double edge : {0.25, 0.5, 1.0}) {
-      const auto flat = BlockShape<2>::whole(margin_of(basis));
-      const auto space = BlockShape<3>::whole(margin_of(basis));
+      const auto flat = BlockShape<2>::around(~std::uint64_t{0}, margin_of(basis));
+      const auto space = BlockShape<3>::around(~std::uint64_t{0}, margin_of(basis));
       with_basis<2>(basis, flat, edge, [&](const auto& b) { check_basis<2>(report, b); });
       with_basis<3>(basis, space, edge, [&](const auto& b) { check_basis<3>(report, b); });
     }
