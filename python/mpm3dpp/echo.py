@@ -16,8 +16,9 @@ from .loads import pieces
 from .materials import Failure, catalogue
 from .plots.labels import scaled
 
-# Estimates for the echo [bytes]: particle columns without and with a state tensor, one grid cell.
-_PARTICLE_BYTES, _CELL_BYTES = 200, 150
+# Estimates for the echo [bytes]: a particle with its columns and lists, and the nodes of a cell that
+# holds particles, those of the contact included.
+_PARTICLE_BYTES, _CELL_BYTES = 160, 150
 
 
 def time_step(case: Case, bodies: list[FilledBody]) -> float:
