@@ -192,7 +192,6 @@ void write_tail(std::span<const Patch<D>> patches, Body<D>& body, const std::uin
   });
   std::memcpy(to, body.order.data() + (n - before), before * sizeof(std::uint32_t));
   body.gone = before + now;
-  std::memcpy(body.order.data() + (n - body.gone), order + (n - body.gone), now * sizeof(*order));
 }
 
 /// Room for the lists of the bodies whose particles have left their cells; false if there are none.
@@ -277,6 +276,12 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
       std::copy_n(scratch.order_of(patch.body) + patch.begin, patch.count,
                   bodies[static_cast<std::size_t>(patch.body)].order.data() + patch.begin);
   });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::size_t gone = bodies[b].gone, rest = bodies[b].active();
+    if (gone > 0 && scratch.changes_list_of(static_cast<int>(b)))
+      std::copy_n(scratch.order_of(static_cast<int>(b)) + rest, gone,
+                  bodies[b].order.data() + rest);
+  }
   grid.cut_blocks(threads);
   return changed;
 }
