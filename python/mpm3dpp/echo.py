@@ -16,8 +16,8 @@ from .loads import pieces
 from .materials import Failure, catalogue
 from .plots.labels import scaled
 
-# Estimates for the echo [bytes]: a particle with its columns and lists, and the nodes of a cell that
-# holds particles, those of the contact included.
+# Estimates for the echo [bytes]: a particle with its columns and lists, and the nodes of a cell
+# that holds particles, those of the contact included.
 _PARTICLE_BYTES, _CELL_BYTES = 160, 150
 
 

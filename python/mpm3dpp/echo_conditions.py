@@ -31,7 +31,7 @@ def in_words(value: Quantity, unit: str) -> str:
         parts.append(_number(value.mean, unit))
     if value.amplitude:
         wave = f"{_number(value.amplitude, unit)} sin at {_number(value.frequency, 'Hz')}"
-        phase = f", {math.degrees(value.phase):g} deg ahead" if value.phase else ""
+        phase = f" and {math.degrees(value.phase):g} deg" if value.phase else ""
         parts.append(wave + phase)
     return " + ".join(parts) or _number(0.0, unit)
 

@@ -92,7 +92,7 @@ def test_motion(shown: str) -> None:
         ),
         (
             {"sine": {"amplitude": "3 Pa", "frequency": "2 Hz", "phase": "90 deg"}},
-            "3 Pa sin at 2 Hz, 90 deg ahead",
+            "3 Pa sin at 2 Hz and 90 deg",
         ),
     ],
 )

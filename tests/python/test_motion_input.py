@@ -130,7 +130,10 @@ def test_the_good_case(tmp_path: Path) -> None:
     assert np.ptp(v[:, 0] + 2 * math.pi * (x[:, 1] - x[:, 1].mean())) < 1e-9
     lines = echo(case, build(case)).splitlines()
     assert [line.endswith(", fixed") for line in lines[:3]] == [True, False, False]
-    assert lines[2].endswith(", moves as prescribed")
+    assert lines[2].endswith(
+        ", moves as prescribed: velocity (2 m/s sin at 50 Hz and 90 deg, 0 m/s to -3 m/s from 0 s "
+        "to 1 ms), spin (6.28319 rad/s)"
+    )
 
 
 def test_the_case_of_the_how_to_page() -> None:

@@ -109,12 +109,12 @@ def test_as_often_as_asked() -> None:
 
 
 def test_bytes() -> None:
-    simulation = Simulation(colliding(2, {"bytes": 1, "times": 1}), 1)
-    simulation.advance(2)
-    assert history(simulation)["cell_size"][-1] == 2 * CELL
-    simulation = Simulation(colliding(2, {"bytes": 10**9, "times": 1}), 1)
-    simulation.advance(2)
-    assert history(simulation)["cell_size"][-1] == CELL
+    """What the nodes need is compared: a little less than what is reserved for them."""
+    reserved = Simulation(colliding(2, None), 1).core.bytes()["grid"]
+    for limit, cells in ((reserved // 2, 2 * CELL), (reserved, CELL)):
+        simulation = Simulation(colliding(2, {"bytes": limit, "times": 1}), 1)
+        simulation.advance(2)
+        assert history(simulation)["cell_size"][-1] == cells
 
 
 def test_what_cannot_be_is_refused() -> None:

@@ -26,6 +26,7 @@
   X(mohr_coulomb) \
   X(surface_load) \
   X(blocks) \
+  X(mend_lists) \
   X(two_bodies) \
   X(many_bodies) \
   X(separation) \
