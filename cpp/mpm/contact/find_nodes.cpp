@@ -164,7 +164,6 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   keeps_ = settings.normal_travel > 0.0;
   masses_.find(grid, threads);
   if (keeps_) add_travel(bodies.size());
-  last_time_step_ = time_step;
   // Few parts, so that their sizes hardly change; enough to share them out evenly.
   constexpr std::size_t least_tiles = 32, per_thread = 8;
   const std::size_t parts = std::clamp(tiles_.size() / least_tiles, std::size_t{1},
@@ -194,6 +193,7 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
         });
     }
   });
+  last_time_step_ = time_step;
   overlapped_ = 0;
   for (const Part& part : parts_) {
     overlapped_ += part.overlapped;
