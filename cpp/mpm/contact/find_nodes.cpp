@@ -144,9 +144,10 @@ void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<
     for (const ContactNode& node : nodes)
       if (recall(bodies, settings, grid.cell_size, tile, part, node))
         unknown &= ~(std::uint64_t{1} << node.cell);
-  for (TileBody<D>& at : around.all())
-    at.particles.gather(grid, bodies[static_cast<std::size_t>(at.body)], tile.tile,
-                        {&holders_[at.first_holder], at.holders}, at.nodes & unknown);
+  if (unknown != 0)
+    for (TileBody<D>& at : around.all())
+      at.particles.gather(grid, bodies[static_cast<std::size_t>(at.body)], tile.tile,
+                          {&holders_[at.first_holder], at.holders}, at.nodes & unknown);
   for (const ContactNode& node : nodes)
     if (unknown >> node.cell & 1u) {
       find_pairs(grid, bodies, stiffness, settings, around, part, node);
