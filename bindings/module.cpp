@@ -87,6 +87,8 @@ NB_MODULE(_core, m) {
       .def_rw("gravity", &Settings::gravity)
       .def_rw("contact", &Settings::contact)
       .def_rw("bonded", &Settings::bonded)
+      .def_rw("pic_damping", &Settings::pic_damping)
+      .def_rw("fused", &Settings::fused)
       .def_rw("detection", &Settings::detection)
       .def_rw("normal_rule", &Settings::normal_rule)
       .def_rw("gap_distance", &Settings::gap_distance)

@@ -31,6 +31,7 @@ struct PatchSums {
   StressSums stress;
   double kinetic = 0.0;       // of the particles after the step [J]
   double second_order = 0.0;  // half sum of m_p (change of v_p)^2 [J]
+  double damped = 0.0;        // kinetic energy that PIC damping has taken [J]
   double momentum[D] = {};    // of the particles after the step [kg m/s]
   double force_work =
       0.0;  // time step x sum over nodes of internal and contact force . velocity [J]
@@ -54,6 +55,8 @@ struct Domain {
   std::array<TimeFunction, 3> gravity_of_time{};    // [m/s^2]
   Vec<double, D> gravity = Vec<double, D>::zero();  // mean over the step being made [m/s^2]
   Threads threads;
+
+  double pic_damping = 0.0;  // rate at which particles take over the velocity of the grid [1/s]
 
   double time = 0.0;       // [s]
   double time_step = 0.0;  // of the step being made [s]

@@ -31,6 +31,8 @@ class Run(CaseModel):
         time_step_factor: share f of the largest stable step, 0 < f <= 1.
         gravity: acceleration [m/s^2], D numbers or functions of time; default zero.
         viscosity: artificial bulk viscosity; None for none.
+        pic_damping: rate at which particles take over the velocity of the grid [1/s], PIC in place
+            of FLIP; takes away noise that the grid does not see, over very long runs.
         energy_growth_limit: the run stops when the numerical error has created this share of
             the largest energy seen.
     """
@@ -40,6 +42,7 @@ class Run(CaseModel):
     time_step_factor: Annotated[float, Quantity("", "0 < f <= 1")] = 0.25
     gravity: TimedAcceleration = ()
     viscosity: Viscosity | None = None
+    pic_damping: Annotated[float, Quantity("1/s", ">= 0")] = 0.0
     energy_growth_limit: Annotated[float, Quantity("", "> 0")] = 1.0
 
 

@@ -27,6 +27,8 @@ class Simulation:
     Args:
         case: what to simulate.
         threads: how many; by default OMP_NUM_THREADS, else all cores.
+        fused: whether neighbouring stages of a step are done at once, which is faster and gives the
+            same bits; False makes them one by one, as the scheme lists them.
 
     Attributes:
         case: as given.
@@ -40,7 +42,7 @@ class Simulation:
         CaseError: the case cannot be filled, or the core refuses a parameter.
     """
 
-    def __init__(self, case: Case, threads: int | None = None) -> None:
+    def __init__(self, case: Case, threads: int | None = None, fused: bool = True) -> None:
         filled = build(case)
         self.case = case
         self.threads = thread_count(threads)
@@ -48,7 +50,7 @@ class Simulation:
         self.parts = [body.part for body in filled]
         self.materials = [body.material for body in filled]
         self.warnings, self.notes = warnings(filled), notes(case, filled)
-        self.core = _core.Simulation(_settings(case, self.threads))
+        self.core = _core.Simulation(_settings(case, self.threads, fused))
         numbers = {name: self._add_material(name) for name in dict.fromkeys(self.materials)}
         firsts = case.first_bodies()
         filled.reverse()
@@ -189,7 +191,7 @@ def _functions(values: Sequence[float | TimeFunction]) -> list[_core.TimeFunctio
     return [*given, *(_core.TimeFunction(0.0) for _ in range(3))][:3]
 
 
-def _settings(case: Case, threads: int) -> _core.Settings:
+def _settings(case: Case, threads: int, fused: bool) -> _core.Settings:
     """Return a case's numbers as the core wants them."""
     grid, run = case.grid, case.run
 
@@ -213,6 +215,7 @@ def _settings(case: Case, threads: int) -> _core.Settings:
     settings.basis = _core.Basis[grid.basis]
     settings.scheme = _core.Scheme[run.scheme]
     settings.time_step_factor = run.time_step_factor
+    settings.pic_damping = run.pic_damping
     settings.gravity = _functions(run.gravity)
     settings.contact = case.contact_enabled
     settings.bonded = case.contact.bonded
@@ -222,5 +225,6 @@ def _settings(case: Case, threads: int) -> _core.Settings:
     settings.normal_travel = case.contact.normal_travel
     settings.friction = case.contact.friction
     settings.threads = threads
+    settings.fused = fused
     settings.energy_growth_limit = run.energy_growth_limit
     return settings

@@ -91,7 +91,7 @@ def test_json_is_all_that_is_printed(capsys):
     bench.main("elastic2d", size=4, steps=2, scheme="usf", json=True)
     result = json.loads(capsys.readouterr().out)
     assert (result["particles"], result["scheme"], result["steps"]) == (64, "usf", 2)
-    assert "remap momentum" not in result["stages"]
+    assert "remap nodes" not in result["stages"]
 
 
 def test_unknown_name_lists_the_known_ones():

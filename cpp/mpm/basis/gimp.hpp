@@ -122,17 +122,17 @@ struct Gimp {
     return {first_node - reach(), shape.nodes[0], shape.nodes[0] * shape.nodes[1]};
   }
 
-  /// N_ip over the nodes in reach; xi[a * stride] is the position in the cell along axis a.
-  Nodes functions(const double* xi, int stride) const {
+  /// scale N_ip over the nodes in reach; xi[a * stride] is the position in the cell along axis a.
+  Nodes functions(const double* xi, int stride, double scale) const {
     const auto w = axes(xi, stride);
-    return product(w[0].N, w[1].N, w[D - 1].N);
+    return product(w[0].N, w[1].N, w[D - 1].N, scale);
   }
   /// dN_ip / d xi over the nodes in reach, along each axis.
   void gradients(const double* xi, int stride, Nodes* G) const {
     const auto w = axes(xi, stride);
-    G[0] = product(w[0].dN, w[1].N, w[D - 1].N);
-    G[1] = product(w[0].N, w[1].dN, w[D - 1].N);
-    if constexpr (D == 3) G[2] = product(w[0].N, w[1].N, w[2].dN);
+    G[0] = product(w[0].dN, w[1].N, w[D - 1].N, 1.0);
+    G[1] = product(w[0].N, w[1].dN, w[D - 1].N, 1.0);
+    if constexpr (D == 3) G[2] = product(w[0].N, w[1].N, w[2].dN, 1.0);
   }
   void add_to_nodes(double* first_node, const Nodes& value) const {
     double* first = first_node - reach();
@@ -169,8 +169,8 @@ struct Gimp {
     return w;
   }
   /// Products over the nodes; `z` counts in 3D only.
-  static Nodes product(const double* x, const double* y, const double* z) {
-    const auto along_x = Nodes::Row::of(x[0], x[1], x[2], x[3]);
+  static Nodes product(const double* x, const double* y, const double* z, double scale) {
+    const auto along_x = Nodes::Row::of(scale * x[0], scale * x[1], scale * x[2], scale * x[3]);
     Nodes r = Nodes::zero();
     for (int k = 0; k < Nodes::rows; ++k)
       r.row[k].add(D == 3 ? y[k % 4] * z[k / 4] : y[k], along_x);

@@ -30,14 +30,14 @@ inline constexpr auto slope = pattern<D>(true);
 /// nodes again.
 template <int D>
 struct LinearField {
-  double c[1 << D];
+  alignas(32) double c[1 << D];
 
-  /// `first` is the cell's first node in the field of a block.
-  LinearField(const double* first, const BlockShape<D>& shape) {
-    for (int k = 0; k < 1 << D; ++k) c[k] = first[shape.corner_offset[static_cast<std::size_t>(k)]];
-    for (int axis = 0; axis < D; ++axis)
-      for (int k = 0; k < 1 << D; ++k)
-        if ((k >> axis) & 1) c[k] -= c[k ^ (1 << axis)];
+  /// `first` is the cell's first node in the field of a block. Two nodes that are neighbours along
+  /// x are read at once.
+  LinearField(const double* first, int row, int layer) {
+    const auto low = differences(first, row);
+    low.store(c);
+    if constexpr (D == 3) (differences(first + layer, row) - low).store(c + 4);
   }
 
   template <class T>
@@ -63,11 +63,20 @@ struct LinearField {
       return {x, y, z};
     }
   }
+
+ private:
+  /// Of the four nodes of a cell in a plane, along x and y.
+  static Batch<4> differences(const double* first, int row) {
+    const auto f = joined(Batch<2>::load(first), Batch<2>::load(first + row));
+    const auto along_x = f - shuffled<4, 0, 4, 2>(f);
+    return along_x - shuffled<4, 4, 0, 1>(along_x);
+  }
 };
 
 template <int D>
 struct Linear {
-  const BlockShape<D>& shape;
+  explicit Linear(const BlockShape<D>& shape)
+      : row_(shape.nodes[0]), layer_(shape.nodes[0] * shape.nodes[1]) {}
   using Nodes = NodeLanes<(1 << D)>;
   using Field = LinearField<D>;
 
@@ -76,29 +85,43 @@ struct Linear {
   static const Vec<T, D>& weights(const Vec<T, D>& xi) {
     return xi;
   }
-  Field field(const double* first_node) const { return Field(first_node, shape); }
+  Field field(const double* first_node) const { return Field(first_node, row_, layer_); }
 
-  /// N_ip over the cell's nodes; xi[a * stride] is the position in the cell along axis a.
-  static Nodes functions(const double* xi, int stride) {
-    Nodes N = axis(0, xi[0]);
-    for (int a = 1; a < D; ++a) N = N * axis(a, xi[a * stride]);
+  /// scale N_ip over the cell's nodes; xi[a * stride] is the position in the cell along axis a.
+  static Nodes functions(const double* xi, int stride, double scale) {
+    Part inner = lanes(0, xi[0]);
+    for (int a = 1; a < inner_axes; ++a) inner = inner * lanes(a, xi[a * stride]);
+    Nodes N;
+    for (int k = 0; k < Nodes::parts; ++k) {
+      Part factor(scale);
+      for (int a = inner_axes; a < D; ++a) factor = factor * along(a, k, xi[a * stride]);
+      N.part[k] = factor * inner;
+    }
     return N;
   }
   /// dN_ip / d xi over the cell's nodes, along each axis.
   static void gradients(const double* xi, int stride, Nodes* G) {
-    Nodes N[D];
-    for (int a = 0; a < D; ++a) N[a] = axis(a, xi[a * stride]);
-    for (int a = 0; a < D; ++a) {
-      G[a] = Nodes::load(linear_detail::slope<D>[static_cast<std::size_t>(a)].data());
-      for (int b = 0; b < D; ++b)
-        if (b != a) G[a] = G[a] * N[b];
-    }
+    Part N[D];
+    for (int a = 0; a < inner_axes; ++a) N[a] = lanes(a, xi[a * stride]);
+    for (int a = 0; a < D; ++a)
+      for (int k = 0; k < Nodes::parts; ++k) {
+        Part g = a < inner_axes ? Part::load(slopes(a)) : Part(place(a, k) ? 1.0 : -1.0);
+        for (int b = 0; b < inner_axes; ++b)
+          if (b != a) g = g * N[b];
+        for (int b = inner_axes; b < D; ++b)
+          if (b != a) g = g * along(b, k, xi[b * stride]);
+        G[a].part[k] = g;
+      }
   }
+  /// Two nodes that are neighbours along x at a time.
   void add_to_nodes(double* first_node, const Nodes& value) const {
     double v[Nodes::count];
     value.store(v);
-    for (int k = 0; k < Nodes::count; ++k)
-      first_node[shape.corner_offset[static_cast<std::size_t>(k)]] += v[k];
+    unrolled<Nodes::count / 2>([&](auto half) {
+      constexpr int k = 2 * half;
+      double* pair = first_node + (k & 2 ? row_ : 0) + (k & 4 ? layer_ : 0);
+      (Batch<2>::load(pair) + Batch<2>::load(v + k)).store(pair);
+    });
   }
 
   /// One-axis factor of the node at place e (0 or 1) of the cell, and its derivative.
@@ -112,10 +135,23 @@ struct Linear {
   }
 
  private:
-  static Nodes axis(int a, double xi) {
-    Nodes N = Nodes::load(linear_detail::base<D>[static_cast<std::size_t>(a)].data());
-    N.add(xi, Nodes::load(linear_detail::slope<D>[static_cast<std::size_t>(a)].data()));
-    return N;
+  int row_, layer_;  // from a node to the next along y, and along z
+  using Part = typename Nodes::Part;
+  // The nodes of one register differ in the place along these axes; along the others they share it.
+  static constexpr int inner_axes = Nodes::width == 8 ? 3 : Nodes::width == 4 ? 2 : 1;
+
+  static const double* slopes(int a) {
+    return linear_detail::slope<D>[static_cast<std::size_t>(a)].data();
+  }
+  /// Place along an outer axis of the nodes in register k.
+  static constexpr int place(int a, int k) { return k * Nodes::width >> a & 1; }
+  /// One-axis factor of an inner axis, and of an outer one in register k.
+  static Part lanes(int a, double xi) {
+    return Part::load(linear_detail::base<D>[static_cast<std::size_t>(a)].data()) +
+           Part(xi) * Part::load(slopes(a));
+  }
+  static Part along(int a, int k, double xi) {
+    return place(a, k) ? Part(xi) : Part(1.0) - Part(xi);
   }
 };
 

@@ -39,6 +39,7 @@ class Columns {
   }
 
   std::size_t rows() const { return rows_; }
+  std::size_t stride() const { return stride_; }  // from one component to the next
   std::size_t bytes() const { return memory_.bytes(); }
   const std::vector<ColumnInfo>& infos() const { return infos_; }
   double* component(int c) { return memory_.data() + static_cast<std::size_t>(c) * stride_; }

@@ -14,15 +14,58 @@ struct LaneRows {
   std::uint32_t row[W];
   int count;
   bool contiguous;  // the rows are in sequence
+  std::uint32_t operator[](int k) const { return row[k]; }
 
   LaneRows(const std::uint32_t* rows, std::size_t available) {
     count = available < W ? static_cast<int>(available) : W;
-    for (int k = 0; k < W; ++k) row[k] = rows[k < count ? k : count - 1];
-    contiguous = true;
-    for (int k = 1; k < W; ++k)
-      contiguous = contiguous && (k >= count || row[k] == row[0] + static_cast<std::uint32_t>(k));
+    std::uint32_t jumps = 0;
+    if (count == W) {
+      for (int k = 0; k < W; ++k) {
+        row[k] = rows[k];
+        jumps |= rows[k] - rows[0] - static_cast<std::uint32_t>(k);
+      }
+    } else {
+      for (int k = 0; k < W; ++k) {
+        row[k] = rows[k < count ? k : count - 1];
+        jumps |= k < count ? rows[k] - rows[0] - static_cast<std::uint32_t>(k) : 0;
+      }
+    }
+    contiguous = jumps == 0;
   }
 };
+
+/// W rows in sequence.
+template <int W>
+struct WholeRows {
+  std::uint32_t first;
+  static constexpr int count = W;
+  std::uint32_t operator[](int k) const { return first + static_cast<std::uint32_t>(k); }
+};
+
+/// f(rows) for rows of a list, W at a time; as WholeRows where they are, so that the loop over a
+/// column that is in order is one of plain vectors.
+template <int W, class F>
+[[gnu::always_inline]] inline void for_each_lanes(const std::uint32_t* rows, std::uint32_t count,
+                                                  F&& f) {
+  for (std::uint32_t k = 0; k < count; k += W) {
+    const LaneRows<W> lanes(rows + k, count - k);
+    if constexpr (W == 1)
+      f(lanes);
+    else if (lanes.contiguous && lanes.count == W)
+      f(WholeRows<W>{lanes.row[0]});
+    else
+      f(lanes);
+  }
+}
+
+template <int W>
+Batch<W> load(const double* column, const WholeRows<W>& rows) {
+  return Batch<W>::load(column + rows.first);
+}
+template <int W>
+void store(double* column, const WholeRows<W>& rows, Batch<W> value) {
+  value.store(column + rows.first);
+}
 
 /// Columns have room for W rows behind their last (Columns).
 template <int W>
@@ -51,6 +94,16 @@ void store(double* column, const LaneRows<W>& rows, Batch<W> value) {
 
 inline void store(double* column, const LaneRows<1>& rows, double value) {
   column[rows.row[0]] = value;
+}
+
+/// Zero in the lanes that repeat the last row.
+template <int W>
+Batch<W> of_valid(const LaneRows<W>& rows, Batch<W> value) {
+  return select(first_lanes<W>(rows.count), value, Batch<W>(0.0));
+}
+template <int W>
+Batch<W> of_valid(const WholeRows<W>&, Batch<W> value) {
+  return value;
 }
 
 /// Lanes from and to memory in sequence, and those before `count`, for a number or a Batch.

@@ -46,14 +46,33 @@ void for_each_shared_row(const Patch<D>& p, const Patch<D>& q, F&& f) {
         q_first + (z * q.shape.nodes[1] + y) * q.shape.nodes[0], count);
 }
 
-/// f(k) for every bit that is set, or for the numbers up to `count` if all are.
-template <class F>
-void for_each_bit(std::uint64_t bits, int count, F&& f) {
-  if (bits == low_bits(count))
-    for (int k = 0; k < count; ++k) f(k);
-  else
-    for (; bits != 0; bits &= bits - 1) f(std::countr_zero(bits));
-}
+/// Nodes that two blocks share, by their numbers in either: listed once, so that the loops over
+/// the fields have no branches.
+template <int D>
+class SharedNodes {
+ public:
+  /// Those of p and q that a patch owns: p or, if `theirs`, q.
+  SharedNodes(const Patch<D>& p, const Patch<D>& q, bool theirs) {
+    for_each_shared_row(p, q, [&](int here, int there, int count) {
+      const std::uint64_t owned = theirs ? q.owned.row(there, count) : p.owned.row(here, count);
+      if (owned == 0) return;
+      for (int k = 0; k < count; ++k) {
+        here_[count_] = static_cast<std::uint16_t>(here + k);
+        there_[count_] = static_cast<std::uint16_t>(there + k);
+        count_ += owned >> k & 1u;
+      }
+    });
+  }
+  /// f(here, there) for each.
+  template <class F>
+  void for_each(F&& f) const {
+    for (std::size_t k = 0; k < count_; ++k) f(here_[k], there_[k]);
+  }
+
+ private:
+  std::size_t count_ = 0;
+  std::array<std::uint16_t, BlockShape<D>::stride_max> here_, there_;
+};
 
 }  // namespace
 
@@ -142,24 +161,18 @@ void TileGrid<D>::sum_shared_nodes(Threads& threads, int first, int last) {
   threads.for_each(leaders_.size(), [&](std::size_t leader) {
     const Patch<D>& patch = patches[leaders_[leader]];
     for_each_neighbour(patch, Tile<D>::self + 1, Tile<D>::neighbours, [&](const Patch<D>& later) {
-      for_each_shared_row(patch, later, [&](int here, int there, int count) {
-        const std::uint64_t mine = patch.owned.row(here, count);
-        if (mine == 0) return;
-        each_field(patch, later, [&](double* to, const double* from) {
-          for_each_bit(mine, count, [&](int n) { to[here + n] += from[there + n]; });
-        });
+      const SharedNodes<D> mine(patch, later, false);
+      each_field(patch, later, [&](double* to, const double* from) {
+        mine.for_each([&](int here, int there) { to[here] += from[there]; });
       });
     });
   });
   threads.for_each(leaders_.size(), [&](std::size_t leader) {
     const Patch<D>& patch = patches[leaders_[leader]];
     for_each_neighbour(patch, 0, Tile<D>::self, [&](const Patch<D>& earlier) {
-      for_each_shared_row(patch, earlier, [&](int here, int there, int count) {
-        const std::uint64_t theirs = earlier.owned.row(there, count);
-        if (theirs == 0) return;
-        each_field(patch, earlier, [&](double* to, const double* from) {
-          for_each_bit(theirs, count, [&](int n) { to[here + n] = from[there + n]; });
-        });
+      const SharedNodes<D> theirs(patch, earlier, true);
+      each_field(patch, earlier, [&](double* to, const double* from) {
+        theirs.for_each([&](int here, int there) { to[here] = from[there]; });
       });
     });
   });

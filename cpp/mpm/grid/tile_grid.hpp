@@ -13,6 +13,18 @@
 
 namespace mpm {
 
+/// From positions to cells. Every kernel uses this one expression, so that all agree on cells.
+template <int D>
+struct CellCoordinates {
+  Vec<double, D> origin;
+  double cells_per_metre;
+
+  template <class T>
+  T in_cells(T x, int axis) const {
+    return (x - T(origin[axis])) * T(cells_per_metre);
+  }
+};
+
 template <int D>
 class TileGrid {
  public:
@@ -28,11 +40,11 @@ class TileGrid {
   bool bonded = false;                // all bodies have one velocity field: they share their nodes
   std::vector<Patch<D>> patches;      // by body, then by tile
 
-  /// Position along an axis in cells from the origin. Every kernel uses this one expression, so
-  /// that all agree on cells.
+  CellCoordinates<D> coordinates() const { return {origin, 1.0 / cell_size}; }
+  /// Position along an axis in cells from the origin.
   template <class T>
   T in_cells(T x, int axis) const {
-    return (x - T(origin[axis])) * T(1.0 / cell_size);
+    return coordinates().in_cells(x, axis);
   }
   /// Cell coordinates of a position.
   Index<D> cell_of(const Vec<double, D>& x) const {

@@ -14,14 +14,14 @@ T sound_speed_squared(const LinearInEnergy<T>& at, T V, T energy, T pressure, do
 /// and new) and of the artificial viscosity; with p = A + B E that gives p in closed form: p (1 + B
 /// dV/2) = A + B (E + deviatoric and viscous work - p_old dV/2).
 template <class T, int D, class Model>
-[[gnu::flatten]] void apply_eos(const Model& model, const Material& material, Columns& columns,
-                                const MaterialColumns& at, const StressSettings& settings,
+[[gnu::flatten]] void apply_eos(const Model& model, const Material& material,
+                                const BlockColumns<D>& columns, const StressSettings& settings,
                                 MaterialBlock<D>& block, BlockEnd<T, D>& end) {
   const bool burns = material.burns(), damped = material.damps();
   const bool viscosity = settings.viscosity.active(), last = material.failures.empty();
   for_each_group<T>(block, [&](const Group<T, D>& group) {
-    const Moved<T, D> moved(group, block, columns, at, material.density, settings);
-    const Sym<T, D> before = group.read_stress(columns, at.stress);
+    const Moved<T, D> moved(group, block, columns, material.density, settings);
+    const Sym<T, D> before = group.read_stress(columns);
     const Sym<T, D> strength = group.get_stress(block);
     const T V = moved.motion.J, per_volume = T(1.0) / moved.initial_volume;
     const T change = (moved.volume - moved.volume_before) * per_volume;  // of V
@@ -30,8 +30,7 @@ template <class T, int D, class Model>
 
     LinearInEnergy<T> p = model.at(V);
     if (burns) p = p.burnt(group.get(block.burnt));
-    T energy =
-        group.read(columns.component(at.energy)) + deviatoric - T(0.5) * old_pressure * change;
+    T energy = group.read(columns.energy) + deviatoric - T(0.5) * old_pressure * change;
     const T guess = p.A + p.B * energy;
     T speed =
         sqrt(sound_speed_squared(p, V, energy, guess, material.density) + group.get(block.speed));

@@ -6,19 +6,18 @@ namespace mpm {
 
 /// A particle stays failed; of several models that it fails by, the strongest action is done.
 template <class T, int D>
-[[gnu::flatten]] void apply_failures(const Material& material, Columns& columns,
-                                     const MaterialColumns& at, const StressSettings& settings,
-                                     MaterialBlock<D>& block, BlockEnd<T, D>& end,
-                                     StressSums& sums) {
-  int state_at = at.failure_state;
+[[gnu::flatten]] void apply_failures(const Material& material, const BlockColumns<D>& columns,
+                                     const StressSettings& settings, MaterialBlock<D>& block,
+                                     BlockEnd<T, D>& end, StressSums& sums) {
+  double* state_at = columns.failure_state;
   for (const Failing& failing : material.failures)
     std::visit(
         [&]<class Model>(const Model& model) {
           using State = typename Model::template State<T, D>;
           const T action(static_cast<double>(failing.action));
           for_each_group<T>(block, [&](const Group<T, D>& group) {
-            const Moved<T, D> moved(group, block, columns, at, material.density, settings);
-            const T energy = at.energy >= 0 ? group.read(columns.component(at.energy)) : T(0.0);
+            const Moved<T, D> moved(group, block, columns, material.density, settings);
+            const T energy = columns.energy ? group.read(columns.energy) : T(0.0);
             const Condition<T, D> condition{group.get_stress(block),
                                             moved.motion.gradient,
                                             group.get(block.plastic_strain),
@@ -26,21 +25,20 @@ template <class T, int D>
                                             group.get(block.temperature),
                                             energy,
                                             settings.time_step};
-            State state = group.template read_state<State>(columns, state_at);
+            State state = group.template read_state<State>(state_at, columns.stride);
             const T damage = model.damage(condition, state);
-            group.write_state(columns, state_at, state);
-            const T failed = group.read(columns.component(at.failed));
-            group.write(columns.component(at.failed),
-                        max(failed, select(damage >= T(1.0), action, T(0.0))));
+            group.write_state(state_at, columns.stride, state);
+            const T failed = group.read(columns.failed);
+            group.write(columns.failed, max(failed, select(damage >= T(1.0), action, T(0.0))));
           });
-          state_at += state_size<State, T>;
+          state_at += state_size<State, T> * columns.stride;
         },
         failing.model);
 
   const T gone(static_cast<double>(FailureAction::erode));
   auto eroded = T(1.0) < T(0.0);
   for_each_group<T>(block, [&](const Group<T, D>& group) {
-    const T failed = group.read(columns.component(at.failed));
+    const T failed = group.read(columns.failed);
     eroded = eroded | (group.valid() & (failed >= gone));
     const Sym<T, D> stress = group.get_stress(block);
     const T mean = T(1.0 / 3.0) * trace(stress);
@@ -53,8 +51,8 @@ template <class T, int D>
     // A torn particle that gapes is loose matter: no waves run in it, and closing it costs nothing.
     const auto loose =
         (failed >= T(static_cast<double>(FailureAction::no_tension))) & (kept >= T(0.0));
-    const Moved<T, D> moved(group, block, columns, at, material.density, settings);
-    end.add(group, moved, group.read_stress(columns, at.stress),
+    const Moved<T, D> moved(group, block, columns, material.density, settings);
+    end.add(group, moved, group.read_stress(columns),
             {left, group.get(block.dissipated), select(loose, T(0.0), group.get(block.speed)),
              select(loose, T(0.0), group.get(block.viscous_pressure))});
   });

@@ -5,21 +5,21 @@
 namespace mpm {
 
 template <class T, int D, class Model>
-[[gnu::flatten]] void apply_strength(const Model& model, const Material& material, Columns& columns,
-                                     const MaterialColumns& at, const StressSettings& settings,
+[[gnu::flatten]] void apply_strength(const Model& model, const Material& material,
+                                     const BlockColumns<D>& columns, const StressSettings& settings,
                                      MaterialBlock<D>& block, BlockEnd<T, D>& end) {
   using State = typename Model::template State<T, D>;
   const bool viscosity = settings.viscosity.active(), judged = !material.failures.empty();
   const bool last = !material.eos && !judged;
   for_each_group<T>(block, [&](const Group<T, D>& group) {
-    const Moved<T, D> moved(group, block, columns, at, material.density, settings);
+    const Moved<T, D> moved(group, block, columns, material.density, settings);
     const Motion<T, D>& motion = moved.motion;
-    const Sym<T, D> stress_before = group.read_stress(columns, at.stress);
+    const Sym<T, D> stress_before = group.read_stress(columns);
     Sym<T, D> stress = stress_before;
-    State state = group.template read_state<State>(columns, at.state);
+    State state = group.template read_state<State>(columns.state, columns.stride);
     const State before = state;
     const T dissipated = model.update(motion, stress, state);
-    group.write_state(columns, at.state, state);
+    group.write_state(columns.state, columns.stride, state);
 
     T speed(0.0), q(0.0);
     if constexpr (Model::eos != EosUse::never)

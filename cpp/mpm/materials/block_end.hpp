@@ -15,8 +15,8 @@ struct Updated {
 template <class T, int D>
 class BlockEnd {
  public:
-  BlockEnd(Columns& columns, const MaterialColumns& at, const StressSettings& settings)
-      : columns_(columns), at_(at), settings_(settings) {}
+  BlockEnd(const BlockColumns<D>& columns, const StressSettings& settings)
+      : columns_(columns), settings_(settings) {}
 
   void add(const Group<T, D>& group, const Moved<T, D>& moved, const Sym<T, D>& before,
            const Updated<T, D>& after) {
@@ -32,31 +32,29 @@ class BlockEnd {
     T heat = work;
     if (settings_.viscosity.active()) {
       const T q = after.viscous_pressure, viscous_work = moved.viscous_work(q);
-      const T q_before = group.read(columns_.component(at_.viscosity_pressure));
-      group.write(columns_.component(at_.viscosity_pressure), q);
+      const T q_before = group.read(columns_.viscosity_pressure);
+      group.write(columns_.viscosity_pressure, q);
       viscous_ += select(valid, viscous_work, T(0.0));
       used -= (settings_.forces_follow ? moved.volume * q : moved.volume_before * q_before) *
               trace(strain);
       heat += viscous_work;
     }
-    if (at_.energy >= 0) {
-      const T energy = group.read(columns_.component(at_.energy));
-      group.write(columns_.component(at_.energy), energy + heat / moved.initial_volume);
+    if (columns_.energy) {
+      const T energy = group.read(columns_.energy);
+      group.write(columns_.energy, energy + heat / moved.initial_volume);
     }
-    if (at_.recoverable >= 0) {
-      const T energy = group.read(columns_.component(at_.recoverable));
-      group.write(columns_.component(at_.recoverable),
-                  energy + (work - lost) / moved.initial_volume);
+    if (columns_.recoverable) {
+      const T energy = group.read(columns_.recoverable);
+      group.write(columns_.recoverable, energy + (work - lost) / moved.initial_volume);
     }
-    group.write(columns_.component(at_.volume), moved.volume);
-    for (int i = 0; i < Sym<T, D>::size; ++i)
-      group.write(columns_.component(at_.stress + i), after.stress.c[i]);
+    group.write(columns_.volume, moved.volume);
+    for (int i = 0; i < Sym<T, D>::size; ++i) group.write(columns_.stress[i], after.stress.c[i]);
     internal_ += select(valid, work - lost, T(0.0));
     dissipated_ += select(valid, lost, T(0.0));
     force_power_ += select(valid, used, T(0.0));
 
     Vec<T, D> v;
-    for (int a = 0; a < D; ++a) v[a] = group.read(columns_.component(at_.velocity + a));
+    for (int a = 0; a < D; ++a) v[a] = group.read(columns_.velocity[a]);
     fastest_ = max(fastest_, after.speed + sqrt(dot(v, v)));
   }
 
@@ -70,8 +68,7 @@ class BlockEnd {
   }
 
  private:
-  Columns& columns_;
-  const MaterialColumns& at_;
+  const BlockColumns<D>& columns_;
   const StressSettings& settings_;
   T internal_ = T(0.0), dissipated_ = T(0.0), viscous_ = T(0.0), force_power_ = T(0.0),
     fastest_ = T(0.0);

@@ -9,6 +9,30 @@ inline constexpr int lanes_of = 1;
 template <int W>
 inline constexpr int lanes_of<Batch<W>> = W;
 
+/// The columns that a material works on, found once for a block; null if absent.
+template <int D>
+struct BlockColumns {
+  static constexpr int parts = Sym<double, D>::size;
+  std::size_t stride;
+  const double *mass, *velocity[D];
+  double *volume, *stress[parts];
+  double *state, *energy, *recoverable, *viscosity_pressure, *failed, *failure_state;
+
+  BlockColumns(Columns& columns, const MaterialColumns& at) : stride(columns.stride()) {
+    const auto optional = [&](int c) { return c >= 0 ? columns.component(c) : nullptr; };
+    mass = columns.component(at.mass);
+    volume = columns.component(at.volume);
+    for (int a = 0; a < D; ++a) velocity[a] = columns.component(at.velocity + a);
+    for (int c = 0; c < parts; ++c) stress[c] = columns.component(at.stress + c);
+    state = optional(at.state);
+    energy = optional(at.energy);
+    recoverable = optional(at.recoverable);
+    viscosity_pressure = optional(at.viscosity_pressure);
+    failed = optional(at.failed);
+    failure_state = optional(at.failure_state);
+  }
+};
+
 /// One group of lanes of a block: reads and writes columns and the block's own values.
 template <class T, int D>
 struct Group {
@@ -25,21 +49,22 @@ struct Group {
   void put(double* values, T value) const { store_lanes(values + at, value); }
   Truth<T> valid() const { return lanes_before<T>(rows.count); }
 
+  /// A state whose first component is the column `first`.
   template <class State>
-  State read_state(const Columns& columns, int first) const {
+  State read_state(const double* first, std::size_t stride) const {
     T flat[state_size<State, T> + 1];
-    for (int k = 0; k < state_size<State, T>; ++k) flat[k] = read(columns.component(first + k));
+    for (std::size_t k = 0; k < state_size<State, T>; ++k) flat[k] = read(first + k * stride);
     return unpack<State>(flat);
   }
   template <class State>
-  void write_state(Columns& columns, int first, const State& state) const {
+  void write_state(double* first, std::size_t stride, const State& state) const {
     T flat[state_size<State, T> + 1];
     pack(state, flat);
-    for (int k = 0; k < state_size<State, T>; ++k) write(columns.component(first + k), flat[k]);
+    for (std::size_t k = 0; k < state_size<State, T>; ++k) write(first + k * stride, flat[k]);
   }
-  Sym<T, D> read_stress(const Columns& columns, int first) const {
+  Sym<T, D> read_stress(const BlockColumns<D>& columns) const {
     Sym<T, D> stress;
-    for (int c = 0; c < Sym<T, D>::size; ++c) stress.c[c] = read(columns.component(first + c));
+    for (int c = 0; c < Sym<T, D>::size; ++c) stress.c[c] = read(columns.stress[c]);
     return stress;
   }
   Sym<T, D> get_stress(const MaterialBlock<D>& block) const {
@@ -74,8 +99,8 @@ struct Moved {
   Sym<T, D> strain;  // of the step, referred to its middle
   T mass, volume_before, volume, initial_volume, mean_volume;
 
-  Moved(const Group<T, D>& group, const MaterialBlock<D>& block, const Columns& columns,
-        const MaterialColumns& at, double density, const StressSettings& settings) {
+  Moved(const Group<T, D>& group, const MaterialBlock<D>& block, const BlockColumns<D>& columns,
+        double density, const StressSettings& settings) {
     const auto valid = group.valid();
     Mat<T, D> f;
     for (int i = 0; i < D; ++i)
@@ -87,8 +112,8 @@ struct Moved {
     motion.time_step = settings.time_step;
     motion.time = settings.time;
     motion.cell_size = settings.cell_size;
-    mass = group.read(columns.component(at.mass));
-    volume_before = group.read(columns.component(at.volume));
+    mass = group.read(columns.mass);
+    volume_before = group.read(columns.volume);
     volume = volume_before * determinant(f);
     initial_volume = mass * T(1.0 / density);
     mean_volume = T(0.5) * (volume_before + volume);

@@ -6,19 +6,18 @@
 
 namespace mpm {
 template <class T, int D>
-void update_block(const Material& material, Columns& columns, const MaterialColumns& at,
+void update_block(const Material& material, Columns& all, const MaterialColumns& at,
                   MaterialBlock<D>& block, const StressSettings& settings, StressSums& sums) {
-  BlockEnd<T, D> end(columns, at, settings);
+  const BlockColumns<D> columns(all, at);
+  BlockEnd<T, D> end(columns, settings);
   std::visit(
-      [&](const auto& model) {
-        apply_strength(model, material, columns, at, settings, block, end);
-      },
+      [&](const auto& model) { apply_strength(model, material, columns, settings, block, end); },
       material.strength);
   if (material.eos)
     std::visit(
-        [&](const auto& model) { apply_eos(model, material, columns, at, settings, block, end); },
+        [&](const auto& model) { apply_eos(model, material, columns, settings, block, end); },
         *material.eos);
-  if (!material.failures.empty()) apply_failures(material, columns, at, settings, block, end, sums);
+  if (!material.failures.empty()) apply_failures(material, columns, settings, block, end, sums);
   end.add_to(sums);
 }
 

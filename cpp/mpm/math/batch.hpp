@@ -3,6 +3,7 @@
 // set the file is compiled for.
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
@@ -17,22 +18,26 @@ inline constexpr int native_lanes = 4;
 inline constexpr int native_lanes = 2;
 #endif
 
-/// The compiler's vector types of W numbers.
+/// The compiler's vector types of W numbers. Numbers in memory are read and written as `Unaligned`
+/// and not by memcpy, after which the compiler must take all it knows from memory anew.
 template <int W>
 struct Vectors;
 template <>
 struct Vectors<2> {
   typedef double Real __attribute__((vector_size(16)));
+  typedef double Unaligned __attribute__((vector_size(16), aligned(8)));
   typedef std::int64_t Bits __attribute__((vector_size(16)));
 };
 template <>
 struct Vectors<4> {
   typedef double Real __attribute__((vector_size(32)));
+  typedef double Unaligned __attribute__((vector_size(32), aligned(8)));
   typedef std::int64_t Bits __attribute__((vector_size(32)));
 };
 template <>
 struct Vectors<8> {
   typedef double Real __attribute__((vector_size(64)));
+  typedef double Unaligned __attribute__((vector_size(64), aligned(8)));
   typedef std::int64_t Bits __attribute__((vector_size(64)));
 };
 
@@ -54,15 +59,20 @@ struct Batch {
   Vector v;
 
   Batch() = default;
+  // Not left to the compiler: g++ copies what it takes for a plain struct in halves, which then
+  // have to wait for each other where they are read whole.
+  Batch(const Batch& other) : v(other.v) {}
+  Batch& operator=(const Batch& other) {
+    v = other.v;
+    return *this;
+  }
   Batch(double s) : v(Vector{} + s) {}  // NOLINT: a number stands for itself in every lane
   explicit Batch(Vector value) : v(value) {}
 
   static Batch load(const double* from) {
-    Batch b;
-    std::memcpy(&b.v, from, sizeof(Vector));
-    return b;
+    return Batch(Vector(*reinterpret_cast<const typename Vectors<W>::Unaligned*>(from)));
   }
-  void store(double* to) const { std::memcpy(to, &v, sizeof(Vector)); }
+  void store(double* to) const { *reinterpret_cast<typename Vectors<W>::Unaligned*>(to) = v; }
   double operator[](int lane) const { return v[lane]; }
 
   friend Batch operator+(Batch a, Batch b) { return Batch(a.v + b.v); }
@@ -120,6 +130,20 @@ std::uint64_t lane_bits(Mask<W> m) {
   return bits;
 }
 
+/// Lanes of zeros and `a` (below W) or zeros (W and more), as the places say.
+template <int... place, int W>
+Batch<W> shuffled(Batch<W> a) {
+  static_assert(sizeof...(place) == W);
+  return Batch<W>(__builtin_shufflevector(a.v, typename Batch<W>::Vector{}, place...));
+}
+/// The lanes of two halves.
+template <int W>
+Batch<2 * W> joined(Batch<W> low, Batch<W> high) {
+  return [&]<int... k>(std::integer_sequence<int, k...>) {
+    return Batch<2 * W>(__builtin_shufflevector(low.v, high.v, k...));
+  }(std::make_integer_sequence<int, 2 * W>{});
+}
+
 /// True if the condition holds in any lane.
 template <int W>
 bool any(Mask<W> m) {
@@ -149,6 +173,14 @@ double largest(Batch<W> a) {
   double s = a.v[0];
   for (int k = 1; k < W; ++k) s = a.v[k] > s ? a.v[k] : s;
   return s;
+}
+
+/// f(0), f(1) ... f(N - 1), written out; the numbers are constants.
+template <int N, class F>
+[[gnu::always_inline]] inline void unrolled(F&& f) {
+  [&]<int... k>(std::integer_sequence<int, k...>) __attribute__((always_inline)) {
+    (f(std::integral_constant<int, k>{}), ...);
+  }(std::make_integer_sequence<int, N>{});
 }
 
 }  // namespace mpm

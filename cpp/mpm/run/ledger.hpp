@@ -89,6 +89,7 @@ struct Ledger {
       s.stress.force_power += p.stress.force_power;
       s.kinetic += p.kinetic;
       s.second_order += p.second_order;
+      s.damped += p.damped;
       s.made_rigid += p.made_rigid;
       for (int a = 0; a < D; ++a) s.momentum[a] += p.momentum[a];
       s.force_work += p.force_work;
@@ -131,7 +132,7 @@ struct Ledger {
     const double second = s.second_order - s.gravity_second - s.load_second - s.dashpot_second;
     const double at_end = forces_follow ? 0.0 : 2.0 * second;
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
-    time_integration += s.made_rigid;
+    time_integration += s.made_rigid + s.damped;
     time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous -
                         s.stress.force_power + second + contacts.friction -
                         contacts.friction_first - at_end;

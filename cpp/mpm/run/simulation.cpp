@@ -19,6 +19,8 @@ void check(const Settings& s) {
   check(s.cell_size > 0.0 && std::isfinite(s.cell_size), "cell_size must be > 0");
   check(s.time_step_factor > 0.0 && s.time_step_factor <= 1.0,
         "time_step_factor must lie in (0, 1]");
+  check(s.pic_damping >= 0.0 && std::isfinite(s.pic_damping),
+        "pic_damping must be a finite number >= 0");
   check(s.threads >= 1, "threads must be >= 1");
   check(s.friction >= 0.0 && std::isfinite(s.friction), "friction must be a finite number >= 0");
   // Beyond it a pair that was found well apart could meet along a normal that is not one of
@@ -76,7 +78,9 @@ std::unique_ptr<Simulation> make_simulation(const Settings& settings) {
 
 template <int D>
 SimulationOf<D>::SimulationOf(const Settings& settings)
-    : settings_(settings), stages_(stages_of<D>(settings.scheme)) {
+    : settings_(settings),
+      stages_(settings.fused ? fused_stages_of<D>(settings.scheme)
+                             : stages_of<D>(settings.scheme)) {
   TileGrid<D>& grid = domain_.grid;
   grid.cell_size = settings.cell_size;
   grid.basis = settings.basis;
@@ -94,6 +98,7 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
   }
   domain_.gravity_of_time = settings.gravity;
   if (grid.walls.absorb()) grid.fields = NodeBlock<D>::fields + D;
+  domain_.pic_damping = settings.pic_damping;
   domain_.contact_settings.enabled = settings.contact;
   domain_.contact_settings.detection = settings.detection;
   domain_.contact_settings.normal = settings.normal_rule;

@@ -13,7 +13,7 @@
 #include "mpm/fields/columns.hpp"
 #include "mpm/materials/material.hpp"
 #include "mpm/math/time_function.hpp"
-#include "mpm/step/scheme.hpp"
+#include "mpm/step/fused.hpp"
 
 namespace mpm {
 
@@ -34,6 +34,7 @@ struct Settings {
   Scheme scheme = Scheme::musl;
   double time_step_factor = 0.0;          // of the critical time step h / (c + |v|)
   std::array<TimeFunction, 3> gravity{};  // [m/s^2]
+  double pic_damping = 0.0;  // rate at which particles take over the velocity of the grid [1/s]
   bool contact = false;
   bool bonded = false;  // all bodies move with one velocity field
   Detection detection = Detection::gap;
@@ -42,6 +43,7 @@ struct Settings {
   double normal_travel = ContactSettings{}.normal_travel;  // [cells]
   double friction = 0.0;
   int threads = 1;
+  bool fused = true;                 // neighbouring stages of a step are fused
   double energy_growth_limit = 0.0;  // fraction of the largest energy brought in
 };
 

@@ -1,48 +1,124 @@
-#include "mpm/step/cell_loop.hpp"
+#include "mpm/step/move.hpp"
+#include "mpm/step/scatter.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
+namespace {
 
-template <int D>
-void advance_particles(Domain<D>& domain) {
+/// What is done beside eq. (17) while the particles are at hand.
+enum class Also { nothing, remap, move };
+
+/// Velocities of a patch's particles, eq. (17). `damped`: a share of the velocity of the grid takes
+/// the place of theirs, PIC in place of FLIP (Harlow 1964; Brackbill & Ruppel 1986), so that what
+/// the grid does not see dies away.
+template <Also also, bool damped, int D>
+[[gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p) {
   constexpr int W = native_lanes;
   using T = Batch<W>;
   auto& grid = domain.grid;
-  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
-    const Patch<D>& patch = grid.patches[p];
-    Body<D>& body = domain.body_of(patch);
-    if (body.prescribed) return;
-    const NodeBlock<D> block = grid.block(p);
-    T kinetic(0.0), second_order(0.0);
-    Vec<T, D> momentum = Vec<T, D>::zero();
-    with_basis(grid, body, patch, [&](const auto& basis) {
-      for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-        const auto increment = vector_field(basis, cell, [&](int a) { return block.force(a); });
-        for_each_group(cell, [&](const LaneRows<W>& rows) {
-          const auto w = basis.weights(local_position(grid, body, cell, rows));
-          const T m = select(first_lanes<W>(rows.count), load(body.mass(), rows), T(0.0));
-          T speed2(0.0), change2(0.0);
-          for (int a = 0; a < D; ++a) {
-            const T dv = increment[static_cast<std::size_t>(a)].value(w);
-            const T v = load(body.v(a), rows) + dv;
-            store(body.v(a), rows, v);
-            momentum[a] += m * v;
-            speed2 += v * v;
-            change2 += dv * dv;
+  Patch<D>& patch = grid.patches[p];
+  Body<D>& body = domain.body_of(patch);
+  if (body.prescribed) return;
+  const NodeBlock<D> block = grid.block(p);
+  T kinetic(0.0), second_order(0.0), lost(0.0);
+  const T pic(std::min(domain.pic_damping * domain.time_step, 1.0));
+  Vec<T, D> momentum = Vec<T, D>::zero();
+  const LocalPosition<D> local_position(grid, body);
+  Moving<D> moving(grid, body, domain.time_step);
+  const double* mass = body.mass();
+  double* velocities[D];
+  for (int a = 0; a < D; ++a) velocities[a] = body.v(a);
+  // The increments are still read where the new momenta are scattered.
+  constexpr int stride = BlockShape<D>::stride_max;
+  double remapped[also == Also::remap ? D * stride : 1];
+  const auto new_momentum = [&](int a) { return remapped + a * stride; };
+  if constexpr (also == Also::remap) std::fill(std::begin(remapped), std::end(remapped), 0.0);
+
+  with_basis(grid, body, patch, [&](const auto& basis) {
+    for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+      const auto increment = vector_field(basis, cell, [&](int a) { return block.force(a); });
+      [[maybe_unused]] const auto velocity =
+          vector_field(basis, cell, [&](int a) { return block.velocity(a); });
+      CellParticles<D> particles;
+      const auto give = [&] {
+        give_momentum<false>(basis, particles, cell.first_node, nullptr, new_momentum);
+        particles.count = 0;
+      };
+      for_each_group(cell, [&](const auto& rows) {
+        const auto xi = local_position(cell, rows);
+        const auto w = basis.weights(xi);
+        const T all = load(mass, rows), m = of_valid(rows, all);
+        T speed2(0.0), change2(0.0);
+        Vec<T, D> v;
+        unrolled<D>([&](auto a) {
+          const T dv = increment[a].value(w);
+          v[a] = load(velocities[a], rows) + dv;
+          if constexpr (damped) {
+            lost += m * v[a] * v[a];
+            v[a] += pic * (velocity[a].value(w) - v[a]);
+            lost -= m * v[a] * v[a];
           }
-          kinetic += m * speed2;
-          second_order += m * change2;
+          store(velocities[a], rows, v[a]);
+          momentum[a] += m * v[a];
+          speed2 += v[a] * v[a];
+          change2 += dv * dv;
         });
+        kinetic += m * speed2;
+        second_order += m * change2;
+        if constexpr (also == Also::move) moving.move(cell, rows, velocity, w);
+        if constexpr (also == Also::remap) {
+          if (particles.count == CellParticles<D>::room) give();
+          particles.add(xi, all, v, rows.count);
+        }
       });
+      if constexpr (also == Also::remap) give();
     });
-    PatchSums<D>& sums = domain.sums[p];
-    sums.kinetic = 0.5 * sum(kinetic);
-    sums.second_order = 0.5 * sum(second_order);
-    for (int a = 0; a < D; ++a) sums.momentum[a] = sum(momentum[a]);
   });
+  if constexpr (also == Also::remap)
+    for (int a = 0; a < D; ++a) std::copy_n(new_momentum(a), block.stride, block.force(a));
+  if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
+  PatchSums<D>& sums = domain.sums[p];
+  sums.kinetic = 0.5 * sum(kinetic);
+  sums.second_order = 0.5 * sum(second_order);
+  sums.damped = 0.5 * sum(lost);
+  for (int a = 0; a < D; ++a) sums.momentum[a] = sum(momentum[a]);
+}
+
+/// Rigid bodies are only advanced: their velocities are not final yet.
+template <Also also, int D>
+void advance(Domain<D>& domain) {
+  domain.threads.for_each(domain.grid.patches.size(), [&](std::size_t p) {
+    if (domain.body_of(domain.grid.patches[p]).rigid)
+      advance_patch<Also::nothing, false>(domain, p);
+    else if (domain.pic_damping > 0.0)
+      advance_patch<also, true>(domain, p);
+    else
+      advance_patch<also, false>(domain, p);
+  });
+}
+
+}  // namespace
+
+template <int D>
+void advance_particles(Domain<D>& domain) {
+  advance<Also::nothing>(domain);
+}
+
+template <int D>
+void advance_and_remap_particles(Domain<D>& domain) {
+  advance<Also::remap>(domain);
+}
+
+template <int D>
+void advance_and_move_particles(Domain<D>& domain) {
+  advance<Also::move>(domain);
 }
 
 template void advance_particles<2>(Domain<2>&);
 template void advance_particles<3>(Domain<3>&);
+template void advance_and_remap_particles<2>(Domain<2>&);
+template void advance_and_remap_particles<3>(Domain<3>&);
+template void advance_and_move_particles<2>(Domain<2>&);
+template void advance_and_move_particles<3>(Domain<3>&);
 
 }  // namespace mpm

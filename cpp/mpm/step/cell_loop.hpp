@@ -22,28 +22,39 @@ void for_each_cell(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>&
   patch.for_each_cell([&](int c, std::uint32_t begin, std::uint32_t end) {
     const Index<D> local = Tile<D>::cell_index(c);
     CellRange<D> range{first, patch.shape.node(local), body.order.data() + begin, end - begin};
-    for (int a = 0; a < D; ++a) range.cell[a] += local[a];
+    for (std::size_t a = 0; a < D; ++a) range.cell[a] += local[a];
     f(range);
   });
 }
 
-/// f(rows) for the particles of a cell, W at a time.
+/// f(rows) for the particles of a cell, W at a time: LaneRows or WholeRows.
 template <int D, class F>
-void for_each_group(const CellRange<D>& cell, F&& f) {
-  for (std::uint32_t k = 0; k < cell.count; k += native_lanes)
-    f(LaneRows<native_lanes>(cell.rows + k, cell.count - k));
+[[gnu::always_inline]] inline void for_each_group(const CellRange<D>& cell, F&& f) {
+  for_each_lanes<native_lanes>(cell.rows, cell.count, f);
 }
 
-/// Position of the particles in their cell, in [0, 1].
+/// Position of particles in their cell, in [0, 1]. A copy of what it takes of the grid, so that it
+/// stays in registers.
 template <int D>
-Vec<Batch<native_lanes>, D> local_position(const TileGrid<D>& grid, const Body<D>& body,
-                                           const CellRange<D>& cell,
-                                           const LaneRows<native_lanes>& rows) {
-  Vec<Batch<native_lanes>, D> xi;
-  for (int a = 0; a < D; ++a)
-    xi[a] = local_coordinate(grid.in_cells(load(body.x(a), rows), a), cell.cell[a]);
-  return xi;
-}
+class LocalPosition {
+ public:
+  using T = Batch<native_lanes>;
+  LocalPosition(const TileGrid<D>& grid, const Body<D>& body) : cells_(grid.coordinates()) {
+    for (int a = 0; a < D; ++a) x_[a] = body.x(a);
+  }
+  template <class Rows>
+  Vec<T, D> operator()(const CellRange<D>& cell, const Rows& rows) const {
+    Vec<T, D> xi;
+    unrolled<D>([&](auto a) {
+      xi[a] = local_coordinate(cells_.in_cells(load(x_[a], rows), a), cell.cell[a]);
+    });
+    return xi;
+  }
+
+ private:
+  CellCoordinates<D> cells_;
+  const double* x_[D];
+};
 
 /// f(basis object) for the basis of the grid, a patch's block and the size of a body's particles.
 template <int D, class F>

@@ -57,12 +57,14 @@ void for_each_mirrored_weight(const Domain<D>& domain, const Patch<D>& patch,
   });
 }
 
-/// Before the shared nodes are summed, so that every patch that holds an image has its force.
+/// Before the shared nodes are summed: each patch for the mass that its own particles have given,
+/// so that every patch that holds an image has its force.
 template <int D>
 void subtract_mirrored_weight(const Domain<D>& domain, const Patch<D>& patch,
                               const NodeBlock<D>& block) {
-  for_each_mirrored_weight(domain, patch, block, [&](int image, int a, double weight) {
-    block.force(a)[image] -= weight;
+  for_each_mirrored_node(domain.grid, patch, [&](int node, int image, unsigned axes) {
+    for (int a = 0; a < D; ++a)
+      if (axes >> a & 1u) block.force(a)[image] -= mirrored_weight(domain, block, node, a);
   });
 }
 

@@ -1,22 +1,23 @@
 #include "mpm/step/mirror.hpp"
-#include "mpm/step/scatter_momentum.hpp"
+#include "mpm/step/scatter.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
+namespace {
 
+/// `scattered`: the particles of bodies that deform have given their momentum already.
 template <int D>
-void remap_momentum(Domain<D>& domain) {
+void remap(Domain<D>& domain, bool scattered) {
   auto& grid = domain.grid;
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
-    clear_fields(block, 1 + D, 1 + 2 * D);
     const Body<D>& body = domain.body_of(patch);
-    if (body.prescribed) return;
-    with_basis(grid, body, patch, [&](const auto& basis) {
-      scatter_momentum<false>(basis, grid, body, patch, block.mass(),
-                              [&](int a) { return block.force(a); });
-    });
+    if (!scattered || body.rigid) {
+      clear_fields(block, 1 + D, 1 + 2 * D);
+      if (body.prescribed) return;
+      scatter<gives_momentum>(grid, body, patch, block, [&](int a) { return block.force(a); });
+    }
     fold_at_walls<D>(grid, patch, nullptr, [&](int a) { return block.force(a); });
   });
   grid.sum_shared_nodes(domain.threads, 1 + D, 1 + 2 * D);
@@ -32,7 +33,21 @@ void remap_momentum(Domain<D>& domain) {
   });
 }
 
+}  // namespace
+
+template <int D>
+void remap_momentum(Domain<D>& domain) {
+  remap(domain, false);
+}
+
+template <int D>
+void remap_nodes(Domain<D>& domain) {
+  remap(domain, true);
+}
+
 template void remap_momentum<2>(Domain<2>&);
 template void remap_momentum<3>(Domain<3>&);
+template void remap_nodes<2>(Domain<2>&);
+template void remap_nodes<3>(Domain<3>&);
 
 }  // namespace mpm

@@ -22,6 +22,14 @@ void contact_momentum(Domain<D>& domain);
 template <int D>
 void map_forces(Domain<D>& domain);
 
+/// Both at once, where no stage between them changes what the forces are made of.
+template <int D>
+void map_momentum_and_forces(Domain<D>& domain);
+
+/// Forces of walls that absorb.
+template <int D>
+void absorb_at_walls(Domain<D>& domain);
+
 /// Contact forces with friction, eqs. (11)-(15).
 template <int D>
 void contact_forces(Domain<D>& domain);
@@ -37,6 +45,13 @@ void advance_particles(Domain<D>& domain);
 /// MUSL: nodal velocities anew from the particles (3.6, step 10).
 template <int D>
 void remap_momentum(Domain<D>& domain);
+
+/// Both in two other stages: particles of bodies that deform give their new momentum at once; then
+/// rigid bodies' do, and the nodes get their velocities.
+template <int D>
+void advance_and_remap_particles(Domain<D>& domain);
+template <int D>
+void remap_nodes(Domain<D>& domain);
 
 /// MUSL: contact of the remapped velocities (3.6, step 10).
 template <int D>
@@ -54,5 +69,13 @@ void update_stress_remapped(Domain<D>& domain);
 /// Particle positions, eq. (16).
 template <int D>
 void move_particles(Domain<D>& domain);
+
+/// The same together with what else the particles are read for.
+template <int D>
+void advance_and_move_particles(Domain<D>& domain);
+template <int D>
+void update_stress_last_and_move(Domain<D>& domain);
+template <int D>
+void update_stress_remapped_and_move(Domain<D>& domain);
 
 }  // namespace mpm

@@ -13,24 +13,32 @@ from __future__ import annotations
 
 _LIST = 4  # Bytes of an entry of the list of particles by cell.
 
-# Stage -> columns read, columns written. Stages that touch nodes only move no particles.
+_MOMENTUM = ("position", "velocity", "mass")
+_STRESS = ("volume", "stress")
+_NODES: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
+
+# Stage -> columns read, columns written. Stages that touch nodes only move no particles, nor do
+# those of rigid bodies, which benchmarks do not have.
 STAGES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "activate tiles": ((), ()),
-    "map momentum": (("position", "velocity", "mass"), ()),
-    "contact momentum": ((), ()),
-    "map forces": (("position", "volume", "stress"), ()),
-    "contact forces": ((), ()),
-    "advance nodes": ((), ()),
-    "advance particles": (("position", "velocity", "mass"), ("velocity",)),
-    "hold rigid bodies": ((), ()),  # Touches rigid bodies only, which benchmarks do not have.
-    "remap momentum": (("position", "velocity", "mass"), ()),
-    "contact remapped": ((), ()),
-    "update stress": (
-        ("position", "velocity", "mass", "volume", "stress"),
-        ("volume", "stress"),
-    ),
+    "activate tiles": _NODES,
+    "map momentum": (_MOMENTUM, ()),
+    "contact momentum": _NODES,
+    "map forces": (("position", *_STRESS), ()),
+    "map momentum and forces": ((*_MOMENTUM, *_STRESS), ()),
+    "absorb at walls": _NODES,
+    "contact forces": _NODES,
+    "advance nodes": _NODES,
+    "advance particles": (_MOMENTUM, ("velocity",)),
+    "advance and remap particles": (_MOMENTUM, ("velocity",)),
+    "advance and move particles": (_MOMENTUM, ("position", "velocity")),
+    "hold rigid bodies": _NODES,
+    "remap momentum": (_MOMENTUM, ()),
+    "remap nodes": _NODES,
+    "contact remapped": _NODES,
+    "update stress": ((*_MOMENTUM, *_STRESS), _STRESS),
+    "update stress, move particles": ((*_MOMENTUM, *_STRESS), ("position", *_STRESS)),
     "move particles": (("position",), ("position",)),
-    "move rigid bodies": ((), ()),
+    "move rigid bodies": _NODES,
 }
 
 

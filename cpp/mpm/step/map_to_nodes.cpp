@@ -1,0 +1,108 @@
+#include "mpm/step/absorb.hpp"
+#include "mpm/step/loads.hpp"
+#include "mpm/step/mirror.hpp"
+#include "mpm/step/prescribed_bodies.hpp"
+#include "mpm/step/scatter.hpp"
+#include "mpm/step/stages.hpp"
+
+namespace mpm {
+namespace {
+
+/// What a patch's particles give to its nodes.
+template <unsigned what, int D>
+void map_patch(Domain<D>& domain, std::size_t p) {
+  constexpr bool momentum = (what & gives_momentum) != 0, forces = (what & gives_forces) != 0;
+  auto& grid = domain.grid;
+  const Patch<D>& patch = grid.patches[p];
+  const NodeBlock<D> block = grid.block(p);
+  if constexpr (momentum) clear_fields(block, 0, grid.fields);
+  const Body<D>& body = domain.body_of(patch);
+  if (body.prescribed && !patch.in_contact) return;  // Nobody asks for its nodes.
+  const auto nodal_momentum = [&](int a) { return block.velocity(a); };
+  // The weights that "map momentum" leaves in the forces are added last, as where both are mapped
+  // at once: to the same bits.
+  const bool weighed = !momentum && patch.at_wall && grid.margin() > 0;
+  double weights[D * BlockShape<D>::stride_max];
+  const std::size_t size = weighed ? static_cast<std::size_t>(D * block.stride) : 0;
+  std::copy_n(block.force(0), size, weights);
+  if (weighed) clear_fields(block, 1 + D, 1 + 2 * D);
+  if (!body.rigid)
+    scatter<what>(grid, body, patch, block, nodal_momentum);
+  else if constexpr (momentum)  // It has no stress.
+    scatter<what & ~gives_forces>(grid, body, patch, block, nodal_momentum);
+  for (std::size_t i = 0; i < size; ++i) block.force(0)[i] += weights[i];
+  if constexpr (momentum) {
+    if (!body.prescribed) subtract_mirrored_weight(domain, patch, block);
+    fold_at_walls(grid, patch, block.mass(), nodal_momentum);
+  }
+  if (!forces || body.rigid) return;
+  if (grid.walls.absorb()) scatter_dashpots(grid, body, patch, block);
+  if (domain.has_loads()) scatter_loads(domain, p);
+  fold_at_walls<D>(grid, patch, nullptr, [&](int a) { return block.force(a); });
+}
+
+/// From the momenta that have been summed to velocities.
+template <int D>
+void find_velocities(Domain<D>& domain, std::size_t p) {
+  auto& grid = domain.grid;
+  const NodeBlock<D> block = grid.block(p);
+  const auto velocity = [&](int a) { return block.velocity(a); };
+  const Body<D>& body = domain.body_of(grid.patches[p]);
+  if (body.prescribed) {
+    set_rigid_velocity(grid, grid.patches[p], body.motion->before, velocity);
+    return;
+  }
+  momentum_to_velocity(grid, grid.patches[p], block, velocity);
+  reflect_at_walls(grid, grid.patches[p], velocity);
+}
+
+template <unsigned what, int D>
+void map_to_nodes(Domain<D>& domain) {
+  constexpr bool momentum = (what & gives_momentum) != 0, forces = (what & gives_forces) != 0;
+  auto& grid = domain.grid;
+  const bool loaded = forces && domain.has_loads();
+  if (loaded) start_loads(domain);
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) { map_patch<what>(domain, p); });
+  grid.sum_shared_nodes(domain.threads, momentum ? 0 : 1 + D, forces ? grid.fields : 1 + D);
+  if (momentum)
+    domain.threads.for_each(grid.patches.size(),
+                            [&](std::size_t p) { find_velocities(domain, p); });
+  if (loaded) sum_loads(domain);
+}
+
+}  // namespace
+
+template <int D>
+void map_momentum(Domain<D>& domain) {
+  map_to_nodes<gives_mass | gives_momentum>(domain);
+}
+
+template <int D>
+void map_forces(Domain<D>& domain) {
+  map_to_nodes<gives_forces>(domain);
+}
+
+template <int D>
+void map_momentum_and_forces(Domain<D>& domain) {
+  map_to_nodes<gives_mass | gives_momentum | gives_forces>(domain);
+}
+
+template <int D>
+void absorb_at_walls(Domain<D>& domain) {
+  auto& grid = domain.grid;
+  if (!grid.walls.absorb()) return;
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    add_dashpot_forces(grid.patches[p], grid.block(p), domain.gravity, domain.time_step);
+  });
+}
+
+template void map_momentum<2>(Domain<2>&);
+template void map_momentum<3>(Domain<3>&);
+template void map_forces<2>(Domain<2>&);
+template void map_forces<3>(Domain<3>&);
+template void map_momentum_and_forces<2>(Domain<2>&);
+template void map_momentum_and_forces<3>(Domain<3>&);
+template void absorb_at_walls<2>(Domain<2>&);
+template void absorb_at_walls<3>(Domain<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,36 @@
+#pragma once
+#include "mpm/step/cell_loop.hpp"
+
+namespace mpm {
+
+/// Moves particles of a patch, eq. (16), and notes whether any leaves its cell.
+template <int D>
+class Moving {
+ public:
+  Moving(const TileGrid<D>& grid, Body<D>& body, double time_step)
+      : cells_(grid.coordinates()), time_step_(time_step) {
+    for (int a = 0; a < D; ++a) x_[a] = body.x(a);
+  }
+
+  /// `velocity` holds the nodal fields of the cell, `w` what they want to know of the positions
+  /// before.
+  template <class Rows, class Fields, class Weights>
+  void move(const CellRange<D>& cell, const Rows& rows, const Fields& velocity, const Weights& w) {
+    unrolled<D>([&](auto a) {
+      const T x = load(x_[a], rows) + time_step_ * velocity[a].value(w);
+      store(x_[a], rows, x);
+      const T local = cells_.in_cells(x, a) - T(cell.cell[a]);
+      left_ = left_ | (local < T(0.0)) | (local >= T(1.0));
+    });
+  }
+  bool left_cell() const { return any(left_); }
+
+ private:
+  using T = Batch<native_lanes>;
+  CellCoordinates<D> cells_;
+  double* x_[D];
+  T time_step_;
+  Mask<native_lanes> left_ = T(1.0) < T(0.0);
+};
+
+}  // namespace mpm
