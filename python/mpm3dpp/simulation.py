@@ -28,7 +28,8 @@ class Simulation:
         case: what to simulate.
         threads: how many; by default OMP_NUM_THREADS, else all cores.
         fused: whether neighbouring stages of a step are done at once, which is faster and gives the
-            same bits; False makes them one by one, as the scheme lists them.
+            same bits (as far as the compiler rounds alike; tested with g++ 12); False makes them
+            one by one, as the scheme lists them.
 
     Attributes:
         case: as given.

@@ -11,14 +11,14 @@ from cases import BASES, SCHEMES, three_blocks
 from mpm3dpp import Case, Simulation, load_case
 from mpm3dpp.io.result_hash import result_hash
 
-# All that a step can hold: walls that mirror and that absorb, gravity, contact with friction, a
-# load, viscosity, a rigid body that is free and one that is led.
+# Nearly all that a step can hold: walls that mirror and that absorb, gravity, contact with
+# friction, a load, viscosity, PIC damping, a rigid body that is free and one that is led.
 EVERYTHING = """
 [grid]
 dimension = {dimension}
 cell_size = "10 mm"
 basis = "{basis}"
-box = {{ lower = {zero}, upper = {box}, walls = {{ y_min = "slip", x_min = "absorbing" }} }}
+box = {{ lower = {zero}, upper = {box}, walls = {{ y_min = "slip", x_min = "{left}" }} }}
 [run]
 scheme = "{scheme}"
 end_time = "1 s"
@@ -26,6 +26,7 @@ time_step_factor = 0.3
 energy_growth_limit = 1e9
 gravity = {gravity}
 viscosity = {{}}
+pic_damping = "5 1/s"
 [contact]
 friction = 0.3
 [material.soft]
@@ -39,6 +40,7 @@ density = 3000.0
 strength = {{ rigid = {{}} }}
 [body.bed]
 material = "soft"
+particles_per_cell = {per_axis}
 shape = {{ box = {{ lower = {zero}, upper = {bed} }} }}
 [body.block]
 material = "metal"
@@ -59,7 +61,7 @@ pressure = "1 kPa"
 """
 
 
-def everything(tmp_path: Path, dimension: int, scheme: str, basis: str) -> Case:
+def everything(tmp_path: Path, dimension: int, scheme: str, basis: str, left: str) -> Case:
     def vector(*values: float) -> str:
         return str(list(values[:dimension]))
 
@@ -67,6 +69,8 @@ def everything(tmp_path: Path, dimension: int, scheme: str, basis: str) -> Case:
         dimension=dimension,
         scheme=scheme,
         basis=basis,
+        left=left,
+        per_axis=7 - dimension if left == "slip" else 2,  # More than are laid out at once.
         zero=vector(0.0, 0.0, 0.0),
         box=vector(0.4, 0.3, 0.08),
         gravity=vector(1.0, -10.0, 2.0),
@@ -99,10 +103,10 @@ def hashes(case: Case, steps: int, threads: int = 1) -> list[str]:
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_everything(tmp_path: Path, dimension: int, scheme: str, basis: str) -> None:
-    one, other = hashes(
-        everything(tmp_path, dimension, scheme, basis), 12 if scheme == "usl" else 60
-    )
-    assert one == other
+    for left in ("absorbing", "slip"):
+        case = everything(tmp_path, dimension, scheme, basis, left)
+        one, other = hashes(case, 12 if scheme == "usl" else 40)
+        assert one == other, left
 
 
 @pytest.mark.parametrize("basis", BASES)
@@ -110,6 +114,15 @@ def test_everything(tmp_path: Path, dimension: int, scheme: str, basis: str) -> 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_three_blocks(dimension: int, scheme: str, basis: str) -> None:
     one, other = hashes(three_blocks(dimension, scheme, grid={"basis": basis}), 60, threads=2)
+    assert one == other
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_bonded(dimension: int, scheme: str) -> None:
+    case = three_blocks(dimension, scheme)
+    case.contact.friction, case.contact.bonded = 0.0, True
+    one, other = hashes(case, 40)
     assert one == other
 
 

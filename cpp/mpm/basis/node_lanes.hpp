@@ -45,11 +45,6 @@ struct NodeLanes {
   void add(double s, const NodeLanes& w) {
     for (int k = 0; k < parts; ++k) part[k] += Part(s) * w.part[k];
   }
-  friend NodeLanes operator*(const NodeLanes& x, const NodeLanes& y) {
-    NodeLanes r;
-    for (int k = 0; k < parts; ++k) r.part[k] = x.part[k] * y.part[k];
-    return r;
-  }
 };
 
 }  // namespace mpm

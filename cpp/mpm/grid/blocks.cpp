@@ -2,7 +2,6 @@
 // that share a node.
 #include <algorithm>
 #include <atomic>
-#include <bit>
 
 #include "mpm/grid/tile_grid.hpp"
 

@@ -10,7 +10,8 @@
 namespace mpm {
 
 /// Fields of a nodal block, each BlockShape::node_stride doubles long. Units: kg, m/s, N.
-/// `velocity` holds momentum [kg m/s] until the shared nodes are summed; `force` holds the velocity
+/// `velocity` holds momentum [kg m/s] until the shared nodes are summed; `force` holds the weights
+/// that slip walls mirror from when momentum is mapped until forces are; it holds the velocity
 /// increment of the step [m/s] once the nodes are advanced, and the remapped velocity [m/s] after
 /// the MUSL remap. `dashpot` exists where walls absorb: factors [kg/s], then forces.
 template <int D>

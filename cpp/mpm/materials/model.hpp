@@ -160,7 +160,8 @@ concept FailureModel = Model<M> && requires(M m, Condition<double, 3> condition,
 template <class T, int D>
 struct NoState {};
 
-/// The number of values of a state, and a state from them and back.
+/// The number of values of a state, and a state from them and back. Lanes are plain vectors that
+/// may be copied by their bytes, though `Batch` has a copy constructor.
 template <class State, class T>
 inline constexpr int state_size =
     std::is_empty_v<State> ? 0 : static_cast<int>(sizeof(State) / sizeof(T));

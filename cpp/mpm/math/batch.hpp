@@ -2,7 +2,6 @@
 // SIMD lanes: W doubles in one register, written like a scalar. The width follows the instruction
 // set the file is compiled for.
 #include <cstdint>
-#include <cstring>
 #include <utility>
 #if defined(__SSE2__)
 #include <immintrin.h>

@@ -1,5 +1,7 @@
 #pragma once
 // Elementary functions on lanes, free of branches. Accuracy is stated beside each and tested.
+#include <cstring>
+
 #include "mpm/math/batch.hpp"
 
 namespace mpm {

@@ -58,14 +58,21 @@ void for_each_mirrored_weight(const Domain<D>& domain, const Patch<D>& patch,
 }
 
 /// Before the shared nodes are summed: each patch for the mass that its own particles have given,
-/// so that every patch that holds an image has its force.
+/// so that every patch that holds an image has its force. The weights of an image are added to each
+/// other first, so that it does not matter what the force already holds.
 template <int D>
 void subtract_mirrored_weight(const Domain<D>& domain, const Patch<D>& patch,
                               const NodeBlock<D>& block) {
+  if (!patch.at_wall || domain.grid.margin() == 0) return;
+  double weights[D * BlockShape<D>::stride_max];
+  const int size = D * block.stride;
+  std::fill_n(weights, size, 0.0);
   for_each_mirrored_node(domain.grid, patch, [&](int node, int image, unsigned axes) {
     for (int a = 0; a < D; ++a)
-      if (axes >> a & 1u) block.force(a)[image] -= mirrored_weight(domain, block, node, a);
+      if (axes >> a & 1u)
+        weights[a * block.stride + image] -= mirrored_weight(domain, block, node, a);
   });
+  for (int i = 0; i < size; ++i) block.force(0)[i] += weights[i];
 }
 
 /// When the nodes have their velocities: those beyond the walls take their images'.

@@ -9,7 +9,9 @@ namespace mpm {
 template <int D>
 void activate_tiles(Domain<D>& domain);
 
-/// Nodal mass and velocity from the particles, eqs. (2)-(3), with the walls.
+/// Nodal mass and velocity from the particles, eqs. (2)-(3), with the walls. Clears all fields of
+/// the nodes, and leaves in the forces what slip walls mirror of the weight; nothing may write
+/// there until the forces are mapped.
 template <int D>
 void map_momentum(Domain<D>& domain);
 

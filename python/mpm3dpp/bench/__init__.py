@@ -118,14 +118,20 @@ def measure(
         particle-step], `bytes_per_particle` {particles, grid, contact, other, total},
         `bandwidth_GBps`, `bandwidth_fraction`; what was measured (`bench`, `scheme`, `size`,
         `steps`, `version`, `machine`, `isa`); `blocks`, all blocks [ns]; and with a twin
-        `without_contact_ns` and `contact_ratio` (`elastic3d_ns`, `elastic3d_ratio` for `jc`), the
-        median over pairs of blocks.
+        `without_contact_ns` and `contact_ratio` (`elastic3d_ns`, `elastic3d_ratio` for `jc` and
+        `debris`), the median over pairs of blocks.
 
     Raises:
-        CaseError: there is no such benchmark.
+        CaseError: there is no such benchmark, or not with this scheme.
         RunError: it could not be run to its end.
     """
     bench = find(name)
+    if bench.loose and scheme == "usl":
+        raise CaseError(
+            "cannot be measured with USL, which is unstable where particles enter empty cells",
+            "give usf or musl",
+            value=name,
+        )
     names = [name, bench.twin] if bench.twin else [name]
     cells = size or bench.size
     lengths = block_lengths(steps or STEPS)

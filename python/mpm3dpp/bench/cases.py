@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import spheres
+from . import debris, spheres
 
 Array = NDArray[np.float64]
 
@@ -40,6 +40,8 @@ COPPER: dict[str, Any] = {
     "failures": [],
     "viscosity": (0.0, 0.0),
 }  # fmt: skip
+# A wave speed below that of the translation: the cloud of `debris` hardly feels its stress.
+SOFT: dict[str, Any] = {**ALUMINIUM, "parameters": {"E": 70e6, "nu": 0.3}}
 TIME_STEP_FACTOR = 0.5
 DIRECTION = (3.0, 2.0, 1.0)  # Of the translation: oblique to the grid.
 # Speed of the translation [m/s]. With USL and the linear basis a particle that enters an empty cell
@@ -65,6 +67,8 @@ class Bench:
         dimension: 2 or 3.
         size: cells along the edge of a body, if the user gives none; of grains, how many.
         bodies: how many cubes (squares), side by side along x; 0 for grains.
+        loose: whether the particles of the body lie apart at random (`debris`), as many as a cube
+            of the given size has.
         contact: whether the bodies feel each other.
         twin: name of the benchmark that is measured in turn with this one, for their ratio.
         material: keyword arguments of the core's add_material.
@@ -80,6 +84,7 @@ class Bench:
     twin: str = ""
     material: dict[str, Any] = field(default_factory=lambda: ALUMINIUM)
     state: int = 0
+    loose: bool = False
 
     def particles(self, size: int) -> int:
         """Return the number of particles of all bodies."""
@@ -105,6 +110,15 @@ BENCHES = {
             twin="elastic3d",
             material=COPPER,
             state=3,
+        ),
+        Bench(
+            "debris",
+            "loose particles in no order, which cross a cell every few steps",
+            3,
+            40,
+            twin="elastic3d",
+            material=SOFT,
+            loose=True,
         ),
         Bench(
             "two_cubes",
@@ -156,13 +170,18 @@ def velocities(
     edge = PER_AXIS * size
     field = np.empty((edge,) * dimension + (dimension,))
     mode = BREATHING * np.sin(math.pi * ((np.arange(edge) + 0.5) / edge - 0.5))
-    direction = np.array(DIRECTION[:dimension])
-    mean = speed * direction / np.linalg.norm(direction)
+    mean = _translation(dimension, speed)
     mean[0] += approach
     for axis in range(dimension):
         sign = (-2.0 if axis == 0 else 1.0) * YIELDING / BREATHING if yielding else 1.0
         field[..., axis] = _along(sign * mode + mean[axis], axis, dimension)
     return field.reshape(-1, dimension)
+
+
+def _translation(dimension: int, speed: float) -> Array:
+    """Return the velocity of the translation [m/s], shape (D,)."""
+    direction = np.array(DIRECTION[:dimension])
+    return np.asarray(speed * direction / np.linalg.norm(direction))
 
 
 def _along(values: Array, axis: int, dimension: int) -> Array:
@@ -186,6 +205,13 @@ def make(core: Any, bench: Bench, size: int, threads: int, scheme: str) -> Any:
     at_rest = np.zeros((1, bench.dimension))
     if bench.bodies == 0:
         _add_grains(simulation, material, size, volume, SPEED[scheme])
+    if bench.loose:
+        edge = debris.SPREAD * size * CELL
+        place = debris.positions(bench.particles(size), edge)
+        motion = debris.velocities(place, edge, _translation(3, SPEED[scheme]))
+        simulation.add_body("debris", material, place, motion, volume)
+        simulation.prepare()
+        return simulation
     # One array at a time: the core has its own copy, and both are counted in the peak.
     for body in range(bench.bodies):
         place = positions(bench.dimension, size, body)
@@ -202,7 +228,7 @@ def make(core: Any, bench: Bench, size: int, threads: int, scheme: str) -> Any:
 def _add_grains(simulation: Any, material: int, count: int, volume: Array, speed: float) -> None:
     spacing = CELL / PER_AXIS
     ball, places = spheres.ball(spacing), spheres.centres(count, spacing)
-    translation = speed * np.array(DIRECTION) / np.linalg.norm(DIRECTION)
+    translation = _translation(3, speed)
     for body, centre in enumerate(places):
         points = ball + centre
         motion = spheres.velocities(points, places.mean(axis=0), spacing, translation)

@@ -64,6 +64,6 @@ def bytes_per_particle_step(stages: list[str], dimension: int, state: int = 0) -
     for stage in stages:
         read, written = STAGES[stage]
         columns = sum(numbers(column, dimension) for column in (*read, *written))
-        columns += 2 * state if stage == "update stress" else 0
+        columns += 2 * state if stage.startswith("update stress") else 0
         moved[stage] = 8 * columns + _LIST if columns else 0
     return moved
