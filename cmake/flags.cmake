@@ -17,6 +17,13 @@ if(MPM_NATIVE)
     message(WARNING "this compiler has no -march=native: building for its default processor")
   endif()
 endif()
+# g++ 12.2 makes wrong code where it may move more than 16 bytes at once, which -march=native allows it
+# on processors with AVX-512: a symmetric tensor that starts as the unit tensor gets a one in its
+# fourth component (docs/decisions/0015-fused-stages.md).
+check_cxx_compiler_flag("-mmove-max=128 -mstore-max=128" MPM_HAS_MOVE_MAX)
+if(MPM_HAS_MOVE_MAX)
+  list(APPEND flags -mmove-max=128 -mstore-max=128)
+endif()
 if(MPM_SAME_BITS)
   list(APPEND flags -ffp-contract=off)
 endif()
