@@ -11,21 +11,19 @@ namespace mpm {
 
 template <int D>
 struct BlockShape {
-  Index<D> low{};       // the block's first node
-  Index<D> nodes{};     // how many along each axis
-  int node_count = 0;   // 0 without particles
-  int node_stride = 0;  // length of one field [doubles], a whole number of cache lines
+  Index<D> low{};                                     // the block's first node
+  Index<D> nodes{};                                   // how many along each axis
+  int node_count = 0;                                 // 0 without particles
   std::array<int, Tile<D>::corners> corner_offset{};  // from a cell's first node to its corners
 
   static constexpr int margin_max = 1;
   static constexpr int count_max(int margin) { return power(Tile<D>::cells + 1 + 2 * margin, D); }
-  static constexpr int stride_max = (count_max(margin_max) + 7) / 8 * 8;
+  static constexpr int nodes_max = count_max(margin_max);
 
   BlockShape() = default;
   /// Of the nodes from `first` to `last`.
   BlockShape(const Index<D>& first, const Index<D>& last) : low(first), node_count(1) {
     for (std::size_t a = 0; a < D; ++a) node_count *= nodes[a] = last[a] - first[a] + 1;
-    node_stride = (node_count + 7) / 8 * 8;
     for (int k = 0; k < Tile<D>::corners; ++k)
       corner_offset[static_cast<std::size_t>(k)] = distance(Tile<D>::corner(k));
   }

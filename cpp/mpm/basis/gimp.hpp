@@ -8,6 +8,7 @@
 // eqs. for S_ip.)
 #include "mpm/basis/block_shape.hpp"
 #include "mpm/basis/node_lanes.hpp"
+#include "mpm/basis/node_lines.hpp"
 #include "mpm/math/vec.hpp"
 
 namespace mpm {
@@ -32,21 +33,22 @@ struct GimpAxis {
   }
 };
 
-/// A nodal field around one cell, read by particles in the lanes.
+/// The nodal fields around one cell, read by particles in the lanes.
 template <int D>
 struct GimpField {
-  const double* first;  // node (-1, -1, ...) of the cell
-  int row, layer;       // from node to node along y and z
+  NodeLines nodes;  // from node (-1, -1, ...) of the cell on
+  int row, layer;   // from node to node along y and z
 
   template <class T>
   using Weights = std::array<GimpAxis<T>, D>;
 
+  /// Of one field of the lines.
   template <class T>
-  T value(const Weights<T>& w) const {
+  T value(int field, const Weights<T>& w) const {
     T total(0.0);
     for (int z = 0; z < (D == 3 ? 4 : 1); ++z) {
       T plane(0.0);
-      for (int y = 0; y < 4; ++y) plane += w[1].N[y] * along_x(w[0].N, y, z);
+      for (int y = 0; y < 4; ++y) plane += w[1].N[y] * along_x(field, w[0].N, y, z);
       if constexpr (D == 3) {
         total += w[2].N[z] * plane;
       } else {
@@ -57,15 +59,15 @@ struct GimpField {
   }
 
   template <class T>
-  Vec<T, D> gradient(const Weights<T>& w) const {
+  Vec<T, D> gradient(int field, const Weights<T>& w) const {
     Vec<T, D> g = Vec<T, D>::zero();
     for (int z = 0; z < (D == 3 ? 4 : 1); ++z) {
       T value(0.0), dx(0.0), dy(0.0);
       for (int y = 0; y < 4; ++y) {
-        const T f = along_x(w[0].N, y, z);
+        const T f = along_x(field, w[0].N, y, z);
         value += w[1].N[y] * f;
         dy += w[1].dN[y] * f;
-        dx += w[1].N[y] * along_x(w[0].dN, y, z);
+        dx += w[1].N[y] * along_x(field, w[0].dN, y, z);
       }
       if constexpr (D == 3) {
         g[0] += w[2].N[z] * dx;
@@ -80,8 +82,8 @@ struct GimpField {
 
  private:
   template <class T>
-  T along_x(const T* factor, int y, int z) const {
-    const double* f = first + y * row + z * layer;
+  T along_x(int field, const T* factor, int y, int z) const {
+    const NodeField f{nodes[y * row + z * layer] + field, nodes.width};
     return (factor[0] * T(f[0]) + factor[1] * T(f[1])) +
            (factor[2] * T(f[2]) + factor[3] * T(f[3]));
   }
@@ -92,6 +94,7 @@ template <int D>
 struct GimpNodes {
   static constexpr int rows = power(4, D - 1);
   using Row = NodeLanes<4>;
+  static constexpr int registers = rows * Row::parts;
   Row row[rows];
 
   static GimpNodes zero() {
@@ -118,30 +121,59 @@ struct Gimp {
     for (std::size_t a = 0; a < D; ++a) w[a] = GimpAxis<T>(xi[static_cast<int>(a)], half);
     return w;
   }
-  Field field(const double* first_node) const {
-    return {first_node - reach(), shape.nodes[0], shape.nodes[0] * shape.nodes[1]};
+  /// `nodes` begin at the cell's first.
+  Field field(const NodeLines& nodes) const {
+    return {nodes.from(-reach()), shape.nodes[0], shape.nodes[0] * shape.nodes[1]};
   }
 
-  /// scale N_ip over the nodes in reach; xi[a * stride] is the position in the cell along axis a.
-  Nodes functions(const double* xi, int stride, double scale) const {
-    const auto w = axes(xi, stride);
-    return product(w[0].N, w[1].N, w[D - 1].N, scale);
+  /// What `functions` and `gradients` want to know of a cell's particles: the factors along x node
+  /// by node, those along the other axes particle by particle.
+  template <int room>
+  struct Particles {
+    double x[room][4], dx[room][4];
+    double N[D - 1][4][room], dN[D - 1][4][room];
+    template <int W>
+    void put(const Gimp& basis, int at, const Vec<Batch<W>, D>& position) {
+      const auto w = basis.weights(position);
+      const auto across = [&](double (*to)[4], const Batch<W>* of) {
+        for_each_quad(of[0], of[1], of[2], of[3],
+                      [&](int k, Batch<4> factors) { factors.store(to[at + k]); });
+      };
+      across(x, w[0].N);
+      across(dx, w[0].dN);
+      for (std::size_t a = 1; a < D; ++a)
+        for (int k = 0; k < 4; ++k) {
+          w[a].N[k].store(N[a - 1][k] + at);
+          w[a].dN[k].store(dN[a - 1][k] + at);
+        }
+    }
+  };
+
+  /// scale N_ip over the nodes in reach, for particle p of those.
+  template <int room>
+  static Nodes functions(const Particles<room>& of, int p, double scale) {
+    return product(of.x[p], of.N[0], of.N[D - 2], p, scale);
   }
   /// dN_ip / d xi over the nodes in reach, along each axis.
-  void gradients(const double* xi, int stride, Nodes* G) const {
-    const auto w = axes(xi, stride);
-    G[0] = product(w[0].dN, w[1].N, w[D - 1].N, 1.0);
-    G[1] = product(w[0].N, w[1].dN, w[D - 1].N, 1.0);
-    if constexpr (D == 3) G[2] = product(w[0].N, w[1].N, w[2].dN, 1.0);
+  template <int room>
+  static void gradients(const Particles<room>& of, int p, Nodes* G) {
+    G[0] = product(of.dx[p], of.N[0], of.N[D - 2], p, 1.0);
+    G[1] = product(of.x[p], of.dN[0], of.N[D - 2], p, 1.0);
+    if constexpr (D == 3) G[2] = product(of.x[p], of.N[0], of.dN[1], p, 1.0);
   }
-  void add_to_nodes(double* first_node, const Nodes& value) const {
-    double* first = first_node - reach();
+  /// To a quad of the nodes' lines, which begin at the cell's first: the values of four fields.
+  void add_to_nodes(const NodeLines& nodes, const Nodes& a, const Nodes& b, const Nodes& c,
+                    const Nodes& d) const {
+    const NodeLines first = nodes.from(-reach());
     const int row = shape.nodes[0], layer = row * shape.nodes[1];
     for (int k = 0; k < Nodes::rows; ++k) {
-      double* to = first + (k % 4) * row + (k / 4) * layer;
-      typename Nodes::Row sum = Nodes::Row::load(to);
-      sum.add(1.0, value.row[k]);
-      sum.store(to);
+      const NodeLines to = first.from((k % 4) * row + (k / 4) * layer);
+      for (int part = 0; part < Nodes::Row::parts; ++part)
+        for_each_quad(a.row[k].part[part], b.row[k].part[part], c.row[k].part[part],
+                      d.row[k].part[part], [&](int n, Batch<4> q) {
+                        double* node = to[part * Nodes::Row::width + n];
+                        (Batch<4>::load(node) + q).store(node);
+                      });
     }
   }
 
@@ -162,18 +194,14 @@ struct Gimp {
     one.fill(1);
     return shape.distance(one);
   }
-  std::array<GimpAxis<double>, D> axes(const double* xi, int stride) const {
-    std::array<GimpAxis<double>, D> w;
-    for (int a = 0; a < D; ++a)
-      w[static_cast<std::size_t>(a)] = GimpAxis<double>(xi[a * stride], half);
-    return w;
-  }
-  /// Products over the nodes; `z` counts in 3D only.
-  static Nodes product(const double* x, const double* y, const double* z, double scale) {
-    const auto along_x = Nodes::Row::of(scale * x[0], scale * x[1], scale * x[2], scale * x[3]);
-    Nodes r = Nodes::zero();
+  /// Products over the nodes for particle p; `z` counts in 3D only.
+  template <int room>
+  static Nodes product(const double* x, const double (*y)[room], const double (*z)[room], int p,
+                       double scale) {
+    const auto along_x = Nodes::Row::load(x);
+    Nodes r;
     for (int k = 0; k < Nodes::rows; ++k)
-      r.row[k].add(D == 3 ? y[k % 4] * z[k / 4] : y[k], along_x);
+      r.row[k] = along_x.times(scale * (D == 3 ? y[k % 4][p] * z[k / 4][p] : y[k][p]));
     return r;
   }
 };

@@ -1,8 +1,11 @@
 #pragma once
 // Multilinear shape functions on a cell: N_ip = product over the axes of (1 - xi) or xi, with xi in
 // [0, 1].
+#include <algorithm>
+
 #include "mpm/basis/block_shape.hpp"
 #include "mpm/basis/node_lanes.hpp"
+#include "mpm/basis/node_lines.hpp"
 #include "mpm/math/vec.hpp"
 
 namespace mpm {
@@ -25,51 +28,56 @@ template <int D>
 inline constexpr auto slope = pattern<D>(true);
 }  // namespace linear_detail
 
-/// A nodal field on one cell as a polynomial: f = sum over corners k of c_k xi^(bits of k), so that
-/// particles in the lanes evaluate it, and its gradient, by Horner's rule without touching the
-/// nodes again.
+/// The nodal fields on one cell as polynomials: f = sum over corners k of c_k xi^(bits of k), so
+/// that particles in the lanes evaluate them, and their gradients, by Horner's rule without
+/// touching the nodes again. All fields of a line are made at once.
 template <int D>
 struct LinearField {
-  alignas(32) double c[1 << D];
+  static constexpr int corners = 1 << D;
+  alignas(64) double c[corners][line];
 
-  /// `first` is the cell's first node in the field of a block. Two nodes that are neighbours along
-  /// x are read at once.
-  LinearField(const double* first, int row, int layer) {
-    const auto low = differences(first, row);
-    low.store(c);
-    if constexpr (D == 3) (differences(first + layer, row) - low).store(c + 4);
+  /// `nodes` begin at the cell's first.
+  LinearField(const NodeLines& nodes, int row, int layer) {
+    constexpr int W = std::min(native_lanes, line);
+    for (int at = 0; at < line; at += W) {
+      Batch<W> f[corners];
+      unrolled<corners>([&](auto k) {
+        f[k] = Batch<W>::load(nodes[(k & 1) + (k & 2 ? row : 0) + (k & 4 ? layer : 0)] + at);
+      });
+      unrolled<D>([&](auto a) {
+        unrolled<corners>([&](auto k) {
+          if constexpr ((k >> a & 1) != 0) f[k] -= f[k ^ 1 << a];
+        });
+      });
+      unrolled<corners>([&](auto k) { f[k].store(c[k] + at); });
+    }
   }
 
+  /// Of field f of the lines.
   template <class T>
-  T value(const Vec<T, D>& xi) const {
-    if constexpr (D == 2) {
-      return (T(c[0]) + T(c[1]) * xi[0]) + xi[1] * (T(c[2]) + T(c[3]) * xi[0]);
-    } else {
-      const T low = (T(c[0]) + T(c[1]) * xi[0]) + xi[1] * (T(c[2]) + T(c[3]) * xi[0]);
-      const T high = (T(c[4]) + T(c[5]) * xi[0]) + xi[1] * (T(c[6]) + T(c[7]) * xi[0]);
-      return low + xi[2] * high;
-    }
+  T value(int f, const Vec<T, D>& xi) const {
+    const auto bilinear = [&](int k) {
+      return (T(c[k][f]) + T(c[k + 1][f]) * xi[0]) +
+             xi[1] * (T(c[k + 2][f]) + T(c[k + 3][f]) * xi[0]);
+    };
+    if constexpr (D == 2)
+      return bilinear(0);
+    else
+      return bilinear(0) + xi[2] * bilinear(4);
   }
 
   /// Derivatives with respect to xi (divide by the cell size for the gradient in space).
   template <class T>
-  Vec<T, D> gradient(const Vec<T, D>& xi) const {
+  Vec<T, D> gradient(int f, const Vec<T, D>& xi) const {
+    const auto C = [&](int k) { return T(c[k][f]); };
     if constexpr (D == 2) {
-      return {T(c[1]) + T(c[3]) * xi[1], T(c[2]) + T(c[3]) * xi[0]};
+      return {C(1) + C(3) * xi[1], C(2) + C(3) * xi[0]};
     } else {
-      const T x = (T(c[1]) + T(c[3]) * xi[1]) + xi[2] * (T(c[5]) + T(c[7]) * xi[1]);
-      const T y = (T(c[2]) + T(c[3]) * xi[0]) + xi[2] * (T(c[6]) + T(c[7]) * xi[0]);
-      const T z = (T(c[4]) + T(c[5]) * xi[0]) + xi[1] * (T(c[6]) + T(c[7]) * xi[0]);
+      const T x = (C(1) + C(3) * xi[1]) + xi[2] * (C(5) + C(7) * xi[1]);
+      const T y = (C(2) + C(3) * xi[0]) + xi[2] * (C(6) + C(7) * xi[0]);
+      const T z = (C(4) + C(5) * xi[0]) + xi[1] * (C(6) + C(7) * xi[0]);
       return {x, y, z};
     }
-  }
-
- private:
-  /// Of the four nodes of a cell in a plane, along x and y.
-  static Batch<4> differences(const double* first, int row) {
-    const auto f = joined(Batch<2>::load(first), Batch<2>::load(first + row));
-    const auto along_x = f - shuffled<4, 0, 4, 2>(f);
-    return along_x - shuffled<4, 4, 0, 1>(along_x);
   }
 };
 
@@ -85,42 +93,56 @@ struct Linear {
   static const Vec<T, D>& weights(const Vec<T, D>& xi) {
     return xi;
   }
-  Field field(const double* first_node) const { return Field(first_node, row_, layer_); }
+  /// `nodes` begin at the cell's first.
+  Field field(const NodeLines& nodes) const { return Field(nodes, row_, layer_); }
 
-  /// scale N_ip over the cell's nodes; xi[a * stride] is the position in the cell along axis a.
-  static Nodes functions(const double* xi, int stride, double scale) {
-    Part inner = lanes(0, xi[0]);
-    for (int a = 1; a < inner_axes; ++a) inner = inner * lanes(a, xi[a * stride]);
+  /// What `functions` and `gradients` want to know of a cell's particles.
+  template <int room>
+  struct Particles {
+    double xi[D][room];  // position in the cell
+    template <int W>
+    void put(const Linear&, int at, const Vec<Batch<W>, D>& position) {
+      unrolled<D>([&](auto a) { position[a].store(xi[a] + at); });
+    }
+  };
+
+  /// scale N_ip over the cell's nodes, for particle p of those.
+  template <int room>
+  static Nodes functions(const Particles<room>& particles, int p, double scale) {
+    Part inner = lanes(0, particles.xi[0][p]);
+    for (int a = 1; a < inner_axes; ++a) inner = inner * lanes(a, particles.xi[a][p]);
     Nodes N;
     for (int k = 0; k < Nodes::parts; ++k) {
       Part factor(scale);
-      for (int a = inner_axes; a < D; ++a) factor = factor * along(a, k, xi[a * stride]);
+      for (int a = inner_axes; a < D; ++a) factor = factor * along(a, k, particles.xi[a][p]);
       N.part[k] = factor * inner;
     }
     return N;
   }
   /// dN_ip / d xi over the cell's nodes, along each axis.
-  static void gradients(const double* xi, int stride, Nodes* G) {
+  template <int room>
+  static void gradients(const Particles<room>& particles, int p, Nodes* G) {
     Part N[D];
-    for (int a = 0; a < inner_axes; ++a) N[a] = lanes(a, xi[a * stride]);
+    for (int a = 0; a < inner_axes; ++a) N[a] = lanes(a, particles.xi[a][p]);
     for (int a = 0; a < D; ++a)
       for (int k = 0; k < Nodes::parts; ++k) {
         Part g = a < inner_axes ? Part::load(slopes(a)) : Part(place(a, k) ? 1.0 : -1.0);
         for (int b = 0; b < inner_axes; ++b)
           if (b != a) g = g * N[b];
         for (int b = inner_axes; b < D; ++b)
-          if (b != a) g = g * along(b, k, xi[b * stride]);
+          if (b != a) g = g * along(b, k, particles.xi[b][p]);
         G[a].part[k] = g;
       }
   }
-  /// Two nodes that are neighbours along x at a time.
-  void add_to_nodes(double* first_node, const Nodes& value) const {
-    double v[Nodes::count];
-    value.store(v);
-    unrolled<Nodes::count / 2>([&](auto half) {
-      constexpr int k = 2 * half;
-      double* pair = first_node + (k & 2 ? row_ : 0) + (k & 4 ? layer_ : 0);
-      (Batch<2>::load(pair) + Batch<2>::load(v + k)).store(pair);
+  /// To a quad of the nodes' lines, which begin at the cell's first: the values of four fields.
+  void add_to_nodes(const NodeLines& nodes, const Nodes& a, const Nodes& b, const Nodes& c,
+                    const Nodes& d) const {
+    unrolled<Nodes::parts>([&](auto part) {
+      for_each_quad(a.part[part], b.part[part], c.part[part], d.part[part], [&](int k, Batch<4> q) {
+        k += part * Nodes::width;
+        double* to = nodes[(k & 1) + (k & 2 ? row_ : 0) + (k & 4 ? layer_ : 0)];
+        (Batch<4>::load(to) + q).store(to);
+      });
     });
   }
 

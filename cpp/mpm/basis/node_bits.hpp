@@ -35,7 +35,7 @@ class NodeBits {
  private:
   static std::size_t word(int node) { return static_cast<std::size_t>(node / 64); }
   // One word more than needed, for rows that are read across the end.
-  std::array<std::uint64_t, BlockShape<D>::stride_max / 64 + 2> words_{};
+  std::array<std::uint64_t, BlockShape<D>::nodes_max / 64 + 2> words_{};
 };
 
 }  // namespace mpm

@@ -12,6 +12,7 @@ struct NodeLanes {
   static constexpr int count = Count;
   static constexpr int width = Count < native_lanes ? Count : native_lanes;
   static constexpr int parts = Count / width;
+  static constexpr int registers = parts;
   using Part = Batch<width>;
   Part part[parts];
 
@@ -25,26 +26,38 @@ struct NodeLanes {
     for (int k = 0; k < parts; ++k) r.part[k] = Part::load(values + k * width);
     return r;
   }
-  /// Four values, put together in registers: through memory they would stall.
-  static NodeLanes of(double a, double b, double c, double d)
-    requires(Count == 4)
-  {
-    NodeLanes r;
-    if constexpr (parts == 1) {
-      r.part[0] = Part(typename Part::Vector{a, b, c, d});
-    } else {
-      r.part[0] = Part(typename Part::Vector{a, b});
-      r.part[1] = Part(typename Part::Vector{c, d});
-    }
-    return r;
-  }
   void store(double* to) const {
     for (int k = 0; k < parts; ++k) part[k].store(to + k * width);
+  }
+  NodeLanes times(double s) const {
+    NodeLanes r;
+    for (int k = 0; k < parts; ++k) r.part[k] = Part(s) * part[k];
+    return r;
   }
   /// this += s * w
   void add(double s, const NodeLanes& w) {
     for (int k = 0; k < parts; ++k) part[k] += Part(s) * w.part[k];
   }
 };
+
+/// f(k, quad): of four values for each of W nodes, in a register each, the four of node k.
+template <int W, class F>
+[[gnu::always_inline]] inline void for_each_quad(Batch<W> a, Batch<W> b, Batch<W> c, Batch<W> d,
+                                                 F&& f) {
+  const auto pairs = [](Batch<W> x, Batch<W> y, auto odd) {
+    return [&]<int... k>(std::integer_sequence<int, k...>) {
+      return __builtin_shufflevector(x.v, y.v, ((k & ~1) + odd + (k & 1 ? W : 0))...);
+    }(std::make_integer_sequence<int, W>{});
+  };
+  const std::integral_constant<int, 0> even;
+  const std::integral_constant<int, 1> odd;
+  const auto ab_even = pairs(a, b, even), cd_even = pairs(c, d, even);
+  const auto ab_odd = pairs(a, b, odd), cd_odd = pairs(c, d, odd);
+  unrolled<W / 2>([&](auto k) {
+    constexpr int i = 2 * k;
+    f(i, Batch<4>(__builtin_shufflevector(ab_even, cd_even, i, i + 1, W + i, W + i + 1)));
+    f(i + 1, Batch<4>(__builtin_shufflevector(ab_odd, cd_odd, i, i + 1, W + i, W + i + 1)));
+  });
+}
 
 }  // namespace mpm

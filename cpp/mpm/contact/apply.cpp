@@ -41,16 +41,12 @@ void ContactGrid<D>::solve(NodeSolution<D>& solution) {
 
 template <int D>
 template <class F>
-void ContactGrid<D>::for_each_closed(TileGrid<D>& grid, Threads& threads, int first, int last,
-                                     F&& f) {
+void ContactGrid<D>::for_each_closed(TileGrid<D>& grid, Threads& threads, F&& f) {
   constexpr std::size_t ahead = 6;
   const auto fetch = [&](Part& part, const ContactNode& node) {
     if (!part.any_closed(node)) return;
-    for (const Side<D>& side : part.sides_of(node)) {
-      const NodeBlock<D> block = grid.block(patch_of(side));
-      for (int k = first; k < last; ++k)
-        __builtin_prefetch(block.data + k * block.stride + side.node);
-    }
+    for (const Side<D>& side : part.sides_of(node))
+      __builtin_prefetch(grid.block(patch_of(side)).lines[side.node]);
   };
   threads.for_each(parts_.size(), [&](std::size_t p) {
     Part& part = parts_[p];
@@ -65,7 +61,7 @@ void ContactGrid<D>::for_each_closed(TileGrid<D>& grid, Threads& threads, int fi
 
 template <int D>
 void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
-  for_each_closed(grid, threads, 1, 1 + D, [&](Part& part, const ContactNode& node) {
+  for_each_closed(grid, threads, [&](Part& part, const ContactNode& node) {
     const auto sides = part.sides_of(node);
     const auto pairs = part.pairs_of(node);
     auto& solution =
@@ -94,7 +90,7 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
                                 const Vec<double, D>& gravity, double time_step, Threads& threads) {
   const auto velocity_at = [](const NodeBlock<D>& block, int a) { return block.velocity(a); };
   const auto force_at = [](const NodeBlock<D>& block, int a) { return block.force(a); };
-  for_each_closed(grid, threads, 0, 1 + 2 * D, [&](Part& part, ContactNode& node) {
+  for_each_closed(grid, threads, [&](Part& part, ContactNode& node) {
     const auto sides = part.sides_of(node);
     const auto pairs = part.pairs_of(node);
     auto& solution =
@@ -169,7 +165,7 @@ Vec<double, D> ContactGrid<D>::prescribed_increment(const TileGrid<D>& grid,
 template <int D>
 void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
   const auto remapped_at = [](const NodeBlock<D>& block, int a) { return block.force(a); };
-  for_each_closed(grid, threads, 1 + D, 1 + 2 * D, [&](Part& part, const ContactNode& node) {
+  for_each_closed(grid, threads, [&](Part& part, const ContactNode& node) {
     const auto sides = part.sides_of(node);
     // The slip at the end of the step is that of the particles. The nodes' own increments, forces
     // over masses that may be next to nothing, reach the particles only in part.

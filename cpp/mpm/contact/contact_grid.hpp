@@ -170,10 +170,9 @@ class ContactGrid {
   /// A rigid body meets others with its whole mass, spread over its overlapped nodes; one whose
   /// motion is prescribed mostly with an infinite mass.
   void share_rigid_masses(const std::vector<Body<D>>& bodies);
-  /// f(part, node) for the nodes where any pair may act. The memory is told in time which of the
-  /// fields [first, last) of the blocks they read.
+  /// f(part, node) for the nodes where any pair may act. The memory is told of them in time.
   template <class F>
-  void for_each_closed(TileGrid<D>& grid, Threads& threads, int first, int last, F&& f);
+  void for_each_closed(TileGrid<D>& grid, Threads& threads, F&& f);
   PairRecord& record_of(int a, int b);
   void enter(std::size_t record);
   void sort_records();

@@ -67,9 +67,7 @@ void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around,
       if (holds_node<D>(grid, holders_[h], index) && side.copies++ == 0) side.first_copy = h;
     side.node =
         static_cast<std::uint16_t>(node_in_holder<D>(grid, holders_[side.first_copy], index));
-    const NodeBlock<D> block = grid.block(patch_of(side));
-    __builtin_prefetch(block.mass() + side.node);
-    for (int a = 0; a < D; ++a) __builtin_prefetch(block.velocity(a) + side.node);
+    __builtin_prefetch(grid.block(patch_of(side)).lines[side.node]);
   }
 }
 

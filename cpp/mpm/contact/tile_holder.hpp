@@ -58,8 +58,8 @@ class NodesWithMass {
       if (!grid.patches[p].in_contact) return;
       const NodeBlock<D> block = grid.block(p);
       std::uint64_t* bits = &bits_[p * words_];
-      for (int n = 0; n < block.stride; n += native_lanes)
-        bits[n / 64] |= lane_bits(Batch<native_lanes>::load(block.mass() + n) > 0.0) << n % 64;
+      for (int n = 0; n < block.count; ++n)
+        bits[n / 64] |= std::uint64_t{block.mass()[n] > 0.0} << n % 64;
     });
   }
 

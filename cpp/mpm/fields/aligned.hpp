@@ -2,38 +2,91 @@
 // Memory on cache-line boundaries that grows by whole allocations and is never initialised behind
 // one's back.
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <new>
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
 
 namespace mpm {
 
 inline constexpr std::size_t cache_line = 64;
 
-struct FreeDeleter {
-  void operator()(void* p) const { std::free(p); }
+/// Gives back what came from the system, `mapped` bytes, or from the allocator, if that is 0.
+struct Release {
+  std::size_t mapped = 0;
+  void operator()(void* p) const {
+#if defined(__linux__)
+    if (mapped > 0) {
+      munmap(p, mapped);
+      return;
+    }
+#endif
+    std::free(p);
+  }
+};
+
+/// Memory for large arrays comes from the system in huge pages, so that finding the page of an
+/// address seldom costs more than the access; and goes back to the system at once, where an
+/// allocator might keep it beside what takes its place. A last part of less than a huge page has
+/// small ones.
+class Memory {
+ public:
+  Memory() = default;
+  explicit Memory(std::size_t bytes) {
+#if defined(__linux__)
+    if (bytes >= 2 * huge_page) {
+      // More is asked for than needed, and what lies before and behind is given back.
+      const std::size_t asked = rounded_up(bytes, small_page) + huge_page;
+      void* const got =
+          mmap(nullptr, asked, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+      if (got == MAP_FAILED) throw std::bad_alloc();
+      auto* const start = static_cast<std::byte*>(got);
+      const auto address = reinterpret_cast<std::uintptr_t>(start);
+      const std::size_t before = rounded_up(address, huge_page) - address;
+      const std::size_t mapped = asked - huge_page;
+      if (before > 0) munmap(start, before);
+      if (before < huge_page) munmap(start + before + mapped, huge_page - before);
+      // Refused where there are none: small ones do as well.
+      madvise(start + before, bytes / huge_page * huge_page, MADV_HUGEPAGE);
+      memory_ = {start + before, Release{mapped}};
+      return;
+    }
+#endif
+    memory_.reset(std::aligned_alloc(cache_line, rounded_up(bytes, cache_line)));
+    if (!memory_) throw std::bad_alloc();
+  }
+  void* data() const { return memory_.get(); }
+
+ private:
+  static constexpr std::size_t small_page = 4096, huge_page = std::size_t{1} << 21;
+  static constexpr std::size_t rounded_up(std::size_t n, std::size_t unit) {
+    return (n + unit - 1) / unit * unit;
+  }
+  std::unique_ptr<void, Release> memory_;
 };
 
 /// An owning array of T, aligned to a cache line. `release_and_allocate` discards the old content.
 template <class T>
 class AlignedArray {
  public:
-  T* data() { return data_.get(); }
-  const T* data() const { return data_.get(); }
+  T* data() { return static_cast<T*>(memory_.data()); }
+  const T* data() const { return static_cast<const T*>(memory_.data()); }
   std::size_t size() const { return size_; }
   std::size_t bytes() const { return size_ * sizeof(T); }
 
   void release_and_allocate(std::size_t n) {
-    data_.reset();
-    size_ = n;
+    memory_ = Memory();
+    size_ = 0;
     if (n == 0) return;
-    const std::size_t bytes = (n * sizeof(T) + cache_line - 1) / cache_line * cache_line;
-    data_.reset(static_cast<T*>(std::aligned_alloc(cache_line, bytes)));
-    if (!data_) throw std::bad_alloc();
+    memory_ = Memory(n * sizeof(T));
+    size_ = n;
   }
 
  private:
-  std::unique_ptr<T[], FreeDeleter> data_;
+  Memory memory_;
   std::size_t size_ = 0;
 };
 

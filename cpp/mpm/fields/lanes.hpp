@@ -1,7 +1,9 @@
 #pragma once
 // Rows of a column into SIMD lanes and back, through an index: neighbours in memory move as one
 // vector, others one by one.
+#include <algorithm>
 #include <cstdint>
+#include <cstring>
 
 #include "mpm/math/scalar.hpp"
 
@@ -18,19 +20,30 @@ struct LaneRows {
 
   LaneRows(const std::uint32_t* rows, std::size_t available) {
     count = available < W ? static_cast<int>(available) : W;
-    std::uint32_t jumps = 0;
     if (count == W) {
-      for (int k = 0; k < W; ++k) {
-        row[k] = rows[k];
-        jumps |= rows[k] - rows[0] - static_cast<std::uint32_t>(k);
-      }
-    } else {
-      for (int k = 0; k < W; ++k) {
-        row[k] = rows[k < count ? k : count - 1];
-        jumps |= k < count ? rows[k] - rows[0] - static_cast<std::uint32_t>(k) : 0;
-      }
+      std::copy_n(rows, W, row);
+      contiguous = in_sequence(rows);
+      return;
+    }
+    std::uint32_t jumps = 0;
+    for (int k = 0; k < W; ++k) {
+      row[k] = rows[k < count ? k : count - 1];
+      jumps |= k < count ? rows[k] - rows[0] - static_cast<std::uint32_t>(k) : 0;
     }
     contiguous = jumps == 0;
+  }
+
+ private:
+  /// Two numbers at a time.
+  static bool in_sequence(const std::uint32_t* rows) {
+    const std::uint64_t first = rows[0], one_each = std::uint64_t{1} << 32 | 1;
+    std::uint64_t expected = first | (first + 1) << 32, other = 0;
+    for (int k = 0; k + 1 < W; k += 2, expected += 2 * one_each) {
+      std::uint64_t pair;
+      std::memcpy(&pair, rows + k, sizeof(pair));
+      other |= pair ^ expected;
+    }
+    return other == 0;
   }
 };
 
@@ -89,7 +102,8 @@ void store(double* column, const LaneRows<W>& rows, Batch<W> value) {
     value.store(column + rows.row[0]);
     return;
   }
-  for (int k = 0; k < rows.count; ++k) column[rows.row[k]] = value.v[k];
+  for (int k = 0; k < W; ++k)
+    if (k < rows.count) column[rows.row[k]] = value.v[k];
 }
 
 inline void store(double* column, const LaneRows<1>& rows, double value) {

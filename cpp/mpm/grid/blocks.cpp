@@ -45,34 +45,6 @@ void for_each_shared_row(const Patch<D>& p, const Patch<D>& q, F&& f) {
         q_first + (z * q.shape.nodes[1] + y) * q.shape.nodes[0], count);
 }
 
-/// Nodes that two blocks share, by their numbers in either: listed once, so that the loops over
-/// the fields have no branches.
-template <int D>
-class SharedNodes {
- public:
-  /// Those of p and q that a patch owns: p or, if `theirs`, q.
-  SharedNodes(const Patch<D>& p, const Patch<D>& q, bool theirs) {
-    for_each_shared_row(p, q, [&](int here, int there, int count) {
-      const std::uint64_t owned = theirs ? q.owned.row(there, count) : p.owned.row(here, count);
-      if (owned == 0) return;
-      for (int k = 0; k < count; ++k) {
-        here_[count_] = static_cast<std::uint16_t>(here + k);
-        there_[count_] = static_cast<std::uint16_t>(there + k);
-        count_ += owned >> k & 1u;
-      }
-    });
-  }
-  /// f(here, there) for each.
-  template <class F>
-  void for_each(F&& f) const {
-    for (std::size_t k = 0; k < count_; ++k) f(here_[k], there_[k]);
-  }
-
- private:
-  std::size_t count_ = 0;
-  std::array<std::uint16_t, BlockShape<D>::stride_max> here_, there_;
-};
-
 }  // namespace
 
 /// Find the shapes of the blocks; false if none has changed.
@@ -100,7 +72,7 @@ void TileGrid<D>::cut_blocks(Threads& threads) {
   needed_ = 0;
   for (Patch<D>& patch : patches) {
     patch.memory = needed_;
-    needed_ += static_cast<std::size_t>(fields * patch.shape.node_stride);
+    needed_ += static_cast<std::size_t>(line_width * patch.shape.node_count);
   }
   make_room(node_memory_, needed_, needed_ + needed_ / 16);
   threads.for_each(patches.size(), [&](std::size_t p) {
@@ -142,45 +114,57 @@ void TileGrid<D>::for_each_neighbour(const Patch<D>& patch, int first, int last,
 
 template <int D>
 void TileGrid<D>::sum_shared_nodes(Threads& threads, int first, int last) {
-  /// f(to, from) for fields [first, last) of two blocks.
-  const auto each_field = [&](const Patch<D>& to, const Patch<D>& from, auto&& f) {
-    for (int field = first; field < last; ++field)
-      f(node_memory_.data() + to.memory + field * to.shape.node_stride,
-        node_memory_.data() + from.memory + field * from.shape.node_stride);
+  // All quads of two lines, one of which may be written.
+  const auto add = [&](double* to, const double* from) {
+    for (int k = first; k < last; k += quad)
+      (Batch<quad>::load(to + k) + Batch<quad>::load(from + k)).store(to + k);
+  };
+  const auto copy = [&](double* to, const double* from) {
+    for (int k = first; k < last; k += quad) Batch<quad>::load(from + k).store(to + k);
+  };
+  /// f(p's line, q's line) for the nodes that both hold, or those of them that a patch owns.
+  const auto each_node = [&](const Patch<D>& p, const Patch<D>& q, const Patch<D>* owner,
+                             auto&& f) {
+    const NodeLines p_lines = lines_of(p), q_lines = lines_of(q);
+    for_each_shared_row(p, q, [&](int here, int there, int count) {
+      std::uint64_t left = low_bits(count);
+      if (owner) left = owner->owned.row(owner == &p ? here : there, count);
+      for (; left != 0; left &= left - 1) {
+        const int k = std::countr_zero(left);
+        f(p_lines[here + k], q_lines[there + k]);
+      }
+    });
+  };
+  /// f(patch, neighbour) for the leaders and their neighbours from `begin` to before `end`; the
+  /// memory is told of the next leader's nodes, which lie all over it, in time.
+  const auto each_neighbour = [&](int begin, int end, auto&& f) {
+    threads.for_each(leaders_.size(), [&](std::size_t leader) {
+      if (leader + 1 < leaders_.size()) {
+        const Patch<D>& next = patches[leaders_[leader + 1]];
+        for_each_neighbour(next, begin, end, [&](const Patch<D>& other) {
+          each_node(next, other, nullptr, [](const double* here, const double* there) {
+            __builtin_prefetch(here);
+            __builtin_prefetch(there);
+          });
+        });
+      }
+      const Patch<D>& patch = patches[leaders_[leader]];
+      for_each_neighbour(patch, begin, end, [&](const Patch<D>& other) { f(patch, other); });
+    });
   };
   for_each_follower(threads, [&](const Patch<D>& patch, const Patch<D>& leader) {
-    for_each_shared_row(patch, leader, [&](int here, int there, int count) {
-      each_field(leader, patch, [&](double* to, const double* from) {
-        for (int n = 0; n < count; ++n) to[there + n] += from[here + n];
-      });
-    });
+    each_node(leader, patch, nullptr, add);
   });
   // An owner writes only its own entry of a node and reads those of others, which nobody writes in
   // this pass.
-  threads.for_each(leaders_.size(), [&](std::size_t leader) {
-    const Patch<D>& patch = patches[leaders_[leader]];
-    for_each_neighbour(patch, Tile<D>::self + 1, Tile<D>::neighbours, [&](const Patch<D>& later) {
-      const SharedNodes<D> mine(patch, later, false);
-      each_field(patch, later, [&](double* to, const double* from) {
-        mine.for_each([&](int here, int there) { to[here] += from[there]; });
-      });
-    });
-  });
-  threads.for_each(leaders_.size(), [&](std::size_t leader) {
-    const Patch<D>& patch = patches[leaders_[leader]];
-    for_each_neighbour(patch, 0, Tile<D>::self, [&](const Patch<D>& earlier) {
-      const SharedNodes<D> theirs(patch, earlier, true);
-      each_field(patch, earlier, [&](double* to, const double* from) {
-        theirs.for_each([&](int here, int there) { to[here] = from[there]; });
-      });
-    });
+  each_neighbour(
+      Tile<D>::self + 1, Tile<D>::neighbours,
+      [&](const Patch<D>& patch, const Patch<D>& later) { each_node(patch, later, &patch, add); });
+  each_neighbour(0, Tile<D>::self, [&](const Patch<D>& patch, const Patch<D>& earlier) {
+    each_node(patch, earlier, &earlier, copy);
   });
   for_each_follower(threads, [&](const Patch<D>& patch, const Patch<D>& leader) {
-    for_each_shared_row(patch, leader, [&](int here, int there, int count) {
-      each_field(leader, patch, [&](const double* from, double* to) {
-        for (int n = 0; n < count; ++n) to[here + n] = from[there + n];
-      });
-    });
+    each_node(patch, leader, nullptr, copy);
   });
 }
 

@@ -6,23 +6,23 @@
 
 #include "mpm/basis/basis.hpp"
 #include "mpm/basis/node_bits.hpp"
+#include "mpm/basis/node_lines.hpp"
 
 namespace mpm {
 
-/// Fields of a nodal block, each BlockShape::node_stride doubles long. Units: kg, m/s, N.
-/// `velocity` holds momentum [kg m/s] until the shared nodes are summed; `force` holds the weights
-/// that slip walls mirror from when momentum is mapped until forces are; it holds the velocity
-/// increment of the step [m/s] once the nodes are advanced, and the remapped velocity [m/s] after
-/// the MUSL remap. `dashpot` exists where walls absorb: factors [kg/s], then forces.
+/// The nodes of a patch. Units: kg, m/s, N. `velocity` holds momentum [kg m/s] until the shared
+/// nodes are summed; `force` holds the weights that slip walls mirror from when momentum is mapped
+/// until forces are; it holds the velocity increment of the step [m/s] once the nodes are advanced,
+/// and the remapped velocity [m/s] after the MUSL remap. `dashpot` exists where walls absorb:
+/// factors [kg/s], then forces.
 template <int D>
 struct NodeBlock {
-  double* data;
-  int stride;
-  static constexpr int fields = 1 + 2 * D;  // without the last
-  double* mass() const { return data; }
-  double* velocity(int a) const { return data + (1 + a) * stride; }
-  double* force(int a) const { return data + (1 + D + a) * stride; }
-  double* dashpot(int a) const { return data + (fields + a) * stride; }
+  NodeLines lines;
+  int count;
+  NodeField mass() const { return {lines.data, lines.width}; }
+  NodeField velocity(int a) const { return {lines.data + velocity_at + a, lines.width}; }
+  NodeField force(int a) const { return {lines.data + force_at + a, lines.width}; }
+  NodeField dashpot(int a) const { return {lines.data + dashpot_at<D> + a, lines.width}; }
 };
 
 template <int D>

@@ -2,6 +2,8 @@
 // The sparse, unbounded grid: patches sorted by body and tile, who their neighbours are, and the
 // memory of their nodes.
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "mpm/fields/aligned.hpp"
@@ -36,9 +38,9 @@ class TileGrid {
   Index<D> anchor{};
   Walls<D> walls;
   Keep<D> keep;
-  int fields = NodeBlock<D>::fields;  // of a block, those of forces at walls included
-  bool bonded = false;                // all bodies have one velocity field: they share their nodes
-  std::vector<Patch<D>> patches;      // by body, then by tile
+  int line_width = line;          // of a node, with the dashpots of absorbing walls
+  bool bonded = false;            // all bodies have one velocity field: they share their nodes
+  std::vector<Patch<D>> patches;  // by body, then by tile
 
   CellCoordinates<D> coordinates() const { return {origin, 1.0 / cell_size}; }
   /// Position along an axis in cells from the origin.
@@ -76,13 +78,17 @@ class TileGrid {
   /// Nodes beyond a cell's own that its particles reach.
   int margin() const { return margin_of(basis); }
   NodeBlock<D> block(std::size_t patch) {
-    return {node_memory_.data() + patches[patch].memory, patches[patch].shape.node_stride};
+    return {lines_of(patches[patch]), patches[patch].shape.node_count};
   }
   /// What the patches and their nodes need now.
   std::size_t needed_bytes() const {
     return needed_ * sizeof(double) + patches.size() * sizeof(Patch<D>);
   }
   void release_nodes() { node_memory_.release_and_allocate(0); }
+  /// The memory of the nodes, for others between steps.
+  std::span<std::byte> idle_memory() {
+    return std::as_writable_bytes(std::span(node_memory_.data(), node_memory_.size()));
+  }
   std::size_t node_bytes() const {
     return node_memory_.bytes() + patches.capacity() * sizeof(Patch<D>);
   }
@@ -96,12 +102,15 @@ class TileGrid {
   /// The patch of a body in a tile, or -1.
   int find(int body, const Index<D>& tile) const;
 
-  /// Add up what the patches sharing a node have put there, for fields [first, last) of the blocks,
-  /// always in the order of the tiles (of bonded bodies in one tile: of the bodies); then every
-  /// patch holds the sum.
+  /// Add up what the patches sharing a node have put there, for numbers [first, last) of the lines,
+  /// whole quads, always in the order of the tiles (of bonded bodies in one tile: of the bodies);
+  /// then every patch holds the sum.
   void sum_shared_nodes(Threads& threads, int first, int last);
 
  private:
+  NodeLines lines_of(const Patch<D>& patch) {
+    return {node_memory_.data() + patch.memory, line_width};
+  }
   bool before(const Patch<D>& p, int body, const Index<D>& tile) const;
   void choose_leaders();
   bool find_shapes(Threads& threads);

@@ -65,7 +65,8 @@ struct Batch {
     v = other.v;
     return *this;
   }
-  Batch(double s) : v(Vector{} + s) {}  // NOLINT: a number stands for itself in every lane
+  Batch(double s)  // NOLINT: a number stands for itself in every lane
+      : v(repeated(s, std::make_integer_sequence<int, W>{})) {}
   explicit Batch(Vector value) : v(value) {}
 
   static Batch load(const double* from) {
@@ -82,6 +83,12 @@ struct Batch {
   Batch& operator+=(Batch b) { return *this = *this + b; }
   Batch& operator-=(Batch b) { return *this = *this - b; }
   Batch& operator*=(Batch b) { return *this = *this * b; }
+
+  // Not 0 + s, which is an addition that the compiler must keep.
+  template <int... k>
+  static Vector repeated(double s, std::integer_sequence<int, k...>) {
+    return Vector{(static_cast<void>(k), s)...};
+  }
   friend Mask<W> operator<(Batch a, Batch b) { return {a.v < b.v}; }
   friend Mask<W> operator>(Batch a, Batch b) { return {a.v > b.v}; }
   friend Mask<W> operator<=(Batch a, Batch b) { return {a.v <= b.v}; }

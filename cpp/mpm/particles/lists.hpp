@@ -38,16 +38,26 @@ struct ListScratch {
   std::vector<Patch<D>> added;
   std::vector<std::size_t> moved;  // one per patch
   // The lists being made of those bodies whose particles have left their cells.
-  std::vector<std::size_t> first;     // where each body's list begins, or none
-  AlignedArray<std::uint32_t> order;  // the lists; or the numbers of one body, while it is sorted
-  AlignedArray<std::uint8_t> cell;    // the cell in its tile of each entry of the lists before
-  AlignedArray<double> column;        // one component, while it is sorted
+  std::vector<std::size_t> first;  // where each body's list begins, or none
+  std::uint32_t* order = nullptr;  // the lists
+  std::uint8_t* cell = nullptr;    // the cell in its tile of each entry of the lists before
 
-  std::uint32_t* order_of(int body) { return order.data() + first[static_cast<std::size_t>(body)]; }
-  std::uint8_t* cell_of(int body) { return cell.data() + first[static_cast<std::size_t>(body)]; }
+  std::uint32_t* order_of(int body) { return order + first[static_cast<std::size_t>(body)]; }
+  std::uint8_t* cell_of(int body) { return cell + first[static_cast<std::size_t>(body)]; }
   bool changes_list_of(int body) const { return first[static_cast<std::size_t>(body)] != none; }
+  /// Room for so many bytes, until the next call or the next step: in the memory of the nodes,
+  /// whose values are of no use between steps, or where that is too small, our own, which then gets
+  /// `most`.
+  std::byte* room(TileGrid<D>& grid, std::size_t bytes, std::size_t most) {
+    const std::span<std::byte> idle = grid.idle_memory();
+    if (bytes <= idle.size()) return idle.data();
+    make_room(own, bytes, most);
+    return own.data();
+  }
   /// Of what goes with the particles; leavers and what goes with the patches is not counted.
-  std::size_t bytes() const { return order.bytes() + cell.bytes() + column.bytes(); }
+  std::size_t bytes() const { return own.bytes(); }
+
+  AlignedArray<std::byte> own;
 };
 
 /// Sort every body's columns by tile and cell, and make patches and lists anew, at the start or
@@ -69,10 +79,11 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
 
 /// Put the columns of a body into the order of its list.
 template <int D>
-void sort_columns(Body<D>& body, Threads& threads, ListScratch<D>& scratch);
+void sort_columns(TileGrid<D>& grid, Body<D>& body, Threads& threads, ListScratch<D>& scratch);
 
 /// The same for the bodies whose particles have moved about so much that it pays.
 template <int D>
-void sort_disordered(std::vector<Body<D>>& bodies, Threads& threads, ListScratch<D>& scratch);
+void sort_disordered(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
+                     ListScratch<D>& scratch);
 
 }  // namespace mpm

@@ -100,9 +100,10 @@ void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
       });
       for (std::size_t i = 0; i < n; ++i) body.order[i] = keys[i].row;
     }
-    sort_columns(body, threads, scratch);
+    sort_columns(grid, body, threads, scratch);
     add_patches(grid, body, static_cast<int>(b));
   }
+  scratch.own.release_and_allocate(0);
   grid.connect();
   grid.cut_blocks(threads);
 }

@@ -196,19 +196,20 @@ void write_tail(std::span<const Patch<D>> patches, Body<D>& body, const std::uin
 
 /// Room for the lists of the bodies whose particles have left their cells; false if there are none.
 template <int D>
-bool find_changes(const std::vector<Patch<D>>& patches, const std::vector<Body<D>>& bodies,
-                  ListScratch<D>& scratch) {
+bool find_changes(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, ListScratch<D>& scratch) {
   scratch.first.assign(bodies.size(), scratch.none);
   std::size_t total = 0, all = 0;
   for (const Body<D>& body : bodies) all += body.count();
-  for (const Patch<D>& patch : patches) {
+  for (const Patch<D>& patch : grid.patches) {
     if (!patch.left_cell || scratch.changes_list_of(patch.body)) continue;
     const auto b = static_cast<std::size_t>(patch.body);
     scratch.first[b] = total;
     total += bodies[b].count();
   }
-  make_room(scratch.order, total, std::min(2 * total, all));
-  make_room(scratch.cell, total, std::min(2 * total, all));
+  constexpr std::size_t each = sizeof(*scratch.order) + sizeof(*scratch.cell);
+  std::byte* const room = scratch.room(grid, each * total, each * std::min(2 * total, all));
+  scratch.order = reinterpret_cast<std::uint32_t*>(room);
+  scratch.cell = reinterpret_cast<std::uint8_t*>(scratch.order + total);
   return total > 0;
 }
 
@@ -244,7 +245,7 @@ void count_changes(const std::vector<Patch<D>>& patches, ListScratch<D>& scratch
 template <int D>
 bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
                 ListScratch<D>& scratch, Gone<D>& eroded_sums, Gone<D>& left_sums) {
-  if (!find_changes(grid.patches, bodies, scratch)) return false;
+  if (!find_changes(grid, bodies, scratch)) return false;
   scratch.moved.assign(grid.patches.size(), 0);
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];

@@ -6,7 +6,7 @@
 namespace mpm {
 
 template <int D>
-void sort_columns(Body<D>& body, Threads& threads, ListScratch<D>& scratch) {
+void sort_columns(TileGrid<D>& grid, Body<D>& body, Threads& threads, ListScratch<D>& scratch) {
   body.moved = 0;
   constexpr std::size_t chunk = 4096;
   const std::size_t n = body.count();
@@ -23,25 +23,25 @@ void sort_columns(Body<D>& body, Threads& threads, ListScratch<D>& scratch) {
       std::copy(room + begin, room + end, values + begin);
     });
   };
-  make_room(scratch.column, n, n);
-  make_room(scratch.order, n, n);
+  std::byte* const room = scratch.room(grid, n * sizeof(double), n * sizeof(double));
   for (int c = 0; c < body.columns.component_count(); ++c)
-    sort(body.columns.component(c), scratch.column.data());
-  sort(body.id.data(), scratch.order.data());
+    sort(body.columns.component(c), reinterpret_cast<double*>(room));
+  sort(body.id.data(), reinterpret_cast<std::uint32_t*>(room));
   std::iota(body.order.begin(), body.order.end(), 0u);
 }
 
 template <int D>
-void sort_disordered(std::vector<Body<D>>& bodies, Threads& threads, ListScratch<D>& scratch) {
+void sort_disordered(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
+                     ListScratch<D>& scratch) {
   // Sorting moves every column once; reading particles out of order costs about that once a quarter
   // of them is.
   for (auto& body : bodies)
-    if (4 * body.moved >= body.count()) sort_columns(body, threads, scratch);
+    if (4 * body.moved >= body.count()) sort_columns(grid, body, threads, scratch);
 }
 
-template void sort_columns<2>(Body<2>&, Threads&, ListScratch<2>&);
-template void sort_columns<3>(Body<3>&, Threads&, ListScratch<3>&);
-template void sort_disordered<2>(std::vector<Body<2>>&, Threads&, ListScratch<2>&);
-template void sort_disordered<3>(std::vector<Body<3>>&, Threads&, ListScratch<3>&);
+template void sort_columns<2>(TileGrid<2>&, Body<2>&, Threads&, ListScratch<2>&);
+template void sort_columns<3>(TileGrid<3>&, Body<3>&, Threads&, ListScratch<3>&);
+template void sort_disordered<2>(TileGrid<2>&, std::vector<Body<2>>&, Threads&, ListScratch<2>&);
+template void sort_disordered<3>(TileGrid<3>&, std::vector<Body<3>>&, Threads&, ListScratch<3>&);
 
 }  // namespace mpm

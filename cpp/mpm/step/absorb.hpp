@@ -49,7 +49,7 @@ void add_dashpot_forces(const Patch<D>& patch, const NodeBlock<D>& block,
                         const Vec<double, D>& gravity, double time_step) {
   if (!patch.at_wall) return;
   for (int a = 0; a < D; ++a)
-    for (int n = 0; n < block.stride; ++n) {
+    for (int n = 0; n < block.count; ++n) {
       double& dashpot = block.dashpot(a)[n];
       const double m = block.mass()[n];
       if (!(dashpot > 0.0 && m > 0.0)) continue;
@@ -65,7 +65,7 @@ template <int D>
 Work work_of_dashpots(const NodeBlock<D>& block, const double* own, double time_step) {
   Work work;
   for (int a = 0; a < D; ++a)
-    for (int n = 0; n < block.stride; ++n) {
+    for (int n = 0; n < block.count; ++n) {
       const double f = own[n] * block.dashpot(a)[n], dv = block.force(a)[n];
       work.first += f * (block.velocity(a)[n] - dv);
       work.second += f * dv;

@@ -10,7 +10,7 @@ namespace {
 /// 1 at the nodes that a patch owns, 0 at those that another patch counts.
 template <int D>
 void ownership(const Patch<D>& patch, double* own) {
-  for (int n = 0; n < patch.shape.node_stride; ++n) own[n] = patch.owned[n] ? 1.0 : 0.0;
+  for (int n = 0; n < patch.shape.node_count; ++n) own[n] = patch.owned[n] ? 1.0 : 0.0;
 }
 
 }  // namespace
@@ -21,7 +21,6 @@ void advance_nodes(Domain<D>& domain) {
   const double dt = domain.time_step;
   const bool absorb = grid.walls.absorb(), loaded = domain.has_loads();
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
-    using T = Batch<native_lanes>;
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
     if (domain.body_of(patch).prescribed) {
@@ -34,22 +33,21 @@ void advance_nodes(Domain<D>& domain) {
       for (int a = 0; a < D; ++a)
         if (held >> a & 1u) block.force(a)[node] = -block.mass()[node] * domain.gravity[a];
     });
-    alignas(cache_line) double own[BlockShape<D>::stride_max];
+    double own[BlockShape<D>::nodes_max];
     ownership(patch, own);
     for_each_mirrored_node(grid, patch, [&](int node, int, unsigned) { own[node] = 0.0; });
-    T work(0.0), gravity_first(0.0), gravity_second(0.0);
-    for (int n = 0; n < block.stride; n += native_lanes) {
-      const T m = T::load(block.mass() + n), owned = T::load(own + n);
-      const T impulse = select(m > T(0.0), T(dt) / m, T(0.0));
+    double work = 0.0, gravity_first = 0.0, gravity_second = 0.0;
+    for (int n = 0; n < block.count; ++n) {
+      double* const numbers = block.lines[n];
+      const double m = numbers[0], impulse = m > 0.0 ? dt / m : 0.0;
       for (int a = 0; a < D; ++a) {
-        const T g(domain.gravity[a]);
-        const T v = T::load(block.velocity(a) + n), f = T::load(block.force(a) + n);
-        const T dv = impulse * (f + m * g);
-        work += owned * f * v;
-        gravity_first += owned * m * g * v;
-        gravity_second += owned * m * g * dv;
-        (v + dv).store(block.velocity(a) + n);
-        dv.store(block.force(a) + n);
+        double &v = numbers[velocity_at + a], &f = numbers[force_at + a];
+        const double weight = m * domain.gravity[a], dv = impulse * (f + weight);
+        work += own[n] * f * v;
+        gravity_first += own[n] * weight * v;
+        gravity_second += own[n] * weight * dv;
+        v += dv;
+        f = dv;
       }
     }
     Work loads, dashpots;
@@ -61,17 +59,17 @@ void advance_nodes(Domain<D>& domain) {
       weight_first += weight * (block.velocity(a)[image] - dv);
       weight_second += weight * dv;
     });
-    reflect_at_walls(grid, patch, [&](int a) { return block.velocity(a); });
-    reflect_at_walls(grid, patch, [&](int a) { return block.force(a); });
+    reflect_at_walls(grid, patch, block, velocity_at);
+    reflect_at_walls(grid, patch, block, force_at);
     if (loaded) loads = work_of_loads(domain, p);
     PatchSums<D>& sums = domain.sums[p];
-    sums.force_work = dt * (sum(work) + weight_first) - loads.first - dashpots.first;
+    sums.force_work = dt * (work + weight_first) - loads.first - dashpots.first;
     sums.load_first = loads.first;
     sums.load_second = loads.second;
     sums.dashpot_first = dashpots.first;
     sums.dashpot_second = dashpots.second;
-    sums.gravity_first = dt * (sum(gravity_first) - weight_first);
-    sums.gravity_second = 0.5 * dt * (sum(gravity_second) - weight_second);
+    sums.gravity_first = dt * (gravity_first - weight_first);
+    sums.gravity_second = 0.5 * dt * (gravity_second - weight_second);
   });
 }
 

@@ -13,8 +13,7 @@ enum class Also { nothing, remap, move };
 /// the grid does not see dies away.
 template <Also also, bool damped, int D>
 [[gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p) {
-  constexpr int W = native_lanes;
-  using T = Batch<W>;
+  using T = Batch<cell_lanes<D>>;
   auto& grid = domain.grid;
   Patch<D>& patch = grid.patches[p];
   Body<D>& body = domain.body_of(patch);
@@ -29,21 +28,14 @@ template <Also also, bool damped, int D>
   double* velocities[D];
   for (int a = 0; a < D; ++a) velocities[a] = body.v(a);
   // The increments are still read where the new momenta are scattered.
-  constexpr int stride = BlockShape<D>::stride_max;
-  double remapped[also == Also::remap ? D * stride : 1];
-  const auto new_momentum = [&](int a) { return remapped + a * stride; };
-  if constexpr (also == Also::remap) std::fill(std::begin(remapped), std::end(remapped), 0.0);
+  alignas(cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * quad : 1];
+  if constexpr (also == Also::remap) std::fill_n(remapped, block.count * quad, 0.0);
 
   with_basis(grid, body, patch, [&](const auto& basis) {
     for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-      const auto increment = vector_field(basis, cell, [&](int a) { return block.force(a); });
-      [[maybe_unused]] const auto velocity =
-          vector_field(basis, cell, [&](int a) { return block.velocity(a); });
-      CellParticles<D> particles;
-      const auto give = [&] {
-        give_momentum<false>(basis, particles, cell.first_node, nullptr, new_momentum);
-        particles.count = 0;
-      };
+      const auto nodes = basis.field(block.lines.from(cell.first_node));
+      CellParticles particles(basis, cell);
+      const auto give = [&] { particles.template give<gives_momentum>({remapped, quad}); };
       for_each_group(cell, [&](const auto& rows) {
         const auto xi = local_position(cell, rows);
         const auto w = basis.weights(xi);
@@ -51,11 +43,11 @@ template <Also also, bool damped, int D>
         T speed2(0.0), change2(0.0);
         Vec<T, D> v;
         unrolled<D>([&](auto a) {
-          const T dv = increment[a].value(w);
+          const T dv = nodes.value(force_at + a, w);
           v[a] = load(velocities[a], rows) + dv;
           if constexpr (damped) {
             lost += m * v[a] * v[a];
-            v[a] += pic * (velocity[a].value(w) - v[a]);
+            v[a] += pic * (nodes.value(velocity_at + a, w) - v[a]);
             lost -= m * v[a] * v[a];
           }
           store(velocities[a], rows, v[a]);
@@ -65,17 +57,18 @@ template <Also also, bool damped, int D>
         });
         kinetic += m * speed2;
         second_order += m * change2;
-        if constexpr (also == Also::move) moving.move(cell, rows, velocity, w);
+        if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
         if constexpr (also == Also::remap) {
-          if (particles.count == CellParticles<D>::room) give();
-          particles.add(xi, all, v, rows.count);
+          if (particles.full()) give();
+          particles.add(all, v);
+          particles.place(xi, rows.count);
         }
       });
       if constexpr (also == Also::remap) give();
     });
   });
   if constexpr (also == Also::remap)
-    for (int a = 0; a < D; ++a) std::copy_n(new_momentum(a), block.stride, block.force(a));
+    copy_quads(block.lines.at(force_at), {remapped, quad}, block.count);
   if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
   PatchSums<D>& sums = domain.sums[p];
   sums.kinetic = 0.5 * sum(kinetic);

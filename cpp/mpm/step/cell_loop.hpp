@@ -27,10 +27,14 @@ void for_each_cell(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>&
   });
 }
 
-/// f(rows) for the particles of a cell, W at a time: LaneRows or WholeRows.
+/// Lanes over the particles of a cell: no more than it holds if there are two along each axis.
+template <int D>
+inline constexpr int cell_lanes = std::min(native_lanes, 1 << D);
+
+/// f(rows) for the particles of a cell, a few at a time: LaneRows or WholeRows.
 template <int D, class F>
 [[gnu::always_inline]] inline void for_each_group(const CellRange<D>& cell, F&& f) {
-  for_each_lanes<native_lanes>(cell.rows, cell.count, f);
+  for_each_lanes<cell_lanes<D>>(cell.rows, cell.count, f);
 }
 
 /// Position of particles in their cell, in [0, 1]. A copy of what it takes of the grid, so that it
@@ -38,7 +42,7 @@ template <int D, class F>
 template <int D>
 class LocalPosition {
  public:
-  using T = Batch<native_lanes>;
+  using T = Batch<cell_lanes<D>>;
   LocalPosition(const TileGrid<D>& grid, const Body<D>& body) : cells_(grid.coordinates()) {
     for (int a = 0; a < D; ++a) x_[a] = body.x(a);
   }
@@ -62,19 +66,18 @@ void with_basis(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& pa
   with_basis(grid.basis, patch.shape, body.mean_edge / grid.cell_size, std::forward<F>(f));
 }
 
-/// Fields of the D components of a nodal vector on a cell; `component(a)` is the first double of
-/// component a.
-template <int D, class Functions, class Component>
-auto vector_field(const Functions& basis, const CellRange<D>& cell, Component&& component) {
-  return [&]<int... a>(std::integer_sequence<int, a...>) {
-    return std::array{basis.field(component(a) + cell.first_node)...};
-  }(std::make_integer_sequence<int, D>{});
+/// Set quads of a block to zero: numbers [first, last) of its lines.
+template <int D>
+void clear_lines(const NodeBlock<D>& block, int first, int last) {
+  for (int n = 0; n < block.count; ++n) {
+    double* const numbers = block.lines[n];
+    for (int k = first; k < last; k += quad) Batch<quad>(0.0).store(numbers + k);
+  }
 }
 
-/// Set fields [first, last) of a block to zero.
-template <int D>
-void clear_fields(const NodeBlock<D>& block, int first, int last) {
-  std::fill(block.data + first * block.stride, block.data + last * block.stride, 0.0);
+/// Copy a quad of `count` lines.
+inline void copy_quads(const NodeLines& to, const NodeLines& from, int count) {
+  for (int n = 0; n < count; ++n) Batch<quad>::load(from[n]).store(to[n]);
 }
 
 /// f(node, held axes) for the nodes of a patch that walls hold.
@@ -89,22 +92,19 @@ void for_each_held_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
   }
 }
 
-/// Turn a field of momenta [kg m/s] into velocities [m/s]: zero without mass, and along axes held
-/// by walls.
-template <int D, class Field>
+/// Turn momenta [kg m/s], the vector at number `at` of the lines, into velocities [m/s]: zero
+/// without mass, and along axes held by walls.
+template <int D>
 void momentum_to_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block,
-                          Field&& field) {
-  const int n = block.stride;
-  alignas(cache_line) double inverse[BlockShape<D>::stride_max];
-  const double* mass = block.mass();
-  for (int i = 0; i < n; ++i) inverse[i] = mass[i] > 0.0 ? 1.0 / mass[i] : 0.0;
-  for (int a = 0; a < D; ++a) {
-    double* v = field(a);
-    for (int i = 0; i < n; ++i) v[i] *= inverse[i];
+                          int at) {
+  for (int n = 0; n < block.count; ++n) {
+    double* const numbers = block.lines[n];
+    const double inverse = numbers[0] > 0.0 ? 1.0 / numbers[0] : 0.0;
+    for (int a = 0; a < D; ++a) numbers[at + a] *= inverse;
   }
   for_each_held_node(grid, patch, [&](int node, unsigned held) {
     for (int a = 0; a < D; ++a)
-      if (held >> a & 1u) field(a)[node] = 0.0;
+      if (held >> a & 1u) block.lines[node][at + a] = 0.0;
   });
 }
 

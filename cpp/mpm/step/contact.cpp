@@ -5,14 +5,14 @@ namespace mpm {
 
 namespace {
 
-/// Nodes beyond slip walls follow their images; `field(block, a)` is what contact has changed.
-template <int D, class Field>
-void reflect(Domain<D>& domain, Field&& field) {
+/// Nodes beyond slip walls follow their images; contact has changed the vector at number `at` of
+/// the lines.
+template <int D>
+void reflect(Domain<D>& domain, int at) {
   TileGrid<D>& grid = domain.grid;
   if (!grid.walls.exist || grid.margin() == 0) return;
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
-    const NodeBlock<D> block = grid.block(p);
-    reflect_at_walls(grid, grid.patches[p], [&](int a) { return field(block, a); });
+    reflect_at_walls(grid, grid.patches[p], grid.block(p), at);
   });
 }
 
@@ -24,7 +24,7 @@ void contact_momentum(Domain<D>& domain) {
   domain.contact.find(domain.grid, domain.bodies, domain.stiffness, domain.contact_settings,
                       domain.time_step, domain.threads);
   domain.contact.adjust_momentum(domain.grid, domain.threads);
-  reflect(domain, [](const NodeBlock<D>& block, int a) { return block.velocity(a); });
+  reflect(domain, velocity_at);
 }
 
 template <int D>
@@ -38,7 +38,7 @@ template <int D>
 void contact_remapped(Domain<D>& domain) {
   if (!domain.has_contact()) return;
   domain.contact.adjust_remapped(domain.grid, domain.threads);
-  reflect(domain, [](const NodeBlock<D>& block, int a) { return block.force(a); });
+  reflect(domain, force_at);
 }
 
 template void contact_momentum<2>(Domain<2>&);

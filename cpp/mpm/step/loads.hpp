@@ -34,10 +34,10 @@ void for_each_piece(const SurfaceLoad<D>& load, const Body<D>& body, const CellR
       f(cell.rows[k], static_cast<std::size_t>(piece - 1));
 }
 
-/// Take the pieces of a patch's particles along; `field(a)` is the nodal velocity that strains the
-/// material.
-template <int D, class Field>
-void carry_loads(Domain<D>& domain, std::size_t p, Field&& field) {
+/// Take the pieces of a patch's particles along; the nodal velocity that strains the material is
+/// the vector at number `at` of the lines.
+template <int D>
+void carry_loads(Domain<D>& domain, std::size_t p, int at) {
   const auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   const Body<D>& body = domain.body_of(patch);
@@ -49,7 +49,7 @@ void carry_loads(Domain<D>& domain, std::size_t p, Field&& field) {
         bool loaded = false;
         for_each_piece(load, body, cell, [&](std::uint32_t, std::size_t) { loaded = true; });
         if (!loaded) return;
-        const auto velocity = vector_field(basis, cell, field);
+        const auto nodes = basis.field(domain.grid.block(p).lines.from(cell.first_node));
         for_each_piece(load, body, cell, [&](std::uint32_t row, std::size_t piece) {
           Vec<double, D> xi;
           for (int a = 0; a < D; ++a)
@@ -57,7 +57,7 @@ void carry_loads(Domain<D>& domain, std::size_t p, Field&& field) {
           const auto w = basis.weights(xi);
           Mat<double, D> L;
           for (int i = 0; i < D; ++i) {
-            const Vec<double, D> gradient = velocity[static_cast<std::size_t>(i)].gradient(w);
+            const Vec<double, D> gradient = nodes.gradient(at + i, w);
             for (int j = 0; j < D; ++j) L[i][j] = scale * gradient[j];
           }
           load.carry(piece, L);

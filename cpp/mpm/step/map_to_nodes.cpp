@@ -15,30 +15,31 @@ void map_patch(Domain<D>& domain, std::size_t p) {
   auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   const NodeBlock<D> block = grid.block(p);
-  if constexpr (momentum) clear_fields(block, 0, grid.fields);
+  if constexpr (momentum) clear_lines(block, 0, grid.line_width);
   const Body<D>& body = domain.body_of(patch);
   if (body.prescribed && !patch.in_contact) return;  // Nobody asks for its nodes.
-  const auto nodal_momentum = [&](int a) { return block.velocity(a); };
   // The weights that "map momentum" leaves in the forces are added last, as where both are mapped
   // at once: to the same bits.
   const bool weighed = !momentum && patch.at_wall && grid.margin() > 0;
-  double weights[D * BlockShape<D>::stride_max];
-  const std::size_t size = weighed ? static_cast<std::size_t>(D * block.stride) : 0;
-  std::copy_n(block.force(0), size, weights);
-  if (weighed) clear_fields(block, 1 + D, 1 + 2 * D);
+  double weights[BlockShape<D>::nodes_max][D];
+  const auto for_each_weight = [&](auto&& f) {
+    for (int n = 0; n < (weighed ? block.count : 0); ++n)
+      for (int a = 0; a < D; ++a) f(weights[n][a], block.force(a)[n]);
+  };
+  for_each_weight([](double& weight, double& force) { weight = std::exchange(force, 0.0); });
   if (!body.rigid)
-    scatter<what>(grid, body, patch, block, nodal_momentum);
+    scatter<what>(grid, body, patch, block.lines);
   else if constexpr (momentum)  // It has no stress.
-    scatter<what & ~gives_forces>(grid, body, patch, block, nodal_momentum);
-  for (std::size_t i = 0; i < size; ++i) block.force(0)[i] += weights[i];
+    scatter<what & ~gives_forces>(grid, body, patch, block.lines);
+  for_each_weight([](double weight, double& force) { force += weight; });
   if constexpr (momentum) {
     if (!body.prescribed) subtract_mirrored_weight(domain, patch, block);
-    fold_at_walls(grid, patch, block.mass(), nodal_momentum);
+    fold_at_walls(grid, patch, block, velocity_at);
   }
   if (!forces || body.rigid) return;
   if (grid.walls.absorb()) scatter_dashpots(grid, body, patch, block);
   if (domain.has_loads()) scatter_loads(domain, p);
-  fold_at_walls<D>(grid, patch, nullptr, [&](int a) { return block.force(a); });
+  fold_at_walls(grid, patch, block, force_at);
 }
 
 /// From the momenta that have been summed to velocities.
@@ -46,14 +47,13 @@ template <int D>
 void find_velocities(Domain<D>& domain, std::size_t p) {
   auto& grid = domain.grid;
   const NodeBlock<D> block = grid.block(p);
-  const auto velocity = [&](int a) { return block.velocity(a); };
   const Body<D>& body = domain.body_of(grid.patches[p]);
   if (body.prescribed) {
-    set_rigid_velocity(grid, grid.patches[p], body.motion->before, velocity);
+    set_rigid_velocity(grid, grid.patches[p], block, body.motion->before);
     return;
   }
-  momentum_to_velocity(grid, grid.patches[p], block, velocity);
-  reflect_at_walls(grid, grid.patches[p], velocity);
+  momentum_to_velocity(grid, grid.patches[p], block, velocity_at);
+  reflect_at_walls(grid, grid.patches[p], block, velocity_at);
 }
 
 template <unsigned what, int D>
@@ -63,7 +63,8 @@ void map_to_nodes(Domain<D>& domain) {
   const bool loaded = forces && domain.has_loads();
   if (loaded) start_loads(domain);
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) { map_patch<what>(domain, p); });
-  grid.sum_shared_nodes(domain.threads, momentum ? 0 : 1 + D, forces ? grid.fields : 1 + D);
+  grid.sum_shared_nodes(domain.threads, momentum ? 0 : force_at,
+                        forces ? grid.line_width : force_at);
   if (momentum)
     domain.threads.for_each(grid.patches.size(),
                             [&](std::size_t p) { find_velocities(domain, p); });

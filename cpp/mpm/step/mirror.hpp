@@ -24,16 +24,17 @@ void for_each_mirrored_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& 
   }
 }
 
-/// Before the shared nodes are summed: move what lies beyond the walls to the images. `mass` if the
-/// mass has been scattered too.
-template <int D, class Field>
-void fold_at_walls(const TileGrid<D>& grid, const Patch<D>& patch, double* mass, Field&& field) {
+/// Before the shared nodes are summed: move the vector at number `at` of the lines from beyond the
+/// walls to the images; with the velocity, the mass as well.
+template <int D>
+void fold_at_walls(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block,
+                   int at) {
   for_each_mirrored_node(grid, patch, [&](int node, int image, unsigned axes) {
-    if (mass) mass[image] += mass[node];
-    for (int a = 0; a < D; ++a) {
-      double* value = field(a);
-      value[image] += axes >> a & 1u ? -value[node] : value[node];
-      value[node] = 0.0;
+    double *const of_node = block.lines[node], *const of_image = block.lines[image];
+    if (at == velocity_at) of_image[0] += of_node[0];
+    for (int k = at, a = 0; a < D; ++k, ++a) {
+      of_image[k] += axes >> a & 1u ? -of_node[k] : of_node[k];
+      of_node[k] = 0.0;
     }
   });
 }
@@ -64,25 +65,24 @@ template <int D>
 void subtract_mirrored_weight(const Domain<D>& domain, const Patch<D>& patch,
                               const NodeBlock<D>& block) {
   if (!patch.at_wall || domain.grid.margin() == 0) return;
-  double weights[D * BlockShape<D>::stride_max];
-  const int size = D * block.stride;
-  std::fill_n(weights, size, 0.0);
+  double weights[BlockShape<D>::nodes_max][D];
+  std::fill_n(weights[0], D * block.count, 0.0);
   for_each_mirrored_node(domain.grid, patch, [&](int node, int image, unsigned axes) {
     for (int a = 0; a < D; ++a)
-      if (axes >> a & 1u)
-        weights[a * block.stride + image] -= mirrored_weight(domain, block, node, a);
+      if (axes >> a & 1u) weights[image][a] -= mirrored_weight(domain, block, node, a);
   });
-  for (int i = 0; i < size; ++i) block.force(0)[i] += weights[i];
+  for (int n = 0; n < block.count; ++n)
+    for (int a = 0; a < D; ++a) block.force(a)[n] += weights[n][a];
 }
 
-/// When the nodes have their velocities: those beyond the walls take their images'.
-template <int D, class Field>
-void reflect_at_walls(const TileGrid<D>& grid, const Patch<D>& patch, Field&& field) {
+/// When the nodes have their velocities, the vector at number `at` of the lines: those beyond the
+/// walls take their images'.
+template <int D>
+void reflect_at_walls(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block,
+                      int at) {
   for_each_mirrored_node(grid, patch, [&](int node, int image, unsigned axes) {
-    for (int a = 0; a < D; ++a) {
-      double* value = field(a);
-      value[node] = axes >> a & 1u ? -value[image] : value[image];
-    }
+    double *const of_node = block.lines[node] + at, *const of_image = block.lines[image] + at;
+    for (int a = 0; a < D; ++a) of_node[a] = axes >> a & 1u ? -of_image[a] : of_image[a];
   });
 }
 

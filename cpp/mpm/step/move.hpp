@@ -12,12 +12,11 @@ class Moving {
     for (int a = 0; a < D; ++a) x_[a] = body.x(a);
   }
 
-  /// `velocity` holds the nodal fields of the cell, `w` what they want to know of the positions
-  /// before.
-  template <class Rows, class Fields, class Weights>
-  void move(const CellRange<D>& cell, const Rows& rows, const Fields& velocity, const Weights& w) {
+  /// `nodes` are the nodal fields of the cell, `w` what they want to know of the positions before.
+  template <class Rows, class Field, class Weights>
+  void move(const CellRange<D>& cell, const Rows& rows, const Field& nodes, const Weights& w) {
     unrolled<D>([&](auto a) {
-      const T x = load(x_[a], rows) + time_step_ * velocity[a].value(w);
+      const T x = load(x_[a], rows) + time_step_ * nodes.value(velocity_at + a, w);
       store(x_[a], rows, x);
       const T local = cells_.in_cells(x, a) - T(cell.cell[a]);
       left_ = left_ | (local < T(0.0)) | (local >= T(1.0));
@@ -26,11 +25,11 @@ class Moving {
   bool left_cell() const { return any(left_); }
 
  private:
-  using T = Batch<native_lanes>;
+  using T = Batch<cell_lanes<D>>;
   CellCoordinates<D> cells_;
   double* x_[D];
   T time_step_;
-  Mask<native_lanes> left_ = T(1.0) < T(0.0);
+  Mask<cell_lanes<D>> left_ = T(1.0) < T(0.0);
 };
 
 }  // namespace mpm

@@ -15,9 +15,9 @@ void move_particles(Domain<D>& domain) {
     Moving<D> moving(grid, body, domain.time_step);
     with_basis(grid, body, patch, [&](const auto& basis) {
       for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-        const auto velocity = vector_field(basis, cell, [&](int a) { return block.velocity(a); });
+        const auto nodes = basis.field(block.lines.from(cell.first_node));
         for_each_group(cell, [&](const auto& rows) {
-          moving.move(cell, rows, velocity, basis.weights(local_position(cell, rows)));
+          moving.move(cell, rows, nodes, basis.weights(local_position(cell, rows)));
         });
       });
     });

@@ -7,15 +7,15 @@
 namespace mpm {
 
 /// Give all nodes of a patch the velocity of a rigid motion.
-template <int D, class Field>
-void set_rigid_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const RigidMotion& motion,
-                        Field&& field) {
+template <int D>
+void set_rigid_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block,
+                        const RigidMotion& motion) {
   const Index<D> first = grid.first_cell(patch.tile);
   for (int n = 0; n < patch.shape.node_count; ++n) {
     Index<D> node = patch.shape.index(n);
     for (int a = 0; a < D; ++a) node[a] += first[a];
     const Vector3 v = motion.velocity_at(in_space<D>(grid.position_of(node)));
-    for (int a = 0; a < D; ++a) field(a)[n] = v[a];
+    for (int a = 0; a < D; ++a) block.velocity(a)[n] = v[a];
   }
 }
 

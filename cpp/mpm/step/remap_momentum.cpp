@@ -14,22 +14,22 @@ void remap(Domain<D>& domain, bool scattered) {
     const NodeBlock<D> block = grid.block(p);
     const Body<D>& body = domain.body_of(patch);
     if (!scattered || body.rigid) {
-      clear_fields(block, 1 + D, 1 + 2 * D);
+      clear_lines(block, force_at, force_at + quad);
       if (body.prescribed) return;
-      scatter<gives_momentum>(grid, body, patch, block, [&](int a) { return block.force(a); });
+      scatter<gives_momentum>(grid, body, patch, block.lines.at(force_at));
     }
-    fold_at_walls<D>(grid, patch, nullptr, [&](int a) { return block.force(a); });
+    fold_at_walls(grid, patch, block, force_at);
   });
-  grid.sum_shared_nodes(domain.threads, 1 + D, 1 + 2 * D);
+  grid.sum_shared_nodes(domain.threads, force_at, force_at + quad);
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const NodeBlock<D> block = grid.block(p);
-    const auto velocity = [&](int a) { return block.force(a); };
     if (domain.body_of(grid.patches[p]).prescribed) {
-      for (int a = 0; a < D; ++a) std::copy_n(block.velocity(a), block.stride, block.force(a));
+      for (int n = 0; n < block.count; ++n)
+        for (int a = 0; a < D; ++a) block.force(a)[n] = block.velocity(a)[n];
       return;
     }
-    momentum_to_velocity(grid, grid.patches[p], block, velocity);
-    reflect_at_walls(grid, grid.patches[p], velocity);
+    momentum_to_velocity(grid, grid.patches[p], block, force_at);
+    reflect_at_walls(grid, grid.patches[p], block, force_at);
   });
 }
 

@@ -8,128 +8,137 @@ namespace mpm {
 /// What is scattered: any sum of these.
 enum Gives : unsigned { gives_mass = 1, gives_momentum = 2, gives_forces = 4 };
 
-/// Up to `room` particles of a cell, one after another.
-template <int D>
-struct CellParticles {
-  using T = Batch<native_lanes>;
-  static constexpr int room = 16;
+/// Particles of a cell, one after another, as many as there is room for.
+template <int D, class Functions>
+class CellParticles {
+ public:
+  using T = Batch<cell_lanes<D>>;
+  using Nodes = typename Functions::Nodes;
   static constexpr int parts = Sym<T, D>::size;
-  int count = 0;
-  double xi[D][room];            // position in the cell
-  double mass[room];             // [kg]
-  double velocity[D][room];      // [m/s]
-  double traction[parts][room];  // -V_p (sigma_p - q_p 1) / h [N]
 
-  /// The first `added` lanes; what they give is added before or after.
-  void add(const Vec<T, D>& position, T m, const Vec<T, D>& v, int added) {
-    unrolled<D>([&](auto a) {
-      position[a].store(xi[a] + count);
-      v[a].store(velocity[a] + count);
-    });
-    m.store(mass + count);
-    count += added;
+  CellParticles(const Functions& basis, const CellRange<D>& cell)
+      : basis_(basis), first_node_(cell.first_node) {}
+
+  bool full() const { return count_ == room; }
+  /// The first `added` lanes; what they give is added before `place`.
+  void place(const Vec<T, D>& position, int added) {
+    places_.put(basis_, count_, position);
+    count_ += added;
   }
+  void add(T m, const Vec<T, D>& v) {
+    m.store(mass_ + count_);
+    unrolled<D>([&](auto a) { v[a].store(velocity_[a] + count_); });
+  }
+  /// Component c of -V_p (sigma_p - q_p 1) / h [N].
+  void add_traction(int c, T value) { value.store(traction_[c] + count_); }
+
+  /// To the nodes of a patch, whose lines begin at its first: the particles' mass and momentum to
+  /// the first quad, their forces to the next; momentum alone to the first.
+  template <unsigned what>
+  void give(const NodeLines& patch) {
+    constexpr bool forces = (what & gives_forces) != 0, momentum = what != gives_forces;
+    // All sums at once where the registers hold them.
+    constexpr int registers = native_lanes == 8 ? 32 : 16;
+    if constexpr (!forces || !momentum ||
+                  Nodes::registers * (1 + 2 * D) <= registers - registers / 4) {
+      give_sums<what>(patch.from(first_node_));
+    } else {
+      give_sums<what & ~gives_forces>(patch.from(first_node_));
+      give_sums<gives_forces>(patch.from(first_node_));
+    }
+    count_ = 0;
+  }
+
+ private:
+  /// Eqs. (2), (3) and f_i -= V_p (sigma_p - q_p 1) . grad N_ip, eq. (9), with the artificial
+  /// viscosity's pressure q.
+  template <unsigned what>
+  void give_sums(const NodeLines& nodes) {
+    Nodes m = Nodes::zero(), p[3] = {m, m, m}, f[3] = {m, m, m};
+    for (int k = 0; k < count_; ++k) {
+      if constexpr (what != gives_forces) {
+        const Nodes m_ip = basis_.functions(places_, k, mass_[k]);
+        if constexpr ((what & gives_mass) != 0) m.add(1.0, m_ip);
+        unrolled<D>([&](auto a) { p[a].add(velocity_[a][k], m_ip); });
+      }
+      if constexpr ((what & gives_forces) != 0) {
+        Nodes G[D];
+        basis_.gradients(places_, k, G);
+        unrolled<D>([&](auto a) {
+          unrolled<D>([&](auto b) { f[a].add(traction_[Sym<double, D>::index(a, b)][k], G[b]); });
+        });
+      }
+    }
+    if constexpr ((what & gives_mass) != 0)
+      basis_.add_to_nodes(nodes, m, p[0], p[1], p[2]);
+    else if constexpr (what != gives_forces)
+      basis_.add_to_nodes(nodes, p[0], p[1], p[2], m);
+    if constexpr ((what & gives_forces) != 0)
+      basis_.add_to_nodes(nodes.at(force_at), f[0], f[1], f[2], Nodes::zero());
+  }
+
+  static constexpr int room = 16;
+  const Functions& basis_;
+  int first_node_, count_ = 0;
+  typename Functions::template Particles<room> places_;
+  double mass_[room];             // [kg]
+  double velocity_[D][room];      // [m/s]
+  double traction_[parts][room];  // [N]
 };
+template <int D, class Functions>
+CellParticles(const Functions&, const CellRange<D>&) -> CellParticles<D, Functions>;
 
 /// Takes what particles give out of the columns of a body.
 template <unsigned what, int D>
 class Givers {
  public:
-  using T = Batch<native_lanes>;
+  using T = Batch<cell_lanes<D>>;
   Givers(const TileGrid<D>& grid, const Body<D>& body)
       : local_position_(grid, body), minus_per_cell_size_(-1.0 / grid.cell_size) {
     mass_ = body.mass();
     volume_ = body.volume();
     if (const int q = body.at.viscosity_pressure; q >= 0) q_ = body.columns.component(q);
     for (int a = 0; a < D; ++a) velocity_[a] = body.v(a);
-    for (int c = 0; c < CellParticles<D>::parts; ++c) stress_[c] = body.stress(c);
+    for (int c = 0; c < Sym<T, D>::size; ++c) stress_[c] = body.stress(c);
   }
 
-  template <class Rows>
-  void add(CellParticles<D>& to, const CellRange<D>& cell, const Rows& rows) const {
+  template <class Functions, class Rows>
+  void add(CellParticles<D, Functions>& to, const CellRange<D>& cell, const Rows& rows) const {
     if constexpr ((what & gives_forces) != 0) {
       const T scale = T(minus_per_cell_size_) * load(volume_, rows);
       const T q = q_ ? load(q_, rows) : T(0.0);
-      unrolled<CellParticles<D>::parts>([&](auto c) {
+      unrolled<Sym<T, D>::size>([&](auto c) {
         const T stress = load(stress_[c], rows);
-        (scale * (c < D ? stress - q : stress)).store(to.traction[c] + to.count);
+        to.add_traction(c, scale * (c < D ? stress - q : stress));
       });
     }
-    const Vec<T, D> xi = local_position_(cell, rows);
     if constexpr ((what & gives_momentum) != 0) {
       Vec<T, D> v;
       unrolled<D>([&](auto a) { v[a] = load(velocity_[a], rows); });
-      to.add(xi, load(mass_, rows), v, rows.count);
-    } else {
-      unrolled<D>([&](auto a) { xi[a].store(to.xi[a] + to.count); });
-      to.count += rows.count;
+      to.add(load(mass_, rows), v);
     }
+    to.place(local_position_(cell, rows), rows.count);
   }
 
  private:
   LocalPosition<D> local_position_;
   double minus_per_cell_size_;
-  const double *mass_, *volume_, *q_ = nullptr, *velocity_[D], *stress_[CellParticles<D>::parts];
+  const double *mass_, *volume_, *q_ = nullptr, *velocity_[D], *stress_[Sym<T, D>::size];
 };
 
-/// Mass (if asked for) and momentum of a cell's particles, eqs. (2)-(3); `momentum(a)` is the
-/// nodal field of component a.
-template <bool with_mass, int D, class Functions, class Field>
-void give_momentum(const Functions& basis, const CellParticles<D>& particles, int first_node,
-                   double* mass, Field&& momentum) {
-  using Nodes = typename Functions::Nodes;
-  Nodes m_i = Nodes::zero();
-  Nodes p_i[D];
-  for (auto& p : p_i) p = Nodes::zero();
-  for (int k = 0; k < particles.count; ++k) {
-    const Nodes m_ip =
-        basis.functions(&particles.xi[0][k], CellParticles<D>::room, particles.mass[k]);
-    if constexpr (with_mass) m_i.add(1.0, m_ip);
-    unrolled<D>([&](auto a) { p_i[a].add(particles.velocity[a][k], m_ip); });
-  }
-  if constexpr (with_mass) basis.add_to_nodes(mass + first_node, m_i);
-  for (int a = 0; a < D; ++a) basis.add_to_nodes(momentum(a) + first_node, p_i[a]);
-}
-
-/// f_i -= V_p (sigma_p - q_p 1) . grad N_ip, eq. (9), with the artificial viscosity's pressure q.
-template <int D, class Functions, class Field>
-void give_forces(const Functions& basis, const CellParticles<D>& particles, int first_node,
-                 Field&& force) {
-  using Nodes = typename Functions::Nodes;
-  Nodes f_i[D];
-  for (auto& f : f_i) f = Nodes::zero();
-  for (int k = 0; k < particles.count; ++k) {
-    Nodes G[D];
-    basis.gradients(&particles.xi[0][k], CellParticles<D>::room, G);
-    unrolled<D>([&](auto a) {
-      unrolled<D>(
-          [&](auto b) { f_i[a].add(particles.traction[Sym<double, D>::index(a, b)][k], G[b]); });
-    });
-  }
-  for (int a = 0; a < D; ++a) basis.add_to_nodes(force(a) + first_node, f_i[a]);
-}
-
-/// Scatter from all particles of a patch to its block; momenta to the fields `momentum(a)`.
-template <unsigned what, int D, class Field>
+/// Scatter from all particles of a patch to its nodes (CellParticles::give).
+template <unsigned what, int D>
 [[gnu::flatten]] void scatter(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
-                              const NodeBlock<D>& block, Field&& momentum) {
+                              const NodeLines& nodes) {
   const Givers<what, D> givers(grid, body);
   with_basis(grid, body, patch, [&](const auto& basis) {
     for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-      CellParticles<D> particles;
-      const auto give = [&] {
-        if constexpr ((what & gives_momentum) != 0)
-          give_momentum<(what & gives_mass) != 0>(basis, particles, cell.first_node, block.mass(),
-                                                  momentum);
-        if constexpr ((what & gives_forces) != 0)
-          give_forces(basis, particles, cell.first_node, [&](int a) { return block.force(a); });
-        particles.count = 0;
-      };
+      CellParticles particles(basis, cell);
       for_each_group(cell, [&](const auto& rows) {
-        if (particles.count == CellParticles<D>::room) give();
+        if (particles.full()) particles.template give<what>(nodes);
         givers.add(particles, cell, rows);
       });
-      give();
+      particles.template give<what>(nodes);
     });
   });
 }

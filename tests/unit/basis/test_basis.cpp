@@ -23,41 +23,55 @@ double sum_over_nodes(const std::vector<double>& weight, const std::vector<doubl
 
 template <int D, class B>
 void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const B& basis) {
-  const auto stride = static_cast<std::size_t>(shape.node_stride);
+  using T = Batch<4>;
+  const auto count = static_cast<std::size_t>(shape.node_count);
   const Index<D> cell =
       Tile<D>::cell_index(Tile<D>::cell_count - 1);  // reaches to the block's edge
   const int first = shape.node(cell);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> inside(1e-12, 1.0 - 1e-12), any(-1.0, 1.0);
-  std::vector<double> ones(stride, 0.0), field(stride, 0.0);
+  std::vector<double> ones(count, 0.0), field(count, 0.0), lines(line * count, 0.0);
   std::array<std::vector<double>, D> position;
   position.fill(ones);
   for (int n = 0; n < shape.node_count; ++n) {
     const auto i = static_cast<std::size_t>(n);
     ones[i] = 1.0;
-    field[i] = any(random);
+    field[i] = lines[line * i + quad + 1] = any(random);
     for (std::size_t a = 0; a < D; ++a) position[a][i] = shape.index(n)[a] - cell[a];
   }
   auto spread = [&](const typename B::Nodes& nodes) {
-    std::vector<double> weight(stride, 0.0);
-    basis.add_to_nodes(weight.data() + first, nodes);
+    std::vector<double> weight(count), quads(quad * count, 0.0);
+    const auto none = B::Nodes::zero();
+    basis.add_to_nodes(NodeLines{quads.data(), quad}.from(first), none, none, nodes, none);
+    for (std::size_t i = 0; i < count; ++i) {
+      weight[i] = std::exchange(quads[quad * i + 2], 0.0);
+      for (std::size_t k = 0; k < quad; ++k) CHECK_EQUAL(quads[quad * i + k], 0.0);
+    }
     return weight;
   };
-  const auto polynomial = basis.field(field.data() + first);
+  const auto nodes = basis.field(NodeLines{lines.data(), line}.from(first));
+  // The one particle, in all lanes.
+  typename B::template Particles<4> particles;
+  const auto value = [&](const Vec<double, D>& xi) {
+    return nodes.value(quad + 1, basis.weights(xi));
+  };
 
   for (int sample = 0; sample < 200; ++sample) {
     Vec<double, D> xi;
     for (int a = 0; a < D; ++a) xi[a] = inside(random);
-    const auto N = spread(basis.functions(xi.c, 1, 1.0));
+    Vec<T, D> lanes;
+    for (int a = 0; a < D; ++a) lanes[a] = T(xi[a]);
+    particles.put(basis, 0, lanes);
+    const auto N = spread(basis.functions(particles, sample % 4, 1.0));
     CHECK_CLOSE(sum_over_nodes(N, ones), 1.0, tolerance);
     for (std::size_t a = 0; a < D; ++a)
       CHECK_CLOSE(sum_over_nodes(N, position[a]), xi[static_cast<int>(a)], tolerance);
     for (const double n : N) CHECK(n >= 0.0, n);
-    CHECK_CLOSE(polynomial.value(basis.weights(xi)), sum_over_nodes(N, field), tolerance);
+    CHECK_CLOSE(value(xi), sum_over_nodes(N, field), tolerance);
 
     typename B::Nodes G[D];
-    basis.gradients(xi.c, 1, G);
-    const auto gradient = polynomial.gradient(basis.weights(xi));
+    basis.gradients(particles, sample % 4, G);
+    const auto gradient = nodes.gradient(quad + 1, basis.weights(xi));
     for (int a = 0; a < D; ++a) {
       const auto dN = spread(G[a]);
       CHECK_CLOSE(sum_over_nodes(dN, ones), 0.0, tolerance);
@@ -70,9 +84,7 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const
       Vec<double, D> up = xi, down = xi;
       up[a] += h;
       down[a] -= h;
-      const double slope =
-          (polynomial.value(basis.weights(up)) - polynomial.value(basis.weights(down))) / (2 * h);
-      CHECK_CLOSE(gradient[a], slope, 1e-5);
+      CHECK_CLOSE(gradient[a], (value(up) - value(down)) / (2 * h), 1e-5);
     }
   }
 }

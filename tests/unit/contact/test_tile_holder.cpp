@@ -25,7 +25,7 @@ void check_nodes(mpm::testing::Report& report, Basis basis) {
   grid.connect();
   grid.cut_blocks(threads);
   for (std::size_t p = 0; p < 2; ++p)
-    for (int n = 0; n < grid.patches[p].shape.node_stride; ++n)
+    for (int n = 0; n < grid.patches[p].shape.node_count; ++n)
       grid.block(p).mass()[n] = has_mass(random) ? 0.5 : 0.0;
   NodesWithMass<D> masses;
   masses.find(grid, threads);

@@ -35,7 +35,7 @@ void check_sums(mpm::testing::Report& report, TileGrid<D>& grid, Threads& thread
     given[key].push_back(mass);
     owners[key] += grid.patches[p].owned[n];
   });
-  grid.sum_shared_nodes(threads, 0, 2);
+  grid.sum_shared_nodes(threads, 0, quad);
   constexpr double rounding = 1e-14;  // of up to 2 x 2^3 numbers below 1, added in another order
   for_each_node([&](std::size_t p, int n, const Key& key) {
     double sum = 0.0;

@@ -99,7 +99,7 @@ void check_rounds(mpm::testing::Report& report) {
     check_lists(report, grid, bodies, round);
     CHECK(other == bodies[static_cast<std::size_t>((moved + 1) % 3)].order, round);
     if (round % 10 == 9)
-      for (Body<D>& each : bodies) sort_columns(each, threads, scratch);
+      for (Body<D>& each : bodies) sort_columns(grid, each, threads, scratch);
   }
   CHECK(failed > 10, failed);
   CHECK_EQUAL(eroded.count, failed);
