@@ -171,17 +171,24 @@ def plot(
 def bench(
     name: Annotated[str, typer.Argument(metavar="NAME", help="elastic3d, two_cubes, ...")],
     size: Annotated[
-        int | None, typer.Option(min=1, help="Cells along an edge; of spheres, how many.")
+        list[int] | None,
+        typer.Option(min=1, help="Cells along an edge; of spheres, how many. May be given again."),
     ] = None,
-    threads: Annotated[int, typer.Option(min=1, help="Threads.")] = 1,
+    threads: Annotated[
+        list[int] | None, typer.Option(min=1, help="Threads; 1 if not given. May be given again.")
+    ] = None,
     scheme: Annotated[Scheme, typer.Option(help="Scheme.")] = Scheme.musl,
     steps: Annotated[int | None, typer.Option(min=1, help="Steps that are timed.")] = None,
     json: Json = False,
+    plot: Annotated[Path | None, typer.Option(help="Picture to write, a PNG.")] = None,
 ) -> None:
-    """Measure the speed: time per particle-step and stage, memory, bandwidth."""
+    """Measure the speed: time per particle-step and stage, memory, bandwidth.
+
+    With several sizes or numbers of threads: how these grow.
+    """
     from .bench import main as measure
 
-    measure(name, size=size, threads=threads, scheme=scheme.value, steps=steps, json=json)
+    measure(name, size or (), threads or (1,), scheme.value, steps, json, plot)
 
 
 class Size(str, enum.Enum):

@@ -88,10 +88,34 @@ def test_table_names_every_stage(cubes, capsys):
 
 
 def test_json_is_all_that_is_printed(capsys):
-    bench.main("elastic2d", size=4, steps=2, scheme="usf", json=True)
+    bench.main("elastic2d", [4], steps=2, scheme="usf", json=True)
     result = json.loads(capsys.readouterr().out)
     assert (result["particles"], result["scheme"], result["steps"]) == (64, "usf", 2)
     assert "remap nodes" not in result["stages"]
+
+
+def test_series_has_every_size_with_every_number_of_threads(tmp_path, capsys):
+    told = []
+    found = bench.series("two_cubes", [3, 4], [1, 2], steps=2, told=lambda *part: told.append(part))
+    assert [(result["size"], result["threads"]) for result in found] == [
+        *((3, 1), (3, 2)),
+        *((4, 1), (4, 2)),
+    ]
+    assert all(set(result) >= KEYS and "contact_ratio" not in result for result in found)
+    assert told[-1][0] == told[-1][1]
+    picture = tmp_path / "growth.png"
+    bench.main("elastic2d", [3, 4], [1, 2], steps=2, plot=picture)
+    rows = [line for line in capsys.readouterr().out.splitlines() if line.startswith("│")]
+    assert len(rows) == 4
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    bench.main("elastic2d", [3], [1, 2], steps=2, json=True, plot=tmp_path / "threads.png")
+    assert [result["threads"] for result in json.loads(capsys.readouterr().out)] == [1, 2]
+
+
+def test_one_measurement_has_a_picture_too(tmp_path, capsys):
+    bench.main("elastic2d", [4], steps=2, plot=tmp_path / "stages.png")
+    assert (tmp_path / "stages.png").is_file()
+    assert "stages.png" in capsys.readouterr().out
 
 
 def test_unknown_name_lists_the_known_ones():

@@ -17,6 +17,7 @@
   X(time_function) \
   X(eigen) \
   X(threads) \
+  X(memory) \
   X(columns) \
   X(basis) \
   X(jaumann) \

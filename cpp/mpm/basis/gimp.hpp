@@ -94,7 +94,7 @@ template <int D>
 struct GimpNodes {
   static constexpr int rows = power(4, D - 1);
   using Row = NodeLanes<4>;
-  static constexpr int registers = rows * Row::parts;
+  static constexpr int parts = rows * Row::parts;
   Row row[rows];
 
   static GimpNodes zero() {

@@ -34,9 +34,9 @@ inline constexpr auto slope = pattern<D>(true);
 template <int D>
 struct LinearField {
   static constexpr int corners = 1 << D;
-  alignas(64) double c[corners][line];
+  alignas(line * sizeof(double)) double c[corners][line];
 
-  /// `nodes` begin at the cell's first.
+  /// `nodes` are whole lines and begin at the cell's first.
   LinearField(const NodeLines& nodes, int row, int layer) {
     constexpr int W = std::min(native_lanes, line);
     for (int at = 0; at < line; at += W) {
@@ -111,13 +111,13 @@ struct Linear {
   static Nodes functions(const Particles<room>& particles, int p, double scale) {
     Part inner = lanes(0, particles.xi[0][p]);
     for (int a = 1; a < inner_axes; ++a) inner = inner * lanes(a, particles.xi[a][p]);
+    // The axes in their order and the scale last: the same bits for every width.
     Nodes N;
     for (int k = 0; k < Nodes::parts; ++k) {
-      Part factor(scale);
-      for (int a = inner_axes; a < D; ++a) factor = factor * along(a, k, particles.xi[a][p]);
-      N.part[k] = factor * inner;
+      N.part[k] = inner;
+      for (int a = inner_axes; a < D; ++a) N.part[k] = N.part[k] * along(a, k, particles.xi[a][p]);
     }
-    return N;
+    return N.times(scale);
   }
   /// dN_ip / d xi over the cell's nodes, along each axis.
   template <int room>

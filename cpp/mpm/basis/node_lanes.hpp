@@ -1,18 +1,14 @@
 #pragma once
 // Lanes over nodes: values of the nodes that a particle reaches, x fastest, in as many registers as
 // they take, so that what the particles of a cell give to them is summed in registers.
-#include <array>
-
 #include "mpm/math/batch.hpp"
 
 namespace mpm {
 
 template <int Count>
 struct NodeLanes {
-  static constexpr int count = Count;
   static constexpr int width = Count < native_lanes ? Count : native_lanes;
   static constexpr int parts = Count / width;
-  static constexpr int registers = parts;
   using Part = Batch<width>;
   Part part[parts];
 
@@ -25,9 +21,6 @@ struct NodeLanes {
     NodeLanes r;
     for (int k = 0; k < parts; ++k) r.part[k] = Part::load(values + k * width);
     return r;
-  }
-  void store(double* to) const {
-    for (int k = 0; k < parts; ++k) part[k].store(to + k * width);
   }
   NodeLanes times(double s) const {
     NodeLanes r;
@@ -44,9 +37,9 @@ struct NodeLanes {
 template <int W, class F>
 [[gnu::always_inline]] inline void for_each_quad(Batch<W> a, Batch<W> b, Batch<W> c, Batch<W> d,
                                                  F&& f) {
-  const auto pairs = [](Batch<W> x, Batch<W> y, auto odd) {
+  const auto pairs = [](Batch<W> x, Batch<W> y, auto first) {
     return [&]<int... k>(std::integer_sequence<int, k...>) {
-      return __builtin_shufflevector(x.v, y.v, ((k & ~1) + odd + (k & 1 ? W : 0))...);
+      return __builtin_shufflevector(x.v, y.v, ((k & ~1) + first + (k & 1 ? W : 0))...);
     }(std::make_integer_sequence<int, W>{});
   };
   const std::integral_constant<int, 0> even;

@@ -70,8 +70,7 @@ void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
       solution.sides[k].start(sides[k].mapped, Vec<double, D>::zero());
     solve<false>(solution);
     for (std::size_t k = 0; k < sides.size(); ++k)
-      write(grid, node, sides[k], solution.sides[k].end_velocity(),
-            [](const NodeBlock<D>& block, int a) { return block.velocity(a); });
+      write(grid, node, sides[k], solution.sides[k].end_velocity(), velocity_at);
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       SidePair<D>& pair = pairs[k];
       const bool pushed = solution.pairs[k].normal_impulse > 0.0;
@@ -88,8 +87,6 @@ void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
 template <int D>
 void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                                 const Vec<double, D>& gravity, double time_step, Threads& threads) {
-  const auto velocity_at = [](const NodeBlock<D>& block, int a) { return block.velocity(a); };
-  const auto force_at = [](const NodeBlock<D>& block, int a) { return block.force(a); };
   for_each_closed(grid, threads, [&](Part& part, ContactNode& node) {
     const auto sides = part.sides_of(node);
     const auto pairs = part.pairs_of(node);
@@ -164,7 +161,7 @@ Vec<double, D> ContactGrid<D>::prescribed_increment(const TileGrid<D>& grid,
 
 template <int D>
 void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
-  const auto remapped_at = [](const NodeBlock<D>& block, int a) { return block.force(a); };
+  constexpr int remapped_at = force_at;
   for_each_closed(grid, threads, [&](Part& part, const ContactNode& node) {
     const auto sides = part.sides_of(node);
     // The slip at the end of the step is that of the particles. The nodes' own increments, forces

@@ -134,12 +134,10 @@ class ContactGrid {
   std::size_t patch_of(const Side<D>& side) const {
     return static_cast<std::size_t>(holders_[side.first_copy].patch);
   }
-  /// The vector of components `field(block, a)` at a side's node; and write it to all copies.
-  template <class Field>
-  Vec<double, D> read(TileGrid<D>& grid, const Side<D>& side, Field&& field) const;
-  template <class Field>
+  /// The vector at number `at` of the line of a side's node; and write it to all copies.
+  Vec<double, D> read(TileGrid<D>& grid, const Side<D>& side, int at) const;
   void write(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
-             const Vec<double, D>& value, Field&& field) const;
+             const Vec<double, D>& value, int at) const;
   /// Grid coordinates of a node.
   Index<D> place_of(const TileGrid<D>& grid, const ContactNode& node) const {
     const Index<D> index = Tile<D>::cell_index(node.cell);
@@ -210,21 +208,19 @@ void ContactGrid<D>::for_each_copy(const ContactNode& node, const Side<D>& side,
 }
 
 template <int D>
-template <class Field>
-Vec<double, D> ContactGrid<D>::read(TileGrid<D>& grid, const Side<D>& side, Field&& field) const {
-  const NodeBlock<D> block = grid.block(patch_of(side));
+Vec<double, D> ContactGrid<D>::read(TileGrid<D>& grid, const Side<D>& side, int at) const {
+  const double* const numbers = grid.block(patch_of(side)).lines[side.node] + at;
   Vec<double, D> value;
-  for (int a = 0; a < D; ++a) value[a] = field(block, a)[side.node];
+  for (int a = 0; a < D; ++a) value[a] = numbers[a];
   return value;
 }
 
 template <int D>
-template <class Field>
 void ContactGrid<D>::write(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
-                           const Vec<double, D>& value, Field&& field) const {
-  for_each_copy(node, side, grid, [&](std::size_t p, int at) {
-    const NodeBlock<D> block = grid.block(p);
-    for (int a = 0; a < D; ++a) field(block, a)[at] = value[a];
+                           const Vec<double, D>& value, int at) const {
+  for_each_copy(node, side, grid, [&](std::size_t p, int n) {
+    double* const numbers = grid.block(p).lines[n] + at;
+    for (int a = 0; a < D; ++a) numbers[a] = value[a];
   });
 }
 

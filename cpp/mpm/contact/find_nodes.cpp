@@ -82,8 +82,7 @@ void ContactGrid<D>::read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& b
     who = mix(mix(who, b), bodies[b].active());
     side.prescribed = bodies[b].prescribed;
     side.mass = grid.block(patch_of(side)).mass()[side.node];
-    side.mapped =
-        read(grid, side, [](const NodeBlock<D>& block, int a) { return block.velocity(a); });
+    side.mapped = read(grid, side, velocity_at);
   }
   if (keeps_) part.known_of(node).who = who;
   sort_sides(part.sides_of(node));

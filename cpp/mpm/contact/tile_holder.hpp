@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "mpm/grid/tile_grid.hpp"
-#include "mpm/math/batch.hpp"
 
 namespace mpm {
 

@@ -14,12 +14,12 @@ namespace mpm {
 /// nodes are summed; `force` holds the weights that slip walls mirror from when momentum is mapped
 /// until forces are; it holds the velocity increment of the step [m/s] once the nodes are advanced,
 /// and the remapped velocity [m/s] after the MUSL remap. `dashpot` exists where walls absorb:
-/// factors [kg/s], then forces.
+/// factors [kg/s], then forces, until the remap.
 template <int D>
 struct NodeBlock {
   NodeLines lines;
   int count;
-  NodeField mass() const { return {lines.data, lines.width}; }
+  NodeField mass() const { return {lines.data + mass_at, lines.width}; }
   NodeField velocity(int a) const { return {lines.data + velocity_at + a, lines.width}; }
   NodeField force(int a) const { return {lines.data + force_at + a, lines.width}; }
   NodeField dashpot(int a) const { return {lines.data + dashpot_at<D> + a, lines.width}; }

@@ -85,7 +85,7 @@ class TileGrid {
     return needed_ * sizeof(double) + patches.size() * sizeof(Patch<D>);
   }
   void release_nodes() { node_memory_.release_and_allocate(0); }
-  /// The memory of the nodes, for others between steps.
+  /// The memory of the nodes, for others until momentum is mapped. All values in it are lost.
   std::span<std::byte> idle_memory() {
     return std::as_writable_bytes(std::span(node_memory_.data(), node_memory_.size()));
   }

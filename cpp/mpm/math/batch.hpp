@@ -83,16 +83,17 @@ struct Batch {
   Batch& operator+=(Batch b) { return *this = *this + b; }
   Batch& operator-=(Batch b) { return *this = *this - b; }
   Batch& operator*=(Batch b) { return *this = *this * b; }
+  friend Mask<W> operator<(Batch a, Batch b) { return {a.v < b.v}; }
+  friend Mask<W> operator>(Batch a, Batch b) { return {a.v > b.v}; }
+  friend Mask<W> operator<=(Batch a, Batch b) { return {a.v <= b.v}; }
+  friend Mask<W> operator>=(Batch a, Batch b) { return {a.v >= b.v}; }
 
+ private:
   // Not 0 + s, which is an addition that the compiler must keep.
   template <int... k>
   static Vector repeated(double s, std::integer_sequence<int, k...>) {
     return Vector{(static_cast<void>(k), s)...};
   }
-  friend Mask<W> operator<(Batch a, Batch b) { return {a.v < b.v}; }
-  friend Mask<W> operator>(Batch a, Batch b) { return {a.v > b.v}; }
-  friend Mask<W> operator<=(Batch a, Batch b) { return {a.v <= b.v}; }
-  friend Mask<W> operator>=(Batch a, Batch b) { return {a.v >= b.v}; }
 };
 
 template <int W>
@@ -135,20 +136,6 @@ std::uint64_t lane_bits(Mask<W> m) {
   std::uint64_t bits = 0;
   for (int k = 0; k < W; ++k) bits |= m.v[k] != 0 ? std::uint64_t{1} << k : 0;
   return bits;
-}
-
-/// Lanes of zeros and `a` (below W) or zeros (W and more), as the places say.
-template <int... place, int W>
-Batch<W> shuffled(Batch<W> a) {
-  static_assert(sizeof...(place) == W);
-  return Batch<W>(__builtin_shufflevector(a.v, typename Batch<W>::Vector{}, place...));
-}
-/// The lanes of two halves.
-template <int W>
-Batch<2 * W> joined(Batch<W> low, Batch<W> high) {
-  return [&]<int... k>(std::integer_sequence<int, k...>) {
-    return Batch<2 * W>(__builtin_shufflevector(low.v, high.v, k...));
-  }(std::make_integer_sequence<int, 2 * W>{});
 }
 
 /// True if the condition holds in any lane.

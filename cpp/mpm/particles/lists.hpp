@@ -45,9 +45,9 @@ struct ListScratch {
   std::uint32_t* order_of(int body) { return order + first[static_cast<std::size_t>(body)]; }
   std::uint8_t* cell_of(int body) { return cell + first[static_cast<std::size_t>(body)]; }
   bool changes_list_of(int body) const { return first[static_cast<std::size_t>(body)] != none; }
-  /// Room for so many bytes, until the next call or the next step: in the memory of the nodes,
-  /// whose values are of no use between steps, or where that is too small, our own, which then gets
-  /// `most`.
+  /// Room for so many bytes, until the next call or until blocks are cut: in the memory of the
+  /// nodes, whose values are of no use before momentum is mapped, or where that is too small, our
+  /// own, which then gets `most`.
   std::byte* room(TileGrid<D>& grid, std::size_t bytes, std::size_t most) {
     const std::span<std::byte> idle = grid.idle_memory();
     if (bytes <= idle.size()) return idle.data();

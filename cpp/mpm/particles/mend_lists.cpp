@@ -283,6 +283,8 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
       std::copy_n(scratch.order_of(static_cast<int>(b)) + rest, gone,
                   bodies[b].order.data() + rest);
   }
+  scratch.order = nullptr;
+  scratch.cell = nullptr;
   grid.cut_blocks(threads);
   return changed;
 }

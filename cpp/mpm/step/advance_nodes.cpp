@@ -39,7 +39,7 @@ void advance_nodes(Domain<D>& domain) {
     double work = 0.0, gravity_first = 0.0, gravity_second = 0.0;
     for (int n = 0; n < block.count; ++n) {
       double* const numbers = block.lines[n];
-      const double m = numbers[0], impulse = m > 0.0 ? dt / m : 0.0;
+      const double m = numbers[mass_at], impulse = m > 0.0 ? dt / m : 0.0;
       for (int a = 0; a < D; ++a) {
         double &v = numbers[velocity_at + a], &f = numbers[force_at + a];
         const double weight = m * domain.gravity[a], dv = impulse * (f + weight);

@@ -99,7 +99,7 @@ void momentum_to_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const 
                           int at) {
   for (int n = 0; n < block.count; ++n) {
     double* const numbers = block.lines[n];
-    const double inverse = numbers[0] > 0.0 ? 1.0 / numbers[0] : 0.0;
+    const double inverse = numbers[mass_at] > 0.0 ? 1.0 / numbers[mass_at] : 0.0;
     for (int a = 0; a < D; ++a) numbers[at + a] *= inverse;
   }
   for_each_held_node(grid, patch, [&](int node, unsigned held) {

@@ -15,6 +15,7 @@ void map_patch(Domain<D>& domain, std::size_t p) {
   auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   const NodeBlock<D> block = grid.block(p);
+  // All of all lines: until now the memory may have been lent (TileGrid::idle_memory).
   if constexpr (momentum) clear_lines(block, 0, grid.line_width);
   const Body<D>& body = domain.body_of(patch);
   if (body.prescribed && !patch.in_contact) return;  // Nobody asks for its nodes.

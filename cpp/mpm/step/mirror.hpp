@@ -31,7 +31,7 @@ void fold_at_walls(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlo
                    int at) {
   for_each_mirrored_node(grid, patch, [&](int node, int image, unsigned axes) {
     double *const of_node = block.lines[node], *const of_image = block.lines[image];
-    if (at == velocity_at) of_image[0] += of_node[0];
+    if (at == velocity_at) of_image[mass_at] += of_node[mass_at];
     for (int k = at, a = 0; a < D; ++k, ++a) {
       of_image[k] += axes >> a & 1u ? -of_node[k] : of_node[k];
       of_node[k] = 0.0;

@@ -5,7 +5,7 @@
 
 namespace mpm {
 
-/// What is scattered: any sum of these.
+/// What is scattered: a sum of these. Forces come with neither or with both of the others.
 enum Gives : unsigned { gives_mass = 1, gives_momentum = 2, gives_forces = 4 };
 
 /// Particles of a cell, one after another, as many as there is room for.
@@ -37,10 +37,10 @@ class CellParticles {
   template <unsigned what>
   void give(const NodeLines& patch) {
     constexpr bool forces = (what & gives_forces) != 0, momentum = what != gives_forces;
-    // All sums at once where the registers hold them.
-    constexpr int registers = native_lanes == 8 ? 32 : 16;
-    if constexpr (!forces || !momentum ||
-                  Nodes::registers * (1 + 2 * D) <= registers - registers / 4) {
+    static_assert(!(forces && momentum) || (what & gives_mass), "mass comes before the momentum");
+    // All sums at once where the machine's registers hold them.
+    constexpr int all = native_lanes == 8 ? 32 : 16;
+    if constexpr (!forces || !momentum || Nodes::parts * (1 + 2 * D) <= all - all / 4) {
       give_sums<what>(patch.from(first_node_));
     } else {
       give_sums<what & ~gives_forces>(patch.from(first_node_));
@@ -85,8 +85,6 @@ class CellParticles {
   double velocity_[D][room];      // [m/s]
   double traction_[parts][room];  // [N]
 };
-template <int D, class Functions>
-CellParticles(const Functions&, const CellRange<D>&) -> CellParticles<D, Functions>;
 
 /// Takes what particles give out of the columns of a body.
 template <unsigned what, int D>

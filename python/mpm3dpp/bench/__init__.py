@@ -21,8 +21,9 @@ import platform
 import statistics
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -126,17 +127,57 @@ def measure(
         RunError: it could not be run to its end.
     """
     bench = find(name)
+    _allow(bench, scheme)
+    cells = size or bench.size
+    specs = [(part, cells, threads) for part in (name, bench.twin) if part]
+    lengths = block_lengths(steps or STEPS)
+    blocks, ends = _in_turns(specs, scheme, lengths, told)
+    return _result(bench, cells, threads, scheme, sum(lengths), blocks, ends[0])
+
+
+def series(
+    name: str,
+    sizes: Sequence[int],
+    threads: Sequence[int],
+    scheme: str = "musl",
+    steps: int | None = None,
+    told: Callable[[int, int], None] | None = None,
+) -> list[dict[str, Any]]:
+    """Measure a benchmark for every size with every number of threads, in turns.
+
+    All take turns block by block, so that they can be compared; their memory is needed at once.
+    The twin of a benchmark is left out. Arguments, results and errors are those of `measure`.
+    """
+    bench = find(name)
+    _allow(bench, scheme)
+    lengths = block_lengths(steps or STEPS)
+    specs = [(name, size, count) for size in sizes for count in threads]
+    blocks, ends = _in_turns(specs, scheme, lengths, told)
+    alone = replace(bench, twin="")
+    return [
+        _result(alone, size, count, scheme, sum(lengths), [found], end)
+        for (_, size, count), found, end in zip(specs, blocks, ends, strict=True)
+    ]
+
+
+def _allow(bench: Bench, scheme: str) -> None:
     if bench.loose and scheme == "usl":
         raise CaseError(
             "cannot be measured with USL, which is unstable where particles enter empty cells",
             "give usf or musl",
-            value=name,
+            value=bench.name,
         )
-    names = [name, bench.twin] if bench.twin else [name]
-    cells = size or bench.size
-    lengths = block_lengths(steps or STEPS)
-    parts = len(names) * (len(lengths) + 1) + 1
-    blocks: list[list[dict[str, Any]]] = [[] for _ in names]
+
+
+def _in_turns(
+    specs: Sequence[tuple[str, int, int]],
+    scheme: str,
+    lengths: Sequence[int],
+    told: Callable[[int, int], None] | None,
+) -> tuple[list[list[dict[str, Any]]], list[dict[str, Any]]]:
+    """Measure benchmarks (name, size, threads) block by block; return their blocks and ends."""
+    parts = len(specs) * (len(lengths) + 1) + 1
+    blocks: list[list[dict[str, Any]]] = [[] for _ in specs]
     done = 0
 
     def tell() -> None:
@@ -147,9 +188,13 @@ def measure(
 
     with ExitStack() as stack:
         workers = []
-        for part in names:  # One after the other: making particles must not disturb the rest.
+        for (
+            name,
+            size,
+            threads,
+        ) in specs:  # One after the other: making particles disturbs the rest.
             tell()
-            worker = Worker(part, cells, threads, scheme, min(WARM_UP, sum(lengths)))
+            worker = Worker(name, size, threads, scheme, min(WARM_UP, sum(lengths)))
             workers.append(stack.enter_context(worker))
             worker.ask()
         for length in lengths:
@@ -157,9 +202,9 @@ def measure(
                 tell()
                 found.append(worker.ask(f"block {length}"))
         tell()
-        last = workers[0].ask("finish")
+        ends = [worker.ask("finish") for worker in workers]
     tell()
-    return _result(bench, cells, threads, scheme, sum(lengths), blocks, last)
+    return blocks, ends
 
 
 def _result(
@@ -220,19 +265,32 @@ def machine() -> str:
 
 def main(
     name: str,
-    size: int | None = None,
-    threads: int = 1,
+    sizes: Sequence[int] = (),
+    threads: Sequence[int] = (1,),
     scheme: str = "musl",
     steps: int | None = None,
     json: bool = False,
+    plot: Path | None = None,
 ) -> None:
-    """Measure a benchmark and print a table, or JSON; see `measure`."""
-    from .report import progress, show
+    """Measure a benchmark and print a table, or JSON, and draw it; see `measure` and `series`."""
+    from .report import progress, show, show_series
 
-    find(name)
+    bench = find(name)
+    alone = len(sizes) <= 1 and len(threads) == 1
     with progress(quiet=json) as told:
-        result = measure(name, size, threads, scheme, steps, told)
+        if alone:
+            results = [measure(name, next(iter(sizes), None), threads[0], scheme, steps, told)]
+        else:
+            results = series(name, sizes or (bench.size,), threads, scheme, steps, told)
     if json:
-        print(json_format.dumps(result, indent=2))
+        print(json_format.dumps(results[0] if alone else results, indent=2))
+    elif alone:
+        show(results[0])
     else:
-        show(result)
+        show_series(results)
+    if plot:
+        from .picture import save_picture
+
+        saved = save_picture(plot, results)
+        if not json:
+            print(f"picture    {saved}")

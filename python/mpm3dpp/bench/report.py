@@ -61,6 +61,38 @@ def show(result: dict[str, Any]) -> None:
         console.print(line, markup=False, soft_wrap=True)
 
 
+def show_series(results: list[dict[str, Any]]) -> None:
+    """Print a row for each result of `mpm3dpp.bench.series` on standard output."""
+    from rich.console import Console
+    from rich.table import Table
+
+    first = results[0]
+    heads = ("particles", "threads", "ns per particle-step", "to the first", "bytes per particle",
+             "GB/s moved", "of")  # fmt: skip
+    table = Table()
+    for head in heads:
+        table.add_column(head, justify="right")
+    for result in results:
+        ns = result["ns_per_particle_step"]
+        table.add_row(
+            f"{result['particles']:,}",
+            f"{result['threads']}",
+            f"{ns:.1f}",
+            f"{ns / first['ns_per_particle_step']:.3f}",
+            f"{result['bytes_per_particle']['total']:.1f}",
+            f"{result['bytes_moved_per_particle_step'] / ns:.1f}",
+            f"{result['bandwidth_GBps']:.1f}",
+        )
+    console = Console(highlight=False)
+    about = BENCHES[first["bench"]].about
+    console.print(
+        f"{first['bench']}: {about}; {first['scheme'].upper()}, {first['steps']} steps, in turns",
+        markup=False, soft_wrap=True,
+    )  # fmt: skip
+    console.print(table)
+    console.print(f"machine    {first['machine']}, {first['isa']}", markup=False, soft_wrap=True)
+
+
 def headline(result: dict[str, Any]) -> str:
     """Return what was measured, in one line."""
     threads = result["threads"]

@@ -4,9 +4,10 @@
 Counted is what each stage has to read from and write to the particles' columns, once per particle
 and step, 8 bytes a number, and the 4 bytes of the list by which it finds them. A stage that reads
 a column again that an earlier stage has read counts it again: for more particles than the caches
-hold it does come from memory again. Not counted are the nodes (a patch's block stays in the
-cache), the sorting of columns, and the mending of lists, so the fraction of the bandwidth that
-follows is a lower bound. A small problem stays in the caches, and its fraction can exceed 1.
+hold it does come from memory again. Not counted are the nodes (64 bytes each, which a step goes
+through some ten times: in large problems they come from memory too), the sorting of columns, and
+the mending of lists, so the fraction of the bandwidth that follows is a lower bound. A small
+problem stays in the caches, and its fraction can exceed 1.
 """
 
 from __future__ import annotations

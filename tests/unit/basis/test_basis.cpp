@@ -50,7 +50,7 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const
     return weight;
   };
   const auto nodes = basis.field(NodeLines{lines.data(), line}.from(first));
-  // The one particle, in all lanes.
+  // The particle in one of the lanes, others beside it.
   typename B::template Particles<4> particles;
   const auto value = [&](const Vec<double, D>& xi) {
     return nodes.value(quad + 1, basis.weights(xi));
@@ -59,10 +59,12 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const
   for (int sample = 0; sample < 200; ++sample) {
     Vec<double, D> xi;
     for (int a = 0; a < D; ++a) xi[a] = inside(random);
+    const int p = sample % 4;
     Vec<T, D> lanes;
-    for (int a = 0; a < D; ++a) lanes[a] = T(xi[a]);
+    for (int a = 0; a < D; ++a)
+      for (int k = 0; k < 4; ++k) lanes[a].v[k] = k == p ? xi[a] : inside(random);
     particles.put(basis, 0, lanes);
-    const auto N = spread(basis.functions(particles, sample % 4, 1.0));
+    const auto N = spread(basis.functions(particles, p, 1.0));
     CHECK_CLOSE(sum_over_nodes(N, ones), 1.0, tolerance);
     for (std::size_t a = 0; a < D; ++a)
       CHECK_CLOSE(sum_over_nodes(N, position[a]), xi[static_cast<int>(a)], tolerance);
@@ -70,7 +72,7 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const
     CHECK_CLOSE(value(xi), sum_over_nodes(N, field), tolerance);
 
     typename B::Nodes G[D];
-    basis.gradients(particles, sample % 4, G);
+    basis.gradients(particles, p, G);
     const auto gradient = nodes.gradient(quad + 1, basis.weights(xi));
     for (int a = 0; a < D; ++a) {
       const auto dN = spread(G[a]);
@@ -89,6 +91,20 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const
   }
 }
 
+/// Four registers with a node in each lane become a quad for each node.
+template <int W>
+void check_quads(mpm::testing::Report& report) {
+  Batch<W> from[4];
+  for (int f = 0; f < 4; ++f)
+    for (int n = 0; n < W; ++n) from[f].v[n] = 10.0 * n + f;
+  int calls = 0;
+  for_each_quad(from[0], from[1], from[2], from[3], [&](int n, Batch<4> q) {
+    ++calls;
+    for (int f = 0; f < 4; ++f) CHECK_EQUAL(q.v[f], 10.0 * n + f);
+  });
+  CHECK_EQUAL(calls, W);
+}
+
 }  // namespace
 
 void test_basis(mpm::testing::Report& report) {
@@ -99,6 +115,9 @@ void test_basis(mpm::testing::Report& report) {
       with_basis<2>(basis, flat, edge, [&](const auto& b) { check_basis(report, flat, b); });
       with_basis<3>(basis, space, edge, [&](const auto& b) { check_basis(report, space, b); });
     }
+  check_quads<2>(report);
+  check_quads<4>(report);
+  check_quads<8>(report);
   // A particle on a face, or a rounding beyond it, is held just inside the cell.
   CHECK_EQUAL(local_coordinate(3.0, 3.0), 1e-12);
   CHECK_EQUAL(local_coordinate(3.0 - 1e-15, 3.0), 1e-12);

@@ -32,16 +32,22 @@ void check_sums(mpm::testing::Report& report, TileGrid<D>& grid, Threads& thread
     const double mass = any(random);
     grid.block(p).mass()[n] = mass;
     grid.block(p).velocity(0)[n] = 2.0 * mass;
+    grid.block(p).force(0)[n] = mass;
+    grid.block(p).dashpot(D - 1)[n] = 3.0 * mass;
     given[key].push_back(mass);
     owners[key] += grid.patches[p].owned[n];
   });
+  // Quad by quad, so that no other may change with one.
   grid.sum_shared_nodes(threads, 0, quad);
+  grid.sum_shared_nodes(threads, force_at, grid.line_width);
   constexpr double rounding = 1e-14;  // of up to 2 x 2^3 numbers below 1, added in another order
   for_each_node([&](std::size_t p, int n, const Key& key) {
     double sum = 0.0;
     for (const double m : given[key]) sum += m;
     CHECK_CLOSE(grid.block(p).mass()[n], sum, rounding);
     CHECK_EQUAL(grid.block(p).velocity(0)[n], 2.0 * grid.block(p).mass()[n]);
+    CHECK_EQUAL(grid.block(p).force(0)[n], grid.block(p).mass()[n]);
+    CHECK_CLOSE(grid.block(p).dashpot(D - 1)[n], 3.0 * sum, 3.0 * rounding);
     CHECK_EQUAL(owners[key], 1);
   });
 }
@@ -77,6 +83,7 @@ void check_blocks(mpm::testing::Report& report, Basis basis, bool bonded) {
   grid.cell_size = 1.0;
   grid.basis = basis;
   grid.bonded = bonded;
+  grid.line_width = line_with_dashpots<D>;
   const auto occupy = [&](Patch<D>& patch) {
     const auto some = static_cast<unsigned>(random() % 5);  // sparse, so that blocks differ
     patch.occupied = some == 0 ? 0 : random();
