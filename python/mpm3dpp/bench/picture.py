@@ -59,7 +59,7 @@ def _growth(axes: Axes, results: list[dict[str, Any]]) -> None:
         axes.plot(counts, ideal, "--", color="black", linewidth=1.0, label="ideal")
         axes.set_xticks(counts)
         axes.set_xlabel("threads")
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, 1.1 * max(ns.values()))
     axes.set_ylabel("ns per particle and step")
     axes.grid(True)
     axes.legend()

@@ -67,8 +67,7 @@ def show_series(results: list[dict[str, Any]]) -> None:
     from rich.table import Table
 
     first = results[0]
-    heads = ("particles", "threads", "ns per particle-step", "to the first", "bytes per particle",
-             "GB/s moved", "of")  # fmt: skip
+    heads = ("particles", "threads", "ns", "ratio", "bytes", "GB/s", "limit")
     table = Table()
     for head in heads:
         table.add_column(head, justify="right")
@@ -90,7 +89,12 @@ def show_series(results: list[dict[str, Any]]) -> None:
         markup=False, soft_wrap=True,
     )  # fmt: skip
     console.print(table)
-    console.print(f"machine    {first['machine']}, {first['isa']}", markup=False, soft_wrap=True)
+    for line in (
+        "ns per particle-step and their ratio to the first row; bytes per particle at the peak;",
+        "bandwidth used, and measured in the same run",
+        f"machine    {first['machine']}, {first['isa']}",
+    ):
+        console.print(line, markup=False, soft_wrap=True)
 
 
 def headline(result: dict[str, Any]) -> str:
