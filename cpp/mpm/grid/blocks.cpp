@@ -2,6 +2,7 @@
 // that share a node.
 #include <algorithm>
 #include <atomic>
+#include <bit>
 
 #include "mpm/grid/tile_grid.hpp"
 
@@ -114,7 +115,7 @@ void TileGrid<D>::for_each_neighbour(const Patch<D>& patch, int first, int last,
 
 template <int D>
 void TileGrid<D>::sum_shared_nodes(Threads& threads, int first, int last) {
-  // All quads of two lines, one of which may be written.
+  // Numbers [first, last) of two lines; only `to` is written.
   const auto add = [&](double* to, const double* from) {
     for (int k = first; k < last; k += quad)
       (Batch<quad>::load(to + k) + Batch<quad>::load(from + k)).store(to + k);

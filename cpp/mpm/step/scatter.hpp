@@ -38,7 +38,7 @@ class CellParticles {
   void give(const NodeLines& patch) {
     constexpr bool forces = (what & gives_forces) != 0, momentum = what != gives_forces;
     static_assert(!(forces && momentum) || (what & gives_mass), "mass comes before the momentum");
-    // All sums at once where the machine's registers hold them.
+    // All sums at once where the machine's registers hold them and a quarter is left for the rest.
     constexpr int all = native_lanes == 8 ? 32 : 16;
     if constexpr (!forces || !momentum || Nodes::parts * (1 + 2 * D) <= all - all / 4) {
       give_sums<what>(patch.from(first_node_));
