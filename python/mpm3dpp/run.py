@@ -17,6 +17,7 @@ from . import _core
 from .case import Case
 from .errors import RunError
 from .folders import writable_folder
+from .io.background import BackgroundWriter
 from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import ResultsWriter
@@ -86,7 +87,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
     contact = case.contact_enabled
     most = min(case.output.history_every if contact else _BLOCK, core.history_capacity // 2)
     frames = [t for t in case.frame_times() if t > 0.0]
-    results = ResultsWriter(
+    file = ResultsWriter(
         folder / "results.vtkhdf",
         bodies=simulation.parts,
         materials=simulation.materials,
@@ -94,6 +95,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
         cell_size=case.grid.cell_size,
         origin=case.grid.lower,
         fields=_fields(case),
+        compression=case.output.compression,
         title=case.title,
         case_hash=case.case_hash,
     )
@@ -108,7 +110,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
     status: Status = "completed"
     reason: str | None = None
-    with results, history, progress, _interrupt() as stopped:
+    with BackgroundWriter(file) as results, history, progress, _interrupt() as stopped:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
         for sentence in simulation.notes:
@@ -131,6 +133,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
             due = bool(frames) and core.time >= frames[0]
             while frames and core.time >= frames[0]:
                 frames.pop(0)
+            results.check()
             if due or len(pairs) > touched:  # A frame too whenever two entries first touch.
                 results.write(core)
                 touched = len(pairs)

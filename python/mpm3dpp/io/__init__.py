@@ -4,7 +4,8 @@
 Nothing heavy is imported here; h5py is loaded when a file is opened, vtk never.
 """
 
-from mpm3dpp.io.fields import frame_arrays, pressure, von_mises
+from mpm3dpp.io.background import BackgroundWriter
+from mpm3dpp.io.fields import Frame, copy_frame, frame_arrays, pressure, von_mises
 from mpm3dpp.io.history import HistoryWriter, read_history
 from mpm3dpp.io.manifest import Manifest, build_manifest, read_manifest
 from mpm3dpp.io.result_hash import result_hash
@@ -12,11 +13,14 @@ from mpm3dpp.io.results import Results, open_results
 from mpm3dpp.io.vtkhdf import ResultsWriter
 
 __all__ = [
+    "BackgroundWriter",
+    "Frame",
     "HistoryWriter",
     "Manifest",
     "Results",
     "ResultsWriter",
     "build_manifest",
+    "copy_frame",
     "frame_arrays",
     "open_results",
     "pressure",

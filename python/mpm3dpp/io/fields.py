@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The arrays of one frame, gathered from a simulation body by body."""
+"""The arrays of one frame: copied from a simulation body by body, and what follows from them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -67,41 +68,74 @@ def particle_sizes(simulation: Any, dimension: int) -> np.ndarray:
     return np.concatenate(volumes) ** (1.0 / dimension)
 
 
-def frame_arrays(
-    simulation: Any, names: Sequence[str], materials: Sequence[int], fields: Sequence[str] = ()
-) -> dict[str, np.ndarray]:
-    """Every array of the present frame, all bodies one after another in their original order.
+@dataclass(frozen=True)
+class Frame:
+    """A copy of what a simulation held at one time; `frame_arrays` makes of it what is stored.
+
+    Attributes:
+        time: [s].
+        step: number of steps made until then.
+        counts: particles of each body.
+        columns: position [m], velocity [m/s], stress [Pa] and further columns by name, all bodies
+            one after another in their original order.
+    """
+
+    time: float
+    step: int
+    counts: list[int]
+    columns: dict[str, np.ndarray]
+
+
+def copy_frame(simulation: Any, fields: Sequence[str] = ()) -> Frame:
+    """Copy the present state of the core's `Simulation`.
 
     Args:
-        simulation: the core's `Simulation`.
-        names: of each body; bodies of one name are grains.
-        materials: number of the material of each body, one per body.
-        fields: names of further columns of the core, e.g. "left_cauchy_green".
-
-    Returns:
-        name -> array with n rows: position [m] and velocity [m/s] (n, 3), z = 0 in 2D;
-        stress [Pa] (n, 6) in the order xx yy zz yz xz xy; pressure and von_mises [Pa] (n,);
-        body and material (n,) int32; grain (n,) int32, the body's number among those of its
-        name, if any name comes twice; each of `fields` with its own number of components,
-        NaN where the model of a body has no such column.
+        simulation: the core's.
+        fields: names of further columns of the core, e.g. "left_cauchy_green"; NaN where the model
+            of a body has no such column.
 
     Raises:
         CaseError: no body has a column of that name.
     """
     bodies = range(simulation.body_count)
     counts = [int(simulation.body_particle_count(b)) for b in bodies]
+    columns = {
+        name: np.concatenate([simulation.column(b, name) for b in bodies])
+        for name in ("position", "velocity", "stress")
+    }
+    for name in fields:
+        if name not in STANDARD:
+            columns[name] = _optional(simulation, name, counts)
+    return Frame(float(simulation.time), int(simulation.step), counts, columns)
 
-    def gather(name: str) -> np.ndarray:
-        return np.concatenate([simulation.column(b, name) for b in bodies])
+
+def frame_arrays(
+    frame: Frame, names: Sequence[str], materials: Sequence[int]
+) -> dict[str, np.ndarray]:
+    """Every array that is stored of a frame.
+
+    Args:
+        frame: the copy.
+        names: of each body; bodies of one name are grains.
+        materials: number of the material of each body, one per body.
+
+    Returns:
+        name -> array with n rows: position [m] and velocity [m/s] (n, 3), z = 0 in 2D;
+        stress [Pa] (n, 6) in the order xx yy zz yz xz xy; pressure and von_mises [Pa] (n,);
+        body and material (n,) int32; grain (n,) int32, the body's number among those of its
+        name, if any name comes twice; the further columns of the frame with their own number of
+        components.
+    """
 
     def of_body(numbers: Sequence[int]) -> np.ndarray:
-        return np.repeat(np.asarray(numbers, dtype=np.int32), counts)
+        return np.repeat(np.asarray(numbers, dtype=np.int32), frame.counts)
 
-    stress = gather("stress")
+    columns = dict(frame.columns)
+    stress = columns.pop("stress")
     different, numbers = numbered(names)
     arrays = {
-        "position": three(gather("position")),
-        "velocity": three(gather("velocity")),
+        "position": three(columns.pop("position")),
+        "velocity": three(columns.pop("velocity")),
         "stress": stress,
         "pressure": pressure(stress),
         "von_mises": von_mises(stress),
@@ -111,10 +145,7 @@ def frame_arrays(
     if len(different) < len(numbers):
         firsts = [numbers.index(k) for k in range(len(different))]
         arrays["grain"] = of_body([b - firsts[k] for b, k in enumerate(numbers)])
-    for name in fields:
-        if name not in arrays:
-            arrays[name] = _optional(simulation, name, counts)
-    return arrays
+    return arrays | columns
 
 
 def column_units(simulation: Any) -> dict[str, str]:

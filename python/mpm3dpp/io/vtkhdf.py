@@ -2,9 +2,10 @@
 """Writer of `results.vtkhdf`: one growing file with every frame, for ParaView and PyVista.
 
 Format: VTKHDF 2.0 (VTK file formats, "VTKHDF"), temporal PolyData, one vertex per particle,
-float32, uncompressed chunks. Arrays that do not change (cells, body, grain, material, size) are
-stored once and referred to by every frame. A frame counts only after all its bytes are in the file:
-the number of frames is raised last, so that a killed run leaves every finished frame readable.
+float32 in chunks, compressed if asked for. Arrays that do not change (cells, body, grain, material,
+size) are stored once and referred to by every frame. A frame counts only after all its bytes are in
+the file: the number of frames is raised last, so that a killed run leaves every finished frame
+readable.
 """
 
 from __future__ import annotations
@@ -21,7 +22,14 @@ import numpy as np
 
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import cannot_write, make_folder, reserve
-from mpm3dpp.io.fields import column_units, frame_arrays, numbered, particle_sizes
+from mpm3dpp.io.fields import (
+    Frame,
+    column_units,
+    copy_frame,
+    frame_arrays,
+    numbered,
+    particle_sizes,
+)
 
 if TYPE_CHECKING:
     import h5py
@@ -49,6 +57,7 @@ class ResultsWriter:
         cell_size: edge of a grid cell [m].
         origin: a corner of the grid [m].
         fields: further columns of the core to store.
+        compression: 0 for none, else the level of gzip, 1 to 9, after a shuffle of bytes.
         title: title of the case.
         case_hash: hash of the case, so that a file can be traced to its run.
 
@@ -66,6 +75,7 @@ class ResultsWriter:
         cell_size: float,
         origin: Sequence[float] = (),
         fields: Sequence[str] = (),
+        compression: int = 0,
         title: str = "",
         case_hash: str = "",
     ) -> None:
@@ -74,6 +84,7 @@ class ResultsWriter:
         self.path = Path(path)
         self.frames = 0
         self._fields = tuple(fields)
+        self._level = compression
         self._bodies = list(bodies)
         names, self._materials = numbered(materials)
         self._dimension = dimension
@@ -105,12 +116,21 @@ class ResultsWriter:
 
     def write(self, simulation: Any) -> None:
         """Append the present state of the core's `Simulation` as a frame."""
-        arrays = frame_arrays(simulation, self._bodies, self._materials, self._fields)
+        self.add(self.copy(simulation))
+
+    def copy(self, simulation: Any) -> Frame:
+        """Copy what a frame holds of the present state of the core's `Simulation`."""
         if self._sizes is None:
             self._sizes = particle_sizes(simulation, self._dimension)
             self._meta["units"] = column_units(simulation)
-        arrays["size"] = self._sizes
-        self.append(float(simulation.time), int(simulation.step), arrays)
+        return copy_frame(simulation, self._fields)
+
+    def add(self, frame: Frame) -> None:
+        """Append a copy as a frame. Raises what `append` raises."""
+        arrays = frame_arrays(frame, self._bodies, self._materials)
+        if self._sizes is not None:
+            arrays["size"] = self._sizes
+        self.append(frame.time, frame.step, arrays)
 
     def append(self, time: float, step: int, arrays: Mapping[str, np.ndarray]) -> None:
         """Append one frame.
@@ -197,7 +217,7 @@ class ResultsWriter:
             root.file["mpm3dpp"].attrs["run"] = json.dumps(self._meta)
         steps = root["Steps"]
         part, cell, index = self._part(root, len(columns["position"]))
-        first = _put(root, "Points", columns["position"])
+        first = _put(root, "Points", columns["position"], self._level)
         for name, values in (
             ("PartOffsets", part),
             ("NumberOfParts", 1),
@@ -211,7 +231,7 @@ class ResultsWriter:
                 continue
             offset = self._constant_offset(name, column)
             if offset is None:
-                offset = _put(root["PointData"], name, column)
+                offset = _put(root["PointData"], name, column, self._level)
                 if name in ("body", "grain", "material", "size"):
                     self._constant[name] = (column.copy(), offset)
             _put(steps["PointDataOffsets"], name, np.array([offset], dtype=np.int64))
@@ -257,19 +277,23 @@ def _column(array: np.ndarray) -> np.ndarray:
         return np.ascontiguousarray(array, dtype=kind)
 
 
-def _extend(group: h5py.Group, name: str, shape: tuple[int, ...], kind: Any, rows: int) -> Any:
+def _extend(
+    group: h5py.Group, name: str, shape: tuple[int, ...], kind: Any, rows: int, level: int = 0
+) -> Any:
     """An empty data set that grows along its first axis, stored in chunks of `rows` rows."""
-    return group.create_dataset(
-        name, (0, *shape), maxshape=(None, *shape), chunks=(max(rows, 1), *shape), dtype=kind
-    )
+    how = {"compression": "gzip", "compression_opts": level, "shuffle": True} if level else {}
+    whole, chunks = (None, *shape), (max(rows, 1), *shape)
+    return group.create_dataset(name, (0, *shape), maxshape=whole, chunks=chunks, dtype=kind, **how)
 
 
-def _put(group: h5py.Group, name: str, values: np.ndarray) -> int:
+def _put(group: h5py.Group, name: str, values: np.ndarray, level: int = 0) -> int:
     """Append rows to a data set (made at the first call); returns the row where they start."""
     if name not in group:
-        chunks = max(1, -(-len(values) // _CHUNK_ROWS))
+        # What is compressed is one chunk a frame: a chunk of two frames would be written again
+        # elsewhere with the second, and a killed run could lose the first.
+        chunks = 1 if level else max(1, -(-len(values) // _CHUNK_ROWS))
         rows = -(-len(values) // chunks) if len(values) > 1 else 256
-        _extend(group, name, values.shape[1:], values.dtype, rows)
+        _extend(group, name, values.shape[1:], values.dtype, rows, level)
     data = group[name]
     first = int(data.shape[0])
     data.resize(first + len(values), axis=0)

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Frames are written beside the run: from copies, in order, and a failure is told."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fake_core import FakeSimulation
+from mpm3dpp.errors import CaseError
+from mpm3dpp.io import BackgroundWriter, ResultsWriter, open_results
+
+LONG = 20.0  # [s] Until a test that hangs is given up.
+
+
+class SlowWriter(ResultsWriter):
+    """Waits for permission before it writes a frame; or cannot write at all."""
+
+    def __init__(self, folder: Path, broken: Exception | None = None) -> None:
+        super().__init__(
+            folder / "results.vtkhdf",
+            bodies=["left", "right"],
+            materials=["steel", "rubber"],
+            dimension=2,
+            cell_size=1e-3,
+        )
+        self.allowed = threading.Semaphore(0)
+        self.broken = broken
+
+    def add(self, frame) -> None:
+        assert self.allowed.acquire(timeout=LONG)
+        if self.broken is not None:
+            raise self.broken
+        super().add(frame)
+
+
+def test_frames_are_those_of_their_time(tmp_path: Path) -> None:
+    """The simulation goes on while its frames wait."""
+    simulation, file = FakeSimulation(), SlowWriter(tmp_path)
+    expected = []
+    with BackgroundWriter(file) as results:
+        for _ in range(2):
+            expected.append(np.concatenate([simulation.column(b, "stress") for b in range(2)]))
+            results.write(simulation)
+            simulation.advance(4)
+        assert file.frames == 0
+        file.allowed.release(2)
+    found = open_results(tmp_path)
+    assert found.steps.tolist() == [0, 4]
+    for k, stress in enumerate(expected):
+        np.testing.assert_array_equal(found.arrays(k)["stress"], stress.astype(np.float32))
+
+
+def test_a_step_waits_when_two_frames_are_behind(tmp_path: Path) -> None:
+    simulation, file = FakeSimulation(), SlowWriter(tmp_path)
+    with BackgroundWriter(file) as results:
+        results.write(simulation)
+        results.write(simulation)
+        third = threading.Thread(target=results.write, args=(simulation,))
+        third.start()
+        third.join(timeout=0.2)
+        assert third.is_alive()
+        file.allowed.release()
+        third.join(timeout=LONG)
+        assert not third.is_alive()
+        file.allowed.release(2)
+    assert len(open_results(tmp_path)) == 3
+
+
+@pytest.mark.parametrize("error", [CaseError("the disk is full"), MemoryError("no room")])
+def test_a_failure_is_told_once(tmp_path: Path, error: Exception) -> None:
+    simulation, file = FakeSimulation(), SlowWriter(tmp_path, error)
+    results = BackgroundWriter(file)
+    file.allowed.release(9)
+    results.write(simulation)
+    with pytest.raises(type(error), match=str(error)):
+        for _ in range(5):
+            results.write(simulation)
+    for _ in range(5):  # Frames that come later are dropped, and nobody waits for them.
+        results.write(simulation)
+    results.close()
+    results.check()
+
+
+def test_closing_tells_a_failure_unless_there_is_another(tmp_path: Path) -> None:
+    file = SlowWriter(tmp_path, CaseError("the disk is full"))
+    file.allowed.release()
+    with (
+        pytest.raises(CaseError, match="the disk is full"),
+        BackgroundWriter(file) as results,
+    ):
+        results.write(FakeSimulation())
+    file = SlowWriter(tmp_path, CaseError("the disk is full"))
+    file.allowed.release()
+    with pytest.raises(KeyboardInterrupt), BackgroundWriter(file) as results:
+        results.write(FakeSimulation())
+        raise KeyboardInterrupt
