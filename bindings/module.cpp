@@ -2,7 +2,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/unique_ptr.h>
 
-#include "mpm/run/bandwidth.hpp"
+#include "mpm/run/machine_limits.hpp"
 #include "mpm/run/simulation.hpp"
 #include "translate.hpp"
 
@@ -249,6 +249,8 @@ NB_MODULE(_core, m) {
 
   add_materials(m);
   m.def("measure_bandwidth", &measure_bandwidth, nb::arg("threads"),
+        nb::call_guard<nb::gil_scoped_release>());
+  m.def("measure_arithmetic", &measure_arithmetic, nb::arg("threads"),
         nb::call_guard<nb::gil_scoped_release>());
   m.def("build_info", [] {
     nb::dict d;

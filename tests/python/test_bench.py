@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 from mpm3dpp import CaseError, _core, bench
-from mpm3dpp.bench import cases, report, spheres, traffic
+from mpm3dpp.bench import cases, operations, report, spheres, traffic
 
 KEYS = {
     *("particles", "threads", "ns_per_particle_step", "stages"),
     *("bytes_per_particle", "bandwidth_GBps", "bandwidth_fraction"),
+    *("arithmetic_GFLOPS", "arithmetic_fraction"),
 }
 
 
@@ -223,3 +224,32 @@ def test_comparison_takes_the_median_of_the_ratios(script):
     assert compare.ratios(a, b, "") == [0.5, 1.5, 0.5]
     [step] = [line for line in compare.table(a, b) if line.startswith("step")]
     assert step.split()[1:4] == ["20.00", "20.00", "0.500"]
+
+
+@pytest.mark.parametrize("bench_name", ["gimp2d", "gimp3d"])
+def test_gimp_is_measured_beside_the_linear_basis(bench_name):
+    result = bench.measure(bench_name, size=3, steps=2)
+    twin = bench_name.replace("gimp", "elastic")
+    assert result[f"{twin}_ratio"] > 0
+    linear = bench.measure(twin, size=3, steps=2)
+    assert result["operations_per_particle_step"] > 1.4 * linear["operations_per_particle_step"]
+
+
+def test_operations_are_those_of_the_stages():
+    """Whatever is fused, the operations are those of the single stages, but for those shared."""
+    single = operations.operations_per_particle_step(
+        ["map momentum", "map forces"], 3, "linear", "elastic"
+    )
+    fused = operations.operations_per_particle_step(
+        ["map momentum and forces"], 3, "linear", "elastic"
+    )
+    assert sum(single.values()) == sum(fused.values())
+    assert single["map momentum"] == 8 * (2 + 2 + 6)  # N_ip, m N_ip, m v N_ip of eight nodes
+    assert operations.operations_per_particle_step(["advance nodes"], 3, "linear", "elastic") == {
+        "advance nodes": 0
+    }
+
+
+def test_arithmetic_of_the_machine_is_that_of_a_processor():
+    """One thread makes more than a hundred million and less than ten million million."""
+    assert 0.1 < _core.measure_arithmetic(1) < 1e4

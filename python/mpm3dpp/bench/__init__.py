@@ -10,8 +10,8 @@ benchmark with a twin (`two_cubes`) takes turns with it, block by block, for an 
   is the difference (the input while it is handed over, sorting, history, threads, the allocator).
   The core also counts memory it has reserved and not used, so in small problems `other` can be
   negative.
-- Bandwidth: measured by the same process after its memory has been read. How the traffic of a
-  step is counted: see `traffic.py`.
+- Bandwidth and arithmetic: measured by the same process after its memory has been read. How the
+  traffic and the operations of a step are counted: see `traffic.py` and `operations.py`.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from typing import Any
 
 from ..errors import CaseError, RunError, nearest
 from .cases import BENCHES, Bench
+from .operations import operations_per_particle_step
 from .traffic import bytes_per_particle_step
 
 BLOCKS = 5
@@ -117,10 +118,10 @@ def measure(
     Returns:
         What `--json` prints: `particles`, `threads`, `ns_per_particle_step`, `stages` [ns per
         particle-step], `bytes_per_particle` {particles, grid, contact, other, total},
-        `bandwidth_GBps`, `bandwidth_fraction`; what was measured (`bench`, `scheme`, `size`,
-        `steps`, `version`, `machine`, `isa`); `blocks`, all blocks [ns]; and with a twin
-        `without_contact_ns` and `contact_ratio` (`elastic3d_ns`, `elastic3d_ratio` for `jc` and
-        `debris`), the median over pairs of blocks.
+        `bandwidth_GBps`, `bandwidth_fraction`, `arithmetic_GFLOPS`, `arithmetic_fraction`; what
+        was measured (`bench`, `scheme`, `size`, `steps`, `version`, `machine`, `isa`); `blocks`,
+        all blocks [ns]; and with a twin `without_contact_ns` and `contact_ratio` (`elastic3d_ns`,
+        `elastic3d_ratio` for `jc` and `debris`), the median over pairs of blocks.
 
     Raises:
         CaseError: there is no such benchmark, or not with this scheme.
@@ -223,6 +224,9 @@ def _result(
     median = statistics.median_low(block["ns"] for block in blocks[0])
     stages = next(block["stages"] for block in blocks[0] if block["ns"] == median)
     moved = sum(bytes_per_particle_step(list(stages), bench.dimension, bench.state).values())
+    made = sum(
+        operations_per_particle_step(list(stages), bench.dimension, bench.basis, bench.law).values()
+    )
     memory = {key: last["bytes"][key] / count for key in ("particles", "grid", "contact")}
     total = last["growth"] / count
     result: dict[str, Any] = {
@@ -242,6 +246,9 @@ def _result(
         "bandwidth_GBps": last["bandwidth"],
         "bytes_moved_per_particle_step": moved,
         "bandwidth_fraction": moved / median / last["bandwidth"],
+        "arithmetic_GFLOPS": last["arithmetic"],
+        "operations_per_particle_step": made,
+        "arithmetic_fraction": made / median / last["arithmetic"],
         "overlapped_nodes": last["overlapped_nodes"],
     }
     if bench.twin:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The benchmarks: lattices of particles that strain and cross cells. SI units.
 
-The basis is the linear one, that of the paper and of most other codes.
+The basis is the linear one, that of the paper and of most other codes, but where GIMP is in the
+name.
 """
 
 from __future__ import annotations
@@ -67,12 +68,14 @@ class Bench:
         dimension: 2 or 3.
         size: cells along the edge of a body, if the user gives none; of grains, how many.
         bodies: how many cubes (squares), side by side along x; 0 for grains.
+        basis: "linear" or "gimp".
         loose: whether the particles of the body lie apart at random (`debris`), as many as a cube
             of the given size has.
         contact: whether the bodies feel each other.
         twin: name of the benchmark that is measured in turn with this one, for their ratio.
         material: keyword arguments of the core's add_material.
         state: numbers that the material keeps for a particle besides its stress.
+        law: name of the material in `operations.LAWS`.
     """
 
     name: str
@@ -84,7 +87,9 @@ class Bench:
     twin: str = ""
     material: dict[str, Any] = field(default_factory=lambda: ALUMINIUM)
     state: int = 0
+    law: str = "elastic"
     loose: bool = False
+    basis: str = "linear"
 
     def particles(self, size: int) -> int:
         """Return the number of particles of all bodies."""
@@ -102,6 +107,8 @@ BENCHES = {
     for bench in (
         Bench("elastic2d", "a square that flies and breathes", 2, 360),
         Bench("elastic3d", "a cube that flies and breathes", 3, 40),
+        Bench("gimp2d", "elastic2d with GIMP", 2, 360, twin="elastic2d", basis="gimp"),
+        Bench("gimp3d", "elastic3d with GIMP", 3, 40, twin="elastic3d", basis="gimp"),
         Bench(
             "jc",
             "the same cube of Johnson-Cook and Mie-Grueneisen copper, yielding",
@@ -110,6 +117,7 @@ BENCHES = {
             twin="elastic3d",
             material=COPPER,
             state=3,
+            law="johnson_cook",
         ),
         Bench(
             "debris",
@@ -242,7 +250,7 @@ def _settings(core: Any, bench: Bench, threads: int, scheme: str) -> Any:
     settings.origin = [0.0, 0.0, 0.0]
     settings.box_cells = [0, 0, 0]
     settings.walls = [core.Wall.free] * 6
-    settings.basis = core.Basis.linear
+    settings.basis = core.Basis[bench.basis]
     settings.scheme = core.Scheme[scheme]
     settings.time_step_factor = TIME_STEP_FACTOR
     settings.gravity = [0.0, 0.0, 0.0]

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from .cases import BENCHES, SPEED
+from .operations import operations_per_particle_step
 from .traffic import bytes_per_particle_step
 
 
@@ -113,16 +114,17 @@ def _stages(result: dict[str, Any]) -> Any:
     total, stages = result["ns_per_particle_step"], result["stages"]
     bench = BENCHES[result["bench"]]
     moved = bytes_per_particle_step(list(stages), bench.dimension, bench.state)
+    made = operations_per_particle_step(list(stages), bench.dimension, bench.basis, bench.law)
     table = Table(show_footer=True)
-    table.add_column("stage", footer="step")
-    footers = (f"{total:.1f}", "100 %", f"{sum(moved.values())}")
-    heads = ("ns per particle-step", "share", "bytes moved")
+    table.add_column("stage", footer="step", no_wrap=True)
+    footers = (f"{total:.1f}", "100 %", f"{sum(moved.values())}", f"{sum(made.values())}")
+    heads = ("ns per particle-step", "share", "bytes moved", "operations")
     for head, footer in zip(heads, footers, strict=True):
         table.add_column(head, footer=footer, justify="right")
     rest = total - sum(stages.values())
     for stage, ns in [*stages.items(), ("ledger and time step", rest)]:
-        traffic = f"{moved[stage]}" if moved.get(stage) else ""
-        table.add_row(stage, f"{ns:.1f}", f"{100 * ns / total:.0f} %", traffic)
+        counts = [f"{of[stage]}" if of.get(stage) else "" for of in (moved, made)]
+        table.add_row(stage, f"{ns:.1f}", f"{100 * ns / total:.0f} %", *counts)
     return table
 
 
@@ -137,6 +139,9 @@ def lines(result: dict[str, Any]) -> list[str]:
         f"memory     {memory['total']:.1f} bytes per particle at the peak: {parts}",
         f"bandwidth  {used:.1f} of {result['bandwidth_GBps']:.1f} GB/s "
         f"({100 * result['bandwidth_fraction']:.0f} %)",
+        f"arithmetic {result['operations_per_particle_step'] / result['ns_per_particle_step']:.1f} "
+        f"of {result['arithmetic_GFLOPS']:.1f} GFLOP/s "
+        f"({100 * result['arithmetic_fraction']:.0f} %)",
     ]
     if "contact_ratio" in result:
         found.append(

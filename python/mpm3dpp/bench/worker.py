@@ -5,7 +5,7 @@
 
 It answers commands on standard input with one line of JSON each on standard output: `block N`
 makes and times N steps, `finish` reads the memory and then, in the same process and state of the
-machine, measures the bandwidth.
+machine, measures what it can do at best.
 """
 
 from __future__ import annotations
@@ -82,6 +82,7 @@ def main(arguments: list[str]) -> None:
             }
             del simulation  # The arrays of the bandwidth test take its place.
             result["bandwidth"] = _core.measure_bandwidth(threads)
+            result["arithmetic"] = _core.measure_arithmetic(threads)
             answer(result)
             return
 
