@@ -24,6 +24,15 @@ check_cxx_compiler_flag("-mmove-max=128 -mstore-max=128" MPM_HAS_MOVE_MAX)
 if(MPM_HAS_MOVE_MAX)
   list(APPEND flags -mmove-max=128 -mstore-max=128)
 endif()
+# The loops over particles are marked to be flattened, but g++ stops at limits of its own, and which
+# calls it then leaves changes with every edit: up to twice the time of a stage.
+set(inline_limits --param=inline-unit-growth=1000 --param=large-stack-frame=65536
+                  --param=large-stack-frame-growth=100000)
+list(JOIN inline_limits " " text)
+check_cxx_compiler_flag("${text}" MPM_HAS_INLINE_LIMITS)
+if(MPM_HAS_INLINE_LIMITS)
+  list(APPEND flags ${inline_limits})
+endif()
 if(MPM_SAME_BITS)
   list(APPEND flags -ffp-contract=off)
 endif()

@@ -1,110 +1,188 @@
 #pragma once
 // Uniform GIMP (Bardenhagen & Kober 2004): the linear shape function averaged over the particle, a
-// box of edges 2 l that stay as they are at the start. With xi the position in the cell and a =
-// max(l - xi, 0), b = max(l - (1 - xi), 0), all lengths in cells, the four nodes -1, 0, 1, 2 of an
-// axis get
-//   A, 1 - xi - 2 A + B, xi + A - 2 B, B    with A = a^2 / (4 l), B = b^2 / (4 l):
-// the linear function plus second differences where the box reaches over a face of the cell. (Their
-// eqs. for S_ip.)
+// box of edges 2 l that stay as they are at the start, 2 l at most one cell. With u the distance
+// from the nearest node, a = max(l - |u|, 0) and A = a^2 / (4 l), all lengths in cells, that node
+// and its two neighbours get along an axis
+//   1 - |u| - 2 A,  max(-u, 0) + A below,  max(u, 0) + A above:
+// the linear function plus second differences where the box reaches over the node. (Their eqs. for
+// S_ip.)
+//
+// A particle's three nodes along each axis are its own, not its cell's. So the lanes are the four
+// numbers of a quad of a node's line, and the particles follow each other.
 #include "mpm/basis/block_shape.hpp"
+#include "mpm/basis/gifts.hpp"
 #include "mpm/basis/node_lanes.hpp"
 #include "mpm/basis/node_lines.hpp"
+#include "mpm/math/scalar.hpp"
 #include "mpm/math/vec.hpp"
 
 namespace mpm {
 
-/// One-axis factors of the four nodes and their derivatives with respect to xi.
+/// One-axis factors of the three nodes in reach, and their derivatives with respect to xi. They are
+/// the nodes -1, 0, 1 of the cell in its lower half, else 0, 1, 2.
 template <class T>
 struct GimpAxis {
-  T N[4], dN[4];
-  GimpAxis() = default;
+  T N[3], dN[3];
+  T first;  // -1 or 0
   GimpAxis(T xi, double l) {
-    const T a = max(T(l) - xi, T(0.0)), b = max(T(l - 1.0) + xi, T(0.0));
-    const T A = T(0.25 / l) * a * a, B = T(0.25 / l) * b * b;
-    const T dA = T(-0.5 / l) * a, dB = T(0.5 / l) * b;
-    N[0] = A;
-    N[1] = T(1.0) - xi - T(2.0) * A + B;
-    N[2] = xi + A - T(2.0) * B;
-    N[3] = B;
-    dN[0] = dA;
-    dN[1] = dB - T(2.0) * dA - T(1.0);
-    dN[2] = T(1.0) + dA - T(2.0) * dB;
-    dN[3] = dB;
+    const auto lower = xi < T(0.5);
+    first = select(lower, T(-1.0), T(0.0));
+    const T u = xi - (first + T(1.0));  // from the nearest node, the middle one
+    const T right = max(u, T(0.0)), left = max(-u, T(0.0));
+    const T a = max(T(l) - (left + right), T(0.0)), A = T(0.25 / l) * a * a;
+    N[0] = left + A;
+    N[1] = T(1.0) - (left + right) - T(2.0) * A;
+    N[2] = right + A;
+    const T dA = select(lower, T(-0.5 / l), T(0.5 / l)) * a;
+    dN[0] = select(lower, T(0.0), T(-1.0)) + dA;
+    dN[2] = select(lower, T(1.0), T(0.0)) + dA;
+    dN[1] = -(dN[0] + dN[2]);
+  }
+  /// Of three values, that of the node at place e of the cell; zero for one out of reach.
+  T at(const T* values, int e) const {
+    const T place = T(static_cast<double>(e)) - first;
+    const T third = select(place > T(2.5), T(0.0), values[2]);
+    const T second = select(place > T(1.5), third, values[1]);
+    return select(place < T(-0.5), T(0.0), select(place > T(0.5), second, values[0]));
   }
 };
 
-/// The nodal fields around one cell, read by particles in the lanes.
+/// One-axis factors of particles of a cell, and the first of the nodes that each reaches.
+template <int D, int room>
+struct GimpPlaces {
+  double N[D][3][room], dN[D][3][room];
+  double first[room];  // from the cell's first node, in nodes
+
+  template <class T>
+  void put(int at, const Vec<T, D>& position, double l, int row, int layer) {
+    T node(0.0);
+    unrolled<D>([&](auto a) {
+      const GimpAxis<T> axis(position[a], l);
+      unrolled<3>([&](auto k) {
+        store_lanes(N[a][k] + at, axis.N[k]);
+        store_lanes(dN[a][k] + at, axis.dN[k]);
+      });
+      node += axis.first * T(a == 0 ? 1.0 : a == 1 ? row : layer);
+    });
+    store_lanes(first + at, node);
+  }
+};
+
+/// The same of one particle, each in all lanes of a quad.
+template <int D>
+struct GimpFactors {
+  Batch<quad> N[D][3], dN[D][3];
+  template <int room>
+  GimpFactors(const GimpPlaces<D, room>& of, int p) {
+    unrolled<D>([&](auto a) {
+      unrolled<3>([&](auto k) {
+        N[a][k] = of.N[a][k][p];
+        dN[a][k] = of.dN[a][k][p];
+      });
+    });
+  }
+  /// f(nodes of a row, y, z) for the three (by three) rows along x, `first` the first node of all.
+  template <class F>
+  [[gnu::always_inline]] static void for_each_row(const NodeLines& first, int row, int layer,
+                                                  F&& f) {
+    unrolled<D == 3 ? 3 : 1>(
+        [&](auto z) { unrolled<3>([&](auto y) { f(first.from(y * row + z * layer), y, z); }); });
+  }
+  /// Of a row: the sum of its quads with factors along x.
+  static Batch<quad> along(const NodeLines& row, const Batch<quad>* x) {
+    return x[0] * Batch<quad>::load(row[0]) + x[1] * Batch<quad>::load(row[1]) +
+           x[2] * Batch<quad>::load(row[2]);
+  }
+};
+
+/// The nodal fields around one cell.
 template <int D>
 struct GimpField {
-  NodeLines nodes;  // from node (-1, -1, ...) of the cell on
+  NodeLines nodes;  // from the cell's first on
   int row, layer;   // from node to node along y and z
 
-  template <class T>
-  using Weights = std::array<GimpAxis<T>, D>;
+  template <int W>
+  struct Weights : GimpPlaces<D, W> {
+    int count;
+  };
 
-  /// Of one field of the lines.
-  template <class T>
-  T value(int field, const Weights<T>& w) const {
-    T total(0.0);
-    for (int z = 0; z < (D == 3 ? 4 : 1); ++z) {
-      T plane(0.0);
-      for (int y = 0; y < 4; ++y) plane += w[1].N[y] * along_x(field, w[0].N, y, z);
-      if constexpr (D == 3) {
-        total += w[2].N[z] * plane;
-      } else {
-        total = plane;
-      }
-    }
-    return total;
+  /// The vector at number `at` of the lines, zero in the lanes without a particle.
+  template <int W>
+  auto vector(int at, const Weights<W>& w) const {
+    Batch<quad> found[W];
+    for_each_particle(at, w, [&](int p, const GimpFactors<D>& of, const NodeLines& first) {
+      Batch<quad> total(0.0);
+      of.for_each_row(first, row, layer, [&](const NodeLines& nodes_x, auto y, auto z) {
+        const auto plane = of.N[1][y] * of.along(nodes_x, of.N[0]);
+        total += D == 3 ? of.N[D - 1][z] * plane : plane;
+      });
+      found[p] = total;
+    });
+    return turned(found, w.count);
   }
 
-  template <class T>
-  Vec<T, D> gradient(int field, const Weights<T>& w) const {
-    Vec<T, D> g = Vec<T, D>::zero();
-    for (int z = 0; z < (D == 3 ? 4 : 1); ++z) {
-      T value(0.0), dx(0.0), dy(0.0);
-      for (int y = 0; y < 4; ++y) {
-        const T f = along_x(field, w[0].N, y, z);
-        value += w[1].N[y] * f;
-        dy += w[1].dN[y] * f;
-        dx += w[1].N[y] * along_x(field, w[0].dN, y, z);
-      }
-      if constexpr (D == 3) {
-        g[0] += w[2].N[z] * dx;
-        g[1] += w[2].N[z] * dy;
-        g[2] += w[2].dN[z] * value;
-      } else {
-        g = {dx, dy};
-      }
+  /// Derivatives of that vector with respect to xi: [i][j] of component i along axis j.
+  template <int W>
+  auto gradients(int at, const Weights<W>& w) const {
+    Batch<quad> found[D][W];
+    for_each_particle(at, w, [&](int p, const GimpFactors<D>& of, const NodeLines& first) {
+      Batch<quad> total[D];
+      for (auto& t : total) t = Batch<quad>(0.0);
+      of.for_each_row(first, row, layer, [&](const NodeLines& nodes_x, auto y, auto z) {
+        const auto value = of.along(nodes_x, of.N[0]), slope = of.along(nodes_x, of.dN[0]);
+        if constexpr (D == 2) {
+          total[0] += of.N[1][y] * slope;
+          total[1] += of.dN[1][y] * value;
+        } else {
+          total[0] += of.N[2][z] * of.N[1][y] * slope;
+          total[1] += of.N[2][z] * of.dN[1][y] * value;
+          total[2] += of.dN[2][z] * of.N[1][y] * value;
+        }
+      });
+      for (int a = 0; a < D; ++a) found[a][p] = total[a];
+    });
+    using V = decltype(turned(found[0], 0));
+    std::array<V, D> g;
+    for (int j = 0; j < D; ++j) {
+      const V along_j = turned(found[j], w.count);
+      for (int i = 0; i < D; ++i) g[static_cast<std::size_t>(i)][j] = along_j[i];
     }
     return g;
   }
 
  private:
-  template <class T>
-  T along_x(int field, const T* factor, int y, int z) const {
-    const NodeField f{nodes[y * row + z * layer] + field, nodes.width};
-    return (factor[0] * T(f[0]) + factor[1] * T(f[1])) +
-           (factor[2] * T(f[2]) + factor[3] * T(f[3]));
+  template <int W, class F>
+  void for_each_particle(int at, const Weights<W>& w, F&& f) const {
+    for (int p = 0; p < w.count; ++p)
+      f(p, GimpFactors<D>(w, p), nodes.from(static_cast<int>(w.first[p])).at(at));
   }
-};
-
-/// Lanes over the 4^D nodes in reach of a cell, row by row along x.
-template <int D>
-struct GimpNodes {
-  static constexpr int rows = power(4, D - 1);
-  using Row = NodeLanes<4>;
-  static constexpr int parts = rows * Row::parts;
-  Row row[rows];
-
-  static GimpNodes zero() {
-    GimpNodes r;
-    for (auto& x : r.row) x = Row::zero();
+  /// From a quad for each particle to lanes of particles for each component.
+  template <int W>
+  static auto turned(Batch<quad> (&found)[W], int count) {
+    using T = std::conditional_t<W == 1, double, Batch<W>>;
+    for (int p = count; p < W; ++p) found[p] = Batch<quad>(0.0);
+    Vec<T, D> r;
+    if constexpr (W < quad) {
+      for (int a = 0; a < D; ++a)
+        if constexpr (W == 1)
+          r[a] = found[0].v[a];
+        else
+          r[a].v = {found[0].v[a], found[1].v[a]};
+    } else {
+      Batch<quad> parts[W / quad][quad];  // four particles' components
+      unrolled<W / quad>([&](auto h) {
+        const Batch<quad>* four = found + h * quad;
+        for_each_quad(four[0], four[1], four[2], four[3],
+                      [&](int a, Batch<quad> component) { parts[h][a] = component; });
+      });
+      unrolled<D>([&](auto a) {
+        if constexpr (W == quad)
+          r[a] = parts[0][a];
+        else
+          r[a] = joined(parts[0][a], parts[1][a]);
+      });
+    }
     return r;
-  }
-  /// this += s * w
-  void add(double s, const GimpNodes& w) {
-    for (int k = 0; k < rows; ++k) row[k].add(s, w.row[k]);
   }
 };
 
@@ -112,98 +190,93 @@ template <int D>
 struct Gimp {
   const BlockShape<D>& shape;
   double half;  // l: half the particle's edge [cells], at most 1/2
-  using Nodes = GimpNodes<D>;
   using Field = GimpField<D>;
+  template <int room>
+  using Particles = GimpPlaces<D, room>;
 
+  /// What `Field` wants to know of `count` particles in the lanes.
   template <class T>
-  std::array<GimpAxis<T>, D> weights(const Vec<T, D>& xi) const {
-    std::array<GimpAxis<T>, D> w;
-    for (std::size_t a = 0; a < D; ++a) w[a] = GimpAxis<T>(xi[static_cast<int>(a)], half);
+  auto weights(const Vec<T, D>& xi, int count) const {
+    typename Field::template Weights<lanes_of<T>> w;
+    put(w, 0, xi);
+    w.count = count;
     return w;
   }
   /// `nodes` begin at the cell's first.
-  Field field(const NodeLines& nodes) const {
-    return {nodes.from(-reach()), shape.nodes[0], shape.nodes[0] * shape.nodes[1]};
+  Field field(const NodeLines& nodes) const { return {nodes, row(), layer()}; }
+
+  /// What `give` wants to know of a cell's particles, a few at a time.
+  template <int room, class T>
+  void put(Particles<room>& places, int at, const Vec<T, D>& position) const {
+    places.put(at, position, half, row(), layer());
   }
 
-  /// What `functions` and `gradients` want to know of a cell's particles: the factors along x node
-  /// by node, those along the other axes particle by particle.
-  template <int room>
-  struct Particles {
-    double x[room][4], dx[room][4];
-    double N[D - 1][4][room], dN[D - 1][4][room];
-    template <int W>
-    void put(const Gimp& basis, int at, const Vec<Batch<W>, D>& position) {
-      const auto w = basis.weights(position);
-      const auto across = [&](double (*to)[4], const Batch<W>* of) {
-        for_each_quad(of[0], of[1], of[2], of[3],
-                      [&](int k, Batch<4> factors) { factors.store(to[at + k]); });
-      };
-      across(x, w[0].N);
-      across(dx, w[0].dN);
-      for (std::size_t a = 1; a < D; ++a)
-        for (int k = 0; k < 4; ++k) {
-          w[a].N[k].store(N[a - 1][k] + at);
-          w[a].dN[k].store(dN[a - 1][k] + at);
-        }
-    }
-  };
-
-  /// scale N_ip over the nodes in reach, for particle p of those.
-  template <int room>
-  static Nodes functions(const Particles<room>& of, int p, double scale) {
-    return product(of.x[p], of.N[0], of.N[D - 2], p, scale);
-  }
-  /// dN_ip / d xi over the nodes in reach, along each axis.
-  template <int room>
-  static void gradients(const Particles<room>& of, int p, Nodes* G) {
-    G[0] = product(of.dx[p], of.N[0], of.N[D - 2], p, 1.0);
-    G[1] = product(of.x[p], of.dN[0], of.N[D - 2], p, 1.0);
-    if constexpr (D == 3) G[2] = product(of.x[p], of.N[0], of.dN[1], p, 1.0);
-  }
-  /// To a quad of the nodes' lines, which begin at the cell's first: the values of four fields.
-  void add_to_nodes(const NodeLines& nodes, const Nodes& a, const Nodes& b, const Nodes& c,
-                    const Nodes& d) const {
-    const NodeLines first = nodes.from(-reach());
-    const int row = shape.nodes[0], layer = row * shape.nodes[1];
-    for (int k = 0; k < Nodes::rows; ++k) {
-      const NodeLines to = first.from((k % 4) * row + (k / 4) * layer);
-      for (int part = 0; part < Nodes::Row::parts; ++part)
-        for_each_quad(a.row[k].part[part], b.row[k].part[part], c.row[k].part[part],
-                      d.row[k].part[part], [&](int n, Batch<4> q) {
-                        double* node = to[part * Nodes::Row::width + n];
-                        (Batch<4>::load(node) + q).store(node);
-                      });
+  /// What the first `count` of these particles give to the nodes, whose lines begin at the cell's
+  /// first: mass and momentum to the first quad, forces to the next; momentum alone to the first.
+  /// Eqs. (2), (3) and f_i -= V_p (sigma_p - q_p 1) . grad N_ip, eq. (9), with the artificial
+  /// viscosity's pressure q.
+  template <unsigned what, int room>
+  void give(const NodeLines& nodes, const Particles<room>& places, const Gifts<D, room>& gifts,
+            int count) const {
+    for (int p = 0; p < count; ++p) {
+      const NodeLines first = nodes.from(static_cast<int>(places.first[p]));
+      const GimpFactors<D> of(places, p);
+      if constexpr (what != gives_forces)
+        give_momentum<(what & gives_mass) != 0>(first, of, gifts, p);
+      if constexpr ((what & gives_forces) != 0) give_forces(first.at(force_at), of, gifts, p);
     }
   }
 
   /// One-axis factor of the node at place e (-1, 0, 1 or 2) of the cell, and its derivative.
   template <class T>
   T factor(int e, T xi) const {
-    return GimpAxis<T>(xi, half).N[e + 1];
+    const GimpAxis<T> axis(xi, half);
+    return axis.at(axis.N, e);
   }
   template <class T>
   T slope(int e, T xi) const {
-    return GimpAxis<T>(xi, half).dN[e + 1];
+    const GimpAxis<T> axis(xi, half);
+    return axis.at(axis.dN, e);
   }
 
  private:
-  /// From the cell's first node back to node (-1, -1, ...).
-  int reach() const {
-    Index<D> one;
-    one.fill(1);
-    return shape.distance(one);
+  int row() const { return shape.nodes[0]; }
+  int layer() const { return shape.nodes[0] * shape.nodes[1]; }
+
+  template <bool mass, int room>
+  void give_momentum(const NodeLines& first, const GimpFactors<D>& of, const Gifts<D, room>& gifts,
+                     int p) const {
+    const double m = gifts.mass[p];
+    const auto momentum = [&](int a) { return a < D ? m * gifts.velocity[a][p] : 0.0; };
+    const auto gift = mass ? numbers(m, momentum(0), momentum(1), momentum(2))
+                           : numbers(momentum(0), momentum(1), momentum(2), 0.0);
+    of.for_each_row(first, row(), layer(), [&](const NodeLines& nodes, auto y, auto z) {
+      Batch<quad> part = gift * of.N[1][y];
+      if constexpr (D == 3) part = part * of.N[2][z];
+      unrolled<3>([&](auto x) { add(nodes[x], part * of.N[0][x]); });
+    });
   }
-  /// Products over the nodes for particle p; `z` counts in 3D only.
   template <int room>
-  static Nodes product(const double* x, const double (*y)[room], const double (*z)[room], int p,
-                       double scale) {
-    const auto along_x = Nodes::Row::load(x);
-    Nodes r;
-    for (int k = 0; k < Nodes::rows; ++k)
-      r.row[k] = along_x.times(scale * (D == 3 ? y[k % 4][p] * z[k / 4][p] : y[k][p]));
-    return r;
+  void give_forces(const NodeLines& first, const GimpFactors<D>& of, const Gifts<D, room>& gifts,
+                   int p) const {
+    const auto part = [&](int a, int b) {
+      return a < D ? gifts.traction[Sym<double, D>::index(a, b)][p] : 0.0;
+    };
+    Batch<quad> traction[D];
+    unrolled<D>([&](auto b) { traction[b] = numbers(part(0, b), part(1, b), part(2, b), 0.0); });
+    of.for_each_row(first, row(), layer(), [&](const NodeLines& nodes, auto y, auto z) {
+      Batch<quad> along_x = traction[0] * of.N[1][y], across = traction[1] * of.dN[1][y];
+      if constexpr (D == 3) {
+        along_x = along_x * of.N[2][z];
+        across = across * of.N[2][z] + traction[2] * of.N[1][y] * of.dN[2][z];
+      }
+      unrolled<3>([&](auto x) { add(nodes[x], along_x * of.dN[0][x] + across * of.N[0][x]); });
+    });
   }
+  static Batch<quad> numbers(double a, double b, double c, double d) {
+    return Batch<quad>(Batch<quad>::Vector{a, b, c, d});
+  }
+  static void add(double* to, Batch<quad> part) { (Batch<quad>::load(to) + part).store(to); }
 };
 
 }  // namespace mpm

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "mpm/basis/block_shape.hpp"
+#include "mpm/basis/gifts.hpp"
 #include "mpm/basis/node_lanes.hpp"
 #include "mpm/basis/node_lines.hpp"
 #include "mpm/math/vec.hpp"
@@ -34,7 +35,6 @@ inline constexpr auto slope = pattern<D>(true);
 template <int D>
 struct LinearField {
   static constexpr int corners = 1 << D;
-  alignas(line * sizeof(double)) double c[corners][line];
 
   /// `nodes` are whole lines and begin at the cell's first.
   LinearField(const NodeLines& nodes, int row, int layer) {
@@ -53,6 +53,23 @@ struct LinearField {
     }
   }
 
+  /// The vector at number `at` of the lines.
+  template <class T>
+  Vec<T, D> vector(int at, const Vec<T, D>& xi) const {
+    Vec<T, D> v;
+    for (int i = 0; i < D; ++i) v[i] = value(at + i, xi);
+    return v;
+  }
+  /// Derivatives of that vector with respect to xi (divide by the cell size for the gradient in
+  /// space): [i][j] of component i along axis j.
+  template <class T>
+  std::array<Vec<T, D>, D> gradients(int at, const Vec<T, D>& xi) const {
+    std::array<Vec<T, D>, D> g;
+    for (int i = 0; i < D; ++i) g[static_cast<std::size_t>(i)] = gradient(at + i, xi);
+    return g;
+  }
+
+ private:
   /// Of field f of the lines.
   template <class T>
   T value(int f, const Vec<T, D>& xi) const {
@@ -66,7 +83,6 @@ struct LinearField {
       return bilinear(0) + xi[2] * bilinear(4);
   }
 
-  /// Derivatives with respect to xi (divide by the cell size for the gradient in space).
   template <class T>
   Vec<T, D> gradient(int f, const Vec<T, D>& xi) const {
     const auto C = [&](int k) { return T(c[k][f]); };
@@ -79,32 +95,94 @@ struct LinearField {
       return {x, y, z};
     }
   }
+
+  alignas(line * sizeof(double)) double c[corners][line];
 };
 
 template <int D>
 struct Linear {
   explicit Linear(const BlockShape<D>& shape)
       : row_(shape.nodes[0]), layer_(shape.nodes[0] * shape.nodes[1]) {}
-  using Nodes = NodeLanes<(1 << D)>;
   using Field = LinearField<D>;
 
-  /// What `Field` wants to know of the particles in the lanes: their position in the cell.
+  /// What `Field` wants to know of `count` particles in the lanes: their position in the cell.
   template <class T>
-  static const Vec<T, D>& weights(const Vec<T, D>& xi) {
+  static const Vec<T, D>& weights(const Vec<T, D>& xi, int /*count*/) {
     return xi;
   }
   /// `nodes` begin at the cell's first.
   Field field(const NodeLines& nodes) const { return Field(nodes, row_, layer_); }
 
-  /// What `functions` and `gradients` want to know of a cell's particles.
+  /// What `give` wants to know of a cell's particles: their position in the cell.
   template <int room>
   struct Particles {
-    double xi[D][room];  // position in the cell
-    template <int W>
-    void put(const Linear&, int at, const Vec<Batch<W>, D>& position) {
-      unrolled<D>([&](auto a) { position[a].store(xi[a] + at); });
-    }
+    double xi[D][room];
   };
+  template <int room, class T>
+  void put(Particles<room>& places, int at, const Vec<T, D>& position) const {
+    unrolled<D>([&](auto a) { store_lanes(places.xi[a] + at, position[a]); });
+  }
+
+  /// What the first `count` of these particles give to the nodes, whose lines begin at the cell's
+  /// first: mass and momentum to the first quad, forces to the next; momentum alone to the first.
+  /// The cell's nodes are the lanes, so that sums stay in registers for all its particles.
+  template <unsigned what, int room>
+  void give(const NodeLines& nodes, const Particles<room>& places, const Gifts<D, room>& gifts,
+            int count) const {
+    constexpr bool forces = (what & gives_forces) != 0, momentum = what != gives_forces;
+    static_assert(!(forces && momentum) || (what & gives_mass), "mass comes before the momentum");
+    // All sums at once where the machine's registers hold them and a quarter is left for the rest.
+    constexpr int all = native_lanes == 8 ? 32 : 16;
+    if constexpr (!forces || !momentum || Nodes::parts * (1 + 2 * D) <= all - all / 4) {
+      give_sums<what>(nodes, places, gifts, count);
+    } else {
+      give_sums<what & ~gives_forces>(nodes, places, gifts, count);
+      give_sums<gives_forces>(nodes, places, gifts, count);
+    }
+  }
+
+  /// One-axis factor of the node at place e (0 or 1) of the cell, and its derivative.
+  template <class T>
+  static T factor(int e, T xi) {
+    return e ? xi : T(1.0) - xi;
+  }
+  template <class T>
+  static T slope(int e, T) {
+    return T(e ? 1.0 : -1.0);
+  }
+
+ private:
+  using Nodes = NodeLanes<(1 << D)>;
+  using Part = typename Nodes::Part;
+
+  /// Eqs. (2), (3) and f_i -= V_p (sigma_p - q_p 1) . grad N_ip, eq. (9), with the artificial
+  /// viscosity's pressure q.
+  template <unsigned what, int room>
+  void give_sums(const NodeLines& nodes, const Particles<room>& places, const Gifts<D, room>& gifts,
+                 int count) const {
+    Nodes m = Nodes::zero(), p[3] = {m, m, m}, f[3] = {m, m, m};
+    for (int k = 0; k < count; ++k) {
+      if constexpr (what != gives_forces) {
+        const Nodes m_ip = functions(places, k, gifts.mass[k]);
+        if constexpr ((what & gives_mass) != 0) m.add(1.0, m_ip);
+        unrolled<D>([&](auto a) { p[a].add(gifts.velocity[a][k], m_ip); });
+      }
+      if constexpr ((what & gives_forces) != 0) {
+        Nodes G[D];
+        gradients(places, k, G);
+        unrolled<D>([&](auto a) {
+          unrolled<D>(
+              [&](auto b) { f[a].add(gifts.traction[Sym<double, D>::index(a, b)][k], G[b]); });
+        });
+      }
+    }
+    if constexpr ((what & gives_mass) != 0)
+      add_to_nodes(nodes, m, p[0], p[1], p[2]);
+    else if constexpr (what != gives_forces)
+      add_to_nodes(nodes, p[0], p[1], p[2], m);
+    if constexpr ((what & gives_forces) != 0)
+      add_to_nodes(nodes.at(force_at), f[0], f[1], f[2], Nodes::zero());
+  }
 
   /// scale N_ip over the cell's nodes, for particle p of those.
   template <int room>
@@ -146,19 +224,7 @@ struct Linear {
     });
   }
 
-  /// One-axis factor of the node at place e (0 or 1) of the cell, and its derivative.
-  template <class T>
-  static T factor(int e, T xi) {
-    return e ? xi : T(1.0) - xi;
-  }
-  template <class T>
-  static T slope(int e, T) {
-    return T(e ? 1.0 : -1.0);
-  }
-
- private:
   int row_, layer_;  // from a node to the next along y, and along z
-  using Part = typename Nodes::Part;
   // The nodes of one register differ in the place along these axes; along the others they share it.
   static constexpr int inner_axes = Nodes::width == 8 ? 3 : Nodes::width == 4 ? 2 : 1;
 

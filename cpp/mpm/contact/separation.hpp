@@ -37,7 +37,7 @@ struct Plane {
 /// widest corridor between the two, of half width 1/|a|, that few particles enter.
 template <int D>
 class PlaneFit {
-  using T = Batch<native_lanes>;
+  using T = Batch<cell_lanes<D>>;
   static constexpr int n = D + 1;
 
  public:

@@ -9,6 +9,10 @@
 
 namespace mpm {
 
+/// Lanes over the particles of a cell: no more than it holds if there are two along each axis.
+template <int D>
+inline constexpr int cell_lanes = std::min(native_lanes, 1 << D);
+
 /// Up to W rows of a column. Lanes from `count` on repeat the last row when read and are never
 /// written.
 template <int W>
@@ -118,27 +122,6 @@ Batch<W> of_valid(const LaneRows<W>& rows, Batch<W> value) {
 template <int W>
 Batch<W> of_valid(const WholeRows<W>&, Batch<W> value) {
   return value;
-}
-
-/// Lanes from and to memory in sequence, and those before `count`, for a number or a Batch.
-template <class T>
-T load_lanes(const double* from) {
-  if constexpr (std::is_same_v<T, double>)
-    return *from;
-  else
-    return T::load(from);
-}
-inline void store_lanes(double* to, double value) { *to = value; }
-template <int W>
-void store_lanes(double* to, Batch<W> value) {
-  value.store(to);
-}
-template <class T>
-Truth<T> lanes_before(int count) {
-  if constexpr (std::is_same_v<T, double>)
-    return count > 0;
-  else
-    return first_lanes<T::lanes>(count);
 }
 
 }  // namespace mpm

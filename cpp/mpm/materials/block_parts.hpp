@@ -4,11 +4,6 @@
 
 namespace mpm {
 
-template <class T>
-inline constexpr int lanes_of = 1;
-template <int W>
-inline constexpr int lanes_of<Batch<W>> = W;
-
 /// The columns that a material works on, found once for a block; null if absent.
 template <int D>
 struct BlockColumns {

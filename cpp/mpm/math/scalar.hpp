@@ -43,6 +43,33 @@ T power_near_one(T x, double a) {
   return sum;
 }
 
+/// Lanes from and to memory in sequence, and those before `count`, for a number or a Batch.
+template <class T>
+T load_lanes(const double* from) {
+  if constexpr (std::is_same_v<T, double>)
+    return *from;
+  else
+    return T::load(from);
+}
+inline void store_lanes(double* to, double value) { *to = value; }
+template <int W>
+void store_lanes(double* to, Batch<W> value) {
+  value.store(to);
+}
+template <class T>
+Truth<T> lanes_before(int count) {
+  if constexpr (std::is_same_v<T, double>)
+    return count > 0;
+  else
+    return first_lanes<T::lanes>(count);
+}
+
+/// How many numbers a T holds.
+template <class T>
+inline constexpr int lanes_of = 1;
+template <int W>
+inline constexpr int lanes_of<Batch<W>> = W;
+
 /// A number: arithmetic, ordering, select.
 template <class T>
 concept Real = requires(T a, T b) {

@@ -11,8 +11,9 @@ enum class Also { nothing, remap, move };
 /// Velocities of a patch's particles, eq. (17). `damped`: a share of the velocity of the grid takes
 /// the place of theirs, PIC in place of FLIP (Harlow 1964; Brackbill & Ruppel 1986), so that what
 /// the grid does not see dies away.
-template <Also also, bool damped, int D>
-[[gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p) {
+template <Also also, bool damped, int D, class Functions>
+[[gnu::noinline, gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p,
+                                                   const Functions& basis) {
   using T = Batch<cell_lanes<D>>;
   auto& grid = domain.grid;
   Patch<D>& patch = grid.patches[p];
@@ -31,41 +32,41 @@ template <Also also, bool damped, int D>
   alignas(cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * quad : 1];
   if constexpr (also == Also::remap) std::fill_n(remapped, block.count * quad, 0.0);
 
-  with_basis(grid, body, patch, [&](const auto& basis) {
-    for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-      const auto nodes = basis.field(block.lines.from(cell.first_node));
-      CellParticles particles(basis, cell);
-      const auto give = [&] { particles.template give<gives_momentum>({remapped, quad}); };
-      for_each_group(cell, [&](const auto& rows) {
-        const auto xi = local_position(cell, rows);
-        const auto w = basis.weights(xi);
-        const T all = load(mass, rows), m = of_valid(rows, all);
-        T speed2(0.0), change2(0.0);
-        Vec<T, D> v;
-        unrolled<D>([&](auto a) {
-          const T dv = nodes.value(force_at + a, w);
-          v[a] = load(velocities[a], rows) + dv;
-          if constexpr (damped) {
-            lost += m * v[a] * v[a];
-            v[a] += pic * (nodes.value(velocity_at + a, w) - v[a]);
-            lost -= m * v[a] * v[a];
-          }
-          store(velocities[a], rows, v[a]);
-          momentum[a] += m * v[a];
-          speed2 += v[a] * v[a];
-          change2 += dv * dv;
-        });
-        kinetic += m * speed2;
-        second_order += m * change2;
-        if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
-        if constexpr (also == Also::remap) {
-          if (particles.full()) give();
-          particles.add(all, v);
-          particles.place(xi, rows.count);
+  for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+    const auto nodes = basis.field(block.lines.from(cell.first_node));
+    CellParticles particles(basis, cell);
+    const auto give = [&] { particles.template give<gives_momentum>({remapped, quad}); };
+    for_each_group(cell, [&](const auto& rows) {
+      const auto xi = local_position(cell, rows);
+      const auto w = basis.weights(xi, rows.count);
+      const T all = load(mass, rows), m = of_valid(rows, all);
+      T speed2(0.0), change2(0.0);
+      const Vec<T, D> increment = nodes.vector(force_at, w);
+      Vec<T, D> of_grid, v;
+      if constexpr (damped) of_grid = nodes.vector(velocity_at, w);
+      unrolled<D>([&](auto a) {
+        const T dv = increment[a];
+        v[a] = load(velocities[a], rows) + dv;
+        if constexpr (damped) {
+          lost += m * v[a] * v[a];
+          v[a] += pic * (of_grid[a] - v[a]);
+          lost -= m * v[a] * v[a];
         }
+        store(velocities[a], rows, v[a]);
+        momentum[a] += m * v[a];
+        speed2 += v[a] * v[a];
+        change2 += dv * dv;
       });
-      if constexpr (also == Also::remap) give();
+      kinetic += m * speed2;
+      second_order += m * change2;
+      if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
+      if constexpr (also == Also::remap) {
+        if (particles.full()) give();
+        particles.add(all, v);
+        particles.place(xi, rows.count);
+      }
     });
+    if constexpr (also == Also::remap) give();
   });
   if constexpr (also == Also::remap)
     copy_quads(block.lines.at(force_at), {remapped, quad}, block.count);
@@ -81,12 +82,16 @@ template <Also also, bool damped, int D>
 template <Also also, int D>
 void advance(Domain<D>& domain) {
   domain.threads.for_each(domain.grid.patches.size(), [&](std::size_t p) {
-    if (domain.body_of(domain.grid.patches[p]).rigid)
-      advance_patch<Also::nothing, false>(domain, p);
-    else if (domain.pic_damping > 0.0)
-      advance_patch<also, true>(domain, p);
-    else
-      advance_patch<also, false>(domain, p);
+    const Patch<D>& patch = domain.grid.patches[p];
+    const Body<D>& body = domain.body_of(patch);
+    with_basis(domain.grid, body, patch, [&](const auto& basis) {
+      if (body.rigid)
+        advance_patch<Also::nothing, false>(domain, p, basis);
+      else if (domain.pic_damping > 0.0)
+        advance_patch<also, true>(domain, p, basis);
+      else
+        advance_patch<also, false>(domain, p, basis);
+    });
   });
 }
 

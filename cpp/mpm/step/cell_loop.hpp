@@ -27,10 +27,6 @@ void for_each_cell(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>&
   });
 }
 
-/// Lanes over the particles of a cell: no more than it holds if there are two along each axis.
-template <int D>
-inline constexpr int cell_lanes = std::min(native_lanes, 1 << D);
-
 /// f(rows) for the particles of a cell, a few at a time: LaneRows or WholeRows.
 template <int D, class F>
 [[gnu::always_inline]] inline void for_each_group(const CellRange<D>& cell, F&& f) {

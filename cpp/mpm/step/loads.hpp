@@ -54,12 +54,11 @@ void carry_loads(Domain<D>& domain, std::size_t p, int at) {
           Vec<double, D> xi;
           for (int a = 0; a < D; ++a)
             xi[a] = local_coordinate(grid.in_cells(body.x(a)[row], a), cell.cell[a]);
-          const auto w = basis.weights(xi);
+          const auto w = basis.weights(xi, 1);
+          const auto gradients = nodes.gradients(at, w);
           Mat<double, D> L;
-          for (int i = 0; i < D; ++i) {
-            const Vec<double, D> gradient = nodes.gradient(at + i, w);
-            for (int j = 0; j < D; ++j) L[i][j] = scale * gradient[j];
-          }
+          for (int i = 0; i < D; ++i)
+            for (int j = 0; j < D; ++j) L[i][j] = scale * gradients[static_cast<std::size_t>(i)][j];
           load.carry(piece, L);
         });
       });

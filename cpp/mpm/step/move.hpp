@@ -15,8 +15,9 @@ class Moving {
   /// `nodes` are the nodal fields of the cell, `w` what they want to know of the positions before.
   template <class Rows, class Field, class Weights>
   void move(const CellRange<D>& cell, const Rows& rows, const Field& nodes, const Weights& w) {
+    const Vec<T, D> velocity = nodes.vector(velocity_at, w);
     unrolled<D>([&](auto a) {
-      const T x = load(x_[a], rows) + time_step_ * nodes.value(velocity_at + a, w);
+      const T x = load(x_[a], rows) + time_step_ * velocity[a];
       store(x_[a], rows, x);
       const T local = cells_.in_cells(x, a) - T(cell.cell[a]);
       left_ = left_ | (local < T(0.0)) | (local >= T(1.0));

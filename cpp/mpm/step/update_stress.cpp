@@ -8,8 +8,9 @@ namespace {
 /// Velocity gradients, eqs. (18)-(20), of a patch's particles, handed to the material block by
 /// block. The nodal velocity that strains is the vector at number `straining_at` of the lines; with
 /// `moves` the particles move as well, eq. (16).
-template <bool moves, int straining_at, int D>
-[[gnu::flatten]] void update_patch(Domain<D>& domain, std::size_t p, bool forces_follow) {
+template <bool moves, int straining_at, int D, class Functions>
+[[gnu::noinline, gnu::flatten]] void update_patch(Domain<D>& domain, std::size_t p,
+                                                  const Functions& basis, bool forces_follow) {
   constexpr int W = cell_lanes<D>;
   using T = Batch<W>;
   const auto& grid = domain.grid;
@@ -30,22 +31,20 @@ template <bool moves, int straining_at, int D>
                                       domain.sums[p].stress);
     block.count = 0;
   };
-  with_basis(grid, body, patch, [&](const auto& basis) {
-    for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-      const auto nodes = basis.field(lines.from(cell.first_node));
-      for_each_group(cell, [&](const auto& rows) {
-        if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
-        const auto w = basis.weights(local_position(cell, rows));
-        unrolled<D>([&](auto i) {
-          const Vec<T, D> gradient = nodes.gradient(straining_at + i, w);
-          unrolled<D>(
-              [&](auto j) { (scale * gradient[j]).store(block.gradient[i][j] + block.count); });
-        });
-        unrolled<W>([&](auto k) { block.row[block.count + k] = rows[k]; });
-        // Lanes past the end are overwritten by the next group.
-        block.count += static_cast<std::size_t>(rows.count);
-        if constexpr (moves) moving.move(cell, rows, nodes, w);
+  for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+    const auto nodes = basis.field(lines.from(cell.first_node));
+    for_each_group(cell, [&](const auto& rows) {
+      if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
+      const auto w = basis.weights(local_position(cell, rows), rows.count);
+      const auto gradients = nodes.gradients(straining_at, w);
+      unrolled<D>([&](auto i) {
+        unrolled<D>(
+            [&](auto j) { (scale * gradients[i][j]).store(block.gradient[i][j] + block.count); });
       });
+      unrolled<W>([&](auto k) { block.row[block.count + k] = rows[k]; });
+      // Lanes past the end are overwritten by the next group.
+      block.count += static_cast<std::size_t>(rows.count);
+      if constexpr (moves) moving.move(cell, rows, nodes, w);
     });
   });
   if (block.count > 0) flush();
@@ -55,7 +54,10 @@ template <bool moves, int straining_at, int D>
 template <bool moves, int straining_at, int D>
 void update(Domain<D>& domain, bool forces_follow) {
   domain.threads.for_each(domain.grid.patches.size(), [&](std::size_t p) {
-    update_patch<moves, straining_at>(domain, p, forces_follow);
+    const Patch<D>& patch = domain.grid.patches[p];
+    with_basis(domain.grid, domain.body_of(patch), patch, [&](const auto& basis) {
+      update_patch<moves, straining_at>(domain, p, basis, forces_follow);
+    });
   });
 }
 

@@ -39,21 +39,28 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const
     field[i] = lines[line * i + quad + 1] = any(random);
     for (std::size_t a = 0; a < D; ++a) position[a][i] = shape.index(n)[a] - cell[a];
   }
-  auto spread = [&](const typename B::Nodes& nodes) {
-    std::vector<double> weight(count), quads(quad * count, 0.0);
-    const auto none = B::Nodes::zero();
-    basis.add_to_nodes(NodeLines{quads.data(), quad}.from(first), none, none, nodes, none);
-    for (std::size_t i = 0; i < count; ++i) {
-      weight[i] = std::exchange(quads[quad * i + 2], 0.0);
-      for (std::size_t k = 0; k < quad; ++k) CHECK_EQUAL(quads[quad * i + k], 0.0);
-    }
-    return weight;
+  constexpr int room = 16;
+  Gifts<D, room> gifts{};
+  typename B::template Particles<room> places{};
+  // The quads that particle p alone gives to the nodes, mass and momentum, and forces.
+  const auto given = [&](int p) {
+    Gifts<D, room> of_one{};
+    of_one.mass[p] = gifts.mass[p];
+    for (int a = 0; a < D; ++a) of_one.velocity[a][p] = gifts.velocity[a][p];
+    for (int c = 0; c < Sym<double, D>::size; ++c) of_one.traction[c][p] = gifts.traction[c][p];
+    std::vector<double> to(line * count, 0.0);
+    const NodeLines nodes = NodeLines{to.data(), line}.from(first);
+    basis.template give<gives_mass | gives_momentum | gives_forces>(nodes, places, of_one, room);
+    return to;
+  };
+  const auto number = [&](const std::vector<double>& of, int at) {
+    std::vector<double> r(count);
+    for (std::size_t i = 0; i < count; ++i) r[i] = of[line * i + static_cast<std::size_t>(at)];
+    return r;
   };
   const auto nodes = basis.field(NodeLines{lines.data(), line}.from(first));
-  // The particle in one of the lanes, others beside it.
-  typename B::template Particles<4> particles;
   const auto value = [&](const Vec<double, D>& xi) {
-    return nodes.value(quad + 1, basis.weights(xi));
+    return nodes.vector(quad, basis.weights(xi, 1))[1];
   };
 
   for (int sample = 0; sample < 200; ++sample) {
@@ -63,31 +70,64 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const
     Vec<T, D> lanes;
     for (int a = 0; a < D; ++a)
       for (int k = 0; k < 4; ++k) lanes[a].v[k] = k == p ? xi[a] : inside(random);
-    particles.put(basis, 0, lanes);
-    const auto N = spread(basis.functions(particles, p, 1.0));
+    for (int at = 0; at < room; at += 4) basis.put(places, at, lanes);
+    // A mass of one, so that the nodes' are N; tractions that give dN_ip / d xi_b as component c.
+    gifts.mass[p] = 1.0;
+    for (int a = 0; a < D; ++a) gifts.velocity[a][p] = 10.0 + a;
+    const auto N = number(given(p), mass_at);
     CHECK_CLOSE(sum_over_nodes(N, ones), 1.0, tolerance);
     for (std::size_t a = 0; a < D; ++a)
       CHECK_CLOSE(sum_over_nodes(N, position[a]), xi[static_cast<int>(a)], tolerance);
     for (const double n : N) CHECK(n >= 0.0, n);
     CHECK_CLOSE(value(xi), sum_over_nodes(N, field), tolerance);
+    for (int a = 0; a < D; ++a)
+      CHECK_CLOSE(sum_over_nodes(number(given(p), velocity_at + a), ones), 10.0 + a,
+                  11 * tolerance);
 
-    typename B::Nodes G[D];
-    basis.gradients(particles, p, G);
-    const auto gradient = nodes.gradient(quad + 1, basis.weights(xi));
+    const auto gradients = nodes.gradients(quad, basis.weights(xi, 1));
+    const auto in_lanes = nodes.gradients(quad, basis.weights(lanes, 4));
+    const auto vector_in_lanes = nodes.vector(quad, basis.weights(lanes, 4));
+    CHECK_CLOSE(vector_in_lanes[1][p], value(xi), tolerance);
     for (int a = 0; a < D; ++a) {
-      const auto dN = spread(G[a]);
+      for (auto& component : gifts.traction) component[p] = 0.0;
+      gifts.traction[Sym<double, D>::index(a, a)][p] = 1.0;
+      const auto dN = number(given(p), force_at + a);
       CHECK_CLOSE(sum_over_nodes(dN, ones), 0.0, tolerance);
       for (std::size_t b = 0; b < D; ++b)
         CHECK_CLOSE(sum_over_nodes(dN, position[b]), static_cast<int>(b) == a ? 1.0 : 0.0,
                     tolerance);
-      CHECK_CLOSE(gradient[a], sum_over_nodes(dN, field), 4 * tolerance);
+      CHECK_CLOSE(gradients[1][a], sum_over_nodes(dN, field), 4 * tolerance);
+      CHECK_CLOSE(in_lanes[1][a][p], gradients[1][a], 4 * tolerance);
+      // An off-diagonal part gives its two components of the force.
+      const int b = (a + 1) % D;
+      gifts.traction[Sym<double, D>::index(a, a)][p] = 0.0;
+      gifts.traction[Sym<double, D>::index(a, b)][p] = 1.0;
+      const auto across = number(given(p), force_at + b);
+      for (std::size_t i = 0; i < count; ++i) CHECK_CLOSE(across[i], dN[i], tolerance);
       // Central difference: exact for the piecewise quadratics between kinks, but for rounding.
       constexpr double h = 1e-6;
       Vec<double, D> up = xi, down = xi;
       up[a] += h;
       down[a] -= h;
-      CHECK_CLOSE(gradient[a], (value(up) - value(down)) / (2 * h), 1e-5);
+      CHECK_CLOSE(gradients[1][a], (value(up) - value(down)) / (2 * h), 1e-5);
     }
+    for (auto& component : gifts.traction) component[p] = 0.0;
+
+    // Stages that give less give the same bits.
+    const auto all = given(p);
+    std::vector<double> parts(line * count, 0.0), momentum(quad * count, 0.0);
+    Gifts<D, room> same = gifts;
+    for (int k = 0; k < room; ++k)
+      if (k != p) same.mass[k] = 0.0;
+    const NodeLines to = NodeLines{parts.data(), line}.from(first);
+    basis.template give<gives_mass | gives_momentum>(to, places, same, room);
+    basis.template give<gives_forces>(to, places, same, room);
+    for (std::size_t i = 0; i < all.size(); ++i) CHECK_EQUAL(parts[i], all[i]);
+    basis.template give<gives_momentum>(NodeLines{momentum.data(), quad}.from(first), places, same,
+                                        room);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t a = 0; a < D; ++a)
+        CHECK_EQUAL(momentum[quad * i + a], all[line * i + velocity_at + a]);
   }
 }
 

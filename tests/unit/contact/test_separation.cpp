@@ -12,11 +12,11 @@ constexpr double pi = 3.14159265358979323846;
 
 template <int D>
 void add(NearParticles<D>& to, const Vec<double, D>& x, double mass = 1.0) {
-  using T = Batch<native_lanes>;
+  using T = typename NearParticles<D>::T;
   typename NearParticles<D>::Lanes p;
   for (int a = 0; a < D; ++a) p.x[a] = T(x[a]);
   p.half = T(0.25);
-  p.weight = select(first_lanes<native_lanes>(1), T(mass), T(0.0));
+  p.weight = select(first_lanes<T::lanes>(1), T(mass), T(0.0));
   to.add(p);
 }
 
