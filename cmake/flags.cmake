@@ -1,4 +1,4 @@
-# Compiler flags of our own code, as one interface target: mpm_flags.
+# Compiler flags of our own code, as an interface target for each level of instructions: mpm_flags_LEVEL.
 include(CheckCXXCompilerFlag)
 
 # Contraction to fused multiply-add is asked for: strict C++ mode may switch it off.
@@ -8,14 +8,6 @@ set(flags -Wall -Wextra -Wconversion -Wno-psabi)
 list(APPEND flags -ffp-contract=fast -fno-math-errno -fno-trapping-math)
 if(MPM_WERROR)
   list(APPEND flags -Werror)
-endif()
-if(MPM_NATIVE)
-  check_cxx_compiler_flag(-march=native MPM_HAS_MARCH_NATIVE)
-  if(MPM_HAS_MARCH_NATIVE)
-    list(APPEND flags -march=native)
-  else()
-    message(WARNING "this compiler has no -march=native: building for its default processor")
-  endif()
 endif()
 # g++ 12.2 makes wrong code where it may move more than 16 bytes at once, which -march=native allows it
 # on processors with AVX-512: a symmetric tensor that starts as the unit tensor gets a one in its
@@ -34,24 +26,49 @@ if(MPM_HAS_INLINE_LIMITS)
   list(APPEND flags ${inline_limits})
 endif()
 if(MPM_SAME_BITS)
-  list(APPEND flags -ffp-contract=off)
+  list(APPEND flags -ffp-contract=off -DMPM_SAME_BITS)
 endif()
 if(MPM_SANITIZE)
   list(APPEND flags -fsanitize=${MPM_SANITIZE} -fno-omit-frame-pointer)
 endif()
 
-string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
-string(JOIN " " build_flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}} ${flags})
-string(REGEX REPLACE " +" " " build_flags "${build_flags}")
-message(STATUS "MPM3Dpp ${MPM_VERSION}: ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} "
-               "${build_flags}")
-
-add_library(mpm_flags INTERFACE)
-target_compile_features(mpm_flags INTERFACE cxx_std_20)
-target_compile_options(mpm_flags INTERFACE ${flags})
-# For build_info(): a result names what made it.
-target_compile_definitions(mpm_flags INTERFACE MPM_BUILD_FLAGS="${build_flags}"
-                                               MPM_VERSION="${MPM_VERSION}")
-if(MPM_SANITIZE)
-  target_link_options(mpm_flags INTERFACE -fsanitize=${MPM_SANITIZE})
+# Levels of instructions that the core is built for; with more than one the package chooses when it is
+# imported (python/mpm3dpp/processor.py).
+if(MPM_NATIVE)
+  set(MPM_LEVELS native)
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+  set(MPM_LEVELS x86-64 x86-64-v3 x86-64-v4)   # SSE2; AVX2 and FMA; AVX-512
+else()
+  set(MPM_LEVELS default)   # on ARM with NEON
 endif()
+
+foreach(level IN LISTS MPM_LEVELS)
+  set(level_flags ${flags})
+  if(NOT level STREQUAL default)
+    string(MAKE_C_IDENTIFIER "MPM_HAS_MARCH_${level}" has_march)
+    check_cxx_compiler_flag(-march=${level} ${has_march})
+    if(${has_march})
+      list(APPEND level_flags -march=${level})
+    elseif(level STREQUAL native)
+      message(WARNING "this compiler has no -march=native: building for its default processor")
+    else()
+      message(FATAL_ERROR "this compiler has no -march=${level}, which MPM_NATIVE=OFF needs: "
+                          "set CXX to g++ >= 12 or clang++ >= 16")
+    endif()
+  endif()
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+  string(JOIN " " build_flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}} ${level_flags})
+  string(REGEX REPLACE " +" " " build_flags "${build_flags}")
+  message(STATUS "MPM3Dpp ${MPM_VERSION}: ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} "
+                 "${build_flags}")
+
+  add_library(mpm_flags_${level} INTERFACE)
+  target_compile_features(mpm_flags_${level} INTERFACE cxx_std_20)
+  target_compile_options(mpm_flags_${level} INTERFACE ${level_flags})
+  # For build_info(): a result names what made it.
+  target_compile_definitions(mpm_flags_${level} INTERFACE MPM_BUILD_FLAGS="${build_flags}"
+                                                          MPM_VERSION="${MPM_VERSION}")
+  if(MPM_SANITIZE)
+    target_link_options(mpm_flags_${level} INTERFACE -fsanitize=${MPM_SANITIZE})
+  endif()
+endforeach()

@@ -1,4 +1,4 @@
-# The Python module _core, and where it goes.
+# The Python module _core, or one for each level, _core_LEVEL, and where they go.
 find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module)
 if(NOT SKBUILD)   # a build by preset: nanobind is asked for its folder
   execute_process(COMMAND "${Python_EXECUTABLE}" -m nanobind --cmake_dir
@@ -6,10 +6,10 @@ if(NOT SKBUILD)   # a build by preset: nanobind is asked for its folder
 endif()
 find_package(nanobind CONFIG REQUIRED)
 
-# Add the module `name` of the package; `ARGN` are its sources.
-function(mpm_add_module name)
+# Add the module `name` of the package, with the core of a level; `ARGN` are its sources.
+function(mpm_add_module name level)
   nanobind_add_module(${name} NB_STATIC NOMINSIZE ${ARGN})
-  target_link_libraries(${name} PRIVATE mpm_core)
+  target_link_libraries(${name} PRIVATE mpm_core_${level})
   install(TARGETS ${name} LIBRARY DESTINATION mpm3dpp)
   if(NOT SKBUILD)
     set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY
@@ -18,7 +18,20 @@ function(mpm_add_module name)
 endfunction()
 
 file(GLOB_RECURSE binding_sources CONFIGURE_DEPENDS bindings/*.cpp)
-mpm_add_module(_core ${binding_sources})
+list(LENGTH MPM_LEVELS level_count)
+foreach(level IN LISTS MPM_LEVELS)
+  if(level_count EQUAL 1)
+    mpm_add_module(_core ${level} ${binding_sources})
+  else()
+    # Python would take one of before first, in a folder that was built for one level.
+    file(GLOB one_core "${CMAKE_BINARY_DIR}/python/mpm3dpp/_core.*")
+    if(one_core)
+      file(REMOVE ${one_core})
+    endif()
+    string(MAKE_C_IDENTIFIER "${level}" level_name)
+    mpm_add_module(_core_${level_name} ${level} ${binding_sources})
+  endif()
+endforeach()
 
 # A build by preset makes an importable package: links to the Python files, modules beside them.
 if(NOT SKBUILD)

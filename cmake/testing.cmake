@@ -4,7 +4,7 @@ list(REMOVE_ITEM unit_sources "${CMAKE_CURRENT_SOURCE_DIR}/tests/unit/module.cpp
      "${CMAKE_CURRENT_SOURCE_DIR}/tests/unit/main.cpp")
 add_library(mpm_unit OBJECT ${unit_sources})
 target_include_directories(mpm_unit PUBLIC tests/unit)
-target_link_libraries(mpm_unit PUBLIC mpm_core)
+target_link_libraries(mpm_unit PUBLIC mpm_core_${tested_level})
 
 # Allocations are counted (tests/unit/run/count_allocations.cpp): our calls of an allocating function
 # go through a wrapper.
@@ -12,7 +12,7 @@ foreach(name IN ITEMS malloc calloc realloc aligned_alloc posix_memalign _Znwm _
   target_link_options(mpm_unit INTERFACE LINKER:--wrap=${name})
 endforeach()
 
-mpm_add_module(_testing tests/unit/module.cpp)
+mpm_add_module(_testing ${tested_level} tests/unit/module.cpp)
 target_link_libraries(_testing PRIVATE mpm_unit)
 
 if(NOT SKBUILD)

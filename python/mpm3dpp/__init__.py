@@ -12,7 +12,10 @@ What is named in `__all__` is loaded at first use, so that `import mpm3dpp` stay
 from __future__ import annotations
 
 import importlib
+import sys
 from typing import TYPE_CHECKING, Any
+
+from .processor import CoreFinder
 
 if TYPE_CHECKING:
     from . import shapes
@@ -33,6 +36,8 @@ if TYPE_CHECKING:
     from .time_functions import TimeFunction
 
     __version__: str
+
+sys.meta_path.append(CoreFinder())
 
 _HOMES = {
     "case": ("Case", "Material", "load_case"),

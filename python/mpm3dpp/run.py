@@ -110,7 +110,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
     status: Status = "completed"
     reason: str | None = None
-    with BackgroundWriter(file) as results, history, progress, _interrupt() as stopped:
+    with _interrupt() as stopped, BackgroundWriter(file) as results, history, progress:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
         for sentence in simulation.notes:

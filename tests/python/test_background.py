@@ -70,8 +70,11 @@ def test_a_step_waits_when_two_frames_are_behind(tmp_path: Path) -> None:
     assert len(open_results(tmp_path)) == 3
 
 
-@pytest.mark.parametrize("error", [CaseError("the disk is full"), MemoryError("no room")])
-def test_a_failure_is_told_once(tmp_path: Path, error: Exception) -> None:
+ERRORS = [CaseError("the disk is full"), MemoryError("no room")]
+
+
+@pytest.mark.parametrize("error", ERRORS)
+def test_a_failure_is_told(tmp_path: Path, error: Exception) -> None:
     simulation, file = FakeSimulation(), SlowWriter(tmp_path, error)
     results = BackgroundWriter(file)
     file.allowed.release(9)
@@ -79,21 +82,31 @@ def test_a_failure_is_told_once(tmp_path: Path, error: Exception) -> None:
     with pytest.raises(type(error), match=str(error)):
         for _ in range(5):
             results.write(simulation)
-    for _ in range(5):  # Frames that come later are dropped, and nobody waits for them.
-        results.write(simulation)
+    for _ in range(5):  # Each later frame is refused, and nobody waits.
+        with pytest.raises(type(error), match=str(error)):
+            results.write(simulation)
+    results.check()  # What has been told is not told again.
     results.close()
-    results.check()
 
 
-def test_closing_tells_a_failure_unless_there_is_another(tmp_path: Path) -> None:
-    file = SlowWriter(tmp_path, CaseError("the disk is full"))
-    file.allowed.release()
-    with (
-        pytest.raises(CaseError, match="the disk is full"),
-        BackgroundWriter(file) as results,
-    ):
+def test_a_frame_that_cannot_be_copied_takes_no_room(tmp_path: Path) -> None:
+    file = SlowWriter(tmp_path)
+    with BackgroundWriter(file) as results:
+        for _ in range(5):
+            with pytest.raises(AttributeError):
+                results.write(object())
         results.write(FakeSimulation())
-    file = SlowWriter(tmp_path, CaseError("the disk is full"))
+        file.allowed.release()
+    assert len(open_results(tmp_path)) == 1
+
+
+@pytest.mark.parametrize("error", ERRORS)
+def test_closing_tells_a_failure_unless_there_is_another(tmp_path: Path, error: Exception) -> None:
+    file = SlowWriter(tmp_path, error)
+    file.allowed.release()
+    with pytest.raises(type(error), match=str(error)), BackgroundWriter(file) as results:
+        results.write(FakeSimulation())
+    file = SlowWriter(tmp_path, error)
     file.allowed.release()
     with pytest.raises(KeyboardInterrupt), BackgroundWriter(file) as results:
         results.write(FakeSimulation())

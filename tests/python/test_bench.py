@@ -250,6 +250,14 @@ def test_operations_are_those_of_the_stages():
     }
 
 
+def test_operations_of_every_stage_of_particles_are_counted():
+    for stage in traffic.STAGES:
+        made = operations.operations_per_particle_step([stage], 2, "gimp", "elastic")[stage]
+        assert (made > 0) == traffic.moves_particles(stage)
+    with pytest.raises(KeyError):
+        operations.operations_per_particle_step(["dance"], 2, "gimp", "elastic")
+
+
 def test_arithmetic_of_the_machine_is_that_of_a_processor():
     """One thread makes more than a hundred million and less than ten million million."""
     assert 0.1 < _core.measure_arithmetic(1) < 1e4

@@ -112,8 +112,9 @@ struct GimpField {
     Batch<quad> found[W];
     for_each_particle(at, w, [&](int p, const GimpFactors<D>& of, const NodeLines& first) {
       Batch<quad> total(0.0);
-      of.for_each_row(first, row, layer, [&](const NodeLines& nodes_x, auto y, auto z) {
-        const auto plane = of.N[1][y] * of.along(nodes_x, of.N[0]);
+      for_each_plane([&](auto z) {
+        Batch<quad> plane(0.0);
+        unrolled<3>([&](auto y) { plane += of.N[1][y] * of.along(row_of(first, y, z), of.N[0]); });
         total += D == 3 ? of.N[D - 1][z] * plane : plane;
       });
       found[p] = total;
@@ -128,15 +129,22 @@ struct GimpField {
     for_each_particle(at, w, [&](int p, const GimpFactors<D>& of, const NodeLines& first) {
       Batch<quad> total[D];
       for (auto& t : total) t = Batch<quad>(0.0);
-      of.for_each_row(first, row, layer, [&](const NodeLines& nodes_x, auto y, auto z) {
-        const auto value = of.along(nodes_x, of.N[0]), slope = of.along(nodes_x, of.dN[0]);
+      for_each_plane([&](auto z) {
+        Batch<quad> value(0.0), dx(0.0), dy(0.0);
+        unrolled<3>([&](auto y) {
+          const NodeLines nodes_x = row_of(first, y, z);
+          const auto row_value = of.along(nodes_x, of.N[0]);
+          value += of.N[1][y] * row_value;
+          dy += of.dN[1][y] * row_value;
+          dx += of.N[1][y] * of.along(nodes_x, of.dN[0]);
+        });
         if constexpr (D == 2) {
-          total[0] += of.N[1][y] * slope;
-          total[1] += of.dN[1][y] * value;
+          total[0] = dx;
+          total[1] = dy;
         } else {
-          total[0] += of.N[2][z] * of.N[1][y] * slope;
-          total[1] += of.N[2][z] * of.dN[1][y] * value;
-          total[2] += of.dN[2][z] * of.N[1][y] * value;
+          total[0] += of.N[2][z] * dx;
+          total[1] += of.N[2][z] * dy;
+          total[2] += of.dN[2][z] * value;
         }
       });
       for (int a = 0; a < D; ++a) found[a][p] = total[a];
@@ -151,6 +159,14 @@ struct GimpField {
   }
 
  private:
+  /// f(z) for the layers of a particle's nodes: one in 2D.
+  template <class F>
+  static void for_each_plane(F&& f) {
+    unrolled<D == 3 ? 3 : 1>(f);
+  }
+  NodeLines row_of(const NodeLines& first, int y, int z) const {
+    return first.from(y * row + z * layer);
+  }
   template <int W, class F>
   void for_each_particle(int at, const Weights<W>& w, F&& f) const {
     for (int p = 0; p < w.count; ++p)
@@ -167,7 +183,7 @@ struct GimpField {
         if constexpr (W == 1)
           r[a] = found[0].v[a];
         else
-          r[a].v = {found[0].v[a], found[1].v[a]};
+          r[a] = T(typename T::Vector{found[0].v[a], found[1].v[a]});
     } else {
       Batch<quad> parts[W / quad][quad];  // four particles' components
       unrolled<W / quad>([&](auto h) {

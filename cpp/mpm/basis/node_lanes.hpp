@@ -17,11 +17,6 @@ struct NodeLanes {
     for (auto& p : r.part) p = Part(0.0);
     return r;
   }
-  static NodeLanes load(const double* values) {
-    NodeLanes r;
-    for (int k = 0; k < parts; ++k) r.part[k] = Part::load(values + k * width);
-    return r;
-  }
   NodeLanes times(double s) const {
     NodeLanes r;
     for (int k = 0; k < parts; ++k) r.part[k] = Part(s) * part[k];

@@ -11,7 +11,7 @@ namespace mpm {
 /// repeat a particle of the body and have no weight.
 template <int D>
 struct NearParticles {
-  using T = Batch<cell_lanes<D>>;
+  using T = Batch<contact_lanes<D>>;
   struct Lanes {
     Vec<T, D> x;  // position from the node [cells]
     T half;       // half the particle's edge [cells]; -infinity for one out of reach
@@ -74,7 +74,7 @@ struct NearParticles {
 template <int D>
 void collect_near(const TileParticles<D>& particles, const Index<D>& node, double reach,
                   NearParticles<D>& to) {
-  using T = Batch<cell_lanes<D>>;
+  using T = Batch<contact_lanes<D>>;
   // Over this length [cells] a particle's weight falls to 0 where its reach ends: particles on a
   // lattice lie there in whole rows, and rounding must not choose among them.
   constexpr double rim = 1e-3;

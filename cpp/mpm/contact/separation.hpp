@@ -37,7 +37,7 @@ struct Plane {
 /// widest corridor between the two, of half width 1/|a|, that few particles enter.
 template <int D>
 class PlaneFit {
-  using T = Batch<cell_lanes<D>>;
+  using T = Batch<contact_lanes<D>>;
   static constexpr int n = D + 1;
 
  public:

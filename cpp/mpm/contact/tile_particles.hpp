@@ -36,7 +36,7 @@ T particle_edge(T volume, double mean_edge) {
 template <int D>
 class TileParticles {
  public:
-  using T = Batch<cell_lanes<D>>;
+  using T = Batch<contact_lanes<D>>;
   /// Empty places in the lanes repeat a particle of the cell and have no mass.
   struct Lanes {
     Vec<T, D> xi;  // position in the cell, in [0, 1]
@@ -126,7 +126,7 @@ class TileParticles {
 
   void read(const TileGrid<D>& grid, const Body<D>& body, const Index<D>& first,
             const Index<D>& cell) {
-    constexpr int W = cell_lanes<D>;
+    constexpr int W = contact_lanes<D>;
     Cell& to = cells_[number(cell)];
     to.begin = static_cast<std::uint32_t>(lanes_.size());
     in_patch(cell, [&](const Patch<D>& patch, std::size_t c) {

@@ -47,22 +47,23 @@ double measure_bandwidth(int count) {
 
 double measure_arithmetic(int count) {
   using T = Batch<native_lanes>;
-  constexpr int registers = 10, turns = 1 << 20, shares = 16;
+  constexpr int registers = 10, turns = 1 << 16;  // of a share
+  Threads threads(count);
+  const std::size_t shares = 16 * static_cast<std::size_t>(threads.count());
   AlignedArray<double> sums;
   sums.release_and_allocate(shares);
-  Threads threads(count);
   const double seconds = least_seconds([&](int r) {
     const T a(0.5 + 0.01 * r), b(1.0 + r);
     threads.for_each(shares, [&](std::size_t share) {
       T x[registers];
       for (int k = 0; k < registers; ++k) x[k] = T(static_cast<double>(k));
-      for (int turn = 0; turn < turns / shares; ++turn)
+      for (int turn = 0; turn < turns; ++turn)
         for (auto& y : x) y = a * y + b;
       for (int k = 1; k < registers; ++k) x[0] += x[k];
       sums.data()[share] = sum(x[0]);  // so that the loop is not left out
     });
   });
-  return 2.0 * native_lanes * registers * turns / seconds / 1e9;
+  return 2.0 * native_lanes * registers * turns * static_cast<double>(shares) / seconds / 1e9;
 }
 
 }  // namespace mpm

@@ -1,5 +1,5 @@
 #pragma once
-// What the machine can do at best, with so many threads: limits no step can pass.
+// What this build can do at best on the machine, with so many threads: limits no step can pass.
 
 namespace mpm {
 

@@ -19,69 +19,21 @@ from __future__ import annotations
 import json as json_format
 import platform
 import statistics
-import subprocess
-import sys
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
-from ..errors import CaseError, RunError, nearest
+from ..errors import CaseError, nearest
 from .cases import BENCHES, Bench
 from .operations import operations_per_particle_step
+from .process import Process
 from .traffic import bytes_per_particle_step
 
 BLOCKS = 5
 STEPS = 400  # So that a block of 80 steps holds several crossings of whole layers of particles.
 WARM_UP = 20
-
-
-class Worker:
-    """A benchmark running in a process of its own; a context manager that ends it."""
-
-    def __init__(self, name: str, size: int, threads: int, scheme: str, warm_up: int) -> None:
-        package = Path(__file__).absolute().parents[2]  # -m looks in the current folder first.
-        numbers = [str(size), str(threads), scheme, str(warm_up)]
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", f"{__name__}.worker", name, *numbers],
-            cwd=package,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-
-    def __enter__(self) -> Worker:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._process.kill()
-        self._process.communicate()
-
-    def ask(self, command: str = "") -> dict[str, Any]:
-        """Send a command, if any, and return the answer.
-
-        Raises:
-            RunError: the run went unstable, or its process has ended.
-        """
-        assert self._process.stdin is not None and self._process.stdout is not None
-        if command:
-            self._process.stdin.write(command + "\n")
-            self._process.stdin.flush()
-        line = self._process.stdout.readline()
-        if not line:
-            code = self._process.wait()
-            raise RunError(f"the process of the benchmark has ended with code {code}")
-        content: dict[str, Any] = json_format.loads(line)
-        if "error" in content:
-            raise RunError(content["error"])
-        return content
 
 
 def find(name: str) -> Bench:
@@ -121,7 +73,7 @@ def measure(
         `bandwidth_GBps`, `bandwidth_fraction`, `arithmetic_GFLOPS`, `arithmetic_fraction`; what
         was measured (`bench`, `scheme`, `size`, `steps`, `version`, `machine`, `isa`); `blocks`,
         all blocks [ns]; and with a twin `without_contact_ns` and `contact_ratio` (`elastic3d_ns`,
-        `elastic3d_ratio` for `jc` and `debris`), the median over pairs of blocks.
+        `elastic3d_ratio` for `jc`, `debris` and `gimp3d`), the median over pairs of blocks.
 
     Raises:
         CaseError: there is no such benchmark, or not with this scheme.
@@ -189,13 +141,10 @@ def _in_turns(
 
     with ExitStack() as stack:
         workers = []
-        for (
-            name,
-            size,
-            threads,
-        ) in specs:  # One after the other: making particles disturbs the rest.
+        # One after the other: making particles disturbs the rest.
+        for name, size, threads in specs:
             tell()
-            worker = Worker(name, size, threads, scheme, min(WARM_UP, sum(lengths)))
+            worker = Process(name, size, threads, scheme, min(WARM_UP, sum(lengths)))
             workers.append(stack.enter_context(worker))
             worker.ask()
         for length in lengths:

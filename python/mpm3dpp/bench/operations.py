@@ -4,11 +4,13 @@
 Counted is what the equations say as they are written, for each particle and each node that it
 reaches (2^D with the linear basis, 3^D with GIMP): the product of one-axis factors for N_ip, D of
 them for its gradient, and a multiplication and an addition for each term of a sum. A code that
-shares work among the particles of a cell, as this one does, makes fewer. Not counted are nodes, the
-one-axis factors themselves, lists, and what lanes that are empty do.
+shares work among the particles of a cell, as this one does, makes fewer: it is an upper estimate.
+Not counted are nodes, the one-axis factors themselves, lists, and what lanes that are empty do.
 """
 
 from __future__ import annotations
+
+from .traffic import moves_particles
 
 # Of a material for a particle and step (3D, plane strain), by hand from `cpp/mpm/materials`: strain
 # and spin (12, 4), rotation of the stress (36, 8), law, volume and energies; a division or a
@@ -26,23 +28,27 @@ def operations_per_particle_step(
         dimension: 2 or 3.
         basis: "linear" or "gimp".
         law: of the material, a key of `LAWS`.
+
+    Raises:
+        KeyError: a stage is not in `traffic.STAGES`, or moves particles and is not counted here.
     """
     d = dimension
     nodes = (3 if basis == "gimp" else 2) ** d
     function, gradient = nodes * (d - 1), nodes * d * (d - 1)
-    mass, vector, tensor = 2 * nodes, 2 * nodes * d, 2 * nodes * d * d
+    weighted, mass = nodes, nodes  # m N_ip, and its sum
+    vector, tensor = 2 * nodes * d, 2 * nodes * d * d
     update = gradient + tensor + LAWS[law][3 - d]
     advance, move = function + vector + d, function + vector + 2 * d
     counts = {
-        "map momentum": function + mass + vector,  # eqs. (2), (3)
+        "map momentum": function + weighted + mass + vector,  # eqs. (2), (3)
         "map forces": gradient + tensor,  # eq. (9)
-        "map momentum and forces": function + mass + vector + gradient + tensor,
+        "map momentum and forces": function + weighted + mass + vector + gradient + tensor,
         "advance particles": advance,  # eq. (17)
-        "remap momentum": function + mass + vector,
-        "advance and remap particles": advance + mass + vector,
+        "remap momentum": function + weighted + vector,
+        "advance and remap particles": advance + weighted + vector,
         "advance and move particles": advance + vector + 2 * d,
         "update stress": update,  # eqs. (18)-(20)
         "update stress, move particles": update + move,
         "move particles": move,  # eq. (16)
     }
-    return {stage: counts.get(stage, 0) for stage in stages}
+    return {stage: counts[stage] if moves_particles(stage) else 0 for stage in stages}

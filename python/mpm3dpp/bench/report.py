@@ -152,7 +152,7 @@ def lines(result: dict[str, Any]) -> list[str]:
     twin = BENCHES[result["bench"]].twin
     if f"{twin}_ratio" in result:
         found.append(
-            f"material   {result[f'{twin}_ratio']:.3f} times {twin} ({result[f'{twin}_ns']:.1f} ns)"
+            f"beside     {result[f'{twin}_ratio']:.3f} times {twin} ({result[f'{twin}_ns']:.1f} ns)"
         )
     if SPEED[result["scheme"]] == 0.0:
         found.append("note       with USL the bodies stay in place: no particle crosses cells")

@@ -43,6 +43,11 @@ STAGES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 }
 
 
+def moves_particles(stage: str) -> bool:
+    """Return whether a stage reads particles; raise KeyError if there is no such stage."""
+    return STAGES[stage] != _NODES
+
+
 def numbers(column: str, dimension: int) -> int:
     """Return how many numbers a column holds per particle."""
     if column == "stress":

@@ -9,7 +9,6 @@ import threading
 from types import TracebackType
 from typing import Any
 
-from mpm3dpp.errors import CaseError
 from mpm3dpp.io.fields import Frame
 from mpm3dpp.io.vtkhdf import ResultsWriter
 
@@ -20,8 +19,9 @@ BEHIND = 2
 class BackgroundWriter:
     """Writes frames from copies, in a thread of its own; a context manager that ends it.
 
-    A frame that could not be written ends the run at its next look: `write`, `check` and `close`
-    raise the error, once. Frames written before stay readable; those that wait are dropped.
+    A frame that could not be written ends the run at its next look: `write` raises the error,
+    `check` and `close` do if nobody has told it yet. Frames written before stay readable; those
+    that wait are dropped.
 
     Args:
         results: the writer of the file, closed at the end.
@@ -31,8 +31,8 @@ class BackgroundWriter:
         self._results = results
         self._frames: queue.SimpleQueue[Frame | None] = queue.SimpleQueue()
         self._room = threading.Semaphore(BEHIND)
-        self._error: Exception | None = None
-        self._failed = False
+        self._error: Exception | None = None  # set once, by the thread that writes
+        self._told = False
         self._thread = threading.Thread(target=self._work, name="frames", daemon=True)
         self._thread.start()
 
@@ -40,23 +40,26 @@ class BackgroundWriter:
         """Hand over a copy of the core's `Simulation`; wait only while two others are not written.
 
         Raises:
-            CaseError: an earlier frame could not be written.
+            CaseError: an earlier frame could not be written, or there is no such column.
         """
         self._room.acquire()
-        self.check()
-        self._frames.put(self._results.copy(simulation))
+        try:
+            self._tell()
+            self._frames.put(self._results.copy(simulation))
+        except BaseException:
+            self._room.release()
+            raise
 
     def check(self) -> None:
-        """Raise the error of a frame that could not be written, if it has not been raised yet."""
-        error, self._error = self._error, None
-        if error is not None:
-            raise error
+        """Raise the error of a frame that could not be written, if nobody has told it yet."""
+        if not self._told:
+            self._tell()
 
     def close(self) -> None:
         """Write what waits, and close the file. Closing twice does nothing.
 
         Raises:
-            CaseError: a frame could not be written.
+            CaseError: a frame could not be written, and nobody has told it yet.
         """
         if self._thread.is_alive():
             self._frames.put(None)
@@ -76,16 +79,20 @@ class BackgroundWriter:
         trace: TracebackType | None,
     ) -> None:
         # The first error is the one to tell.
-        with contextlib.suppress(CaseError) if kind else contextlib.nullcontext():
+        with contextlib.suppress(Exception) if kind else contextlib.nullcontext():
             self.close()
+
+    def _tell(self) -> None:
+        if self._error is not None:
+            self._told = True
+            raise self._error
 
     def _work(self) -> None:
         while (frame := self._frames.get()) is not None:
             try:
-                if not self._failed:
+                if self._error is None:
                     self._results.add(frame)
             except Exception as error:  # Whatever it is, the thread that steps must hear of it.
-                self._failed = True
                 self._error = error
             finally:
                 self._room.release()

@@ -30,15 +30,12 @@ from mpm3dpp.io.fields import (
     numbered,
     particle_sizes,
 )
+from mpm3dpp.io.rows import append_rows, as_stored, hold_metadata, make_rows
 
 if TYPE_CHECKING:
     import h5py
 
-TO_VTK = (0, 1, 2, 5, 3, 4)
-"""Order of VTK's symmetric tensors (xx yy zz xy yz xz) taken from ours (xx yy zz yz xz xy)."""
-
 _TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
-_CHUNK_ROWS = 131072
 _SLACK = 1 << 20  # bytes reserved beyond the arrays of a frame: indices and chunk tables
 
 
@@ -108,7 +105,7 @@ class ResultsWriter:
             self._file: h5py.File | None = h5py.File(
                 self.path, "w", libver=("earliest", "v108"), locking=False
             )
-            _hold_metadata(self._file)
+            hold_metadata(self._file)
             self._lay_out(self._file)
             self._file.flush()
         except (OSError, RuntimeError) as error:
@@ -146,7 +143,7 @@ class ResultsWriter:
         """
         if self._file is None:
             raise CaseError(f"'{self.path}' is closed: no frame can be added to it any more")
-        columns = {name: _column(array) for name, array in arrays.items()}
+        columns = {name: as_stored(array) for name, array in arrays.items()}
         need = sum(c.nbytes for c in columns.values()) + _SLACK
         try:
             reserve(self.path, self._file.id.get_filesize() + need)
@@ -192,20 +189,20 @@ class ResultsWriter:
         root = file.create_group("VTKHDF")
         root.attrs["Version"] = np.array([2, 0], dtype=np.int64)
         root.attrs.create("Type", np.bytes_("PolyData"))
-        _extend(root, "NumberOfPoints", (), np.int64, 256)
+        make_rows(root, "NumberOfPoints", (), np.int64, 256)
         for name in _TOPOLOGIES:
             group = root.create_group(name)
             for index in ("NumberOfCells", "NumberOfConnectivityIds"):
-                _extend(group, index, (), np.int64, 256)
+                make_rows(group, index, (), np.int64, 256)
         for name in ("PointData", "CellData", "FieldData"):
             root.create_group(name)
         steps = root.create_group("Steps")
         steps.attrs["NSteps"] = np.int64(0)
-        _extend(steps, "Values", (), np.float64, 256)
+        make_rows(steps, "Values", (), np.float64, 256)
         for name in ("PartOffsets", "NumberOfParts", "PointOffsets"):
-            _extend(steps, name, (), np.int64, 256)
+            make_rows(steps, name, (), np.int64, 256)
         for name in ("CellOffsets", "ConnectivityIdOffsets"):
-            _extend(steps, name, (len(_TOPOLOGIES),), np.int64, 64)
+            make_rows(steps, name, (len(_TOPOLOGIES),), np.int64, 64)
         for name in ("PointDataOffsets", "CellDataOffsets", "FieldDataOffsets"):
             steps.create_group(name)
         file.create_group("mpm3dpp").attrs["run"] = json.dumps(self._meta)
@@ -217,7 +214,7 @@ class ResultsWriter:
             root.file["mpm3dpp"].attrs["run"] = json.dumps(self._meta)
         steps = root["Steps"]
         part, cell, index = self._part(root, len(columns["position"]))
-        first = _put(root, "Points", columns["position"], self._level)
+        first = append_rows(root, "Points", columns["position"], self._level)
         for name, values in (
             ("PartOffsets", part),
             ("NumberOfParts", 1),
@@ -225,19 +222,19 @@ class ResultsWriter:
             ("CellOffsets", [cell, 0, 0, 0]),
             ("ConnectivityIdOffsets", [index, 0, 0, 0]),
         ):
-            _put(steps, name, np.array([values], dtype=np.int64))
+            append_rows(steps, name, np.array([values], dtype=np.int64))
         for name, column in columns.items():
             if name == "position":
                 continue
             offset = self._constant_offset(name, column)
             if offset is None:
-                offset = _put(root["PointData"], name, column, self._level)
+                offset = append_rows(root["PointData"], name, column, self._level)
                 if name in ("body", "grain", "material", "size"):
                     self._constant[name] = (column.copy(), offset)
-            _put(steps["PointDataOffsets"], name, np.array([offset], dtype=np.int64))
-        row = _put(root["FieldData"], "step", np.array([step], dtype=np.int64))
-        _put(steps["FieldDataOffsets"], "step", np.array([row], dtype=np.int64))
-        _put(steps, "Values", np.array([time]))
+            append_rows(steps["PointDataOffsets"], name, np.array([offset], dtype=np.int64))
+        row = append_rows(root["FieldData"], "step", np.array([step], dtype=np.int64))
+        append_rows(steps["FieldDataOffsets"], "step", np.array([row], dtype=np.int64))
+        append_rows(steps, "Values", np.array([time]))
 
     def _constant_offset(self, name: str, column: np.ndarray) -> int | None:
         """Where the same values already stand in the file, if they do."""
@@ -252,60 +249,14 @@ class ResultsWriter:
         for part, (count, cell, index) in enumerate(self._parts):
             if count == particles:
                 return part, cell, index
-        _put(root, "NumberOfPoints", np.array([particles], dtype=np.int64))
+        append_rows(root, "NumberOfPoints", np.array([particles], dtype=np.int64))
         cell = sum(count for count, _, _ in self._parts)
         for name in _TOPOLOGIES:
             cells = particles if name == "Vertices" else 0
             group = root[name]
-            _put(group, "NumberOfCells", np.array([cells], dtype=np.int64))
-            _put(group, "NumberOfConnectivityIds", np.array([cells], dtype=np.int64))
-            _put(group, "Offsets", np.arange(cells + 1, dtype=np.int64))
-            _put(group, "Connectivity", np.arange(cells, dtype=np.int64))
+            append_rows(group, "NumberOfCells", np.array([cells], dtype=np.int64))
+            append_rows(group, "NumberOfConnectivityIds", np.array([cells], dtype=np.int64))
+            append_rows(group, "Offsets", np.arange(cells + 1, dtype=np.int64))
+            append_rows(group, "Connectivity", np.arange(cells, dtype=np.int64))
         self._parts.append((particles, cell, cell))
         return len(self._parts) - 1, cell, cell
-
-
-def _column(array: np.ndarray) -> np.ndarray:
-    """As stored: float32 (integers int32), two components padded to three, tensors in VTK order."""
-    array = np.asarray(array)
-    if array.ndim == 2 and array.shape[1] == 6:
-        array = array[:, TO_VTK]
-    if array.ndim == 2 and array.shape[1] == 2:
-        array = np.column_stack([array, np.zeros(len(array))])
-    kind = np.int32 if np.issubdtype(array.dtype, np.integer) else np.float32
-    with np.errstate(over="ignore"):  # beyond float32 means a run that blew up: stored as inf
-        return np.ascontiguousarray(array, dtype=kind)
-
-
-def _extend(
-    group: h5py.Group, name: str, shape: tuple[int, ...], kind: Any, rows: int, level: int = 0
-) -> Any:
-    """An empty data set that grows along its first axis, stored in chunks of `rows` rows."""
-    how = {"compression": "gzip", "compression_opts": level, "shuffle": True} if level else {}
-    whole, chunks = (None, *shape), (max(rows, 1), *shape)
-    return group.create_dataset(name, (0, *shape), maxshape=whole, chunks=chunks, dtype=kind, **how)
-
-
-def _put(group: h5py.Group, name: str, values: np.ndarray, level: int = 0) -> int:
-    """Append rows to a data set (made at the first call); returns the row where they start."""
-    if name not in group:
-        # What is compressed is one chunk a frame: a chunk of two frames would be written again
-        # elsewhere with the second, and a killed run could lose the first.
-        chunks = 1 if level else max(1, -(-len(values) // _CHUNK_ROWS))
-        rows = -(-len(values) // chunks) if len(values) > 1 else 256
-        _extend(group, name, values.shape[1:], values.dtype, rows, level)
-    data = group[name]
-    first = int(data.shape[0])
-    data.resize(first + len(values), axis=0)
-    data[first:] = values
-    return first
-
-
-def _hold_metadata(file: h5py.File) -> None:
-    """Let HDF5 write its tables at a flush only, so that the file on disk is whole between."""
-    config = file.id.get_mdc_config()
-    config.evictions_enabled = False
-    config.incr_mode = 0
-    config.flash_incr_mode = 0
-    config.decr_mode = 0
-    file.id.set_mdc_config(config)

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""In a package with several builds of the core (`MPM_NATIVE=OFF`) all give the same results.
+
+A package with one core has nothing to compare; `cmake --preset portable` builds one with three.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mpm3dpp
+from mpm3dpp import _core
+from mpm3dpp.processor import LEVELS, processor_flags
+
+HERE = Path(mpm3dpp.__file__).parent
+PRESENT = [level for level in LEVELS if list(HERE.glob(f"_core_{level.replace('-', '_')}.*"))]
+USABLE = [level for level in PRESENT if LEVELS[level] <= processor_flags()]
+STEPS = {2: 120, 3: 60}
+# Rounding, after so many steps of blocks that meet with friction.
+NEAR = 1e-9
+
+_RUN = """
+import sys
+import numpy as np
+from cases import three_blocks
+from mpm3dpp import Simulation, _core
+dimension, basis, file = int(sys.argv[1]), sys.argv[2], sys.argv[3]
+simulation = Simulation(three_blocks(dimension, "musl", grid={"basis": basis}), threads=1)
+simulation.advance(int(sys.argv[4]))
+core = simulation.core
+names = ("position", "velocity", "stress")
+columns = {n: np.concatenate([core.column(b, n) for b in range(core.body_count)]) for n in names}
+np.savez(file, lanes=_core.build_info()["lanes"], **columns)
+"""
+
+
+def columns_of(level: str, dimension: int, basis: str, folder: Path) -> dict[str, np.ndarray]:
+    """Return position, velocity and stress of all particles, and the lanes, of a level's run."""
+    file = folder / f"{level}.npz"
+    words = [sys.executable, "-c", _RUN, str(dimension), basis, str(file), str(STEPS[dimension])]
+    paths = [str(Path(__file__).parents[1]), str(HERE.parent)]
+    environment = {**os.environ, "MPM3DPP_ISA": level, "PYTHONPATH": os.pathsep.join(paths)}
+    subprocess.run(words, env=environment, check=True)
+    with np.load(file) as found:
+        return dict(found)
+
+
+@pytest.mark.skipif(len(USABLE) < 2, reason="this package has one core that runs here")
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("basis", ["linear", "gimp"])
+def test_levels_agree(dimension: int, basis: str, tmp_path: Path) -> None:
+    """To rounding; to the bit where multiplications and additions are not fused."""
+    same_bits = "-ffp-contract=off" in _core.build_info()["flags"]
+    found = [columns_of(level, dimension, basis, tmp_path) for level in USABLE]
+    assert len({int(one.pop("lanes")) for one in found}) == len(USABLE)  # They are not the same.
+    first, *others = found
+    for other in others:
+        for name, values in first.items():
+            if same_bits:
+                assert values.tobytes() == other[name].tobytes(), name
+            near = NEAR * np.abs(values).max()
+            np.testing.assert_allclose(other[name], values, rtol=0.0, atol=near)
