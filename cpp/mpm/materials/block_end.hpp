@@ -55,7 +55,8 @@ class BlockEnd {
 
     Vec<T, D> v;
     for (int a = 0; a < D; ++a) v[a] = group.read(columns_.velocity[a]);
-    fastest_ = max(fastest_, after.speed + sqrt(dot(v, v)));
+    // An empty lane holds a particle that is taken elsewhere, without its motion.
+    fastest_ = max(fastest_, select(valid, after.speed + sqrt(dot(v, v)), T(0.0)));
   }
 
   void add_to(StressSums& sums) const {

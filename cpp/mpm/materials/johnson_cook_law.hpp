@@ -18,12 +18,15 @@ struct Power {
   /// a search.
   At at(T x) const {
     const T change = (x - start) * inverse;
-    if (exponent >= power_near_one_below || any(absolute(change) > T(0.01))) {
-      const T value = pow(x, T(exponent)), one_over = T(1.0) / x;
-      return {value, T(exponent) * value * one_over, one_over};
+    const auto far = absolute(change) > T(0.01);
+    const bool never_near = exponent >= power_near_one_below;
+    T value = start_value * power_near_one(change, exponent);
+    T one_over = inverse * (T(1.0) - change);
+    if (never_near || any(far)) {  // lane by lane: what one holds is no matter to its neighbour
+      const auto exact = never_near ? T(0.0) < T(1.0) : far;
+      value = select(exact, pow(x, T(exponent)), value);
+      one_over = select(exact, T(1.0) / x, one_over);
     }
-    const T value = start_value * power_near_one(change, exponent);
-    const T one_over = inverse * (T(1.0) - change);
     return {value, T(exponent) * value * one_over, one_over};
   }
 };
