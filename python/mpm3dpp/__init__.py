@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     __version__: str
 
-sys.meta_path.append(CoreFinder())
+sys.meta_path.insert(0, CoreFinder())
 
 _HOMES = {
     "case": ("Case", "Material", "load_case"),

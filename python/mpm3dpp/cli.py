@@ -83,7 +83,12 @@ def _options(
 @app.command()
 def run(
     case: CaseFile,
-    out: Annotated[Path | None, typer.Option(help="Folder; default results/NAME.")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder; default results/NAME, of the file or, for case.toml, its folder."
+        ),
+    ] = None,
     threads: Threads = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
     json: Json = False,
@@ -167,18 +172,24 @@ def plot(
         typer.echo(picture)
 
 
+BENCH_NAMES = "elastic2d, elastic3d, gimp2d, gimp3d, jc, debris, two_cubes or spheres."
+
+
 @app.command()
 def bench(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="elastic3d, two_cubes, ...")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help=BENCH_NAMES)],
     size: Annotated[
         list[int] | None,
-        typer.Option(min=1, help="Cells along an edge; of spheres, how many. May be given again."),
+        typer.Option(
+            min=1,
+            help="Cells along an edge of two particles; how many spheres. May be given again.",
+        ),
     ] = None,
     threads: Annotated[
         list[int] | None, typer.Option(min=1, help="Threads; 1 if not given. May be given again.")
     ] = None,
     scheme: Annotated[Scheme, typer.Option(help="Scheme.")] = Scheme.musl,
-    steps: Annotated[int | None, typer.Option(min=1, help="Steps that are timed.")] = None,
+    steps: Annotated[int | None, typer.Option(min=1, help="Steps that are timed; 400.")] = None,
     json: Json = False,
     plot: Annotated[Path | None, typer.Option(help="Picture to write, a PNG.")] = None,
 ) -> None:

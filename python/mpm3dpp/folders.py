@@ -25,6 +25,23 @@ def default_folder(case_file: Path) -> Path:
     return Path("results") / stem
 
 
+# What a run writes beside the frames and the history, which it begins anew.
+_OF_A_RUN = ("manifest.json", "frame.png", "energies.png", "first_contact.png", "used_cells.png")
+
+
+def forget_last_run(folder: Path) -> None:
+    """Remove what an earlier run has left in a folder, so that it is not taken for the new one's.
+
+    Raises:
+        CaseError: it cannot be removed.
+    """
+    for name in (*_OF_A_RUN, "animation.gif"):
+        try:
+            (folder / name).unlink(missing_ok=True)
+        except OSError as error:
+            raise cannot_write(folder / name, error) from error
+
+
 def writable_folder(path: Path) -> Path:
     """Make a folder, prove that files can be written in it, and return it.
 

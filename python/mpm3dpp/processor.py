@@ -70,7 +70,7 @@ def choose(present: Sequence[str], flags: Collection[str], wish: str | None = No
 
 
 class CoreFinder:
-    """Finds `mpm3dpp._core` among the builds of a package that has no module of this name."""
+    """Finds `mpm3dpp._core` in a package that has several; looks before all other finders."""
 
     @staticmethod
     def find_spec(
@@ -92,7 +92,15 @@ class CoreFinder:
                     file = Path(folder) / f"_core_{level.replace('-', '_')}{suffix}"
                     if file.is_file():
                         files.setdefault(level, file)
+        wish = os.environ.get(WISH)
         if not files:
+            if wish:
+                raise CaseError(
+                    "is not in this build, which has one core for the processor it was built on",
+                    "unset it, or build with MPM_NATIVE=OFF",
+                    key=WISH,
+                    value=wish,
+                )
             return None
-        level = choose(list(files), processor_flags(), os.environ.get(WISH))
+        level = choose(list(files), processor_flags(), wish)
         return importlib.util.spec_from_file_location(name, files[level])

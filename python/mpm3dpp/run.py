@@ -15,8 +15,8 @@ from typing import Any
 
 from . import _core
 from .case import Case
-from .errors import RunError
-from .folders import writable_folder
+from .errors import CaseError, RunError
+from .folders import forget_last_run, writable_folder
 from .io.background import BackgroundWriter
 from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
@@ -48,13 +48,19 @@ def run_case(
 
     Raises:
         CaseError: a mistake in the case, or a folder that cannot be written.
-        RunError: the run became unstable; what was computed before is kept.
+        RunError: the run became unstable, or the disk is full; what was written before is kept.
         KeyboardInterrupt: the user stopped it; what was computed is kept.
     """
     folder = writable_folder(Path(out))
     begin = clock.monotonic()
     simulation = Simulation(case, threads)
-    status, reason = _write_run(simulation, folder, quiet or json)
+    forget_last_run(folder)
+    try:
+        status, reason = _write_run(simulation, folder, quiet or json)
+    except CaseError as error:  # The disk: it was no mistake when the run began.
+        if simulation.step == 0:
+            raise
+        raise RunError(f"{error}; what was written before is in {folder}") from error
     manifest = _manifest(simulation, status, reason, clock.monotonic() - begin)
     manifest.energies = simulation.summary
     manifest.write(folder)
@@ -199,14 +205,16 @@ def _pictures_may_fail(quiet: bool) -> Iterator[None]:
 
 @contextmanager
 def _interrupt() -> Iterator[Any]:
-    """Within it, Ctrl-C only sets a flag, which the object given tells when called."""
+    """Within it, Ctrl-C and SIGTERM only set a flag, which the object given tells when called."""
     hit: list[bool] = []
+    kinds = (signal.SIGINT, signal.SIGTERM)
     try:
-        old = signal.signal(signal.SIGINT, lambda *_: hit.append(True))
+        old = [signal.signal(kind, lambda *_: hit.append(True)) for kind in kinds]
     except ValueError:  # Not the main thread: nobody can press Ctrl-C here.
         yield lambda: False
         return
     try:
         yield lambda: bool(hit)
     finally:
-        signal.signal(signal.SIGINT, old)
+        for kind, handler in zip(kinds, old, strict=True):
+            signal.signal(kind, handler)

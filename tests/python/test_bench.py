@@ -88,6 +88,18 @@ def test_table_names_every_stage(cubes, capsys):
     assert "without contact" in shown
 
 
+def test_help_names_the_benchmarks():
+    from mpm3dpp.cli import BENCH_NAMES
+
+    named = BENCH_NAMES.rstrip(".").replace(" or ", ", ").split(", ")
+    assert named == [name for name in cases.BENCHES if not name.endswith("_apart")]
+
+
+def test_a_picture_of_another_kind_is_refused_before_measuring(tmp_path):
+    with pytest.raises(CaseError, match=r"--plot = .* ends in .png"):
+        bench.main("elastic2d", [10**9], plot=tmp_path / "one.pdf")
+
+
 def test_json_is_all_that_is_printed(capsys):
     bench.main("elastic2d", [4], steps=2, scheme="usf", json=True)
     result = json.loads(capsys.readouterr().out)

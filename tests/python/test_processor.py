@@ -48,10 +48,14 @@ def test_flags_of_this_processor_are_those_the_core_was_built_for() -> None:
     assert least <= processor_flags()
 
 
-def test_other_modules_are_not_looked_for(tmp_path: Path) -> None:
+def test_other_modules_are_not_looked_for(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.delenv("MPM3DPP_ISA", raising=False)
     assert CoreFinder().find_spec("mpm3dpp._other", [str(tmp_path)]) is None
     assert CoreFinder().find_spec("mpm3dpp._core", [str(tmp_path)]) is None  # nothing is there
     assert CoreFinder().find_spec("mpm3dpp._core") is None
+    monkeypatch.setenv("MPM3DPP_ISA", "x86-64-v3")
+    with pytest.raises(CaseError, match="one core for the processor it was built on"):
+        CoreFinder().find_spec("mpm3dpp._core", [str(tmp_path)])
 
 
 def test_a_package_with_levels_loads_one(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -17,6 +18,7 @@ import pytest
 
 from mpm3dpp import RunError, load_case, open_results, run_case
 from mpm3dpp.errors import CaseError
+from mpm3dpp.folders import forget_last_run
 from mpm3dpp.io import read_history, read_manifest
 
 CASE = """\
@@ -197,9 +199,10 @@ def start_long_run(folder: Path) -> subprocess.Popen[str]:
     return run
 
 
-def test_control_c_ends_cleanly_and_keeps_the_results(tmp_path: Path) -> None:
+@pytest.mark.parametrize("kind", [signal.SIGINT, signal.SIGTERM])
+def test_control_c_ends_cleanly_and_keeps_the_results(tmp_path: Path, kind: signal.Signals) -> None:
     run = start_long_run(tmp_path)
-    run.send_signal(signal.SIGINT)
+    run.send_signal(kind)
     out, err = run.communicate(timeout=30)
     assert (run.returncode, out) == (130, "")
     assert "Traceback" not in err
@@ -240,6 +243,34 @@ def test_an_unstable_run_says_why_and_keeps_the_last_good_frame(tmp_path: Path) 
     assert read_history(tmp_path / "out")["step"][-1] == manifest["steps"]
     with pytest.raises(RunError, match="at step"):
         run_case(load_case(path), tmp_path / "again", threads=1)
+
+
+def test_a_full_disk_ends_the_run_and_keeps_the_frames(tmp_path: Path) -> None:
+    """A limit on the size of files stands for the full disk."""
+    words = command("run", write(tmp_path, LONG), "--out", "out", "--threads", 1, "--quiet")
+    limit = (1_500_000, 1_500_000)
+    done = subprocess.run(
+        words,
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit),
+    )
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "file too large" in one_sentence(done.stderr)
+    assert "what was written before is in out" in done.stderr
+    with open_results(tmp_path / "out") as results:
+        assert len(results) >= 2
+
+
+def test_an_earlier_run_is_not_taken_for_the_new_one(tmp_path: Path) -> None:
+    run_case(load_case(write(tmp_path)), tmp_path / "out", threads=1, pictures=False)
+    (tmp_path / "out" / "frame.png").write_text("of before")
+    (tmp_path / "out" / "notes.txt").write_text("the user's own")
+    forget_last_run(tmp_path / "out")
+    left = {file.name for file in (tmp_path / "out").iterdir()}
+    assert left == {"results.vtkhdf", "history.csv", "notes.txt"}
 
 
 @pytest.mark.parametrize("place", ["file", "file/below"])

@@ -232,6 +232,9 @@ def main(
     from .report import progress, show, show_series
 
     bench = find(name)
+    if plot is not None and plot.suffix.lower() != ".png":
+        remedy = "give a name that ends in .png"
+        raise CaseError("is not the name of a PNG file", remedy, key="--plot", value=str(plot))
     alone = len(sizes) <= 1 and len(threads) == 1
     with progress(quiet=json) as told:
         if alone:

@@ -115,10 +115,10 @@ def _stages(result: dict[str, Any]) -> Any:
     bench = BENCHES[result["bench"]]
     moved = bytes_per_particle_step(list(stages), bench.dimension, bench.state)
     made = operations_per_particle_step(list(stages), bench.dimension, bench.basis, bench.law)
-    table = Table(show_footer=True)
+    table = Table(show_footer=True, caption="per particle and step")
     table.add_column("stage", footer="step", no_wrap=True)
     footers = (f"{total:.1f}", "100 %", f"{sum(moved.values())}", f"{sum(made.values())}")
-    heads = ("ns per particle-step", "share", "bytes moved", "operations")
+    heads = ("ns", "share", "bytes", "operations")
     for head, footer in zip(heads, footers, strict=True):
         table.add_column(head, footer=footer, justify="right")
     rest = total - sum(stages.values())
@@ -138,10 +138,10 @@ def lines(result: dict[str, Any]) -> list[str]:
         f"{len(blocks)} blocks from {min(blocks):.1f} to {max(blocks):.1f}",
         f"memory     {memory['total']:.1f} bytes per particle at the peak: {parts}",
         f"bandwidth  {used:.1f} of {result['bandwidth_GBps']:.1f} GB/s "
-        f"({100 * result['bandwidth_fraction']:.0f} %)",
+        f"({100 * result['bandwidth_fraction']:.0f} %), as counted; the limit is measured now",
         f"arithmetic {result['operations_per_particle_step'] / result['ns_per_particle_step']:.1f} "
         f"of {result['arithmetic_GFLOPS']:.1f} GFLOP/s "
-        f"({100 * result['arithmetic_fraction']:.0f} %)",
+        f"({100 * result['arithmetic_fraction']:.0f} %), as the equations are written",
     ]
     if "contact_ratio" in result:
         found.append(
@@ -152,7 +152,8 @@ def lines(result: dict[str, Any]) -> list[str]:
     twin = BENCHES[result["bench"]].twin
     if f"{twin}_ratio" in result:
         found.append(
-            f"beside     {result[f'{twin}_ratio']:.3f} times {twin} ({result[f'{twin}_ns']:.1f} ns)"
+            f"against    {twin}, in turns: {result[f'{twin}_ratio']:.3f} times its "
+            f"{result[f'{twin}_ns']:.1f} ns (median of the blocks' ratios)"
         )
     if SPEED[result["scheme"]] == 0.0:
         found.append("note       with USL the bodies stay in place: no particle crosses cells")
