@@ -6,7 +6,6 @@ from __future__ import annotations
 import contextlib
 import queue
 import threading
-from types import TracebackType
 from typing import Any
 
 from mpm3dpp.io.fields import Frame
@@ -72,12 +71,7 @@ class BackgroundWriter:
     def __enter__(self) -> BackgroundWriter:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *about: object) -> None:
         # The first error is the one to tell.
         with contextlib.suppress(Exception) if kind else contextlib.nullcontext():
             self.close()
