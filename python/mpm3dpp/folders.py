@@ -26,7 +26,7 @@ def default_folder(case_file: Path) -> Path:
 
 
 # What a run writes beside the frames and the history, which it begins anew.
-_OF_A_RUN = ("manifest.json", "frame.png", "energies.png", "first_contact.png", "used_cells.png")
+_OF_A_RUN = ("manifest.json", "frame.png", "energies.png", "first_contact.png", "animation.gif")
 
 
 def forget_last_run(folder: Path) -> None:
@@ -35,7 +35,7 @@ def forget_last_run(folder: Path) -> None:
     Raises:
         CaseError: it cannot be removed.
     """
-    for name in (*_OF_A_RUN, "animation.gif"):
+    for name in _OF_A_RUN:
         try:
             (folder / name).unlink(missing_ok=True)
         except OSError as error:
