@@ -7,6 +7,7 @@
 #include "mpm/basis/basis.hpp"
 #include "mpm/basis/node_bits.hpp"
 #include "mpm/basis/node_lines.hpp"
+#include "mpm/grid/shared_nodes.hpp"
 
 namespace mpm {
 
@@ -42,6 +43,7 @@ struct Patch {
   std::size_t memory = 0;  // where its block begins in the grid's memory [doubles]
   NodeBits<D> owned;       // nodes that no earlier patch of the body holds; of a leader, no earlier
                            // leader; none of one that is led
+  SharedNodes<D> shared;   // of a leader
   bool at_wall = false;    // its block has nodes on a wall
   bool left_cell = false;  // a particle has left its cell since the lists were made
   bool in_contact = false;  // its block may have nodes where bodies meet

@@ -84,13 +84,16 @@ class TileGrid {
   std::size_t needed_bytes() const {
     return needed_ * sizeof(double) + patches.size() * sizeof(Patch<D>);
   }
-  void release_nodes() { node_memory_.release_and_allocate(0); }
+  void release_nodes() {
+    node_memory_.release_and_allocate(0);
+    listed_ = 0;
+  }
   /// The memory of the nodes, for others until momentum is mapped. All values in it are lost.
   std::span<std::byte> idle_memory() {
     return std::as_writable_bytes(std::span(node_memory_.data(), node_memory_.size()));
   }
   std::size_t node_bytes() const {
-    return node_memory_.bytes() + patches.capacity() * sizeof(Patch<D>);
+    return node_memory_.bytes() + shared_.bytes() + patches.capacity() * sizeof(Patch<D>);
   }
 
   /// Find neighbours. Call when patches were added or removed; there are no blocks then until they
@@ -103,8 +106,8 @@ class TileGrid {
   int find(int body, const Index<D>& tile) const;
 
   /// Add up what the patches sharing a node have put there, for numbers [first, last) of the lines,
-  /// whole quads, always in the order of the tiles (of bonded bodies in one tile: of the bodies);
-  /// then every patch holds the sum.
+  /// a quad or two or three, always in the order of the tiles (of bonded bodies in one tile: of the
+  /// bodies); then every patch holds the sum.
   void sum_shared_nodes(Threads& threads, int first, int last);
 
  private:
@@ -114,15 +117,23 @@ class TileGrid {
   bool before(const Patch<D>& p, int body, const Index<D>& tile) const;
   void choose_leaders();
   bool find_shapes(Threads& threads);
+  void find_outdated(Threads& threads);
+  void find_owned(Patch<D>& patch) const;
+  void list_shared_nodes(Threads& threads);
+  template <int quads>
+  void sum_shared_nodes_of(const Patch<D>& patch, int first);
   template <class F>
   void for_each_follower(Threads& threads, F&& f);
   template <class F>
-  void for_each_neighbour(const Patch<D>& patch, int first, int last, F&& f);
+  void for_each_shared(const Patch<D>& patch, F&& f) const;
 
   AlignedArray<double> node_memory_;
-  std::size_t needed_ = 0;              // of it [doubles]
-  bool blocks_known_ = false;           // the blocks are those of the patches there are
-  std::vector<std::uint32_t> by_tile_;  // if bonded: all patches, by tile, then by body
+  AlignedArray<SharedEntry<D>> shared_;            // SharedNodes of all patches
+  std::size_t listed_ = 0;                         // entries of it that are in use
+  std::vector<std::uint8_t> reshaped_, outdated_;  // scratch: of each patch, its block, its lists
+  std::size_t needed_ = 0;                         // of it [doubles]
+  bool blocks_known_ = false;                      // the blocks are those of the patches there are
+  std::vector<std::uint32_t> by_tile_;             // if bonded: all patches, by tile, then by body
   std::vector<std::uint32_t> leaders_;  // those whose nodes are summed with their neighbours'
 };
 

@@ -101,13 +101,25 @@ void check_blocks(mpm::testing::Report& report, Basis basis, bool bonded) {
       occupy(patch);
     });
   grid.connect();
-  for (int round = 0; round < 3; ++round) {
+  Patch<D> gone;
+  for (int round = 0; round < 5; ++round) {
     grid.cut_blocks(threads);
     check_sums(report, grid, threads, random);
     check_shapes(report, grid);
-    // Then particles move: one patch alone changes, and in the last round many.
-    for (std::size_t p = 0; p < (round == 0 ? 1 : grid.patches.size()); ++p)
-      occupy(grid.patches[p]);
+    // Then particles move: one patch alone changes, one goes, one comes, and in the end many
+    // change.
+    if (round == 0) occupy(grid.patches[0]);
+    if (round == 1) gone = grid.patches[3];
+    if (round == 1) grid.patches.erase(grid.patches.begin() + 3);
+    if (round == 2) {
+      Patch<D>& patch = *grid.patches.emplace(grid.patches.begin() + 3);
+      patch.body = gone.body;
+      patch.tile = gone.tile;
+      patch.occupied = gone.occupied;
+    }
+    if (round == 1 || round == 2) grid.connect();
+    if (round == 3)
+      for (Patch<D>& patch : grid.patches) occupy(patch);
   }
 }
 

@@ -1,0 +1,195 @@
+// The nodes that several patches hold: who owns them, the lists of them, and the sums.
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "mpm/grid/tile_grid.hpp"
+
+namespace mpm {
+namespace {
+
+/// f(node in p's block, node in q's block, count) for the rows of nodes that both hold.
+template <int D, class F>
+void for_each_shared_row(const Patch<D>& p, const Patch<D>& q, F&& f) {
+  Index<D> low, high, shift;  // as p counts; `shift` to what q counts
+  const Index<D> p_last = p.shape.last(), q_last = q.shape.last();
+  for (std::size_t a = 0; a < D; ++a) {
+    shift[a] = Tile<D>::cells * (p.tile[a] - q.tile[a]);
+    low[a] = std::max(p.shape.low[a], q.shape.low[a] - shift[a]);
+    high[a] = std::min(p_last[a], q_last[a] - shift[a]);
+    if (low[a] > high[a]) return;
+  }
+  const int p_first = p.shape.node(low), count = high[0] - low[0] + 1;
+  Index<D> rows;
+  for (std::size_t a = 0; a < D; ++a) {
+    rows[a] = high[a] - low[a];
+    low[a] += shift[a];
+  }
+  const int q_first = q.shape.node(low);
+  for (int z = 0; z <= (D == 3 ? rows[D - 1] : 0); ++z)
+    for (int y = 0; y <= rows[1]; ++y)
+      f(p_first + (z * p.shape.nodes[1] + y) * p.shape.nodes[0],
+        q_first + (z * q.shape.nodes[1] + y) * q.shape.nodes[0], count);
+}
+
+}  // namespace
+
+/// f(node, where a later neighbour has it) for the nodes that a patch owns.
+template <int D>
+template <class F>
+void TileGrid<D>::for_each_shared(const Patch<D>& patch, F&& f) const {
+  for (int k = Tile<D>::self + 1; k < Tile<D>::neighbours; ++k) {
+    const std::int32_t q = patch.neighbour[static_cast<std::size_t>(k)];
+    if (q < 0) continue;
+    for_each_shared_row(
+        patch, patches[static_cast<std::size_t>(q)], [&](int here, int there, int count) {
+          for (std::uint64_t left = patch.owned.row(here, count); left != 0; left &= left - 1) {
+            const int i = std::countr_zero(left);
+            f(here + i, SharedEntry<D>(k, there + i));
+          }
+        });
+  }
+}
+
+/// The patches whose own block, or a neighbour's, is another than when their lists were made.
+template <int D>
+void TileGrid<D>::find_outdated(Threads& threads) {
+  outdated_.assign(patches.size(), false);
+  threads.for_each(leaders_.size(), [&](std::size_t leader) {
+    const std::uint32_t p = leaders_[leader];
+    std::uint32_t present = 0;
+    bool reshaped = false;
+    for (std::size_t k = 0; k < Tile<D>::neighbours; ++k)
+      if (const std::int32_t q = patches[p].neighbour[k]; q >= 0) {
+        present |= 1u << k;
+        reshaped = reshaped || reshaped_[static_cast<std::size_t>(q)];
+      }
+    outdated_[p] = reshaped || present != patches[p].shared.neighbours;
+    patches[p].shared.neighbours = present;
+  });
+}
+
+template <int D>
+void TileGrid<D>::find_owned(Patch<D>& patch) const {
+  patch.owned.fill(patch.shape.node_count);
+  for (int k = 0; k < Tile<D>::self; ++k)
+    if (const std::int32_t q = patch.neighbour[static_cast<std::size_t>(k)]; q >= 0)
+      for_each_shared_row(patch, patches[static_cast<std::size_t>(q)],
+                          [&](int node, int, int count) { patch.owned.clear_row(node, count); });
+}
+
+/// Owners and lists of shared nodes, made anew for those patches where they have changed.
+template <int D>
+void TileGrid<D>::list_shared_nodes(Threads& threads) {
+  find_outdated(threads);
+  const auto each_leader = [&](auto&& f) {
+    threads.for_each(leaders_.size(), [&](std::size_t k) { f(leaders_[k], patches[leaders_[k]]); });
+  };
+  const auto list_of = [&](const Patch<D>& patch) {
+    SharedList<D> list;
+    for_each_shared(patch, [&](int node, SharedEntry<D> other) { list.add(node, other); });
+    return list;
+  };
+  each_leader([&](std::uint32_t p, Patch<D>& patch) {
+    if (!outdated_[p]) return;
+    find_owned(patch);
+    list_of(patch).count(patch.shape.node_count, patch.shared);
+  });
+  // What still holds is read where it has been, for which the memory of the nodes lends room.
+  auto* const before = reinterpret_cast<SharedEntry<D>*>(idle_memory().data());
+  std::copy_n(shared_.data(), listed_, before);
+  listed_ = 0;
+  for (const std::uint32_t p : leaders_) {
+    patches[p].shared.before = std::exchange(patches[p].shared.first, listed_);
+    listed_ += patches[p].shared.entries();
+  }
+  make_room(shared_, listed_, listed_ + listed_ / 16);
+  each_leader([&](std::uint32_t p, const Patch<D>& patch) {
+    SharedEntry<D>* const to = shared_.data() + patch.shared.first;
+    if (outdated_[p])
+      list_of(patch).write(patch.shape.node_count, patch.shared, to);
+    else
+      std::copy_n(before + patch.shared.before, patch.shared.entries(), to);
+  });
+}
+
+/// f(p, leader) for every patch that does not lead, those of one tile one after another.
+template <int D>
+template <class F>
+void TileGrid<D>::for_each_follower(Threads& threads, F&& f) {
+  if (!bonded) return;
+  threads.for_each(leaders_.size(), [&](std::size_t k) {
+    const std::uint32_t leader = leaders_[k];
+    const auto begin = std::lower_bound(by_tile_.begin(), by_tile_.end(), leader,
+                                        [&](std::uint32_t x, std::uint32_t y) {
+                                          return tile_less<D>(patches[x].tile, patches[y].tile);
+                                        });
+    for (auto p = begin; p != by_tile_.end() && patches[*p].leader == leader; ++p)
+      if (*p != leader) f(patches[*p], patches[leader]);
+  });
+}
+
+/// Numbers from `first` on of the lines of the nodes that a patch owns and others hold too.
+template <int D>
+template <int quads>
+void TileGrid<D>::sum_shared_nodes_of(const Patch<D>& patch, int first) {
+  std::array<double*, Tile<D>::neighbours> block{};
+  for (std::size_t k = Tile<D>::self; k < Tile<D>::neighbours; ++k)
+    if (patch.neighbour[k] >= 0)
+      block[k] = lines_of(patches[static_cast<std::size_t>(patch.neighbour[k])]).data + first;
+  const SharedEntry<D>* entry = shared_.data() + patch.shared.first;
+  const auto line_of = [&](SharedEntry<D> e) { return block[e.neighbour] + e.node * line_width; };
+  unrolled<SharedNodes<D>::most - 1>([&](auto m) {
+    constexpr int holders = m + 2;
+    for (int left = patch.shared.groups[holders]; left > 0; --left, entry += holders) {
+      double* lines[holders];
+      for (int h = 0; h < holders; ++h) lines[h] = line_of(entry[h]);
+      unrolled<quads>([&](auto q) {
+        auto sum = Batch<quad>::load(lines[0] + q * quad);
+        for (int h = 1; h < holders; ++h) sum += Batch<quad>::load(lines[h] + q * quad);
+        for (int h = 0; h < holders; ++h) sum.store(lines[h] + q * quad);
+      });
+    }
+  });
+}
+
+template <int D>
+void TileGrid<D>::sum_shared_nodes(Threads& threads, int first, int last) {
+  /// f(p's line, q's line) from `first` on for the nodes that both hold.
+  const auto each_node = [&](const Patch<D>& p, const Patch<D>& q, auto&& f) {
+    const NodeLines p_lines = lines_of(p).at(first), q_lines = lines_of(q).at(first);
+    for_each_shared_row(p, q, [&](int here, int there, int count) {
+      for (int i = 0; i < count; ++i)
+        for (int k = 0; k < last - first; k += quad)
+          f(p_lines[here + i] + k, q_lines[there + i] + k);
+    });
+  };
+  for_each_follower(threads, [&](const Patch<D>& patch, const Patch<D>& leader) {
+    each_node(leader, patch, [](double* to, const double* from) {
+      (Batch<quad>::load(to) + Batch<quad>::load(from)).store(to);
+    });
+  });
+  // All entries of a node are read and written by the one patch that owns it.
+  threads.for_each(leaders_.size(), [&](std::size_t k) {
+    const Patch<D>& patch = patches[leaders_[k]];
+    switch ((last - first) / quad) {
+      case 1:
+        return sum_shared_nodes_of<1>(patch, first);
+      case 2:
+        return sum_shared_nodes_of<2>(patch, first);
+      default:
+        return sum_shared_nodes_of<3>(patch, first);
+    }
+  });
+  for_each_follower(threads, [&](const Patch<D>& patch, const Patch<D>& leader) {
+    each_node(patch, leader,
+              [](double* to, const double* from) { Batch<quad>::load(from).store(to); });
+  });
+}
+
+template void TileGrid<2>::list_shared_nodes(Threads&);
+template void TileGrid<3>::list_shared_nodes(Threads&);
+template void TileGrid<2>::sum_shared_nodes(Threads&, int, int);
+template void TileGrid<3>::sum_shared_nodes(Threads&, int, int);
+
+}  // namespace mpm
