@@ -26,8 +26,11 @@ def short() -> Case:
 
 
 @cache
-def run(threads: int) -> Simulation:
-    simulation = Simulation(short(), threads)
+def run(threads: int, damped: bool = True) -> Simulation:
+    case = short()
+    if not damped:
+        case.run.pic_damping = 0.0
+    simulation = Simulation(case, threads)
     simulation.advance(STEPS)
     return simulation
 
@@ -71,12 +74,20 @@ def test_the_container_holds_the_grains_and_they_do_not_overlap() -> None:
     assert np.linalg.norm(x[a] - x[b], axis=1).min(initial=SPACING) > 0.5 * SPACING
 
 
-def test_the_balances_close() -> None:
-    """Energy at rounding; momentum is what gravity's integral and the container have given."""
-    simulation = run(1)
-    rows = history(simulation)
+def test_the_energy_closes() -> None:
+    rows = history(run(1))
     assert np.abs(rows["residual"]).max() < 1e-11 * rows["kinetic"].max()
     assert np.all(rows["motion_work"] == 0.0)  # nothing that stands still does work
+
+
+def test_the_momentum_closes() -> None:
+    """It is what gravity's integral and the container have given.
+
+    PIC damping feeds particles a share of the correction of eqs. (6)-(7) too, which is not among
+    the impulses (decision 0003), so this is without.
+    """
+    simulation = run(1, damped=False)
+    rows = history(simulation)
     mass, omega, t = of_grains(simulation, "mass").sum(), 2 * np.pi * 15.0, rows["time"]
     fall = -9.81 * t + 29.43 / omega * (np.cos(omega * t) - 1.0)
     size = mass * 1.0  # at 1 m/s
