@@ -1,6 +1,7 @@
 #pragma once
-// Structure of arrays: named columns of doubles, each of one or more components; a column exists
+// Structure of arrays: named columns of numbers, each of one or more components; a column exists
 // only if it was asked for.
+#include <cassert>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -12,39 +13,78 @@
 
 namespace mpm {
 
+/// What velocities and stresses are rounded to where they are kept; a step changes other columns by
+/// small parts of themselves. All arithmetic is that of doubles.
+#if defined(MPM_FLOAT32)
+using Rounded = float;
+#else
+using Rounded = double;
+#endif
+
+enum class Kept { exact, rounded };
+
 struct ColumnInfo {
   std::string name;
   std::string unit;
   int components = 1;
   int first = 0;  // index of its first component among all components
+  Kept kept = Kept::exact;
+
+  std::size_t number_bytes() const {
+    return kept == Kept::exact ? sizeof(double) : sizeof(Rounded);
+  }
 };
 
-/// All columns of one body, in one allocation: component c of row i is `component(c)[i]`.
+/// All columns of one body, in one allocation: component c of row i is `component(c)[i]`, or
+/// `rounded(c)[i]` if the column is kept so.
 class Columns {
  public:
   /// Declare a column before `allocate`; returns the index of its first component. Throws
   /// std::invalid_argument for a name that is taken.
-  int add(std::string name, std::string unit, int components) {
+  int add(std::string name, std::string unit, int components, Kept kept = Kept::exact) {
     for (const auto& i : infos_)
       if (i.name == name) throw std::invalid_argument("two columns are named " + name);
     const int first = component_count();
-    infos_.push_back({std::move(name), std::move(unit), components, first});
+    infos_.push_back({std::move(name), std::move(unit), components, first, kept});
     return first;
   }
 
   void allocate(std::size_t rows) {
     rows_ = rows;
     stride_ = padded(rows);
-    memory_.release_and_allocate(static_cast<std::size_t>(component_count()) * stride_);
+    begin_.clear();
+    std::size_t bytes = 0;
+    for (const ColumnInfo& info : infos_)
+      for (int c = 0; c < info.components; ++c) {
+        begin_.push_back(bytes);
+        bytes += stride_ * info.number_bytes();
+      }
+    memory_.release_and_allocate(bytes);
   }
 
   std::size_t rows() const { return rows_; }
-  std::size_t stride() const { return stride_; }  // from one component to the next
+  std::size_t stride() const { return stride_; }  // numbers from one component to the next
   std::size_t bytes() const { return memory_.bytes(); }
   const std::vector<ColumnInfo>& infos() const { return infos_; }
-  double* component(int c) { return memory_.data() + static_cast<std::size_t>(c) * stride_; }
+  double* component(int c) { return reinterpret_cast<double*>(begin_of(c, Kept::exact)); }
   const double* component(int c) const {
-    return memory_.data() + static_cast<std::size_t>(c) * stride_;
+    return reinterpret_cast<const double*>(begin_of(c, Kept::exact));
+  }
+  Rounded* rounded(int c) { return reinterpret_cast<Rounded*>(begin_of(c, Kept::rounded)); }
+  const Rounded* rounded(int c) const {
+    return reinterpret_cast<const Rounded*>(begin_of(c, Kept::rounded));
+  }
+  /// f(component c), whichever way its column is kept.
+  template <class F>
+  void with_component(int c, F&& f) {
+    info_of(c).kept == Kept::exact ? f(component(c)) : f(rounded(c));
+  }
+  template <class F>
+  void with_component(int c, F&& f) const {
+    info_of(c).kept == Kept::exact ? f(component(c)) : f(rounded(c));
+  }
+  double value(int c, std::size_t row) const {
+    return info_of(c).kept == Kept::exact ? component(c)[row] : double{rounded(c)[row]};
   }
 
   /// The column's description; throws std::invalid_argument for an unknown name, with those that
@@ -67,15 +107,31 @@ class Columns {
   // pages between them would double the memory of small bodies, which stay off such multiples
   // instead.
   static std::size_t padded(std::size_t rows) {
-    constexpr std::size_t page = 4096 / sizeof(double), stagger = 3 * cache_line / sizeof(double);
-    const std::size_t lines = (rows + 15) / 8 * 8, beyond = lines % page;
+    constexpr std::size_t line = cache_line / sizeof(Rounded), page = 4096 / sizeof(Rounded),
+                          stagger = 3 * line;
+    const std::size_t lines = (rows + 7 + line) / line * line, beyond = lines % page;
     if (lines < page) return lines;
     if (lines < 16 * page) return beyond < stagger ? lines + stagger - beyond : lines;
     return (lines - stagger + page - 1) / page * page + stagger;
   }
 
+  const ColumnInfo& info_of(int c) const {
+    std::size_t k = infos_.size();
+    while (infos_[--k].first > c) {
+    }
+    return infos_[k];
+  }
+  const std::byte* begin_of(int c, [[maybe_unused]] Kept kept) const {
+    assert(info_of(c).kept == kept);
+    return memory_.data() + begin_[static_cast<std::size_t>(c)];
+  }
+  std::byte* begin_of(int c, Kept kept) {
+    return const_cast<std::byte*>(std::as_const(*this).begin_of(c, kept));
+  }
+
   std::vector<ColumnInfo> infos_;
-  AlignedArray<double> memory_;
+  std::vector<std::size_t> begin_;  // of each component, in bytes
+  AlignedArray<std::byte> memory_;
   std::size_t rows_ = 0, stride_ = 0;
 };
 

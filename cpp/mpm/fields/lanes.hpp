@@ -85,18 +85,19 @@ template <int W, class F>
   }
 }
 
-template <int W>
-Batch<W> load(const double* column, const WholeRows<W>& rows) {
+/// A column is one of doubles or of floats.
+template <class Number, int W>
+Batch<W> load(const Number* column, const WholeRows<W>& rows) {
   return Batch<W>::load(column + rows.first);
 }
-template <int W>
-void store(double* column, const WholeRows<W>& rows, Batch<W> value) {
+template <class Number, int W>
+void store(Number* column, const WholeRows<W>& rows, Batch<W> value) {
   value.store(column + rows.first);
 }
 
 /// Columns have room for W rows behind their last (Columns).
-template <int W>
-Batch<W> load(const double* column, const LaneRows<W>& rows) {
+template <class Number, int W>
+Batch<W> load(const Number* column, const LaneRows<W>& rows) {
   if (rows.contiguous) {
     const auto b = Batch<W>::load(column + rows.row[0]);
     return rows.count == W
@@ -108,20 +109,24 @@ Batch<W> load(const double* column, const LaneRows<W>& rows) {
   return b;
 }
 
-inline double load(const double* column, const LaneRows<1>& rows) { return column[rows.row[0]]; }
+template <class Number>
+double load(const Number* column, const LaneRows<1>& rows) {
+  return column[rows.row[0]];
+}
 
-template <int W>
-void store(double* column, const LaneRows<W>& rows, Batch<W> value) {
+template <class Number, int W>
+void store(Number* column, const LaneRows<W>& rows, Batch<W> value) {
   if (rows.contiguous && rows.count == W) {
     value.store(column + rows.row[0]);
     return;
   }
   for (int k = 0; k < W; ++k)
-    if (k < rows.count) column[rows.row[k]] = value.v[k];
+    if (k < rows.count) column[rows.row[k]] = static_cast<Number>(value.v[k]);
 }
 
-inline void store(double* column, const LaneRows<1>& rows, double value) {
-  column[rows.row[0]] = value;
+template <class Number>
+void store(Number* column, const LaneRows<1>& rows, double value) {
+  column[rows.row[0]] = static_cast<Number>(value);
 }
 
 /// Zero in the lanes that repeat the last row.

@@ -9,16 +9,18 @@ template <int D>
 struct BlockColumns {
   static constexpr int parts = Sym<double, D>::size;
   std::size_t stride;
-  const double *mass, *velocity[D];
-  double *volume, *stress[parts];
+  const double* mass;
+  double* volume;
+  const Rounded* velocity[D];
+  Rounded* stress[parts];
   double *state, *energy, *recoverable, *viscosity_pressure, *failed, *failure_state;
 
   BlockColumns(Columns& columns, const MaterialColumns& at) : stride(columns.stride()) {
     const auto optional = [&](int c) { return c >= 0 ? columns.component(c) : nullptr; };
     mass = columns.component(at.mass);
     volume = columns.component(at.volume);
-    for (int a = 0; a < D; ++a) velocity[a] = columns.component(at.velocity + a);
-    for (int c = 0; c < parts; ++c) stress[c] = columns.component(at.stress + c);
+    for (int a = 0; a < D; ++a) velocity[a] = columns.rounded(at.velocity + a);
+    for (int c = 0; c < parts; ++c) stress[c] = columns.rounded(at.stress + c);
     state = optional(at.state);
     energy = optional(at.energy);
     recoverable = optional(at.recoverable);
@@ -38,8 +40,14 @@ struct Group {
   Group(const MaterialBlock<D>& block, std::size_t k)
       : at(k), rows(block.row + k, block.count - k) {}
 
-  T read(const double* column) const { return load(column, rows); }
-  void write(double* column, T value) const { store(column, rows, value); }
+  template <class Number>
+  T read(const Number* column) const {
+    return load(column, rows);
+  }
+  template <class Number>
+  void write(Number* column, T value) const {
+    store(column, rows, value);
+  }
   T get(const double* values) const { return load_lanes<T>(values + at); }
   void put(double* values, T value) const { store_lanes(values + at, value); }
   Truth<T> valid() const { return lanes_before<T>(rows.count); }

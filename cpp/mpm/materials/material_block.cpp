@@ -43,7 +43,9 @@ void add_material_columns(const Material& material, Columns& columns, MaterialCo
 template <int D>
 void start_material_columns(const Material& material, Columns& columns, const MaterialColumns& at) {
   const auto fill = [&](int component, double value) {
-    std::fill_n(columns.component(component), columns.rows(), value);
+    columns.with_component(component, [&]<class Number>(Number* column) {
+      std::fill_n(column, columns.rows(), static_cast<Number>(value));
+    });
   };
   for (int c = at.stress; c < columns.component_count(); ++c) fill(c, 0.0);
   const auto start = [&](int& first, const auto& model) {
@@ -75,7 +77,7 @@ void start_material_columns(const Material& material, Columns& columns, const Ma
 template <int D>
 double sound_speed(const Material& material, const Columns& columns, const MaterialColumns& at,
                    std::size_t row, double cell_size) {
-  const auto value = [&](int component) { return columns.component(component)[row]; };
+  const auto value = [&](int component) { return columns.value(component, row); };
   Sym<double, D> stress;
   for (int c = 0; c < Sym<double, D>::size; ++c) stress.c[c] = value(at.stress + c);
   // No waves run in loose matter: torn particles that gape (apply_failure.hpp).

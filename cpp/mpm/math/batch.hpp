@@ -17,26 +17,30 @@ inline constexpr int native_lanes = 4;
 inline constexpr int native_lanes = 2;
 #endif
 
-/// The compiler's vector types of W numbers. Numbers in memory are read and written as `Unaligned`
-/// and not by memcpy, after which the compiler must take all it knows from memory anew.
+/// The compiler's vector types of W numbers. Numbers in memory are read and written as `Unaligned`,
+/// floats as `Halves`, and not by memcpy, after which the compiler must take all it knows from
+/// memory anew.
 template <int W>
 struct Vectors;
 template <>
 struct Vectors<2> {
   typedef double Real __attribute__((vector_size(16)));
   typedef double Unaligned __attribute__((vector_size(16), aligned(8)));
+  typedef float Halves __attribute__((vector_size(8), aligned(4)));
   typedef std::int64_t Bits __attribute__((vector_size(16)));
 };
 template <>
 struct Vectors<4> {
   typedef double Real __attribute__((vector_size(32)));
   typedef double Unaligned __attribute__((vector_size(32), aligned(8)));
+  typedef float Halves __attribute__((vector_size(16), aligned(4)));
   typedef std::int64_t Bits __attribute__((vector_size(32)));
 };
 template <>
 struct Vectors<8> {
   typedef double Real __attribute__((vector_size(64)));
   typedef double Unaligned __attribute__((vector_size(64), aligned(8)));
+  typedef float Halves __attribute__((vector_size(32), aligned(4)));
   typedef std::int64_t Bits __attribute__((vector_size(64)));
 };
 
@@ -73,6 +77,15 @@ struct Batch {
     return Batch(Vector(*reinterpret_cast<const typename Vectors<W>::Unaligned*>(from)));
   }
   void store(double* to) const { *reinterpret_cast<typename Vectors<W>::Unaligned*>(to) = v; }
+  /// Floats become doubles, and doubles the nearest floats.
+  static Batch load(const float* from) {
+    return Batch(__builtin_convertvector(
+        *reinterpret_cast<const typename Vectors<W>::Halves*>(from), Vector));
+  }
+  void store(float* to) const {
+    using Halves = typename Vectors<W>::Halves;
+    *reinterpret_cast<Halves*>(to) = __builtin_convertvector(v, Halves);
+  }
   double operator[](int lane) const { return v[lane]; }
 
   friend Batch operator+(Batch a, Batch b) { return Batch(a.v + b.v); }

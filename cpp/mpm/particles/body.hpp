@@ -37,14 +37,14 @@ struct Body {
   std::size_t count() const { return columns.rows(); }
   std::size_t active() const { return count() - gone; }
   double* x(int a) { return columns.component(position + a); }
-  double* v(int a) { return columns.component(at.velocity + a); }
+  Rounded* v(int a) { return columns.rounded(at.velocity + a); }
   const double* x(int a) const { return columns.component(position + a); }
-  const double* v(int a) const { return columns.component(at.velocity + a); }
+  const Rounded* v(int a) const { return columns.rounded(at.velocity + a); }
   double* mass() { return columns.component(at.mass); }
   const double* mass() const { return columns.component(at.mass); }
   double* volume() { return columns.component(at.volume); }
   const double* volume() const { return columns.component(at.volume); }
-  const double* stress(int k) const { return columns.component(at.stress + k); }
+  const Rounded* stress(int k) const { return columns.rounded(at.stress + k); }
 
   std::size_t bytes() const {
     return columns.bytes() + (id.capacity() + order.capacity()) * sizeof(std::uint32_t);

@@ -25,7 +25,8 @@ void sort_columns(TileGrid<D>& grid, Body<D>& body, Threads& threads, ListScratc
   };
   std::byte* const room = scratch.room(grid, n * sizeof(double), n * sizeof(double));
   for (int c = 0; c < body.columns.component_count(); ++c)
-    sort(body.columns.component(c), reinterpret_cast<double*>(room));
+    body.columns.with_component(
+        c, [&]<class Number>(Number* values) { sort(values, reinterpret_cast<Number*>(room)); });
   sort(body.id.data(), reinterpret_cast<std::uint32_t*>(room));
   std::iota(body.order.begin(), body.order.end(), 0u);
 }

@@ -51,10 +51,10 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
   body.material = material_number;
   Columns& c = body.columns;
   body.position = c.add("position", "m", D);
-  body.at.velocity = c.add("velocity", "m/s", D);
+  body.at.velocity = c.add("velocity", "m/s", D, Kept::rounded);
   body.at.mass = c.add("mass", "kg", 1);
   body.at.volume = c.add("volume", "m^3", 1);
-  body.at.stress = c.add("stress", "Pa", Sym<double, D>::size);
+  body.at.stress = c.add("stress", "Pa", Sym<double, D>::size, Kept::rounded);
   add_material_columns<D>(material, c, body.at);
   if (domain_.grid.keep.exist) {  // what particles that leave it need
     if (body.at.recoverable < 0) body.at.recoverable = c.add("recoverable_energy", "J/m^3", 1);
@@ -67,7 +67,8 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t a = 0; a < D; ++a) {
       body.x(static_cast<int>(a))[i] = positions[i * D + a];
-      body.v(static_cast<int>(a))[i] = velocities[one_velocity ? a : i * D + a];
+      body.v(static_cast<int>(a))[i] =
+          static_cast<Rounded>(velocities[one_velocity ? a : i * D + a]);
     }
     const double volume = volumes[one_volume ? 0 : i];
     total += volume;
@@ -135,7 +136,7 @@ void SimulationOf<D>::start_motions() {
       for (int a = 0; a < D; ++a) x[a] = b.x(a)[i];
       b.motion->radius = std::max(b.motion->radius, norm(in_space<D>(x) - b.motion->now.centre));
       const Vector3 v = b.motion->now.velocity_at(in_space<D>(x));
-      for (int a = 0; a < D; ++a) b.v(a)[i] = v[a];
+      for (int a = 0; a < D; ++a) b.v(a)[i] = static_cast<Rounded>(v[a]);
     }
   }
 }
@@ -179,7 +180,8 @@ void SimulationOf<D>::set_velocity(int number, std::span<const double> velocitie
   check_finite(velocities, "velocities");
   const double before = prepared_ ? kinetic_energy() : 0.0;  // the lists are made by prepare()
   for (std::size_t k = 0; k < b.count(); ++k)
-    for (std::size_t a = 0; a < D; ++a) b.v(static_cast<int>(a))[k] = velocities[b.id[k] * D + a];
+    for (std::size_t a = 0; a < D; ++a)
+      b.v(static_cast<int>(a))[k] = static_cast<Rounded>(velocities[b.id[k] * D + a]);
   if (!prepared_) return;
   hold_rigid_bodies(domain_);
   ledger_.external += kinetic_energy() - before;

@@ -6,10 +6,11 @@
 namespace mpm {
 namespace {
 
-/// A number that a driven point shows, and where it is.
+/// A number that a driven point shows: a component of its columns, or a sum.
 struct Shown {
   std::string name, unit;
-  double* value;
+  int component = -1;
+  const double* sum = nullptr;
 };
 
 /// The point with all its columns, at rest. Its initial volume is 1 m^3.
@@ -20,42 +21,46 @@ struct Point {
   double dissipated = 0.0, work = 0.0, sound_speed = 0.0, viscous = 0.0;
 
   explicit Point(const MaterialChoice& choice) : material(make_material(choice)) {
-    at.velocity = columns.add("velocity", "m/s", 3);
+    at.velocity = columns.add("velocity", "m/s", 3, Kept::rounded);
     at.mass = columns.add("mass", "kg", 1);
     at.volume = columns.add("volume", "m^3", 1);
-    at.stress = columns.add("stress", "Pa", 6);
+    at.stress = columns.add("stress", "Pa", 6, Kept::rounded);
     add_material_columns<3>(material, columns, at);
     columns.allocate(1);
-    for (int a = 0; a < 3; ++a) columns.component(at.velocity + a)[0] = 0.0;
+    for (int a = 0; a < 3; ++a) columns.rounded(at.velocity + a)[0] = 0.0;
     columns.component(at.mass)[0] = material.density;
     columns.component(at.volume)[0] = 1.0;
     start_material_columns<3>(material, columns, at);
   }
 
   /// What may be given at the start: stress, volume and the material's columns.
-  std::vector<Shown> state() {
+  std::vector<Shown> state() const {
     std::vector<Shown> found;
     for (const char* c : {"xx", "yy", "zz", "yz", "xz", "xy"})
-      found.push_back({std::string("stress_") + c, "Pa",
-                       columns.component(at.stress + static_cast<int>(found.size()))});
-    found.push_back({"volume", "1", columns.component(at.volume)});
+      found.push_back(
+          {std::string("stress_") + c, "Pa", at.stress + static_cast<int>(found.size())});
+    found.push_back({"volume", "1", at.volume});
     for (const ColumnInfo& info : columns.infos())
       for (int c = 0; c < info.components && info.first > at.stress; ++c)
         found.push_back({info.components == 1 ? info.name : info.name + "_" + std::to_string(c),
-                         info.unit, columns.component(info.first + c)});
+                         info.unit, info.first + c});
     return found;
   }
   /// What is counted since the start, or follows from the state.
-  std::vector<Shown> sums() {
-    std::vector<Shown> found{{"dissipated", "J/m^3", &dissipated},
-                             {"work", "J/m^3", &work},
-                             {"sound_speed", "m/s", &sound_speed}};
-    if (material.viscosity.active()) found.push_back({"viscous", "J/m^3", &viscous});
+  std::vector<Shown> sums() const {
+    std::vector<Shown> found{{"dissipated", "J/m^3", -1, &dissipated},
+                             {"work", "J/m^3", -1, &work},
+                             {"sound_speed", "m/s", -1, &sound_speed}};
+    if (material.viscosity.active()) found.push_back({"viscous", "J/m^3", -1, &viscous});
     return found;
+  }
+  double value(const Shown& shown) const {
+    return shown.sum ? *shown.sum : columns.value(shown.component, 0);
   }
 };
 
-void set_state(const std::vector<Shown>& state, const std::map<std::string, double>& given) {
+void set_state(Point& point, const std::map<std::string, double>& given) {
+  const std::vector<Shown> state = point.state();
   for (const auto& [name, value] : given) {
     if (!std::isfinite(value))
       throw std::invalid_argument("state." + name + " must be a finite number");
@@ -65,7 +70,8 @@ void set_state(const std::vector<Shown>& state, const std::map<std::string, doub
     for (const Shown& column : state) {
       names += (names.empty() ? "" : ", ") + column.name;
       if (column.name != name) continue;
-      *column.value = value;
+      point.columns.with_component(
+          column.component, [&]<class Number>(Number* to) { to[0] = static_cast<Number>(value); });
       known = true;
     }
     if (!known)
@@ -89,7 +95,7 @@ DrivenPoint drive_material(const MaterialChoice& choice, const Drive& drive) {
 
   Point point(choice);
   std::vector<Shown> shown = point.state();
-  set_state(shown, drive.state);
+  set_state(point, drive.state);
   for (const Shown& sum : point.sums()) shown.push_back(sum);
 
   DrivenPoint driven;
@@ -103,7 +109,7 @@ DrivenPoint drive_material(const MaterialChoice& choice, const Drive& drive) {
     point.work = sums.internal + sums.plastic;
     point.viscous = sums.viscous;
     point.sound_speed = sound_speed<3>(point.material, point.columns, point.at, 0, drive.cell_size);
-    for (const Shown& column : shown) driven.values.push_back(*column.value);
+    for (const Shown& column : shown) driven.values.push_back(point.value(column));
   };
   write_row();
   MaterialBlock<3> block;

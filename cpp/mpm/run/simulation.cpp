@@ -260,7 +260,7 @@ void SimulationOf<D>::find_failure() {
     for (std::size_t i = 0; i < body.count(); ++i) {
       bool finite = true;
       for (int c = 0; c < body.columns.component_count(); ++c)
-        finite = finite && std::isfinite(body.columns.component(c)[i]);
+        finite = finite && std::isfinite(body.columns.value(c, i));
       if (!finite) {
         failure_ = failure_at("non-finite", b, i, "a value of the particle is not a finite number");
         return;

@@ -142,10 +142,11 @@ void SimulationOf<D>::copy_column(int number, const std::string& name, std::span
   if (to.size() != b.count() * width) throw std::invalid_argument("copy_column: wrong size");
   std::fill(to.begin(), to.end(), 0.0);
   for (int c = 0; c < info.components; ++c) {
-    const double* from = b.columns.component(info.first + c);
     // Plane strain keeps xx yy zz xy; the fourth becomes the sixth of xx yy zz yz xz xy.
     const auto place = static_cast<std::size_t>(name == "stress" && D == 2 && c == 3 ? 5 : c);
-    for (std::size_t k = 0; k < b.count(); ++k) to[b.id[k] * width + place] = from[k];
+    b.columns.with_component(info.first + c, [&](const auto* from) {
+      for (std::size_t k = 0; k < b.count(); ++k) to[b.id[k] * width + place] = from[k];
+    });
   }
 }
 

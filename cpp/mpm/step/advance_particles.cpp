@@ -26,7 +26,7 @@ template <Also also, bool damped, int D, class Functions>
   const LocalPosition<D> local_position(grid, body);
   Moving<D> moving(grid, body, domain.time_step);
   const double* mass = body.mass();
-  double* velocities[D];
+  Rounded* velocities[D];
   for (int a = 0; a < D; ++a) velocities[a] = body.v(a);
   // The increments are still read where the new momenta are scattered.
   alignas(cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * quad : 1];

@@ -29,7 +29,7 @@ void move_patch(const TileGrid<D>& grid, Body<D>& body, Patch<D>& patch, const M
       const double m = body.mass()[row], square = dot(v, v);
       for (int a = 0; a < D; ++a) {
         body.x(a)[row] = x[a];
-        body.v(a)[row] = v[a];
+        body.v(a)[row] = static_cast<Rounded>(v[a]);
         sums.momentum[a] += m * v[a];
         const double local = grid.in_cells(x[a], a) - cell.cell[a];
         patch.left_cell = patch.left_cell || local < 0.0 || local >= 1.0;

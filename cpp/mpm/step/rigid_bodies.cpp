@@ -90,7 +90,7 @@ void set_velocities(Body<D>& body, std::span<const std::uint32_t> rows, const Ri
     const Vector3 v = motion.velocity_at(position(body, row));
     const double m = body.mass()[row], square = dot(v, v);
     for (int a = 0; a < D; ++a) {
-      body.v(a)[row] = v[a];
+      body.v(a)[row] = static_cast<Rounded>(v[a]);
       sums.momentum[a] += m * v[a];
     }
     kinetic += 0.5 * m * square;

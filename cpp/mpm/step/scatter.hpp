@@ -77,7 +77,8 @@ class Givers {
  private:
   LocalPosition<D> local_position_;
   double minus_per_cell_size_;
-  const double *mass_, *volume_, *q_ = nullptr, *velocity_[D], *stress_[Sym<T, D>::size];
+  const double *mass_, *volume_, *q_ = nullptr;
+  const Rounded *velocity_[D], *stress_[Sym<T, D>::size];
 };
 
 /// Scatter from all particles of a patch to its nodes (CellParticles::give).

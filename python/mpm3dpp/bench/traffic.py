@@ -2,17 +2,22 @@
 """How many bytes a step must move, to say how much of the memory bandwidth it uses.
 
 Counted is what each stage has to read from and write to the particles' columns, once per particle
-and step, 8 bytes a number, and the 4 bytes of the list by which it finds them. A stage that reads
-a column again that an earlier stage has read counts it again: for more particles than the caches
-hold it does come from memory again. Not counted are the nodes (64 bytes each, which a step goes
-through some ten times: in large problems they come from memory too), the sorting of columns, and
-the mending of lists, so the fraction of the bandwidth that follows is a lower bound. A small
-problem stays in the caches, and its fraction can exceed 1.
+and step, and the 4 bytes of the list by which it finds them. A number has 8 bytes, but where a
+build with MPM_FLOAT32 keeps floats 4. A stage that reads a column again that an earlier stage has
+read counts it again: for more particles than the caches hold it does come from memory again. Not
+counted are the nodes (64 bytes each, which a step goes through some ten times: in large problems
+they come from memory too), the sorting of columns, and the mending of lists, so the fraction of the
+bandwidth that follows is a lower bound. A small problem stays in the caches, and its fraction can
+exceed 1.
 """
 
 from __future__ import annotations
 
+from mpm3dpp import _core
+
 _LIST = 4  # Bytes of an entry of the list of particles by cell.
+_ROUNDED = {"float64": 8, "float32": 4}[_core.build_info()["rounded"]]
+_BYTES = {"velocity": _ROUNDED, "stress": _ROUNDED}  # Of a number; of all others 8.
 
 _MOMENTUM = ("position", "velocity", "mass")
 _STRESS = ("volume", "stress")
@@ -69,7 +74,9 @@ def bytes_per_particle_step(stages: list[str], dimension: int, state: int = 0) -
     moved = {}
     for stage in stages:
         read, written = STAGES[stage]
-        columns = sum(numbers(column, dimension) for column in (*read, *written))
-        columns += 2 * state if stage.startswith("update stress") else 0
-        moved[stage] = 8 * columns + _LIST if columns else 0
+        columns = sum(
+            numbers(column, dimension) * _BYTES.get(column, 8) for column in (*read, *written)
+        )
+        columns += 2 * state * 8 if stage.startswith("update stress") else 0
+        moved[stage] = columns + _LIST if columns else 0
     return moved

@@ -34,13 +34,13 @@ struct Point {
   StressSums sums;
 
   explicit Point(const MaterialChoice& choice) : material(make_material(choice)) {
-    at.velocity = columns.add("velocity", "m/s", D);
+    at.velocity = columns.add("velocity", "m/s", D, Kept::rounded);
     at.mass = columns.add("mass", "kg", 1);
     at.volume = columns.add("volume", "m^3", 1);
-    at.stress = columns.add("stress", "Pa", Sym<double, D>::size);
+    at.stress = columns.add("stress", "Pa", Sym<double, D>::size, Kept::rounded);
     add_material_columns<D>(material, columns, at);
     columns.allocate(1);
-    for (int a = 0; a < D; ++a) columns.component(at.velocity + a)[0] = 0.0;
+    for (int a = 0; a < D; ++a) columns.rounded(at.velocity + a)[0] = 0.0;
     columns.component(at.mass)[0] = material.density;
     columns.component(at.volume)[0] = 1.0;
     start_material_columns<D>(material, columns, at);
@@ -56,7 +56,7 @@ struct Point {
     update_block<double, D>(material, columns, at, block, settings, sums);
   }
   double value(const ColumnInfo& info, int component) const {
-    return columns.component(info.first + component)[0];
+    return columns.value(info.first + component, 0);
   }
 };
 

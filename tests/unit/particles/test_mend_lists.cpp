@@ -17,7 +17,7 @@ Body<D> make_body(std::mt19937_64& random) {
   std::uniform_real_distribution<double> place(0.0, 6.0);  // over several tiles
   Body<D> body;
   body.position = body.columns.add("position", "m", D);
-  body.at.velocity = body.columns.add("velocity", "m/s", D);
+  body.at.velocity = body.columns.add("velocity", "m/s", D, Kept::rounded);
   body.at.mass = body.columns.add("mass", "kg", 1);
   body.at.recoverable = body.columns.add("recoverable_energy", "J/m^3", 1);
   body.at.failed = body.columns.add("failed", "1", 1);
