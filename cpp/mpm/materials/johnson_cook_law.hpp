@@ -8,25 +8,27 @@ namespace mpm {
 template <class T>
 struct Power {
   double exponent;
-  T start, inverse, start_value;
+  T near, inverse, near_value;
 
-  Power(T x, double a) : exponent(a), start(x), inverse(T(1.0) / x), start_value(pow(x, T(a))) {}
+  Power(T x, double a) : exponent(a), near(x), inverse(T(1.0) / x), near_value(pow(x, T(a))) {}
   struct At {
     T value, slope, inverse;  // x^a, its derivative, 1/x
   };
-  /// Near the start by series, and 1/x to the change's own order, which is enough for the slopes of
-  /// a search.
-  At at(T x) const {
-    const T change = (x - start) * inverse;
+  /// By series, and 1/x to the change's own order, which is enough for the slopes of a search;
+  /// exactly where x is far off: the steps of a search are long only at its start.
+  At at(T x) {
+    T change = (x - near) * inverse;
     const auto far = absolute(change) > T(0.01);
     const bool never_near = exponent >= power_near_one_below;
-    T value = start_value * power_near_one(change, exponent);
-    T one_over = inverse * (T(1.0) - change);
     if (never_near || any(far)) {  // lane by lane: what one holds is no matter to its neighbour
       const auto exact = never_near ? T(0.0) < T(1.0) : far;
-      value = select(exact, pow(x, T(exponent)), value);
-      one_over = select(exact, T(1.0) / x, one_over);
+      near = select(exact, x, near);
+      inverse = select(exact, T(1.0) / x, inverse);
+      near_value = select(exact, pow(x, T(exponent)), near_value);
+      change = select(exact, T(0.0), change);
     }
+    const T value = near_value * power_near_one(change, exponent);
+    const T one_over = inverse * (T(1.0) - change);
     return {value, T(exponent) * value * one_over, one_over};
   }
 };
@@ -53,12 +55,10 @@ struct JohnsonCookLaw {
            T& plastic_strain, T& temperature) const {
     const T before = plastic_strain, start = temperature, heat = T(heating) * motion.J;
     const double unit = motion.time_step * rate0;
-    // Powers are taken once, at the start of the step; for the small changes that follow, by
-    // series.
-    const Power<T> hardening(max(before, T(tiny)), n),
+    Power<T> hardening(max(before, T(tiny)), n),
         softening(thermal ? max(homologous(start), T(tiny)) : T(1.0), m);
-    T at_rest = T(A) + T(B) * hardening.start_value;
-    if (thermal) at_rest = at_rest * (T(1.0) - softening.start_value);
+    T at_rest = T(A) + T(B) * hardening.near_value;
+    if (thermal) at_rest = at_rest * (T(1.0) - softening.near_value);
     const auto yield = [&](T q, T d, T x) {
       const auto hard = hardening.at(max(before + d, T(tiny)));
       const T faster = T(1.0) + T(C) * max(x, T(0.0)), rest = T(A) + T(B) * hard.value;

@@ -142,6 +142,16 @@ Batch<W> sqrt(Batch<W> a) {
 /// A bit for each lane, set where the condition holds.
 template <int W>
 std::uint64_t lane_bits(Mask<W> m) {
+#if defined(__AVX512F__)
+  if constexpr (W == 8) {
+    const auto lanes = reinterpret_cast<__m512i>(m.v);
+    return _mm512_test_epi64_mask(lanes, lanes);
+  }
+#endif
+#if defined(__SSE2__)
+  if constexpr (W == 2)
+    return static_cast<std::uint64_t>(_mm_movemask_pd(reinterpret_cast<__m128d>(m.v)));
+#endif
 #if defined(__AVX__)
   if constexpr (W == 4)
     return static_cast<std::uint64_t>(_mm256_movemask_pd(reinterpret_cast<__m256d>(m.v)));
