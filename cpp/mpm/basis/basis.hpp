@@ -10,7 +10,11 @@ namespace mpm {
 /// linear: the paper's, and the fastest. gimp: smooth where particles cross cells, dearer.
 enum class Basis { linear, gimp };
 
+/// Nodes before a cell's own that its particles reach; behind it they reach one.
 constexpr int margin_of(Basis basis) { return basis == Basis::gimp ? 1 : 0; }
+
+/// Place of a cell's own node in the cell along each axis: in its corner, or with GIMP its middle.
+constexpr double node_in_cell(Basis basis) { return basis == Basis::gimp ? 0.5 : 0.0; }
 
 /// Position within the cell, in [1e-12, 1 - 1e-12], from the position in cells and the cell's
 /// coordinate. A particle exactly on a cell's face would give force to nodes to which it gives no

@@ -17,7 +17,7 @@ struct BlockShape {
   std::array<int, Tile<D>::corners> corner_offset{};  // from a cell's first node to its corners
 
   static constexpr int margin_max = 1;
-  static constexpr int count_max(int margin) { return power(Tile<D>::cells + 1 + 2 * margin, D); }
+  static constexpr int count_max(int margin) { return power(Tile<D>::cells + 1 + margin, D); }
   static constexpr int nodes_max = count_max(margin_max);
 
   BlockShape() = default;
@@ -36,7 +36,7 @@ struct BlockShape {
       while (!(occupied & Tile<D>::slice(a, i))) ++i;
       while (!(occupied & Tile<D>::slice(a, j))) --j;
       first[a] = i - margin;
-      last[a] = j + 1 + margin;
+      last[a] = j + 1;
     }
     return {first, last};
   }

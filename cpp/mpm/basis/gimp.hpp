@@ -7,8 +7,9 @@
 // the linear function plus second differences where the box reaches over the node. (Their eqs. for
 // S_ip.)
 //
-// A particle's three nodes along each axis are its own, not its cell's. So the lanes are the four
-// numbers of a quad of a node's line, and the particles follow each other.
+// Cells are centred at the nodes, so that all particles of a cell reach the same three nodes along
+// an axis: -1, 0, 1 as counted from the cell's own. The lanes are the four numbers of a quad of a
+// node's line, and the particles follow each other.
 #include "mpm/basis/block_shape.hpp"
 #include "mpm/basis/gifts.hpp"
 #include "mpm/basis/node_lanes.hpp"
@@ -18,53 +19,39 @@
 
 namespace mpm {
 
-/// One-axis factors of the three nodes in reach, and their derivatives with respect to xi. They are
-/// the nodes -1, 0, 1 of the cell in its lower half, else 0, 1, 2.
+/// One-axis factors of the three nodes in reach, and their derivatives with respect to xi.
 template <class T>
 struct GimpAxis {
   T N[3], dN[3];
-  T first;  // -1 or 0
   GimpAxis(T xi, double l) {
-    const auto lower = xi < T(0.5);
-    first = select(lower, T(-1.0), T(0.0));
-    const T u = xi - (first + T(1.0));  // from the nearest node, the middle one
+    const T u = xi - T(0.5);
+    const auto above = u >= T(0.0);
     const T right = max(u, T(0.0)), left = max(-u, T(0.0));
     const T a = max(T(l) - (left + right), T(0.0)), A = T(0.25 / l) * a * a;
     N[0] = left + A;
     N[1] = T(1.0) - (left + right) - T(2.0) * A;
     N[2] = right + A;
-    const T dA = select(lower, T(-0.5 / l), T(0.5 / l)) * a;
-    dN[0] = select(lower, T(0.0), T(-1.0)) + dA;
-    dN[2] = select(lower, T(1.0), T(0.0)) + dA;
+    const T dA = select(above, T(-0.5 / l), T(0.5 / l)) * a;
+    dN[0] = select(above, T(0.0), T(-1.0)) + dA;
+    dN[2] = select(above, T(1.0), T(0.0)) + dA;
     dN[1] = -(dN[0] + dN[2]);
-  }
-  /// Of three values, that of the node at place e of the cell; zero for one out of reach.
-  T at(const T* values, int e) const {
-    const T place = T(static_cast<double>(e)) - first;
-    const T third = select(place > T(2.5), T(0.0), values[2]);
-    const T second = select(place > T(1.5), third, values[1]);
-    return select(place < T(-0.5), T(0.0), select(place > T(0.5), second, values[0]));
   }
 };
 
-/// One-axis factors of particles of a cell, and the first of the nodes that each reaches.
+/// One-axis factors of particles of a cell.
 template <int D, int room>
 struct GimpPlaces {
   double N[D][3][room], dN[D][3][room];
-  double first[room];  // from the cell's first node, in nodes
 
   template <class T>
-  void put(int at, const Vec<T, D>& position, double l, int row, int layer) {
-    T node(0.0);
+  void put(int at, const Vec<T, D>& position, double l) {
     unrolled<D>([&](auto a) {
       const GimpAxis<T> axis(position[a], l);
       unrolled<3>([&](auto k) {
         store_lanes(N[a][k] + at, axis.N[k]);
         store_lanes(dN[a][k] + at, axis.dN[k]);
       });
-      node += axis.first * T(a == 0 ? 1.0 : a == 1 ? row : layer);
     });
-    store_lanes(first + at, node);
   }
 };
 
@@ -81,13 +68,6 @@ struct GimpFactors {
       });
     });
   }
-  /// f(nodes of a row, y, z) for the three (by three) rows along x, `first` the first node of all.
-  template <class F>
-  [[gnu::always_inline]] static void for_each_row(const NodeLines& first, int row, int layer,
-                                                  F&& f) {
-    unrolled<D == 3 ? 3 : 1>(
-        [&](auto z) { unrolled<3>([&](auto y) { f(first.from(y * row + z * layer), y, z); }); });
-  }
   /// Of a row: the sum of its quads with factors along x.
   static Batch<quad> along(const NodeLines& row, const Batch<quad>* x) {
     return x[0] * Batch<quad>::load(row[0]) + x[1] * Batch<quad>::load(row[1]) +
@@ -98,7 +78,7 @@ struct GimpFactors {
 /// The nodal fields around one cell.
 template <int D>
 struct GimpField {
-  NodeLines nodes;  // from the cell's first on
+  NodeLines nodes;  // from the first that is in reach
   int row, layer;   // from node to node along y and z
 
   template <int W>
@@ -110,7 +90,9 @@ struct GimpField {
   template <int W>
   auto vector(int at, const Weights<W>& w) const {
     Batch<quad> found[W];
-    for_each_particle(at, w, [&](int p, const GimpFactors<D>& of, const NodeLines& first) {
+    const NodeLines first = nodes.at(at);
+    for (int p = 0; p < w.count; ++p) {
+      const GimpFactors<D> of(w, p);
       Batch<quad> total(0.0);
       for_each_plane([&](auto z) {
         Batch<quad> plane(0.0);
@@ -118,7 +100,7 @@ struct GimpField {
         total += D == 3 ? of.N[D - 1][z] * plane : plane;
       });
       found[p] = total;
-    });
+    }
     return turned(found, w.count);
   }
 
@@ -126,7 +108,9 @@ struct GimpField {
   template <int W>
   auto gradients(int at, const Weights<W>& w) const {
     Batch<quad> found[D][W];
-    for_each_particle(at, w, [&](int p, const GimpFactors<D>& of, const NodeLines& first) {
+    const NodeLines first = nodes.at(at);
+    for (int p = 0; p < w.count; ++p) {
+      const GimpFactors<D> of(w, p);
       Batch<quad> total[D];
       for (auto& t : total) t = Batch<quad>(0.0);
       for_each_plane([&](auto z) {
@@ -148,7 +132,7 @@ struct GimpField {
         }
       });
       for (int a = 0; a < D; ++a) found[a][p] = total[a];
-    });
+    }
     using V = decltype(turned(found[0], 0));
     std::array<V, D> g;
     for (int j = 0; j < D; ++j) {
@@ -166,11 +150,6 @@ struct GimpField {
   }
   NodeLines row_of(const NodeLines& first, int y, int z) const {
     return first.from(y * row + z * layer);
-  }
-  template <int W, class F>
-  void for_each_particle(int at, const Weights<W>& w, F&& f) const {
-    for (int p = 0; p < w.count; ++p)
-      f(p, GimpFactors<D>(w, p), nodes.from(static_cast<int>(w.first[p])).at(at));
   }
   /// From a quad for each particle to lanes of particles for each component.
   template <int W>
@@ -218,75 +197,94 @@ struct Gimp {
     w.count = count;
     return w;
   }
-  /// `nodes` begin at the cell's first.
-  Field field(const NodeLines& nodes) const { return {nodes, row(), layer()}; }
+  /// `nodes` begin at the cell's own.
+  Field field(const NodeLines& nodes) const { return {nodes.from(first()), row(), layer()}; }
 
   /// What `give` wants to know of a cell's particles, a few at a time.
   template <int room, class T>
   void put(Particles<room>& places, int at, const Vec<T, D>& position) const {
-    places.put(at, position, half, row(), layer());
+    places.put(at, position, half);
   }
 
   /// What the first `count` of these particles give to the nodes, whose lines begin at the cell's
-  /// first: mass and momentum to the first quad, forces to the next; momentum alone to the first.
+  /// own: mass and momentum to the first quad, forces to the next; momentum alone to the first.
   /// Eqs. (2), (3) and f_i -= V_p (sigma_p - q_p 1) . grad N_ip, eq. (9), with the artificial
   /// viscosity's pressure q.
   template <unsigned what, int room>
   void give(const NodeLines& nodes, const Particles<room>& places, const Gifts<D, room>& gifts,
             int count) const {
-    for (int p = 0; p < count; ++p) {
-      const NodeLines first = nodes.from(static_cast<int>(places.first[p]));
-      const GimpFactors<D> of(places, p);
-      if constexpr (what != gives_forces)
-        give_momentum<(what & gives_mass) != 0>(first, of, gifts, p);
-      if constexpr ((what & gives_forces) != 0) give_forces(first.at(force_at), of, gifts, p);
-    }
+    const NodeLines reached = nodes.from(first());
+    if constexpr (what != gives_forces)
+      give_sums(reached, count, [&](int p, auto z, auto&& to) {
+        give_momentum<(what & gives_mass) != 0>(places, gifts, p, z, to);
+      });
+    if constexpr ((what & gives_forces) != 0)
+      give_sums(reached.at(force_at), count,
+                [&](int p, auto z, auto&& to) { give_forces(places, gifts, p, z, to); });
   }
 
-  /// One-axis factor of the node at place e (-1, 0, 1 or 2) of the cell, and its derivative.
+  /// One-axis factor of the node at place e (-1, 0 or 1) of the cell, and its derivative.
   template <class T>
   T factor(int e, T xi) const {
-    const GimpAxis<T> axis(xi, half);
-    return axis.at(axis.N, e);
+    return GimpAxis<T>(xi, half).N[e + 1];
   }
   template <class T>
   T slope(int e, T xi) const {
-    const GimpAxis<T> axis(xi, half);
-    return axis.at(axis.dN, e);
+    return GimpAxis<T>(xi, half).dN[e + 1];
   }
 
  private:
   int row() const { return shape.nodes[0]; }
   int layer() const { return shape.nodes[0] * shape.nodes[1]; }
+  /// From a cell's own node to the first that is in reach.
+  int first() const { return -(1 + row() + (D == 3 ? layer() : 0)); }
 
-  template <bool mass, int room>
-  void give_momentum(const NodeLines& first, const GimpFactors<D>& of, const Gifts<D, room>& gifts,
-                     int p) const {
-    const double m = gifts.mass[p];
+  /// Layer by layer, so that the sums of nine nodes stay in registers: give(p, z, to) calls
+  /// to(y, f(x)) with what particle p gives to the node x of row y.
+  template <class F>
+  [[gnu::always_inline]] void give_sums(const NodeLines& nodes, int count, F&& give) const {
+    unrolled<D == 3 ? 3 : 1>([&](auto z) {
+      Batch<quad> sums[3][3];
+      for (auto& row_sums : sums)
+        for (auto& sum : row_sums) sum = Batch<quad>(0.0);
+      for (int p = 0; p < count; ++p)
+        give(p, z,
+             [&](auto y, auto&& part) { unrolled<3>([&](auto x) { sums[y][x] += part(x); }); });
+      unrolled<3>([&](auto y) {
+        unrolled<3>([&](auto x) { add(nodes[x + y * row() + z * layer()], sums[y][x]); });
+      });
+    });
+  }
+  template <bool mass, int room, class F>
+  [[gnu::always_inline]] static void give_momentum(const Particles<room>& of,
+                                                   const Gifts<D, room>& gifts, int p, auto z,
+                                                   F&& to) {
+    const double m = D == 3 ? gifts.mass[p] * of.N[D - 1][z][p] : gifts.mass[p];
     const auto momentum = [&](int a) { return a < D ? m * gifts.velocity[a][p] : 0.0; };
     const auto gift = mass ? numbers(m, momentum(0), momentum(1), momentum(2))
                            : numbers(momentum(0), momentum(1), momentum(2), 0.0);
-    of.for_each_row(first, row(), layer(), [&](const NodeLines& nodes, auto y, auto z) {
-      Batch<quad> part = gift * of.N[1][y];
-      if constexpr (D == 3) part = part * of.N[2][z];
-      unrolled<3>([&](auto x) { add(nodes[x], part * of.N[0][x]); });
+    unrolled<3>([&](auto y) {
+      const Batch<quad> part = gift * of.N[1][y][p];
+      to(y, [&](auto x) { return part * of.N[0][x][p]; });
     });
   }
-  template <int room>
-  void give_forces(const NodeLines& first, const GimpFactors<D>& of, const Gifts<D, room>& gifts,
-                   int p) const {
-    const auto part = [&](int a, int b) {
-      return a < D ? gifts.traction[Sym<double, D>::index(a, b)][p] : 0.0;
-    };
+  template <int room, class F>
+  [[gnu::always_inline]] static void give_forces(const Particles<room>& of,
+                                                 const Gifts<D, room>& gifts, int p, auto z,
+                                                 F&& to) {
     Batch<quad> traction[D];
-    unrolled<D>([&](auto b) { traction[b] = numbers(part(0, b), part(1, b), part(2, b), 0.0); });
-    of.for_each_row(first, row(), layer(), [&](const NodeLines& nodes, auto y, auto z) {
-      Batch<quad> along_x = traction[0] * of.N[1][y], across = traction[1] * of.dN[1][y];
-      if constexpr (D == 3) {
-        along_x = along_x * of.N[2][z];
-        across = across * of.N[2][z] + traction[2] * of.N[1][y] * of.dN[2][z];
-      }
-      unrolled<3>([&](auto x) { add(nodes[x], along_x * of.dN[0][x] + across * of.N[0][x]); });
+    unrolled<D>([&](auto b) {
+      const auto part = [&](int a) {
+        return a < D ? gifts.traction[Sym<double, D>::index(a, b)][p] : 0.0;
+      };
+      traction[b] = numbers(part(0), part(1), part(2), 0.0);
+      if constexpr (D == 3) traction[b] *= b == 2 ? of.dN[2][z][p] : of.N[2][z][p];
+    });
+    unrolled<3>([&](auto y) {
+      const Batch<quad> N(of.N[1][y][p]), along_x = traction[0] * N;
+      Batch<quad> across = traction[1] * of.dN[1][y][p];
+      if constexpr (D == 3) across += traction[2] * N;
+      to(y, [&](auto x) { return along_x * of.dN[0][x][p] + across * of.N[0][x][p]; });
     });
   }
   static Batch<quad> numbers(double a, double b, double c, double d) {

@@ -27,7 +27,7 @@ struct NearParticles {
     lanes.clear();
     mass = T(0.0);
     moment = Vec<T, D>::zero();
-    lanes.reserve(8 * static_cast<std::size_t>(power(2 + 2 * margin, D)));
+    lanes.reserve(8 * static_cast<std::size_t>(power(2 + margin, D)));
   }
 
   void add(const Lanes& p) {
@@ -83,7 +83,7 @@ void collect_near(const TileParticles<D>& particles, const Index<D>& node, doubl
     p.weight = lanes.mass;
     auto near = T(0.0) < T(1.0);
     for (int a = 0; a < D; ++a) {
-      p.x[a] = lanes.xi[a] - T(place[a]);
+      p.x[a] = lanes.xi[a] - T(place[a] + particles.node_in_cell());
       const T to_rim = T(reach) - max(p.x[a], -p.x[a]);
       near = near & (to_rim > T(0.0));
       p.weight *= min(max(T(1.0 / rim) * to_rim, T(0.0)), T(1.0));

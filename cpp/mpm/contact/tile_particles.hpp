@@ -44,11 +44,15 @@ class TileParticles {
     T mass;        // [kg]
   };
 
+  /// Place of a cell's own node in the cell along each axis.
+  double node_in_cell() const { return node_in_cell_; }
+
   /// Forget all and take what is around these nodes of another tile, a bit each by Tile<D>::cell.
   void gather(const TileGrid<D>& grid, const Body<D>& body, const Index<D>& tile,
               std::span<const TileHolder> holders, std::uint64_t nodes) {
     margin_ = grid.margin();
-    edge_ = Tile<D>::cells + 1 + 2 * margin_;
+    node_in_cell_ = mpm::node_in_cell(grid.basis);
+    edge_ = Tile<D>::cells + 1 + margin_;
     patch_.fill(nullptr);
     for (const TileHolder& h : holders)
       patch_[static_cast<std::size_t>(Tile<D>::neighbours - 1 - h.neighbour)] =
@@ -67,8 +71,8 @@ class TileParticles {
     for (const Index<D>& cell : wanted_) read(grid, body, grid.first_cell(tile), cell);
   }
 
-  /// f(place, lanes) for the cells from which a node is in reach; `place` is the node's coordinate
-  /// in the cell (0 or 1 at its corners).
+  /// f(place, lanes) for the cells from which a node is in reach; `place` is the node's, as counted
+  /// from the cell's own.
   template <class F>
   void around(const Index<D>& node, F&& f) const {
     for_each_cell_around(node, [&](const Index<D>& cell) {
@@ -90,7 +94,7 @@ class TileParticles {
   void for_each_cell_around(const Index<D>& node, F&& f) const {
     Index<D> low, high;
     for (std::size_t a = 0; a < D; ++a) {
-      low[a] = node[a] - 1 - margin_;
+      low[a] = node[a] - 1;
       high[a] = node[a] + margin_;
     }
     for_each_index<D>(low, high, f);
@@ -98,7 +102,7 @@ class TileParticles {
   /// Of a cell, by its coordinates from the tile's first.
   std::size_t number(const Index<D>& cell) const {
     int n = 0;
-    for (std::size_t a = D; a-- > 0;) n = n * edge_ + cell[a] + 1 + margin_;
+    for (std::size_t a = D; a-- > 0;) n = n * edge_ + cell[a] + 1;
     return static_cast<std::size_t>(n);
   }
 
@@ -147,6 +151,7 @@ class TileParticles {
   }
 
   int margin_ = 0;
+  double node_in_cell_ = 0.0;
   int edge_ = 0;  // cells along an edge of what is in reach
   std::array<const Patch<D>*, Tile<D>::neighbours> patch_{};  // by where its tile lies
   std::vector<Cell> cells_;

@@ -42,11 +42,19 @@ class TileGrid {
   bool bonded = false;            // all bodies have one velocity field: they share their nodes
   std::vector<Patch<D>> patches;  // by body, then by tile
 
-  CellCoordinates<D> coordinates() const { return {origin, 1.0 / cell_size}; }
-  /// Position along an axis in cells from the origin.
+  CellCoordinates<D> coordinates() const {
+    Vec<double, D> corner = origin;
+    for (int a = 0; a < D; ++a) corner[a] -= node_in_cell(basis) * cell_size;
+    return {corner, 1.0 / cell_size};
+  }
+  /// Position along an axis in cells from the corner of cell 0.
   template <class T>
   T in_cells(T x, int axis) const {
     return coordinates().in_cells(x, axis);
+  }
+  /// The same from node 0: between which nodes it is.
+  double among_nodes(double x, int axis) const {
+    return CellCoordinates<D>{origin, 1.0 / cell_size}.in_cells(x, axis);
   }
   /// Cell coordinates of a position.
   Index<D> cell_of(const Vec<double, D>& x) const {
@@ -68,14 +76,13 @@ class TileGrid {
     }
     return t;
   }
-  /// Coordinates of a tile's first cell, which are those of its first node too.
+  /// Coordinates of a tile's first cell, which are those of its own node, the tile's first, too.
   Index<D> first_cell(const Index<D>& tile) const {
     Index<D> c;
     for (int a = 0; a < D; ++a) c[a] = anchor[a] + tile[a] * Tile<D>::cells;
     return c;
   }
 
-  /// Nodes beyond a cell's own that its particles reach.
   int margin() const { return margin_of(basis); }
   NodeBlock<D> block(std::size_t patch) {
     return {lines_of(patches[patch]), patches[patch].shape.node_count};

@@ -15,29 +15,30 @@ void scatter_dashpots(const TileGrid<D>& grid, const Body<D>& body, const Patch<
                       const NodeBlock<D>& block) {
   if (!patch.at_wall || body.rigid) return;
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-    for (int normal = 0; normal < D; ++normal)
-      for (int side = 0; side < 2; ++side) {
-        if (grid.walls.face[normal][side] != Wall::absorbing) continue;
-        if (cell.cell[normal] != (side == 0 ? 0 : grid.walls.cells[normal] - 1)) continue;
-        for (std::uint32_t k = 0; k < cell.count; ++k) {
-          const std::uint32_t row = cell.rows[k];
-          const double area = body.mass()[row] / (body.initial_density * grid.cell_size);
+    for (std::uint32_t k = 0; k < cell.count; ++k) {
+      const std::uint32_t row = cell.rows[k];
+      const NodesAround<D> around(grid, body, patch, cell, row);
+      const double area = body.mass()[row] / (body.initial_density * grid.cell_size);
+      for (int normal = 0; normal < D; ++normal)
+        for (int side = 0; side < 2; ++side) {
+          if (grid.walls.face[normal][side] != Wall::absorbing) continue;
+          if (around.lower[normal] != (side == 0 ? 0 : grid.walls.cells[normal] - 1)) continue;
           for (int corner = 0; corner < Tile<D>::corners; ++corner) {
             if ((corner >> normal & 1) != side) continue;
             double share = area;
             for (int a = 0; a < D; ++a) {
               if (a == normal) continue;
-              const double xi = local_coordinate(grid.in_cells(body.x(a)[row], a), cell.cell[a]);
+              const double xi = local_coordinate(around.place[a], around.lower[a]);
               share *= corner >> a & 1 ? xi : 1.0 - xi;
             }
             const int node =
-                cell.first_node + patch.shape.corner_offset[static_cast<std::size_t>(corner)];
+                around.first + patch.shape.corner_offset[static_cast<std::size_t>(corner)];
             for (int a = 0; a < D; ++a)
               block.dashpot(a)[node] +=
                   share * (a == normal ? body.pressure_impedance : body.shear_impedance);
           }
         }
-      }
+    }
   });
 }
 

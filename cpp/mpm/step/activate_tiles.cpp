@@ -26,7 +26,7 @@ void mark_leaving(Domain<D>& domain) {
     const Index<D> first = grid.first_cell(patch.tile);
     Vec<double, D> lower, upper, x;
     for (int a = 0; a < D; ++a) {
-      lower[a] = grid.origin[a] + first[a] * grid.cell_size;
+      lower[a] = grid.coordinates().origin[a] + first[a] * grid.cell_size;
       upper[a] = lower[a] + Tile<D>::cells * grid.cell_size;
     }
     if (grid.keep.holds(lower, upper)) return;

@@ -15,17 +15,18 @@ void for_each_loaded_piece(const Domain<D>& domain, std::size_t p, const Surface
   const double reach = grid.basis == Basis::gimp ? gimp_half(body.mean_edge / grid.cell_size) : 0.0;
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
     for_each_piece(load, body, cell, [&](std::uint32_t row, std::size_t piece) {
-      Index<D> shift{};  // of the cell that the piece lies in
+      const NodesAround<D> around(grid, body, patch, cell, row);
+      Index<D> shift{};  // to the nodes around the piece
       double xi[D];
       for (int a = 0; a < D; ++a) {
-        const double x = grid.in_cells(body.x(a)[row], a) - cell.cell[a];
+        const double x = around.place[a] - around.lower[static_cast<std::size_t>(a)];
         const double low = std::min(0.0, x - reach), high = std::max(1.0, x + reach);
         xi[a] = std::clamp(x + load.arm[piece][a] / grid.cell_size, low, high);
         const auto k = static_cast<std::size_t>(a);
         shift[k] = xi[a] < 0.0 ? -1 : xi[a] > 1.0 ? 1 : 0;
         xi[a] -= shift[k];
       }
-      const int first = cell.first_node + patch.shape.distance(shift);
+      const int first = around.first + patch.shape.distance(shift);
       f(load.force_on(piece), [&](auto&& g) {
         for (int corner = 0; corner < Tile<D>::corners; ++corner) {
           double N = 1.0;

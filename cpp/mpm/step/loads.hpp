@@ -12,8 +12,8 @@ void start_loads(Domain<D>& domain);
 
 /// f_i += sum over the pieces of N_i(x) f, x the middle of the piece: the surface term of the
 /// equation of motion (Sulsky, Chen & Schreyer 1994). N_i are the linear functions. x is
-/// held within the cell of the particle, with GIMP within the particle's box too, so that only
-/// nodes with mass are loaded.
+/// held between the nodes around the particle, with GIMP within the particle's box too, so that
+/// only nodes with mass are loaded.
 template <int D>
 void scatter_loads(Domain<D>& domain, std::size_t patch);
 

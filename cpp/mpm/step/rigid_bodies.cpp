@@ -71,7 +71,7 @@ unsigned held_axes(const Domain<D>& domain, const Body<D>& body) {
       const double face = side == 0 ? 0.0 : grid.walls.cells[a];
       double nearest = std::numeric_limits<double>::max();
       for (std::size_t i = 0; i < body.count(); ++i) {
-        const double depth = grid.in_cells(body.x(a)[i], a) - face;
+        const double depth = grid.among_nodes(body.x(a)[i], a) - face;
         nearest = std::min(nearest, side == 0 ? depth : -depth);
       }
       // A thousandth of a cell for rounding.

@@ -49,7 +49,8 @@ void check_lanes(mpm::testing::Report& report, const B& basis, const Nodes& node
 }
 
 template <int D, class B>
-void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const B& basis) {
+void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, double own_node,
+                 const B& basis) {
   using T = Batch<4>;
   const auto count = static_cast<std::size_t>(shape.node_count);
   const Index<D> cell =
@@ -64,7 +65,7 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const
     const auto i = static_cast<std::size_t>(n);
     ones[i] = 1.0;
     field[i] = lines[line * i + quad + 1] = any(random);
-    for (std::size_t a = 0; a < D; ++a) position[a][i] = shape.index(n)[a] - cell[a];
+    for (std::size_t a = 0; a < D; ++a) position[a][i] = shape.index(n)[a] - cell[a] + own_node;
   }
   constexpr int room = 16;
   Gifts<D, room> gifts{};
@@ -180,8 +181,9 @@ void test_basis(mpm::testing::Report& report) {
     for (const double edge : {0.25, 0.5, 1.0}) {
       const auto flat = BlockShape<2>::around(~std::uint64_t{0}, margin_of(basis));
       const auto space = BlockShape<3>::around(~std::uint64_t{0}, margin_of(basis));
-      with_basis<2>(basis, flat, edge, [&](const auto& b) { check_basis(report, flat, b); });
-      with_basis<3>(basis, space, edge, [&](const auto& b) { check_basis(report, space, b); });
+      const double own = node_in_cell(basis);
+      with_basis<2>(basis, flat, edge, [&](const auto& b) { check_basis(report, flat, own, b); });
+      with_basis<3>(basis, space, edge, [&](const auto& b) { check_basis(report, space, own, b); });
     }
   check_quads<2>(report);
   check_quads<4>(report);

@@ -64,7 +64,7 @@ void check_shapes(mpm::testing::Report& report, const TileGrid<D>& grid) {
     for (int c = 0; c < Tile<D>::cell_count; ++c)
       for (std::size_t a = 0; a < D && (patch.occupied >> c & 1u); ++a) {
         first[a] = std::min(first[a], Tile<D>::cell_index(c)[a] - grid.margin());
-        last[a] = std::max(last[a], Tile<D>::cell_index(c)[a] + 1 + grid.margin());
+        last[a] = std::max(last[a], Tile<D>::cell_index(c)[a] + 1);
       }
     if (patch.occupied == 0) {
       CHECK_EQUAL(patch.shape.node_count, 0);
