@@ -53,6 +53,25 @@ def bar(dimension: int, pressure: Any = 1000.0, **more: Any) -> Case:
     return loaded(body, load, dimension, more.pop("lengths", 24.0), grid | basis, **more)
 
 
+@pytest.mark.parametrize("shift", [-1e-15, 0.0, 1e-15])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_one_particle_in_each_cube_between_nodes(dimension: int, shift: float) -> None:
+    """A piece of its surface lies just between nodes, whatever side of them rounding chooses."""
+    walls = {f"{a}_{end}": "slip" for a in "yz"[: dimension - 1] for end in ("min", "max")}
+    body = block((5, 0, 0)[:dimension], (8, 2, 2)[:dimension], material="solid", spacing=CELL)
+    load = {
+        side: Load(body="body", side=side, pressure=1000.0 if side == "x_min" else 500.0)
+        for side in ("x_min", "x_max")
+    }
+    grid = box(dimension, 2, walls)
+    grid["box"]["lower"] = (shift, 0.0, 0.0)[:dimension]
+    grid["box"]["upper"] = (16 * CELL + shift, 2 * CELL, 2 * CELL)[:dimension]
+    simulation, row = finish(loaded(body, load, dimension, 8.0, grid | {"basis": "gimp"}))
+    force = 500.0 * (2 * CELL) ** (dimension - 1)
+    assert row["momentum_x"][-1] == pytest.approx(force * simulation.time, rel=1e-11)
+    assert np.abs(row["residual"]).max() < 1e-11 * row["load_work"][-1]
+
+
 @pytest.mark.parametrize("basis", BASES)
 @pytest.mark.parametrize("scheme", ["usf", "musl"])
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -1,6 +1,6 @@
 #pragma once
 // The nodes of a patch's block: a box about the cells that hold the body's particles, with a margin
-// around it for a basis that reaches further. Nodes are counted from the tile's first.
+// before it for a basis that reaches further. Nodes are counted from the tile's first.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@ struct BlockShape {
   Index<D> low{};                                     // the block's first node
   Index<D> nodes{};                                   // how many along each axis
   int node_count = 0;                                 // 0 without particles
-  std::array<int, Tile<D>::corners> corner_offset{};  // from a cell's first node to its corners
+  std::array<int, Tile<D>::corners> corner_offset{};  // from a node to a cube's corners
 
   static constexpr int margin_max = 1;
   static constexpr int count_max(int margin) { return power(Tile<D>::cells + 1 + margin, D); }

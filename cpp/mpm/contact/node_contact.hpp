@@ -43,7 +43,7 @@ struct SidePair {
 
 /// An overlapped node: its sides and its pairs.
 struct ContactNode {
-  std::uint8_t cell;  // the node's place in its tile, as the cell whose first node it is
+  std::uint8_t cell;  // the node's place in its tile, as the cell whose own node it is
   std::uint8_t held;  // axes held by walls, a bit each
   std::uint16_t sides;
   std::uint32_t tile;  // of ContactGrid::tiles_

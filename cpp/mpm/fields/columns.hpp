@@ -107,8 +107,8 @@ class Columns {
   // pages between them would double the memory of small bodies, which stay off such multiples
   // instead.
   static std::size_t padded(std::size_t rows) {
-    constexpr std::size_t line = cache_line / sizeof(Rounded), page = 4096 / sizeof(Rounded),
-                          stagger = 3 * line;
+    constexpr std::size_t line = cache_line / sizeof(Rounded), page = 4096 / sizeof(double),
+                          stagger = 3 * line;  // in numbers; pages of doubles, halves of floats'
     const std::size_t lines = (rows + 7 + line) / line * line, beyond = lines % page;
     if (lines < page) return lines;
     if (lines < 16 * page) return beyond < stagger ? lines + stagger - beyond : lines;

@@ -1,5 +1,4 @@
 // The nodal blocks: which nodes a patch has, and where they are in memory.
-
 #include <algorithm>
 
 #include "mpm/grid/tile_grid.hpp"

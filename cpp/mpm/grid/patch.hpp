@@ -43,7 +43,7 @@ struct Patch {
   std::size_t memory = 0;  // where its block begins in the grid's memory [doubles]
   NodeBits<D> owned;       // nodes that no earlier patch of the body holds; of a leader, no earlier
                            // leader; none of one that is led
-  SharedNodes<D> shared;   // of a leader
+  SharedNodes<D> shared;   // of a leader; of others it means nothing
   bool at_wall = false;    // its block has nodes on a wall
   bool left_cell = false;  // a particle has left its cell since the lists were made
   bool in_contact = false;  // its block may have nodes where bodies meet

@@ -1,6 +1,7 @@
 // The nodes that several patches hold: who owns them, the lists of them, and the sums.
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <utility>
 
 #include "mpm/grid/tile_grid.hpp"
@@ -96,6 +97,8 @@ void TileGrid<D>::list_shared_nodes(Threads& threads) {
     list_of(patch).count(patch.shape.node_count, patch.shared);
   });
   // What still holds is read where it has been, for which the memory of the nodes lends room.
+  // There is: an entry has two bytes, the line of its node 64.
+  assert(listed_ * sizeof(SharedEntry<D>) <= idle_memory().size());
   auto* const before = reinterpret_cast<SharedEntry<D>*>(idle_memory().data());
   std::copy_n(shared_.data(), listed_, before);
   listed_ = 0;
@@ -172,6 +175,7 @@ void TileGrid<D>::sum_shared_nodes(Threads& threads, int first, int last) {
   // All entries of a node are read and written by the one patch that owns it.
   threads.for_each(leaders_.size(), [&](std::size_t k) {
     const Patch<D>& patch = patches[leaders_[k]];
+    assert((last - first) % quad == 0 && last - first <= 3 * quad);
     switch ((last - first) / quad) {
       case 1:
         return sum_shared_nodes_of<1>(patch, first);

@@ -76,13 +76,14 @@ class TileGrid {
     }
     return t;
   }
-  /// Coordinates of a tile's first cell, which are those of its own node, the tile's first, too.
+  /// Coordinates of a tile's first cell, which are those of that cell's own node too.
   Index<D> first_cell(const Index<D>& tile) const {
     Index<D> c;
     for (int a = 0; a < D; ++a) c[a] = anchor[a] + tile[a] * Tile<D>::cells;
     return c;
   }
 
+  /// Nodes before a cell's own that its particles reach.
   int margin() const { return margin_of(basis); }
   NodeBlock<D> block(std::size_t patch) {
     return {lines_of(patches[patch]), patches[patch].shape.node_count};
@@ -93,6 +94,7 @@ class TileGrid {
   }
   void release_nodes() {
     node_memory_.release_and_allocate(0);
+    shared_.release_and_allocate(0);
     listed_ = 0;
   }
   /// The memory of the nodes, for others until momentum is mapped. All values in it are lost.
@@ -135,10 +137,10 @@ class TileGrid {
   void for_each_shared(const Patch<D>& patch, F&& f) const;
 
   AlignedArray<double> node_memory_;
+  std::size_t needed_ = 0;                         // of it [doubles]
   AlignedArray<SharedEntry<D>> shared_;            // SharedNodes of all patches
   std::size_t listed_ = 0;                         // entries of it that are in use
   std::vector<std::uint8_t> reshaped_, outdated_;  // scratch: of each patch, its block, its lists
-  std::size_t needed_ = 0;                         // of it [doubles]
   bool blocks_known_ = false;                      // the blocks are those of the patches there are
   std::vector<std::uint32_t> by_tile_;             // if bonded: all patches, by tile, then by body
   std::vector<std::uint32_t> leaders_;  // those whose nodes are summed with their neighbours'

@@ -102,7 +102,9 @@ void SimulationOf<D>::set_state(int number, const std::string& column,
   if (info.components != 1 || values.size() != b.count())
     throw std::invalid_argument(column + ": a state that is set must be (n,)");
   check_finite(values, column);
-  std::copy(values.begin(), values.end(), b.columns.component(info.first));
+  b.columns.with_component(info.first, [&]<class Number>(Number* to) {
+    std::ranges::transform(values, to, [](double v) { return static_cast<Number>(v); });
+  });
 }
 
 template <int D>

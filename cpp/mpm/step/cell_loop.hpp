@@ -10,7 +10,7 @@ namespace mpm {
 template <int D>
 struct CellRange {
   Index<D> cell;   // grid coordinates
-  int first_node;  // in the patch's block
+  int first_node;  // its own, in the patch's block: in its lower corner, with GIMP in its middle
   const std::uint32_t* rows;
   std::uint32_t count;
 };

@@ -19,10 +19,13 @@ void for_each_loaded_piece(const Domain<D>& domain, std::size_t p, const Surface
       Index<D> shift{};  // to the nodes around the piece
       double xi[D];
       for (int a = 0; a < D; ++a) {
-        const double x = around.place[a] - around.lower[static_cast<std::size_t>(a)];
-        const double low = std::min(0.0, x - reach), high = std::max(1.0, x + reach);
-        xi[a] = std::clamp(x + load.arm[piece][a] / grid.cell_size, low, high);
         const auto k = static_cast<std::size_t>(a);
+        const double x = around.place[a] - around.lower[k];
+        // No further than the nodes beside the cell's own: rounding may put x beyond its cell.
+        const int own = cell.cell[k] - around.lower[k];
+        const double low = std::max(std::min(0.0, x - reach), own - 1.0);
+        const double high = std::min(std::max(1.0, x + reach), own + 1.0);
+        xi[a] = std::clamp(x + load.arm[piece][a] / grid.cell_size, low, high);
         shift[k] = xi[a] < 0.0 ? -1 : xi[a] > 1.0 ? 1 : 0;
         xi[a] -= shift[k];
       }
