@@ -1,5 +1,7 @@
 #include "mpm/step/loads.hpp"
 
+#include <cassert>
+
 namespace mpm {
 namespace {
 
@@ -30,6 +32,7 @@ void for_each_loaded_piece(const Domain<D>& domain, std::size_t p, const Surface
         xi[a] -= shift[k];
       }
       const int first = around.first + patch.shape.distance(shift);
+      assert(first >= 0 && first + patch.shape.corner_offset.back() < patch.shape.node_count);
       f(load.force_on(piece), [&](auto&& g) {
         for (int corner = 0; corner < Tile<D>::corners; ++corner) {
           double N = 1.0;
