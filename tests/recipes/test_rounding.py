@@ -11,7 +11,7 @@ from mpm3dpp import Simulation, _core
 
 # Largest error of a balance after some hundred steps, as a fraction of what is balanced: some
 # roundings of 1e-16 or 6e-8.
-ERROR = {"float64": 1e-12, "float32": 3e-6}[_core.build_info()["rounded"]]
+ERROR = {"float64": 1e-12, "float32": 3e-6}[_core.build_info()["velocity_and_stress"]]
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

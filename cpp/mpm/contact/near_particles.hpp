@@ -83,7 +83,7 @@ void collect_near(const TileParticles<D>& particles, const Index<D>& node, doubl
     p.weight = lanes.mass;
     auto near = T(0.0) < T(1.0);
     for (int a = 0; a < D; ++a) {
-      p.x[a] = lanes.xi[a] - T(place[a] + particles.node_in_cell());
+      p.x[a] = lanes.xi[a] - T(place[a] + particles.own_node());
       const T to_rim = T(reach) - max(p.x[a], -p.x[a]);
       near = near & (to_rim > T(0.0));
       p.weight *= min(max(T(1.0 / rim) * to_rim, T(0.0)), T(1.0));

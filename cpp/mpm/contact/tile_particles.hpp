@@ -45,13 +45,13 @@ class TileParticles {
   };
 
   /// Place of a cell's own node in the cell along each axis.
-  double node_in_cell() const { return node_in_cell_; }
+  double own_node() const { return own_node_; }
 
   /// Forget all and take what is around these nodes of another tile, a bit each by Tile<D>::cell.
   void gather(const TileGrid<D>& grid, const Body<D>& body, const Index<D>& tile,
               std::span<const TileHolder> holders, std::uint64_t nodes) {
     margin_ = grid.margin();
-    node_in_cell_ = mpm::node_in_cell(grid.basis);
+    own_node_ = node_in_cell(grid.basis);
     edge_ = Tile<D>::cells + 1 + margin_;
     patch_.fill(nullptr);
     for (const TileHolder& h : holders)
@@ -131,6 +131,7 @@ class TileParticles {
   void read(const TileGrid<D>& grid, const Body<D>& body, const Index<D>& first,
             const Index<D>& cell) {
     constexpr int W = contact_lanes<D>;
+    const CellCoordinates<D> coordinates = grid.coordinates();
     Cell& to = cells_[number(cell)];
     to.begin = static_cast<std::uint32_t>(lanes_.size());
     in_patch(cell, [&](const Patch<D>& patch, std::size_t c) {
@@ -140,7 +141,8 @@ class TileParticles {
         Lanes& p = lanes_.emplace_back();
         for (int a = 0; a < D; ++a) {
           const auto k = static_cast<std::size_t>(a);
-          p.xi[a] = local_coordinate(grid.in_cells(load(body.x(a), rows), a), first[k] + cell[k]);
+          p.xi[a] =
+              local_coordinate(coordinates.in_cells(load(body.x(a), rows), a), first[k] + cell[k]);
         }
         p.mass = select(first_lanes<W>(rows.count), load(body.mass(), rows), T(0.0));
         p.half =
@@ -151,7 +153,7 @@ class TileParticles {
   }
 
   int margin_ = 0;
-  double node_in_cell_ = 0.0;
+  double own_node_ = 0.0;
   int edge_ = 0;  // cells along an edge of what is in reach
   std::array<const Patch<D>*, Tile<D>::neighbours> patch_{};  // by where its tile lies
   std::vector<Cell> cells_;

@@ -86,6 +86,8 @@ void TileGrid<D>::list_shared_nodes(Threads& threads) {
   const auto each_leader = [&](auto&& f) {
     threads.for_each(leaders_.size(), [&](std::size_t k) { f(leaders_[k], patches[leaders_[k]]); });
   };
+  // Made once to be counted and once to be written: few patches need it, and kept it would need
+  // more room than all lists.
   const auto list_of = [&](const Patch<D>& patch) {
     SharedList<D> list;
     for_each_shared(patch, [&](int node, SharedEntry<D> other) { list.add(node, other); });
@@ -102,8 +104,9 @@ void TileGrid<D>::list_shared_nodes(Threads& threads) {
   auto* const before = reinterpret_cast<SharedEntry<D>*>(idle_memory().data());
   std::copy_n(shared_.data(), listed_, before);
   listed_ = 0;
+  listed_before_.resize(patches.size());
   for (const std::uint32_t p : leaders_) {
-    patches[p].shared.before = std::exchange(patches[p].shared.first, listed_);
+    listed_before_[p] = std::exchange(patches[p].shared.first, listed_);
     listed_ += patches[p].shared.entries();
   }
   make_room(shared_, listed_, listed_ + listed_ / 16);
@@ -112,7 +115,7 @@ void TileGrid<D>::list_shared_nodes(Threads& threads) {
     if (outdated_[p])
       list_of(patch).write(patch.shape.node_count, patch.shared, to);
     else
-      std::copy_n(before + patch.shared.before, patch.shared.entries(), to);
+      std::copy_n(before + listed_before_[p], patch.shared.entries(), to);
   });
 }
 

@@ -23,7 +23,7 @@ struct SharedEntry {
 template <int D>
 struct SharedNodes {
   static constexpr int most = power(2, D);  // patches that hold a node: two along each axis
-  std::size_t first = 0, before = 0;        // entry, of all that the grid has; and when last listed
+  std::size_t first = 0;                    // entry, of all that the grid has
   std::uint32_t neighbours = 0;  // that there were when the nodes were listed, a bit each
   std::array<std::uint16_t, most + 1> groups{};  // how many have so many entries
 

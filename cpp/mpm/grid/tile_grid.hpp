@@ -58,8 +58,10 @@ class TileGrid {
   }
   /// Cell coordinates of a position.
   Index<D> cell_of(const Vec<double, D>& x) const {
+    const CellCoordinates<D> cells = coordinates();
     Index<D> i;
-    for (int a = 0; a < D; ++a) i[a] = static_cast<std::int32_t>(std::floor(in_cells(x[a], a)));
+    for (int a = 0; a < D; ++a)
+      i[a] = static_cast<std::int32_t>(std::floor(cells.in_cells(x[a], a)));
     return i;
   }
   /// Position of a node [m].
@@ -141,6 +143,7 @@ class TileGrid {
   AlignedArray<SharedEntry<D>> shared_;            // SharedNodes of all patches
   std::size_t listed_ = 0;                         // entries of it that are in use
   std::vector<std::uint8_t> reshaped_, outdated_;  // scratch: of each patch, its block, its lists
+  std::vector<std::size_t> listed_before_;         // scratch: where each patch's list was
   bool blocks_known_ = false;                      // the blocks are those of the patches there are
   std::vector<std::uint32_t> by_tile_;             // if bonded: all patches, by tile, then by body
   std::vector<std::uint32_t> leaders_;  // those whose nodes are summed with their neighbours'

@@ -18,7 +18,7 @@ inline constexpr int native_lanes = 2;
 #endif
 
 /// The compiler's vector types of W numbers. Numbers in memory are read and written as `Unaligned`,
-/// floats as `Halves`, and not by memcpy, after which the compiler must take all it knows from
+/// floats as `Floats`, and not by memcpy, after which the compiler must take all it knows from
 /// memory anew.
 template <int W>
 struct Vectors;
@@ -26,21 +26,21 @@ template <>
 struct Vectors<2> {
   typedef double Real __attribute__((vector_size(16)));
   typedef double Unaligned __attribute__((vector_size(16), aligned(8)));
-  typedef float Halves __attribute__((vector_size(8), aligned(4)));
+  typedef float Floats __attribute__((vector_size(8), aligned(4)));
   typedef std::int64_t Bits __attribute__((vector_size(16)));
 };
 template <>
 struct Vectors<4> {
   typedef double Real __attribute__((vector_size(32)));
   typedef double Unaligned __attribute__((vector_size(32), aligned(8)));
-  typedef float Halves __attribute__((vector_size(16), aligned(4)));
+  typedef float Floats __attribute__((vector_size(16), aligned(4)));
   typedef std::int64_t Bits __attribute__((vector_size(32)));
 };
 template <>
 struct Vectors<8> {
   typedef double Real __attribute__((vector_size(64)));
   typedef double Unaligned __attribute__((vector_size(64), aligned(8)));
-  typedef float Halves __attribute__((vector_size(32), aligned(4)));
+  typedef float Floats __attribute__((vector_size(32), aligned(4)));
   typedef std::int64_t Bits __attribute__((vector_size(64)));
 };
 
@@ -80,11 +80,11 @@ struct Batch {
   /// Floats become doubles, and doubles the nearest floats.
   static Batch load(const float* from) {
     return Batch(__builtin_convertvector(
-        *reinterpret_cast<const typename Vectors<W>::Halves*>(from), Vector));
+        *reinterpret_cast<const typename Vectors<W>::Floats*>(from), Vector));
   }
   void store(float* to) const {
-    using Halves = typename Vectors<W>::Halves;
-    *reinterpret_cast<Halves*>(to) = __builtin_convertvector(v, Halves);
+    using Floats = typename Vectors<W>::Floats;
+    *reinterpret_cast<Floats*>(to) = __builtin_convertvector(v, Floats);
   }
   double operator[](int lane) const { return v[lane]; }
 

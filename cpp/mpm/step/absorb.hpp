@@ -2,7 +2,7 @@
 // Absorbing walls: dashpots on the nodes of a face let the waves of the bodies before it pass, with
 // the traction -rho c_p v along the normal and -rho c_s v along the face (Lysmer & Kuhlemeyer 1969,
 // eqs. 1-2 with a = b = 1).
-#include "mpm/step/cell_loop.hpp"
+#include "mpm/step/nodes_around.hpp"
 #include "mpm/step/work.hpp"
 
 namespace mpm {
@@ -14,15 +14,28 @@ template <int D>
 void scatter_dashpots(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
                       const NodeBlock<D>& block) {
   if (!patch.at_wall || body.rigid) return;
+  // Do particles with this node at the lower corner around them lie along a face?
+  const auto along_face = [&](int node, int normal, int side) {
+    return grid.walls.face[normal][side] == Wall::absorbing &&
+           node == (side == 0 ? 0 : grid.walls.cells[normal] - 1);
+  };
+  const auto may_lie_along_face = [&](const Index<D>& cell) {
+    bool any = false;
+    for (int normal = 0; normal < D; ++normal)
+      for (int side = 0; side < 2; ++side)
+        for (int before = 0; before <= grid.margin(); ++before)
+          any = any || along_face(cell[static_cast<std::size_t>(normal)] - before, normal, side);
+    return any;
+  };
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+    if (!may_lie_along_face(cell.cell)) return;
     for (std::uint32_t k = 0; k < cell.count; ++k) {
       const std::uint32_t row = cell.rows[k];
       const NodesAround<D> around(grid, body, patch, cell, row);
       const double area = body.mass()[row] / (body.initial_density * grid.cell_size);
       for (int normal = 0; normal < D; ++normal)
         for (int side = 0; side < 2; ++side) {
-          if (grid.walls.face[normal][side] != Wall::absorbing) continue;
-          if (around.lower[normal] != (side == 0 ? 0 : grid.walls.cells[normal] - 1)) continue;
+          if (!along_face(around.lower[static_cast<std::size_t>(normal)], normal, side)) continue;
           for (int corner = 0; corner < Tile<D>::corners; ++corner) {
             if ((corner >> normal & 1) != side) continue;
             double share = area;

@@ -56,28 +56,6 @@ class LocalPosition {
   const double* x_[D];
 };
 
-/// The nodes at the corners of the square or cube of the grid that a particle is in, which with
-/// GIMP is not its cell.
-template <int D>
-struct NodesAround {
-  double place[D];  // position among the nodes
-  Index<D> lower;   // the node at the lower corner
-  int first;        // its number in the patch's block
-
-  NodesAround(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
-              const CellRange<D>& cell, std::uint32_t row) {
-    Index<D> from_cell;
-    for (int a = 0; a < D; ++a) {
-      const auto k = static_cast<std::size_t>(a);
-      place[a] = grid.among_nodes(body.x(a)[row], a);
-      const bool before = grid.margin() > 0 && place[a] < cell.cell[k];
-      lower[k] = cell.cell[k] - (before ? 1 : 0);
-      from_cell[k] = lower[k] - cell.cell[k];
-    }
-    first = cell.first_node + patch.shape.distance(from_cell);
-  }
-};
-
 /// f(basis object) for the basis of the grid, a patch's block and the size of a body's particles.
 template <int D, class F>
 void with_basis(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch, F&& f) {

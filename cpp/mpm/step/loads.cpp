@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "mpm/step/nodes_around.hpp"
+
 namespace mpm {
 namespace {
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 from mpm3dpp import _core
 
 _LIST = 4  # Bytes of an entry of the list of particles by cell.
-_ROUNDED = {"float64": 8, "float32": 4}[_core.build_info()["rounded"]]
+_ROUNDED = {"float64": 8, "float32": 4}[_core.build_info()["velocity_and_stress"]]
 _BYTES = {"velocity": _ROUNDED, "stress": _ROUNDED}  # Of a number; of all others 8.
 
 _MOMENTUM = ("position", "velocity", "mass")

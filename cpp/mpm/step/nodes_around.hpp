@@ -1,0 +1,30 @@
+#pragma once
+// The nodes between which a particle lies, for what has linear functions with every basis: loads on
+// surfaces, walls that absorb.
+#include "mpm/step/cell_loop.hpp"
+
+namespace mpm {
+
+/// The nodes at the corners of the square or cube of the grid that a particle is in, which with
+/// GIMP is not its cell.
+template <int D>
+struct NodesAround {
+  double place[D];  // position among the nodes
+  Index<D> lower;   // the node at the lower corner
+  int first;        // its number in the patch's block
+
+  NodesAround(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
+              const CellRange<D>& cell, std::uint32_t row) {
+    Index<D> from_cell;
+    for (int a = 0; a < D; ++a) {
+      const auto k = static_cast<std::size_t>(a);
+      place[a] = grid.among_nodes(body.x(a)[row], a);
+      const bool before = node_in_cell(grid.basis) > 0.0 && place[a] < cell.cell[k];
+      lower[k] = cell.cell[k] - (before ? 1 : 0);
+      from_cell[k] = lower[k] - cell.cell[k];
+    }
+    first = cell.first_node + patch.shape.distance(from_cell);
+  }
+};
+
+}  // namespace mpm
