@@ -175,6 +175,13 @@ NB_MODULE(_core, m) {
       .def("prepare", &Simulation::prepare, nb::call_guard<nb::gil_scoped_release>())
       .def("advance", &Simulation::advance, nb::arg("max_steps"), nb::arg("end_time"),
            nb::call_guard<nb::gil_scoped_release>())
+      .def(
+          "save", [](Simulation& s, const nb::callable& write) { s.save(transfer_by(write)); },
+          nb::arg("write"))
+      .def(
+          "restore",
+          [](Simulation& s, const nb::callable& readinto) { s.restore(transfer_by(readinto)); },
+          nb::arg("readinto"))
       .def_prop_ro("time", &Simulation::time)
       .def_prop_ro("dt", &Simulation::next_time_step)
       .def_prop_ro("step", &Simulation::step)

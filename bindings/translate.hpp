@@ -9,6 +9,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "mpm/fields/state_stream.hpp"
 #include "mpm/materials/material.hpp"
 
 namespace mpm::bindings {
@@ -39,6 +40,17 @@ inline MaterialChoice choice_of(double density, const std::string& strength,
   for (const auto& [name, values, action] : failures)
     choice.failures.push_back({{name, values}, action});
   return choice;
+}
+
+/// A state's bytes through a Python function, which gets a view of them and returns how many it has
+/// taken or filled.
+inline StateStream::Transfer transfer_by(const nb::callable& f) {
+  return [f](std::span<std::byte> bytes) {
+    const auto n = static_cast<Py_ssize_t>(bytes.size());
+    const nb::object view =
+        nb::steal(PyMemoryView_FromMemory(reinterpret_cast<char*>(bytes.data()), n, PyBUF_WRITE));
+    if (nb::cast<Py_ssize_t>(f(view)) != n) throw std::invalid_argument("it ends too early");
+  };
 }
 
 /// The catalogue of material models and the single material point.

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Small cases for the tests: three blocks that meet at one node, and single blocks."""
+"""Small cases for the tests: blocks alone, three that meet at a node, nearly all there can be."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mpm3dpp import Body, Case, Contact, Grid, Material, Run, shapes
+from mpm3dpp import Body, Case, Contact, Grid, Material, Run, load_case, shapes
 
 CELL = 2.0**-7
 """Cell size [m]: a power of two, so that cells add up without rounding."""
@@ -95,3 +96,83 @@ def box(dimension: int, cells: int, walls: Any) -> dict[str, Any]:
     """Return the keys of `Grid` for a box of so many cells along each axis."""
     upper = (cells * CELL,) * dimension
     return {"box": {"lower": (0.0,) * dimension, "upper": upper, "walls": walls}}
+
+
+# Nearly all that a step can hold: walls that mirror and that absorb, gravity, contact with
+# friction, a load, viscosity, PIC damping, a rigid body that is free and one that is led.
+EVERYTHING = """
+[grid]
+dimension = {dimension}
+cell_size = "10 mm"
+basis = "{basis}"
+box = {{ lower = {zero}, upper = {box}, walls = {{ y_min = "slip", x_min = "{left}" }} }}
+[run]
+scheme = "{scheme}"
+end_time = "1 s"
+time_step_factor = 0.3
+energy_growth_limit = 1e9
+gravity = {gravity}
+viscosity = {{}}
+pic_damping = "5 1/s"
+[contact]
+friction = 0.3
+[material.soft]
+density = 1000.0
+strength = {{ elastic = {{ E = "1 MPa", nu = 0.3 }} }}
+[material.metal]
+density = 2000.0
+strength = {{ j2 = {{ E = "4 MPa", nu = 0.3, Y0 = "2 kPa" }} }}
+[material.stone]
+density = 3000.0
+strength = {{ rigid = {{}} }}
+[body.bed]
+material = "soft"
+particles_per_cell = {per_axis}
+shape = {{ box = {{ lower = {zero}, upper = {bed} }} }}
+[body.block]
+material = "metal"
+velocity = {falling}
+shape = {{ box = {{ lower = {low_block}, upper = {high_block} }} }}
+[body.ball]
+material = "stone"
+velocity = {falling}
+shape = {{ {ball} = {{ centre = {centre}, radius = "25 mm" }} }}
+[body.press]
+material = "stone"
+motion = {{ velocity = {pressing} }}
+shape = {{ box = {{ lower = {low_press}, upper = {high_press} }} }}
+[load.side]
+body = "bed"
+side = "x_max"
+pressure = "1 kPa"
+"""
+
+
+def everything(tmp_path: Path, dimension: int, scheme: str, basis: str, left: str) -> Case:
+    """Return a case of nearly all that a step can hold, its left wall "absorbing" or "slip"."""
+
+    def vector(*values: float) -> str:
+        return str(list(values[:dimension]))
+
+    text = EVERYTHING.format(
+        dimension=dimension,
+        scheme=scheme,
+        basis=basis,
+        left=left,
+        per_axis=7 - dimension if left == "slip" else 2,  # More than are laid out at once.
+        zero=vector(0.0, 0.0, 0.0),
+        box=vector(0.4, 0.3, 0.08),
+        gravity=vector(1.0, -10.0, 2.0),
+        bed=vector(0.2, 0.06, 0.08),
+        falling=vector(0.5, -2.0, 0.2),
+        low_block=vector(0.02, 0.061, 0.01),
+        high_block=vector(0.07, 0.11, 0.07),
+        ball="disc" if dimension == 2 else "sphere",
+        centre=vector(0.1, 0.087, 0.04),
+        pressing=vector(0.0, -1.0, 0.0),
+        low_press=vector(0.14, 0.061, 0.01),
+        high_press=vector(0.18, 0.1, 0.07),
+    )
+    file = tmp_path / "case.toml"
+    file.write_text(text)
+    return load_case(file)

@@ -124,6 +124,14 @@ class Case(CaseModel):
 
         It depends neither on formatting nor on units nor on the names of files of particles.
         """
+        table = self.content()
+        if not self.grains:  # So that older cases keep their hash.
+            del table["grains"]
+        text = json.dumps(_rounded(table), sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def content(self) -> dict[str, Any]:
+        """Return what decides the results: the table, with hashes in place of names of files."""
         table = self.table()
         for name, body in self.body.items():
             if body.particles is not None:
@@ -131,10 +139,8 @@ class Case(CaseModel):
         for name, grains in self.grains.items():
             if grains.file is not None:
                 table["grains"][name]["file"] = grains.file.digest
-        if not self.grains:  # So that older cases keep their hash.
-            del table["grains"]
-        text = json.dumps(_rounded(table), sort_keys=True, separators=(",", ":"))
-        return hashlib.sha256(text.encode()).hexdigest()
+        del table["output"]["checkpoint_interval"]
+        return table
 
     def parts(self) -> dict[str, Body | Grains]:
         """Return the entries of `body` and `grains` by name, in the order of their bodies."""

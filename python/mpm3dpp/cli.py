@@ -93,15 +93,26 @@ def run(
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
     json: Json = False,
     units: Units = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on from the checkpoint in the folder.")
+    ] = False,
+    anew: Annotated[
+        bool, typer.Option("--anew", help="Begin anew, though the folder holds an unfinished run.")
+    ] = False,
 ) -> None:
     """Run a case: frames, history, manifest and pictures in the output folder."""
+    from .checkpoints import refuse_to_begin_anew
     from .folders import default_folder, thread_count, writable_folder
 
     loaded = _load(case, units, quiet)
     folder = writable_folder(out if out is not None else default_folder(case))
+    if resume and anew:
+        raise CaseError("--resume and --anew cannot be given together", "give one of them")
+    if not (resume or anew):
+        refuse_to_begin_anew(folder, loaded)
     from .run import run_case  # The slowest import: after the mistakes.
 
-    run_case(loaded, folder, threads=thread_count(threads), quiet=quiet, json=json)
+    run_case(loaded, folder, threads=thread_count(threads), quiet=quiet, json=json, resume=resume)
 
 
 @app.command()

@@ -8,6 +8,7 @@ import tempfile
 from pathlib import Path
 
 from .errors import CaseError
+from .io.checkpoint import CHECKPOINT
 from .io.disk import cannot_write, make_folder
 
 
@@ -29,13 +30,17 @@ def default_folder(case_file: Path) -> Path:
 _OF_A_RUN = ("manifest.json", "frame.png", "energies.png", "first_contact.png", "animation.gif")
 
 
-def forget_last_run(folder: Path) -> None:
+def forget_last_run(folder: Path, checkpoint: bool = True) -> None:
     """Remove what an earlier run has left in a folder, so that it is not taken for the new one's.
+
+    Args:
+        folder: of the runs.
+        checkpoint: remove its checkpoint too, for the new run does not go on from it.
 
     Raises:
         CaseError: it cannot be removed.
     """
-    for name in _OF_A_RUN:
+    for name in (*_OF_A_RUN, *([CHECKPOINT] if checkpoint else [])):
         try:
             (folder / name).unlink(missing_ok=True)
         except OSError as error:

@@ -7,7 +7,6 @@ import json as json_format
 import math
 import signal
 import sys
-import time as clock
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,9 +14,11 @@ from typing import Any
 
 from . import _core
 from .case import Case
+from .checkpoints import Checkpoint, Checkpoints
 from .errors import CaseError, RunError
 from .folders import forget_last_run, writable_folder
 from .io.background import BackgroundWriter
+from .io.checkpoint import restore_checkpoint
 from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import ResultsWriter
@@ -35,6 +36,7 @@ def run_case(
     quiet: bool = True,
     json: bool = False,
     pictures: bool = True,
+    resume: bool = False,
 ) -> Manifest:
     """Run a case to its end: results.vtkhdf, history.csv, manifest.json and pictures in a folder.
 
@@ -45,6 +47,8 @@ def run_case(
         quiet: no progress and no summary.
         json: print the manifest at the end.
         pictures: make them; `mpm3dpp.plots.plot_results` makes them later.
+        resume: go on from the checkpoint in the folder, with the same results as a run in one go,
+            in place of beginning anew; the case may have another end time.
 
     Raises:
         CaseError: a mistake in the case, or a folder that cannot be written.
@@ -52,16 +56,22 @@ def run_case(
         KeyboardInterrupt: the user stopped it; what was computed is kept.
     """
     folder = writable_folder(Path(out))
-    begin = clock.monotonic()
+    before = None
+    if resume:
+        before = Checkpoint.of(folder)
+        before.check(case)
+    checkpoints = Checkpoints(folder, case, before.wall_time if before else 0.0)
     simulation = Simulation(case, threads)
-    forget_last_run(folder)
+    if before is not None:
+        restore_checkpoint(before.path, simulation.core)
+    forget_last_run(folder, checkpoint=before is None)
     try:
-        status, reason = _write_run(simulation, folder, quiet or json)
+        status, reason = _write_run(simulation, folder, quiet or json, checkpoints, before)
     except CaseError as error:  # The disk: it was no mistake when the run began.
         if simulation.step == 0:
             raise
         raise RunError(f"{error}; what was written before is in {folder}") from error
-    manifest = _manifest(simulation, status, reason, clock.monotonic() - begin)
+    manifest = _manifest(simulation, status, reason, checkpoints.wall_time)
     manifest.energies = simulation.summary
     manifest.write(folder)
     if json:
@@ -82,17 +92,24 @@ def run_case(
         raise RunError(f"{reason}; frames and history up to then are in {folder}")
     if status == "interrupted":
         if not quiet:
-            print(f"mpm3dpp: {reason}; results are in {folder}", file=sys.stderr)
+            later = "; --resume goes on" if case.output.checkpoint_interval else ""
+            print(f"mpm3dpp: {reason}; results are in {folder}{later}", file=sys.stderr)
         raise KeyboardInterrupt
     return manifest
 
 
-def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Status, str | None]:
+def _write_run(
+    simulation: Simulation,
+    folder: Path,
+    quiet: bool,
+    checkpoints: Checkpoints,
+    before: Checkpoint | None,
+) -> tuple[Status, str | None]:
     """Step to the end time, writing frames and history; return how it ended, and why."""
     case, core = simulation.case, simulation.core
     contact = case.contact_enabled
     most = min(case.output.history_every if contact else _BLOCK, core.history_capacity // 2)
-    frames = [t for t in case.frame_times() if t > 0.0]
+    frames = [t for t in case.frame_times() if t > core.time]
     file = ResultsWriter(
         folder / "results.vtkhdf",
         bodies=simulation.parts,
@@ -104,6 +121,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
         compression=case.output.compression,
         title=case.title,
         case_hash=case.case_hash,
+        rows=before.results if before else None,
     )
     history = HistoryWriter(
         folder / "history.csv",
@@ -111,6 +129,7 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
         bodies=simulation.parts,
         contact=contact,
         every=case.output.history_every,
+        state=before.history if before else None,
     )
     unit = "J/m" if case.grid.dimension == 2 else "J"
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
@@ -121,8 +140,11 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
             progress.note(f"warning: {sentence}")
         for sentence in simulation.notes:
             progress.note(f"note: {sentence}")
-        results.write(core)
-        touched = 0
+        if before is None:
+            results.write(core)
+        else:
+            progress.note(f"note: going on from step {core.step:,}, t = {core.time:.6g} s")
+        touched = len(core.contact_groups()) if contact else 0
         while status == "completed" and core.time < case.run.end_time:
             try:
                 simulation.advance(_steps(most, frames, core))
@@ -148,6 +170,10 @@ def _write_run(simulation: Simulation, folder: Path, quiet: bool) -> tuple[Statu
             progress.update(core.time, core.step, core.dt, kinetic, internal, overlapped)
             if stopped():
                 status, reason = "interrupted", f"stopped by the user at t = {core.time:.6g} s"
+            elif checkpoints.due:
+                checkpoints.write(core, results, history)
+        if status != "failed":
+            checkpoints.write(core, results, history)
     simulation.summary = history.summary()
     return status, reason
 

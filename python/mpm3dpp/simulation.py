@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,9 +14,11 @@ from . import _core
 from .build import build, warnings
 from .case import Case
 from .case_notes import notes
+from .checkpoints import check_same
 from .detonation import lighting_times
 from .errors import CaseError, RunError, nearest
 from .folders import thread_count
+from .io.checkpoint import read_about, restore_checkpoint, write_checkpoint
 from .loads import add_load, pieces
 from .motion import Motion
 from .time_functions import TimeFunction
@@ -169,6 +172,29 @@ class Simulation:
         if body not in self.bodies:
             raise CaseError("is not a body of the case", nearest(body, self.bodies), value=body)
         self.core.set_velocity(self.bodies.index(body), values)
+
+    def save(self, path: str | Path) -> None:
+        """Write the state to a file, in one step; `restore` goes on from it.
+
+        Raises:
+            CaseError: it cannot be written, or the run has become unstable.
+        """
+        if self.core.failure is not None:
+            raise CaseError("a run that had to stop cannot be saved", "save it while it goes on")
+        write_checkpoint(Path(path), self.core, {"case": self.case.content()})
+
+    def restore(self, path: str | Path) -> None:
+        """Bring a simulation that has made no step to the state in a file, of `save` or of a run.
+
+        It goes on with the same bits, also with another number of threads. What `core.set_gravity`
+        has changed is not in the state.
+
+        Raises:
+            CaseError: there is no such file, or it is that of another case or version.
+        """
+        path = Path(path)
+        check_same(path, read_about(path)["case"], self.case)
+        restore_checkpoint(path, self.core)
 
     def _numbers(self, body: str) -> list[int]:
         """Return the numbers of the bodies that a name stands for."""

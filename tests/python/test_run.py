@@ -8,41 +8,18 @@ import os
 import resource
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
+from commands import CASE, command, mpm3dpp, one_sentence, write
 from mpm3dpp import RunError, load_case, open_results, run_case
 from mpm3dpp.errors import CaseError
 from mpm3dpp.folders import forget_last_run
 from mpm3dpp.io import read_history, read_manifest
 
-CASE = """\
-title = "Two blocks"
-[grid]
-dimension = 2
-cell_size = "10 mm"
-[run]
-end_time = "8 ms"
-time_step_factor = 0.3
-[output]
-frames = 4
-[material.soft]
-density = "1000 kg/m^3"
-strength = { elastic = { E = "1 MPa", nu = 0.3 } }
-[body.left]
-material = "soft"
-shape = { box = { lower = ["0 mm", "0 mm"], upper = ["50 mm", "50 mm"] } }
-velocity = ["5 m/s", "0 m/s"]
-[body.right]
-material = "soft"
-shape = { box = { lower = ["60 mm", "10 mm"], upper = ["110 mm", "60 mm"] } }
-velocity = ["-5 m/s", "0 m/s"]
-"""
 LONG = CASE.replace('"8 ms"', '"1000 s"').replace("frames = 4", 'interval = "20 ms"')
 # Update stress last with the linear basis makes energy in contact (Bardenhagen 2002).
 UNSTABLE = CASE.replace('cell_size = "10 mm"', 'cell_size = "10 mm"\nbasis = "linear"').replace(
@@ -56,30 +33,6 @@ KEYS = (
     *("version", "case_hash", "mass", "cell_size", "particles", "threads", "steps", "wall_time"),
     *("ns_per_particle_step", "stages", "peak_memory_bytes", "bytes", "result_hash", "contact"),
 )
-
-
-def write(folder: Path, text: str = CASE) -> Path:
-    path = folder / "case.toml"
-    path.write_text(text)
-    return path
-
-
-def command(*arguments: Any) -> list[str]:
-    return [sys.executable, "-m", "mpm3dpp", *map(str, arguments)]
-
-
-def mpm3dpp(*arguments: Any, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        command(*arguments), cwd=cwd, capture_output=True, text=True, timeout=60, check=False
-    )
-
-
-def one_sentence(text: str) -> str:
-    assert "Traceback" not in text
-    lines = text.strip().splitlines()
-    assert len(lines) == 1, text
-    assert lines[0].startswith("mpm3dpp: error: ")
-    return lines[0]
 
 
 @pytest.fixture(scope="module")

@@ -18,6 +18,7 @@
   X(eigen) \
   X(threads) \
   X(memory) \
+  X(state_stream) \
   X(columns) \
   X(basis) \
   X(jaumann) \

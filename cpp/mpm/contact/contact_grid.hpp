@@ -9,6 +9,7 @@
 #include "mpm/contact/node_solver.hpp"
 #include "mpm/contact/separation.hpp"
 #include "mpm/contact/settings.hpp"
+#include "mpm/fields/state_stream.hpp"
 
 namespace mpm {
 
@@ -96,6 +97,9 @@ class ContactGrid {
   /// ledger.
   ContactSums record(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, double time,
                      double time_step, std::int64_t step);
+
+  /// The records, and what is kept from step to step; the tiles must have been connected.
+  void exchange(StateStream& stream);
 
   const std::vector<PairRecord>& pairs() const { return records_; }
   std::size_t overlapped_nodes() const { return overlapped_; }

@@ -68,8 +68,22 @@ int TileGrid<D>::find(int body, const Index<D>& tile) const {
   return static_cast<int>(at - patches.begin());
 }
 
+template <int D>
+void TileGrid<D>::exchange(StateStream& stream, Threads& threads) {
+  stream(cell_size, anchor, walls.cells);
+  stream.length(patches);
+  for (Patch<D>& p : patches)
+    stream(p.body, p.tile, p.begin, p.count, p.occupied, p.cell_begin, p.left_cell);
+  if (!stream.restores()) return;
+  release_nodes();
+  connect();
+  cut_blocks(threads);
+}
+
 template void TileGrid<2>::connect();
 template void TileGrid<3>::connect();
+template void TileGrid<2>::exchange(StateStream&, Threads&);
+template void TileGrid<3>::exchange(StateStream&, Threads&);
 template int TileGrid<2>::find(int, const Index<2>&) const;
 template int TileGrid<3>::find(int, const Index<3>&) const;
 

@@ -11,6 +11,7 @@
 
 #include "mpm/contact/contact_grid.hpp"
 #include "mpm/fields/columns.hpp"
+#include "mpm/fields/state_stream.hpp"
 #include "mpm/materials/material.hpp"
 #include "mpm/math/time_function.hpp"
 #include "mpm/step/fused.hpp"
@@ -123,6 +124,13 @@ class Simulation {
   /// Make up to `max_steps` steps, to `end_time` at most; returns how many. Stops early at a
   /// failure.
   virtual std::int64_t advance(std::int64_t max_steps, double end_time) = 0;
+
+  /// The state as it is between two steps, rows of the history that nobody took included; functions
+  /// of time are the case's. Restored into a simulation of the same case that has made no step, it
+  /// goes on with the same bits. Throws std::invalid_argument if the state does not fit; what has
+  /// been restored half is of no use.
+  virtual void save(const StateStream::Transfer& to) = 0;
+  virtual void restore(const StateStream::Transfer& from) = 0;
 
   virtual double time() const = 0;
   virtual double next_time_step() const = 0;

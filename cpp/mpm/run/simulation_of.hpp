@@ -25,6 +25,9 @@ class SimulationOf final : public Simulation {
   void prepare() override;
   std::int64_t advance(std::int64_t max_steps, double end_time) override;
 
+  void save(const StateStream::Transfer& to) override;
+  void restore(const StateStream::Transfer& from) override;
+
   double time() const override { return domain_.time; }
   double next_time_step() const override { return next_time_step_; }
   std::int64_t step() const override { return domain_.step; }
@@ -74,6 +77,7 @@ class SimulationOf final : public Simulation {
   bool must_double() const;
   void double_cells();
   void write_history_row();
+  void exchange(StateStream& stream);
   void find_failure();
   Failure failure_at(const std::string& kind, std::size_t body, std::size_t row,
                      const std::string& what) const;

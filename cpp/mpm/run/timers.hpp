@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "mpm/fields/state_stream.hpp"
+
 namespace mpm {
 
 class StageTimers {
@@ -21,6 +23,10 @@ class StageTimers {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
   const std::vector<std::pair<std::string_view, double>>& seconds() const { return seconds_; }
+  void exchange(StateStream& stream) {
+    stream.same(seconds_.size(), "it was made with other stages (fused or not)");
+    for (auto& s : seconds_) stream(s.second);
+  }
   void reset() {
     for (auto& s : seconds_) s.second = 0.0;
   }

@@ -49,6 +49,18 @@ class BackgroundWriter:
             self._room.release()
             raise
 
+    def rows(self) -> dict[str, int]:
+        """Write what waits, and return what a writer needs to go on from here.
+
+        Raises:
+            CaseError: a frame could not be written.
+        """
+        for _ in range(BEHIND):
+            self._room.acquire()
+        self._room.release(BEHIND)
+        self._tell()
+        return self._results.rows()
+
     def check(self) -> None:
         """Raise the error of a frame that could not be written, if nobody has told it yet."""
         if not self._told:

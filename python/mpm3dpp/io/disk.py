@@ -76,6 +76,12 @@ def reserve(path: Path, end: int) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
 
 
+def bring_to_disk(path: Path) -> None:
+    """Wait until all that was written to a file would outlive a power cut."""
+    with writing(path), open(path, "rb") as file:
+        os.fsync(file.fileno())
+
+
 def write_atomically(path: Path, text: str) -> None:
     """Replace a text file in one step (write, fsync, rename): never half a file.
 

@@ -5,14 +5,16 @@ from __future__ import annotations
 
 import csv
 import itertools
-from collections.abc import Sequence
+import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import make_folder, writing
+from mpm3dpp.io.checkpoint import ANEW
+from mpm3dpp.io.disk import bring_to_disk, make_folder, writing
 from mpm3dpp.io.fields import numbered
 
 COLUMNS = (
@@ -53,6 +55,7 @@ class HistoryWriter:
             do to each other has no columns.
         contact: whether the run has contact; without it there are no pairs' columns.
         every: keep the rows whose step is a multiple of this, and the last of each block.
+        state: of a run that goes on, `state()` then; rows written later are cut off.
 
     Raises:
         CaseError: the file cannot be written; the rows written before stay readable.
@@ -66,6 +69,7 @@ class HistoryWriter:
         bodies: Sequence[str],
         contact: bool = True,
         every: int = 1,
+        state: Mapping[str, Any] | None = None,
     ) -> None:
         self.path = Path(path)
         self._every = max(1, every)
@@ -83,14 +87,16 @@ class HistoryWriter:
                 both = f"{self._bodies[a]}_{self._bodies[b]}"
                 header += [f"contact_{kind}_{both}_{x}" for x in _AXES]
         make_folder(self.path.parent)
-        self._table = _Table(self.path, header)
+        sizes = state["sizes"] if state else [None, None]
+        self._table = _Table(self.path, header, sizes[0])
         self._long: _Table | None = None
         if len(pairs) > PAIR_LIMIT:
             values = [f"contact_{kind}_{x}" for kind in ("force", "impulse") for x in _AXES]
             path = self.path.with_name("contact_pairs.csv")
-            self._long = _Table(path, ["step", "time", "body_a", "body_b", *values])
+            self._long = _Table(path, ["step", "time", "body_a", "body_b", *values], sizes[1])
         self._index = {name: k for k, name in enumerate(own)}
-        self._summary: dict[str, Any] = {}
+        self._summary: dict[str, Any] = dict(state["summary"]) if state else {}
+        self._momentum = np.array(state["momentum"] if state else [])
 
     def append(self, rows: np.ndarray, pairs: Sequence[Any] = ()) -> None:
         """Write the rows of the steps made since the last call, and flush.
@@ -114,6 +120,11 @@ class HistoryWriter:
         self._table.append(lines)
         if self._long is not None:
             self._long.append(self._pair_lines(table[-1], pairs))
+
+    def state(self) -> dict[str, Any]:
+        """Return what a writer needs to go on from here, for JSON; it is on the disk then."""
+        sizes = [table.saved_size() if table else None for table in (self._table, self._long)]
+        return {"sizes": sizes, "summary": self.summary(), "momentum": self._momentum.tolist()}
 
     def summary(self) -> dict[str, Any]:
         """Energies of the whole run for the manifest [J], J per metre in 2D.
@@ -183,15 +194,29 @@ class HistoryWriter:
 
 
 class _Table:
-    """A CSV file that only ever holds whole rows, even when the disk runs full."""
+    """A CSV file that only ever holds whole rows, even when the disk runs full.
 
-    def __init__(self, path: Path, header: list[str]) -> None:
+    With a size, an old one goes on from there.
+    """
+
+    def __init__(self, path: Path, header: list[str], size: int | None = None) -> None:
         self._path = path
         with writing(path):
-            self._file = open(path, "w", newline="", encoding="utf-8")  # noqa: SIM115
-            csv.writer(self._file, lineterminator="\n").writerow(header)
+            if size is not None:
+                if not path.is_file() or path.stat().st_size < size:
+                    raise CaseError(f"'{path}' has lost rows since the checkpoint", ANEW)
+                os.truncate(path, size)
+            mode = "w" if size is None else "a"
+            self._file = open(path, mode, newline="", encoding="utf-8")  # noqa: SIM115
+            if size is None:
+                csv.writer(self._file, lineterminator="\n").writerow(header)
             self._file.flush()
             self._size = self._file.tell()
+
+    def saved_size(self) -> int:
+        """Return the size of the file [bytes], when that much is on the disk."""
+        bring_to_disk(self._path)
+        return self._size
 
     def append(self, lines: list[list[str]]) -> None:
         text = "".join(",".join(cells) + "\n" for cells in lines)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -63,6 +64,34 @@ def append_rows(group: h5py.Group, name: str, values: np.ndarray, level: int = 0
     data.resize(first + len(values), axis=0)
     data[first:] = values
     return first
+
+
+def row_counts(group: h5py.Group) -> dict[str, int]:
+    """Return how many rows each data set that grows has, by its path below the group."""
+    found: dict[str, int] = {}
+
+    def note(name: str, item: Any) -> None:
+        if getattr(item, "maxshape", None):
+            found[name] = int(item.shape[0])
+
+    group.visititems(note)
+    return found
+
+
+def cut_rows(group: h5py.Group, counts: Mapping[str, int]) -> None:
+    """Take off the rows, and the data sets, that have come since `row_counts`.
+
+    Raises:
+        ValueError: some were there then and are not now.
+    """
+    now = row_counts(group)
+    if any(now.get(name, -1) < rows for name, rows in counts.items()):
+        raise ValueError("rows are missing")
+    for name in now:
+        if name in counts:
+            group[name].resize(counts[name], axis=0)
+        else:
+            del group[name]
 
 
 def hold_metadata(file: h5py.File) -> None:

@@ -20,7 +20,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import cannot_write, make_folder, reserve
+from mpm3dpp.io.checkpoint import ANEW
+from mpm3dpp.io.disk import bring_to_disk, cannot_write, make_folder, reserve
 from mpm3dpp.io.fields import (
     Frame,
     column_units,
@@ -29,12 +30,13 @@ from mpm3dpp.io.fields import (
     numbered,
     particle_sizes,
 )
-from mpm3dpp.io.rows import append_rows, as_stored, hold_metadata, make_rows
+from mpm3dpp.io.rows import append_rows, as_stored, cut_rows, hold_metadata, make_rows, row_counts
 
 if TYPE_CHECKING:
     import h5py
 
 _TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
+_CONSTANT = ("body", "grain", "material", "size")
 _SLACK = 1 << 20  # bytes reserved beyond the arrays of a frame: indices and chunk tables
 
 
@@ -56,6 +58,7 @@ class ResultsWriter:
         compression: 0 for none, else the level of gzip, 1 to 9, after a shuffle of bytes.
         title: title of the case.
         case_hash: hash of the case, so that a file can be traced to its run.
+        rows: of a run that goes on, `rows()` then; frames written later are cut off.
 
     Raises:
         CaseError: the file cannot be written; what it held before stays readable.
@@ -74,6 +77,7 @@ class ResultsWriter:
         compression: int = 0,
         title: str = "",
         case_hash: str = "",
+        rows: Mapping[str, int] | None = None,
     ) -> None:
         import h5py
 
@@ -101,14 +105,27 @@ class ResultsWriter:
         try:
             # An old superblock has no "open for writing" mark, which a killed run would leave
             # behind; without locks ParaView can look at a run while it goes on.
+            mode = "w" if rows is None else "r+"
             self._file: h5py.File | None = h5py.File(
-                self.path, "w", libver=("earliest", "v108"), locking=False
+                self.path, mode, libver=("earliest", "v108"), locking=False
             )
             hold_metadata(self._file)
-            self._lay_out(self._file)
+            if rows is None:
+                self._lay_out(self._file)
+            else:
+                self._go_on(self._file["VTKHDF"], rows)
             self._file.flush()
+        except (KeyError, ValueError, FileNotFoundError) as error:
+            raise CaseError(f"'{self.path}' has lost frames since the checkpoint", ANEW) from error
         except (OSError, RuntimeError) as error:
             raise cannot_write(self.path, error) from error
+
+    def rows(self) -> dict[str, int]:
+        """Return what a writer needs to go on from here; what it needs is on the disk then."""
+        if self._file is None:
+            return {}
+        bring_to_disk(self.path)
+        return row_counts(self._file["VTKHDF"])
 
     def write(self, simulation: Any) -> None:
         """Append the present state of the core's `Simulation` as a frame."""
@@ -201,6 +218,26 @@ class ResultsWriter:
             steps.create_group(name)
         file.create_group("mpm3dpp").attrs["run"] = json.dumps(self._meta)
 
+    def _go_on(self, root: h5py.Group, rows: Mapping[str, int]) -> None:
+        """Cut off the frames that came later, and learn what stands in the file already."""
+        steps = root["Steps"]
+        self.frames = rows["Steps/Values"]
+        steps.attrs.modify("NSteps", np.int64(self.frames))
+        root.file.flush()  # From here on no reader looks at what is cut off.
+        cut_rows(root, rows)
+        cell = 0
+        for particles in root["NumberOfPoints"][:].tolist():
+            self._parts.append((particles, cell, cell))
+            cell += particles
+        count = int(self._parts[int(steps["PartOffsets"][-1])][0])
+        for name in _CONSTANT:
+            if name in root["PointData"]:
+                offset = int(steps["PointDataOffsets"][name][-1])
+                column = root["PointData"][name][offset : offset + count]
+                self._constant[name] = (column, offset)
+        self._sizes = self._constant["size"][0] if "size" in self._constant else None
+        self._meta = json.loads(root.file["mpm3dpp"].attrs["run"])
+
     def _append(
         self, root: h5py.Group, time: float, step: int, columns: Mapping[str, np.ndarray]
     ) -> None:
@@ -223,7 +260,7 @@ class ResultsWriter:
             offset = self._constant_offset(name, column)
             if offset is None:
                 offset = append_rows(root["PointData"], name, column, self._level)
-                if name in ("body", "grain", "material", "size"):
+                if name in _CONSTANT:
                     self._constant[name] = (column.copy(), offset)
             append_rows(steps["PointDataOffsets"], name, np.array([offset], dtype=np.int64))
         row = append_rows(root["FieldData"], "step", np.array([step], dtype=np.int64))

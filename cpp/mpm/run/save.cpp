@@ -1,0 +1,80 @@
+// The state of a run between two steps: what a step reads that neither the case nor the rest of the
+// state tells. It is restored into a simulation of the same case that has made no step.
+#include "mpm/run/simulation_of.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr const char* other_version = "it was made by another version of mpm3dpp";
+constexpr const char* other_case = "it was made from another case";
+constexpr std::int64_t format = 1;  // raised whenever exchange() or what a value means changes
+
+template <int D>
+void exchange_body(StateStream& stream, Body<D>& body) {
+  stream.same(body.count(), other_case);
+  stream.same(body.columns.component_count(), other_case);
+  for (int c = 0; c < body.columns.component_count(); ++c)
+    body.columns.with_component(
+        c, [&](auto* values) { stream.array(std::span(values, body.count())); });
+  stream.array(std::span(body.id));
+  stream.array(std::span(body.order));
+  stream(body.moved, body.leaves, body.gone);
+  if (body.prescribed) stream(body.motion->before, body.motion->now);
+}
+
+template <int D>
+void exchange_load(StateStream& stream, SurfaceLoad<D>& load) {
+  stream.same(load.area.size(), other_case);
+  stream.array(std::span(load.area));
+  stream.array(std::span(load.size));
+  stream.array(std::span(load.arm));
+  stream(load.stress, load.force, load.impulse);
+}
+
+}  // namespace
+
+template <int D>
+void SimulationOf<D>::exchange(StateStream& stream) {
+  stream.same(format, other_version);
+  for (const std::size_t size : {sizeof(Rounded), sizeof(Ledger), sizeof(PatchSums<D>),
+                                 sizeof(PairRecord), sizeof(KnownNode), sizeof(KnownPair<D>)})
+    stream.same(size, other_version);
+  stream.same(D, other_case);
+  stream.same(domain_.bodies.size(), other_case);
+  stream.same(domain_.loads.size(), other_case);
+  for (Body<D>& body : domain_.bodies) exchange_body(stream, body);
+  for (SurfaceLoad<D>& load : domain_.loads) exchange_load(stream, load);
+  domain_.grid.exchange(stream, domain_.threads);
+  if (domain_.has_contact()) {
+    if (stream.restores()) domain_.contact.connect(domain_.grid, domain_.bodies);
+    domain_.contact.exchange(stream);
+  }
+  stream(domain_.time, domain_.time_step, domain_.step, domain_.gravity);
+  stream(domain_.eroded, domain_.left);
+  stream.vector(domain_.sums);
+  stream.vector(domain_.rigid);
+  stream(settings_.cell_size, doublings_, next_time_step_, ledger_);
+  stream.vector(history_);
+  timers_.exchange(stream);
+}
+
+template <int D>
+void SimulationOf<D>::save(const StateStream::Transfer& to) {
+  if (!prepared_) throw std::invalid_argument("call prepare() before save()");
+  if (failure_) throw std::invalid_argument("a run that had to stop has no state to go on from");
+  StateStream stream(StateStream::Way::save, to);
+  exchange(stream);
+}
+
+template <int D>
+void SimulationOf<D>::restore(const StateStream::Transfer& from) {
+  if (!prepared_ || domain_.step > 0)
+    throw std::invalid_argument("call restore() after prepare() and before any step");
+  StateStream stream(StateStream::Way::restore, from);
+  exchange(stream);
+}
+
+template class SimulationOf<2>;
+template class SimulationOf<3>;
+
+}  // namespace mpm

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command line for the tests, and a small case to run with it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+CASE = """\
+title = "Two blocks"
+[grid]
+dimension = 2
+cell_size = "10 mm"
+[run]
+end_time = "8 ms"
+time_step_factor = 0.3
+[output]
+frames = 4
+[material.soft]
+density = "1000 kg/m^3"
+strength = { elastic = { E = "1 MPa", nu = 0.3 } }
+[body.left]
+material = "soft"
+shape = { box = { lower = ["0 mm", "0 mm"], upper = ["50 mm", "50 mm"] } }
+velocity = ["5 m/s", "0 m/s"]
+[body.right]
+material = "soft"
+shape = { box = { lower = ["60 mm", "10 mm"], upper = ["110 mm", "60 mm"] } }
+velocity = ["-5 m/s", "0 m/s"]
+"""
+
+
+def write(folder: Path, text: str = CASE) -> Path:
+    path = folder / "case.toml"
+    path.write_text(text)
+    return path
+
+
+def command(*arguments: Any) -> list[str]:
+    return [sys.executable, "-m", "mpm3dpp", *map(str, arguments)]
+
+
+def mpm3dpp(*arguments: Any, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        command(*arguments), cwd=cwd, capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+def one_sentence(text: str) -> str:
+    assert "Traceback" not in text
+    lines = text.strip().splitlines()
+    assert len(lines) == 1, text
+    assert lines[0].startswith("mpm3dpp: error: ")
+    return lines[0]

@@ -1,0 +1,50 @@
+// What is saved comes back in the same order, and what must be the same is compared.
+#include <algorithm>
+
+#include "check.hpp"
+#include "mpm/fields/state_stream.hpp"
+
+namespace {
+
+struct State {
+  double time = 0.0;
+  int step = 0;
+  std::vector<int> list;
+  std::array<double, 2> fixed{};
+
+  void exchange(mpm::StateStream& stream, int kind) {
+    stream.same(kind, "another kind");
+    stream(time, step);
+    stream.vector(list);
+    stream.array(std::span<double>(fixed));
+  }
+};
+
+}  // namespace
+
+void test_state_stream(mpm::testing::Report& report) {
+  using mpm::StateStream;
+  std::vector<std::byte> file;
+  const StateStream::Transfer write = [&](std::span<std::byte> bytes) {
+    file.insert(file.end(), bytes.begin(), bytes.end());
+  };
+  State saved{0.5, 3, {4, 5, 6}, {7.0, 8.0}}, restored{0.0, 0, {1}, {}};
+  StateStream out(StateStream::Way::save, write);
+  CHECK(!out.restores());
+  saved.exchange(out, 2);
+
+  std::size_t at = 0;
+  const StateStream::Transfer read = [&](std::span<std::byte> bytes) {
+    std::copy_n(file.begin() + static_cast<std::ptrdiff_t>(at), bytes.size(), bytes.begin());
+    at += bytes.size();
+  };
+  StateStream in(StateStream::Way::restore, read);
+  restored.exchange(in, 2);
+  CHECK_EQUAL(at, file.size());
+  CHECK(restored.time == 0.5 && restored.step == 3, restored.time, restored.step);
+  CHECK(restored.list == saved.list, restored.list.size());
+  CHECK(restored.fixed == saved.fixed, restored.fixed[0], restored.fixed[1]);
+
+  at = 0;
+  CHECK_THROWS(restored.exchange(in, 3), "another kind");
+}
