@@ -1,5 +1,7 @@
 #pragma once
-// What particles give to the nodes around them.
+// What particles give to the nodes around them, laid out as a basis sums it.
+#include "mpm/basis/node_lanes.hpp"
+#include "mpm/basis/node_lines.hpp"
 #include "mpm/math/tensor.hpp"
 
 namespace mpm {
@@ -7,12 +9,55 @@ namespace mpm {
 /// What is scattered: a sum of these. Forces come with neither or with both of the others.
 enum Gives : unsigned { gives_mass = 1, gives_momentum = 2, gives_forces = 4 };
 
-/// Of some particles of a cell, one after another; as far as it is scattered.
+/// Of some particles of a cell, one after another, as far as it is scattered: where nodes are the
+/// lanes.
 template <int D, int room>
-struct Gifts {
+struct GiftColumns {
   double mass[room];                            // [kg]
   double velocity[D][room];                     // [m/s]
   double traction[Sym<double, D>::size][room];  // components of -V_p (sigma_p - q_p 1) / h [N]
+
+  /// Of the particles in the lanes, from place `at` on.
+  template <unsigned /*what*/, class T>
+  void add(int at, T m, const Vec<T, D>& v) {
+    store_lanes(mass + at, m);
+    unrolled<D>([&](auto a) { store_lanes(velocity[a] + at, v[a]); });
+  }
+  template <class T>
+  void add_tractions(int at, const Sym<T, D>& t) {
+    unrolled<Sym<T, D>::size>([&](auto c) { store_lanes(traction[c] + at, t.c[c]); });
+  }
+};
+
+/// The same where the numbers of a quad of a node's line are the lanes.
+template <int D, int room>
+struct GiftQuads {
+  double mass[room];
+  alignas(quad * sizeof(double)) double velocity[room][quad];     // behind a one, if mass is given
+  alignas(quad * sizeof(double)) double traction[D][room][quad];  // a column of the tensor each
+
+  template <unsigned what, class T>
+  void add(int at, T m, const Vec<T, D>& v) {
+    const T none(0.0), z = D == 3 ? v[D - 1] : none;
+    store_lanes(mass + at, m);
+    if constexpr ((what & gives_mass) != 0)
+      lay_out(velocity + at, T(1.0), v[0], v[1], z);
+    else
+      lay_out(velocity + at, v[0], v[1], z, none);
+  }
+  template <class T>
+  void add_tractions(int at, const Sym<T, D>& t) {
+    const T none(0.0);
+    unrolled<D>([&](auto b) MPM_INLINE {
+      lay_out(traction[b] + at, t(0, b), t(1, b), D == 3 ? t(D - 1, b) : none, none);
+    });
+  }
+
+ private:
+  template <class T>
+  static void lay_out(double (*to)[quad], T a, T b, T c, T d) {
+    for_each_quad(a, b, c, d, [&](int k, Batch<quad> q) MPM_INLINE { q.store(to[k]); });
+  }
 };
 
 }  // namespace mpm

@@ -8,8 +8,9 @@
 // S_ip.)
 //
 // Cells are centred at the nodes, so that all particles of a cell reach the same three nodes along
-// an axis: -1, 0, 1 as counted from the cell's own. The lanes are the four numbers of a quad of a
-// node's line, and the particles follow each other.
+// an axis: -1, 0, 1 as counted from the cell's own. Where fields are read the lanes are particles;
+// where they are summed, the four numbers of a quad of a node's line, and the particles follow each
+// other.
 #include "mpm/basis/block_shape.hpp"
 #include "mpm/basis/gifts.hpp"
 #include "mpm/basis/node_lanes.hpp"
@@ -38,41 +39,10 @@ struct GimpAxis {
   }
 };
 
-/// One-axis factors of particles of a cell.
+/// One-axis factors of particles of a cell, one after another; derivatives for forces only.
 template <int D, int room>
 struct GimpPlaces {
   double N[D][3][room], dN[D][3][room];
-
-  template <class T>
-  void put(int at, const Vec<T, D>& position, double l) {
-    unrolled<D>([&](auto a) {
-      const GimpAxis<T> axis(position[a], l);
-      unrolled<3>([&](auto k) {
-        store_lanes(N[a][k] + at, axis.N[k]);
-        store_lanes(dN[a][k] + at, axis.dN[k]);
-      });
-    });
-  }
-};
-
-/// The same of one particle, each in all lanes of a quad.
-template <int D>
-struct GimpFactors {
-  Batch<quad> N[D][3], dN[D][3];
-  template <int room>
-  GimpFactors(const GimpPlaces<D, room>& of, int p) {
-    unrolled<D>([&](auto a) {
-      unrolled<3>([&](auto k) {
-        N[a][k] = of.N[a][k][p];
-        dN[a][k] = of.dN[a][k][p];
-      });
-    });
-  }
-  /// Of a row: the sum of its quads with factors along x.
-  static Batch<quad> along(const NodeLines& row, const Batch<quad>* x) {
-    return x[0] * Batch<quad>::load(row[0]) + x[1] * Batch<quad>::load(row[1]) +
-           x[2] * Batch<quad>::load(row[2]);
-  }
 };
 
 /// The nodal fields around one cell.
@@ -81,103 +51,59 @@ struct GimpField {
   NodeLines nodes;  // from the first that is in reach
   int row, layer;   // from node to node along y and z
 
-  template <int W>
-  struct Weights : GimpPlaces<D, W> {
-    int count;
+  /// One-axis factors of particles, which are in the lanes.
+  template <class T>
+  struct Weights {
+    GimpAxis<T> axis[D];
   };
 
-  /// The vector at number `at` of the lines, zero in the lanes without a particle.
-  template <int W>
-  auto vector(int at, const Weights<W>& w) const {
-    Batch<quad> found[W];
-    const NodeLines first = nodes.at(at);
-    for (int p = 0; p < w.count; ++p) {
-      const GimpFactors<D> of(w, p);
-      Batch<quad> total(0.0);
-      for_each_plane([&](auto z) {
-        Batch<quad> plane(0.0);
-        unrolled<3>([&](auto y) { plane += of.N[1][y] * of.along(row_of(first, y, z), of.N[0]); });
-        total += D == 3 ? of.N[D - 1][z] * plane : plane;
-      });
-      found[p] = total;
-    }
-    return turned(found, w.count);
+  /// The vector at number `at` of the lines.
+  template <class T>
+  Vec<T, D> vector(int at, const Weights<T>& w) const {
+    Vec<T, D> total = Vec<T, D>::zero();
+    for_each_row([&](auto y, auto z, const NodeLines& row) MPM_INLINE {
+      T share = w.axis[1].N[y];
+      if constexpr (D == 3) share *= w.axis[D - 1].N[z];
+      unrolled<D>([&](auto i)
+                      MPM_INLINE { total[i] += share * along(row.at(at + i), w.axis[0].N); });
+    });
+    return total;
   }
 
   /// Derivatives of that vector with respect to xi: [i][j] of component i along axis j.
-  template <int W>
-  auto gradients(int at, const Weights<W>& w) const {
-    Batch<quad> found[D][W];
-    const NodeLines first = nodes.at(at);
-    for (int p = 0; p < w.count; ++p) {
-      const GimpFactors<D> of(w, p);
-      Batch<quad> total[D];
-      for (auto& t : total) t = Batch<quad>(0.0);
-      for_each_plane([&](auto z) {
-        Batch<quad> value(0.0), dx(0.0), dy(0.0);
-        unrolled<3>([&](auto y) {
-          const NodeLines nodes_x = row_of(first, y, z);
-          const auto row_value = of.along(nodes_x, of.N[0]);
-          value += of.N[1][y] * row_value;
-          dy += of.dN[1][y] * row_value;
-          dx += of.N[1][y] * of.along(nodes_x, of.dN[0]);
-        });
-        if constexpr (D == 2) {
-          total[0] = dx;
-          total[1] = dy;
-        } else {
-          total[0] += of.N[2][z] * dx;
-          total[1] += of.N[2][z] * dy;
-          total[2] += of.dN[2][z] * value;
-        }
+  template <class T>
+  std::array<Vec<T, D>, D> gradients(int at, const Weights<T>& w) const {
+    std::array<Vec<T, D>, D> g;
+    g.fill(Vec<T, D>::zero());
+    for_each_row([&](auto y, auto z, const NodeLines& row) MPM_INLINE {
+      T N = w.axis[1].N[y], dy = w.axis[1].dN[y], dz(0.0);
+      if constexpr (D == 3) {
+        dz = N * w.axis[D - 1].dN[z];
+        N *= w.axis[D - 1].N[z];
+        dy *= w.axis[D - 1].N[z];
+      }
+      unrolled<D>([&](auto i) MPM_INLINE {
+        const T value = along(row.at(at + i), w.axis[0].N);
+        g[i][0] += N * along(row.at(at + i), w.axis[0].dN);
+        g[i][1] += dy * value;
+        if constexpr (D == 3) g[i][2] += dz * value;
       });
-      for (int a = 0; a < D; ++a) found[a][p] = total[a];
-    }
-    using V = decltype(turned(found[0], 0));
-    std::array<V, D> g;
-    for (int j = 0; j < D; ++j) {
-      const V along_j = turned(found[j], w.count);
-      for (int i = 0; i < D; ++i) g[static_cast<std::size_t>(i)][j] = along_j[i];
-    }
+    });
     return g;
   }
 
  private:
-  /// f(z) for the layers of a particle's nodes: one in 2D.
+  /// f(y, z, lines) for the rows of nodes along x; one layer in 2D.
   template <class F>
-  static void for_each_plane(F&& f) {
-    unrolled<D == 3 ? 3 : 1>(f);
+  [[gnu::always_inline]] void for_each_row(F&& f) const {
+    unrolled<D == 3 ? 3 : 1>([&](auto z) MPM_INLINE {
+      unrolled<3>([&](auto y) MPM_INLINE { f(y, z, nodes.from(y * row + z * layer)); });
+    });
   }
-  NodeLines row_of(const NodeLines& first, int y, int z) const {
-    return first.from(y * row + z * layer);
-  }
-  /// From a quad for each particle to lanes of particles for each component.
-  template <int W>
-  static auto turned(Batch<quad> (&found)[W], int count) {
-    using T = std::conditional_t<W == 1, double, Batch<W>>;
-    for (int p = count; p < W; ++p) found[p] = Batch<quad>(0.0);
-    Vec<T, D> r;
-    if constexpr (W < quad) {
-      for (int a = 0; a < D; ++a)
-        if constexpr (W == 1)
-          r[a] = found[0].v[a];
-        else
-          r[a] = T(typename T::Vector{found[0].v[a], found[1].v[a]});
-    } else {
-      Batch<quad> parts[W / quad][quad];  // four particles' components
-      unrolled<W / quad>([&](auto h) {
-        const Batch<quad>* four = found + h * quad;
-        for_each_quad(four[0], four[1], four[2], four[3],
-                      [&](int a, Batch<quad> component) { parts[h][a] = component; });
-      });
-      unrolled<D>([&](auto a) {
-        if constexpr (W == quad)
-          r[a] = parts[0][a];
-        else
-          r[a] = joined(parts[0][a], parts[1][a]);
-      });
-    }
-    return r;
+  /// Of a row, whose lines begin at the number that is wanted: the sum with factors along x.
+  template <class T>
+  [[gnu::always_inline]] static T along(const NodeLines& row, const T* x) {
+    return x[0] * T(*row[0]) + x[1] * T(*row[1]) + x[2] * T(*row[2]);
   }
 };
 
@@ -188,39 +114,44 @@ struct Gimp {
   using Field = GimpField<D>;
   template <int room>
   using Particles = GimpPlaces<D, room>;
+  template <int room>
+  using Gifts = GiftQuads<D, room>;
 
-  /// What `Field` wants to know of `count` particles in the lanes.
+  /// What `Field` wants to know of particles in the lanes.
   template <class T>
-  auto weights(const Vec<T, D>& xi, int count) const {
-    typename Field::template Weights<lanes_of<T>> w;
-    put(w, 0, xi);
-    w.count = count;
-    return w;
+  typename Field::template Weights<T> weights(const Vec<T, D>& xi) const {
+    return of_axes(xi, std::make_integer_sequence<int, D>{});
   }
   /// `nodes` begin at the cell's own.
   Field field(const NodeLines& nodes) const { return {nodes.from(first()), row(), layer()}; }
 
-  /// What `give` wants to know of a cell's particles, a few at a time.
-  template <int room, class T>
-  void put(Particles<room>& places, int at, const Vec<T, D>& position) const {
-    places.put(at, position, half);
+  /// What `give` wants to know of a cell's particles, a few at a time, by their weights.
+  template <unsigned what, int room, class Weights>
+  static void put(Particles<room>& places, int at, const Weights& w) {
+    unrolled<D>([&](auto a) {
+      unrolled<3>([&](auto k) {
+        store_lanes(places.N[a][k] + at, w.axis[a].N[k]);
+        if constexpr ((what & gives_forces) != 0)
+          store_lanes(places.dN[a][k] + at, w.axis[a].dN[k]);
+      });
+    });
   }
 
   /// What the first `count` of these particles give to the nodes, whose lines begin at the cell's
   /// own: mass and momentum to the first quad, forces to the next; momentum alone to the first.
   /// Eqs. (2), (3) and f_i -= V_p (sigma_p - q_p 1) . grad N_ip, eq. (9), with the artificial
   /// viscosity's pressure q.
-  template <unsigned what, int room>
-  void give(const NodeLines& nodes, const Particles<room>& places, const Gifts<D, room>& gifts,
+  template <unsigned what, int width, int room>
+  void give(const Nodes<width>& nodes, const Particles<room>& places, const Gifts<room>& gifts,
             int count) const {
-    const NodeLines reached = nodes.from(first());
+    const Nodes<width> reached = nodes.from(first());
     if constexpr (what != gives_forces)
-      give_sums(reached, count, [&](int p, auto z, auto&& to) {
-        give_momentum<(what & gives_mass) != 0>(places, gifts, p, z, to);
+      give_sums(reached, count, [&](int p, auto z, auto&& to) MPM_INLINE {
+        give_momentum(places, gifts, p, z, to);
       });
     if constexpr ((what & gives_forces) != 0)
       give_sums(reached.at(force_at), count,
-                [&](int p, auto z, auto&& to) { give_forces(places, gifts, p, z, to); });
+                [&](int p, auto z, auto&& to) MPM_INLINE { give_forces(places, gifts, p, z, to); });
   }
 
   /// One-axis factor of the node at place e (-1, 0 or 1) of the cell, and its derivative.
@@ -234,61 +165,61 @@ struct Gimp {
   }
 
  private:
+  template <class T, int... a>
+  auto of_axes(const Vec<T, D>& xi, std::integer_sequence<int, a...>) const {
+    return typename Field::template Weights<T>{{GimpAxis<T>(xi[a], half)...}};
+  }
   int row() const { return shape.nodes[0]; }
   int layer() const { return shape.nodes[0] * shape.nodes[1]; }
   /// From a cell's own node to the first that is in reach.
   int first() const { return -(1 + row() + (D == 3 ? layer() : 0)); }
 
   /// Layer by layer, so that the sums of nine nodes stay in registers: give(p, z, to) calls
-  /// to(y, f(x)) with what particle p gives to the node x of row y.
-  template <class F>
-  [[gnu::always_inline]] void give_sums(const NodeLines& nodes, int count, F&& give) const {
-    unrolled<D == 3 ? 3 : 1>([&](auto z) {
+  /// to(y, f(sum, x)), which adds to the sum of node x of row y what particle p gives.
+  template <int width, class F>
+  [[gnu::always_inline]] void give_sums(const Nodes<width>& nodes, int count, F&& give) const {
+    unrolled<D == 3 ? 3 : 1>([&](auto z) MPM_INLINE {
       Batch<quad> sums[3][3];
       for (auto& row_sums : sums)
         for (auto& sum : row_sums) sum = Batch<quad>(0.0);
       for (int p = 0; p < count; ++p)
-        give(p, z,
-             [&](auto y, auto&& part) { unrolled<3>([&](auto x) { sums[y][x] += part(x); }); });
-      unrolled<3>([&](auto y) {
-        unrolled<3>([&](auto x) { add(nodes[x + y * row() + z * layer()], sums[y][x]); });
+        give(p, z, [&](auto y, auto&& add_part) MPM_INLINE {
+          unrolled<3>([&](auto x) MPM_INLINE { add_part(sums[y][x], x); });
+        });
+      unrolled<3>([&](auto y) MPM_INLINE {
+        unrolled<3>([&](auto x)
+                        MPM_INLINE { add(nodes[x + y * row() + z * layer()], sums[y][x]); });
       });
     });
   }
-  template <bool mass, int room, class F>
+  template <int room, class F>
   [[gnu::always_inline]] static void give_momentum(const Particles<room>& of,
-                                                   const Gifts<D, room>& gifts, int p, auto z,
+                                                   const Gifts<room>& gifts, int p, auto z,
                                                    F&& to) {
     const double m = D == 3 ? gifts.mass[p] * of.N[D - 1][z][p] : gifts.mass[p];
-    const auto momentum = [&](int a) { return a < D ? m * gifts.velocity[a][p] : 0.0; };
-    const auto gift = mass ? numbers(m, momentum(0), momentum(1), momentum(2))
-                           : numbers(momentum(0), momentum(1), momentum(2), 0.0);
-    unrolled<3>([&](auto y) {
+    const auto gift = m * Batch<quad>::load(gifts.velocity[p]);
+    unrolled<3>([&](auto y) MPM_INLINE {
       const Batch<quad> part = gift * of.N[1][y][p];
-      to(y, [&](auto x) { return part * of.N[0][x][p]; });
+      to(y, [&](Batch<quad>& sum, auto x) MPM_INLINE { sum += part * of.N[0][x][p]; });
     });
   }
   template <int room, class F>
   [[gnu::always_inline]] static void give_forces(const Particles<room>& of,
-                                                 const Gifts<D, room>& gifts, int p, auto z,
-                                                 F&& to) {
+                                                 const Gifts<room>& gifts, int p, auto z, F&& to) {
     Batch<quad> traction[D];
-    unrolled<D>([&](auto b) {
-      const auto part = [&](int a) {
-        return a < D ? gifts.traction[Sym<double, D>::index(a, b)][p] : 0.0;
-      };
-      traction[b] = numbers(part(0), part(1), part(2), 0.0);
+    unrolled<D>([&](auto b) MPM_INLINE {
+      traction[b] = Batch<quad>::load(gifts.traction[b][p]);
       if constexpr (D == 3) traction[b] *= b == 2 ? of.dN[2][z][p] : of.N[2][z][p];
     });
-    unrolled<3>([&](auto y) {
+    unrolled<3>([&](auto y) MPM_INLINE {
       const Batch<quad> N(of.N[1][y][p]), along_x = traction[0] * N;
       Batch<quad> across = traction[1] * of.dN[1][y][p];
       if constexpr (D == 3) across += traction[2] * N;
-      to(y, [&](auto x) { return along_x * of.dN[0][x][p] + across * of.N[0][x][p]; });
+      to(y, [&](Batch<quad>& sum, auto x) MPM_INLINE {
+        sum += along_x * of.dN[0][x][p];
+        sum += across * of.N[0][x][p];
+      });
     });
-  }
-  static Batch<quad> numbers(double a, double b, double c, double d) {
-    return Batch<quad>(Batch<quad>::Vector{a, b, c, d});
   }
   static void add(double* to, Batch<quad> part) { (Batch<quad>::load(to) + part).store(to); }
 };

@@ -105,35 +105,37 @@ struct Linear {
       : row_(shape.nodes[0]), layer_(shape.nodes[0] * shape.nodes[1]) {}
   using Field = LinearField<D>;
 
-  /// What `Field` wants to know of `count` particles in the lanes: their position in the cell.
+  /// What `Field` wants to know of particles in the lanes: their position in the cell.
   template <class T>
-  static const Vec<T, D>& weights(const Vec<T, D>& xi, int /*count*/) {
+  static const Vec<T, D>& weights(const Vec<T, D>& xi) {
     return xi;
   }
   /// `nodes` begin at the cell's first.
   Field field(const NodeLines& nodes) const { return Field(nodes, row_, layer_); }
 
+  template <int room>
+  using Gifts = GiftColumns<D, room>;
   /// What `give` wants to know of a cell's particles: their position in the cell.
   template <int room>
   struct Particles {
     double xi[D][room];
   };
-  template <int room, class T>
-  void put(Particles<room>& places, int at, const Vec<T, D>& position) const {
+  template <unsigned /*what*/, int room, class T>
+  static void put(Particles<room>& places, int at, const Vec<T, D>& position) {
     unrolled<D>([&](auto a) { store_lanes(places.xi[a] + at, position[a]); });
   }
 
   /// What the first `count` of these particles give to the nodes, whose lines begin at the cell's
   /// first: mass and momentum to the first quad, forces to the next; momentum alone to the first.
   /// The cell's nodes are the lanes, so that sums stay in registers for all its particles.
-  template <unsigned what, int room>
-  void give(const NodeLines& nodes, const Particles<room>& places, const Gifts<D, room>& gifts,
+  template <unsigned what, int width, int room>
+  void give(const Nodes<width>& nodes, const Particles<room>& places, const Gifts<room>& gifts,
             int count) const {
     constexpr bool forces = (what & gives_forces) != 0, momentum = what != gives_forces;
     static_assert(!(forces && momentum) || (what & gives_mass), "mass comes before the momentum");
     // All sums at once where the machine's registers hold them and a quarter is left for the rest.
     constexpr int all = native_lanes == 8 ? 32 : 16;
-    if constexpr (!forces || !momentum || Nodes::parts * (1 + 2 * D) <= all - all / 4) {
+    if constexpr (!forces || !momentum || Sums::parts * (1 + 2 * D) <= all - all / 4) {
       give_sums<what>(nodes, places, gifts, count);
     } else {
       give_sums<what & ~gives_forces>(nodes, places, gifts, count);
@@ -152,23 +154,23 @@ struct Linear {
   }
 
  private:
-  using Nodes = NodeLanes<(1 << D)>;
-  using Part = typename Nodes::Part;
+  using Sums = NodeLanes<(1 << D)>;
+  using Part = typename Sums::Part;
 
   /// Eqs. (2), (3) and f_i -= V_p (sigma_p - q_p 1) . grad N_ip, eq. (9), with the artificial
   /// viscosity's pressure q.
-  template <unsigned what, int room>
-  void give_sums(const NodeLines& nodes, const Particles<room>& places, const Gifts<D, room>& gifts,
+  template <unsigned what, int width, int room>
+  void give_sums(const Nodes<width>& nodes, const Particles<room>& places, const Gifts<room>& gifts,
                  int count) const {
-    Nodes m = Nodes::zero(), p[3] = {m, m, m}, f[3] = {m, m, m};
+    Sums m = Sums::zero(), p[3] = {m, m, m}, f[3] = {m, m, m};
     for (int k = 0; k < count; ++k) {
       if constexpr (what != gives_forces) {
-        const Nodes m_ip = functions(places, k, gifts.mass[k]);
+        const Sums m_ip = functions(places, k, gifts.mass[k]);
         if constexpr ((what & gives_mass) != 0) m.add(1.0, m_ip);
         unrolled<D>([&](auto a) { p[a].add(gifts.velocity[a][k], m_ip); });
       }
       if constexpr ((what & gives_forces) != 0) {
-        Nodes G[D];
+        Sums G[D];
         gradients(places, k, G);
         unrolled<D>([&](auto a) {
           unrolled<D>(
@@ -181,17 +183,17 @@ struct Linear {
     else if constexpr (what != gives_forces)
       add_to_nodes(nodes, p[0], p[1], p[2], m);
     if constexpr ((what & gives_forces) != 0)
-      add_to_nodes(nodes.at(force_at), f[0], f[1], f[2], Nodes::zero());
+      add_to_nodes(nodes.at(force_at), f[0], f[1], f[2], Sums::zero());
   }
 
   /// scale N_ip over the cell's nodes, for particle p of those.
   template <int room>
-  static Nodes functions(const Particles<room>& particles, int p, double scale) {
+  static Sums functions(const Particles<room>& particles, int p, double scale) {
     Part inner = lanes(0, particles.xi[0][p]);
     for (int a = 1; a < inner_axes; ++a) inner = inner * lanes(a, particles.xi[a][p]);
     // The axes in their order and the scale last: the same bits for every width.
-    Nodes N;
-    for (int k = 0; k < Nodes::parts; ++k) {
+    Sums N;
+    for (int k = 0; k < Sums::parts; ++k) {
       N.part[k] = inner;
       for (int a = inner_axes; a < D; ++a) N.part[k] = N.part[k] * along(a, k, particles.xi[a][p]);
     }
@@ -199,11 +201,11 @@ struct Linear {
   }
   /// dN_ip / d xi over the cell's nodes, along each axis.
   template <int room>
-  static void gradients(const Particles<room>& particles, int p, Nodes* G) {
+  static void gradients(const Particles<room>& particles, int p, Sums* G) {
     Part N[D];
     for (int a = 0; a < inner_axes; ++a) N[a] = lanes(a, particles.xi[a][p]);
     for (int a = 0; a < D; ++a)
-      for (int k = 0; k < Nodes::parts; ++k) {
+      for (int k = 0; k < Sums::parts; ++k) {
         Part g = a < inner_axes ? Part::load(slopes(a)) : Part(place(a, k) ? 1.0 : -1.0);
         for (int b = 0; b < inner_axes; ++b)
           if (b != a) g = g * N[b];
@@ -213,11 +215,12 @@ struct Linear {
       }
   }
   /// To a quad of the nodes' lines, which begin at the cell's first: the values of four fields.
-  void add_to_nodes(const NodeLines& nodes, const Nodes& a, const Nodes& b, const Nodes& c,
-                    const Nodes& d) const {
-    unrolled<Nodes::parts>([&](auto part) {
+  template <int width>
+  void add_to_nodes(const Nodes<width>& nodes, const Sums& a, const Sums& b, const Sums& c,
+                    const Sums& d) const {
+    unrolled<Sums::parts>([&](auto part) {
       for_each_quad(a.part[part], b.part[part], c.part[part], d.part[part], [&](int k, Batch<4> q) {
-        k += part * Nodes::width;
+        k += part * Sums::width;
         double* to = nodes[(k & 1) + (k & 2 ? row_ : 0) + (k & 4 ? layer_ : 0)];
         (Batch<4>::load(to) + q).store(to);
       });
@@ -226,13 +229,13 @@ struct Linear {
 
   int row_, layer_;  // from a node to the next along y, and along z
   // The nodes of one register differ in the place along these axes; along the others they share it.
-  static constexpr int inner_axes = Nodes::width == 8 ? 3 : Nodes::width == 4 ? 2 : 1;
+  static constexpr int inner_axes = Sums::width == 8 ? 3 : Sums::width == 4 ? 2 : 1;
 
   static const double* slopes(int a) {
     return linear_detail::slope<D>[static_cast<std::size_t>(a)].data();
   }
   /// Place along an outer axis of the nodes in register k.
-  static constexpr int place(int a, int k) { return k * Nodes::width >> a & 1; }
+  static constexpr int place(int a, int k) { return k * Sums::width >> a & 1; }
   /// One-axis factor of an inner axis, and of an outer one in register k.
   static Part lanes(int a, double xi) {
     return Part::load(linear_detail::base<D>[static_cast<std::size_t>(a)].data()) +

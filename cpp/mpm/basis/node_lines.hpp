@@ -1,34 +1,33 @@
 #pragma once
 // The fields of a node lie side by side in a line, so that whoever wants a node touches one cache
-// line (where walls absorb in 3D, two at most) and moves all its fields at once.
+// line and moves all its fields at once.
+#include <cstddef>
 
 namespace mpm {
 
-/// A line is made of quads of numbers: mass and velocity, then the force; behind them, where walls
-/// absorb, the dashpots. In 2D the last of a vector's three places stays empty, or is a dashpot's.
+/// A line is made of two quads of numbers: mass and velocity, then the force and a number that is
+/// not used. In 2D the last of a vector's three places stays empty.
 inline constexpr int quad = 4;
-inline constexpr int line = 2 * quad;  // without the dashpots of 3D
+inline constexpr int line = 2 * quad;
 inline constexpr int mass_at = 0, velocity_at = 1, force_at = quad;
-template <int D>
-inline constexpr int dashpot_at = D == 2 ? force_at + D : line;
-template <int D>
-inline constexpr int line_with_dashpots = D == 2 ? line : line + quad;
 
-/// Lines of nodes, or single quads of theirs, `width` numbers apart.
-struct NodeLines {
+/// Nodes whose numbers begin `width` apart.
+template <int width>
+struct Nodes {
   double* data;
-  int width;
-  double* operator[](int node) const { return data + node * width; }
-  /// The same, counted from a node, or from a number of the lines.
-  NodeLines from(int node) const { return {data + node * width, width}; }
-  NodeLines at(int number) const { return {data + number, width}; }
+  double* operator[](int node) const { return data + std::ptrdiff_t{node} * width; }
+  /// The same, counted from a node, or from a number of each.
+  Nodes from(int node) const { return {(*this)[node]}; }
+  Nodes at(int number) const { return {data + number}; }
 };
+using NodeLines = Nodes<line>;
+using NodeQuads = Nodes<quad>;
 
-/// One number of each line.
+/// One number of each node.
+template <int width>
 struct NodeField {
   double* first;
-  int width;
-  double& operator[](int node) const { return first[node * width]; }
+  double& operator[](int node) const { return first[std::ptrdiff_t{node} * width]; }
 };
 
 }  // namespace mpm

@@ -46,7 +46,8 @@ void TileGrid<D>::cut_blocks(Threads& threads) {
   needed_ = 0;
   for (Patch<D>& patch : patches) {
     patch.memory = needed_;
-    needed_ += static_cast<std::size_t>(line_width * patch.shape.node_count);
+    const auto nodes = static_cast<std::size_t>(patch.shape.node_count);
+    needed_ += line * (nodes + (has_dashpots ? (nodes + 1) / 2 : 0));  // whole cache lines
   }
   make_room(node_memory_, needed_, needed_ + needed_ / 16);
   threads.for_each(patches.size(), [&](std::size_t p) {

@@ -20,10 +20,11 @@ template <int D>
 struct NodeBlock {
   NodeLines lines;
   int count;
-  NodeField mass() const { return {lines.data + mass_at, lines.width}; }
-  NodeField velocity(int a) const { return {lines.data + velocity_at + a, lines.width}; }
-  NodeField force(int a) const { return {lines.data + force_at + a, lines.width}; }
-  NodeField dashpot(int a) const { return {lines.data + dashpot_at<D> + a, lines.width}; }
+  NodeField<line> mass() const { return {lines.data + mass_at}; }
+  NodeField<line> velocity(int a) const { return {lines.data + velocity_at + a}; }
+  NodeField<line> force(int a) const { return {lines.data + force_at + a}; }
+  NodeField<quad> dashpot(int a) const { return {dashpots().data + a}; }
+  NodeQuads dashpots() const { return {lines[count]}; }  // behind the lines
 };
 
 template <int D>

@@ -135,68 +135,74 @@ void TileGrid<D>::for_each_follower(Threads& threads, F&& f) {
   });
 }
 
-/// Numbers from `first` on of the lines of the nodes that a patch owns and others hold too.
+/// Of the nodes that a patch owns and others hold too.
 template <int D>
-template <int quads>
-void TileGrid<D>::sum_shared_nodes_of(const Patch<D>& patch, int first) {
-  std::array<double*, Tile<D>::neighbours> block{};
+template <int quads, int width, class F>
+void TileGrid<D>::sum_shared_nodes_of(const Patch<D>& patch, F&& begin_of) {
+  std::array<Nodes<width>, Tile<D>::neighbours> block{};
   for (std::size_t k = Tile<D>::self; k < Tile<D>::neighbours; ++k)
     if (patch.neighbour[k] >= 0)
-      block[k] = lines_of(patches[static_cast<std::size_t>(patch.neighbour[k])]).data + first;
+      block[k].data = begin_of(patches[static_cast<std::size_t>(patch.neighbour[k])]);
   const SharedEntry<D>* entry = shared_.data() + patch.shared.first;
-  const auto line_of = [&](SharedEntry<D> e) { return block[e.neighbour] + e.node * line_width; };
   unrolled<SharedNodes<D>::most - 1>([&](auto m) {
     constexpr int holders = m + 2;
     for (int left = patch.shared.groups[holders]; left > 0; --left, entry += holders) {
-      double* lines[holders];
-      for (int h = 0; h < holders; ++h) lines[h] = line_of(entry[h]);
+      double* numbers[holders];
+      for (int h = 0; h < holders; ++h) numbers[h] = block[entry[h].neighbour][entry[h].node];
       unrolled<quads>([&](auto q) {
-        auto sum = Batch<quad>::load(lines[0] + q * quad);
-        for (int h = 1; h < holders; ++h) sum += Batch<quad>::load(lines[h] + q * quad);
-        for (int h = 0; h < holders; ++h) sum.store(lines[h] + q * quad);
+        auto sum = Batch<quad>::load(numbers[0] + q * quad);
+        for (int h = 1; h < holders; ++h) sum += Batch<quad>::load(numbers[h] + q * quad);
+        for (int h = 0; h < holders; ++h) sum.store(numbers[h] + q * quad);
       });
     }
   });
 }
 
 template <int D>
-void TileGrid<D>::sum_shared_nodes(Threads& threads, int first, int last) {
-  /// f(p's line, q's line) from `first` on for the nodes that both hold.
-  const auto each_node = [&](const Patch<D>& p, const Patch<D>& q, auto&& f) {
-    const NodeLines p_lines = lines_of(p).at(first), q_lines = lines_of(q).at(first);
+template <int quads, int width, class F>
+void TileGrid<D>::sum_shared(Threads& threads, F&& begin_of) {
+  /// f(p's quad, q's quad) for the nodes that both hold.
+  const auto each_quad = [&](const Patch<D>& p, const Patch<D>& q, auto&& f) {
+    const Nodes<width> of_p{begin_of(p)}, of_q{begin_of(q)};
     for_each_shared_row(p, q, [&](int here, int there, int count) {
       for (int i = 0; i < count; ++i)
-        for (int k = 0; k < last - first; k += quad)
-          f(p_lines[here + i] + k, q_lines[there + i] + k);
+        for (int k = 0; k < quads * quad; k += quad) f(of_p[here + i] + k, of_q[there + i] + k);
     });
   };
   for_each_follower(threads, [&](const Patch<D>& patch, const Patch<D>& leader) {
-    each_node(leader, patch, [](double* to, const double* from) {
+    each_quad(leader, patch, [](double* to, const double* from) {
       (Batch<quad>::load(to) + Batch<quad>::load(from)).store(to);
     });
   });
   // All entries of a node are read and written by the one patch that owns it.
   threads.for_each(leaders_.size(), [&](std::size_t k) {
-    const Patch<D>& patch = patches[leaders_[k]];
-    assert((last - first) % quad == 0 && last - first <= 3 * quad);
-    switch ((last - first) / quad) {
-      case 1:
-        return sum_shared_nodes_of<1>(patch, first);
-      case 2:
-        return sum_shared_nodes_of<2>(patch, first);
-      default:
-        return sum_shared_nodes_of<3>(patch, first);
-    }
+    sum_shared_nodes_of<quads, width>(patches[leaders_[k]], begin_of);
   });
   for_each_follower(threads, [&](const Patch<D>& patch, const Patch<D>& leader) {
-    each_node(patch, leader,
+    each_quad(patch, leader,
               [](double* to, const double* from) { Batch<quad>::load(from).store(to); });
   });
+}
+
+template <int D>
+void TileGrid<D>::sum_shared_nodes(Threads& threads, int first, int last) {
+  const auto begin_of = [&](const Patch<D>& p) { return block_of(p).lines.data + first; };
+  if (last - first == line)
+    sum_shared<2, line>(threads, begin_of);
+  else
+    sum_shared<1, line>(threads, begin_of);
+}
+
+template <int D>
+void TileGrid<D>::sum_shared_dashpots(Threads& threads) {
+  sum_shared<1, quad>(threads, [&](const Patch<D>& p) { return block_of(p).dashpots().data; });
 }
 
 template void TileGrid<2>::list_shared_nodes(Threads&);
 template void TileGrid<3>::list_shared_nodes(Threads&);
 template void TileGrid<2>::sum_shared_nodes(Threads&, int, int);
 template void TileGrid<3>::sum_shared_nodes(Threads&, int, int);
+template void TileGrid<2>::sum_shared_dashpots(Threads&);
+template void TileGrid<3>::sum_shared_dashpots(Threads&);
 
 }  // namespace mpm

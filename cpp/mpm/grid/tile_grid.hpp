@@ -39,7 +39,7 @@ class TileGrid {
   Index<D> anchor{};
   Walls<D> walls;
   Keep<D> keep;
-  int line_width = line;          // of a node, with the dashpots of absorbing walls
+  bool has_dashpots = false;      // the blocks have room for those of absorbing walls
   bool bonded = false;            // all bodies have one velocity field: they share their nodes
   std::vector<Patch<D>> patches;  // by body, then by tile
 
@@ -88,9 +88,7 @@ class TileGrid {
 
   /// Nodes before a cell's own that its particles reach.
   int margin() const { return margin_of(basis); }
-  NodeBlock<D> block(std::size_t patch) {
-    return {lines_of(patches[patch]), patches[patch].shape.node_count};
-  }
+  NodeBlock<D> block(std::size_t patch) { return block_of(patches[patch]); }
   /// What the patches and their nodes need now.
   std::size_t needed_bytes() const {
     return needed_ * sizeof(double) + patches.size() * sizeof(Patch<D>);
@@ -120,13 +118,15 @@ class TileGrid {
   int find(int body, const Index<D>& tile) const;
 
   /// Add up what the patches sharing a node have put there, for numbers [first, last) of the lines,
-  /// a quad or two or three, always in the order of the tiles (of bonded bodies in one tile: of the
-  /// bodies); then every patch holds the sum.
+  /// a quad or two, always in the order of the tiles (of bonded bodies in one tile: of the bodies);
+  /// then every patch holds the sum.
   void sum_shared_nodes(Threads& threads, int first, int last);
+  /// The same for the dashpots.
+  void sum_shared_dashpots(Threads& threads);
 
  private:
-  NodeLines lines_of(const Patch<D>& patch) {
-    return {node_memory_.data() + patch.memory, line_width};
+  NodeBlock<D> block_of(const Patch<D>& patch) {
+    return {{node_memory_.data() + patch.memory}, patch.shape.node_count};
   }
   bool before(const Patch<D>& p, int body, const Index<D>& tile) const;
   void choose_leaders();
@@ -134,8 +134,11 @@ class TileGrid {
   void find_outdated(Threads& threads);
   void find_owned(Patch<D>& patch) const;
   void list_shared_nodes(Threads& threads);
-  template <int quads>
-  void sum_shared_nodes_of(const Patch<D>& patch, int first);
+  /// `begin_of(patch)`: the first of the numbers of its nodes that are summed, so many quads.
+  template <int quads, int width, class F>
+  void sum_shared_nodes_of(const Patch<D>& patch, F&& begin_of);
+  template <int quads, int width, class F>
+  void sum_shared(Threads& threads, F&& begin_of);
   template <class F>
   void for_each_follower(Threads& threads, F&& f);
   template <class F>

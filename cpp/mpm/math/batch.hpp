@@ -7,6 +7,10 @@
 #include <immintrin.h>
 #endif
 
+/// For lambdas in the innermost loops: g++ leaves some of them as calls, with what they capture in
+/// memory.
+#define MPM_INLINE __attribute__((always_inline))
+
 namespace mpm {
 
 #if defined(__AVX512F__)
@@ -195,7 +199,7 @@ double largest(Batch<W> a) {
 /// f(0), f(1) ... f(N - 1), written out; the numbers are constants.
 template <int N, class F>
 [[gnu::always_inline]] inline void unrolled(F&& f) {
-  [&]<int... k>(std::integer_sequence<int, k...>) __attribute__((always_inline)) {
+  [&]<int... k>(std::integer_sequence<int, k...>) MPM_INLINE {
     (f(std::integral_constant<int, k>{}), ...);
   }(std::make_integer_sequence<int, N>{});
 }

@@ -97,7 +97,7 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
     grid.walls.face[a][1] = settings.walls[2 * a + 1];
   }
   domain_.gravity_of_time = settings.gravity;
-  if (grid.walls.absorb()) grid.line_width = line_with_dashpots<D>;
+  grid.has_dashpots = grid.walls.absorb();
   domain_.pic_damping = settings.pic_damping;
   domain_.contact_settings.enabled = settings.contact;
   domain_.contact_settings.detection = settings.detection;

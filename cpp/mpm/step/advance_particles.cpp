@@ -34,11 +34,10 @@ template <Also also, bool damped, int D, class Functions>
 
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
     const auto nodes = basis.field(block.lines.from(cell.first_node));
-    CellParticles particles(basis, cell);
-    const auto give = [&] { particles.template give<gives_momentum>({remapped, quad}); };
+    CellParticles<gives_momentum, D, Functions> particles(basis, cell);
+    const auto give = [&] { particles.give(NodeQuads{remapped}); };
     for_each_group(cell, [&](const auto& rows) {
-      const auto xi = local_position(cell, rows);
-      const auto w = basis.weights(xi, rows.count);
+      const auto w = basis.weights(local_position(cell, rows));
       const T all = load(mass, rows), m = of_valid(rows, all);
       T speed2(0.0), change2(0.0);
       const Vec<T, D> increment = nodes.vector(force_at, w);
@@ -63,13 +62,12 @@ template <Also also, bool damped, int D, class Functions>
       if constexpr (also == Also::remap) {
         if (particles.full()) give();
         particles.add(all, v);
-        particles.place(xi, rows.count);
+        particles.place(w, rows.count);
       }
     });
     if constexpr (also == Also::remap) give();
   });
-  if constexpr (also == Also::remap)
-    copy_quads(block.lines.at(force_at), {remapped, quad}, block.count);
+  if constexpr (also == Also::remap) copy_quads(block.lines.at(force_at), {remapped}, block.count);
   if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
   PatchSums<D>& sums = domain.sums[p];
   sums.kinetic = 0.5 * sum(kinetic);

@@ -62,17 +62,15 @@ void with_basis(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& pa
   with_basis(grid.basis, patch.shape, body.mean_edge / grid.cell_size, std::forward<F>(f));
 }
 
-/// Set quads of a block to zero: numbers [first, last) of its lines.
-template <int D>
-void clear_lines(const NodeBlock<D>& block, int first, int last) {
-  for (int n = 0; n < block.count; ++n) {
-    double* const numbers = block.lines[n];
-    for (int k = first; k < last; k += quad) Batch<quad>(0.0).store(numbers + k);
-  }
+/// Set the first numbers, whole quads, of `count` nodes to zero.
+template <int width>
+void clear(const Nodes<width>& nodes, int count, int numbers) {
+  for (int n = 0; n < count; ++n)
+    for (int k = 0; k < numbers; k += quad) Batch<quad>(0.0).store(nodes[n] + k);
 }
 
-/// Copy a quad of `count` lines.
-inline void copy_quads(const NodeLines& to, const NodeLines& from, int count) {
+/// Copy a quad of `count` nodes.
+inline void copy_quads(const NodeLines& to, const NodeQuads& from, int count) {
   for (int n = 0; n < count; ++n) Batch<quad>::load(from[n]).store(to[n]);
 }
 

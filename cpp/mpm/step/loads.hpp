@@ -54,7 +54,7 @@ void carry_loads(Domain<D>& domain, std::size_t p, int at) {
           Vec<double, D> xi;
           for (int a = 0; a < D; ++a)
             xi[a] = local_coordinate(grid.in_cells(body.x(a)[row], a), cell.cell[a]);
-          const auto w = basis.weights(xi, 1);
+          const auto w = basis.weights(xi);
           const auto gradients = nodes.gradients(at, w);
           Mat<double, D> L;
           for (int i = 0; i < D; ++i)

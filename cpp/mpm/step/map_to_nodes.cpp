@@ -15,8 +15,11 @@ void map_patch(Domain<D>& domain, std::size_t p) {
   auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   const NodeBlock<D> block = grid.block(p);
-  // All of all lines: until now the memory may have been lent (TileGrid::idle_memory).
-  if constexpr (momentum) clear_lines(block, 0, grid.line_width);
+  if constexpr (momentum) {
+    // All of all lines: until now the memory may have been lent (TileGrid::idle_memory).
+    clear(block.lines, block.count, line);
+    if (grid.has_dashpots) clear(block.dashpots(), block.count, quad);
+  }
   const Body<D>& body = domain.body_of(patch);
   if (body.prescribed && !patch.in_contact) return;  // Nobody asks for its nodes.
   // The weights that "map momentum" leaves in the forces are added last, as where both are mapped
@@ -64,8 +67,8 @@ void map_to_nodes(Domain<D>& domain) {
   const bool loaded = forces && domain.has_loads();
   if (loaded) start_loads(domain);
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) { map_patch<what>(domain, p); });
-  grid.sum_shared_nodes(domain.threads, momentum ? 0 : force_at,
-                        forces ? grid.line_width : force_at);
+  grid.sum_shared_nodes(domain.threads, momentum ? 0 : force_at, forces ? line : force_at);
+  if (forces && grid.has_dashpots) grid.sum_shared_dashpots(domain.threads);
   if (momentum)
     domain.threads.for_each(grid.patches.size(),
                             [&](std::size_t p) { find_velocities(domain, p); });

@@ -17,7 +17,7 @@ void move_particles(Domain<D>& domain) {
       for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
         const auto nodes = basis.field(block.lines.from(cell.first_node));
         for_each_group(cell, [&](const auto& rows) {
-          moving.move(cell, rows, nodes, basis.weights(local_position(cell, rows), rows.count));
+          moving.move(cell, rows, nodes, basis.weights(local_position(cell, rows)));
         });
       });
     });

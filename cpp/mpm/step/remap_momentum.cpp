@@ -14,7 +14,7 @@ void remap(Domain<D>& domain, bool scattered) {
     const NodeBlock<D> block = grid.block(p);
     const Body<D>& body = domain.body_of(patch);
     if (!scattered || body.rigid) {
-      clear_lines(block, force_at, force_at + quad);
+      clear(block.lines.at(force_at), block.count, quad);
       if (body.prescribed) return;
       scatter<gives_momentum>(grid, body, patch, block.lines.at(force_at));
     }

@@ -5,8 +5,8 @@
 
 namespace mpm {
 
-/// Particles of a cell, one after another, as many as there is room for.
-template <int D, class Functions>
+/// Particles of a cell, one after another, as many as there is room for, and what they give.
+template <unsigned what, int D, class Functions>
 class CellParticles {
  public:
   using T = Batch<cell_lanes<D>>;
@@ -15,21 +15,19 @@ class CellParticles {
       : basis_(basis), first_node_(cell.first_node) {}
 
   bool full() const { return count_ == room; }
-  /// The first `added` lanes; what they give is added before `place`.
-  void place(const Vec<T, D>& position, int added) {
-    basis_.put(places_, count_, position);
+  /// The first `added` lanes by their weights; what they give is added before `place`.
+  template <class Weights>
+  void place(const Weights& w, int added) {
+    basis_.template put<what>(places_, count_, w);
     count_ += added;
   }
-  void add(T m, const Vec<T, D>& v) {
-    m.store(gifts_.mass + count_);
-    unrolled<D>([&](auto a) { v[a].store(gifts_.velocity[a] + count_); });
-  }
-  /// Component c of -V_p (sigma_p - q_p 1) / h [N].
-  void add_traction(int c, T value) { value.store(gifts_.traction[c] + count_); }
+  void add(T m, const Vec<T, D>& v) { gifts_.template add<what>(count_, m, v); }
+  /// -V_p (sigma_p - q_p 1) / h [N].
+  void add_tractions(const Sym<T, D>& t) { gifts_.add_tractions(count_, t); }
 
-  /// To the nodes of a patch, whose lines begin at its first.
-  template <unsigned what>
-  void give(const NodeLines& patch) {
+  /// To the nodes of a patch, from its first on.
+  template <int width>
+  void give(const Nodes<width>& patch) {
     basis_.template give<what>(patch.from(first_node_), places_, gifts_, count_);
     count_ = 0;
   }
@@ -39,7 +37,7 @@ class CellParticles {
   const Functions& basis_;
   int first_node_, count_ = 0;
   typename Functions::template Particles<room> places_;
-  Gifts<D, room> gifts_;
+  typename Functions::template Gifts<room> gifts_;
 };
 
 /// Takes what particles give out of the columns of a body.
@@ -57,21 +55,24 @@ class Givers {
   }
 
   template <class Functions, class Rows>
-  void add(CellParticles<D, Functions>& to, const CellRange<D>& cell, const Rows& rows) const {
+  void add(CellParticles<what, D, Functions>& to, const CellRange<D>& cell, const Rows& rows,
+           const Functions& basis) const {
     if constexpr ((what & gives_forces) != 0) {
       const T scale = T(minus_per_cell_size_) * load(volume_, rows);
       const T q = q_ ? load(q_, rows) : T(0.0);
+      Sym<T, D> tractions;
       unrolled<Sym<T, D>::size>([&](auto c) {
         const T stress = load(stress_[c], rows);
-        to.add_traction(c, scale * (c < D ? stress - q : stress));
+        tractions.c[c] = scale * (c < D ? stress - q : stress);
       });
+      to.add_tractions(tractions);
     }
     if constexpr ((what & gives_momentum) != 0) {
       Vec<T, D> v;
       unrolled<D>([&](auto a) { v[a] = load(velocity_[a], rows); });
       to.add(load(mass_, rows), v);
     }
-    to.place(local_position_(cell, rows), rows.count);
+    to.place(basis.weights(local_position_(cell, rows)), rows.count);
   }
 
  private:
@@ -88,12 +89,12 @@ template <unsigned what, int D, class Functions>
                                                 const NodeLines& nodes) {
   const Givers<what, D> givers(grid, body);
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-    CellParticles particles(basis, cell);
+    CellParticles<what, D, Functions> particles(basis, cell);
     for_each_group(cell, [&](const auto& rows) {
-      if (particles.full()) particles.template give<what>(nodes);
-      givers.add(particles, cell, rows);
+      if (particles.full()) particles.give(nodes);
+      givers.add(particles, cell, rows, basis);
     });
-    particles.template give<what>(nodes);
+    particles.give(nodes);
   });
 }
 

@@ -35,7 +35,7 @@ template <bool moves, int straining_at, int D, class Functions>
     const auto nodes = basis.field(lines.from(cell.first_node));
     for_each_group(cell, [&](const auto& rows) {
       if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
-      const auto w = basis.weights(local_position(cell, rows), rows.count);
+      const auto w = basis.weights(local_position(cell, rows));
       const auto gradients = nodes.gradients(straining_at, w);
       unrolled<D>([&](auto i) {
         unrolled<D>(

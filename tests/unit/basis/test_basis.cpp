@@ -30,13 +30,13 @@ void check_lanes(mpm::testing::Report& report, const B& basis, const Nodes& node
   for (int k = 0; k < W; ++k)
     for (int a = 0; a < D; ++a) lanes[a].v[k] = std::fmod(start[a] + 0.37 * k, 1.0);
   for (int count = 1; count <= W; ++count) {
-    const auto w = basis.weights(lanes, count);
+    const auto w = basis.weights(lanes);
     const auto v = nodes.vector(quad, w);
     const auto g = nodes.gradients(quad, w);
     for (int k = 0; k < count; ++k) {
       Vec<double, D> xi;
       for (int a = 0; a < D; ++a) xi[a] = lanes[a].v[k];
-      const auto alone = basis.weights(xi, 1);
+      const auto alone = basis.weights(xi);
       const auto v_alone = nodes.vector(quad, alone);
       const auto g_alone = nodes.gradients(quad, alone);
       for (std::size_t i = 0; i < D; ++i) {
@@ -68,17 +68,35 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, doubl
     for (std::size_t a = 0; a < D; ++a) position[a][i] = shape.index(n)[a] - cell[a] + own_node;
   }
   constexpr int room = 16;
-  Gifts<D, room> gifts{};
+  constexpr unsigned everything = gives_mass | gives_momentum | gives_forces;
+  double mass = 0.0;  // of one particle, with its velocity and traction; the others have none
+  Vec<double, D> velocity = Vec<double, D>::zero();
+  auto traction = Sym<double, D>::zero();
   typename B::template Particles<room> places{};
+  // What particle p gives, others at its side.
+  const auto gifts_of = [&]<unsigned what>(int p, std::integral_constant<unsigned, what>) {
+    typename B::template Gifts<room> gifts{};
+    const auto in_lane = [&](int at, double value) {
+      T lanes(0.0);
+      if (p >= at && p < at + 4) lanes.v[p - at] = value;
+      return lanes;
+    };
+    for (int at = 0; at < room; at += 4) {
+      Vec<T, D> v;
+      Sym<T, D> t;
+      for (int a = 0; a < D; ++a) v[a] = in_lane(at, velocity[a]);
+      for (int c = 0; c < Sym<double, D>::size; ++c) t.c[c] = in_lane(at, traction.c[c]);
+      gifts.template add<what>(at, in_lane(at, mass), v);
+      gifts.add_tractions(at, t);
+    }
+    return gifts;
+  };
   // The quads that particle p alone gives to the nodes, mass and momentum, and forces.
   const auto given = [&](int p) {
-    Gifts<D, room> of_one{};
-    of_one.mass[p] = gifts.mass[p];
-    for (int a = 0; a < D; ++a) of_one.velocity[a][p] = gifts.velocity[a][p];
-    for (int c = 0; c < Sym<double, D>::size; ++c) of_one.traction[c][p] = gifts.traction[c][p];
     std::vector<double> to(line * count, 0.0);
-    const NodeLines nodes = NodeLines{to.data(), line}.from(first);
-    basis.template give<gives_mass | gives_momentum | gives_forces>(nodes, places, of_one, room);
+    const NodeLines nodes = NodeLines{to.data()}.from(first);
+    const auto gifts = gifts_of(p, std::integral_constant<unsigned, everything>{});
+    basis.template give<everything>(nodes, places, gifts, room);
     return to;
   };
   const auto number = [&](const std::vector<double>& of, int at) {
@@ -86,9 +104,9 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, doubl
     for (std::size_t i = 0; i < count; ++i) r[i] = of[line * i + static_cast<std::size_t>(at)];
     return r;
   };
-  const auto nodes = basis.field(NodeLines{lines.data(), line}.from(first));
+  const auto nodes = basis.field(NodeLines{lines.data()}.from(first));
   const auto value = [&](const Vec<double, D>& xi) {
-    return nodes.vector(quad, basis.weights(xi, 1))[1];
+    return nodes.vector(quad, basis.weights(xi))[1];
   };
 
   for (int sample = 0; sample < 200; ++sample) {
@@ -98,10 +116,11 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, doubl
     Vec<T, D> lanes;
     for (int a = 0; a < D; ++a)
       for (int k = 0; k < 4; ++k) lanes[a].v[k] = k == p ? xi[a] : inside(random);
-    for (int at = 0; at < room; at += 4) basis.put(places, at, lanes);
+    for (int at = 0; at < room; at += 4)
+      basis.template put<everything>(places, at, basis.weights(lanes));
     // A mass of one, so that the nodes' are N; tractions that give dN_ip / d xi_b as component c.
-    gifts.mass[p] = 1.0;
-    for (int a = 0; a < D; ++a) gifts.velocity[a][p] = 10.0 + a;
+    mass = 1.0;
+    for (int a = 0; a < D; ++a) velocity[a] = 10.0 + a;
     const auto N = number(given(p), mass_at);
     CHECK_CLOSE(sum_over_nodes(N, ones), 1.0, tolerance);
     for (std::size_t a = 0; a < D; ++a)
@@ -112,10 +131,10 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, doubl
       CHECK_CLOSE(sum_over_nodes(number(given(p), velocity_at + a), ones), 10.0 + a,
                   11 * tolerance);
 
-    const auto gradients = nodes.gradients(quad, basis.weights(xi, 1));
+    const auto gradients = nodes.gradients(quad, basis.weights(xi));
     for (int a = 0; a < D; ++a) {
-      for (auto& component : gifts.traction) component[p] = 0.0;
-      gifts.traction[Sym<double, D>::index(a, a)][p] = 1.0;
+      traction = Sym<double, D>::zero();
+      traction(a, a) = 1.0;
       const auto dN = number(given(p), force_at + a);
       CHECK_CLOSE(sum_over_nodes(dN, ones), 0.0, tolerance);
       for (std::size_t b = 0; b < D; ++b)
@@ -124,8 +143,8 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, doubl
       CHECK_CLOSE(gradients[1][a], sum_over_nodes(dN, field), 4 * tolerance);
       // An off-diagonal part gives its two components of the force.
       const int b = (a + 1) % D;
-      gifts.traction[Sym<double, D>::index(a, a)][p] = 0.0;
-      gifts.traction[Sym<double, D>::index(a, b)][p] = 1.0;
+      traction(a, a) = 0.0;
+      traction(a, b) = 1.0;
       const auto across = number(given(p), force_at + b);
       for (std::size_t i = 0; i < count; ++i) CHECK_CLOSE(across[i], dN[i], tolerance);
       // Central difference: exact for the piecewise quadratics between kinks, but for rounding.
@@ -135,7 +154,7 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, doubl
       down[a] -= h;
       CHECK_CLOSE(gradients[1][a], (value(up) - value(down)) / (2 * h), 1e-5);
     }
-    for (auto& component : gifts.traction) component[p] = 0.0;
+    traction = Sym<double, D>::zero();
     if (sample < 8) {
       check_lanes<2>(report, basis, nodes, xi);
       check_lanes<4>(report, basis, nodes, xi);
@@ -145,15 +164,14 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, doubl
     // Stages that give less give the same bits.
     const auto all = given(p);
     std::vector<double> parts(line * count, 0.0), momentum(quad * count, 0.0);
-    Gifts<D, room> same = gifts;
-    for (int k = 0; k < room; ++k)
-      if (k != p) same.mass[k] = 0.0;
-    const NodeLines to = NodeLines{parts.data(), line}.from(first);
-    basis.template give<gives_mass | gives_momentum>(to, places, same, room);
-    basis.template give<gives_forces>(to, places, same, room);
+    const NodeLines to = NodeLines{parts.data()}.from(first);
+    const auto gifts = gifts_of(p, std::integral_constant<unsigned, everything>{});
+    basis.template give<gives_mass | gives_momentum>(to, places, gifts, room);
+    basis.template give<gives_forces>(to, places, gifts, room);
     for (std::size_t i = 0; i < all.size(); ++i) CHECK_EQUAL(parts[i], all[i]);
-    basis.template give<gives_momentum>(NodeLines{momentum.data(), quad}.from(first), places, same,
-                                        room);
+    constexpr std::integral_constant<unsigned, gives_momentum> alone;
+    basis.template give<gives_momentum>(NodeQuads{momentum.data()}.from(first), places,
+                                        gifts_of(p, alone), room);
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t a = 0; a < D; ++a)
         CHECK_EQUAL(momentum[quad * i + a], all[line * i + velocity_at + a]);

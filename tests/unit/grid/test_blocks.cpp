@@ -39,7 +39,8 @@ void check_sums(mpm::testing::Report& report, TileGrid<D>& grid, Threads& thread
   });
   // Quad by quad, so that no other may change with one.
   grid.sum_shared_nodes(threads, 0, quad);
-  grid.sum_shared_nodes(threads, force_at, grid.line_width);
+  grid.sum_shared_nodes(threads, force_at, line);
+  grid.sum_shared_dashpots(threads);
   constexpr double rounding = 1e-14;  // of up to 2 x 2^3 numbers below 1, added in another order
   for_each_node([&](std::size_t p, int n, const Key& key) {
     double sum = 0.0;
@@ -83,7 +84,7 @@ void check_blocks(mpm::testing::Report& report, Basis basis, bool bonded) {
   grid.cell_size = 1.0;
   grid.basis = basis;
   grid.bonded = bonded;
-  grid.line_width = line_with_dashpots<D>;
+  grid.has_dashpots = true;
   const auto occupy = [&](Patch<D>& patch) {
     const auto some = static_cast<unsigned>(random() % 5);  // sparse, so that blocks differ
     patch.occupied = some == 0 ? 0 : random();
