@@ -127,11 +127,14 @@ class Case(CaseModel):
         table = self.content()
         if not self.grains:  # So that older cases keep their hash.
             del table["grains"]
-        text = json.dumps(_rounded(table), sort_keys=True, separators=(",", ":"))
+        text = json.dumps(table, sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
 
     def content(self) -> dict[str, Any]:
-        """Return what decides the results: the table, with hashes in place of names of files."""
+        """Return what a run writes, when it was asked for: the table, numbers to 12 digits.
+
+        Hashes stand in place of names of files, and when checkpoints are written is left out.
+        """
         table = self.table()
         for name, body in self.body.items():
             if body.particles is not None:
@@ -140,7 +143,7 @@ class Case(CaseModel):
             if grains.file is not None:
                 table["grains"][name]["file"] = grains.file.digest
         del table["output"]["checkpoint_interval"]
-        return table
+        return dict(_rounded(table))
 
     def parts(self) -> dict[str, Body | Grains]:
         """Return the entries of `body` and `grains` by name, in the order of their bodies."""

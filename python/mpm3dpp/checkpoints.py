@@ -4,18 +4,24 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import time as clock
 from pathlib import Path
 from typing import Any
 
+from . import _core
 from .case import Case
-from .errors import CaseError, key_text, show
+from .errors import CaseError, show
+from .errors import Path as KeyPath
 from .io.background import BackgroundWriter
 from .io.checkpoint import ANEW, CHECKPOINT, read_about, write_checkpoint
-from .io.history import HistoryWriter
+from .io.history import HistoryWriter, has_history
+from .io.rows import has_rows
+from .io.vtkhdf import RESULTS
 
 # What a case may change before it goes on: nothing that a step made so far depends on.
 _MAY_CHANGE = {("title",), ("run", "end_time"), ("run", "energy_growth_limit")}
+_BITS = ("compiler", "flags", "isa", "velocity_and_stress")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -26,7 +32,7 @@ class Checkpoint:
         path: of the file.          step: steps made.          time: reached [s].
         wall_time: that the run has taken so far [s].
         results: see `ResultsWriter.rows`.          history: see `HistoryWriter.state`.
-        case: see `Case.content`.
+        case: see `Case.content`.          made_by: see `_program`.
     """
 
     path: Path
@@ -36,6 +42,7 @@ class Checkpoint:
     results: dict[str, int]
     history: dict[str, Any]
     case: dict[str, Any]
+    made_by: dict[str, str]
 
     @classmethod
     def of(cls, folder: Path) -> Checkpoint:
@@ -45,12 +52,44 @@ class Checkpoint:
         try:
             return cls(path, **about)
         except TypeError as error:
-            rule = f"the checkpoint '{path}' was made by another version of mpm3dpp"
+            rule = f"'{path}' is not a checkpoint of a run by this version of mpm3dpp"
             raise CaseError(rule, ANEW) from error
 
     def check(self, case: Case) -> None:
-        """Raise `CaseError` if the case is not that of the checkpoint, naming where they differ."""
+        """Raise `CaseError` if a case cannot go on from here, and say why; nothing is changed."""
         check_same(self.path, self.case, case)
+        if case.run.end_time < self.time:
+            rule = f"is before the {self.time:.6g} s that the run of '{self.path}' has reached"
+            remedy = f"give a later one, or {ANEW}"
+            raise CaseError(rule, remedy, key="run.end_time", value=case.run.end_time)
+        folder = self.path.parent
+        for name in ("history.csv", RESULTS):
+            if (folder / name).exists() and not os.access(folder / name, os.W_OK):
+                raise CaseError(f"cannot write '{folder / name}'", "make it writable")
+        if not has_history(folder, self.history):
+            raise CaseError(f"the history in '{folder}' has lost rows since the checkpoint", ANEW)
+        if not has_rows(folder / RESULTS, "VTKHDF", self.results):
+            rule = f"'{folder / RESULTS}' is damaged or has lost frames since the checkpoint"
+            raise CaseError(rule, ANEW)
+
+    def notes(self, case: Case) -> list[str]:
+        """Sentences for the user who goes on from here."""
+        lines = [f"going on from step {self.step:,}, t = {self.time:.6g} s"]
+        if self.time >= case.run.end_time:
+            lines.append("this run has come to its end; a later run.end_time lets it go on")
+        changed = [name for name, value in _program().items() if self.made_by.get(name) != value]
+        if changed:
+            what = " and ".join(f"{name} {self.made_by.get(name)}" for name in changed)
+            lines.append(f"the run began with {what}: it will not end with the same bits")
+        return lines
+
+
+def _program() -> dict[str, str]:
+    """Return what the bits of a result depend on, beside the case."""
+    from . import __version__
+
+    build = _core.build_info()
+    return {"version": __version__} | {name: str(build[name]) for name in _BITS}
 
 
 def check_same(path: Path, before: dict[str, Any], case: Case) -> None:
@@ -63,22 +102,26 @@ def check_same(path: Path, before: dict[str, Any], case: Case) -> None:
     """
     found = _difference(before, case.content())
     if found is not None:
-        key, then, now = found
-        rule = f"was {show(then)} in the run of '{path}'"
-        raise CaseError(rule, f"give the case as it was, or {ANEW}", key=key, value=now)
+        where, then, now = found
+        remedy = f"give the case as it was, or {ANEW}"
+        if now is None or then is None:
+            rule = "is missing, and was there" if now is None else "was not there"
+            raise case.error(where, f"{rule} in the run of '{path}'", remedy)
+        if where[-1] in ("file", "particles"):
+            rule = f"names a file whose contents have changed since the run of '{path}'"
+            raise case.error(where, rule, remedy)
+        raise case.error(where, f"was {show(then)} in the run of '{path}'", remedy, value=now)
 
 
-def refuse_to_begin_anew(folder: Path, case: Case) -> None:
-    """Raise `CaseError` if a folder holds a run of this very case that has not come to its end."""
-    try:
-        before = Checkpoint.of(folder)
-        before.check(case)
-    except CaseError:
-        return  # There is none, or none that helps.
-    if before.time < case.run.end_time:
-        done = before.time / case.run.end_time
-        rule = f"'{folder}' holds this run, stopped at {done:.0%} of its time"
-        raise CaseError(rule, f"go on with --resume, or {ANEW}")
+def refuse_to_begin_anew(folder: Path) -> None:
+    """Raise `CaseError` if a folder holds a run that has not come to its end."""
+    if not (folder / CHECKPOINT).is_file():
+        return
+    before = Checkpoint.of(folder)
+    done = before.time / before.case["run"]["end_time"]
+    if done < 1.0:
+        rule = f"'{folder}' holds a run that was stopped at {done:.0%} of its time"
+        raise CaseError(rule, f"go on with --resume, {ANEW}, or choose another --out")
 
 
 class Checkpoints:
@@ -87,15 +130,17 @@ class Checkpoints:
     Args:
         folder: of the run.
         case: of the run.
-        wall_time: that the run has taken before now [s].
+        before: from which it goes on, if it does.
     """
 
-    def __init__(self, folder: Path, case: Case, wall_time: float) -> None:
+    def __init__(self, folder: Path, case: Case, before: Checkpoint | None) -> None:
         self._path = folder / CHECKPOINT
         self._case = case
         self._interval = case.output.checkpoint_interval
-        self._begin = clock.monotonic() - wall_time
+        # One that is there must not stay behind the files.
+        self._last_too = self._interval > 0.0 or before is not None
         self._last = clock.monotonic()
+        self._begin = self._last - (before.wall_time if before else 0.0)
 
     @property
     def wall_time(self) -> float:
@@ -107,14 +152,16 @@ class Checkpoints:
         """Whether one should be written now."""
         return 0.0 < self._interval <= clock.monotonic() - self._last
 
-    def write(self, core: Any, results: BackgroundWriter, history: HistoryWriter) -> None:
-        """Write one, unless the case wants none; frames that wait are written first.
+    def write(self, core: Any, results: BackgroundWriter, history: HistoryWriter) -> str:
+        """Write one; frames that wait are written first.
+
+        Returns:
+            What is wrong, if it cannot be written: the last one still stands then, and the run can
+            do without.
 
         Raises:
-            CaseError: it cannot be written, or a frame; the last checkpoint still stands.
+            CaseError: a frame could not be written.
         """
-        if self._interval == 0.0:
-            return
         about = {
             "step": core.step,
             "time": core.time,
@@ -122,15 +169,22 @@ class Checkpoints:
             "results": results.rows(),
             "history": history.state(),
             "case": self._case.content(),
+            "made_by": _program(),
         }
-        write_checkpoint(self._path, core, about)
         self._last = clock.monotonic()
+        try:
+            write_checkpoint(self._path, core, about)
+        except CaseError as error:
+            return str(error)
+        return ""
+
+    def write_last(self, core: Any, results: BackgroundWriter, history: HistoryWriter) -> str:
+        """As `write`, at the end of a run; nothing if the case wants none."""
+        return self.write(core, results, history) if self._last_too else ""
 
 
-def _difference(
-    before: Any, now: Any, path: tuple[str | int, ...] = ()
-) -> tuple[str, Any, Any] | None:
-    """Return where two cases differ in what may not change: key, value before, value now."""
+def _difference(before: Any, now: Any, path: KeyPath = ()) -> tuple[KeyPath, Any, Any] | None:
+    """Return where two cases differ in what may not change: path, value before, value now."""
     if path in _MAY_CHANGE or (path[:1] == ("output",) and path[1:2] not in ((), ("fields",))):
         return None
     if isinstance(before, dict) and isinstance(now, dict):
@@ -139,4 +193,4 @@ def _difference(
             if found is not None:
                 return found
         return None
-    return None if before == now else (key_text(path), before, now)
+    return None if before == now else (path, before, now)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import enum
 import os
+import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -105,11 +106,13 @@ def run(
     from .folders import default_folder, thread_count, writable_folder
 
     loaded = _load(case, units, quiet)
-    folder = writable_folder(out if out is not None else default_folder(case))
+    folder = out if out is not None else default_folder(case)
     if resume and anew:
         raise CaseError("--resume and --anew cannot be given together", "give one of them")
-    if not (resume or anew):
-        refuse_to_begin_anew(folder, loaded)
+    if not resume:
+        writable_folder(folder)
+        if not anew:
+            refuse_to_begin_anew(folder)
     from .run import run_case  # The slowest import: after the mistakes.
 
     run_case(loaded, folder, threads=thread_count(threads), quiet=quiet, json=json, resume=resume)
@@ -254,6 +257,7 @@ app.command("material-test")(material_test)
 
 def main() -> None:
     """Run the command line and exit with 0, 1 or 2; a mistake is one sentence, no traceback."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # As Ctrl-C, wherever it comes.
     try:
         app()
     except CaseError as error:

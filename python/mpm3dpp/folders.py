@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 from .errors import CaseError
-from .io.checkpoint import CHECKPOINT
+from .io.checkpoint import CHECKPOINT, UNFINISHED
 from .io.disk import cannot_write, make_folder
 
 
@@ -40,11 +42,37 @@ def forget_last_run(folder: Path, checkpoint: bool = True) -> None:
     Raises:
         CaseError: it cannot be removed.
     """
-    for name in (*_OF_A_RUN, *([CHECKPOINT] if checkpoint else [])):
+    for name in (*_OF_A_RUN, *((CHECKPOINT, UNFINISHED) if checkpoint else ())):
         try:
             (folder / name).unlink(missing_ok=True)
         except OSError as error:
             raise cannot_write(folder / name, error) from error
+
+
+@contextlib.contextmanager
+def only_run_in(folder: Path) -> Iterator[None]:
+    """Within it, no other run goes on in the folder; where the system has locks, not on Windows.
+
+    Raises:
+        CaseError: one does already.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        yield
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            rule = f"a run is going on in '{folder}'"
+            raise CaseError(rule, "wait for its end, or choose another --out") from None
+        except OSError:  # A disk without locks.
+            pass
+        yield
+    finally:
+        os.close(handle)
 
 
 def writable_folder(path: Path) -> Path:

@@ -16,12 +16,12 @@ from . import _core
 from .case import Case
 from .checkpoints import Checkpoint, Checkpoints
 from .errors import CaseError, RunError
-from .folders import forget_last_run, writable_folder
+from .folders import forget_last_run, only_run_in, writable_folder
 from .io.background import BackgroundWriter
-from .io.checkpoint import restore_checkpoint
+from .io.checkpoint import CHECKPOINT, restore_checkpoint
 from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
-from .io.vtkhdf import ResultsWriter
+from .io.vtkhdf import RESULTS, ResultsWriter
 from .progress import Progress
 from .report import contact_table, energy_line, gone_lines, load_lines, speed_line
 from .simulation import Simulation
@@ -47,55 +47,79 @@ def run_case(
         quiet: no progress and no summary.
         json: print the manifest at the end.
         pictures: make them; `mpm3dpp.plots.plot_results` makes them later.
-        resume: go on from the checkpoint in the folder, with the same results as a run in one go,
-            in place of beginning anew; the case may have another end time.
+        resume: go on from the checkpoint in the folder, in place of beginning anew, with the same
+            results as a run in one go. A run that has come to its end may get a later one; its last
+            two steps were fitted to the first.
 
     Raises:
         CaseError: a mistake in the case, or a folder that cannot be written.
         RunError: the run became unstable, or the disk is full; what was written before is kept.
         KeyboardInterrupt: the user stopped it; what was computed is kept.
     """
-    folder = writable_folder(Path(out))
     before = None
     if resume:
-        before = Checkpoint.of(folder)
+        before = Checkpoint.of(Path(out))
         before.check(case)
-    checkpoints = Checkpoints(folder, case, before.wall_time if before else 0.0)
-    simulation = Simulation(case, threads)
-    if before is not None:
-        restore_checkpoint(before.path, simulation.core)
-    forget_last_run(folder, checkpoint=before is None)
-    try:
-        status, reason = _write_run(simulation, folder, quiet or json, checkpoints, before)
-    except CaseError as error:  # The disk: it was no mistake when the run began.
-        if simulation.step == 0:
-            raise
-        raise RunError(f"{error}; what was written before is in {folder}") from error
-    manifest = _manifest(simulation, status, reason, checkpoints.wall_time)
-    manifest.energies = simulation.summary
-    manifest.write(folder)
+    folder = writable_folder(Path(out))
+    with only_run_in(folder):
+        manifest = _run(case, folder, threads, quiet or json, before)
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
         lines = [*contact_table(manifest), *load_lines(manifest), *gone_lines(manifest)]
         lines += [energy_line(manifest)]
         print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]), flush=True)
+    can_go_on = "; --resume goes on" if (folder / CHECKPOINT).exists() else ""
+    if manifest.status == "interrupted" and not quiet:
+        text = f"mpm3dpp: {manifest.reason}; results are in {folder}{can_go_on}"
+        print(text, file=sys.stderr, flush=True)
     if pictures:
-        if not (quiet or json):
-            later = f"Ctrl-C leaves them out, `mpm3dpp plot {folder}` makes them later"
-            print(f"drawing pictures ({later})", file=sys.stderr, flush=True)
-        with _pictures_may_fail(quiet or json):
-            from .plots import plot_results
-
-            plot_results(folder)
-    if status == "failed":
-        raise RunError(f"{reason}; frames and history up to then are in {folder}")
-    if status == "interrupted":
-        if not quiet:
-            later = "; --resume goes on" if case.output.checkpoint_interval else ""
-            print(f"mpm3dpp: {reason}; results are in {folder}{later}", file=sys.stderr)
+        _draw(folder, quiet or json)
+    if manifest.status == "failed":
+        raise RunError(f"{manifest.reason}; frames and history up to then are in {folder}")
+    if manifest.status == "interrupted":
         raise KeyboardInterrupt
     return manifest
+
+
+def _run(
+    case: Case, folder: Path, threads: int | None, quiet: bool, before: Checkpoint | None
+) -> Manifest:
+    """Make the run, and write all but pictures."""
+    checkpoints = Checkpoints(folder, case, before)
+    simulation = Simulation(case, threads)
+    if before is not None:
+        restore_checkpoint(before.path, simulation.core)
+    forget_last_run(folder, checkpoint=before is None)
+    begin = simulation.step
+    try:
+        status, reason = _write_run(simulation, folder, quiet, checkpoints, before)
+    except CaseError as error:  # The disk: it was no mistake when the run began.
+        if simulation.step == begin:
+            raise
+        can_go_on = ", and --resume goes on" if (folder / CHECKPOINT).exists() else ""
+        raise RunError(f"{error}; what was written before is in {folder}{can_go_on}") from error
+    manifest = _manifest(simulation, status, reason, checkpoints.wall_time)
+    manifest.energies = simulation.summary
+    manifest.write(folder)
+    return manifest
+
+
+def _draw(folder: Path, quiet: bool) -> None:
+    """Draw the pictures of a run; it is not lost if they cannot be drawn, nor by Ctrl-C."""
+    later = f"`mpm3dpp plot {folder}` makes them later"
+    if not quiet:
+        print(f"drawing pictures (Ctrl-C leaves them out, {later})", file=sys.stderr, flush=True)
+    try:
+        from .plots import plot_results
+
+        plot_results(folder)
+    except KeyboardInterrupt:
+        if not quiet:
+            print(f"no pictures: {later}", file=sys.stderr)
+    except Exception as error:
+        if not quiet:
+            print(f"no picture: {error}", file=sys.stderr)
 
 
 def _write_run(
@@ -111,7 +135,7 @@ def _write_run(
     most = min(case.output.history_every if contact else _BLOCK, core.history_capacity // 2)
     frames = [t for t in case.frame_times() if t > core.time]
     file = ResultsWriter(
-        folder / "results.vtkhdf",
+        folder / RESULTS,
         bodies=simulation.parts,
         materials=simulation.materials,
         dimension=case.grid.dimension,
@@ -143,7 +167,8 @@ def _write_run(
         if before is None:
             results.write(core)
         else:
-            progress.note(f"note: going on from step {core.step:,}, t = {core.time:.6g} s")
+            for sentence in before.notes(case):
+                progress.note(f"note: {sentence}")
         touched = len(core.contact_groups()) if contact else 0
         while status == "completed" and core.time < case.run.end_time:
             try:
@@ -171,11 +196,17 @@ def _write_run(
             if stopped():
                 status, reason = "interrupted", f"stopped by the user at t = {core.time:.6g} s"
             elif checkpoints.due:
-                checkpoints.write(core, results, history)
+                _tell(progress, checkpoints.write(core, results, history))
         if status != "failed":
-            checkpoints.write(core, results, history)
+            _tell(progress, checkpoints.write_last(core, results, history))
     simulation.summary = history.summary()
     return status, reason
+
+
+def _tell(progress: Progress, problem: str) -> None:
+    """Tell that there is no new checkpoint, if so."""
+    if problem:
+        progress.note(f"warning: no checkpoint: {problem}")
 
 
 def _fields(case: Case) -> list[str]:
@@ -217,16 +248,6 @@ def _manifest(
         case_hash=case.case_hash,
         build=_core.build_info(),
     )
-
-
-@contextmanager
-def _pictures_may_fail(quiet: bool) -> Iterator[None]:
-    """A picture that cannot be made must not lose a finished run: say so, and go on."""
-    try:
-        yield
-    except Exception as error:
-        if not quiet:
-            print(f"no picture: {error}", file=sys.stderr)
 
 
 @contextmanager

@@ -192,9 +192,15 @@ class Simulation:
         Raises:
             CaseError: there is no such file, or it is that of another case or version.
         """
+        if self.step > 0:
+            raise CaseError("a simulation that has made steps cannot be restored", "make a new one")
         path = Path(path)
-        check_same(path, read_about(path)["case"], self.case)
-        restore_checkpoint(path, self.core)
+        try:
+            check_same(path, read_about(path).get("case", {}), self.case)
+            restore_checkpoint(path, self.core)
+        except CaseError as error:
+            remedy = "give a state that was saved with this case"
+            raise CaseError(error.rule, remedy, key=error.key, value=error.value) from error
 
     def _numbers(self, body: str) -> list[int]:
         """Return the numbers of the bodies that a name stands for."""

@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
+import errno
+import io
+import os
 import resource
 import signal
 import subprocess
 import sys
 import time
 import zipfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
@@ -16,7 +21,7 @@ import numpy as np
 import pytest
 
 from commands import CASE, command, mpm3dpp, one_sentence, write
-from mpm3dpp import Simulation, load_case, open_results, run_case
+from mpm3dpp import Case, Simulation, load_case, open_results, run_case
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io import read_manifest
 
@@ -30,11 +35,14 @@ def stopped(folder: Path, kind: signal.Signals) -> None:
     run = subprocess.Popen(words, cwd=folder, stderr=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 30
     checkpoint, history = folder / "out" / "checkpoint.zip", folder / "out" / "history.csv"
-    while not (checkpoint.exists() and history.stat().st_size > 1_000_000):
-        assert run.poll() is None and time.monotonic() < deadline, run.communicate()
-        time.sleep(0.02)
-    run.send_signal(kind)
-    run.communicate(timeout=30)
+    try:
+        while not (checkpoint.exists() and history.stat().st_size > 1_000_000):
+            assert run.poll() is None and time.monotonic() < deadline
+            time.sleep(0.02)
+        run.send_signal(kind)
+        run.communicate(timeout=30)
+    finally:
+        run.kill()
 
 
 def end_after(folder: Path) -> str:
@@ -58,15 +66,79 @@ def test_a_run_that_goes_on_ends_as_one_that_did_not_stop(
     manifest = read_manifest(tmp_path / "out")
     for key in ("steps", "end_time", "result_hash", "energies", "mass", "status"):
         assert manifest[key] == whole.to_dict()[key], key
-    one, other = tmp_path / "out", tmp_path / "whole"
-    assert (one / "history.csv").read_bytes() == (other / "history.csv").read_bytes()
-    with open_results(one) as results, open_results(other) as straight:
+    check_files(tmp_path / "out", tmp_path / "whole")
+
+
+def check_files(folder: Path, whole: Path) -> None:
+    """Check that the files of a run in pieces are those of a run in one piece."""
+    for name in ("history.csv", "contact_pairs.csv"):
+        if (whole / name).exists():
+            assert (folder / name).read_bytes() == (whole / name).read_bytes(), name
+    with open_results(folder) as results, open_results(whole) as straight:
         assert len(results) == len(straight) > 3
+        assert (results.title, results.case_hash) == (straight.title, straight.case_hash)
+        assert np.array_equal(results.times, straight.times)
         for frame in range(len(straight)):
             arrays, expected = results.arrays(frame), straight.arrays(frame)
             assert list(arrays) == list(expected)
             for name, values in expected.items():
                 assert np.array_equal(arrays[name], values), (frame, name)
+
+
+def interrupted(case: Case, folder: Path, looks: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run a case as if Ctrl-C had been pressed before its n-th look."""
+    left = iter(range(looks))
+
+    @contextmanager
+    def interrupt() -> Iterator[Callable[[], bool]]:
+        yield lambda: next(left, None) is None
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr("mpm3dpp.run._interrupt", interrupt)
+        run_case(case, folder, threads=1, pictures=False)
+
+
+GRAINS = """
+[grains.few]
+material = "soft"
+lattice = { lower = ["0 mm", "70 mm"], count = [3, 2], radius = "12 mm" }
+"""
+BLOCKS = "".join(
+    f"""
+[body.b{k}]
+material = "soft"
+shape = {{ box = {{ lower = ["{30 * k} mm", "-60 mm"], upper = ["{30 * k + 20} mm", "-40 mm"] }} }}
+velocity = ["{3 - k} m/s", "20 m/s"]
+"""
+    for k in range(12)
+)
+TORN = CASE.replace("[output]", '[output]\nfields = ["volume"]').replace(
+    "nu = 0.3 } }",
+    'nu = 0.3 } }\nfailure = { principal_stress = { limit = "5 kPa", action = "erode" } }',
+)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        CASE.replace("[output]", "[output]\ncompression = 3\nhistory_every = 7"),
+        CASE + GRAINS,
+        CASE + BLOCKS,  # More pairs than have columns of their own.
+        TORN,
+    ],
+    ids=["compressed", "grains", "pairs", "torn"],
+)
+def test_kinds_of_files(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = load_case(write(tmp_path, text))
+    whole = run_case(case, tmp_path / "whole", threads=1, pictures=False)
+    for looks in (1, 2):
+        out = tmp_path / f"out{looks}"
+        interrupted(case, out, looks, monkeypatch)
+        again = run_case(case, out, threads=1, pictures=False, resume=True)
+        assert again.result_hash == whole.result_hash
+        check_files(out, tmp_path / "whole")
+    if text is TORN:
+        assert whole.eroded["count"] > 0
 
 
 def test_the_time_before_counts(tmp_path: Path) -> None:
@@ -86,27 +158,40 @@ def test_an_unfinished_run_is_not_lost_by_running_it_again(tmp_path: Path) -> No
     refused = mpm3dpp("run", case, "--out", "out", cwd=tmp_path)
     assert refused.returncode == 2
     sentence = one_sentence(refused.stderr)
-    assert "stopped at 0% of its time" in sentence
-    assert "go on with --resume, or begin the run anew with --anew" in sentence
+    assert "holds a run that was stopped at 0% of its time; go on with --resume, begin" in sentence
+    assert "begin the run anew with --anew, or choose another --out" in sentence
     assert (out / "history.csv").read_bytes() == before
     both = mpm3dpp("run", case, "--out", "out", "--resume", "--anew", cwd=tmp_path)
     assert both.returncode == 2 and "give one of them" in one_sentence(both.stderr)
-    short = LONG.replace('"1000 s"', '"2 ms"')  # It has come further than that.
-    done = mpm3dpp("run", write(tmp_path, short), "--out", "out", "--quiet", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert read_manifest(out)["end_time"] == 2e-3
-
-
-def test_a_run_begins_anew(tmp_path: Path) -> None:
-    stopped(tmp_path, signal.SIGINT)
-    other = LONG.replace('"1000 s"', '"3 ms"').replace("1 MPa", "2 MPa")  # not that of the folder
-    done = mpm3dpp("run", write(tmp_path, other), "--out", "out", "--quiet", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    again = LONG.replace('"1000 s"', '"4 ms"').replace("1 MPa", "2 MPa")
-    words = ("run", write(tmp_path, again), "--out", "out", "--quiet")
+    other = LONG.replace('"1000 s"', '"2 ms"').replace("1 MPa", "2 MPa")  # hours may be lost too
+    words = ("run", write(tmp_path, other), "--out", "out", "--quiet")
     assert mpm3dpp(*words, cwd=tmp_path).returncode == 2
+    whole = (out / "checkpoint.zip").read_bytes()
+    (out / "checkpoint.zip").write_bytes(whole[:2000])
+    broken = mpm3dpp(*words, cwd=tmp_path)
+    assert broken.returncode == 2 and "or damaged; begin the run anew" in one_sentence(
+        broken.stderr
+    )
     assert mpm3dpp(*words, "--anew", cwd=tmp_path).returncode == 0
-    assert read_manifest(tmp_path / "out")["end_time"] == 4e-3
+    assert read_manifest(out)["end_time"] == 2e-3
+    assert mpm3dpp(*words, cwd=tmp_path).returncode == 0  # That one has come to its end.
+
+
+def test_two_runs_in_one_folder(tmp_path: Path) -> None:
+    words = command("run", write(tmp_path, LONG), "--out", "out", "--threads", 1, "--quiet")
+    run = subprocess.Popen(words, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    try:
+        history = tmp_path / "out" / "history.csv"
+        deadline = time.monotonic() + 30
+        while not history.exists():
+            assert run.poll() is None and time.monotonic() < deadline
+            time.sleep(0.02)
+        again = mpm3dpp("run", tmp_path / "case.toml", "--out", "out", "--anew", cwd=tmp_path)
+        assert again.returncode == 2
+        assert "a run is going on in 'out'; wait for its end" in one_sentence(again.stderr)
+    finally:
+        run.kill()
+        run.communicate()
 
 
 def finished(folder: Path, text: str = CASE) -> Path:
@@ -135,7 +220,7 @@ def test_a_finished_run_may_get_a_later_end(tmp_path: Path) -> None:
     ("change", "sentence"),
     [
         (("1 MPa", "2 MPa"), "material.soft.strength.elastic.E = 2000000.0 was 1000000.0 in the"),
-        (("[body.right]", "[body.other]"), "body.right = null was {"),
+        (("[body.right]", "[body.other]"), "body.right is missing, and was there in the run"),
         (('"5 m/s"', '"6 m/s"'), "body.left.velocity = [6.0, 0.0] was [5.0, 0.0] in the run of"),
         (("frames = 4", 'fields = ["mass"]'), 'output.fields = ["mass"] was []'),
     ],
@@ -160,7 +245,10 @@ def test_no_checkpoint(tmp_path: Path) -> None:
         tmp_path, CASE.replace("[output]", "[output]\ncheckpoint_interval = 0")
     ).exists()
     said = resumed(tmp_path, CASE)
-    assert "there is no checkpoint" in said and said.endswith("run the case without --resume")
+    assert "there is no checkpoint" in said and said.endswith("or leave out --resume")
+    nowhere = mpm3dpp("run", tmp_path / "case.toml", "--out", "nowhere", "--resume", cwd=tmp_path)
+    assert nowhere.returncode == 2 and "there is no checkpoint" in one_sentence(nowhere.stderr)
+    assert not (tmp_path / "nowhere").exists()
 
 
 def test_damaged_checkpoints(tmp_path: Path) -> None:
@@ -168,11 +256,12 @@ def test_damaged_checkpoints(tmp_path: Path) -> None:
     whole = checkpoint.read_bytes()
     with zipfile.ZipFile(checkpoint) as archive:
         about, state = archive.read("about.json"), archive.read("state")
-    at = whole.index(state) + len(state) // 2
-    checkpoint.write_bytes(whole[:at] + bytes([whole[at] ^ 1]) + whole[at + 1 :])
-    assert "is damaged; begin the run anew with --anew" in resumed(tmp_path, CASE)
+    for share in (0.1, 0.5, 0.9):  # Columns, patches, the history.
+        at = whole.index(state) + int(share * len(state))
+        checkpoint.write_bytes(whole[:at] + bytes([whole[at] ^ 64]) + whole[at + 1 :])
+        assert "is damaged; begin the run anew with --anew" in resumed(tmp_path, CASE)
     checkpoint.write_bytes(whole[:5000])
-    assert "is not a checkpoint of mpm3dpp" in resumed(tmp_path, CASE)
+    assert "is not a checkpoint of mpm3dpp, or damaged" in resumed(tmp_path, CASE)
     for changed, sentence in (
         (state[:-1], "it ends too early"),
         (state + b"x", "it is too long"),
@@ -184,34 +273,125 @@ def test_damaged_checkpoints(tmp_path: Path) -> None:
         assert f"cannot be used: {sentence}" in resumed(tmp_path, CASE)
 
 
-@pytest.mark.parametrize(
-    ("name", "sentence"),
-    [("history.csv", "has lost rows since"), ("results.vtkhdf", "has lost frames since")],
-)
-def test_files_that_have_changed(tmp_path: Path, name: str, sentence: str) -> None:
+@pytest.mark.parametrize("name", ["history.csv", "results.vtkhdf"])
+def test_files_that_have_changed(tmp_path: Path, name: str) -> None:
+    """What is missing is told before anything is touched."""
     finished(tmp_path)
     file = tmp_path / "out" / name
+    whole = file.read_bytes()
+    later = CASE.replace('"8 ms"', '"9 ms"')
+
+    def refused() -> None:
+        before = {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()}
+        assert "has lost" in resumed(tmp_path, later)
+        assert {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()} == before
+
     if name == "history.csv":
-        file.write_text(file.read_text()[:-10])
+        file.write_bytes(whole[:-10])
     else:
         with h5py.File(file, "r+") as results:
             results["VTKHDF/Points"].resize(100, axis=0)
-    assert sentence in resumed_late(tmp_path)
+    refused()
+    file.write_bytes(whole[:1000])
+    refused()
     file.unlink()
-    assert sentence in resumed_late(tmp_path)
+    refused()
 
 
-def resumed_late(folder: Path) -> str:
-    """As `resumed`, for what is found when the run goes on."""
-    case = write(folder, CASE.replace('"8 ms"', '"9 ms"'))
-    done = mpm3dpp("run", case, "--out", "out", "--quiet", "--resume", cwd=folder)
-    assert done.returncode in (1, 2)
-    return one_sentence(done.stderr)
+def test_an_end_that_has_passed(tmp_path: Path) -> None:
+    finished(tmp_path)
+    said = resumed(tmp_path, CASE.replace('"8 ms"', '"4 ms"'))
+    assert "run.end_time = 0.004 is before the 0.008 s that the run of" in said
+
+
+def test_another_program_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    case = load_case(write(tmp_path))
+    monkeypatch.setattr("mpm3dpp.__version__", "0.0.1")
+    interrupted(case, tmp_path / "out", 1, monkeypatch)
+    monkeypatch.undo()
+    run_case(case, tmp_path / "out", threads=1, quiet=False, pictures=False, resume=True)
+    said = "the run began with version 0.0.1: it will not end with the same bits"
+    assert said in capfd.readouterr().err
+
+
+def test_a_checkpoint_that_cannot_be_written_does_not_end_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def full(handle: int) -> None:
+        name = os.readlink(f"/proc/self/fd/{handle}")
+        if name.endswith(".checkpoint.zip.new"):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    out = tmp_path / "out"
+    case = load_case(write(tmp_path))
+    with monkeypatch.context() as patch:
+        patch.setattr("mpm3dpp.io.checkpoint.os.fsync", full)
+        done = run_case(case, out, threads=1, quiet=False, pictures=False)
+    assert done.status == "completed" and read_manifest(out)["status"] == "completed"
+    assert "warning: no checkpoint: cannot write" in capfd.readouterr().err
+    assert not list(out.glob("*checkpoint*")) and not list(out.glob(".checkpoint*"))
+
+
+def test_control_c_leaves_out_the_pictures_of_a_finished_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("mpm3dpp.plots.plot_results", stop)
+    done = run_case(load_case(write(tmp_path)), tmp_path / "out", threads=1, quiet=False)
+    assert done.status == "completed"
+    assert "no pictures: `mpm3dpp plot" in capfd.readouterr().err
+
+
+def test_no_old_checkpoint_stays_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that goes on without checkpoints brings that which is there to its own end."""
+    case = load_case(write(tmp_path))
+    interrupted(case, tmp_path / "out", 1, monkeypatch)
+    case.output.checkpoint_interval = 0.0
+    run_case(case, tmp_path / "out", threads=1, pictures=False, resume=True)
+    simulation = Simulation(case, threads=1)
+    simulation.restore(tmp_path / "out" / "checkpoint.zip")
+    assert simulation.time == 8e-3
+
+
+def test_restoring_by_hand(tmp_path: Path) -> None:
+    case, state = load_case(write(tmp_path)), tmp_path / "state.zip"
+    simulation = Simulation(case, threads=1)
+    simulation.save(state)
+    with pytest.raises(CaseError, match=r"E = 2000000.0 was 1000000.0 in the run"):
+        other = load_case(write(tmp_path, CASE.replace("1 MPa", "2 MPa")))
+        Simulation(other, threads=1).restore(state)
+    with pytest.raises(CaseError, match="made with other stages"):
+        Simulation(case, threads=1, fused=False).restore(state)
+    with pytest.raises(CaseError, match="there is no checkpoint"):
+        Simulation(case, threads=1).restore(tmp_path / "nowhere.zip")
+    with zipfile.ZipFile(state, "w") as archive:
+        archive.writestr("about.json", "{}")
+    with pytest.raises(CaseError, match="give a state that was saved with this case"):
+        Simulation(case, threads=1).restore(state)
+    simulation.advance(1)
+    with pytest.raises(CaseError, match="a simulation that has made steps cannot be restored"):
+        simulation.restore(state)
+
+
+def test_half_a_state_does_not_step(tmp_path: Path) -> None:
+    case = load_case(write(tmp_path))
+    simulation = Simulation(case, threads=1)
+    parts: list[bytes] = []
+    simulation.core.save(lambda view: parts.append(bytes(view)) or len(view))
+    half = io.BytesIO(b"".join(parts)[: sum(map(len, parts)) // 2])
+    with pytest.raises(ValueError, match="it ends too early"):
+        simulation.core.restore(half.readinto)
+    with pytest.raises(ValueError, match=r"prepare\(\)"):
+        simulation.core.advance(1, 1.0)
 
 
 SAVE = """
 import sys
-from mpm3dpp import Simulation, load_case
+from mpm3dpp import Case, Simulation, load_case
 from mpm3dpp.errors import CaseError
 simulation = Simulation(load_case("case.toml"), threads=1)
 simulation.advance(int(sys.argv[1]))

@@ -147,7 +147,9 @@ def start_long_run(folder: Path) -> subprocess.Popen[str]:
     deadline = time.monotonic() + 30
     history = folder / "out" / "history.csv"
     while not history.exists() or history.stat().st_size < 200_000:
-        assert run.poll() is None and time.monotonic() < deadline, run.communicate()
+        if run.poll() is not None or time.monotonic() > deadline:
+            run.kill()
+            pytest.fail(str(run.communicate()))
         time.sleep(0.05)
     return run
 

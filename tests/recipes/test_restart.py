@@ -104,3 +104,38 @@ def test_rows_of_the_history_that_nobody_took_are_in_the_state(tmp_path: Path) -
     again.core.history()
     again.restore(tmp_path / "state.zip")
     assert again.core.history()[:, 0].tolist() == [0, 1, 2, 3, 4, 5]
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_rigid_bodies_that_turn_and_leave(tmp_path: Path, dimension: int) -> None:
+    """One flies out of the region that is kept before, one after; one is led; gravity changes."""
+    spin = {"sine": {"amplitude": 20.0, "frequency": 100.0}}
+    motion = {
+        "velocity": (0.5, {"ramp": {"to": 1.0, "end": 0.01}}, 0.0)[:dimension],
+        "angular_velocity": spin if dimension == 2 else (0.0, 0.0, spin),
+    }
+    stone = {"density": 2000.0, "strength": {"rigid": {}}}
+
+    def at(*cells: int) -> tuple[int, ...]:
+        return cells[:dimension]
+
+    case = Case(
+        grid=Grid(dimension=dimension, cell_size=CELL, keep={"upper": (24 * CELL,) * dimension}),
+        run=Run(
+            end_time=1.0,
+            gravity=(0.0, {"sine": {"amplitude": 9.0, "frequency": 50.0}}, 0.0)[:dimension],
+        ),
+        contact=Contact(friction=0.2),
+        material={"stone": stone, **materials()},
+        body={
+            "bed": block(at(0, 0, 0), at(12, 4, 4), material="solid"),
+            "blade": block(at(2, 4, 0), at(6, 2, 4), material="stone", motion=motion),
+            "early": block(at(18, 14, 0), at(5, 4, 4), material="stone", velocity=at(9, 0, 0)),
+            "late": block(at(12, 9, 0), at(5, 4, 4), material="stone", velocity=at(8, 1, 0)),
+        },
+    )
+    steps = 100
+    early = Simulation(case, threads=1)
+    early.advance(steps)
+    late = check(case, tmp_path, steps)
+    assert 0 < early.left()["count"] < late.left()["count"]

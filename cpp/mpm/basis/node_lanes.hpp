@@ -48,9 +48,4 @@ template <int W, class F>
   });
 }
 
-/// The lanes of one, then those of the other.
-inline Batch<8> joined(Batch<4> first, Batch<4> second) {
-  return Batch<8>(__builtin_shufflevector(first.v, second.v, 0, 1, 2, 3, 4, 5, 6, 7));
-}
-
 }  // namespace mpm

@@ -12,8 +12,8 @@ namespace mpm {
 
 class StateStream {
  public:
-  /// Takes bytes when a state is saved, and gives them when it is restored.
-  using Transfer = std::function<void(std::span<std::byte>)>;
+  /// Takes bytes when a state is saved, gives them when it is restored, and returns how many.
+  using Transfer = std::function<std::size_t(std::span<std::byte>)>;
   enum class Way { save, restore };
 
   StateStream(Way way, const Transfer& transfer) : way_(way), transfer_(transfer) {}
@@ -24,11 +24,14 @@ class StateStream {
   void operator()(T&... values) {
     (array(std::span<T>(&values, 1)), ...);
   }
-  /// As many values as there are, when restoring too.
+  /// As many values as there are, when restoring too. Throws std::invalid_argument if not all of
+  /// them pass.
   template <class T>
   void array(std::span<T> values) {
     static_assert(std::is_trivially_copyable_v<T> && !std::is_const_v<T>);
-    if (!values.empty()) transfer_(std::as_writable_bytes(values));
+    const auto bytes = std::as_writable_bytes(values);
+    if (!bytes.empty() && transfer_(bytes) != bytes.size())
+      throw std::invalid_argument(restores() ? "it ends too early" : "not all of it was taken");
   }
   /// The length of a vector, which when restoring then holds values to be filled.
   template <class T>

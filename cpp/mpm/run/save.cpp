@@ -36,8 +36,9 @@ void exchange_load(StateStream& stream, SurfaceLoad<D>& load) {
 template <int D>
 void SimulationOf<D>::exchange(StateStream& stream) {
   stream.same(format, other_version);
-  for (const std::size_t size : {sizeof(Rounded), sizeof(Ledger), sizeof(PatchSums<D>),
-                                 sizeof(PairRecord), sizeof(KnownNode), sizeof(KnownPair<D>)})
+  for (const std::size_t size :
+       {sizeof(Rounded), sizeof(Ledger), sizeof(PatchSums<D>), sizeof(Gone<D>), sizeof(RigidMotion),
+        sizeof(PairRecord), sizeof(KnownNode), sizeof(KnownPair<D>)})
     stream.same(size, other_version);
   stream.same(D, other_case);
   stream.same(domain_.bodies.size(), other_case);
@@ -71,7 +72,9 @@ void SimulationOf<D>::restore(const StateStream::Transfer& from) {
   if (!prepared_ || domain_.step > 0)
     throw std::invalid_argument("call restore() after prepare() and before any step");
   StateStream stream(StateStream::Way::restore, from);
+  prepared_ = false;  // what has been restored half must not step
   exchange(stream);
+  prepared_ = true;
 }
 
 template class SimulationOf<2>;

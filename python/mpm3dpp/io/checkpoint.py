@@ -19,6 +19,7 @@ from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import cannot_write
 
 CHECKPOINT = "checkpoint.zip"
+UNFINISHED = f".{CHECKPOINT}.new"  # while it is written
 ANEW = "begin the run anew with --anew"
 
 
@@ -43,10 +44,12 @@ def write_checkpoint(path: Path, core: Any, about: Mapping[str, Any]) -> None:
             file.flush()
             os.fsync(file.fileno())
         new.replace(path)
-    except OSError as error:
+    except BaseException as error:
         with contextlib.suppress(OSError):
             new.unlink(missing_ok=True)
-        raise cannot_write(path, error) from error
+        if isinstance(error, OSError):
+            raise cannot_write(path, error) from error
+        raise
 
 
 def read_about(path: Path) -> dict[str, Any]:
@@ -56,12 +59,15 @@ def read_about(path: Path) -> dict[str, Any]:
         CaseError: the file is missing or is not a checkpoint.
     """
     if not path.is_file():
-        raise CaseError(f"there is no checkpoint '{path}'", "run the case without --resume")
+        remedy = "give the --out of the run that is to go on, or leave out --resume"
+        raise CaseError(f"there is no checkpoint '{path}'", remedy)
     try:
         with zipfile.ZipFile(path) as archive:
             return dict(json.loads(archive.read("about.json")))
-    except (OSError, KeyError, ValueError, zipfile.BadZipFile) as error:
-        raise CaseError(f"'{path}' is not a checkpoint of mpm3dpp", ANEW) from error
+    except PermissionError as error:
+        raise CaseError(f"cannot read '{path}': permission denied", "make it readable") from error
+    except (OSError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
+        raise CaseError(f"'{path}' is not a checkpoint of mpm3dpp, or damaged", ANEW) from error
 
 
 def restore_checkpoint(path: Path, core: Any) -> None:
@@ -71,9 +77,12 @@ def restore_checkpoint(path: Path, core: Any) -> None:
         CaseError: the state is damaged, or is that of another case or version.
     """
     try:
-        with zipfile.ZipFile(path) as archive, archive.open("state") as state:
-            core.restore(state.readinto)  # type: ignore[attr-defined]
-            whole = not state.read(1)
+        with zipfile.ZipFile(path) as archive:
+            if archive.testzip() is not None:  # Before the core makes anything of the bytes.
+                raise zipfile.BadZipFile
+            with archive.open("state") as state:
+                core.restore(state.readinto)  # type: ignore[attr-defined]
+                whole = not state.read(1)
     except (OSError, KeyError, zipfile.BadZipFile) as error:
         raise CaseError(f"the checkpoint '{path}' is damaged", ANEW) from error
     except ValueError as error:

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp.errors import CaseError
-from mpm3dpp.io.checkpoint import ANEW
 from mpm3dpp.io.disk import bring_to_disk, make_folder, writing
 from mpm3dpp.io.fields import numbered
 
@@ -37,8 +36,18 @@ MOTION = ("motion_work", *(f"motion_impulse_{x}" for x in ("x", "y", "z")))
 PAIR_LIMIT = 66
 """Most pairs that get columns of their own (12 names); more go to `contact_pairs.csv`."""
 
+PAIRS = "contact_pairs.csv"
+
 _AXES = ("x", "y", "z")
 _LARGEST = ("residual", "numerical", "external")  # of which the largest size is kept
+
+
+def has_history(folder: Path, state: Mapping[str, Any]) -> bool:
+    """Return whether the tables in a folder have at least the rows of `HistoryWriter.state`."""
+    for path, size in zip((folder / "history.csv", folder / PAIRS), state["sizes"], strict=True):
+        if size is not None and not (path.is_file() and path.stat().st_size >= size):
+            return False
+    return True
 
 
 class HistoryWriter:
@@ -55,7 +64,8 @@ class HistoryWriter:
             do to each other has no columns.
         contact: whether the run has contact; without it there are no pairs' columns.
         every: keep the rows whose step is a multiple of this, and the last of each block.
-        state: of a run that goes on, `state()` then; rows written later are cut off.
+        state: of a run that goes on, `state()` then; the files have what it says (`has_history`),
+            and rows written later are cut off.
 
     Raises:
         CaseError: the file cannot be written; the rows written before stay readable.
@@ -92,7 +102,7 @@ class HistoryWriter:
         self._long: _Table | None = None
         if len(pairs) > PAIR_LIMIT:
             values = [f"contact_{kind}_{x}" for kind in ("force", "impulse") for x in _AXES]
-            path = self.path.with_name("contact_pairs.csv")
+            path = self.path.with_name(PAIRS)
             self._long = _Table(path, ["step", "time", "body_a", "body_b", *values], sizes[1])
         self._index = {name: k for k, name in enumerate(own)}
         self._summary: dict[str, Any] = dict(state["summary"]) if state else {}
@@ -203,8 +213,6 @@ class _Table:
         self._path = path
         with writing(path):
             if size is not None:
-                if not path.is_file() or path.stat().st_size < size:
-                    raise CaseError(f"'{path}' has lost rows since the checkpoint", ANEW)
                 os.truncate(path, size)
             mode = "w" if size is None else "a"
             self._file = open(path, mode, newline="", encoding="utf-8")  # noqa: SIM115

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -78,16 +79,21 @@ def row_counts(group: h5py.Group) -> dict[str, int]:
     return found
 
 
-def cut_rows(group: h5py.Group, counts: Mapping[str, int]) -> None:
-    """Take off the rows, and the data sets, that have come since `row_counts`.
+def has_rows(path: Path, group: str, counts: Mapping[str, int]) -> bool:
+    """Return whether a file can be opened and its group has at least the rows of `row_counts`."""
+    import h5py
 
-    Raises:
-        ValueError: some were there then and are not now.
-    """
-    now = row_counts(group)
-    if any(now.get(name, -1) < rows for name, rows in counts.items()):
-        raise ValueError("rows are missing")
-    for name in now:
+    try:
+        with h5py.File(path, locking=False) as file:
+            now = row_counts(file[group])
+    except (OSError, KeyError, RuntimeError):
+        return False
+    return all(now.get(name, -1) >= rows for name, rows in counts.items())
+
+
+def cut_rows(group: h5py.Group, counts: Mapping[str, int]) -> None:
+    """Take off the rows, and the data sets, that have come since `row_counts`."""
+    for name in row_counts(group):
         if name in counts:
             group[name].resize(counts[name], axis=0)
         else:

@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mpm3dpp.errors import CaseError
-from mpm3dpp.io.checkpoint import ANEW
 from mpm3dpp.io.disk import bring_to_disk, cannot_write, make_folder, reserve
 from mpm3dpp.io.fields import (
     Frame,
@@ -34,6 +33,8 @@ from mpm3dpp.io.rows import append_rows, as_stored, cut_rows, hold_metadata, mak
 
 if TYPE_CHECKING:
     import h5py
+
+RESULTS = "results.vtkhdf"
 
 _TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
 _CONSTANT = ("body", "grain", "material", "size")
@@ -58,7 +59,8 @@ class ResultsWriter:
         compression: 0 for none, else the level of gzip, 1 to 9, after a shuffle of bytes.
         title: title of the case.
         case_hash: hash of the case, so that a file can be traced to its run.
-        rows: of a run that goes on, `rows()` then; frames written later are cut off.
+        rows: of a run that goes on, `rows()` then; the file has them (`rows.has_rows`), and frames
+            written later are cut off.
 
     Raises:
         CaseError: the file cannot be written; what it held before stays readable.
@@ -115,8 +117,6 @@ class ResultsWriter:
             else:
                 self._go_on(self._file["VTKHDF"], rows)
             self._file.flush()
-        except (KeyError, ValueError, FileNotFoundError) as error:
-            raise CaseError(f"'{self.path}' has lost frames since the checkpoint", ANEW) from error
         except (OSError, RuntimeError) as error:
             raise cannot_write(self.path, error) from error
 
@@ -236,7 +236,9 @@ class ResultsWriter:
                 column = root["PointData"][name][offset : offset + count]
                 self._constant[name] = (column, offset)
         self._sizes = self._constant["size"][0] if "size" in self._constant else None
-        self._meta = json.loads(root.file["mpm3dpp"].attrs["run"])
+        stored = json.loads(root.file["mpm3dpp"].attrs["run"])
+        self._meta["units"] = stored["units"]
+        root.file["mpm3dpp"].attrs["run"] = json.dumps(self._meta)
 
     def _append(
         self, root: h5py.Group, time: float, step: int, columns: Mapping[str, np.ndarray]

@@ -27,6 +27,7 @@ void test_state_stream(mpm::testing::Report& report) {
   std::vector<std::byte> file;
   const StateStream::Transfer write = [&](std::span<std::byte> bytes) {
     file.insert(file.end(), bytes.begin(), bytes.end());
+    return bytes.size();
   };
   State saved{0.5, 3, {4, 5, 6}, {7.0, 8.0}}, restored{0.0, 0, {1}, {}};
   StateStream out(StateStream::Way::save, write);
@@ -35,8 +36,10 @@ void test_state_stream(mpm::testing::Report& report) {
 
   std::size_t at = 0;
   const StateStream::Transfer read = [&](std::span<std::byte> bytes) {
-    std::copy_n(file.begin() + static_cast<std::ptrdiff_t>(at), bytes.size(), bytes.begin());
-    at += bytes.size();
+    const std::size_t n = std::min(bytes.size(), file.size() - at);
+    std::copy_n(file.begin() + static_cast<std::ptrdiff_t>(at), n, bytes.begin());
+    at += n;
+    return n;
   };
   StateStream in(StateStream::Way::restore, read);
   restored.exchange(in, 2);
@@ -47,4 +50,8 @@ void test_state_stream(mpm::testing::Report& report) {
 
   at = 0;
   CHECK_THROWS(restored.exchange(in, 3), "another kind");
+
+  at = 0;
+  file.pop_back();
+  CHECK_THROWS(restored.exchange(in, 2), "it ends too early");
 }
