@@ -37,6 +37,17 @@ void mark_leaving(Domain<D>& domain) {
   });
 }
 
+/// Share out the patches by what they cost in a step: some four parts for a particle and one for a
+/// node. Those of bodies whose motion is prescribed cost their nodes only.
+template <int D>
+void balance(Domain<D>& domain) {
+  const auto& patches = domain.grid.patches;
+  domain.threads.balance(patches.size(), [&](std::size_t p) {
+    const double particles = domain.body_of(patches[p]).prescribed ? 0.0 : patches[p].count;
+    return 4.0 * particles + patches[p].shape.node_count;
+  });
+}
+
 }  // namespace
 
 template <int D>
@@ -49,6 +60,7 @@ void activate_tiles(Domain<D>& domain) {
   sort_disordered(domain.grid, domain.bodies, domain.threads, domain.list_scratch);
   domain.sums.assign(domain.grid.patches.size(), {});
   if (changed && domain.has_contact()) domain.contact.connect(domain.grid, domain.bodies);
+  balance(domain);
 }
 
 template void activate_tiles<2>(Domain<2>&);
