@@ -120,7 +120,7 @@ def refuse_to_begin_anew(folder: Path) -> None:
     before = Checkpoint.of(folder)
     done = before.time / before.case["run"]["end_time"]
     if done < 1.0:
-        rule = f"'{folder}' holds a run that was stopped at {done:.0%} of its time"
+        rule = f"'{folder}' holds an unfinished run, at {done:.0%} of its time"
         raise CaseError(rule, f"go on with --resume, {ANEW}, or choose another --out")
 
 

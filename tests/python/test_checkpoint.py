@@ -158,7 +158,7 @@ def test_an_unfinished_run_is_not_lost_by_running_it_again(tmp_path: Path) -> No
     refused = mpm3dpp("run", case, "--out", "out", cwd=tmp_path)
     assert refused.returncode == 2
     sentence = one_sentence(refused.stderr)
-    assert "holds a run that was stopped at 0% of its time; go on with --resume, begin" in sentence
+    assert "holds an unfinished run, at 0% of its time; go on with --resume, begin" in sentence
     assert "begin the run anew with --anew, or choose another --out" in sentence
     assert (out / "history.csv").read_bytes() == before
     both = mpm3dpp("run", case, "--out", "out", "--resume", "--anew", cwd=tmp_path)

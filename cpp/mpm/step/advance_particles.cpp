@@ -31,11 +31,11 @@ template <Also also, bool damped, int D, class Functions>
   // The increments are still read where the new momenta are scattered.
   alignas(cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * quad : 1];
   if constexpr (also == Also::remap) std::fill_n(remapped, block.count * quad, 0.0);
+  CellByCell<gives_momentum, D, Functions, quad> cells(basis, {remapped});
 
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
     const auto nodes = basis.field(block.lines.from(cell.first_node));
-    CellParticles<gives_momentum, D, Functions> particles(basis, cell);
-    const auto give = [&] { particles.give(NodeQuads{remapped}); };
+    if constexpr (also == Also::remap) cells.begin(cell);
     for_each_group(cell, [&](const auto& rows) {
       const auto w = basis.weights(local_position(cell, rows));
       const T all = load(mass, rows), m = of_valid(rows, all);
@@ -60,13 +60,14 @@ template <Also also, bool damped, int D, class Functions>
       second_order += m * change2;
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {
-        if (particles.full()) give();
+        auto& particles = cells.next();
         particles.add(all, v);
         particles.place(w, rows.count);
       }
     });
-    if constexpr (also == Also::remap) give();
+    if constexpr (also == Also::remap) cells.end();
   });
+  if constexpr (also == Also::remap) cells.finish();
   if constexpr (also == Also::remap) copy_quads(block.lines.at(force_at), {remapped}, block.count);
   if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
   PatchSums<D>& sums = domain.sums[p];

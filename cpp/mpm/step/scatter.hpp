@@ -11,9 +11,9 @@ class CellParticles {
  public:
   using T = Batch<cell_lanes<D>>;
 
-  CellParticles(const Functions& basis, const CellRange<D>& cell)
-      : basis_(basis), first_node_(cell.first_node) {}
+  explicit CellParticles(const Functions& basis) : basis_(basis) {}
 
+  void begin(const CellRange<D>& cell) { first_node_ = cell.first_node; }
   bool full() const { return count_ == room; }
   /// The first `added` lanes by their weights; what they give is added before `place`.
   template <class Weights>
@@ -28,6 +28,7 @@ class CellParticles {
   /// To the nodes of a patch, from its first on.
   template <int width>
   void give(const Nodes<width>& patch) {
+    if (count_ == 0) return;
     basis_.template give<what>(patch.from(first_node_), places_, gifts_, count_);
     count_ = 0;
   }
@@ -35,9 +36,45 @@ class CellParticles {
  private:
   static constexpr int room = 16;
   const Functions& basis_;
-  int first_node_, count_ = 0;
+  int first_node_ = 0, count_ = 0;
   typename Functions::template Particles<room> places_;
   typename Functions::template Gifts<room> gifts_;
+};
+
+/// The particles of a cell and of the one before, which give once those of this cell are laid out:
+/// what has just been written would have to be waited for.
+template <unsigned what, int D, class Functions, int width>
+class CellByCell {
+ public:
+  /// `patch` are its nodes, from its first on.
+  CellByCell(const Functions& basis, const Nodes<width>& patch)
+      : cells_{CellParticles<what, D, Functions>(basis), CellParticles<what, D, Functions>(basis)},
+        patch_(patch) {}
+
+  void begin(const CellRange<D>& cell) { now().begin(cell); }
+  /// Where the next particles of the cell are laid out.
+  CellParticles<what, D, Functions>& next() {
+    if (now().full()) {
+      last().give(patch_);
+      now().give(patch_);
+    }
+    return now();
+  }
+  /// The cell has all its particles.
+  void end() {
+    last().give(patch_);
+    now_ = 1 - now_;
+  }
+  /// After the last cell.
+  void finish() { last().give(patch_); }
+
+ private:
+  CellParticles<what, D, Functions>& now() { return cells_[now_]; }
+  CellParticles<what, D, Functions>& last() { return cells_[1 - now_]; }
+
+  CellParticles<what, D, Functions> cells_[2];
+  int now_ = 0;
+  Nodes<width> patch_;
 };
 
 /// Takes what particles give out of the columns of a body.
@@ -88,14 +125,13 @@ template <unsigned what, int D, class Functions>
                                                 const Body<D>& body, const Patch<D>& patch,
                                                 const NodeLines& nodes) {
   const Givers<what, D> givers(grid, body);
+  CellByCell<what, D, Functions, line> cells(basis, nodes);
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-    CellParticles<what, D, Functions> particles(basis, cell);
-    for_each_group(cell, [&](const auto& rows) {
-      if (particles.full()) particles.give(nodes);
-      givers.add(particles, cell, rows, basis);
-    });
-    particles.give(nodes);
+    cells.begin(cell);
+    for_each_group(cell, [&](const auto& rows) { givers.add(cells.next(), cell, rows, basis); });
+    cells.end();
   });
+  cells.finish();
 }
 
 template <unsigned what, int D>
