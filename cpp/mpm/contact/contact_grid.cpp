@@ -59,9 +59,11 @@ void ContactGrid<D>::connect(TileGrid<D>& grid, const std::vector<Body<D>>& bodi
   }
   holders_.erase(holders_.begin() + kept, holders_.end());
   recall_tiles();
-  // One body's tiles follow one another, so that its nodes and particles are at hand.
+  // One body's tiles follow one another, so that its nodes and particles are at hand; of the bodies
+  // around a tile the last, for a container that comes first meets all others.
   std::sort(tiles_.begin(), tiles_.end(), [&](const ContactTile<D>& x, const ContactTile<D>& y) {
-    const std::uint32_t px = holders_[x.first_holder].patch, py = holders_[y.first_holder].patch;
+    const std::uint32_t px = holders_[x.first_holder + x.holders - 1].patch;
+    const std::uint32_t py = holders_[y.first_holder + y.holders - 1].patch;
     return px != py ? px < py : x.first_holder < y.first_holder;
   });
 }
