@@ -86,7 +86,7 @@ def check_files(folder: Path, whole: Path) -> None:
 
 
 def interrupted(case: Case, folder: Path, looks: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Run a case as if Ctrl-C had been pressed before its n-th look."""
+    """Run a case as if Ctrl-C had been pressed after so many looks at it."""
     left = iter(range(looks))
 
     @contextmanager
@@ -256,7 +256,7 @@ def test_damaged_checkpoints(tmp_path: Path) -> None:
     whole = checkpoint.read_bytes()
     with zipfile.ZipFile(checkpoint) as archive:
         about, state = archive.read("about.json"), archive.read("state")
-    for share in (0.1, 0.5, 0.9):  # Columns, patches, the history.
+    for share in (0.1, 0.5, 0.9):  # Wherever it is, it is found before the core uses it.
         at = whole.index(state) + int(share * len(state))
         checkpoint.write_bytes(whole[:at] + bytes([whole[at] ^ 64]) + whole[at + 1 :])
         assert "is damaged; begin the run anew with --anew" in resumed(tmp_path, CASE)
@@ -391,7 +391,7 @@ def test_half_a_state_does_not_step(tmp_path: Path) -> None:
 
 SAVE = """
 import sys
-from mpm3dpp import Case, Simulation, load_case
+from mpm3dpp import Simulation, load_case
 from mpm3dpp.errors import CaseError
 simulation = Simulation(load_case("case.toml"), threads=1)
 simulation.advance(int(sys.argv[1]))

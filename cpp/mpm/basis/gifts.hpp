@@ -32,9 +32,10 @@ struct GiftColumns {
 /// The same where the numbers of a quad of a node's line are the lanes.
 template <int D, int room>
 struct GiftQuads {
-  double mass[room];
-  alignas(quad * sizeof(double)) double velocity[room][quad];     // behind a one, if mass is given
-  alignas(quad * sizeof(double)) double traction[D][room][quad];  // a column of the tensor each
+  double mass[room];                                           // [kg]
+  alignas(quad * sizeof(double)) double velocity[room][quad];  // behind a one, if mass is given
+  // A column of the tensor each.
+  alignas(quad * sizeof(double)) double traction[D][room][quad];
 
   template <unsigned what, class T>
   void add(int at, T m, const Vec<T, D>& v) {
