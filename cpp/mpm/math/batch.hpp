@@ -117,12 +117,31 @@ template <int W>
 Batch<W> select(Mask<W> condition, Batch<W> yes, Batch<W> no) {
   return Batch<W>(condition.v ? yes.v : no.v);
 }
+// By their own instructions, which g++ 12 does not find; b if one of the two is NaN.
 template <int W>
 Batch<W> min(Batch<W> a, Batch<W> b) {
+#if defined(__AVX512F__)
+  if constexpr (W == 8) return Batch<W>(_mm512_mask_min_pd(a.v, __mmask8(0xff), a.v, b.v));
+#endif
+#if defined(__AVX__)
+  if constexpr (W == 4) return Batch<W>(_mm256_min_pd(a.v, b.v));
+#endif
+#if defined(__SSE2__)
+  if constexpr (W == 2) return Batch<W>(_mm_min_pd(a.v, b.v));
+#endif
   return Batch<W>(a.v < b.v ? a.v : b.v);
 }
 template <int W>
 Batch<W> max(Batch<W> a, Batch<W> b) {
+#if defined(__AVX512F__)
+  if constexpr (W == 8) return Batch<W>(_mm512_mask_max_pd(a.v, __mmask8(0xff), a.v, b.v));
+#endif
+#if defined(__AVX__)
+  if constexpr (W == 4) return Batch<W>(_mm256_max_pd(a.v, b.v));
+#endif
+#if defined(__SSE2__)
+  if constexpr (W == 2) return Batch<W>(_mm_max_pd(a.v, b.v));
+#endif
   return Batch<W>(a.v > b.v ? a.v : b.v);
 }
 

@@ -49,7 +49,7 @@ struct JohnsonCook : ElasticPlastic<JohnsonCook> {
 
   void prepare(double density) {
     ElasticPlastic::prepare(density);
-    law = {A, B, n, C, rate0, m, T_room, T_melt, chi / (density * cp), true};
+    law = {A, B, C, rate0, PowerNearOne(n), PowerNearOne(m), T_room, T_melt, chi / (density * cp)};
   }
   std::string problem() const {
     if (!(T_melt > T_room)) return "johnson_cook.T_melt must be > T_room";
@@ -62,7 +62,8 @@ struct JohnsonCook : ElasticPlastic<JohnsonCook> {
   T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
     const Sym<T, D> before = stress;
     elastic.update(motion, stress);
-    return law.update(motion, elastic.G, before, stress, state.plastic_strain, state.temperature);
+    return law.update<true>(motion, elastic.G, before, stress, state.plastic_strain,
+                            state.temperature);
   }
   template <Real T>
   T homologous(T temperature) const {

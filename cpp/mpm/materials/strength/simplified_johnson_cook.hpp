@@ -29,7 +29,7 @@ struct SimplifiedJohnsonCook : ElasticPlastic<SimplifiedJohnsonCook> {
 
   void prepare(double density) {
     ElasticPlastic::prepare(density);
-    law = {.A = A, .B = B, .n = n, .C = C, .rate0 = rate0};
+    law = {.A = A, .B = B, .C = C, .rate0 = rate0, .n = PowerNearOne(n)};
   }
 
   template <Real T, int D>
@@ -37,7 +37,8 @@ struct SimplifiedJohnsonCook : ElasticPlastic<SimplifiedJohnsonCook> {
     const Sym<T, D> before = stress;
     elastic.update(motion, stress);
     T no_temperature(0.0);
-    return law.update(motion, elastic.G, before, stress, state.plastic_strain, no_temperature);
+    return law.update<false>(motion, elastic.G, before, stress, state.plastic_strain,
+                             no_temperature);
   }
 };
 

@@ -1,0 +1,111 @@
+#pragma once
+// The return where the yield stress depends on the rate. The unknown is x, where the increment of
+// the plastic strain is d = unit exp(x), because rate terms are linear in x.
+#include "mpm/materials/radial_return.hpp"
+
+namespace mpm {
+
+/// A yield stress [Pa] and its derivatives with x, the first of which may miss `slope_error` of
+/// itself, the second `bend_error` times the first.
+template <class T>
+struct RateYield {
+  T value, slope, bend;
+};
+inline constexpr double slope_error = 1e-5, bend_error = 0.01;
+
+/// The increment where a particle goes on flowing as it did. What the elastic step would add to von
+/// Mises' stress, `q_before` before, is what the flow takes back, but for the hardening. So good a
+/// start needs one step of third order (Chebyshev's) and mostly one with the slope that it
+/// predicts, which asks for the yield stress alone. Gives the lanes that flow and were not found
+/// so.
+template <Real T, class Flow>
+Truth<T> flow_on(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& flow, T& found) {
+  const T over = q - max(q_before, flow.at_rest());
+  auto open = flows & (over > T(1e-6) * q);
+  if (!any(open)) return flows;
+  T d = select(open, over, q) / (stiff + flow.hardens()), x = log(d * T(1.0 / unit));
+  const RateYield<T> y = flow.yield(q, d, x);
+  const T inverse = T(1.0) / (stiff * d + y.slope);
+  const T newton = (q - stiff * d - y.value) * inverse;
+  const T bend = (stiff * d + y.bend) * inverse;
+  T step = newton * (T(1.0) - T(0.5) * newton * bend);
+  // Up to here exp(step) - 1 is its series to step^6, within 2e-13 of d.
+  open = open & (absolute(step) < T(0.05));
+  step = select(open, step, T(0.0));
+  T series(1.0 / 720.0);
+  for (const double factor : {1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0})
+    series = T(factor) + step * series;
+  d += d * step * series;
+  const T first = x, off = absolute(step), there = inverse * (T(1.0) - step * bend);
+  x += step;
+  auto search = flows & !open;
+  constexpr int most_steps = 3;
+  for (int k = 0; k < most_steps && any(open); ++k) {
+    const T last = (q - stiff * d - flow.value(q, d, x)) * there, size = absolute(last);
+    d = select(open, d + d * last * (T(1.0) + T(0.5) * last), d);
+    x = select(open, x + last, x);
+    // What a step leaves is its own square, and what the slope was wrong by.
+    const T left = size * (size + T(slope_error) + off * (T(bend_error) + T(2.0) * off));
+    open = open & !(left < T(return_tolerance) * q * inverse);
+  }
+  found = d;
+  return search | open | (flows & !(first * x > T(0.0)));  // x = 0 may be a kink
+}
+
+/// The same for any lane: Halley's steps, third order, kept between bounds by halving, from
+/// `flow.start(q_before)`, or, where that is far off, from `flow.above(q)`.
+template <Real T, class Flow>
+T search_flow(T q, T q_before, T stiff, double unit, Truth<T> open, Flow& flow) {
+  const T nothing(0.0);
+  T low(-700.0), high(700.0), x = flow.start(q_before), found = nothing;
+  for (int turn = 0; turn < 100; ++turn) {
+    const T d = T(unit) * exp(x);
+    const RateYield<T> y = flow.yield(q, d, x);
+    const T rest = q - stiff * d - y.value, slope = stiff * d + y.slope;
+    // Far off the step is kept within a third of Newton's.
+    const T inverse = T(1.0) / slope, newton = rest * inverse;
+    const T bent = T(0.5) * newton * (stiff * d + y.bend) * inverse;
+    const T step = newton / (T(1.0) + min(max(bent, T(-0.25)), T(0.25)));
+    low = select(rest > nothing, x, low);
+    high = select(rest > nothing, high, x);
+    T next = x + step;
+    // What this step leaves is of its third power, and of its square as far as `bend` is inexact,
+    // unless it passes the kink.
+    const T size = absolute(step);
+    const auto small = size < T(1e-3);
+    const auto settled =
+        (small & (size * size * (size + T(bend_error)) * slope < T(return_tolerance) * q) &
+         (x * next > nothing)) |
+        (absolute(rest) < T(return_tolerance) * q);
+    const T after =
+        select(small, d + d * step * (T(1.0) + step * (T(0.5) + T(1.0 / 6.0) * step)), d);
+    found = select(open, after, found);
+    open = open & !settled;
+    if (!any(open)) break;
+    const auto far = size > T(0.5);
+    if (turn == 0 && any(open & far))
+      next = select(far, flow.above(q), next);
+    else
+      next = select((next > low) & (next < high), next, T(0.5) * (low + high));
+    x = select(open, next, x);
+  }
+  return found;
+}
+
+/// Return a trial stress to the yield surface over one step. `flow` gives the yield stress
+/// `at_rest` (d = 0 and no rate), below which nothing happens, and how it `hardens` there with d;
+/// its `value` and its `yield` with derivatives at (q, d, x), q von Mises' trial stress; where to
+/// `start` if von Mises' stress before the step lay on the yield surface; and an x `above` the
+/// solution for q. x = 0 may be a kink.
+template <Real T, int D, class Flow>
+Returned<T> return_with_rate(Sym<T, D>& stress, double G, double unit, T q_before, Flow& flow) {
+  const T q = von_mises(stress), stiff(3.0 * G), nothing(0.0);
+  const auto flows = q > flow.at_rest();
+  if (!any(flows)) return {nothing, q};
+  T d = nothing;
+  const auto search = flow_on(q, q_before, stiff, unit, flows, flow, d);
+  if (any(search)) d = select(search, search_flow(q, q_before, stiff, unit, search, flow), d);
+  return shorten(stress, q, stiff, select(flows, d, nothing));
+}
+
+}  // namespace mpm
