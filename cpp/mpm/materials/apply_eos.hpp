@@ -14,31 +14,33 @@ T sound_speed_squared(const LinearInEnergy<T>& at, T V, T energy, T pressure, do
 /// and new) and of the artificial viscosity; with p = A + B E that gives p in closed form: p (1 + B
 /// dV/2) = A + B (E + deviatoric and viscous work - p_old dV/2).
 template <class T, int D, class Model>
-[[gnu::flatten]] void apply_eos(const Model& model, const Material& material,
+[[gnu::flatten]] void apply_eos(const Model model, const Material& material,
                                 const BlockColumns<D>& columns, const StressSettings& settings,
                                 MaterialBlock<D>& block, BlockEnd<T, D>& end) {
   const bool burns = material.burns(), damped = material.damps();
   const bool viscosity = settings.viscosity.active(), last = material.failures.empty();
   for_each_group<T>(block, [&](const Group<T, D>& group) {
-    const Moved<T, D> moved(group, block, columns, material.density, settings);
-    const Sym<T, D> before = group.read_stress(columns);
+    const Swelling<T> swelling(group.read(columns.mass), group.read(columns.volume),
+                               group.get(block.volume), group.get(block.dilation),
+                               material.density);
     const Sym<T, D> strength = group.get_stress(block);
-    const T V = moved.motion.J, per_volume = T(1.0) / moved.initial_volume;
-    const T change = (moved.volume - moved.volume_before) * per_volume;  // of V
-    const T old_pressure = T(-1.0 / 3.0) * trace(before);
-    const T deviatoric = T(0.5) * moved.deviatoric_work(before + strength) * per_volume;
+    StressWork<T> work{group.get(block.deviatoric_work), group.get(block.force_work)};
+    const T V = swelling.J(), per_volume = swelling.per_volume;
+    const T change = (swelling.after - swelling.before) * per_volume;  // of V
+    const T mean_before = group.get(block.mean_before);
 
     LinearInEnergy<T> p = model.at(V);
     if (burns) p = p.burnt(group.get(block.burnt));
-    T energy = group.read(columns.energy) + deviatoric - T(0.5) * old_pressure * change;
+    T energy =
+        group.read(columns.energy) + work.deviatoric * per_volume + T(0.5) * mean_before * change;
     const T guess = p.A + p.B * energy;
     T speed =
         sqrt(sound_speed_squared(p, V, energy, guess, material.density) + group.get(block.speed));
     T q(0.0), damping = damped ? group.get(block.damping) : T(0.0);
     if (viscosity) {
-      const T artificial = moved.viscous_speed(settings, speed);
-      q = moved.viscous_pressure(settings, artificial);
-      energy += moved.viscous_work(q) * per_volume;
+      const T artificial = swelling.viscous_speed(settings, speed);
+      q = swelling.viscous_pressure(settings, artificial);
+      energy += swelling.viscous_work(q) * per_volume;
       damping += artificial;
     }
     if (viscosity || damped) speed = damped_speed(speed, damping);
@@ -48,9 +50,12 @@ template <class T, int D, class Model>
     implicit = select(V > T(1.0), max(implicit, T(0.5)), implicit);
     const T pressure = (p.A + p.B * energy) / implicit;
     const T mean = T(1.0 / 3.0) * trace(strength);
-    const Sym<T, D> stress = strength - Sym<T, D>::isotropic(mean + pressure);
+    const T shift = mean + pressure;  // of the mean stress, downwards
+    const Sym<T, D> stress = strength - Sym<T, D>::isotropic(shift);
     if (last) {
-      end.add(group, moved, before, {stress, group.get(block.dissipated), speed, q});
+      if (settings.forces_follow) work.force -= swelling.after * shift * swelling.dilation;
+      end.add(group, swelling, work, T(0.5) * (mean_before - pressure),
+              {stress, group.get(block.dissipated), speed, q});
       return;
     }
     group.put_stress(block, stress);

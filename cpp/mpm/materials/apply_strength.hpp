@@ -4,8 +4,9 @@
 
 namespace mpm {
 
+/// The model is a copy, which no store to a column can change.
 template <class T, int D, class Model>
-[[gnu::flatten]] void apply_strength(const Model& model, const Material& material,
+[[gnu::flatten]] void apply_strength(const Model model, const Material& material,
                                      const BlockColumns<D>& columns, const StressSettings& settings,
                                      MaterialBlock<D>& block, BlockEnd<T, D>& end) {
   using State = typename Model::template State<T, D>;
@@ -28,8 +29,8 @@ template <class T, int D, class Model>
       if (!material.eos) {
         speed = model.sound_speed(stress, state, motion.J);
         if (viscosity) {
-          const T damping = moved.viscous_speed(settings, speed);
-          q = moved.viscous_pressure(settings, damping);
+          const T damping = moved.swelling.viscous_speed(settings, speed);
+          q = moved.swelling.viscous_pressure(settings, damping);
           speed = damped_speed(speed, damping);
         }
       }
@@ -41,6 +42,14 @@ template <class T, int D, class Model>
     group.put(block.dissipated, dissipated);
     group.put(block.speed, speed);
     group.put(block.viscous_pressure, q);
+    if (material.eos) {
+      const StressWork<T> work = moved.work(settings, stress_before, stress);
+      group.put(block.volume, moved.swelling.after);
+      group.put(block.dilation, moved.swelling.dilation);
+      group.put(block.deviatoric_work, work.deviatoric);
+      group.put(block.force_work, work.force);
+      group.put(block.mean_before, T(1.0 / 3.0) * trace(stress_before));
+    }
     if constexpr (Burns<Model>) group.put(block.burnt, state.burn_fraction);
     if constexpr (Damps<Model>)
       group.put(block.damping, model.damping_speed(motion.J, motion.cell_size));

@@ -18,38 +18,36 @@ class BlockEnd {
   BlockEnd(const BlockColumns<D>& columns, const StressSettings& settings)
       : columns_(columns), settings_(settings) {}
 
-  void add(const Group<T, D>& group, const Moved<T, D>& moved, const Sym<T, D>& before,
-           const Updated<T, D>& after) {
+  /// `work` with the stress that a particle has in the end; the mean of old and new stress has done
+  /// the rest on the volume.
+  void add(const Group<T, D>& group, const Swelling<T>& swelling, const StressWork<T>& work,
+           T mean_stress, const Updated<T, D>& after) {
     const auto valid = group.valid();
-    negative_ = negative_ | (valid & !(moved.volume > T(0.0)));
+    negative_ = negative_ | (valid & !(swelling.after > T(0.0)));
 
-    // The forces work on the gradient as it is, the material on that of the middle of the step.
-    const Sym<T, D> strain = symmetric_part(moved.motion.gradient);
-    const T work = T(0.5) * moved.work(before + after.stress);
-    const T lost = moved.mean_volume * after.dissipated;
-    T used = settings_.forces_follow ? moved.volume * inner(after.stress, strain)
-                                     : moved.volume_before * inner(before, strain);
-    T heat = work;
+    const T done = work.deviatoric + swelling.work(mean_stress);
+    const T lost = T(0.5) * (swelling.before + swelling.after) * after.dissipated;
+    T used = work.force, heat = done;
     if (settings_.viscosity.active()) {
-      const T q = after.viscous_pressure, viscous_work = moved.viscous_work(q);
+      const T q = after.viscous_pressure, viscous_work = swelling.viscous_work(q);
       const T q_before = group.read(columns_.viscosity_pressure);
       group.write(columns_.viscosity_pressure, q);
       viscous_ += select(valid, viscous_work, T(0.0));
-      used -= (settings_.forces_follow ? moved.volume * q : moved.volume_before * q_before) *
-              trace(strain);
+      used -= (settings_.forces_follow ? swelling.after * q : swelling.before * q_before) *
+              swelling.dilation;
       heat += viscous_work;
     }
     if (columns_.energy) {
       const T energy = group.read(columns_.energy);
-      group.write(columns_.energy, energy + heat / moved.initial_volume);
+      group.write(columns_.energy, energy + heat * swelling.per_volume);
     }
     if (columns_.recoverable) {
       const T energy = group.read(columns_.recoverable);
-      group.write(columns_.recoverable, energy + (work - lost) / moved.initial_volume);
+      group.write(columns_.recoverable, energy + (done - lost) * swelling.per_volume);
     }
-    group.write(columns_.volume, moved.volume);
+    group.write(columns_.volume, swelling.after);
     for (int i = 0; i < Sym<T, D>::size; ++i) group.write(columns_.stress[i], after.stress.c[i]);
-    internal_ += select(valid, work - lost, T(0.0));
+    internal_ += select(valid, done - lost, T(0.0));
     dissipated_ += select(valid, lost, T(0.0));
     force_power_ += select(valid, used, T(0.0));
 
@@ -57,6 +55,11 @@ class BlockEnd {
     for (int a = 0; a < D; ++a) v[a] = group.read(columns_.velocity[a]);
     // An empty lane holds a particle that is taken elsewhere, without its motion.
     fastest_ = max(fastest_, select(valid, after.speed + sqrt(dot(v, v)), T(0.0)));
+  }
+  void add(const Group<T, D>& group, const Moved<T, D>& moved, const Sym<T, D>& before,
+           const Updated<T, D>& after) {
+    add(group, moved.swelling, moved.work(settings_, before, after.stress),
+        T(1.0 / 6.0) * trace(before + after.stress), after);
   }
 
   void add_to(StressSums& sums) const {

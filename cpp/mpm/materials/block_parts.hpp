@@ -95,47 +95,27 @@ T damped_speed(T c, T Q) {
   return Q + sqrt(Q * Q + c * c);
 }
 
-/// The motion of a group over the step, and the volumes and mass that go with it.
-template <class T, int D>
-struct Moved {
-  Motion<T, D> motion;
-  Sym<T, D> strain;  // of the step, referred to its middle
-  T mass, volume_before, volume, initial_volume, mean_volume;
+/// What a step did to the volume of a group.
+template <class T>
+struct Swelling {
+  T mass, before, after;  // volumes [m^3]
+  T dilation;             // trace of the velocity gradient x time step
+  T per_volume;           // 1 / initial volume
 
-  Moved(const Group<T, D>& group, const MaterialBlock<D>& block, const BlockColumns<D>& columns,
-        double density, const StressSettings& settings) {
-    const auto valid = group.valid();
-    Mat<T, D> f;
-    for (int i = 0; i < D; ++i)
-      for (int j = 0; j < D; ++j) {
-        motion.gradient[i][j] = select(valid, group.get(block.gradient[i][j]), T(0.0));
-        f[i][j] = i == j ? motion.gradient[i][j] + T(1.0) : motion.gradient[i][j];
-      }
-    strain = symmetric_part(mid_step(motion.gradient));
-    motion.time_step = settings.time_step;
-    motion.time = settings.time;
-    motion.cell_size = settings.cell_size;
-    mass = group.read(columns.mass);
-    volume_before = group.read(columns.volume);
-    volume = volume_before * determinant(f);
-    initial_volume = mass * T(1.0 / density);
-    mean_volume = T(0.5) * (volume_before + volume);
-    motion.J = volume * T(density) / mass;
-  }
+  Swelling(T mass_, T before_, T after_, T dilation_, double density)
+      : mass(mass_),
+        before(before_),
+        after(after_),
+        dilation(dilation_),
+        per_volume(T(density) / mass_) {}
 
-  /// Work of a deviator over the step, and of a whole stress, whose mean works on the change of
-  /// volume as it is (the trace of the strain differs from it by the third order) [J].
-  T deviatoric_work(const Sym<T, D>& stress) const {
-    return mean_volume * (inner(stress, strain) - T(1.0 / 3.0) * trace(stress) * trace(strain));
-  }
-  T work(const Sym<T, D>& stress) const {
-    return deviatoric_work(stress) + T(1.0 / 3.0) * trace(stress) * (volume - volume_before);
-  }
+  T J() const { return after * per_volume; }
+  /// Work of a mean stress on the change of volume [J].
+  T work(T mean_stress) const { return mean_stress * (after - before); }
 
   /// How fast a cell closes [m/s], negative in compression, else 0.
   T closing(const StressSettings& settings) const {
-    return min(trace(symmetric_part(motion.gradient)), T(0.0)) *
-           T(settings.cell_size / settings.time_step);
+    return min(dilation, T(0.0)) * T(settings.cell_size / settings.time_step);
   }
   /// The artificial viscosity over density and cell size, for a speed of sound c [m/s], its
   /// pressure, and that pressure's work on the volume.
@@ -146,10 +126,66 @@ struct Moved {
                   T(0.0));
   }
   T viscous_pressure(const StressSettings& settings, T viscous_speed) const {
-    return T(-1.0) * mass / volume * closing(settings) * viscous_speed;
+    return T(-1.0) * mass / after * closing(settings) * viscous_speed;
   }
-  T viscous_work(T pressure) const {
-    return -volume * pressure * trace(symmetric_part(motion.gradient));
+  T viscous_work(T pressure) const { return -after * pressure * dilation; }
+};
+
+/// Work over a step [J]: of the deviator on the material, mean of old and new stress, and of the
+/// stress that the nodal forces use on the gradient as it is.
+template <class T>
+struct StressWork {
+  T deviatoric, force;
+};
+
+/// The motion of a group over the step, and the volumes and mass that go with it.
+template <class T, int D>
+struct Moved {
+  Motion<T, D> motion;
+  Sym<T, D> strain;  // of the step, referred to its middle
+  Swelling<T> swelling;
+
+  Moved(const Group<T, D>& group, const MaterialBlock<D>& block, const BlockColumns<D>& columns,
+        double density, const StressSettings& settings)
+      : Moved(group, gradient_of(group, block), columns, density, settings) {}
+
+  /// The material feels the strain of the middle of the step; the mean stress works on the change
+  /// of volume as it is, from which the trace of the strain differs by the third order.
+  StressWork<T> work(const StressSettings& settings, const Sym<T, D>& before,
+                     const Sym<T, D>& after) const {
+    const Sym<T, D> both = before + after, rate = symmetric_part(motion.gradient);
+    const T volume = T(0.5) * (swelling.before + swelling.after);
+    const T deviatoric =
+        T(0.5) * volume * (inner(both, strain) - T(1.0 / 3.0) * trace(both) * trace(strain));
+    return {deviatoric, settings.forces_follow ? swelling.after * inner(after, rate)
+                                               : swelling.before * inner(before, rate)};
+  }
+
+ private:
+  Moved(const Group<T, D>& group, const Mat<T, D>& gradient, const BlockColumns<D>& columns,
+        double density, const StressSettings& settings)
+      : motion{gradient, T(1.0), settings.time_step, settings.time, settings.cell_size},
+        strain(symmetric_part(mid_step(gradient))),
+        swelling(
+            swelling_of(gradient, group.read(columns.mass), group.read(columns.volume), density)) {
+    motion.J = swelling.J();
+  }
+  static Mat<T, D> gradient_of(const Group<T, D>& group, const MaterialBlock<D>& block) {
+    const auto valid = group.valid();
+    Mat<T, D> gradient;
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j)
+        gradient[i][j] = select(valid, group.get(block.gradient[i][j]), T(0.0));
+    return gradient;
+  }
+  static Swelling<T> swelling_of(const Mat<T, D>& gradient, T mass, T volume, double density) {
+    Mat<T, D> f = gradient;
+    T dilation(0.0);
+    for (int i = 0; i < D; ++i) {
+      dilation += gradient[i][i];
+      f[i][i] = gradient[i][i] + T(1.0);
+    }
+    return {mass, volume, volume * determinant(f), dilation, density};
   }
 };
 

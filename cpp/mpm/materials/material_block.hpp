@@ -25,6 +25,9 @@ struct MaterialBlock {
   Values viscous_pressure;              // of the artificial viscosity [Pa]
   Values burnt;                         // factor of the EOS's pressure; of high explosives
   Values damping;                       // Q of damped_speed() by the strength's own viscosity
+  // For an EOS: volume after the step [m^3], trace of the gradient, work with the strength's stress
+  // [J] (StressWork), mean stress before the step [Pa].
+  Values volume, dilation, deviatoric_work, force_work, mean_before;
   Values plastic_strain, plastic_increment, temperature;  // for failure models
 };
 
