@@ -13,6 +13,11 @@ namespace mpm {
 template <int D>
 inline constexpr int cell_lanes = std::min(native_lanes, 1 << D);
 
+/// The same for a patch whose cells hold few: the other lanes of AVX-512 would stay empty, and half
+/// a register costs half.
+template <int D>
+inline constexpr int few_lanes = cell_lanes<D> == 8 ? 4 : cell_lanes<D>;
+
 /// Lanes over particles of which contact makes sums across the lanes; these decide normals and
 /// gaps, so where the bits are to be the same on any processor the width is.
 #if defined(MPM_SAME_BITS)
@@ -27,6 +32,7 @@ inline constexpr int contact_lanes = cell_lanes<D>;
 /// written.
 template <int W>
 struct LaneRows {
+  static constexpr int lanes = W;
   std::uint32_t row[W];
   int count;
   bool contiguous;  // the rows are in sequence
@@ -64,8 +70,8 @@ struct LaneRows {
 /// W rows in sequence.
 template <int W>
 struct WholeRows {
+  static constexpr int lanes = W, count = W;
   std::uint32_t first;
-  static constexpr int count = W;
   std::uint32_t operator[](int k) const { return first + static_cast<std::uint32_t>(k); }
 };
 

@@ -162,6 +162,14 @@ Batch<W> sqrt(Batch<W> a) {
   return r;
 }
 
+template <int W>
+Batch<W> absolute(Batch<W> a) {
+  using Bits = typename Vectors<W>::Bits;
+  constexpr std::int64_t all_but_sign = INT64_MAX;
+  return Batch<W>(
+      reinterpret_cast<typename Batch<W>::Vector>(reinterpret_cast<Bits>(a.v) & all_but_sign));
+}
+
 /// A bit for each lane, set where the condition holds.
 template <int W>
 std::uint64_t lane_bits(Mask<W> m) {

@@ -11,10 +11,10 @@ enum class Also { nothing, remap, move };
 /// Velocities of a patch's particles, eq. (17). `damped`: a share of the velocity of the grid takes
 /// the place of theirs, PIC in place of FLIP (Harlow 1964; Brackbill & Ruppel 1986), so that what
 /// the grid does not see dies away.
-template <Also also, bool damped, int D, class Functions>
+template <int W, Also also, bool damped, int D, class Functions>
 [[gnu::noinline, gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p,
                                                    const Functions& basis) {
-  using T = Batch<cell_lanes<D>>;
+  using T = Batch<W>;
   auto& grid = domain.grid;
   Patch<D>& patch = grid.patches[p];
   Body<D>& body = domain.body_of(patch);
@@ -36,7 +36,7 @@ template <Also also, bool damped, int D, class Functions>
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
     const auto nodes = basis.field(block.lines.from(cell.first_node));
     if constexpr (also == Also::remap) cells.begin(cell);
-    for_each_group(cell, [&](const auto& rows) {
+    for_each_group<W>(cell, [&](const auto& rows) {
       const auto w = basis.weights(local_position(cell, rows));
       const T all = load(mass, rows), m = of_valid(rows, all);
       T speed2(0.0), change2(0.0);
@@ -83,13 +83,13 @@ void advance(Domain<D>& domain) {
   domain.threads.for_each(domain.grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     const Body<D>& body = domain.body_of(patch);
-    with_basis(domain.grid, body, patch, [&](const auto& basis) {
+    with_basis_and_lanes(domain.grid, body, patch, [&](const auto& basis, auto lanes) {
       if (body.rigid)
-        advance_patch<Also::nothing, false>(domain, p, basis);
+        advance_patch<lanes, Also::nothing, false>(domain, p, basis);
       else if (domain.pic_damping > 0.0)
-        advance_patch<also, true>(domain, p, basis);
+        advance_patch<lanes, also, true>(domain, p, basis);
       else
-        advance_patch<also, false>(domain, p, basis);
+        advance_patch<lanes, also, false>(domain, p, basis);
     });
   });
 }

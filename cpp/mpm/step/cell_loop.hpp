@@ -1,6 +1,8 @@
 #pragma once
 // The two loops every particle stage is made of: over the cells of a patch, and over a cell's
 // particles in lanes.
+#include <bit>
+
 #include "mpm/basis/basis.hpp"
 #include "mpm/domain.hpp"
 
@@ -28,9 +30,9 @@ void for_each_cell(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>&
 }
 
 /// f(rows) for the particles of a cell, a few at a time: LaneRows or WholeRows.
-template <int D, class F>
+template <int lanes, int D, class F>
 [[gnu::always_inline]] inline void for_each_group(const CellRange<D>& cell, F&& f) {
-  for_each_lanes<cell_lanes<D>>(cell.rows, cell.count, f);
+  for_each_lanes<lanes>(cell.rows, cell.count, f);
 }
 
 /// Position of particles in their cell, in [0, 1]. A copy of what it takes of the grid, so that it
@@ -38,13 +40,12 @@ template <int D, class F>
 template <int D>
 class LocalPosition {
  public:
-  using T = Batch<cell_lanes<D>>;
   LocalPosition(const TileGrid<D>& grid, const Body<D>& body) : cells_(grid.coordinates()) {
     for (int a = 0; a < D; ++a) x_[a] = body.x(a);
   }
   template <class Rows>
-  Vec<T, D> operator()(const CellRange<D>& cell, const Rows& rows) const {
-    Vec<T, D> xi;
+  auto operator()(const CellRange<D>& cell, const Rows& rows) const {
+    Vec<Batch<Rows::lanes>, D> xi;
     unrolled<D>([&](auto a) {
       xi[a] = local_coordinate(cells_.in_cells(load(x_[a], rows), a), cell.cell[a]);
     });
@@ -60,6 +61,23 @@ class LocalPosition {
 template <int D, class F>
 void with_basis(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch, F&& f) {
   with_basis(grid.basis, patch.shape, body.mean_edge / grid.cell_size, std::forward<F>(f));
+}
+
+/// f(basis object, lanes): the same, and how many of the patch's particles are taken at a time.
+template <int D, class F>
+void with_basis_and_lanes(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
+                          F&& f) {
+  with_basis(grid, body, patch, [&](const auto& basis) {
+    constexpr int all = cell_lanes<D>, few = few_lanes<D>;
+    if constexpr (few < all) {
+      const auto occupied = static_cast<std::uint32_t>(std::popcount(patch.occupied));
+      if (patch.count <= few * occupied) {
+        f(basis, std::integral_constant<int, few>{});
+        return;
+      }
+    }
+    f(basis, std::integral_constant<int, all>{});
+  });
 }
 
 /// Set the first numbers, whole quads, of `count` nodes to zero.

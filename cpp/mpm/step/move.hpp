@@ -15,22 +15,22 @@ class Moving {
   /// `nodes` are the nodal fields of the cell, `w` what they want to know of the positions before.
   template <class Rows, class Field, class Weights>
   void move(const CellRange<D>& cell, const Rows& rows, const Field& nodes, const Weights& w) {
+    using T = Batch<Rows::lanes>;
     const Vec<T, D> velocity = nodes.vector(velocity_at, w);
     unrolled<D>([&](auto a) {
-      const T x = load(x_[a], rows) + time_step_ * velocity[a];
+      const T x = load(x_[a], rows) + T(time_step_) * velocity[a];
       store(x_[a], rows, x);
       const T local = cells_.in_cells(x, a) - T(cell.cell[a]);
-      left_ = left_ | (local < T(0.0)) | (local >= T(1.0));
+      left_ |= lane_bits((local < T(0.0)) | (local >= T(1.0)));
     });
   }
-  bool left_cell() const { return any(left_); }
+  bool left_cell() const { return left_ != 0; }
 
  private:
-  using T = Batch<cell_lanes<D>>;
   CellCoordinates<D> cells_;
   double* x_[D];
-  T time_step_;
-  Mask<cell_lanes<D>> left_ = T(1.0) < T(0.0);
+  double time_step_;
+  std::uint64_t left_ = 0;  // lanes of which one has
 };
 
 }  // namespace mpm

@@ -13,10 +13,10 @@ void move_particles(Domain<D>& domain) {
     const NodeBlock<D> block = grid.block(p);
     const LocalPosition<D> local_position(grid, body);
     Moving<D> moving(grid, body, domain.time_step);
-    with_basis(grid, body, patch, [&](const auto& basis) {
+    with_basis_and_lanes(grid, body, patch, [&](const auto& basis, auto lanes) {
       for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
         const auto nodes = basis.field(block.lines.from(cell.first_node));
-        for_each_group(cell, [&](const auto& rows) {
+        for_each_group<lanes>(cell, [&](const auto& rows) {
           moving.move(cell, rows, nodes, basis.weights(local_position(cell, rows)));
         });
       });

@@ -9,8 +9,6 @@ namespace mpm {
 template <unsigned what, int D, class Functions>
 class CellParticles {
  public:
-  using T = Batch<cell_lanes<D>>;
-
   explicit CellParticles(const Functions& basis) : basis_(basis) {}
 
   void begin(const CellRange<D>& cell) { first_node_ = cell.first_node; }
@@ -21,9 +19,15 @@ class CellParticles {
     basis_.template put<what>(places_, count_, w);
     count_ += added;
   }
-  void add(T m, const Vec<T, D>& v) { gifts_.template add<what>(count_, m, v); }
+  template <class T>
+  void add(T m, const Vec<T, D>& v) {
+    gifts_.template add<what>(count_, m, v);
+  }
   /// -V_p (sigma_p - q_p 1) / h [N].
-  void add_tractions(const Sym<T, D>& t) { gifts_.add_tractions(count_, t); }
+  template <class T>
+  void add_tractions(const Sym<T, D>& t) {
+    gifts_.add_tractions(count_, t);
+  }
 
   /// To the nodes of a patch, from its first on.
   template <int width>
@@ -81,19 +85,19 @@ class CellByCell {
 template <unsigned what, int D>
 class Givers {
  public:
-  using T = Batch<cell_lanes<D>>;
   Givers(const TileGrid<D>& grid, const Body<D>& body)
       : local_position_(grid, body), minus_per_cell_size_(-1.0 / grid.cell_size) {
     mass_ = body.mass();
     volume_ = body.volume();
     if (const int q = body.at.viscosity_pressure; q >= 0) q_ = body.columns.component(q);
     for (int a = 0; a < D; ++a) velocity_[a] = body.v(a);
-    for (int c = 0; c < Sym<T, D>::size; ++c) stress_[c] = body.stress(c);
+    for (int c = 0; c < Sym<double, D>::size; ++c) stress_[c] = body.stress(c);
   }
 
   template <class Functions, class Rows>
   void add(CellParticles<what, D, Functions>& to, const CellRange<D>& cell, const Rows& rows,
            const Functions& basis) const {
+    using T = Batch<Rows::lanes>;
     if constexpr ((what & gives_forces) != 0) {
       const T scale = T(minus_per_cell_size_) * load(volume_, rows);
       const T q = q_ ? load(q_, rows) : T(0.0);
@@ -116,11 +120,11 @@ class Givers {
   LocalPosition<D> local_position_;
   double minus_per_cell_size_;
   const double *mass_, *volume_, *q_ = nullptr;
-  const Rounded *velocity_[D], *stress_[Sym<T, D>::size];
+  const Rounded *velocity_[D], *stress_[Sym<double, D>::size];
 };
 
 /// Scatter from all particles of a patch to its nodes (CellParticles::give).
-template <unsigned what, int D, class Functions>
+template <unsigned what, int lanes, int D, class Functions>
 [[gnu::noinline, gnu::flatten]] void scatter_by(const Functions& basis, const TileGrid<D>& grid,
                                                 const Body<D>& body, const Patch<D>& patch,
                                                 const NodeLines& nodes) {
@@ -128,7 +132,8 @@ template <unsigned what, int D, class Functions>
   CellByCell<what, D, Functions, line> cells(basis, nodes);
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
     cells.begin(cell);
-    for_each_group(cell, [&](const auto& rows) { givers.add(cells.next(), cell, rows, basis); });
+    for_each_group<lanes>(cell,
+                          [&](const auto& rows) { givers.add(cells.next(), cell, rows, basis); });
     cells.end();
   });
   cells.finish();
@@ -137,8 +142,9 @@ template <unsigned what, int D, class Functions>
 template <unsigned what, int D>
 void scatter(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
              const NodeLines& nodes) {
-  with_basis(grid, body, patch,
-             [&](const auto& basis) { scatter_by<what>(basis, grid, body, patch, nodes); });
+  with_basis_and_lanes(grid, body, patch, [&](const auto& basis, auto lanes) {
+    scatter_by<what, lanes>(basis, grid, body, patch, nodes);
+  });
 }
 
 }  // namespace mpm

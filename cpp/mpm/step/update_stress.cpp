@@ -8,10 +8,9 @@ namespace {
 /// Velocity gradients, eqs. (18)-(20), of a patch's particles, handed to the material block by
 /// block. The nodal velocity that strains is the vector at number `straining_at` of the lines; with
 /// `moves` the particles move as well, eq. (16).
-template <bool moves, int straining_at, int D, class Functions>
+template <int W, bool moves, int straining_at, int D, class Functions>
 [[gnu::noinline, gnu::flatten]] void update_patch(Domain<D>& domain, std::size_t p,
                                                   const Functions& basis, bool forces_follow) {
-  constexpr int W = cell_lanes<D>;
   using T = Batch<W>;
   const auto& grid = domain.grid;
   Patch<D>& patch = domain.grid.patches[p];
@@ -33,7 +32,7 @@ template <bool moves, int straining_at, int D, class Functions>
   };
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
     const auto nodes = basis.field(lines.from(cell.first_node));
-    for_each_group(cell, [&](const auto& rows) {
+    for_each_group<W>(cell, [&](const auto& rows) {
       if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
       const auto w = basis.weights(local_position(cell, rows));
       const auto gradients = nodes.gradients(straining_at, w);
@@ -55,9 +54,10 @@ template <bool moves, int straining_at, int D>
 void update(Domain<D>& domain, bool forces_follow) {
   domain.threads.for_each(domain.grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
-    with_basis(domain.grid, domain.body_of(patch), patch, [&](const auto& basis) {
-      update_patch<moves, straining_at>(domain, p, basis, forces_follow);
-    });
+    with_basis_and_lanes(
+        domain.grid, domain.body_of(patch), patch, [&](const auto& basis, auto lanes) {
+          update_patch<lanes, moves, straining_at>(domain, p, basis, forces_follow);
+        });
   });
 }
 
