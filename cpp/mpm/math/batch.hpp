@@ -170,6 +170,14 @@ Batch<W> absolute(Batch<W> a) {
       reinterpret_cast<typename Batch<W>::Vector>(reinterpret_cast<Bits>(a.v) & all_but_sign));
 }
 
+/// The largest whole number that is not above, for sizes below 2^51.
+template <int W>
+Batch<W> floor(Batch<W> a) {
+  const Batch<W> magic(6755399441055744.0);  // 1.5 x 2^52: adding it rounds to a whole number
+  const Batch<W> nearest = (a + magic) - magic;
+  return nearest - select(nearest > a, Batch<W>(1.0), Batch<W>(0.0));
+}
+
 /// A bit for each lane, set where the condition holds.
 template <int W>
 std::uint64_t lane_bits(Mask<W> m) {

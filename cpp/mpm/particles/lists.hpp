@@ -12,7 +12,8 @@ namespace mpm {
 template <int D>
 struct Leaver {
   int body;
-  Index<D> tile;
+  Index<D> tile;       // that it has come to
+  std::int32_t patch;  // of its body there, -1 if there is none yet
   std::uint32_t row;
   std::uint8_t cell;
 };

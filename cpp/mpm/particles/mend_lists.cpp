@@ -3,56 +3,23 @@
 #include <numeric>
 #include <span>
 
+#include "mpm/particles/classify.hpp"
 #include "mpm/particles/lists.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr std::uint8_t outside = 255;  // mark of a particle that has left its tile
-constexpr std::uint8_t eroded = 254;   // mark of one that takes no part any more: failed
-constexpr std::uint8_t left = 253;     // the same: out of the region that is kept
-
+/// The patch of the same body in a tile, mostly one beside its own; -1 if there is none.
 template <int D>
-Index<D> cell_of_row(const TileGrid<D>& grid, const Body<D>& body, std::uint32_t row) {
-  Vec<double, D> x;
-  for (int a = 0; a < D; ++a) x[a] = body.x(a)[row];
-  return grid.cell_of(x);
-}
-
-template <int D>
-bool keeps(const TileGrid<D>& grid, const Body<D>& body, std::uint32_t row) {
-  if (!grid.keep.exist) return true;
-  Vec<double, D> x;
-  for (int a = 0; a < D; ++a) x[a] = body.x(a)[row];
-  return grid.keep.holds(x);
-}
-
-/// Note the cell of each particle of a patch, or that it is outside or gone; returns how many have
-/// changed cell.
-template <int D>
-std::size_t classify(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
-                     std::uint8_t* cells) {
-  const Index<D> first = grid.first_cell(patch.tile);
-  const double* failed = body.at.failed >= 0 ? body.columns.component(body.at.failed) : nullptr;
-  std::size_t changed = 0;
-  patch.for_each_cell([&](int old_cell, std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t k = begin; k < end; ++k) {
-      const Index<D> cell = cell_of_row(grid, body, body.order[k]);
-      Index<D> local;
-      bool inside = true;
-      for (int a = 0; a < D; ++a) {
-        local[a] = cell[a] - first[a];
-        inside = inside && local[a] >= 0 && local[a] < Tile<D>::cells;
-      }
-      const bool erodes =
-          failed && failed[body.order[k]] >= static_cast<double>(FailureAction::erode);
-      const bool stays = body.rigid ? !body.leaves : keeps(grid, body, body.order[k]);
-      const int now = erodes ? eroded : !stays ? left : inside ? Tile<D>::cell(local) : outside;
-      cells[k] = static_cast<std::uint8_t>(now);
-      changed += now != old_cell;
-    }
-  });
-  return changed;
+std::int32_t patch_beside(const TileGrid<D>& grid, const Patch<D>& patch, const Index<D>& tile) {
+  Index<D> offset;
+  bool beside = !grid.bonded;  // there neighbours are those of all bodies
+  for (std::size_t a = 0; a < D; ++a) {
+    offset[a] = tile[a] - patch.tile[a];
+    beside = beside && std::abs(offset[a]) <= 1;
+  }
+  if (!beside) return grid.find(patch.body, tile);
+  return patch.neighbour[static_cast<std::size_t>(Tile<D>::neighbour(offset))];
 }
 
 template <int D>
@@ -65,17 +32,20 @@ void find_leavers(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
     const std::uint8_t* cells = scratch.cell_of(patch.body);
     for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
-      if (cells[k] != outside) continue;
-      const Index<D> cell = cell_of_row(grid, body, body.order[k]);
-      const Index<D> tile = grid.tile_of(cell);
+      if (cells[k] != CellMark::outside) continue;
+      Vec<double, D> x;
+      for (int a = 0; a < D; ++a) x[a] = body.x(a)[body.order[k]];
+      const Index<D> cell = grid.cell_of(x), tile = grid.tile_of(cell);
       const Index<D> first = grid.first_cell(tile);
       Index<D> local;
       for (int a = 0; a < D; ++a) local[a] = cell[a] - first[a];
-      leavers.push_back(
-          {patch.body, tile, body.order[k], static_cast<std::uint8_t>(Tile<D>::cell(local))});
+      leavers.push_back({patch.body, tile, patch_beside<D>(grid, patch, tile), body.order[k],
+                         static_cast<std::uint8_t>(Tile<D>::cell(local))});
     }
   }
+  // Patches are in the order of their bodies and tiles.
   std::sort(leavers.begin(), leavers.end(), [](const Leaver<D>& x, const Leaver<D>& y) {
+    if (x.patch >= 0 && y.patch >= 0) return x.patch != y.patch ? x.patch < y.patch : x.row < y.row;
     if (x.body != y.body || x.tile != y.tile) return patch_less<D>(x.body, x.tile, y.body, y.tile);
     return x.row < y.row;
   });
@@ -85,9 +55,11 @@ void find_leavers(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
 /// has changed.
 template <int D>
 bool merge_new_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
-  const auto no_patch = [&](const Leaver<D>& l) { return grid.find(l.body, l.tile) < 0; };
+  const auto no_patch = [](const Leaver<D>& l) { return l.patch < 0; };
   if (std::none_of(scratch.leavers.begin(), scratch.leavers.end(), no_patch)) return false;
   auto &patches = grid.patches, &added = scratch.added;
+  for (Leaver<D>& l : scratch.leavers)
+    if (!no_patch(l) && patches[static_cast<std::size_t>(l.patch)].count == 0) l.patch = -1;
   std::erase_if(patches, [](const Patch<D>& patch) { return patch.count == 0; });
   added.clear();
   for (const Leaver<D>& l : scratch.leavers) {
@@ -130,7 +102,7 @@ void write_list(const Body<D>& body, Patch<D>& patch, const typename ListScratch
   constexpr int cells = Tile<D>::cell_count;
   std::array<std::uint32_t, cells + 1> begin{};
   for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-    if (cell[k] < left) ++begin[cell[k] + std::size_t{1}];
+    if (cell[k] < CellMark::left) ++begin[cell[k] + std::size_t{1}];
   for (std::uint32_t k = 0; k < change.arrival_count; ++k)
     ++begin[arrival[k].cell + std::size_t{1}];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -141,7 +113,7 @@ void write_list(const Body<D>& body, Patch<D>& patch, const typename ListScratch
     to[at] = row;
   };
   for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-    if (cell[k] < left) put(cell[k], body.order[k]);
+    if (cell[k] < CellMark::left) put(cell[k], body.order[k]);
   for (std::uint32_t k = 0; k < change.arrival_count; ++k) put(arrival[k].cell, arrival[k].row);
 
   patch.begin = change.begin;
@@ -179,7 +151,8 @@ void write_tail(std::span<const Patch<D>> patches, Body<D>& body, const std::uin
     for (const Patch<D>& patch : patches) {
       if (!patch.left_cell) continue;
       for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-        if (cell[k] == eroded || cell[k] == left) f(body.order[k], cell[k] == left);
+        if (cell[k] == CellMark::eroded || cell[k] == CellMark::left)
+          f(body.order[k], cell[k] == CellMark::left);
     }
   };
   each([&](std::uint32_t, bool) { ++now; });
@@ -228,7 +201,7 @@ void count_changes(const std::vector<Patch<D>>& patches, ListScratch<D>& scratch
     if (patch.left_cell) {
       const std::uint8_t* cell = scratch.cell_of(patch.body);
       for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)
-        c.kept -= cell[k] >= left;
+        c.kept -= cell[k] >= CellMark::left;
     }
     c.arrival_begin = arrival;
     while (arrival < total && scratch.leavers[arrival].body == patch.body &&
@@ -249,9 +222,10 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
   scratch.moved.assign(grid.patches.size(), 0);
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
-    if (patch.left_cell)
-      scratch.moved[p] = classify(grid, bodies[static_cast<std::size_t>(patch.body)], patch,
-                                  scratch.cell_of(patch.body));
+    if (!patch.left_cell) return;
+    const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
+    std::uint8_t* const cells = scratch.cell_of(patch.body);
+    scratch.moved[p] = note_cells(grid, body, patch, cells) + note_gone(grid, body, patch, cells);
   });
   for (std::size_t p = 0; p < grid.patches.size(); ++p)
     bodies[static_cast<std::size_t>(grid.patches[p].body)].moved += scratch.moved[p];

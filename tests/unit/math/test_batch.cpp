@@ -31,6 +31,7 @@ void check_operations(mpm::testing::Report& report) {
     CHECK_EQUAL((-a)[k], -x[k]);
     CHECK_EQUAL(min(a, b)[k], std::min(x[k], y[k]));
     CHECK_EQUAL(max(a, b)[k], std::max(x[k], y[k]));
+    CHECK_EQUAL(absolute(a)[k], std::abs(x[k]));
     CHECK_EQUAL(sqrt(b * b)[k], std::sqrt(y[k] * y[k]));
     CHECK_EQUAL(select(a < b, a, b)[k], x[k] < y[k] ? x[k] : y[k]);
     CHECK_EQUAL(select((!(a >= b)) | (a > b), a, b)[k], x[k] != y[k] ? x[k] : y[k]);
@@ -43,6 +44,23 @@ void check_operations(mpm::testing::Report& report) {
   }
   CHECK_EQUAL(sum(a), total);
   CHECK_EQUAL(largest(a), most);
+}
+
+template <int W>
+void check_floor(mpm::testing::Report& report) {
+  const double x[8] = {-1e-20, 2.9999999999999996, -3.0000000000000004, -0.5, -1.0, 524287.5, 1e-20,
+                       0.0};
+  for (int first = 0; first < 8; first += W)
+    for (int k = 0; k < W; ++k)
+      CHECK_EQUAL(floor(lanes_of<W>(x + first))[k], std::floor(x[first + k]));
+}
+
+/// As good as it says: exponents below 3 to some roundings of 2^-52 each.
+void check_power_near_one(mpm::testing::Report& report) {
+  for (const double a : {0.01, 0.31, 0.5, 1.0, 1.09, 2.0, 2.99})
+    for (double x = -PowerNearOne::reach; x <= PowerNearOne::reach; x += 0.001)
+      CHECK(std::abs(PowerNearOne(a)(x) / std::pow(1.0 + x, a) - 1.0) < 2e-15, a, x);
+  CHECK(PowerNearOne(2.99).exact() && !PowerNearOne(3.0).exact());
 }
 
 /// first_lanes(n) holds in lanes 0 .. n - 1 alone, and any() sees a single lane.
@@ -70,15 +88,19 @@ double lane_log(double x) {
 }  // namespace
 
 void test_batch(mpm::testing::Report& report) {
+  check_power_near_one(report);
   check_operations<2>(report);
   check_masks<2>(report);
+  check_floor<2>(report);
   if constexpr (native_lanes >= 4) {
     check_operations<4>(report);
     check_masks<4>(report);
+    check_floor<4>(report);
   }
   if constexpr (native_lanes >= 8) {
     check_operations<8>(report);
     check_masks<8>(report);
+    check_floor<8>(report);
   }
 }
 
