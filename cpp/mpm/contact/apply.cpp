@@ -45,8 +45,7 @@ void ContactGrid<D>::for_each_closed(TileGrid<D>& grid, Threads& threads, F&& f)
   constexpr std::size_t ahead = 6;
   const auto fetch = [&](Part& part, const ContactNode& node) {
     if (!part.any_closed(node)) return;
-    for (const Side<D>& side : part.sides_of(node))
-      __builtin_prefetch(grid.block(patch_of(side)).lines[side.node]);
+    for (const Side<D>& side : part.sides_of(node)) __builtin_prefetch(grid.line_at(side.place));
   };
   threads.for_each(parts_.size(), [&](std::size_t p) {
     Part& part = parts_[p];
@@ -133,14 +132,14 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
         const Vec<double, D> change = contact - side.mass * velocity;  // of all forces
         contact = change - time_step * force_of(side);
         // The node itself has its own mass only.
-        const double own_mass = grid.block(patch_of(side)).mass()[side.node];
+        const double own_mass = grid.line_at(side.place)[mass_at];
         const Vec<double, D> own =
             change - (time_step * (side.mass - own_mass)) * free_gravity(node, gravity);
         correction -= dot(own, velocity - side.mapped);
       }
       force_work += dot(contact, velocity);
-      for_each_copy(node, side, grid, [&](std::size_t p, int at) {
-        for (int a = 0; a < D; ++a) grid.block(p).force(a)[at] += (1.0 / time_step) * contact[a];
+      for_each_copy(grid, node, side, [&](double* line) {
+        for (int a = 0; a < D; ++a) line[force_at + a] += (1.0 / time_step) * contact[a];
       });
     }
     node.force_work = force_work;

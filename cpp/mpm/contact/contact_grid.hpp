@@ -134,13 +134,9 @@ class ContactGrid {
   void fill_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<double>& stiffness, const ContactSettings& settings,
                   std::size_t tile, TileBodies<D>& around, std::size_t part, std::size_t first);
-  /// f(patch, node number in its block) for the patches that hold a side's node.
+  /// f(line) for a side's node in all patches that hold it.
   template <class F>
-  void for_each_copy(const ContactNode& node, const Side<D>& side, const TileGrid<D>& grid,
-                     F&& f) const;
-  std::size_t patch_of(const Side<D>& side) const {
-    return static_cast<std::size_t>(holders_[side.first_copy].patch);
-  }
+  void for_each_copy(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side, F&& f) const;
   /// The vector at number `at` of the line of a side's node; and write it to all copies.
   Vec<double, D> read(TileGrid<D>& grid, const Side<D>& side, int at) const;
   void write(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
@@ -202,21 +198,22 @@ class ContactGrid {
 
 template <int D>
 template <class F>
-void ContactGrid<D>::for_each_copy(const ContactNode& node, const Side<D>& side,
-                                   const TileGrid<D>& grid, F&& f) const {
-  f(patch_of(side), static_cast<int>(side.node));
+void ContactGrid<D>::for_each_copy(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
+                                   F&& f) const {
+  f(grid.line_at(side.place));
   if (side.copies == 1) return;
   const Index<D> index = Tile<D>::cell_index(node.cell);
   for (std::uint32_t h = side.first_copy + 1, left = side.copies - 1u; left > 0; ++h) {
     if (!holds_node<D>(grid, holders_[h], index)) continue;
-    f(static_cast<std::size_t>(holders_[h].patch), node_in_holder<D>(grid, holders_[h], index));
+    const NodeBlock<D> block = grid.block(static_cast<std::size_t>(holders_[h].patch));
+    f(block.lines[node_in_holder<D>(grid, holders_[h], index)]);
     --left;
   }
 }
 
 template <int D>
 Vec<double, D> ContactGrid<D>::read(TileGrid<D>& grid, const Side<D>& side, int at) const {
-  const double* const numbers = grid.block(patch_of(side)).lines[side.node] + at;
+  const double* const numbers = grid.line_at(side.place) + at;
   Vec<double, D> value;
   for (int a = 0; a < D; ++a) value[a] = numbers[a];
   return value;
@@ -225,9 +222,8 @@ Vec<double, D> ContactGrid<D>::read(TileGrid<D>& grid, const Side<D>& side, int 
 template <int D>
 void ContactGrid<D>::write(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
                            const Vec<double, D>& value, int at) const {
-  for_each_copy(node, side, grid, [&](std::size_t p, int n) {
-    double* const numbers = grid.block(p).lines[n] + at;
-    for (int a = 0; a < D; ++a) numbers[a] = value[a];
+  for_each_copy(grid, node, side, [&](double* line) {
+    for (int a = 0; a < D; ++a) line[at + a] = value[a];
   });
 }
 

@@ -65,9 +65,10 @@ void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around,
     side.copies = 0;
     for (std::uint32_t h = at.first_holder; h < at.first_holder + at.holders; ++h)
       if (holds_node<D>(grid, holders_[h], index) && side.copies++ == 0) side.first_copy = h;
-    side.node =
-        static_cast<std::uint16_t>(node_in_holder<D>(grid, holders_[side.first_copy], index));
-    __builtin_prefetch(grid.block(patch_of(side)).lines[side.node]);
+    const TileHolder& first = holders_[side.first_copy];
+    const double* const line = grid.block(first.patch).lines[node_in_holder<D>(grid, first, index)];
+    side.place = grid.place_of_line(line);
+    __builtin_prefetch(line);
   }
 }
 
@@ -81,7 +82,7 @@ void ContactGrid<D>::read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& b
     const auto b = static_cast<std::size_t>(side.body);
     who = mix(mix(who, b), bodies[b].active());
     side.prescribed = bodies[b].prescribed;
-    side.mass = grid.block(patch_of(side)).mass()[side.node];
+    side.mass = grid.line_at(side.place)[mass_at];
     side.mapped = read(grid, side, velocity_at);
   }
   if (keeps_) part.known_of(node).who = who;

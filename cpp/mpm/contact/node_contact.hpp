@@ -14,7 +14,7 @@ template <int D>
 struct Side {
   std::int32_t body;
   std::uint32_t first_copy;  // the first patch that holds the node (ContactGrid::holders_)
-  std::uint16_t node;        // its number in that patch's block
+  std::uint32_t place;       // of its line there in the memory of the nodes (TileGrid::line_at)
   std::uint8_t copies;       // how many patches hold it
   bool prescribed;           // the body moves as it does, whatever pushes it
   double mass;  // [kg]; of a rigid body, with its share of the whole body's; of a prescribed one

@@ -89,6 +89,11 @@ class TileGrid {
   /// Nodes before a cell's own that its particles reach.
   int margin() const { return margin_of(basis); }
   NodeBlock<D> block(std::size_t patch) { return block_of(patches[patch]); }
+  /// A node's line as a number, for those who come back to it before blocks are cut anew.
+  std::uint32_t place_of_line(const double* at) const {
+    return static_cast<std::uint32_t>((at - node_memory_.data()) / line);
+  }
+  double* line_at(std::uint32_t place) { return node_memory_.data() + std::size_t{place} * line; }
   /// What the patches and their nodes need now.
   std::size_t needed_bytes() const {
     return needed_ * sizeof(double) + patches.size() * sizeof(Patch<D>);
