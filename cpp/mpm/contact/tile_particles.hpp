@@ -125,10 +125,17 @@ class TileParticles {
   /// Have the memory bring a cell's particles: they lie near their places in the sorted columns.
   void fetch(const Body<D>& body, const Index<D>& cell) const {
     in_patch(cell, [&](const Patch<D>& patch, std::size_t c) {
-      const std::uint32_t row = patch.begin + patch.cell_begin[c];
-      for (int a = 0; a < D; ++a) __builtin_prefetch(body.x(a) + row);
-      __builtin_prefetch(body.mass() + row);
-      __builtin_prefetch(body.volume() + row);
+      if (!(patch.occupied >> c & 1u)) return;
+      const std::uint32_t first = patch.begin + patch.cell_begin[c];
+      const std::uint32_t last = patch.begin + patch.cell_begin[c + 1] - 1;
+      const auto bring = [&](const auto* column) {
+        __builtin_prefetch(column + first);
+        __builtin_prefetch(column + last);
+      };
+      bring(body.order.data());
+      for (int a = 0; a < D; ++a) bring(body.x(a));
+      bring(body.mass());
+      bring(body.volume());
     });
   }
 
