@@ -78,11 +78,8 @@ class ContactGrid {
   /// Find all normals and gaps anew, as after a change of the cells.
   void forget();
 
-  /// Where there is mass at the nodes: after `start_masses`, of all patches, in any order.
-  void start_masses(const TileGrid<D>& grid) { masses_.start(grid); }
-  void note_masses(TileGrid<D>& grid, std::size_t patch) { masses_.note(grid, patch); }
-  /// Find the overlapped nodes with their normals, pairs and gaps, eq. (5). Needs the masses noted,
-  /// mass and velocity at the nodes, and the length of the step that begins.
+  /// Find the overlapped nodes with their normals, pairs and gaps, eq. (5). Needs mass and velocity
+  /// at the nodes, and the length of the step that begins.
   void find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
             const std::vector<double>& stiffness, const ContactSettings& settings, double time_step,
             Threads& threads);

@@ -161,6 +161,7 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                           const std::vector<double>& stiffness, const ContactSettings& settings,
                           double time_step, Threads& threads) {
   keeps_ = settings.normal_travel > 0.0;
+  masses_.find(grid, threads);
   if (keeps_) add_travel(bodies.size());
   // Few parts, so that their sizes hardly change; enough to share them out evenly.
   constexpr std::size_t least_tiles = 32, per_thread = 8;

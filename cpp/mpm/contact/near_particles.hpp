@@ -80,14 +80,15 @@ void collect_near(const TileParticles<D>& particles, const Index<D>& node, doubl
   constexpr double rim = 1e-3;
   particles.around(node, [&](const Index<D>& place, const auto& lanes) {
     typename NearParticles<D>::Lanes p;
-    T to_rim(reach);
+    p.weight = lanes.mass;
+    auto near = T(0.0) < T(1.0);
     for (int a = 0; a < D; ++a) {
       p.x[a] = lanes.xi[a] - T(place[a] + particles.own_node());
-      to_rim = min(to_rim, T(reach) - absolute(p.x[a]));
+      const T to_rim = T(reach) - max(p.x[a], -p.x[a]);
+      near = near & (to_rim > T(0.0));
+      p.weight *= min(max(T(1.0 / rim) * to_rim, T(0.0)), T(1.0));
     }
-    const auto near = to_rim > T(0.0);
     if (!any(near)) return;
-    p.weight = lanes.mass * min(max(T(1.0 / rim) * to_rim, T(0.0)), T(1.0));
     p.half = select(near, lanes.half, T(-std::numeric_limits<double>::infinity()));
     to.add(p);
   });

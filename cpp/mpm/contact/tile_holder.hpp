@@ -49,22 +49,17 @@ int node_in_holder(const TileGrid<D>& grid, const TileHolder& holder, const Inde
 template <int D>
 class NodesWithMass {
  public:
-  /// Forget all; then `note` every patch, in any order, once its masses are known.
-  void start(const TileGrid<D>& grid) {
+  void find(TileGrid<D>& grid, Threads& threads) {
     words_ = static_cast<std::size_t>(BlockShape<D>::count_max(grid.margin())) / 64 +
              2;  // one to read beyond
     bits_.assign(grid.patches.size() * words_, 0);
-  }
-  void note(TileGrid<D>& grid, std::size_t patch) {
-    if (!grid.patches[patch].in_contact) return;
-    const NodeBlock<D> block = grid.block(patch);
-    std::uint64_t* word = &bits_[patch * words_];
-    for (int first = 0; first < block.count; first += 64) {
-      const int count = std::min(64, block.count - first);
-      std::uint64_t bits = 0;
-      for (int n = 0; n < count; ++n) bits |= std::uint64_t{block.mass()[first + n] > 0.0} << n;
-      *word++ = bits;
-    }
+    threads.for_each(grid.patches.size(), [&](std::size_t p) {
+      if (!grid.patches[p].in_contact) return;
+      const NodeBlock<D> block = grid.block(p);
+      std::uint64_t* bits = &bits_[p * words_];
+      for (int n = 0; n < block.count; ++n)
+        bits[n / 64] |= std::uint64_t{block.mass()[n] > 0.0} << n % 64;
+    });
   }
 
   /// Those of a tile's nodes, a bit each by Tile<D>::cell, that are in a holder's block.

@@ -25,13 +25,9 @@ T particle_edge(T volume, double mean_edge) {
       const T cube = z * z * z;
       return z * (cube + T(2.0) * ratio) / (T(2.0) * cube + ratio);
     };
-    // Each of its steps leaves the third power of what was wrong.
-    const T off = absolute(ratio - T(1.0));
-    y = halley(y);
-    if (any(off > T(0.03))) {
-      y = select(off > T(0.03), halley(y), y);
-      if (any(off > T(0.5))) y = select((ratio < T(0.5)) | (ratio > T(2.0)), halley(y), y);
-    }
+    y = halley(halley(y));
+    const auto far = (ratio < T(0.5)) | (ratio > T(2.0));
+    if (any(far)) y = select(far, halley(y), y);
     return T(mean_edge) * y;
   }
 }

@@ -14,7 +14,7 @@ template <int D>
 inline constexpr int cell_lanes = std::min(native_lanes, 1 << D);
 
 /// The same for a patch whose cells hold few: the other lanes of AVX-512 would stay empty, and half
-/// a register costs half.
+/// a register costs half (Zen 4).
 template <int D>
 inline constexpr int few_lanes = cell_lanes<D> == 8 ? 4 : cell_lanes<D>;
 
@@ -101,14 +101,13 @@ void store(Number* column, const WholeRows<W>& rows, Batch<W> value) {
   value.store(column + rows.first);
 }
 
-/// Columns have room for W rows behind their last (Columns).
 template <class Number, int W>
 Batch<W> load(const Number* column, const LaneRows<W>& rows) {
   if (rows.contiguous) {
-    const auto b = Batch<W>::load(column + rows.row[0]);
-    return rows.count == W
-               ? b
-               : select(first_lanes<W>(rows.count), b, Batch<W>(column[rows.row[W - 1]]));
+    const Number* const first = column + rows.row[0];
+    if (rows.count == W) return Batch<W>::load(first);
+    if constexpr (std::is_same_v<Number, double>)
+      return load_first<W>(first, rows.count, column[rows.row[W - 1]]);
   }
   Batch<W> b;
   for (int k = 0; k < W; ++k) b.v[k] = column[rows.row[k]];

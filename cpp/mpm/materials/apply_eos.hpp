@@ -25,7 +25,7 @@ template <class T, int D, class Model>
                                material.density);
     const Sym<T, D> strength = group.get_stress(block);
     StressWork<T> work{group.get(block.deviatoric_work), group.get(block.force_work)};
-    const T V = swelling.J(), per_volume = swelling.per_volume;
+    const T V = swelling.J, per_volume = swelling.per_volume;
     const T change = (swelling.after - swelling.before) * per_volume;  // of V
     const T mean_before = group.get(block.mean_before);
 

@@ -18,8 +18,8 @@ class BlockEnd {
   BlockEnd(const BlockColumns<D>& columns, const StressSettings& settings)
       : columns_(columns), settings_(settings) {}
 
-  /// `work` with the stress that a particle has in the end; the mean of old and new stress has done
-  /// the rest on the volume.
+  /// `work`: with the stress at the end of the step. `mean_stress`: over the step the average of a
+  /// third of the stress's trace, which works on the change of volume.
   void add(const Group<T, D>& group, const Swelling<T>& swelling, const StressWork<T>& work,
            T mean_stress, const Updated<T, D>& after) {
     const auto valid = group.valid();

@@ -101,15 +101,16 @@ struct Swelling {
   T mass, before, after;  // volumes [m^3]
   T dilation;             // trace of the velocity gradient x time step
   T per_volume;           // 1 / initial volume
+  T J;                    // after / initial volume; of a particle at rest 1 to the bit
 
   Swelling(T mass_, T before_, T after_, T dilation_, double density)
       : mass(mass_),
         before(before_),
         after(after_),
         dilation(dilation_),
-        per_volume(T(density) / mass_) {}
+        per_volume(T(density) / mass_),
+        J(after_ * T(density) / mass_) {}
 
-  T J() const { return after * per_volume; }
   /// Work of a mean stress on the change of volume [J].
   T work(T mean_stress) const { return mean_stress * (after - before); }
 
@@ -168,7 +169,7 @@ struct Moved {
         strain(symmetric_part(mid_step(gradient))),
         swelling(
             swelling_of(gradient, group.read(columns.mass), group.read(columns.volume), density)) {
-    motion.J = swelling.J();
+    motion.J = swelling.J;
   }
   static Mat<T, D> gradient_of(const Group<T, D>& group, const MaterialBlock<D>& block) {
     const auto valid = group.valid();

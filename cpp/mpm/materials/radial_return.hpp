@@ -17,12 +17,15 @@ struct Returned {
   T increment, von_mises;
 };
 
-/// Shorten the deviator of a stress whose von Mises stress is q to that of q - stiff d.
+/// Shorten the deviator of a stress whose von Mises stress is q to that of q - stiff d; where d is
+/// zero the stress stays as it is, to the bit.
 template <class T, int D>
 Returned<T> shorten(Sym<T, D>& stress, T q, T stiff, T d) {
   const Sym<T, D> mean = Sym<T, D>::isotropic(T(1.0 / 3.0) * trace(stress));
   const T after = q - stiff * d;
-  stress = mean + select(d > T(0.0), after / q, T(1.0)) * (stress - mean);
+  const Sym<T, D> shorter = mean + (after / q) * (stress - mean);
+  for (int c = 0; c < Sym<T, D>::size; ++c)
+    stress.c[c] = select(d > T(0.0), shorter.c[c], stress.c[c]);
   return {d, after};
 }
 

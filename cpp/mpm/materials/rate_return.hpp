@@ -16,14 +16,16 @@ inline constexpr double slope_error = 1e-5, bend_error = 0.01;
 /// The increment where a particle goes on flowing as it did. What the elastic step would add to von
 /// Mises' stress, `q_before` before, is what the flow takes back, but for the hardening. So good a
 /// start needs one step of third order (Chebyshev's) and mostly one with the slope that it
-/// predicts, which asks for the yield stress alone. Gives the lanes that flow and were not found
-/// so.
+/// predicts, which asks for the yield stress alone. Gives the lanes that flow and
+/// are still to be found.
 template <Real T, class Flow>
 Truth<T> flow_on(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& flow, T& found) {
-  const T over = q - max(q_before, flow.at_rest());
+  const T nothing(0.0), over = q - max(q_before, flow.at_rest());
   auto open = flows & (over > T(1e-6) * q);
   if (!any(open)) return flows;
   T d = select(open, over, q) / (stiff + flow.hardens()), x = log(d * T(1.0 / unit));
+  // Lanes that are not open stay where `flow` has begun, so that nothing depends on neighbours.
+  d = select(open, d, nothing);
   const RateYield<T> y = flow.yield(q, d, x);
   const T inverse = T(1.0) / (stiff * d + y.slope);
   const T newton = (q - stiff * d - y.value) * inverse;
@@ -31,25 +33,26 @@ Truth<T> flow_on(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& fl
   T step = newton * (T(1.0) - T(0.5) * newton * bend);
   // Up to here exp(step) - 1 is its series to step^6, within 2e-13 of d.
   open = open & (absolute(step) < T(0.05));
-  step = select(open, step, T(0.0));
+  step = select(open, step, nothing);
   T series(1.0 / 720.0);
   for (const double factor : {1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0})
     series = T(factor) + step * series;
   d += d * step * series;
-  const T first = x, off = absolute(step), there = inverse * (T(1.0) - step * bend);
+  const T x_first = x, first = absolute(step);
   x += step;
-  auto search = flows & !open;
+  const T predicted = inverse * (T(1.0) - step * bend);  // 1 / slope
+  const auto search = flows & !open;
   constexpr int most_steps = 3;
   for (int k = 0; k < most_steps && any(open); ++k) {
-    const T last = (q - stiff * d - flow.value(q, d, x)) * there, size = absolute(last);
-    d = select(open, d + d * last * (T(1.0) + T(0.5) * last), d);
-    x = select(open, x + last, x);
+    const T next = (q - stiff * d - flow.value(q, d, x)) * predicted, size = absolute(next);
+    d = select(open, d + d * next * (T(1.0) + T(0.5) * next), d);
+    x = select(open, x + next, x);
     // What a step leaves is its own square, and what the slope was wrong by.
-    const T left = size * (size + T(slope_error) + off * (T(bend_error) + T(2.0) * off));
+    const T left = size * (size + T(slope_error) + first * (T(bend_error) + T(2.0) * first));
     open = open & !(left < T(return_tolerance) * q * inverse);
   }
   found = d;
-  return search | open | (flows & !(first * x > T(0.0)));  // x = 0 may be a kink
+  return search | open | (flows & !(x_first * x > nothing));  // x = 0 may be a kink
 }
 
 /// The same for any lane: Halley's steps, third order, kept between bounds by halving, from
@@ -57,7 +60,9 @@ Truth<T> flow_on(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& fl
 template <Real T, class Flow>
 T search_flow(T q, T q_before, T stiff, double unit, Truth<T> open, Flow& flow) {
   const T nothing(0.0);
-  T low(-700.0), high(700.0), x = flow.start(q_before), found = nothing;
+  // The flow takes no more than the whole stress: 3 G d <= q.
+  T low(-700.0), high = log(max(q / stiff * T(1.0 / unit), T(tiny)));
+  T x = min(flow.start(q_before), high), found = nothing;
   for (int turn = 0; turn < 100; ++turn) {
     const T d = T(unit) * exp(x);
     const RateYield<T> y = flow.yield(q, d, x);
@@ -83,10 +88,8 @@ T search_flow(T q, T q_before, T stiff, double unit, Truth<T> open, Flow& flow) 
     open = open & !settled;
     if (!any(open)) break;
     const auto far = size > T(0.5);
-    if (turn == 0 && any(open & far))
-      next = select(far, flow.above(q), next);
-    else
-      next = select((next > low) & (next < high), next, T(0.5) * (low + high));
+    next = select((next > low) & (next < high), next, T(0.5) * (low + high));
+    if (turn == 0 && any(open & far)) next = select(far, flow.above(q), next);
     x = select(open, next, x);
   }
   return found;

@@ -215,6 +215,28 @@ Mask<W> first_lanes(int count) {
   return {lane < Bits{} + count};
 }
 
+/// The first `count` of W numbers in memory, at least one, and `rest` in the lanes behind. What is
+/// behind is not read: another thread may be writing it.
+template <int W>
+Batch<W> load_first(const double* from, int count, double rest) {
+#if defined(__AVX512VL__)
+  const auto lanes = static_cast<__mmask8>((1u << count) - 1u);
+  const auto behind = Batch<W>(rest).v;
+  if constexpr (W == 8) return Batch<W>(_mm512_mask_loadu_pd(behind, lanes, from));
+  if constexpr (W == 4) return Batch<W>(_mm256_mask_loadu_pd(behind, lanes, from));
+  if constexpr (W == 2) return Batch<W>(_mm_mask_loadu_pd(behind, lanes, from));
+#elif defined(__AVX__)
+  if constexpr (W == 4) {
+    const auto lanes = first_lanes<W>(count);
+    const auto bits = reinterpret_cast<__m256i>(lanes.v);
+    return select(lanes, Batch<W>(_mm256_maskload_pd(from, bits)), Batch<W>(rest));
+  }
+#endif
+  Batch<W> b(rest);
+  for (int k = 0; k < count; ++k) b.v[k] = from[k];
+  return b;
+}
+
 /// Sum over the lanes, in the order of the lanes.
 template <int W>
 double sum(Batch<W> a) {

@@ -34,15 +34,14 @@ template <class T>
 using Truth = decltype(T(0.0) < T(0.0));
 
 /// (1 + x)^a for |x| <= `reach` by the binomial series to x^9: the rest is below 2e-15 for 0 < a <
-/// 3, and 1e-9 for a = 20.
+/// 3; beyond it is not `exact`.
 struct PowerNearOne {
   static constexpr int terms = 9;
   static constexpr double reach = 0.05;
-  double exponent = 0.0, factor[terms + 1] = {};
+  double exponent = 0.0, factor[terms + 1] = {1.0};
 
   PowerNearOne() = default;
   explicit PowerNearOne(double a) : exponent(a) {
-    factor[0] = 1.0;
     for (int k = 1; k <= terms; ++k) factor[k] = factor[k - 1] * (a - (k - 1)) / k;
   }
   bool exact() const { return exponent < 3.0; }

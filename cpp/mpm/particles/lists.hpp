@@ -13,7 +13,7 @@ template <int D>
 struct Leaver {
   int body;
   Index<D> tile;       // that it has come to
-  std::int32_t patch;  // of its body there, -1 if there is none yet
+  std::int32_t patch;  // of its body there, -1 if there is none yet; until patches are added
   std::uint32_t row;
   std::uint8_t cell;
 };

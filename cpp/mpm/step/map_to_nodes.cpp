@@ -69,14 +69,9 @@ void map_to_nodes(Domain<D>& domain) {
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) { map_patch<what>(domain, p); });
   grid.sum_shared_nodes(domain.threads, momentum ? 0 : force_at, forces ? line : force_at);
   if (forces && grid.has_dashpots) grid.sum_shared_dashpots(domain.threads);
-  if (momentum) {
-    const bool contact = domain.has_contact();
-    if (contact) domain.contact.start_masses(grid);
-    domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
-      find_velocities(domain, p);
-      if (contact) domain.contact.note_masses(grid, p);  // while they are in the cache
-    });
-  }
+  if (momentum)
+    domain.threads.for_each(grid.patches.size(),
+                            [&](std::size_t p) { find_velocities(domain, p); });
   if (loaded) sum_loads(domain);
 }
 

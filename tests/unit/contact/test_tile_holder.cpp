@@ -28,8 +28,7 @@ void check_nodes(mpm::testing::Report& report, Basis basis) {
     for (int n = 0; n < grid.patches[p].shape.node_count; ++n)
       grid.block(p).mass()[n] = has_mass(random) ? 0.5 : 0.0;
   NodesWithMass<D> masses;
-  masses.start(grid);
-  for (std::size_t p = 0; p < 2; ++p) masses.note(grid, p);
+  masses.find(grid, threads);
   for (int patch = 0; patch < 2; ++patch)
     for (int k = 0; k < Tile<D>::neighbours; ++k) {
       const TileHolder holder(patch, static_cast<std::size_t>(patch), k);

@@ -23,7 +23,7 @@ struct Point {
   T J = T(1.0);
 
   explicit Point(const Model& model) : state(model.template start<T, D>()) {}
-  void move(const Model& model, const Mat<T, D>& gradient) {
+  [[gnu::noinline]] void move(const Model& model, const Mat<T, D>& gradient) {
     Motion<T, D> motion;
     motion.gradient = gradient;
     Mat<T, D> f = gradient;
@@ -102,6 +102,38 @@ void check_lanes(mpm::testing::Report& report, double yield) {
   }
 }
 
+/// What a lane does not ask what its neighbours hold: it gives the bits that it gives among its
+/// likes.
+template <class Model>
+void check_neighbours(mpm::testing::Report& report) {
+  constexpr int W = native_lanes, D = 3;
+  using Lanes = Point<Model, Batch<W>, D>;
+  const Model model = example<Model>(soft);
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> any(-0.05, 0.05), decades(-6.0, 0.0);
+  Lanes mixed(model);
+  std::vector<Lanes> alike(W, mixed);
+  for (int step = 0; step < 60; ++step) {
+    Mat<Batch<W>, D> gradient;
+    std::array<Mat<Batch<W>, D>, W> each;
+    for (int k = 0; k < W; ++k) {
+      const double size = std::pow(10.0, decades(random));
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < D; ++j)
+          each[static_cast<std::size_t>(k)][i][j] =
+              Batch<W>(gradient[i][j].v[k] = size * any(random));
+    }
+    mixed.move(model, gradient);
+    for (int k = 0; k < W; ++k) {
+      auto& one = alike[static_cast<std::size_t>(k)];
+      one.move(model, each[static_cast<std::size_t>(k)]);
+      for (int i = 0; i < Sym<double, D>::size; ++i)
+        CHECK(mixed.stress.c[i][k] == one.stress.c[i][k], Model::name, step, k);
+      CHECK(mixed.J[k] == one.J[k], Model::name, step, k);
+    }
+  }
+}
+
 /// Lanes against the scalar, and the derivatives against central differences.
 template <class Model>
 void check_eos(mpm::testing::Report& report) {
@@ -132,6 +164,7 @@ void test_models(mpm::testing::Report& report) {
       check_lanes<Model, 2>(report, yield);
       check_lanes<Model, 3>(report, yield);
     }
+    check_neighbours<Model>(report);
     ++count;
   });
   EosModels::for_each([&]<class Model>(const Model&) {

@@ -49,7 +49,15 @@ struct JohnsonCook : ElasticPlastic<JohnsonCook> {
 
   void prepare(double density) {
     ElasticPlastic::prepare(density);
-    law = {A, B, C, rate0, PowerNearOne(n), PowerNearOne(m), T_room, T_melt, chi / (density * cp)};
+    law = {.A = A,
+           .B = B,
+           .C = C,
+           .rate0 = rate0,
+           .n = PowerNearOne(n),
+           .m = PowerNearOne(m),
+           .T_room = T_room,
+           .T_melt = T_melt,
+           .heating = chi / (density * cp)};
   }
   std::string problem() const {
     if (!(T_melt > T_room)) return "johnson_cook.T_melt must be > T_room";
