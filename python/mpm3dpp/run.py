@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _core
-from .case import Case
+from .case import Case, load_case
 from .checkpoints import Checkpoint, Checkpoints
 from .errors import CaseError, RunError
 from .folders import forget_last_run, only_run_in, writable_folder
@@ -30,7 +30,7 @@ _BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without conta
 
 
 def run_case(
-    case: Case,
+    case: Case | str | Path,
     out: str | Path,
     threads: int | None = None,
     quiet: bool = True,
@@ -41,7 +41,7 @@ def run_case(
     """Run a case to its end: results.vtkhdf, history.csv, manifest.json and pictures in a folder.
 
     Args:
-        case: what to run.
+        case: what to run, or its file.
         out: the output folder; it is made.
         threads: how many; by default OMP_NUM_THREADS, else all cores.
         quiet: no progress and no summary.
@@ -56,6 +56,8 @@ def run_case(
         RunError: the run became unstable, or the disk is full; what was written before is kept.
         KeyboardInterrupt: the user stopped it; what was computed is kept.
     """
+    if not isinstance(case, Case):
+        case = load_case(case)
     before = None
     if resume:
         before = Checkpoint.of(Path(out))

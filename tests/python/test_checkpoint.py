@@ -245,7 +245,7 @@ def test_no_checkpoint(tmp_path: Path) -> None:
         tmp_path, CASE.replace("[output]", "[output]\ncheckpoint_interval = 0")
     ).exists()
     said = resumed(tmp_path, CASE)
-    assert "there is no checkpoint" in said and said.endswith("or leave out --resume")
+    assert "there is no checkpoint" in said and said.endswith("has none: leave out --resume")
     nowhere = mpm3dpp("run", tmp_path / "case.toml", "--out", "nowhere", "--resume", cwd=tmp_path)
     assert nowhere.returncode == 2 and "there is no checkpoint" in one_sentence(nowhere.stderr)
     assert not (tmp_path / "nowhere").exists()

@@ -59,7 +59,10 @@ def read_about(path: Path) -> dict[str, Any]:
         CaseError: the file is missing or is not a checkpoint.
     """
     if not path.is_file():
-        remedy = "give the --out of the run that is to go on, or leave out --resume"
+        remedy = (
+            "give the --out of the run that is to go on; one that was killed or met a full disk "
+            "before its first checkpoint has none: leave out --resume"
+        )
         raise CaseError(f"there is no checkpoint '{path}'", remedy)
     try:
         with zipfile.ZipFile(path) as archive:

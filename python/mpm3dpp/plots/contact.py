@@ -74,14 +74,15 @@ def measure_gap(
     slack = float(half_a.mean())
     nearest = int(distance.argmin())
     facing = distance <= distance[nearest] + slack
-    i, j = i[facing], j[facing]
+    i, j, distance = i[facing], j[facing], distance[facing]
     middles = 0.5 * (first[i] + second[j])
     middle = 0.5 * (first[i] + second[j])[np.flatnonzero(facing) == nearest][0]
     for _ in range(3):  # the middle of this place of contact, not of several
         here = np.linalg.norm(middles - middle, axis=1) <= 5.0 * reach
         middle = middles[here].mean(axis=0)
-    normal = _direction((second[j] - first[i])[here])
-    radius = 0.5 * float(distance[nearest]) + reach
+    ways = [_way(first[k], second, d) for k, d in zip(i[here], distance[here], strict=True)]
+    normal = _direction(np.array(ways))
+    radius = 0.5 * float(distance.min()) + reach
     near_a = np.linalg.norm(first - middle, axis=1) <= radius
     near_b = np.linalg.norm(second - middle, axis=1) <= radius
     near_a[i[here]] = near_b[j[here]] = True
@@ -89,6 +90,14 @@ def measure_gap(
     end_b = float(((second[near_b] - middle) @ normal - half_b[near_b]).min())
     place = middle + 0.5 * (end_a + end_b) * normal
     return Gap(end_b - end_a, place, normal)
+
+
+def _way(point: np.ndarray, others: np.ndarray, distance: float) -> np.ndarray:
+    """From a point to its nearest others: where two are nearly as near, it faces between them."""
+    apart = others - point
+    as_near = (apart**2).sum(axis=1) <= (1.25 * distance) ** 2
+    way: np.ndarray = apart[as_near].mean(axis=0)
+    return way
 
 
 def _direction(vectors: np.ndarray) -> np.ndarray:
@@ -174,6 +183,12 @@ def _draw(
     points = arrays["position"].astype(float)
     sizes = sizes_of(arrays, results)
     of_a, of_b = arrays["body"] == a, arrays["body"] == b
+    grains = arrays.get("grain")
+    if grains is not None:  # Those two of the entries that are nearest to each other.
+        i, j, distance = nearest_pairs(points[of_a], points[of_b])
+        k = int(distance.argmin())
+        of_a &= grains == grains[of_a][i[k]]
+        of_b &= grains == grains[of_b][j[k]]
     cell = results.cell_size
     gap = measure_gap(points[of_a], points[of_b], 0.5 * sizes[of_a], 0.5 * sizes[of_b], 2.0 * cell)
     view = view_of(results, [frame], "body")
@@ -185,7 +200,9 @@ def _draw(
     factor, unit = length_unit(float(np.max(view.upper - view.lower)))
     if results.dimension == 2:
         set_view(whole, factor * view.lower, factor * view.upper, unit)
-        draw_particles(whole, factor * points[:, :2], factor * sizes, arrays["body"], colours)
+        draw_particles(
+            whole, factor * points[:, :2], factor * sizes, arrays["body"], colours, grains=grains
+        )
         half = 0.5 * _WINDOW * cell
         corner = factor * (gap.place[:2] - half)
         whole.add_patch(_frame(corner, 2 * half * factor))
@@ -196,24 +213,22 @@ def _draw(
         draw_box_axes(whole, image, camera, view.lower, view.upper)
     end, shown = float(results.times[-1]), float(results.times[frame])
     force, drawn_at = at_time(time, end), at_time(shown, end)
-    title = f"{results.bodies[a]} and {results.bodies[b]}: first contact force, {force}"
+    title = f"{results.bodies[a]} and {results.bodies[b]}\nfirst contact force, {force}"
     whole.set_title(title if force == drawn_at else f"{title}\ndrawn at {drawn_at}", loc="left")
     if results.dimension == 2 and len(results.bodies) <= 3:
         legend_of_bodies(
-            whole, results.bodies, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3
+            whole, results.bodies, loc="lower right", bbox_to_anchor=(1.0, 1.05), ncols=3
         )
     else:
         legend_of_bodies(whole, results.bodies, loc="best")
-    _close_up(close, results, points, sizes, arrays["body"], gap, recorded)
+    _close_up(close, results, arrays, gap, recorded)
     return save(figure, path)
 
 
 def _close_up(
     axes: Axes,
     results: Results,
-    points: np.ndarray,
-    sizes: np.ndarray,
-    bodies: np.ndarray,
+    arrays: dict[str, np.ndarray],
     gap: Gap,
     recorded: float | None,
 ) -> None:
@@ -223,10 +238,10 @@ def _close_up(
     if results.dimension == 3:  # a slice through the contact that holds the normal
         across = int(np.argmin(np.abs(gap.normal)))
         plane = [k for k in range(3) if k != across]
-        depth = points[:, across]
+        depth = arrays["position"][:, across].astype(float)
         nearest = depth[np.abs(depth - gap.place[across]).argmin()]  # Not between two layers.
-        layer = np.abs(depth - nearest) <= 0.5 * sizes
-        points, sizes, bodies = points[layer], sizes[layer], bodies[layer]
+        layer = np.abs(depth - nearest) <= 0.5 * sizes_of(arrays, results)
+        arrays = {name: values[layer] for name, values in arrays.items()}
     half = 0.5 * _WINDOW * cell
     factor, unit = length_unit(2 * half)
     centre = gap.place[plane]
@@ -235,7 +250,9 @@ def _close_up(
     axes.set_xlabel(f"{'xyz'[plane[0]]} [{unit}]")
     axes.set_ylabel(f"{'xyz'[plane[1]]} [{unit}]")
     draw_cells(axes, factor * results.origin[plane], factor * cell, lower, upper)
-    draw_particles(axes, factor * points[:, plane], factor * sizes, bodies, body_colours(bodies))
+    bodies, points = arrays["body"], factor * arrays["position"][:, plane].astype(float)
+    sizes, colours = factor * sizes_of(arrays, results), body_colours(bodies)
+    draw_particles(axes, points, sizes, bodies, colours, grains=arrays.get("grain"))
     normal = gap.normal[plane] / np.linalg.norm(gap.normal[plane])
     along = np.array([-normal[1], normal[0]])
     for side in (-0.5, 0.5):

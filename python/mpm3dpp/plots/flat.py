@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 _INK = "#1a1a1a"
 _DISCS_FROM = 9.0  # pixels a particle must span to be drawn as a disc of its own
+_GRAINS_FROM = 8.0  # Pixels across the median grain, from which grains get outlines.
 _FINER = 2  # pixels of the particles' image per pixel of the picture, along each side
 
 
@@ -45,8 +46,9 @@ def draw_particles(
     bodies: np.ndarray,
     colours: np.ndarray,
     outline: bool = True,
+    grains: np.ndarray | None = None,
 ) -> None:
-    """Draw particles body by body, each with a thin dark outline around the whole body.
+    """Draw particles body by body, each with a thin dark outline around the whole body or grain.
 
     Small particles are drawn as squares of their volume, which tile the body without seams;
     large ones (a zoomed view) as discs, so that each can be seen. The view must be set before.
@@ -58,6 +60,8 @@ def draw_particles(
         bodies: number of each particle's body (n,).
         colours: (n, 3) or (n, 4), 0 to 1.
         outline: whether bodies get an outline.
+        grains: number of each particle's grain in its body (n,), for outlines of their own where
+            they are large enough in the picture.
     """
     left, right = sorted(axes.get_xlim())
     low, high = sorted(axes.get_ylim())
@@ -67,6 +71,8 @@ def draw_particles(
     if len(points) == 0:
         return
     scale = pixels_per_unit(axes)
+    if grains is not None:
+        bodies = _parts(bodies, grains[seen], sizes * scale)
     figure: Any = axes.figure
     if float(np.median(sizes)) * scale > _DISCS_FROM:
         for body in np.unique(bodies):
@@ -85,6 +91,15 @@ def draw_particles(
     axes.imshow(
         image, origin="lower", extent=(left, right, low, high), interpolation="hanning", zorder=2
     )
+
+
+def _parts(bodies: np.ndarray, grains: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """Numbers that tell grains apart, or bodies alone where grains are but some pixels across."""
+    parts: np.ndarray
+    _, parts = np.unique(np.column_stack([bodies, grains]), axis=0, return_inverse=True)
+    parts = parts.reshape(-1)
+    across = np.sqrt(np.bincount(parts, weights=sizes**2))
+    return parts if float(np.median(across)) >= _GRAINS_FROM else bodies
 
 
 def _discs(axes: Axes, points: np.ndarray, sizes: np.ndarray, colours: np.ndarray) -> None:

@@ -131,7 +131,7 @@ def _draw_flat(
     _key(axes, results, colour, mappable)
     points = factor * arrays["position"][:, :2].astype(float)
     sizes = factor * sizes_of(arrays, results)
-    draw_particles(axes, points, sizes, arrays["body"], colours)
+    draw_particles(axes, points, sizes, arrays["body"], colours, grains=arrays.get("grain"))
     return figure
 
 

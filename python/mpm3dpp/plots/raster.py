@@ -34,8 +34,9 @@ def tile(
         image (height, width, 4), 0 to 1, transparent where no body is; row 0 is the lowest.
     """
     image = np.zeros((*shape, 4), dtype=np.float32)
-    for body in np.unique(bodies):
-        mine = np.flatnonzero(bodies == body)
+    order = np.argsort(bodies, kind="stable")
+    ends = np.flatnonzero(np.diff(bodies[order])) + 1
+    for mine in np.split(order, ends):
         reach = 0.5 * sizes[mine].max()
         close = int(np.ceil(0.6 * reach))
         margin = int(np.ceil(reach)) + close + 2
