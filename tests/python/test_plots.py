@@ -14,7 +14,7 @@ from fake_core import COLUMNS, SIZE, FakeSimulation
 from mpm3dpp import plots
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io import HistoryWriter, ResultsWriter, build_manifest
-from mpm3dpp.plots import contact, labels, raster, space
+from mpm3dpp.plots import contact, flat, labels, raster, space
 
 
 def make_run(path: Path, dimension: int = 2, manifest: bool = True) -> Path:
@@ -137,6 +137,22 @@ def test_gap_of_two_lattices_is_exact(gap: float) -> None:
     assert found.value == pytest.approx(gap, abs=1e-12)
     assert found.normal == pytest.approx(turn[:, 0], abs=1e-12)
     assert found.place == pytest.approx(turn @ [8.0 + gap / 2, 4.0, 0.0], abs=1e-9)
+
+
+def test_the_normal_of_lattices_out_of_step_is_straight() -> None:
+    """Every point of one face lies between two of the other; only those at the end have one."""
+    first = np.column_stack([np.zeros(40), np.arange(40.0), np.zeros(40)])
+    second = first + np.array([1.0, 0.5, 0.0])
+    halves = np.full(40, 0.5)
+    found = contact.measure_gap(first, second, halves, halves, 4.0)
+    assert found.normal == pytest.approx([1.0, 0.0, 0.0], abs=0.05)
+
+
+def test_grains_are_told_apart_where_they_are_large_enough() -> None:
+    bodies, grains = np.array([0, 0, 1, 1, 1]), np.array([0, 1, 0, 1, 1])
+    parts = flat._parts(bodies, grains, np.full(5, 12.0))
+    assert len(set(parts.tolist())) == 4 and parts[3] == parts[4]
+    assert flat._parts(bodies, grains, np.full(5, 2.0)).tolist() == bodies.tolist()
 
 
 def test_nearest_pairs_against_all_pairs() -> None:

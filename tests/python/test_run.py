@@ -124,12 +124,13 @@ def test_quiet_and_json(tmp_path: Path) -> None:
 
 
 def test_run_case_from_python(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    case = load_case(write(tmp_path))
+    file = write(tmp_path)
+    case = load_case(file)
     manifest = run_case(case, tmp_path / "out", threads=1)
     assert manifest.to_dict() == read_manifest(tmp_path / "out")
     printed = capfd.readouterr()
     assert (printed.out, printed.err) == ("", "")
-    again = run_case(case, tmp_path / "out", threads=1)  # into the same folder
+    again = run_case(file, tmp_path / "out", threads=1)  # The file, into the same folder.
     assert again.result_hash == manifest.result_hash
     with open_results(tmp_path / "out") as results:
         assert results.case_hash == case.case_hash
