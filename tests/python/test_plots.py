@@ -5,13 +5,14 @@ from __future__ import annotations
 
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import matplotlib.image as matplotlib_image
 import numpy as np
 import pytest
 
 from fake_core import COLUMNS, SIZE, FakeSimulation
-from mpm3dpp import plots
+from mpm3dpp import open_results, plots, run_case
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io import HistoryWriter, ResultsWriter, build_manifest
 from mpm3dpp.plots import contact, flat, labels, raster, space
@@ -123,6 +124,45 @@ def test_first_contact_picture_in_space(tmp_path: Path) -> None:
     path = plots.first_contact(make_run(tmp_path, dimension=3), out=tmp_path / "touch.png")
     assert path == tmp_path / "touch.png"
     pixels(path)
+
+
+GRAINS = """\
+[grid]
+dimension = 2
+cell_size = "1 mm"
+[run]
+end_time = "4 ms"
+[material.rubber]
+density = "1000 kg/m^3"
+strength = { elastic = { E = "1 MPa", nu = 0.3 } }
+[grains.low]
+material = "rubber"
+lattice = { lower = [0, 0], count = [3, 1], radius = "3 mm", spacing = "8 mm" }
+[grains.high]
+material = "rubber"
+lattice = { lower = [0, "6.5 mm"], count = [3, 1], radius = "3 mm", spacing = "8 mm" }
+velocity = [0, "-1 m/s"]
+"""
+
+
+def test_the_first_contact_of_grains_is_that_of_two(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not of their entries, whose three grains each stand side by side."""
+    (tmp_path / "case.toml").write_text(GRAINS)
+    run_case(tmp_path / "case.toml", tmp_path, threads=1, pictures=False)
+    with open_results(tmp_path) as results:
+        each = np.bincount(results.arrays(0)["body"])
+    counts: list[tuple[int, int]] = []
+    measure = contact.measure_gap
+
+    def noted(first: np.ndarray, second: np.ndarray, *rest: Any) -> contact.Gap:
+        counts.append((len(first), len(second)))
+        return measure(first, second, *rest)
+
+    monkeypatch.setattr(contact, "measure_gap", noted)
+    pixels(plots.first_contact(tmp_path))
+    assert counts == [(each[0] // 3, each[1] // 3)]
 
 
 @pytest.mark.parametrize("gap", [-0.2, 0.0, 1.3])

@@ -16,8 +16,8 @@ inline constexpr double slope_error = 1e-5, bend_error = 0.01;
 /// The increment where a particle goes on flowing as it did. What the elastic step would add to von
 /// Mises' stress, `q_before` before, is what the flow takes back, but for the hardening. So good a
 /// start needs one step of third order (Chebyshev's) and mostly one with the slope that it
-/// predicts, which asks for the yield stress alone. Gives the lanes that flow and
-/// are still to be found.
+/// predicts, which asks for the yield stress alone. Gives the lanes that flow and are
+/// still to be found.
 template <Real T, class Flow>
 Truth<T> flow_on(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& flow, T& found) {
   const T nothing(0.0), over = q - max(q_before, flow.at_rest());
@@ -38,21 +38,22 @@ Truth<T> flow_on(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& fl
   for (const double factor : {1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0})
     series = T(factor) + step * series;
   d += d * step * series;
-  const T x_first = x, first = absolute(step);
+  const T x_before = x, step_size = absolute(step);
   x += step;
   const T predicted = inverse * (T(1.0) - step * bend);  // 1 / slope
   const auto search = flows & !open;
   constexpr int most_steps = 3;
   for (int k = 0; k < most_steps && any(open); ++k) {
-    const T next = (q - stiff * d - flow.value(q, d, x)) * predicted, size = absolute(next);
-    d = select(open, d + d * next * (T(1.0) + T(0.5) * next), d);
-    x = select(open, x + next, x);
+    const T last = (q - stiff * d - flow.value(q, d, x)) * predicted, size = absolute(last);
+    d = select(open, d + d * last * (T(1.0) + T(0.5) * last), d);
+    x = select(open, x + last, x);
     // What a step leaves is its own square, and what the slope was wrong by.
-    const T left = size * (size + T(slope_error) + first * (T(bend_error) + T(2.0) * first));
+    const T left =
+        size * (size + T(slope_error) + step_size * (T(bend_error) + T(2.0) * step_size));
     open = open & !(left < T(return_tolerance) * q * inverse);
   }
   found = d;
-  return search | open | (flows & !(x_first * x > nothing));  // x = 0 may be a kink
+  return search | open | (flows & !(x_before * x > nothing));  // x = 0 may be a kink
 }
 
 /// The same for any lane: Halley's steps, third order, kept between bounds by halving, from
