@@ -45,7 +45,10 @@ void ContactGrid<D>::for_each_closed(TileGrid<D>& grid, Threads& threads, F&& f)
   constexpr std::size_t ahead = 6;
   const auto fetch = [&](Part& part, const ContactNode& node) {
     if (!part.any_closed(node)) return;
-    for (const Side<D>& side : part.sides_of(node)) __builtin_prefetch(grid.line_at(side.place));
+    for (const Side<D>& side : part.sides_of(node))
+      part.for_each_place(side, [&](std::uint32_t place) {
+        __builtin_prefetch(grid.line_at(place), 1);
+      });
   };
   threads.for_each(parts_.size(), [&](std::size_t p) {
     Part& part = parts_[p];
@@ -69,7 +72,7 @@ void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
       solution.sides[k].start(sides[k].mapped, Vec<double, D>::zero());
     solve<false>(solution);
     for (std::size_t k = 0; k < sides.size(); ++k)
-      write(grid, node, sides[k], solution.sides[k].end_velocity(), velocity_at);
+      write(grid, part, sides[k], solution.sides[k].end_velocity(), velocity_at);
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       SidePair<D>& pair = pairs[k];
       const bool pushed = solution.pairs[k].normal_impulse > 0.0;
@@ -138,7 +141,8 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
         correction -= dot(own, velocity - side.mapped);
       }
       force_work += dot(contact, velocity);
-      for_each_copy(grid, node, side, [&](double* line) {
+      part.for_each_place(side, [&](std::uint32_t place) {
+        double* const line = grid.line_at(place);
         for (int a = 0; a < D; ++a) line[force_at + a] += (1.0 / time_step) * contact[a];
       });
     }
@@ -178,7 +182,7 @@ void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
       solution.sides[k].start(read(grid, sides[k], remapped_at), Vec<double, D>::zero());
     solve<false>(solution);
     for (std::size_t k = 0; k < sides.size(); ++k)
-      write(grid, node, sides[k], solution.sides[k].end_velocity(), remapped_at);
+      write(grid, part, sides[k], solution.sides[k].end_velocity(), remapped_at);
   });
 }
 

@@ -60,10 +60,14 @@ struct TileBodies {
   std::vector<TileBody<D>> bodies;  // the first `count` are in use
   std::size_t count = 0;
   std::uint64_t overlapped = 0;  // nodes at which two or more have mass
+  std::vector<HeldNodes<D>> held;  // by the holders, in the order of the tile's
   LastPlanes<D> planes;
 
   std::span<TileBody<D>> all() { return {bodies.data(), count}; }
   std::span<const TileBody<D>> all() const { return {bodies.data(), count}; }
+  std::span<const HeldNodes<D>> held_by(const TileBody<D>& body) const {
+    return {&held[body.first_holder - bodies.front().first_holder], body.holders};
+  }
   TileBody<D>& with(std::int32_t body) {
     return *std::ranges::find(all(), body, &TileBody<D>::body);
   }
@@ -120,7 +124,7 @@ class ContactGrid {
                   ContactNode& node);
   /// The overlapped nodes of a tile, their sides read and their pairs empty.
   void add_nodes(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, std::size_t tile,
-                 const TileBodies<D>& around, Part& part);
+                 TileBodies<D>& around, Part& part);
   /// Add to travel_ what the fastest node of each body says.
   void add_travel(std::size_t bodies);
   /// Take over what is known of the pairs at a node, if it still holds; else false.
@@ -131,13 +135,10 @@ class ContactGrid {
   void fill_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<double>& stiffness, const ContactSettings& settings,
                   std::size_t tile, TileBodies<D>& around, std::size_t part, std::size_t first);
-  /// f(line) for a side's node in all patches that hold it.
-  template <class F>
-  void for_each_copy(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side, F&& f) const;
   /// The vector at number `at` of the line of a side's node; and write it to all copies.
   Vec<double, D> read(TileGrid<D>& grid, const Side<D>& side, int at) const;
-  void write(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
-             const Vec<double, D>& value, int at) const;
+  void write(TileGrid<D>& grid, const Part& part, const Side<D>& side, const Vec<double, D>& value,
+             int at) const;
   /// Grid coordinates of a node.
   Index<D> place_of(const TileGrid<D>& grid, const ContactNode& node) const {
     const Index<D> index = Tile<D>::cell_index(node.cell);
@@ -194,21 +195,6 @@ class ContactGrid {
 };
 
 template <int D>
-template <class F>
-void ContactGrid<D>::for_each_copy(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
-                                   F&& f) const {
-  f(grid.line_at(side.place));
-  if (side.copies == 1) return;
-  const Index<D> index = Tile<D>::cell_index(node.cell);
-  for (std::uint32_t h = side.first_copy + 1, left = side.copies - 1u; left > 0; ++h) {
-    if (!holds_node<D>(grid, holders_[h], index)) continue;
-    const NodeBlock<D> block = grid.block(static_cast<std::size_t>(holders_[h].patch));
-    f(block.lines[node_in_holder<D>(grid, holders_[h], index)]);
-    --left;
-  }
-}
-
-template <int D>
 Vec<double, D> ContactGrid<D>::read(TileGrid<D>& grid, const Side<D>& side, int at) const {
   const double* const numbers = grid.line_at(side.place) + at;
   Vec<double, D> value;
@@ -217,9 +203,10 @@ Vec<double, D> ContactGrid<D>::read(TileGrid<D>& grid, const Side<D>& side, int 
 }
 
 template <int D>
-void ContactGrid<D>::write(TileGrid<D>& grid, const ContactNode& node, const Side<D>& side,
+void ContactGrid<D>::write(TileGrid<D>& grid, const Part& part, const Side<D>& side,
                            const Vec<double, D>& value, int at) const {
-  for_each_copy(grid, node, side, [&](double* line) {
+  part.for_each_place(side, [&](std::uint32_t place) {
+    double* const line = grid.line_at(place);
     for (int a = 0; a < D; ++a) line[at + a] = value[a];
   });
 }

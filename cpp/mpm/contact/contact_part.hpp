@@ -30,6 +30,7 @@ struct ContactPart {
   std::vector<ContactNode> nodes;
   std::vector<Side<D>> sides;
   std::vector<SidePair<D>> pairs;
+  std::vector<std::uint32_t> further;  // places of lines of the sides, each node's in a row
   std::size_t overlapped = 0;  // nodes, those left out too
   int bodies_max = 0;          // at a node
   // Where pairs are kept: of this step and the last, in the order of `nodes` and of `pairs`.
@@ -41,6 +42,12 @@ struct ContactPart {
   }
   std::span<SidePair<D>> pairs_of(const ContactNode& node) {
     return {&pairs[node.first_pair], pair_count(node.sides)};
+  }
+  /// f(place) of a side's line in each patch that has it (TileGrid::line_at).
+  template <class F>
+  void for_each_place(const Side<D>& side, F&& f) const {
+    f(side.place);
+    for (std::uint32_t k = 0; k < side.further; ++k) f(further[side.first_further + k]);
   }
   /// May any pair at a node act? Other nodes stay as they are, to the last bit.
   bool any_closed(const ContactNode& node) {
@@ -54,6 +61,7 @@ struct ContactPart {
     nodes.clear();
     sides.clear();
     pairs.clear();
+    further.clear();
     overlapped = 0;
     bodies_max = 0;
     std::swap(known, last_known);
@@ -78,9 +86,17 @@ struct ContactPart {
     if (first == nodes.size()) return;
     std::size_t kept = first;
     std::uint32_t side = nodes[first].first_side, pair = nodes[first].first_pair;
+    auto place = further.begin() + static_cast<std::ptrdiff_t>(first_further(nodes[first]));
     for (std::size_t n = first; n < nodes.size(); ++n) {
       ContactNode node = nodes[n];
       if (!stays(node)) continue;
+      const auto from = further.begin() + static_cast<std::ptrdiff_t>(first_further(node));
+      std::ptrdiff_t places = 0;
+      for (Side<D>& s : sides_of(node)) {
+        places += s.further;
+        s.first_further -= static_cast<std::uint32_t>(from - place);
+      }
+      place = std::copy(from, from + places, place);
       std::ranges::copy(sides_of(node), &sides[side]);
       std::ranges::copy(pairs_of(node), &pairs[pair]);
       node.first_side = side;
@@ -92,12 +108,19 @@ struct ContactPart {
     nodes.resize(kept);
     sides.resize(side);
     pairs.resize(pair);
+    further.erase(place, further.end());
   }
 
   std::size_t bytes() const {
     const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    return sizeof(*this) + size(nodes) + size(sides) + size(pairs) + size(known_nodes) +
+    return sizeof(*this) + size(nodes) + size(sides) + size(pairs) + size(further) + size(known_nodes) +
            size(last_known_nodes) + size(known) + size(last_known);
+  }
+
+ private:
+  /// Where a node's further lines begin: its sides have been sorted since they were noted.
+  std::uint32_t first_further(const ContactNode& node) {
+    return std::ranges::min(sides_of(node), {}, &Side<D>::first_further).first_further;
   }
 };
 

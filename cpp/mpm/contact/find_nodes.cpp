@@ -27,6 +27,7 @@ void ContactGrid<D>::look_around(const TileGrid<D>& grid, const ContactTile<D>& 
                                  TileBodies<D>& found) const {
   found.count = 0;
   found.planes.forget();
+  found.held.clear();
   std::uint64_t once = 0;
   found.overlapped = 0;
   const std::uint32_t end = tile.first_holder + tile.holders;
@@ -36,8 +37,11 @@ void ContactGrid<D>::look_around(const TileGrid<D>& grid, const ContactTile<D>& 
     at.body = holders_[h].body;
     at.first_holder = h;
     at.nodes = 0;
-    for (; h < end && holders_[h].body == at.body; ++h)
-      at.nodes |= masses_.in_tile(grid, holders_[h]);
+    for (; h < end && holders_[h].body == at.body; ++h) {
+      const std::uint64_t nodes = masses_.in_tile(grid, holders_[h]);
+      found.held.push_back({nodes});
+      at.nodes |= nodes;
+    }
     at.holders = h - at.first_holder;
     found.overlapped |= once & at.nodes;
     once |= at.nodes;
@@ -62,13 +66,18 @@ void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around,
     ++node.sides;
     Side<D>& side = part.sides.emplace_back();
     side.body = at.body;
-    side.copies = 0;
-    for (std::uint32_t h = at.first_holder; h < at.first_holder + at.holders; ++h)
-      if (holds_node<D>(grid, holders_[h], index) && side.copies++ == 0) side.first_copy = h;
-    const TileHolder& first = holders_[side.first_copy];
-    const double* const line = grid.block(first.patch).lines[node_in_holder<D>(grid, first, index)];
-    side.place = grid.place_of_line(line);
-    __builtin_prefetch(line);
+    side.first_further = static_cast<std::uint32_t>(part.further.size());
+    bool first = true;
+    for (const HeldNodes<D>& nodes : around.held_by(at)) {
+      if (!(nodes.with_mass >> node.cell & 1u)) continue;
+      const std::uint32_t place = nodes.place(index);
+      if (std::exchange(first, false))
+        side.place = place;
+      else
+        part.further.push_back(place);
+    }
+    side.further = static_cast<std::uint8_t>(part.further.size() - side.first_further);
+    __builtin_prefetch(grid.line_at(side.place));
   }
 }
 
@@ -91,7 +100,9 @@ void ContactGrid<D>::read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& b
 
 template <int D>
 void ContactGrid<D>::add_nodes(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                               std::size_t tile, const TileBodies<D>& around, Part& part) {
+                               std::size_t tile, TileBodies<D>& around, Part& part) {
+  for (std::uint32_t h = 0; h < tiles_[tile].holders; ++h)
+    around.held[h].locate(grid, holders_[tiles_[tile].first_holder + h]);
   const std::size_t first = part.nodes.size();
   std::size_t sides = 0, pairs = 0;
   for (std::uint64_t left = around.overlapped; left != 0; left &= left - 1) {

@@ -83,7 +83,6 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
     NormalSource<D>& source = sources[k];
     source.body = sides[k].body;
     source.stiffness = stiffness[b];
-    source.particles.clear(grid.margin());
     Vec<double, D> gradient = Vec<double, D>::zero();
     TileBody<D>& at = around.with(sides[k].body);
     const double edge = bodies[b].mean_edge / grid.cell_size;

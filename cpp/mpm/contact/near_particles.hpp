@@ -21,21 +21,6 @@ struct NearParticles {
   T mass = T(0.0);                       // of all, by lane [kg]
   Vec<T, D> moment = Vec<T, D>::zero();  // the same times x
 
-  /// Forget all, with room for 8 lanes in each cell from which a node is in reach, so that steps
-  /// seldom allocate.
-  void clear(int margin) {
-    lanes.clear();
-    mass = T(0.0);
-    moment = Vec<T, D>::zero();
-    lanes.reserve(8 * static_cast<std::size_t>(power(2 + margin, D)));
-  }
-
-  void add(const Lanes& p) {
-    mass += p.weight;
-    for (int a = 0; a < D; ++a) moment[a] += p.weight * p.x[a];
-    lanes.push_back(p);
-  }
-
   /// Mass in reach [kg] and its centre from the node [cells]; zero without mass.
   double total() const { return sum(mass); }
   Vec<double, D> centre() const {
@@ -70,7 +55,8 @@ struct NearParticles {
   }
 };
 
-/// Collect the particles of a body from which a node, counted from the tile's first, is in reach.
+/// Collect the particles of a body from which a node, counted from the tile's first, is in reach,
+/// in place of those that were there.
 template <int D>
 void collect_near(const TileParticles<D>& particles, const Index<D>& node, double reach,
                   NearParticles<D>& to) {
@@ -78,6 +64,10 @@ void collect_near(const TileParticles<D>& particles, const Index<D>& node, doubl
   // Over this length [cells] a particle's weight falls to 0 where its reach ends: particles on a
   // lattice lie there in whole rows, and rounding must not choose among them.
   constexpr double rim = 1e-3;
+  to.lanes.clear();
+  to.lanes.reserve(8 * static_cast<std::size_t>(particles.cells_around()));  // seldom allocates
+  T mass(0.0);
+  Vec<T, D> moment = Vec<T, D>::zero();
   particles.around(node, [&](const Index<D>& place, const auto& lanes) {
     typename NearParticles<D>::Lanes p;
     p.weight = lanes.mass;
@@ -90,8 +80,12 @@ void collect_near(const TileParticles<D>& particles, const Index<D>& node, doubl
     }
     if (!any(near)) return;
     p.half = select(near, lanes.half, T(-std::numeric_limits<double>::infinity()));
-    to.add(p);
+    mass += p.weight;
+    for (int a = 0; a < D; ++a) moment[a] += p.weight * p.x[a];
+    to.lanes.push_back(p);
   });
+  to.mass = mass;
+  to.moment = moment;
 }
 
 }  // namespace mpm

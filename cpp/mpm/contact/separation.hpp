@@ -50,7 +50,9 @@ class PlaneFit {
     if (!(mass_r > 0.0 && mass_s > 0.0)) return;
     share_r_ = 1.0 / mass_r;
     share_s_ = 1.0 / mass_s;
-    inside_.assign(r.lanes.size() + s.lanes.size(), T(0.0));
+    thread_local std::vector<T> inside;  // kept, so that fits do not allocate
+    inside.assign(r.lanes.size() + s.lanes.size(), T(0.0));
+    inside_ = inside.data();
     if (start.exists()) {
       for (int i = 0; i < D; ++i) z_[i] = held >> i & 1u ? 0.0 : start.a[i];
       z_[D] = start.b;
@@ -123,7 +125,7 @@ class PlaneFit {
   /// f(position, sign, share of the body's mass, share of it that is inside) over both bodies.
   template <class F>
   void for_both(F&& f) {
-    T* inside = inside_.data();
+    T* inside = inside_;
     for (const auto& p : r_.lanes) f(p.x, T(-1.0), T(share_r_) * p.weight, *inside++);
     for (const auto& p : s_.lanes) f(p.x, T(1.0), T(share_s_) * p.weight, *inside++);
   }
@@ -215,8 +217,7 @@ class PlaneFit {
   unsigned held_;
   double share_r_ = 0.0, share_s_ = 0.0;
   double z_[n] = {};
-  // Of each lane the share that is inside; kept, so that fits do not allocate.
-  static inline thread_local std::vector<T> inside_;
+  T* inside_ = nullptr;  // of each lane the share that is inside
 };
 
 /// The unit normal from r to s of the plane that separates their particles; zero if none does. All

@@ -33,16 +33,34 @@ Index<D> seen_from(const TileHolder& holder, Index<D> node) {
   for (std::size_t a = 0; a < D; ++a) node[a] += Tile<D>::cells * o[a];
   return node;
 }
-/// Does a holder's patch have this node (counted from the tile's first) in its block?
-template <int D>
-bool holds_node(const TileGrid<D>& grid, const TileHolder& holder, const Index<D>& node) {
-  return shape_of(grid, holder).holds(seen_from<D>(holder, node));
-}
 /// The node's number in the holder's block.
 template <int D>
 int node_in_holder(const TileGrid<D>& grid, const TileHolder& holder, const Index<D>& node) {
   return shape_of(grid, holder).node(seen_from<D>(holder, node));
 }
+
+/// A tile's nodes in a holder's block.
+template <int D>
+struct HeldNodes {
+  std::uint64_t with_mass;  // a bit each by Tile<D>::cell
+  std::int64_t first = 0;   // where the line of the tile's first node is, or would be
+  Index<D> stride{};        // from line to line along each axis
+
+  /// Find out where the lines are.
+  void locate(TileGrid<D>& grid, const TileHolder& holder) {
+    const BlockShape<D>& shape = shape_of(grid, holder);
+    first = grid.place_of_line(grid.block(holder.patch).lines.data) +
+            std::int64_t{node_in_holder<D>(grid, holder, Index<D>{})};
+    for (std::size_t a = 0, step = 1; a < D; step *= static_cast<std::size_t>(shape.nodes[a++]))
+      stride[a] = static_cast<std::int32_t>(step);
+  }
+  /// Of a node's line, by the node's coordinates from the tile's first (TileGrid::line_at).
+  std::uint32_t place(const Index<D>& node) const {
+    std::int64_t at = first;
+    for (std::size_t a = 0; a < D; ++a) at += std::int64_t{stride[a]} * node[a];
+    return static_cast<std::uint32_t>(at);
+  }
+};
 
 /// The nodes at which bodies have mass, a bit each, of the blocks of all patches that have nodes
 /// where bodies may meet.

@@ -32,6 +32,26 @@ T particle_edge(T volume, double mean_edge) {
   }
 }
 
+/// The cells of the tile at an offset from which any of a tile's nodes is in reach; cells and nodes
+/// a bit each by Tile<D>::cell. Along each axis a node is reached from the cell before it, from its
+/// own, and with a margin from the one behind.
+template <int D>
+std::uint64_t cells_in_reach(std::uint64_t nodes, const Index<D>& offset, int margin) {
+  std::uint64_t cells = nodes;
+  for (std::size_t a = 0; a < D; ++a) {
+    const int one = power(Tile<D>::cells, static_cast<int>(a)), last = Tile<D>::cells - 1;
+    const std::uint64_t low = Tile<D>::slice(a, 0), high = Tile<D>::slice(a, last);
+    const std::uint64_t behind = margin > 0 ? cells : 0;
+    if (offset[a] < 0)
+      cells = (cells & low) << last * one;
+    else if (offset[a] > 0)
+      cells = (behind & high) >> last * one;
+    else
+      cells |= (cells & ~low) >> one | (behind & ~high) << one;
+  }
+  return cells;
+}
+
 /// A body's particles in the cells from which some of a tile's nodes are in reach.
 template <int D>
 class TileParticles {
@@ -46,125 +66,123 @@ class TileParticles {
 
   /// Place of a cell's own node in the cell along each axis.
   double own_node() const { return own_node_; }
+  /// From how many cells a node is in reach.
+  int cells_around() const { return power(margin_ + 2, D); }
 
   /// Forget all and take what is around these nodes of another tile, a bit each by Tile<D>::cell.
   void gather(const TileGrid<D>& grid, const Body<D>& body, const Index<D>& tile,
               std::span<const TileHolder> holders, std::uint64_t nodes) {
     margin_ = grid.margin();
     own_node_ = node_in_cell(grid.basis);
-    edge_ = Tile<D>::cells + 1 + margin_;
-    patch_.fill(nullptr);
-    for (const TileHolder& h : holders)
-      patch_[static_cast<std::size_t>(Tile<D>::neighbours - 1 - h.neighbour)] =
-          &grid.patches[static_cast<std::size_t>(h.patch)];
-    cells_.assign(static_cast<std::size_t>(power(edge_, D)), {});
-    wanted_.clear();
-    for (; nodes != 0; nodes &= nodes - 1)
-      for_each_cell_around(Tile<D>::cell_index(std::countr_zero(nodes)), [&](const Index<D>& cell) {
-        Cell& c = cells_[number(cell)];
-        if (c.wanted) return;
-        c.wanted = true;
-        wanted_.push_back(cell);
-        fetch(body, cell);
-      });
     lanes_.clear();
-    for (const Index<D>& cell : wanted_) read(grid, body, grid.first_cell(tile), cell);
+    filled_.fill(0);
+    const auto each = [&](auto&& f) {
+      for (const TileHolder& h : holders) {
+        const Patch<D>& patch = grid.patches[static_cast<std::size_t>(h.patch)];
+        const Index<D> offset = Tile<D>::offset(Tile<D>::neighbours - 1 - h.neighbour);
+        std::uint64_t cells = patch.occupied & cells_in_reach<D>(nodes, offset, margin_);
+        for (; cells != 0; cells &= cells - 1) f(patch, offset, std::countr_zero(cells));
+      }
+    };
+    each([&](const Patch<D>& patch, const Index<D>&, int cell) { fetch(body, patch, cell); });
+    each([&](const Patch<D>& patch, const Index<D>& offset, int cell) {
+      Index<D> place = Tile<D>::cell_index(cell);
+      for (std::size_t a = 0; a < D; ++a) place[a] += Tile<D>::cells * offset[a];
+      read(grid, body, grid.first_cell(tile), patch, cell, place);
+    });
   }
 
   /// f(place, lanes) for the cells from which a node is in reach; `place` is the node's, as counted
   /// from the cell's own.
   template <class F>
   void around(const Index<D>& node, F&& f) const {
-    for_each_cell_around(node, [&](const Index<D>& cell) {
-      const Cell& c = cells_[number(cell)];
-      if (c.begin == c.end) return;
-      Index<D> place;
-      for (std::size_t a = 0; a < D; ++a) place[a] = node[a] - cell[a];
-      for (std::uint32_t i = c.begin; i < c.end; ++i) f(place, lanes_[i]);
-    });
+    const CellsAround& cells = around_[static_cast<std::size_t>(margin_)];
+    const int width = margin_ + 2, own = number(node);
+    std::uint64_t filled = 0;  // those with particles, a bit each
+    for (int k = 0; k < cells_around(); k += width)
+      filled |= (bits_from(filled_.data(), own + cells.number[k]) & low_bits(width)) << k;
+    for (; filled != 0; filled &= filled - 1) {
+      const int k = std::countr_zero(filled);
+      const Cell& c = cells_[static_cast<std::size_t>(own + cells.number[k])];
+      for (std::uint32_t i = c.begin; i < c.end; ++i) f(cells.place[k], lanes_[i]);
+    }
   }
 
  private:
   struct Cell {
-    std::uint32_t begin = 0, end = 0;  // of lanes_
-    bool wanted = false;
+    std::uint32_t begin, end;  // of lanes_
   };
+  // Cells from which nodes of a tile may be in reach: its own, and one more on each side.
+  static constexpr int edge = Tile<D>::cells + 2, cell_count = power(edge, D);
 
-  template <class F>
-  void for_each_cell_around(const Index<D>& node, F&& f) const {
-    Index<D> low, high;
-    for (std::size_t a = 0; a < D; ++a) {
-      low[a] = node[a] - 1;
-      high[a] = node[a] + margin_;
+  /// The cells from which a node is in reach, the first axis fastest.
+  struct CellsAround {
+    Index<D> place[Tile<D>::neighbours]{};  // the node's, as counted from the cell's own
+    int number[Tile<D>::neighbours]{};      // the cell's, as counted from that of the node
+
+    constexpr explicit CellsAround(int margin) {
+      for (int k = 0; k < power(margin + 2, D); ++k)
+        for (int a = 0, left = k, stride = 1; a < D; ++a, left /= margin + 2, stride *= edge) {
+          const int o = left % (margin + 2) - 1;
+          place[k][static_cast<std::size_t>(a)] = -o;
+          number[k] += stride * o;
+        }
     }
-    for_each_index<D>(low, high, f);
-  }
+  };
+  static constexpr std::array<CellsAround, 2> around_ = {CellsAround(0), CellsAround(1)};
+
   /// Of a cell, by its coordinates from the tile's first.
-  std::size_t number(const Index<D>& cell) const {
+  static int number(const Index<D>& cell) {
     int n = 0;
-    for (std::size_t a = D; a-- > 0;) n = n * edge_ + cell[a] + 1;
-    return static_cast<std::size_t>(n);
-  }
-
-  /// f(patch, number of the cell in its tile), if the body has a patch there.
-  template <class F>
-  void in_patch(const Index<D>& cell, F&& f) const {
-    Index<D> tile, local;
-    for (std::size_t a = 0; a < D; ++a) {
-      tile[a] = cell[a] < 0 ? -1 : cell[a] >= Tile<D>::cells ? 1 : 0;
-      local[a] = cell[a] - Tile<D>::cells * tile[a];
-    }
-    if (const Patch<D>* patch = patch_[static_cast<std::size_t>(Tile<D>::neighbour(tile))])
-      f(*patch, static_cast<std::size_t>(Tile<D>::cell(local)));
+    for (std::size_t a = D; a-- > 0;) n = n * edge + cell[a] + 1;
+    return n;
   }
 
   /// Have the memory bring a cell's particles: they lie near their places in the sorted columns.
-  void fetch(const Body<D>& body, const Index<D>& cell) const {
-    in_patch(cell, [&](const Patch<D>& patch, std::size_t c) {
-      if (!(patch.occupied >> c & 1u)) return;
-      const std::uint32_t first = patch.begin + patch.cell_begin[c];
-      const std::uint32_t last = patch.begin + patch.cell_begin[c + 1] - 1;
-      const auto bring = [&](const auto* column) {
-        __builtin_prefetch(column + first);
-        __builtin_prefetch(column + last);
-      };
-      bring(body.order.data());
-      for (int a = 0; a < D; ++a) bring(body.x(a));
-      bring(body.mass());
-      bring(body.volume());
-    });
+  static void fetch(const Body<D>& body, const Patch<D>& patch, int cell) {
+    const auto c = static_cast<std::size_t>(cell);
+    const std::uint32_t first = patch.begin + patch.cell_begin[c];
+    const std::uint32_t last = patch.begin + patch.cell_begin[c + 1] - 1;
+    const auto bring = [&](const auto* column) {
+      __builtin_prefetch(column + first);
+      __builtin_prefetch(column + last);
+    };
+    bring(body.order.data());
+    for (int a = 0; a < D; ++a) bring(body.x(a));
+    bring(body.mass());
+    bring(body.volume());
   }
 
+  /// The particles of a patch's cell; `place` is that of the cell as counted from the tile's first.
   void read(const TileGrid<D>& grid, const Body<D>& body, const Index<D>& first,
-            const Index<D>& cell) {
+            const Patch<D>& patch, int cell, const Index<D>& place) {
     constexpr int W = contact_lanes<D>;
     const CellCoordinates<D> coordinates = grid.coordinates();
-    Cell& to = cells_[number(cell)];
-    to.begin = static_cast<std::uint32_t>(lanes_.size());
-    in_patch(cell, [&](const Patch<D>& patch, std::size_t c) {
-      const std::uint32_t end = patch.cell_begin[c + 1];
-      for (std::uint32_t i = patch.cell_begin[c]; i < end; i += W) {
-        const LaneRows<W> rows(body.order.data() + patch.begin + i, end - i);
-        Lanes& p = lanes_.emplace_back();
-        for (int a = 0; a < D; ++a) {
-          const auto k = static_cast<std::size_t>(a);
-          p.xi[a] =
-              local_coordinate(coordinates.in_cells(load(body.x(a), rows), a), first[k] + cell[k]);
-        }
-        p.mass = select(first_lanes<W>(rows.count), load(body.mass(), rows), T(0.0));
-        p.half =
-            T(0.5 / grid.cell_size) * particle_edge<D>(load(body.volume(), rows), body.mean_edge);
+    const auto n = static_cast<std::size_t>(number(place)), c = static_cast<std::size_t>(cell);
+    filled_[n / 64] |= std::uint64_t{1} << n % 64;
+    cells_[n].begin = static_cast<std::uint32_t>(lanes_.size());
+    const std::uint32_t end = patch.cell_begin[c + 1];
+    for (std::uint32_t i = patch.cell_begin[c]; i < end; i += W) {
+      const LaneRows<W> rows(body.order.data() + patch.begin + i, end - i);
+      Lanes& p = lanes_.emplace_back();
+      for (int a = 0; a < D; ++a) {
+        const auto k = static_cast<std::size_t>(a);
+        p.xi[a] =
+            local_coordinate(coordinates.in_cells(load(body.x(a), rows), a), first[k] + place[k]);
       }
-    });
-    to.end = static_cast<std::uint32_t>(lanes_.size());
+      p.mass = select(first_lanes<W>(rows.count), load(body.mass(), rows), T(0.0));
+      p.half =
+          T(0.5 / grid.cell_size) * particle_edge<D>(load(body.volume(), rows), body.mean_edge);
+    }
+    cells_[n].end = static_cast<std::uint32_t>(lanes_.size());
   }
 
   int margin_ = 0;
   double own_node_ = 0.0;
-  int edge_ = 0;  // cells along an edge of what is in reach
-  std::array<const Patch<D>*, Tile<D>::neighbours> patch_{};  // by where its tile lies
-  std::vector<Cell> cells_;
-  std::vector<Index<D>> wanted_;
+  // A bit for each cell whose particles were taken; one word more, for rows that are read across
+  // the end.
+  std::array<std::uint64_t, cell_count / 64 + 2> filled_{};
+  std::array<Cell, static_cast<std::size_t>(cell_count)> cells_;
   std::vector<Lanes> lanes_;
 };
 

@@ -237,20 +237,32 @@ Batch<W> load_first(const double* from, int count, double rest) {
   return b;
 }
 
-/// Sum over the lanes, in the order of the lanes.
+/// The lanes brought together by f(x, y) until two are left, those half the lanes apart first,
+/// whatever the instruction set.
+template <int W, class F>
+Batch<2> joined(Batch<W> a, F&& f) {
+  if constexpr (W == 2)
+    return a;
+  else
+    return [&]<int... k>(std::integer_sequence<int, k...>) {
+      const Batch<W / 2> low(__builtin_shufflevector(a.v, a.v, k...));
+      const Batch<W / 2> high(__builtin_shufflevector(a.v, a.v, (k + W / 2)...));
+      return joined(f(low, high), f);
+    }(std::make_integer_sequence<int, W / 2>{});
+}
+
+/// Sum over the lanes.
 template <int W>
 double sum(Batch<W> a) {
-  double s = a.v[0];
-  for (int k = 1; k < W; ++k) s += a.v[k];
-  return s;
+  const Batch<2> pair = joined(a, [](auto x, auto y) { return x + y; });
+  return pair[0] + pair[1];
 }
 
 /// Largest lane.
 template <int W>
 double largest(Batch<W> a) {
-  double s = a.v[0];
-  for (int k = 1; k < W; ++k) s = a.v[k] > s ? a.v[k] : s;
-  return s;
+  const Batch<2> pair = joined(a, [](auto x, auto y) { return max(x, y); });
+  return pair[0] > pair[1] ? pair[0] : pair[1];
 }
 
 /// f(0), f(1) ... f(N - 1), written out; the numbers are constants.

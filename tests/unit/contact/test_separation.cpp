@@ -17,7 +17,9 @@ void add(NearParticles<D>& to, const Vec<double, D>& x, double mass = 1.0) {
   for (int a = 0; a < D; ++a) p.x[a] = T(x[a]);
   p.half = T(0.25);
   p.weight = select(first_lanes<T::lanes>(1), T(mass), T(0.0));
-  to.add(p);
+  to.lanes.push_back(p);
+  to.mass += p.weight;
+  for (int a = 0; a < D; ++a) to.moment[a] += p.weight * p.x[a];
 }
 
 template <int D>

@@ -38,7 +38,7 @@ void check_nodes(mpm::testing::Report& report, Basis basis) {
       const std::uint64_t found = masses.in_tile(grid, holder);
       for (int cell = 0; cell < Tile<D>::cell_count; ++cell) {
         const Index<D> node = Tile<D>::cell_index(cell);
-        const bool expected = holds_node<D>(grid, holder, node) &&
+        const bool expected = shape_of(grid, holder).holds(seen_from<D>(holder, node)) &&
                               grid.block(static_cast<std::size_t>(patch))
                                       .mass()[node_in_holder<D>(grid, holder, node)] > 0.0;
         CHECK((found >> cell & 1u) == (expected ? 1u : 0u), patch, k, cell);
