@@ -2,6 +2,8 @@
 // Which particles lie in which cell: made once, then mended where particles have moved. Columns are
 // put back in order only when that pays; correctness never depends on it.
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/particles/body.hpp"
@@ -13,7 +15,13 @@ template <int D>
 struct Leaver {
   int body;
   Index<D> tile;       // that it has come to
-  std::int32_t patch;  // of its body there, -1 if there is none yet; until patches are added
+  std::int32_t patch;  // of its body there; -1 while there is none
+  std::uint32_t row;
+  std::uint8_t cell;
+};
+
+/// A particle that comes to a patch.
+struct Arrival {
   std::uint32_t row;
   std::uint8_t cell;
 };
@@ -30,14 +38,24 @@ struct Gone {
 /// Reused from step to step, so that a step allocates nothing, and shared by all bodies.
 template <int D>
 struct ListScratch {
+  struct Note {
+    std::uint32_t kept;              // particles that stay in the patch
+    std::uint32_t leavers = 0;       // that go to another one
+    std::uint32_t first_leaver = 0;  // of `leavers`
+    std::uint32_t changes = 0;       // particles that have changed cell, or are gone
+  };
   struct Change {
-    std::uint32_t kept, arrival_begin, arrival_count, begin;
+    std::uint32_t kept = 0;
+    std::uint32_t arrivals = 0, end_of_arrivals = 0;  // the first of `arrivals`, and their end
+    std::uint32_t begin = 0;                          // of the new list, in that of the body
   };
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-  std::vector<Leaver<D>> leavers;
-  std::vector<Change> changes;  // one per patch
-  std::vector<Patch<D>> added;
-  std::vector<std::size_t> moved;  // one per patch
+  std::vector<Note> notes;                        // one per patch, before patches are added
+  std::vector<Leaver<D>> leavers;                 // in the order of the patches that they leave
+  std::vector<std::pair<int, Index<D>>> entered;  // body and tile of each patch to be added
+  std::vector<std::int32_t> number;  // of each patch, after patches were added; -1 if it has gone
+  std::vector<Change> changes;       // one per patch, after patches were added
+  std::vector<Arrival> arrivals;     // in the order of the patches that they come to
   // The lists being made of those bodies whose particles have left their cells.
   std::vector<std::size_t> first;  // where each body's list begins, or none
   std::uint32_t* order = nullptr;  // the lists
@@ -71,6 +89,12 @@ void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
 /// In the column `failed`, beside the values of FailureAction: the particle has left the region
 /// that is kept.
 inline constexpr double left_region = 4.0;
+
+/// Find the particles that have left their tiles, where ListScratch::notes says how many, and what
+/// changes for each patch; true if patches were added or removed.
+template <int D>
+bool hand_over_leavers(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, Threads& threads,
+                       ListScratch<D>& scratch);
 
 /// Mend the lists of patches that particles have left, and take out what has eroded or left the
 /// region that is kept; true if patches were added or removed.
