@@ -74,6 +74,11 @@ class Case(CaseModel):
         """Path of the case file; None for a case built in Python."""
         return self._source
 
+    @property
+    def file_text(self) -> str:
+        """Whole path of the case file as text; empty for a case built in Python."""
+        return str(self._source.resolve()) if self._source else ""
+
     @classmethod
     def from_file(cls, path: str | Path) -> Case:
         """Read and check a case file.

@@ -16,6 +16,7 @@ from .errors import Path as KeyPath
 from .io.background import BackgroundWriter
 from .io.checkpoint import ANEW, CHECKPOINT, read_about, write_checkpoint
 from .io.history import HistoryWriter, has_history
+from .io.manifest import read_manifest
 from .io.rows import has_rows
 from .io.vtkhdf import RESULTS
 
@@ -113,8 +114,12 @@ def check_same(path: Path, before: dict[str, Any], case: Case) -> None:
         raise case.error(where, f"was {show(then)} in the run of '{path}'", remedy, value=now)
 
 
-def refuse_to_begin_anew(folder: Path) -> None:
-    """Raise `CaseError` if a folder holds a run that has not come to its end."""
+def refuse_to_begin_anew(folder: Path, case: Case) -> None:
+    """Raise `CaseError` if a folder holds an unfinished run, or the run of another case.
+
+    A case stays the same when its file is changed, and when the file is moved or written anew.
+    """
+    _refuse_another_case(folder, case)
     if not (folder / CHECKPOINT).is_file():
         return
     before = Checkpoint.of(folder)
@@ -122,6 +127,20 @@ def refuse_to_begin_anew(folder: Path) -> None:
     if done < 1.0:
         rule = f"'{folder}' holds an unfinished run, at {done:.0%} of its time"
         raise CaseError(rule, f"go on with --resume, {ANEW}, or choose another --out")
+
+
+def _refuse_another_case(folder: Path, case: Case) -> None:
+    try:
+        before = read_manifest(folder)
+    except CaseError:  # None, or not ours.
+        return
+    file = before.get("case_file", "")
+    if before.get("case_hash") in (None, case.case_hash) or (file and file == case.file_text):
+        return
+    title = before["case"].get("title", "")
+    name = " of ".join(word for word in (show(title) if title else "", file) if word)
+    rule = f"'{folder}' holds the run of another case{', ' if name else ''}{name}"
+    raise CaseError(rule, f"choose another --out, or {ANEW}")
 
 
 class Checkpoints:

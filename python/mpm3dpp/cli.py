@@ -98,7 +98,14 @@ def run(
         bool, typer.Option("--resume", help="Go on from the checkpoint in the folder.")
     ] = False,
     anew: Annotated[
-        bool, typer.Option("--anew", help="Begin anew, though the folder holds an unfinished run.")
+        bool,
+        typer.Option(
+            "--anew",
+            help="Begin anew, though the folder holds an unfinished run or another case's.",
+        ),
+    ] = False,
+    no_pictures: Annotated[
+        bool, typer.Option("--no-pictures", help="Draw none; `mpm3dpp plot` draws them later.")
     ] = False,
 ) -> None:
     """Run a case: frames, history, manifest and pictures in the output folder."""
@@ -112,10 +119,11 @@ def run(
     if not resume:
         writable_folder(folder)
         if not anew:
-            refuse_to_begin_anew(folder)
+            refuse_to_begin_anew(folder, loaded)
     from .run import run_case  # The slowest import: after the mistakes.
 
-    run_case(loaded, folder, threads=thread_count(threads), quiet=quiet, json=json, resume=resume)
+    workers, pictures = thread_count(threads), not no_pictures
+    run_case(loaded, folder, workers, quiet, json, pictures, resume)
 
 
 @app.command()

@@ -177,6 +177,34 @@ def test_an_unfinished_run_is_not_lost_by_running_it_again(tmp_path: Path) -> No
     assert mpm3dpp(*words, cwd=tmp_path).returncode == 0  # That one has come to its end.
 
 
+def test_a_run_of_another_case_is_not_lost(tmp_path: Path) -> None:
+    words = ("--out", "out", "--threads", 1, "--quiet", "--no-pictures")
+
+    def run(name: str, text: str, *more: str) -> subprocess.CompletedProcess[str]:
+        (tmp_path / name).write_text(text)
+        return mpm3dpp("run", name, *words, *more, cwd=tmp_path)
+
+    softer = CASE.replace("1 MPa", "0.5 MPa")
+    assert run("one.toml", CASE).returncode == 0
+    assert not list((tmp_path / "out").glob("*.png"))
+    assert run("one.toml", softer).returncode == 0  # The same file, edited.
+    assert run("two.toml", softer).returncode == 0  # Another file, the same case.
+    before = read_manifest(tmp_path / "out")
+    assert before["case_file"] == str(tmp_path / "two.toml")
+    refused = run("one.toml", CASE)
+    assert refused.returncode == 2
+    other = f"'out' holds the run of another case, \"Two blocks\" of {tmp_path / 'two.toml'}; "
+    remedy = "choose another --out, or begin the run anew with --anew"
+    assert other + remedy in one_sentence(refused.stderr)
+    assert read_manifest(tmp_path / "out") == before
+    assert run("one.toml", CASE, "--anew").returncode == 0
+    made_in_python = Case(**load_case(tmp_path / "one.toml").table())
+    run_case(made_in_python, tmp_path / "out", pictures=False)
+    assert f"{other.split(' of /')[0]}; {remedy}" in one_sentence(run("two.toml", softer).stderr)
+    (tmp_path / "out" / "manifest.json").write_text('["not ours"]')
+    assert run("two.toml", softer).returncode == 0
+
+
 def test_two_runs_in_one_folder(tmp_path: Path) -> None:
     words = command("run", write(tmp_path, LONG), "--out", "out", "--threads", 1, "--quiet")
     run = subprocess.Popen(words, cwd=tmp_path, stderr=subprocess.PIPE, text=True)

@@ -43,6 +43,7 @@ class Manifest:
         energies: see `HistoryWriter.summary`.
         compiler, flags, isa, platform, python: how it was built and where it ran.
         case, case_text: the whole case as data, and the text of its file.
+        case_file: whole path of that file; empty for a case built in Python.
     """
 
     version: str
@@ -74,6 +75,7 @@ class Manifest:
     python: str
     case: dict[str, Any]
     case_text: str
+    case_file: str
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data that is strictly valid JSON: NaN and infinity become None."""
@@ -95,6 +97,7 @@ def build_manifest(
     version: str,
     case: Mapping[str, Any],
     case_text: str,
+    case_file: str = "",
     bodies: Sequence[str],
     parts: Sequence[str] | None = None,
     cell_size: float,
@@ -112,7 +115,7 @@ def build_manifest(
         simulation: after its last step.
         version: of mpm3dpp.
         case: the whole case as plain data, SI units.
-        case_text: text of the case file.
+        case_text, case_file: text and path of the case file.
         bodies: name of each body.
         parts: name under which contact reports each body; grains have one. Default `bodies`.
         cell_size: [m].
@@ -157,6 +160,7 @@ def build_manifest(
         python=platform.python_version(),
         case=dict(case),
         case_text=case_text,
+        case_file=case_file,
     )
 
 
@@ -192,7 +196,7 @@ def read_manifest(path: str | Path) -> dict[str, Any]:
         return dict(json.loads(path.read_text(encoding="utf-8")))
     except FileNotFoundError as error:
         raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
-    except (OSError, ValueError) as error:
+    except (OSError, TypeError, ValueError) as error:
         raise CaseError(f"'{path}' is not a manifest of mpm3dpp: {error}") from error
 
 
