@@ -15,7 +15,7 @@ from fake_core import COLUMNS, SIZE, FakeSimulation
 from mpm3dpp import open_results, plots, run_case
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io import HistoryWriter, ResultsWriter, build_manifest
-from mpm3dpp.plots import contact, flat, labels, raster, space
+from mpm3dpp.plots import contact, energies, flat, labels, raster, space
 
 
 def make_run(path: Path, dimension: int = 2, manifest: bool = True) -> Path:
@@ -225,6 +225,19 @@ def test_nearer_balls_hide_farther_ones() -> None:
         depths[near] = 30.0
         image = raster.balls(centres, depths, np.full(2, 8.0), colours, (40, 40))
         assert image[20, 20, :3].argmax() == (0 if near == 0 else 2)
+
+
+def test_the_total_misses_what_numerics_took() -> None:
+    rng = np.random.default_rng(1)
+    history = {name: rng.uniform(1.0, 2.0, 9) for name in COLUMNS}
+    gone = sum(history[name] for name in ("plastic", "viscous", "friction", "absorbed"))
+    gone += history["eroded"] + history["left"] + history["contact"] + history["numerical"]
+    history["kinetic"] = 100.0 - gone - history["internal"] + history["external"]
+    figure = energies.draw_energies(history)  # Of more curves than there are colours.
+    assert len(figure.axes[0].lines) == 11 and len(figure.axes[1].lines) == 12
+    [total] = [line for line in figure.axes[0].lines if line.get_label() == "total"]
+    expected = 100.0 - history["contact"] - history["numerical"]
+    assert np.allclose(total.get_ydata(), expected, rtol=1e-14)
 
 
 def test_labels() -> None:

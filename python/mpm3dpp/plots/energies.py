@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -78,26 +79,31 @@ def _energies(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray], unit
         if np.abs(history[name]).max(initial=0.0) > 1e-4 * scale:
             curves[label] = history[name]
     factor, unit = prefix(max(np.abs(c).max(initial=0.0) for c in curves.values()), unit)
-    for colour, (label, curve) in zip(PALETTE, curves.items(), strict=False):
+    for colour, (label, curve) in zip(cycle(PALETTE), curves.items(), strict=False):
         axes.plot(time, factor * curve, color=colour, label=label)
-    total = factor * (history["kinetic"] + history["internal"])
-    axes.plot(time, total, color="black", lw=1.0, ls=(0, (4, 2)), label="kinetic + internal")
+    total = factor * _total(history)
+    axes.plot(time, total, color="black", lw=1.0, ls=(0, (4, 2)), label="total")
     axes.set_ylabel(f"energy [{unit}]")
     axes.set_title("Energies", loc="left")
     _key(axes)
+
+
+def _total(history: dict[str, np.ndarray]) -> np.ndarray:
+    """All energy, less the work from outside: constant but for what numerics made or lost."""
+    physical = [*_MAIN, *(name for name in _LOST if name not in ("contact", "external"))]
+    return np.sum([history[name] for name in physical], axis=0) - history["external"]
 
 
 def _ledger(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray]) -> None:
     """Size of every term that is not kinetic or internal, as a share of the largest energy."""
     scale = _scale(history)
     least = 1e-18
-    k = 0
+    colours = cycle(PALETTE)
     for name, label in {**_LOST, **_NUMERICAL}.items():
         curve = np.abs(history[name]) / scale
         if curve.max(initial=0.0) > least:
             style = "-" if name in _LOST or name == "numerical" else (0, (1, 1))
-            axes.plot(time, _positive(curve), color=PALETTE[k], ls=style, label=label)
-            k += 1
+            axes.plot(time, _positive(curve), color=next(colours), ls=style, label=label)
     residual = np.abs(history["residual"]) / scale
     if residual.max(initial=0.0) > least:
         axes.plot(time, _positive(residual), color="black", lw=0.7, label="residual")
