@@ -14,6 +14,8 @@ from typing import Any
 from mpm3dpp import case, case_body, case_grid, case_parts
 from mpm3dpp.detonation import Detonation
 from mpm3dpp.grains import GrainLattice, GrainPacking, Grains
+from mpm3dpp.io import history_columns
+from mpm3dpp.io.history import PAIR_LIMIT, PAIRS
 from mpm3dpp.loads import Load
 from mpm3dpp.materials import catalogue
 from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
@@ -245,9 +247,43 @@ def material_lines(material: NamedMaterial) -> list[str]:
     return [*lines, "", material.note] if material.note else lines
 
 
+def history_page() -> str:
+    """Return docs/reference/history.md."""
+
+    def table(columns: dict[str, tuple[str, str]]) -> list[str]:
+        lines = ["| column | unit | meaning |", "| --- | --- | --- |"]
+        return lines + [f"| `{name}` | {' | '.join(about)} |" for name, about in columns.items()]
+
+    lines = [
+        "# The history of a run: `history.csv`",
+        f"*{NOTE}*",
+        "",
+        "The first line names the columns; then comes the start, and a row for each step",
+        "(`output.history_every`: of how many steps one is kept). In 2D energies, momenta,",
+        "impulses and forces are per metre of thickness: J/m, N s/m, N/m. How the terms of energy",
+        "add up: [the energy ledger](../theory/step.md#the-energy-ledger). In Python",
+        "`mpm3dpp.io.read_history` reads the file.",
+        "",
+        *table(history_columns.MEANINGS),
+        "",
+        "A run with contact has these too, for each pair of bodies; all grains of an entry count",
+        "as one body. They are known in the last row of each block of steps and empty in the",
+        f"others. With more than {PAIR_LIMIT} pairs they are in `{PAIRS}`, one row for each pair",
+        "that touches, with the columns `step`, `time`, `body_a`, `body_b`, `contact_force_x`, ...",
+        "",
+        *table(history_columns.PAIR_MEANINGS),
+    ]
+    return "\n".join(lines) + "\n"
+
+
 def pages() -> dict[str, str]:
     """Return all pages: file name below docs/reference, text."""
-    return {"case.md": case_page(), "library.md": library_page(), "materials.md": materials_page()}
+    return {
+        "case.md": case_page(),
+        "history.md": history_page(),
+        "library.md": library_page(),
+        "materials.md": materials_page(),
+    }
 
 
 def main() -> None:

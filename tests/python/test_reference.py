@@ -2,10 +2,16 @@
 """The committed reference pages are those that the code gives."""
 
 import importlib
+import re
 import sys
+from itertools import combinations
 from pathlib import Path
 
 import pytest
+
+from cases import three_blocks
+from mpm3dpp import run_case
+from mpm3dpp.io import read_history
 
 ROOT = Path(__file__).parents[2]
 
@@ -18,7 +24,7 @@ def tool(monkeypatch):
     sys.modules.pop("make_reference", None)
 
 
-@pytest.mark.parametrize("name", ["case.md", "library.md", "materials.md"])
+@pytest.mark.parametrize("name", ["case.md", "history.md", "library.md", "materials.md"])
 def test_page_is_up_to_date(tool, name):
     committed = (ROOT / "docs" / "reference" / name).read_text()
     assert committed == tool.pages()[name], "run  python tools/make_reference.py"
@@ -42,6 +48,21 @@ def test_every_table_of_a_case_is_described(tool):
             own = isinstance(value, type) and issubclass(value, CaseModel)
             if own and value.__module__ == module.__name__ and value.__name__ != "Case":
                 assert value in described
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_every_column_of_the_history_is_described(tool, tmp_path, dimension):
+    case = three_blocks(dimension, run={"end_time": 1e-4})
+    run_case(case, tmp_path, threads=1, pictures=False)
+    written = list(read_history(tmp_path))
+    for a, b in combinations(case.body, 2):
+        for name, (unit, _) in tool.history_columns.PAIR_MEANINGS.items():
+            assert unit and name.endswith("_A_B_x")
+            for axis in "xyz":
+                written.remove(name.replace("_A_B_x", f"_{a}_{b}_{axis}"))
+    page = (ROOT / "docs" / "reference" / "history.md").read_text()
+    described = re.findall(r"^\| `(\w+)` \| \S.* \| \S.* \|$", page, re.M)
+    assert described == [*written, *tool.history_columns.PAIR_MEANINGS]
 
 
 def test_attributes_of_a_docstring(tool):
