@@ -194,7 +194,10 @@ def plot(
         typer.echo(picture)
 
 
-BENCH_NAMES = "elastic2d, elastic3d, gimp2d, gimp3d, jc, debris, two_cubes or spheres."
+BENCH_NAMES = (
+    "elastic2d, elastic3d, gimp2d, gimp3d, jc, debris, two_cubes, two_cubes_apart, spheres or "
+    "spheres_apart."
+)
 
 
 @app.command()

@@ -92,7 +92,24 @@ def test_help_names_the_benchmarks():
     from mpm3dpp.cli import BENCH_NAMES
 
     named = BENCH_NAMES.rstrip(".").replace(" or ", ", ").split(", ")
-    assert named == [name for name in cases.BENCHES if not name.endswith("_apart")]
+    assert named == list(cases.BENCHES)
+
+
+def test_what_memory_cannot_hold_is_refused():
+    sentence = r"--size = 100000 is too large: elastic3d would need some 1,117,587,090 GiB of "
+    with pytest.raises(CaseError, match=sentence + r"memory, and this machine has [\d,.]+ GiB; "):
+        bench.main("elastic3d", [10**5])
+    for name, sizes in (("gimp2d", [10**5]), ("elastic3d", [10, 10**5])):  # One has a twin.
+        with pytest.raises(CaseError, match=r"--size = 100000 is too large: 2 benchmarks at once"):
+            bench.main(name, sizes)
+
+
+def test_the_folder_of_the_picture_is_made_before_measuring(tmp_path):
+    (tmp_path / "file").write_text("no folder")
+    with pytest.raises(CaseError, match="a part of this path is a file"):
+        bench.main("elastic2d", [10**9], plot=tmp_path / "file" / "in" / "one.png")
+    bench.main("elastic2d", [2], steps=1, plot=tmp_path / "new" / "one.png", json=True)
+    assert (tmp_path / "new" / "one.png").is_file()
 
 
 def test_a_picture_of_another_kind_is_refused_before_measuring(tmp_path):

@@ -26,6 +26,8 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import CaseError, nearest
+from ..folders import writable_folder
+from ..shapes.filling import MEMORY, PARTICLE_BYTES
 from .cases import BENCHES, Bench
 from .operations import operations_per_particle_step
 from .process import Process
@@ -76,7 +78,7 @@ def measure(
         `elastic3d_ratio` for `jc`, `debris` and `gimp3d`), the median over pairs of blocks.
 
     Raises:
-        CaseError: there is no such benchmark, or not with this scheme.
+        CaseError: there is no such benchmark, not with this scheme, or no memory for this size.
         RunError: it could not be run to its end.
     """
     bench = find(name)
@@ -84,6 +86,7 @@ def measure(
     cells = size or bench.size
     specs = [(part, cells, threads) for part in (name, bench.twin) if part]
     lengths = block_lengths(steps or STEPS)
+    _check_memory(specs)
     blocks, ends = _in_turns(specs, scheme, lengths, told)
     return _result(bench, cells, threads, scheme, sum(lengths), blocks, ends[0])
 
@@ -105,6 +108,7 @@ def series(
     _allow(bench, scheme)
     lengths = block_lengths(steps or STEPS)
     specs = [(name, size, count) for size in sizes for count in threads]
+    _check_memory(specs)
     blocks, ends = _in_turns(specs, scheme, lengths, told)
     alone = replace(bench, twin="")
     return [
@@ -119,6 +123,21 @@ def _allow(bench: Bench, scheme: str) -> None:
             "cannot be measured with USL, which is unstable where particles enter empty cells",
             "give usf or musl",
             value=bench.name,
+        )
+
+
+def _check_memory(specs: Sequence[tuple[str, int, int]]) -> None:
+    """Raise `CaseError` if benchmarks (name, size, threads) at once have no room in memory."""
+    needed = sum(BENCHES[name].particles(size) for name, size, _ in specs) * PARTICLE_BYTES
+    if needed > MEMORY:
+        name, size, _ = max(specs, key=lambda spec: spec[1])
+        at_once = f"{len(specs)} benchmarks at once" if len(specs) > 1 else name
+        raise CaseError(
+            f"is too large: {at_once} would need some {needed / 2**30:,.0f} GiB of memory, and "
+            f"this machine has {MEMORY / 2**30:,.1f} GiB",
+            "give a smaller one",
+            key="--size",
+            value=size,
         )
 
 
@@ -235,6 +254,8 @@ def main(
     if plot is not None and plot.suffix.lower() != ".png":
         remedy = "give a name that ends in .png"
         raise CaseError("is not the name of a PNG file", remedy, key="--plot", value=str(plot))
+    if plot is not None:
+        writable_folder(plot.parent)
     alone = len(sizes) <= 1 and len(threads) == 1
     with progress(quiet=json) as told:
         if alone:

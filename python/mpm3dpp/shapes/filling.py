@@ -14,8 +14,12 @@ from ..errors import CaseError
 from .base import SURFACE_TOLERANCE, Points, Shape
 
 _CHUNK = 1 << 18  # Points looked at together: some 20 MB of temporary arrays.
-MOST_PARTICLES = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 150
-"""What the memory of this machine holds of them, of 150 bytes each."""
+MEMORY = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+"""Of this machine [bytes]."""
+PARTICLE_BYTES = 150
+"""That a particle needs about, its share of the grid included."""
+MOST_PARTICLES = MEMORY / PARTICLE_BYTES
+"""What the memory of this machine holds of them."""
 LENGTHS_REMEDY = (
     "write lengths with their unit (a plain number is in metres), or give a larger grid.cell_size"
 )
