@@ -14,6 +14,7 @@ from .detonation import EXPLOSIVE
 from .errors import key_text
 from .time_functions import TimeFunction
 
+_FASTEST = 10.0  # Times the speed of sound; the fastest impacts in laboratories are at 2 to 3.
 _STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
 
 
@@ -24,7 +25,8 @@ def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
         case: a checked case.
         bodies: its bodies, filled.
     """
-    return [*_materials(case), *_rigid(case), *_detonations(case, bodies), *_walls(case)]
+    found = [*_materials(case), *_rigid(case), *_detonations(case, bodies), *_walls(case)]
+    return found + _speeds(case, bodies)
 
 
 def _materials(case: Case) -> list[str]:
@@ -80,6 +82,25 @@ def _walls(case: Case) -> list[str]:
             found.append(
                 f"grid.box.walls.{FACES[face]} absorbs waves but holds no weight, and run.gravity "
                 "presses on it: what stands there sinks; give slip or fixed unless that is meant"
+            )
+    return found
+
+
+def _speeds(case: Case, bodies: list[FilledBody]) -> list[str]:
+    """Bodies that are so fast at the start that their velocity is perhaps in another unit."""
+    parts = case.parts()
+    sound = {name: case.material[part.material].sound_speed() for name, part in parts.items()}
+    quickest = max(c for name, c in sound.items() if not case.is_rigid(name))
+    found = []
+    for name, members in by_part(bodies).items():
+        speed = max(float(np.linalg.norm(body.velocities, axis=1).max()) for body in members)
+        own = quickest if case.is_rigid(name) else sound[name]
+        if speed > _FASTEST * own:
+            whose = "the other materials" if case.is_rigid(name) else "its material"
+            found.append(
+                f"{key_text(case.part_path(name))} moves at {speed:.4g} m/s, {speed / own:.3g} "
+                f"times the speed of sound in {whose} ({own:.4g} m/s); look at the unit of its "
+                "velocity (a plain number is in m/s) and at the stiffness"
             )
     return found
 

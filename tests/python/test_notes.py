@@ -34,6 +34,7 @@ shape = { box = { lower = [0, 0], upper = ["4 mm", "4 mm"] } }
 material = "steel"
 shape = { box = { lower = ["6 mm", 0], upper = ["8 mm", "4 mm"] } }
 """
+STIFF = "[material.stiff]\ndensity = 7800\nstrength = { rigid = {} }\n[body.plate]"
 LIT = '[[detonation]]\npoint = ["0.25 mm", "0.25 mm"]\n'
 # D is 6930 m/s: from 10 mm away it takes 1.44 us, longer than the run.
 FAR = '[[detonation]]\npoint = ["-9.75 mm", "0.25 mm"]\n'
@@ -121,6 +122,31 @@ def test_the_same_of_a_file_of_mpm3d() -> None:
     assert "lights nothing before the end" in note
     with pytest.raises(CaseError, match=r"mpm:13: detonation\[0\] has nothing to light"):
         import_source(split(DECK.replace("MATERIAL", "elas 7.8d-3 210d3 0.3")))
+
+
+@pytest.mark.parametrize(
+    ("body", "note"),
+    [
+        ('material = "steel"\nvelocity = ["58 km/s", 0]', ""),
+        (
+            'material = "steel"\nvelocity = ["60 km/s", 0]',
+            "6e+04 m/s, 10.2 times the speed of sound",
+        ),
+        (
+            'material = "steel"\nangular_velocity = 1e8',
+            "times the speed of sound in its material (58",
+        ),
+        ('material = "stiff"\nvelocity = ["3e4 km/s", 0]', "of sound in the other materials (5875"),
+        ('material = "steel"\nmotion = { velocity = ["60 km/s", 0] }', "in the other materials"),
+    ],
+)
+def test_bodies_that_are_too_fast(body: str, note: str) -> None:
+    """Waves in this steel run at 5,875 m/s."""
+    solid = CASE.replace('"tnt"\nshape', '"steel"\nshape').replace("[body.plate]", STIFF)
+    found = notes_of(solid.replace('material = "steel"\nshape', f"{body}\nshape", 1))
+    assert [line.startswith("body.charge moves at ") and note in line for line in found] == (
+        [True] if note else []
+    )
 
 
 def test_check_and_run_print_them(tmp_path: Path) -> None:
