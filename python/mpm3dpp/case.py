@@ -16,7 +16,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
-from . import case_file
+from . import arguments, case_file
 from .case_body import Body
 from .case_checks import check_case
 from .case_grid import Grid
@@ -92,8 +92,9 @@ class Case(CaseModel):
         Raises:
             CaseError: the file cannot be read or breaks a rule; the sentence says where.
         """
-        case = cls.from_text(case_file.read_text(Path(path)), str(path))
-        case._source = Path(path)
+        path = arguments.path("path", path)
+        case = cls.from_text(case_file.read_text(path), str(path))
+        case._source = path
         return case
 
     @classmethod

@@ -9,6 +9,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from .arguments import whole_number
 from .errors import CaseError
 from .io.checkpoint import CHECKPOINT, UNFINISHED
 from .io.disk import cannot_write, make_folder
@@ -27,6 +28,9 @@ def default_folder(case_file: Path) -> Path:
         return Path("results") / f"{folder}_{stem.removeprefix('case_')}"
     return Path("results") / stem
 
+
+MOST_THREADS = 4096
+"""So that a slip of the keyboard is no lack of memory."""
 
 # What a run writes beside the frames and the history, which it begins anew.
 _OF_A_RUN = ("manifest.json", "frame.png", "energies.png", "first_contact.png", "animation.gif")
@@ -93,10 +97,10 @@ def thread_count(wanted: int | None) -> int:
     """Return the number of threads: what is wanted, else OMP_NUM_THREADS, else all cores.
 
     Raises:
-        CaseError: OMP_NUM_THREADS is set to something that is no number of threads.
+        CaseError: that is no number of threads.
     """
     if wanted is not None:
-        return wanted
+        return whole_number("threads", wanted, 1, MOST_THREADS)
     setting = os.environ.get("OMP_NUM_THREADS", "").split(",")[0].strip()
     if setting:
         if not setting.isdigit() or int(setting) < 1:

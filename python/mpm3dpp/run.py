@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from . import _core
+from . import _core, arguments
 from .case import Case, load_case
 from .checkpoints import Checkpoint, Checkpoints
 from .errors import CaseError, RunError
@@ -52,17 +52,17 @@ def run_case(
             two steps were fitted to the first.
 
     Raises:
-        CaseError: a mistake in the case, or a folder that cannot be written.
+        CaseError: a mistake in the case or the call, or a folder that cannot be written.
         RunError: the run became unstable, or the disk is full; what was written before is kept.
         KeyboardInterrupt: the user stopped it; what was computed is kept.
     """
+    folder, before = arguments.path("out", out), None
     if not isinstance(case, Case):
-        case = load_case(case)
-    before = None
+        case = load_case(arguments.path("case", case))
     if resume:
-        before = Checkpoint.of(Path(out))
+        before = Checkpoint.of(folder)
         before.check(case)
-    folder = writable_folder(Path(out))
+    writable_folder(folder)
     with only_run_in(folder):
         manifest = _run(case, folder, threads, quiet or json, before)
     if json:

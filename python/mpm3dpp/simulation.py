@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _core
+from . import _core, arguments
 from .build import build, warnings
 from .case import Case
 from .case_notes import notes
@@ -43,10 +43,14 @@ class Simulation:
         core: the compiled simulation (`mpm3dpp._core.Simulation`).
 
     Raises:
-        CaseError: the case cannot be filled, or the core refuses a parameter.
+        CaseError: the case cannot be filled, or the core refuses a parameter, or an argument is
+            none that can be.
     """
 
     def __init__(self, case: Case, threads: int | None = None, fused: bool = True) -> None:
+        if not isinstance(case, Case):
+            remedy = 'give what mpm3dpp.load_case("case.toml") returns, or make a Case'
+            raise CaseError("must be a Case", remedy, key="case", value=case)
         filled = build(case)
         self.case = case
         self.threads = thread_count(threads)
@@ -116,10 +120,14 @@ class Simulation:
             The number of steps made.
 
         Raises:
+            CaseError: `steps` is no whole number >= 0, or `end_time` no time.
             RunError: the run has become unstable: who, where, when and why.
         """
         made = 0
-        end = self.case.run.end_time if end_time is None else end_time
+        steps = arguments.whole_number("steps", steps, 0)
+        end = self.case.run.end_time
+        if end_time is not None:
+            end = arguments.quantity("end_time", end_time, "s")
         while made < steps:
             done = self.core.advance(min(steps - made, self.core.history_capacity), end)
             made += done
@@ -142,7 +150,7 @@ class Simulation:
         """
         numbers = self._numbers(body)
         known = [column.name for column in self.core.columns(numbers[0])]
-        if name not in known:
+        if arguments.text("name", name) not in known:
             raise CaseError(f"is not a column of {body}", nearest(name, known), value=name)
         return np.concatenate([self.core.column(number, name) for number in numbers])
 
@@ -164,14 +172,24 @@ class Simulation:
         """Give the particles of a body velocities [m/s], shape (n, D), in the order of filling.
 
         Raises:
-            CaseError: there is no such body, or its motion is prescribed.
+            CaseError: there is no such body, its motion is prescribed, or `velocities` do not fit.
         """
-        if body in self.case.body and self.case.body[body].motion is not None:
+        if (
+            arguments.text("body", body) in self.case.body
+            and self.case.body[body].motion is not None
+        ):
             raise CaseError("has a prescribed motion", "remove motion from it", value=body)
-        values = np.ascontiguousarray(velocities, dtype=float)
         if body not in self.bodies:
             raise CaseError("is not a body of the case", nearest(body, self.bodies), value=body)
-        self.core.set_velocity(self.bodies.index(body), values)
+        number = self.bodies.index(body)
+        try:
+            values = np.ascontiguousarray(velocities, dtype=float)
+            self.core.set_velocity(number, values)
+        except (TypeError, ValueError):
+            shape = self.core.body_particle_count(number), self.case.grid.dimension
+            remedy = f"give an array of the shape {shape}, a row for each particle"
+            rule = "must be finite numbers, shape (n, D)"
+            raise CaseError(rule, remedy, key="velocities") from None
 
     def save(self, path: str | Path) -> None:
         """Write the state to a file, in one step; `restore` goes on from it.
@@ -181,7 +199,7 @@ class Simulation:
         """
         if self.core.failure is not None:
             raise CaseError("a run that had to stop cannot be saved", "save it while it goes on")
-        write_checkpoint(Path(path), self.core, {"case": self.case.content()})
+        write_checkpoint(arguments.path("path", path), self.core, {"case": self.case.content()})
 
     def restore(self, path: str | Path) -> None:
         """Bring a simulation that has made no step to the state in a file, of `save` or of a run.
@@ -194,7 +212,7 @@ class Simulation:
         """
         if self.step > 0:
             raise CaseError("a simulation that has made steps cannot be restored", "make a new one")
-        path = Path(path)
+        path = arguments.path("path", path)
         try:
             check_same(path, read_about(path).get("case", {}), self.case)
             restore_checkpoint(path, self.core)
@@ -204,7 +222,7 @@ class Simulation:
 
     def _numbers(self, body: str) -> list[int]:
         """Return the numbers of the bodies that a name stands for."""
-        if body in self.case.grains:
+        if arguments.text("body", body) in self.case.grains:
             first = self.case.first_bodies()[body]
             return list(range(first, first + self.case.grains[body].count))
         if body not in self.bodies:

@@ -34,7 +34,7 @@ def write_checkpoint(path: Path, core: Any, about: Mapping[str, Any]) -> None:
     Raises:
         CaseError: the file cannot be written; the old one still stands.
     """
-    new = path.with_name(f".{path.name}.new")
+    new = path.parent / f".{path.name}.new"
     try:
         with open(new, "wb") as file:
             with zipfile.ZipFile(file, "w") as archive:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mpm3dpp import arguments
 from mpm3dpp.errors import CaseError
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ class Results:
     def __init__(self, path: str | Path) -> None:
         import h5py
 
-        path = Path(path)
+        path = arguments.path("path", path)
         if path.is_dir():
             path = path / "results.vtkhdf"
         self.path = path
@@ -82,6 +83,7 @@ class Results:
 
         Raises:
             IndexError: there is no such frame.
+            CaseError: `frame` is no whole number, or the file has been closed.
         """
         frame = self._number(frame)
         steps = self._root["Steps"]
@@ -139,6 +141,9 @@ class Results:
         self.close()
 
     def _number(self, frame: int) -> int:
+        frame = arguments.whole_number("frame", frame)
+        if not self._file:
+            raise CaseError(f"'{self.path}' has been closed", "open it again with open_results")
         if not -len(self) <= frame < len(self):
             raise IndexError(f"frame {frame} of '{self.path}': it has {len(self)} frames")
         return frame % len(self)

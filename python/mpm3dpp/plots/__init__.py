@@ -9,6 +9,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from mpm3dpp import arguments
+
 
 def plot_results(
     folder: str | Path,
@@ -39,7 +41,9 @@ def plot_results(
     """
     from mpm3dpp.plots.run import plot_results as make
 
-    pictures = make(Path(folder), frame, animation, colour, Path(out) if out else None)
+    folder, frame = arguments.path("folder", folder), arguments.whole_number("frame", frame)
+    colour = None if colour is None else arguments.text("colour", colour)
+    pictures = make(folder, frame, animation, colour, Path(out) if out else None)
     contact = first_contact(folder, Path(out) / "first_contact.png" if out else None)
     return pictures if contact is None else [*pictures, contact]
 

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arguments of functions that users call: what is wrong with one is a sentence that names it.
+
+Every function returns the argument as the type that is wanted, or raises `CaseError`.
+"""
+
+from __future__ import annotations
+
+import operator
+import os
+from pathlib import Path
+from typing import Any
+
+from .errors import CaseError
+
+
+def whole_number(name: str, value: Any, least: int | None = None, most: int | None = None) -> int:
+    """Return a whole number from `least` to `most`."""
+    give = f"give a whole number such as {least or 1}"
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise CaseError("must be a whole number", give, key=name, value=value) from None
+    if isinstance(value, bool):
+        raise CaseError("must be a whole number", give, key=name, value=value)
+    if least is not None and number < least:
+        raise CaseError(f"must be >= {least}", give, key=name, value=value)
+    if most is not None and number > most:
+        raise CaseError(f"must be <= {most}", give, key=name, value=value)
+    return number
+
+
+def quantity(name: str, value: Any, unit: str) -> float:
+    """Return a quantity in the SI unit given; it may be text with another."""
+    from .units import to_si
+
+    try:
+        return to_si(value, unit)
+    except CaseError as error:
+        raise CaseError(error.rule, error.remedy, key=name, value=value) from None
+
+
+def text(name: str, value: Any) -> str:
+    """Return text."""
+    if not isinstance(value, str):
+        raise CaseError("must be text", "write a name in quotation marks", key=name, value=value)
+    return value
+
+
+def path(name: str, value: Any) -> Path:
+    """Return the path of a file or folder."""
+    if not isinstance(value, (str, os.PathLike)) or value == "":
+        remedy = 'give text such as "results/rings", or a pathlib.Path'
+        raise CaseError("must be the path of a file or folder", remedy, key=name, value=value)
+    return Path(value)
