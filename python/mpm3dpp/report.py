@@ -100,11 +100,14 @@ def _listed(values: list[float]) -> str:
 
 
 def speed_line(manifest: Manifest) -> str:
-    """Return the line about speed and memory."""
+    """Return the line about speed and memory; all parts of a run that went on count together."""
     used = sum(manifest.bytes.values()) / max(1, manifest.particles)
     threads = "1 thread" if manifest.threads == 1 else f"{manifest.threads} threads"
+    on = f"on {threads}"
+    if manifest.resumed_step:
+        on = f"in all parts of the run (from step {manifest.resumed_step:,} {on})"
     return (
         f"{manifest.status}: {manifest.steps:,} steps of {manifest.particles:,} particles in "
-        f"{manifest.wall_time:.1f} s, {manifest.ns_per_particle_step:.1f} ns per particle-step on "
-        f"{threads}, {used:.0f} bytes per particle"
+        f"{manifest.wall_time:.1f} s, {manifest.ns_per_particle_step:.1f} ns per particle-step "
+        f"{on}, {used:.0f} bytes per particle"
     )

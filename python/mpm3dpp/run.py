@@ -101,7 +101,7 @@ def _run(
             raise
         can_go_on = ", and --resume goes on" if (folder / CHECKPOINT).exists() else ""
         raise RunError(f"{error}; what was written before is in {folder}{can_go_on}") from error
-    manifest = _manifest(simulation, status, reason, checkpoints.wall_time)
+    manifest = _manifest(simulation, status, reason, checkpoints.wall_time, begin)
     manifest.energies = simulation.summary
     manifest.write(folder)
     return manifest
@@ -230,7 +230,7 @@ def _steps(most: int, frames: list[float], core: Any) -> int:
 
 
 def _manifest(
-    simulation: Simulation, status: Status, reason: str | None, wall_time: float
+    simulation: Simulation, status: Status, reason: str | None, wall_time: float, begin: int
 ) -> Manifest:
     from . import __version__
 
@@ -247,6 +247,7 @@ def _manifest(
         threads=simulation.threads,
         wall_time=wall_time,
         status=status,
+        resumed_step=begin,
         reason=reason,
         case_hash=case.case_hash,
         build=_core.build_info(),

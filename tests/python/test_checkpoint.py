@@ -24,6 +24,7 @@ from commands import CASE, command, mpm3dpp, one_sentence, write
 from mpm3dpp import Case, Simulation, load_case, open_results, run_case
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io import read_manifest
+from mpm3dpp.report import speed_line
 
 OFTEN = CASE.replace("frames = 4", 'interval = "20 ms"\ncheckpoint_interval = "50 ms"')
 LONG = OFTEN.replace('"8 ms"', '"1000 s"')
@@ -147,6 +148,11 @@ def test_the_time_before_counts(tmp_path: Path) -> None:
     case = load_case(write(tmp_path, end_after(tmp_path)))
     after = run_case(case, tmp_path / "out", threads=1, pictures=False, resume=True)
     assert after.wall_time > 0.9 * before["wall_time"]
+    assert (before["resumed_step"], after.resumed_step) == (0, before["steps"])
+    went_on = f"in all parts of the run (from step {before['steps']:,} on 1 thread), "
+    assert f" ns per particle-step {went_on}" in speed_line(after)
+    work = after.particles * after.steps * after.ns_per_particle_step / 1e9
+    assert 0.0 < work < after.wall_time  # Both are of all steps.
     for name, seconds in before["stages"].items():  # per step
         assert after.stages[name] * after.steps >= 0.9 * seconds * before["steps"], name
 

@@ -31,8 +31,10 @@ class Manifest:
         mass: of all particles [kg] (per metre in 2D).          cell_size: [m].
         eroded, left: mass [kg] (per metre in 2D) and count of the particles that have eroded,
             and that have left `grid.keep`.
-        particles, threads, steps: counts.          wall_time: of the run [s].
+        particles, steps: counts.          wall_time: of the run [s].
         ns_per_particle_step, stages: time in the steps and in each stage [ns].
+        resumed_step: from which the run went on last with `--resume`, else 0. Steps, times and
+            energies are those of all its parts together, `threads` and memory those of the last.
         peak_memory_bytes: largest resident size of the process [bytes].
         bytes: of the core: particles, grid, contact, other.
         loads: see `LoadRecord`, by name.
@@ -57,6 +59,7 @@ class Manifest:
     particles: int
     threads: int
     steps: int
+    resumed_step: int
     end_time: float
     wall_time: float
     ns_per_particle_step: float
@@ -104,6 +107,7 @@ def build_manifest(
     threads: int,
     wall_time: float,
     status: Status,
+    resumed_step: int = 0,
     reason: str | None = None,
     energies: Mapping[str, Any] | None = None,
     case_hash: str | None = None,
@@ -122,6 +126,7 @@ def build_manifest(
         threads: used.
         wall_time: of the whole run [s].
         status: how the run ended.
+        resumed_step: from which it went on, if it did.
         reason: one sentence, for "interrupted" and "failed".
         energies: `HistoryWriter.summary()`.
         case_hash: when the case has its own; else SHA-256 of the canonical JSON of `case`.
@@ -142,6 +147,7 @@ def build_manifest(
         particles=int(simulation.particle_count),
         threads=int(threads),
         steps=int(simulation.step),
+        resumed_step=resumed_step,
         end_time=float(simulation.time),
         wall_time=float(wall_time),
         ns_per_particle_step=sum(stages.values()),
