@@ -13,12 +13,12 @@ from .case import Case
 from .case_notes import notes
 from .echo_conditions import condition_lines, load_in_words, motion_in_words
 from .loads import pieces
-from .materials import Failure, catalogue
+from .materials import Failure, catalogue, state_columns
 from .plots.labels import scaled
 
-# Estimates for the echo [bytes]: a particle with its columns and lists, and the nodes of a cell
-# that holds particles, those of the contact included.
-_PARTICLE_BYTES, _CELL_BYTES = 160, 150
+# Estimates for the echo [bytes], in 2D and 3D: a particle with its lists but without the state of
+# its material, and a node that it reaches, with those that lie beside it in blocks and in contact.
+_PARTICLE_BYTES, _NODE_BYTES = {2: 96, 3: 128}, {2: 150, 3: 200}
 
 
 def time_step(case: Case, bodies: list[FilledBody]) -> float:
@@ -48,14 +48,36 @@ def steps_in_words(case: Case, bodies: list[FilledBody]) -> str:
 
 def occupied_cells(case: Case, bodies: list[FilledBody]) -> int:
     """Return the number of grid cells that hold particles, each body counted by itself."""
-    total = 0
+    return sum(len(_cells(case, members, 0.0)[0]) for members in by_part(bodies).values())
+
+
+def _cells(case: Case, members: list[FilledBody], shift: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the numbers of the cells that hold particles, and the steps to the next on each axis.
+
+    Cells begin `shift` of a cell before the nodes; around a body there is room for one more.
+    """
+    positions = np.concatenate([body.positions for body in members])
+    owner = np.repeat(np.arange(len(members)), [len(body.positions) for body in members])
+    cells = np.floor((positions - np.asarray(case.grid.lower)) / case.grid.cell_size + shift)
+    cells -= cells.min(axis=0) - 1
+    strides = np.cumprod([1.0, *(cells.max(axis=0) + 2)])
+    return np.unique(cells @ strides[:-1] + owner * strides[-1]), strides[:-1]
+
+
+def memory_bytes(case: Case, bodies: list[FilledBody]) -> int:
+    """Return about what the run will need, of particles and of the nodes that each body reaches."""
+    gimp, total = case.grid.basis == "gimp", 0
     for members in by_part(bodies).values():
-        positions = np.concatenate([body.positions for body in members])
-        owner = np.repeat(np.arange(len(members)), [len(body.positions) for body in members])
-        cells = np.floor((positions - np.asarray(case.grid.lower)) / case.grid.cell_size)
-        cells -= cells.min(axis=0)
-        strides = np.cumprod([1.0, *(cells.max(axis=0) + 1)])
-        total += len(np.unique(cells @ strides[:-1] + owner * strides[-1]))
+        state = state_columns(case.material[members[0].material].models)
+        each = _PARTICLE_BYTES[case.grid.dimension] + 8 * len(state)
+        total += each * sum(len(body.positions) for body in members)
+        # With GIMP a particle reaches the node nearest to it and those on both sides of that.
+        nodes, strides = _cells(case, members, 0.5 if gimp else 0.0)
+        for stride in strides:
+            nodes = np.unique(
+                np.add.outer((-stride, 0.0, stride) if gimp else (0.0, stride), nodes)
+            )
+        total += _NODE_BYTES[case.grid.dimension] * len(nodes)
     return total
 
 
@@ -127,7 +149,6 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
     lines += material_lines(case)
     particles = sum(len(body.positions) for body in bodies)
     cells = occupied_cells(case, bodies)
-    memory = particles * _PARTICLE_BYTES + cells * _CELL_BYTES
     box = case.grid.box_cells
     bounds = " x ".join(str(n) for n in box) + " cells" if box else "no bounds"
     contact = "none, the bodies are bonded" if case.contact.bonded else "none"
@@ -135,7 +156,7 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         contact = f"{case.contact.detection} detection, friction {case.contact.friction:g}"
     lines += [
         f"total: {particles:,} particles, mass {sum(b.mass for b in bodies):.6g} kg{per_metre}, "
-        f"about {memory / 2**20:,.1f} MiB",
+        f"about {memory_bytes(case, bodies) / 2**20:,.1f} MiB",
         f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
         f"{bounds}, {case.grid.basis} basis",
         *condition_lines(case),

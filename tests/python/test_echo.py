@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from mpm3dpp import load_case
+from mpm3dpp import Body, Case, Grains, Grid, Material, Run, Simulation, load_case, shapes
 from mpm3dpp.build import build
 from mpm3dpp.case_grid import GridDoubling
-from mpm3dpp.echo import echo
+from mpm3dpp.echo import echo, memory_bytes
 from mpm3dpp.echo_conditions import doublings, in_words
 from mpm3dpp.time_functions import TimeFunction
 
@@ -99,6 +99,34 @@ def test_motion(shown: str) -> None:
 def test_quantities_in_words(given: object, said: str) -> None:
     value = TimeFunction.parse(given, "Pa")
     assert in_words(value, "Pa") == said
+
+
+SOFT = Material(density=1000, strength={"elastic": {"E": 1e6, "nu": 0.3}})
+COPPER = Material(library="copper_ofhc")
+
+
+@pytest.mark.parametrize("basis", ["linear", "gimp"])
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("what", ["soft block", "copper block", "soft grains"])
+def test_the_memory_is_about_that_of_a_run(what: str, dimension: int, basis: str) -> None:
+    """To a quarter: nodes lie in blocks, and arrays have room to grow."""
+    edge, count = {2: (0.15, 20), 3: (0.024, 5)}[dimension]
+    material = what.split()[0]
+    corner = [0.0] * dimension
+    box = shapes.Box(lower=corner, upper=[edge] * dimension)
+    lattice = {"lower": corner, "count": [count] * dimension, "radius": 2.5e-3}
+    grains = {"few": Grains(material=material, lattice=lattice)}
+    case = Case(
+        grid=Grid(dimension=dimension, cell_size=1e-3, basis=basis),
+        run=Run(end_time=1.0),
+        material={"soft": SOFT, "copper": COPPER},
+        body={"block": Body(material=material, shape=box)} if "block" in what else {},
+        grains=grains if "grains" in what else {},
+    )
+    simulation = Simulation(case, threads=1)
+    simulation.advance(20)
+    needed = sum(simulation.core.bytes().values())
+    assert memory_bytes(case, build(case)) == pytest.approx(needed, rel=0.25)
 
 
 def test_doublings_of_a_box_and_without() -> None:

@@ -130,7 +130,8 @@ def _variants(case: Case, changes: Changes) -> dict[str, Case]:
 def held_cells(done: Done) -> tuple[np.ndarray, np.ndarray]:
     """Return the times of the frames [s] and the share of the box's cells that hold a particle.
 
-    Both (frames,); the shares are NaN without a box.
+    Both (frames,); the shares are NaN without a box. The cells are those between the nodes, as the
+    paper's and as the box is cut into them, with GIMP too.
     """
     grid, shares = done.case.grid, []
     cells = math.prod(grid.box_cells) if grid.box_cells else math.nan
