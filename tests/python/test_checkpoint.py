@@ -142,6 +142,26 @@ def test_kinds_of_files(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPat
         assert whole.eroded["count"] > 0
 
 
+def test_a_run_that_met_a_full_disk_goes_on_from_its_last_checkpoint(tmp_path: Path) -> None:
+    """A limit on the size of files stands for the full disk."""
+    limit = (2_000_000, 2_000_000)
+    done = subprocess.run(
+        command("run", write(tmp_path, LONG), "--out", "out", "--threads", 1, "--quiet"),
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit),
+    )
+    assert done.returncode == 1
+    assert "what was written before is in out, and --resume goes on" in one_sentence(done.stderr)
+    case = load_case(write(tmp_path, end_after(tmp_path)))
+    again = run_case(case, tmp_path / "out", threads=1, pictures=False, resume=True)
+    whole = run_case(case, tmp_path / "whole", threads=1, pictures=False)
+    assert 0 < again.resumed_step < again.steps and again.result_hash == whole.result_hash
+    check_files(tmp_path / "out", tmp_path / "whole")
+
+
 def test_the_time_before_counts(tmp_path: Path) -> None:
     stopped(tmp_path, signal.SIGINT)
     before = read_manifest(tmp_path / "out")
