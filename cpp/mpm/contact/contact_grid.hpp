@@ -59,7 +59,7 @@ template <int D>
 struct TileBodies {
   std::vector<TileBody<D>> bodies;  // the first `count` are in use
   std::size_t count = 0;
-  std::uint64_t overlapped = 0;  // nodes at which two or more have mass
+  std::uint64_t overlapped = 0;    // nodes at which two or more have mass
   std::vector<HeldNodes<D>> held;  // by the holders, in the order of the tile's
   LastPlanes<D> planes;
 
@@ -118,6 +118,12 @@ class ContactGrid {
   void recall_tiles();
   /// The bodies around a tile and the nodes at which they overlap.
   void look_around(const TileGrid<D>& grid, const ContactTile<D>& tile, TileBodies<D>& found) const;
+  std::span<const TileHolder> holders_of(const TileBody<D>& at) const {
+    return {&holders_[at.first_holder], at.holders};
+  }
+  /// Have the memory bring the particles around a tile's overlapped nodes.
+  void fetch_particles(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                       const TileBodies<D>& around) const;
   /// Where the sides of a node are, their masses and velocities left to be read.
   void place_sides(TileGrid<D>& grid, const TileBodies<D>& around, Part& part, ContactNode& node);
   void read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, Part& part,

@@ -31,8 +31,8 @@ struct ContactPart {
   std::vector<Side<D>> sides;
   std::vector<SidePair<D>> pairs;
   std::vector<std::uint32_t> further;  // places of lines of the sides, each node's in a row
-  std::size_t overlapped = 0;  // nodes, those left out too
-  int bodies_max = 0;          // at a node
+  std::size_t overlapped = 0;          // nodes, those left out too
+  int bodies_max = 0;                  // at a node
   // Where pairs are kept: of this step and the last, in the order of `nodes` and of `pairs`.
   std::vector<KnownNode> known_nodes, last_known_nodes;
   std::vector<KnownPair<D>> known, last_known;
@@ -113,8 +113,8 @@ struct ContactPart {
 
   std::size_t bytes() const {
     const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    return sizeof(*this) + size(nodes) + size(sides) + size(pairs) + size(further) + size(known_nodes) +
-           size(last_known_nodes) + size(known) + size(last_known);
+    return sizeof(*this) + size(nodes) + size(sides) + size(pairs) + size(further) +
+           size(known_nodes) + size(last_known_nodes) + size(known) + size(last_known);
   }
 
  private:

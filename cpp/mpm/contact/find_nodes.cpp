@@ -57,6 +57,14 @@ void ContactGrid<D>::look_around(const TileGrid<D>& grid, const ContactTile<D>& 
 }
 
 template <int D>
+void ContactGrid<D>::fetch_particles(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                                     const TileBodies<D>& around) const {
+  for (const TileBody<D>& at : around.all())
+    TileParticles<D>::fetch(grid, bodies[static_cast<std::size_t>(at.body)], holders_of(at),
+                            at.nodes & around.overlapped);
+}
+
+template <int D>
 void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around, Part& part,
                                  ContactNode& node) {
   const Index<D> index = Tile<D>::cell_index(node.cell);
@@ -156,7 +164,7 @@ void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<
   if (unknown != 0)
     for (TileBody<D>& at : around.all())
       at.particles.gather(grid, bodies[static_cast<std::size_t>(at.body)], tile.tile,
-                          {&holders_[at.first_holder], at.holders}, at.nodes & unknown);
+                          holders_of(at), at.nodes & unknown);
   for (const ContactNode& node : nodes)
     if (unknown >> node.cell & 1u) {
       find_pairs(grid, bodies, stiffness, settings, around, part, node);
@@ -191,6 +199,7 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
         continue;
       }
       const std::size_t first = part.nodes.size();
+      if (!keeps_) fetch_particles(grid, bodies, around);
       add_nodes(grid, bodies, t, around, part);
       fill_pairs(grid, bodies, stiffness, settings, t, around, p, first);
       // A rigid body's mass is spread over all its nodes, so they stay.

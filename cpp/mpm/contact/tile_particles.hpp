@@ -69,27 +69,27 @@ class TileParticles {
   /// From how many cells a node is in reach.
   int cells_around() const { return power(margin_ + 2, D); }
 
-  /// Forget all and take what is around these nodes of another tile, a bit each by Tile<D>::cell.
+  /// Have the memory bring what is around these nodes of a tile, a bit each by Tile<D>::cell.
+  static void fetch(const TileGrid<D>& grid, const Body<D>& body,
+                    std::span<const TileHolder> holders, std::uint64_t nodes) {
+    for_each_cell(grid, holders, nodes, [&](const Patch<D>& patch, const Index<D>&, int cell) {
+      fetch(body, patch, cell);
+    });
+  }
+
+  /// Forget all and take what is around these nodes of another tile.
   void gather(const TileGrid<D>& grid, const Body<D>& body, const Index<D>& tile,
               std::span<const TileHolder> holders, std::uint64_t nodes) {
     margin_ = grid.margin();
     own_node_ = node_in_cell(grid.basis);
     lanes_.clear();
     filled_.fill(0);
-    const auto each = [&](auto&& f) {
-      for (const TileHolder& h : holders) {
-        const Patch<D>& patch = grid.patches[static_cast<std::size_t>(h.patch)];
-        const Index<D> offset = Tile<D>::offset(Tile<D>::neighbours - 1 - h.neighbour);
-        std::uint64_t cells = patch.occupied & cells_in_reach<D>(nodes, offset, margin_);
-        for (; cells != 0; cells &= cells - 1) f(patch, offset, std::countr_zero(cells));
-      }
-    };
-    each([&](const Patch<D>& patch, const Index<D>&, int cell) { fetch(body, patch, cell); });
-    each([&](const Patch<D>& patch, const Index<D>& offset, int cell) {
-      Index<D> place = Tile<D>::cell_index(cell);
-      for (std::size_t a = 0; a < D; ++a) place[a] += Tile<D>::cells * offset[a];
-      read(grid, body, grid.first_cell(tile), patch, cell, place);
-    });
+    for_each_cell(grid, holders, nodes,
+                  [&](const Patch<D>& patch, const Index<D>& offset, int cell) {
+                    Index<D> place = Tile<D>::cell_index(cell);
+                    for (std::size_t a = 0; a < D; ++a) place[a] += Tile<D>::cells * offset[a];
+                    read(grid, body, grid.first_cell(tile), patch, cell, place);
+                  });
   }
 
   /// f(place, lanes) for the cells from which a node is in reach; `place` is the node's, as counted
@@ -136,6 +136,19 @@ class TileParticles {
     int n = 0;
     for (std::size_t a = D; a-- > 0;) n = n * edge + cell[a] + 1;
     return n;
+  }
+
+  /// f(patch, offset of its tile, cell) for the cells with particles from which nodes of a tile are
+  /// in reach.
+  template <class F>
+  static void for_each_cell(const TileGrid<D>& grid, std::span<const TileHolder> holders,
+                            std::uint64_t nodes, F&& f) {
+    for (const TileHolder& h : holders) {
+      const Patch<D>& patch = grid.patches[static_cast<std::size_t>(h.patch)];
+      const Index<D> offset = Tile<D>::offset(Tile<D>::neighbours - 1 - h.neighbour);
+      std::uint64_t cells = patch.occupied & cells_in_reach<D>(nodes, offset, grid.margin());
+      for (; cells != 0; cells &= cells - 1) f(patch, offset, std::countr_zero(cells));
+    }
   }
 
   /// Have the memory bring a cell's particles: they lie near their places in the sorted columns.
