@@ -1,35 +1,75 @@
 #pragma once
 // The particles of a body around a node: what normals and gaps are made of.
 #include <limits>
-#include <vector>
 
 #include "mpm/contact/tile_particles.hpp"
+#include "mpm/fields/aligned.hpp"
 
 namespace mpm {
 
-/// The particles of a body from which a node is in reach, in lanes. Empty places in the lanes
-/// repeat a particle of the body and have no weight.
+/// The particles of a body from which a node is in reach, packed, so that lanes are full. What is
+/// empty in the last lanes repeats a particle, without weight or extent.
 template <int D>
-struct NearParticles {
+class NearParticles {
+ public:
   using T = Batch<contact_lanes<D>>;
-  struct Lanes {
-    Vec<T, D> x;  // position from the node [cells]
-    T half;       // half the particle's edge [cells]; -infinity for one out of reach
-    T weight;     // mass [kg]; 0 for one out of reach
-  };
-  std::vector<Lanes> lanes;
-  T mass = T(0.0);                       // of all, by lane [kg]
-  Vec<T, D> moment = Vec<T, D>::zero();  // the same times x
 
-  /// Mass in reach [kg] and its centre from the node [cells]; zero without mass.
-  double total() const { return sum(mass); }
-  Vec<double, D> centre() const {
-    const double all = total();
-    Vec<double, D> c = Vec<double, D>::zero();
-    if (!(all > 0.0)) return c;
-    for (int a = 0; a < D; ++a) c[a] = sum(moment[a]) / all;
-    return c;
+  /// Forget all, with room for so many.
+  void clear(std::size_t room) {
+    count_ = 0;
+    // Numbers of one kind lie an odd number of lines from those of the next, so that they fall
+    // into different cache sets; whole lanes are written, also behind the last particle.
+    constexpr std::size_t line = cache_line / sizeof(double);
+    const std::size_t lines = (room + T::lanes) / line + 1;
+    if (lines * line <= stride_) return;
+    stride_ = (2 * lines + 1) * line;
+    numbers_.release_and_allocate(kinds * stride_);
   }
+
+  /// Add those lanes that have a weight: position from the node [cells], half the particle's edge
+  /// [cells], mass [kg].
+  void add(const Vec<T, D>& x, T half, T weight) {
+    const std::uint64_t lanes = lane_bits(weight > T(0.0));
+    double* const to = numbers_.data() + count_;
+    for (int a = 0; a < D; ++a) store_chosen(to + at(a), x[a], lanes);
+    store_chosen(to + at(half_at), half, lanes);
+    store_chosen(to + at(weight_at), weight, lanes);
+    count_ += static_cast<std::size_t>(std::popcount(lanes));
+  }
+  /// All have been added.
+  void finish() {
+    mass_ = 0.0;
+    centre_ = Vec<double, D>::zero();
+    if (count_ == 0) return;
+    double* const end = numbers_.data() + count_;
+    for (int a = 0; a < D; ++a) T(end[at(a) - 1]).store(end + at(a));
+    T(-std::numeric_limits<double>::infinity()).store(end + at(half_at));
+    T(0.0).store(end + at(weight_at));
+    T mass(0.0);
+    Vec<T, D> moment = Vec<T, D>::zero();
+    for_each([&](const Vec<T, D>& x, T, T weight) {
+      mass += weight;
+      for (int a = 0; a < D; ++a) moment[a] += weight * x[a];
+    });
+    mass_ = sum(mass);
+    for (int a = 0; a < D; ++a) centre_[a] = sum(moment[a]) / mass_;
+  }
+
+  /// f(position, half, weight) for all, in lanes.
+  template <class F>
+  void for_each(F&& f) const {
+    const double* from = numbers_.data();
+    for (const double* const end = from + count_; from < end; from += T::lanes) {
+      Vec<T, D> x;
+      for (int a = 0; a < D; ++a) x[a] = T::load(from + at(a));
+      f(x, T::load(from + at(half_at)), T::load(from + at(weight_at)));
+    }
+  }
+
+  std::size_t count() const { return count_; }
+  /// Mass in reach [kg] and its centre from the node [cells]; zero without particles.
+  double mass() const { return mass_; }
+  const Vec<double, D>& centre() const { return centre_; }
 
   /// How far the body extends from the node along a unit vector: max of x . n + l [cells], eq. (5),
   /// with l half the edge of a cube of the particle's present volume; -infinity if there are no
@@ -39,20 +79,29 @@ struct NearParticles {
   double extent_along(const Vec<double, D>& normal) const {
     constexpr double radius = 1.0;
     T on_line(-std::numeric_limits<double>::infinity()), anywhere = on_line;
-    for (const Lanes& p : lanes) {
+    for_each([&](const Vec<T, D>& x, T half, T) {
       T along(0.0), square(0.0);
       for (int a = 0; a < D; ++a) {
-        along += T(normal[a]) * p.x[a];
-        square += p.x[a] * p.x[a];
+        along += T(normal[a]) * x[a];
+        square += x[a] * x[a];
       }
-      const T distance = along + p.half;
+      const T distance = along + half;
       anywhere = max(anywhere, distance);
       on_line =
           select(square - along * along < T(radius * radius), max(on_line, distance), on_line);
-    }
+    });
     const double there = largest(on_line);
     return there > -std::numeric_limits<double>::infinity() ? there : largest(anywhere);
   }
+
+ private:
+  static constexpr int half_at = D, weight_at = D + 1, kinds = D + 2;
+  std::ptrdiff_t at(int kind) const { return kind * static_cast<std::ptrdiff_t>(stride_); }
+
+  AlignedArray<double> numbers_;  // of each kind: positions along each axis, halves, weights
+  std::size_t stride_ = 0, count_ = 0;
+  double mass_ = 0.0;
+  Vec<double, D> centre_ = Vec<double, D>::zero();
 };
 
 /// Collect the particles of a body from which a node, counted from the tile's first, is in reach,
@@ -64,28 +113,18 @@ void collect_near(const TileParticles<D>& particles, const Index<D>& node, doubl
   // Over this length [cells] a particle's weight falls to 0 where its reach ends: particles on a
   // lattice lie there in whole rows, and rounding must not choose among them.
   constexpr double rim = 1e-3;
-  to.lanes.clear();
-  to.lanes.reserve(8 * static_cast<std::size_t>(particles.cells_around()));  // seldom allocates
-  T mass(0.0);
-  Vec<T, D> moment = Vec<T, D>::zero();
+  to.clear(particles.count());
   particles.around(node, [&](const Index<D>& place, const auto& lanes) {
-    typename NearParticles<D>::Lanes p;
-    p.weight = lanes.mass;
-    auto near = T(0.0) < T(1.0);
+    Vec<T, D> x;
+    T weight = lanes.mass;
     for (int a = 0; a < D; ++a) {
-      p.x[a] = lanes.xi[a] - T(place[a] + particles.own_node());
-      const T to_rim = T(reach) - max(p.x[a], -p.x[a]);
-      near = near & (to_rim > T(0.0));
-      p.weight *= min(max(T(1.0 / rim) * to_rim, T(0.0)), T(1.0));
+      x[a] = lanes.xi[a] - T(place[a] + particles.own_node());
+      const T to_rim = T(reach) - absolute(x[a]);
+      weight *= min(max(T(1.0 / rim) * to_rim, T(0.0)), T(1.0));
     }
-    if (!any(near)) return;
-    p.half = select(near, lanes.half, T(-std::numeric_limits<double>::infinity()));
-    mass += p.weight;
-    for (int a = 0; a < D; ++a) moment[a] += p.weight * p.x[a];
-    to.lanes.push_back(p);
+    to.add(x, lanes.half, weight);
   });
-  to.mass = mass;
-  to.moment = moment;
+  to.finish();
 }
 
 }  // namespace mpm

@@ -46,12 +46,11 @@ class PlaneFit {
   PlaneFit(const NearParticles<D>& r, const NearParticles<D>& s, unsigned held,
            const Plane<D>& start)
       : r_(r), s_(s), held_(held) {
-    const double mass_r = r.total(), mass_s = s.total();
-    if (!(mass_r > 0.0 && mass_s > 0.0)) return;
-    share_r_ = 1.0 / mass_r;
-    share_s_ = 1.0 / mass_s;
+    if (r.count() == 0 || s.count() == 0) return;
+    share_r_ = 1.0 / r.mass();
+    share_s_ = 1.0 / s.mass();
     thread_local std::vector<T> inside;  // kept, so that fits do not allocate
-    inside.assign(r.lanes.size() + s.lanes.size(), T(0.0));
+    inside.assign((r.count() + s.count()) / T::lanes + 2, T(0.0));
     inside_ = inside.data();
     if (start.exists()) {
       for (int i = 0; i < D; ++i) z_[i] = held >> i & 1u ? 0.0 : start.a[i];
@@ -126,8 +125,10 @@ class PlaneFit {
   template <class F>
   void for_both(F&& f) {
     T* inside = inside_;
-    for (const auto& p : r_.lanes) f(p.x, T(-1.0), T(share_r_) * p.weight, *inside++);
-    for (const auto& p : s_.lanes) f(p.x, T(1.0), T(share_s_) * p.weight, *inside++);
+    r_.for_each(
+        [&](const Vec<T, D>& x, T, T weight) { f(x, T(-1.0), T(share_r_) * weight, *inside++); });
+    s_.for_each(
+        [&](const Vec<T, D>& x, T, T weight) { f(x, T(1.0), T(share_s_) * weight, *inside++); });
   }
   static T height(const double (&z)[n], const Vec<T, D>& x) {
     T y(z[D]);

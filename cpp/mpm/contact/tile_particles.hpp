@@ -66,8 +66,8 @@ class TileParticles {
 
   /// Place of a cell's own node in the cell along each axis.
   double own_node() const { return own_node_; }
-  /// From how many cells a node is in reach.
-  int cells_around() const { return power(margin_ + 2, D); }
+  /// No more than so many are around a node.
+  std::size_t count() const { return lanes_.size() * T::lanes; }
 
   /// Have the memory bring what is around these nodes of a tile, a bit each by Tile<D>::cell.
   static void fetch(const TileGrid<D>& grid, const Body<D>& body,
@@ -99,7 +99,7 @@ class TileParticles {
     const CellsAround& cells = around_[static_cast<std::size_t>(margin_)];
     const int width = margin_ + 2, own = number(node);
     std::uint64_t filled = 0;  // those with particles, a bit each
-    for (int k = 0; k < cells_around(); k += width)
+    for (int k = 0; k < power(width, D); k += width)
       filled |= (bits_from(filled_.data(), own + cells.number[k]) & low_bits(width)) << k;
     for (; filled != 0; filled &= filled - 1) {
       const int k = std::countr_zero(filled);

@@ -1,6 +1,7 @@
 #pragma once
 // SIMD lanes: W doubles in one register, written like a scalar. The width follows the instruction
 // set the file is compiled for.
+#include <bit>
 #include <cstdint>
 #include <utility>
 #if defined(__SSE2__)
@@ -235,6 +236,17 @@ Batch<W> load_first(const double* from, int count, double rest) {
   Batch<W> b(rest);
   for (int k = 0; k < count; ++k) b.v[k] = from[k];
   return b;
+}
+
+/// Store the lanes whose bits are set one after another; up to W numbers are written.
+template <int W>
+void store_chosen(double* to, Batch<W> a, std::uint64_t lanes) {
+#if defined(__AVX512VL__)
+  const auto chosen = static_cast<__mmask8>(lanes);
+  if constexpr (W == 8) return Batch<W>(_mm512_maskz_compress_pd(chosen, a.v)).store(to);
+  if constexpr (W == 4) return Batch<W>(_mm256_maskz_compress_pd(chosen, a.v)).store(to);
+#endif
+  for (; lanes != 0; lanes &= lanes - 1) *to++ = a[std::countr_zero(lanes)];
 }
 
 /// The lanes brought together by f(x, y) until two are left, those half the lanes apart first,

@@ -8,18 +8,17 @@
 namespace {
 
 using namespace mpm;
+constexpr std::size_t most = 1000;  // particles of a body
 constexpr double pi = 3.14159265358979323846;
 
 template <int D>
 void add(NearParticles<D>& to, const Vec<double, D>& x, double mass = 1.0) {
   using T = typename NearParticles<D>::T;
-  typename NearParticles<D>::Lanes p;
-  for (int a = 0; a < D; ++a) p.x[a] = T(x[a]);
-  p.half = T(0.25);
-  p.weight = select(first_lanes<T::lanes>(1), T(mass), T(0.0));
-  to.lanes.push_back(p);
-  to.mass += p.weight;
-  for (int a = 0; a < D; ++a) to.moment[a] += p.weight * p.x[a];
+  Vec<T, D> lanes;
+  for (int a = 0; a < D; ++a) lanes[a] = T(x[a]);
+  if (to.count() == 0) to.clear(most);
+  to.add(lanes, T(0.25), select(first_lanes<T::lanes>(1), T(mass), T(0.0)));
+  to.finish();
 }
 
 template <int D>
@@ -98,7 +97,7 @@ void test_separation(mpm::testing::Report& report) {
       if (i < 2 && j < 2) add<2>(between, {0.5 * i + 0.25, 0.5 * j + 0.25});
     }
   CHECK(norm(separate<2>(lattice, between)) == 0.0, separate<2>(lattice, between)[0]);
-  CHECK(norm(separate<2>(lattice, nothing)) == 0.0, lattice.lanes.size());
+  CHECK(norm(separate<2>(lattice, nothing)) == 0.0, lattice.count());
 
   // Within a cell of the line through the node the body is lower than its highest point beside it;
   // a line that misses the body sees all of it.
