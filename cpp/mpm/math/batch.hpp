@@ -6,6 +6,8 @@
 #include <utility>
 #if defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 /// For lambdas in the innermost loops: g++ leaves some of them as calls, with what they capture in
@@ -195,6 +197,12 @@ std::uint64_t lane_bits(Mask<W> m) {
 #if defined(__AVX__)
   if constexpr (W == 4)
     return static_cast<std::uint64_t>(_mm256_movemask_pd(reinterpret_cast<__m256d>(m.v)));
+#endif
+#if defined(__aarch64__)
+  if constexpr (W == 2) {
+    constexpr typename Mask<W>::Vector place = {1, 2};
+    return vaddvq_u64(reinterpret_cast<uint64x2_t>(m.v & place));
+  }
 #endif
   std::uint64_t bits = 0;
   for (int k = 0; k < W; ++k) bits |= m.v[k] != 0 ? std::uint64_t{1} << k : 0;

@@ -63,19 +63,21 @@ void check_power_near_one(mpm::testing::Report& report) {
   CHECK(PowerNearOne(2.99).exact() && !PowerNearOne(3.0).exact());
 }
 
-/// first_lanes(n) holds in lanes 0 .. n - 1 alone, and any() sees a single lane.
+/// first_lanes(n) holds in lanes 0 .. n - 1 alone, any() and lane_bits() see a single lane.
 template <int W>
 void check_masks(mpm::testing::Report& report) {
   const Batch<W> one(1.0), zero(0.0);
   for (int n = 0; n <= W; ++n) {
     const auto mask = first_lanes<W>(n);
     CHECK_EQUAL(any(mask), n > 0);
+    CHECK_EQUAL(lane_bits(mask), (std::uint64_t{1} << n) - 1);
     for (int k = 0; k < W; ++k) CHECK_EQUAL(select(mask, one, zero)[k], k < n ? 1.0 : 0.0);
   }
   for (int k = 0; k < W; ++k) {
     Batch<W> single(0.0);
     single.v[k] = 1.0;
     CHECK(any(single > zero), k);
+    CHECK_EQUAL(lane_bits(single > zero), std::uint64_t{1} << k);
     CHECK(!any(single > one), k);
   }
 }
