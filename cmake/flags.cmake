@@ -3,6 +3,9 @@ include(CheckCXXCompilerFlag)
 
 # Contraction to fused multiply-add is asked for: strict C++ mode may switch it off.
 set(flags -Wall -Wextra -Wconversion -Wno-psabi)
+if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
+  list(APPEND flags -Wno-sign-conversion)   # which is part of -Wconversion here, not of g++'s
+endif()
 # No -ffast-math: NaN and infinity are tested for, and the order of sums is fixed. These two change
 # no result; they let sqrt and select become plain vector instructions.
 list(APPEND flags -ffp-contract=fast -fno-math-errno -fno-trapping-math)
@@ -21,7 +24,7 @@ endif()
 set(inline_limits --param=inline-unit-growth=1000 --param=large-stack-frame=65536
                   --param=large-stack-frame-growth=100000)
 list(JOIN inline_limits " " text)
-check_cxx_compiler_flag("${text}" MPM_HAS_INLINE_LIMITS)
+check_cxx_compiler_flag("-Werror ${text}" MPM_HAS_INLINE_LIMITS)   # clang++ only warns of them
 if(MPM_HAS_INLINE_LIMITS)
   list(APPEND flags ${inline_limits})
 endif()
