@@ -1,8 +1,10 @@
-// Which of a tile's nodes are in a holder's block and have mass.
+// Which of a tile's nodes are in a holder's block and have mass, where their lines are, and from
+// which cells they are in reach.
 #include <random>
 
 #include "check.hpp"
 #include "mpm/contact/tile_holder.hpp"
+#include "mpm/contact/tile_particles.hpp"
 
 namespace {
 
@@ -36,14 +38,49 @@ void check_nodes(mpm::testing::Report& report, Basis basis) {
       for (const int o : Tile<D>::offset(k)) reached = reached && (o >= 0 || grid.margin() > 0);
       if (!reached) continue;
       const std::uint64_t found = masses.in_tile(grid, holder);
+      HeldNodes<D> held{found};
+      held.locate(grid, holder);
       for (int cell = 0; cell < Tile<D>::cell_count; ++cell) {
         const Index<D> node = Tile<D>::cell_index(cell);
         const bool expected = shape_of(grid, holder).holds(seen_from<D>(holder, node)) &&
                               grid.block(static_cast<std::size_t>(patch))
                                       .mass()[node_in_holder<D>(grid, holder, node)] > 0.0;
         CHECK((found >> cell & 1u) == (expected ? 1u : 0u), patch, k, cell);
+        if (!expected) continue;
+        const NodeBlock<D> block = grid.block(static_cast<std::size_t>(patch));
+        const double* const line = block.lines[node_in_holder<D>(grid, holder, node)];
+        CHECK(grid.line_at(held.place(node)) == line, patch, k, cell);
       }
     }
+}
+
+/// All neighbours of a tile, cell by cell, for nodes at random.
+template <int D>
+void check_reach(mpm::testing::Report& report, int margin) {
+  std::mt19937_64 random(5);
+  for (int turn = 0; turn < 20; ++turn) {
+    // Many nodes, few, one.
+    std::uint64_t nodes = random();
+    if (turn % 3 > 0) nodes &= random() & random() & random();
+    if (turn % 3 > 1) nodes = std::uint64_t{1} << random() % 64;
+    for (int k = 0; k < Tile<D>::neighbours; ++k) {
+      const Index<D> offset = Tile<D>::offset(k);
+      const std::uint64_t found = cells_in_reach<D>(nodes, offset, margin);
+      for (int c = 0; c < Tile<D>::cell_count; ++c) {
+        bool expected = false;
+        for (int n = 0; n < Tile<D>::cell_count; ++n) {
+          bool reached = nodes >> n & 1u;
+          for (std::size_t a = 0; a < D; ++a) {
+            const int cell = Tile<D>::cell_index(c)[a] + Tile<D>::cells * offset[a];
+            const int from_node = cell - Tile<D>::cell_index(n)[a];
+            reached = reached && from_node >= -1 && from_node <= margin;
+          }
+          expected = expected || reached;
+        }
+        CHECK((found >> c & 1u) == (expected ? 1u : 0u), turn, k, c);
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -53,4 +90,8 @@ void test_tile_holder(mpm::testing::Report& report) {
   check_nodes<2>(report, Basis::gimp);
   check_nodes<3>(report, Basis::linear);
   check_nodes<3>(report, Basis::gimp);
+  for (const int margin : {0, 1}) {
+    check_reach<2>(report, margin);
+    check_reach<3>(report, margin);
+  }
 }

@@ -82,6 +82,24 @@ void check_masks(mpm::testing::Report& report) {
   }
 }
 
+/// All choices of lanes; what lies behind W numbers is not touched.
+template <int W>
+void check_chosen(mpm::testing::Report& report) {
+  const double x[8] = {1.5, -2.25, 0.0, 1e300, -1e-300, 3.0, -0.1, 7.75};
+  for (std::uint64_t lanes = 0; lanes < std::uint64_t{1} << W; ++lanes) {
+    double to[W + 1];
+    to[W] = 42.0;
+    store_chosen(to, lanes_of<W>(x), lanes);
+    int count = 0;
+    for (int k = 0; k < W; ++k) {
+      if (!(lanes >> k & 1u)) continue;
+      CHECK_EQUAL(to[count], x[k]);
+      ++count;
+    }
+    CHECK_EQUAL(to[W], 42.0);
+  }
+}
+
 template <int W>
 double lane_log(double x) {
   return log(Batch<W>(x))[W - 1];
@@ -94,15 +112,18 @@ void test_batch(mpm::testing::Report& report) {
   check_operations<2>(report);
   check_masks<2>(report);
   check_floor<2>(report);
+  check_chosen<2>(report);
   if constexpr (native_lanes >= 4) {
     check_operations<4>(report);
     check_masks<4>(report);
     check_floor<4>(report);
+    check_chosen<4>(report);
   }
   if constexpr (native_lanes >= 8) {
     check_operations<8>(report);
     check_masks<8>(report);
     check_floor<8>(report);
+    check_chosen<8>(report);
   }
 }
 
