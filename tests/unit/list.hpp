@@ -33,6 +33,7 @@
   X(many_bodies) \
   X(separation) \
   X(tile_holder) \
+  X(contact_part) \
   X(no_allocation) \
   /* end */
 // clang-format on

@@ -46,9 +46,8 @@ void ContactGrid<D>::for_each_closed(TileGrid<D>& grid, Threads& threads, F&& f)
   const auto fetch = [&](Part& part, const ContactNode& node) {
     if (!part.any_closed(node)) return;
     for (const Side<D>& side : part.sides_of(node))
-      part.for_each_place(side, [&](std::uint32_t place) {
-        __builtin_prefetch(grid.line_at(place), 1);
-      });
+      part.for_each_place(side,
+                          [&](std::uint32_t place) { __builtin_prefetch(grid.line_at(place), 1); });
   };
   threads.for_each(parts_.size(), [&](std::size_t p) {
     Part& part = parts_[p];

@@ -121,9 +121,9 @@ class ContactGrid {
   std::span<const TileHolder> holders_of(const TileBody<D>& at) const {
     return {&holders_[at.first_holder], at.holders};
   }
-  /// Have the memory bring the particles around a tile's overlapped nodes.
+  /// Have the memory bring the particles around nodes of a tile, a bit each by Tile<D>::cell.
   void fetch_particles(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                       const TileBodies<D>& around) const;
+                       const TileBodies<D>& around, std::uint64_t nodes) const;
   /// Where the sides of a node are, their masses and velocities left to be read.
   void place_sides(TileGrid<D>& grid, const TileBodies<D>& around, Part& part, ContactNode& node);
   void read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, Part& part,

@@ -1,6 +1,7 @@
 #pragma once
 // The overlapped nodes of some tiles that follow one another: what one thread finds and solves at a
 // time.
+#include <algorithm>
 #include <vector>
 
 #include "mpm/contact/node_contact.hpp"
@@ -30,9 +31,9 @@ struct ContactPart {
   std::vector<ContactNode> nodes;
   std::vector<Side<D>> sides;
   std::vector<SidePair<D>> pairs;
-  std::vector<std::uint32_t> further;  // places of lines of the sides, each node's in a row
-  std::size_t overlapped = 0;          // nodes, those left out too
-  int bodies_max = 0;                  // at a node
+  std::vector<std::uint32_t> further_places;  // of lines of the sides, each node's in a row
+  std::size_t overlapped = 0;                 // nodes, those left out too
+  int bodies_max = 0;                         // at a node
   // Where pairs are kept: of this step and the last, in the order of `nodes` and of `pairs`.
   std::vector<KnownNode> known_nodes, last_known_nodes;
   std::vector<KnownPair<D>> known, last_known;
@@ -47,7 +48,8 @@ struct ContactPart {
   template <class F>
   void for_each_place(const Side<D>& side, F&& f) const {
     f(side.place);
-    for (std::uint32_t k = 0; k < side.further; ++k) f(further[side.first_further + k]);
+    for (std::uint32_t k = 0; k < side.further_count; ++k)
+      f(further_places[side.first_further + k]);
   }
   /// May any pair at a node act? Other nodes stay as they are, to the last bit.
   bool any_closed(const ContactNode& node) {
@@ -61,7 +63,7 @@ struct ContactPart {
     nodes.clear();
     sides.clear();
     pairs.clear();
-    further.clear();
+    further_places.clear();
     overlapped = 0;
     bodies_max = 0;
     std::swap(known, last_known);
@@ -69,9 +71,10 @@ struct ContactPart {
     known.clear();
     known_nodes.clear();
   }
-  /// Room for nodes, sides and pairs beyond those that are there, and some to spare, so that
-  /// numbers which creep up seldom allocate.
-  void reserve(std::size_t more_nodes, std::size_t more_sides, std::size_t more_pairs) {
+  /// Room for nodes, sides, pairs and further places beyond those that are there, and some to
+  /// spare, so that numbers which creep up seldom allocate.
+  void reserve(std::size_t more_nodes, std::size_t more_sides, std::size_t more_pairs,
+               std::size_t more_places) {
     const auto grow = [](auto& v, std::size_t more) {
       const std::size_t size = v.size() + more;
       if (size > v.capacity()) v.reserve(size + std::max<std::size_t>(size / 8, 32));
@@ -79,6 +82,7 @@ struct ContactPart {
     grow(nodes, more_nodes);
     grow(sides, more_sides);
     grow(pairs, more_pairs);
+    grow(further_places, more_places);
   }
   /// Leave out the nodes from the first-th on for which `stays(node)` does not hold.
   template <class F>
@@ -86,17 +90,20 @@ struct ContactPart {
     if (first == nodes.size()) return;
     std::size_t kept = first;
     std::uint32_t side = nodes[first].first_side, pair = nodes[first].first_pair;
-    auto place = further.begin() + static_cast<std::ptrdiff_t>(first_further(nodes[first]));
+    const auto places_of = [&](const ContactNode& node) {
+      return further_places.begin() + static_cast<std::ptrdiff_t>(first_further_of(node));
+    };
+    auto place = places_of(nodes[first]);
     for (std::size_t n = first; n < nodes.size(); ++n) {
       ContactNode node = nodes[n];
       if (!stays(node)) continue;
-      const auto from = further.begin() + static_cast<std::ptrdiff_t>(first_further(node));
-      std::ptrdiff_t places = 0;
+      const auto from = places_of(node);
+      std::ptrdiff_t count = 0;
       for (Side<D>& s : sides_of(node)) {
-        places += s.further;
+        count += s.further_count;
         s.first_further -= static_cast<std::uint32_t>(from - place);
       }
-      place = std::copy(from, from + places, place);
+      place = std::copy(from, from + count, place);
       std::ranges::copy(sides_of(node), &sides[side]);
       std::ranges::copy(pairs_of(node), &pairs[pair]);
       node.first_side = side;
@@ -108,18 +115,18 @@ struct ContactPart {
     nodes.resize(kept);
     sides.resize(side);
     pairs.resize(pair);
-    further.erase(place, further.end());
+    further_places.erase(place, further_places.end());
   }
 
   std::size_t bytes() const {
     const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    return sizeof(*this) + size(nodes) + size(sides) + size(pairs) + size(further) +
+    return sizeof(*this) + size(nodes) + size(sides) + size(pairs) + size(further_places) +
            size(known_nodes) + size(last_known_nodes) + size(known) + size(last_known);
   }
 
  private:
-  /// Where a node's further lines begin: its sides have been sorted since they were noted.
-  std::uint32_t first_further(const ContactNode& node) {
+  /// Where a node's further places begin: its sides have been sorted since they were noted.
+  std::uint32_t first_further_of(const ContactNode& node) {
     return std::ranges::min(sides_of(node), {}, &Side<D>::first_further).first_further;
   }
 };

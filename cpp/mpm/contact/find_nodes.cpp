@@ -58,10 +58,10 @@ void ContactGrid<D>::look_around(const TileGrid<D>& grid, const ContactTile<D>& 
 
 template <int D>
 void ContactGrid<D>::fetch_particles(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                                     const TileBodies<D>& around) const {
+                                     const TileBodies<D>& around, std::uint64_t nodes) const {
   for (const TileBody<D>& at : around.all())
     TileParticles<D>::fetch(grid, bodies[static_cast<std::size_t>(at.body)], holders_of(at),
-                            at.nodes & around.overlapped);
+                            at.nodes & nodes);
 }
 
 template <int D>
@@ -74,7 +74,7 @@ void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around,
     ++node.sides;
     Side<D>& side = part.sides.emplace_back();
     side.body = at.body;
-    side.first_further = static_cast<std::uint32_t>(part.further.size());
+    side.first_further = static_cast<std::uint32_t>(part.further_places.size());
     bool first = true;
     for (const HeldNodes<D>& nodes : around.held_by(at)) {
       if (!(nodes.with_mass >> node.cell & 1u)) continue;
@@ -82,9 +82,9 @@ void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around,
       if (std::exchange(first, false))
         side.place = place;
       else
-        part.further.push_back(place);
+        part.further_places.push_back(place);
     }
-    side.further = static_cast<std::uint8_t>(part.further.size() - side.first_further);
+    side.further_count = static_cast<std::uint8_t>(part.further_places.size() - side.first_further);
     __builtin_prefetch(grid.line_at(side.place));
   }
 }
@@ -112,7 +112,9 @@ void ContactGrid<D>::add_nodes(TileGrid<D>& grid, const std::vector<Body<D>>& bo
   for (std::uint32_t h = 0; h < tiles_[tile].holders; ++h)
     around.held[h].locate(grid, holders_[tiles_[tile].first_holder + h]);
   const std::size_t first = part.nodes.size();
-  std::size_t sides = 0, pairs = 0;
+  std::size_t sides = 0, pairs = 0, places = 0;
+  for (const HeldNodes<D>& held : around.held)
+    places += static_cast<std::size_t>(std::popcount(held.with_mass & around.overlapped));
   for (std::uint64_t left = around.overlapped; left != 0; left &= left - 1) {
     const int cell = std::countr_zero(left);
     std::uint32_t here = 0;
@@ -123,7 +125,7 @@ void ContactGrid<D>::add_nodes(TileGrid<D>& grid, const std::vector<Body<D>>& bo
   }
   const auto nodes = static_cast<std::size_t>(std::popcount(around.overlapped));
   part.overlapped += nodes;
-  part.reserve(nodes, sides, pairs);
+  part.reserve(nodes, sides, pairs, places - sides);
   if (keeps_) part.known_nodes.resize(first + nodes);
   for (std::uint64_t left = around.overlapped; left != 0; left &= left - 1) {
     ContactNode& node = part.nodes.emplace_back();
@@ -161,6 +163,7 @@ void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<
     for (const ContactNode& node : nodes)
       if (recall(bodies, settings, grid.cell_size, tile, part, node))
         unknown &= ~(std::uint64_t{1} << node.cell);
+  if (keeps_) fetch_particles(grid, bodies, around, unknown);
   if (unknown != 0)
     for (TileBody<D>& at : around.all())
       at.particles.gather(grid, bodies[static_cast<std::size_t>(at.body)], tile.tile,
@@ -199,7 +202,7 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
         continue;
       }
       const std::size_t first = part.nodes.size();
-      if (!keeps_) fetch_particles(grid, bodies, around);
+      if (!keeps_) fetch_particles(grid, bodies, around, around.overlapped);
       add_nodes(grid, bodies, t, around, part);
       fill_pairs(grid, bodies, stiffness, settings, t, around, p, first);
       // A rigid body's mass is spread over all its nodes, so they stay.

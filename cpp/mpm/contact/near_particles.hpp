@@ -1,5 +1,6 @@
 #pragma once
 // The particles of a body around a node: what normals and gaps are made of.
+#include <bit>
 #include <limits>
 
 #include "mpm/contact/tile_particles.hpp"
@@ -17,11 +18,11 @@ class NearParticles {
   /// Forget all, with room for so many.
   void clear(std::size_t room) {
     count_ = 0;
-    // Numbers of one kind lie an odd number of lines from those of the next, so that they fall
-    // into different cache sets; whole lanes are written, also behind the last particle.
     constexpr std::size_t line = cache_line / sizeof(double);
-    const std::size_t lines = (room + T::lanes) / line + 1;
+    const std::size_t lines = (room + T::lanes) / line + 1;  // whole lanes are written at the end
     if (lines * line <= stride_) return;
+    // Numbers of one kind lie an odd number of lines from those of the next, so that they fall
+    // into different cache sets.
     stride_ = (2 * lines + 1) * line;
     numbers_.release_and_allocate(kinds * stride_);
   }
@@ -36,7 +37,7 @@ class NearParticles {
     store_chosen(to + at(weight_at), weight, lanes);
     count_ += static_cast<std::size_t>(std::popcount(lanes));
   }
-  /// All have been added.
+  /// Fill up the last lanes and make the sums; after that more may be added, and finished again.
   void finish() {
     mass_ = 0.0;
     centre_ = Vec<double, D>::zero();
@@ -113,7 +114,7 @@ void collect_near(const TileParticles<D>& particles, const Index<D>& node, doubl
   // Over this length [cells] a particle's weight falls to 0 where its reach ends: particles on a
   // lattice lie there in whole rows, and rounding must not choose among them.
   constexpr double rim = 1e-3;
-  to.clear(particles.count());
+  to.clear(particles.most_around());
   particles.around(node, [&](const Index<D>& place, const auto& lanes) {
     Vec<T, D> x;
     T weight = lanes.mass;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "mpm/contact/near_particles.hpp"
 #include "mpm/math/cholesky.hpp"
@@ -218,7 +219,7 @@ class PlaneFit {
   unsigned held_;
   double share_r_ = 0.0, share_s_ = 0.0;
   double z_[n] = {};
-  T* inside_ = nullptr;  // of each lane the share that is inside
+  T* inside_ = nullptr;  // of each lane the share that is inside; the thread's until its next fit
 };
 
 /// The unit normal from r to s of the plane that separates their particles; zero if none does. All

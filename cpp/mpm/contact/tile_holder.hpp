@@ -54,7 +54,8 @@ struct HeldNodes {
     for (std::size_t a = 0, step = 1; a < D; step *= static_cast<std::size_t>(shape.nodes[a++]))
       stride[a] = static_cast<std::int32_t>(step);
   }
-  /// Of a node's line, by the node's coordinates from the tile's first (TileGrid::line_at).
+  /// Of the line of a node `with_mass`, by its coordinates from the tile's first
+  /// (TileGrid::line_at).
   std::uint32_t place(const Index<D>& node) const {
     std::int64_t at = first;
     for (std::size_t a = 0; a < D; ++a) at += std::int64_t{stride[a]} * node[a];

@@ -66,8 +66,8 @@ class TileParticles {
 
   /// Place of a cell's own node in the cell along each axis.
   double own_node() const { return own_node_; }
-  /// No more than so many are around a node.
-  std::size_t count() const { return lanes_.size() * T::lanes; }
+  /// No more particles than so many are around any node.
+  std::size_t most_around() const { return lanes_.size() * T::lanes; }
 
   /// Have the memory bring what is around these nodes of a tile, a bit each by Tile<D>::cell.
   static void fetch(const TileGrid<D>& grid, const Body<D>& body,

@@ -246,7 +246,8 @@ Batch<W> load_first(const double* from, int count, double rest) {
   return b;
 }
 
-/// Store the lanes whose bits are set one after another; up to W numbers are written.
+/// Store the lanes whose bits are set one after another; what is behind them, up to W numbers in
+/// all, may be overwritten.
 template <int W>
 void store_chosen(double* to, Batch<W> a, std::uint64_t lanes) {
 #if defined(__AVX512VL__)

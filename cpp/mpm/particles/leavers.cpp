@@ -1,5 +1,6 @@
 // Particles that have left their tiles: from which patch to which.
 #include <algorithm>
+#include <cstdlib>
 #include <numeric>
 #include <utility>
 
@@ -116,22 +117,21 @@ void find_changes(const TileGrid<D>& grid, ListScratch<D>& scratch) {
   for (Leaver<D>& l : scratch.leavers) {
     l.patch =
         l.patch < 0 ? grid.find(l.body, l.tile) : scratch.number[static_cast<std::size_t>(l.patch)];
-    ++changes[static_cast<std::size_t>(l.patch)].arrivals;
+    ++changes[static_cast<std::size_t>(l.patch)].arrivals_end;  // so far their number
   }
   std::uint32_t arrival = 0, begin = 0;
   for (std::size_t p = 0; p < changes.size(); ++p) {
     if (p == 0 || grid.patches[p - 1].body != grid.patches[p].body) begin = 0;
     auto& c = changes[p];
-    const std::uint32_t count = std::exchange(c.arrivals, arrival);
-    c.end_of_arrivals = arrival;
+    const std::uint32_t count = std::exchange(c.arrivals_end, arrival);  // the end moves on below
+    c.first_arrival = arrival;
     c.begin = begin;
     arrival += count;
     begin += c.kept + count;
   }
   scratch.arrivals.resize(arrival);
   for (const Leaver<D>& l : scratch.leavers)
-    scratch.arrivals[changes[static_cast<std::size_t>(l.patch)].end_of_arrivals++] = {l.row,
-                                                                                      l.cell};
+    scratch.arrivals[changes[static_cast<std::size_t>(l.patch)].arrivals_end++] = {l.row, l.cell};
 }
 
 }  // namespace

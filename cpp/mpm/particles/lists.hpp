@@ -46,8 +46,8 @@ struct ListScratch {
   };
   struct Change {
     std::uint32_t kept = 0;
-    std::uint32_t arrivals = 0, end_of_arrivals = 0;  // the first of `arrivals`, and their end
-    std::uint32_t begin = 0;                          // of the new list, in that of the body
+    std::uint32_t first_arrival = 0, arrivals_end = 0;  // of ListScratch::arrivals
+    std::uint32_t begin = 0;                            // of the new list, in that of the body
   };
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   std::vector<Note> notes;                        // one per patch, before patches are added

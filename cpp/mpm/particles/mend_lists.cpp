@@ -31,8 +31,8 @@ void write_list(const Body<D>& body, Patch<D>& patch, const typename ListScratch
                 ListScratch<D>& scratch) {
   std::uint32_t* to = scratch.order_of(patch.body) + change.begin;
   std::uint8_t* cell = scratch.cell_of(patch.body);
-  const std::span<const Arrival> arrivals(scratch.arrivals.data() + change.arrivals,
-                                          scratch.arrivals.data() + change.end_of_arrivals);
+  const std::span<const Arrival> arrivals(scratch.arrivals.data() + change.first_arrival,
+                                          scratch.arrivals.data() + change.arrivals_end);
   if (!patch.left_cell && arrivals.empty()) {
     std::memcpy(to, body.order.data() + patch.begin, patch.count * sizeof(std::uint32_t));
     patch.begin = change.begin;

@@ -60,12 +60,58 @@ Vec<double, 2> corner_normal(double corner, double angle) {
   return separate<2>(floor, block);
 }
 
+/// Lanes with and without weight, packed: all that have one are there, in their order, and once.
+template <int D>
+void check_packing(mpm::testing::Report& report, std::mt19937_64& random) {
+  using T = typename NearParticles<D>::T;
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  NearParticles<D> near;
+  for (int turn = 0; turn < 20; ++turn) {
+    const int groups = turn % 7;  // fewer and more than before
+    near.clear(static_cast<std::size_t>(groups * T::lanes));
+    std::vector<Vec<double, D>> places;
+    double mass = 0.0;
+    Vec<double, D> moment = Vec<double, D>::zero();
+    for (int g = 0; g < groups; ++g) {
+      Vec<T, D> x;
+      T weight(0.0);
+      for (int k = 0; k < T::lanes; ++k) {
+        Vec<double, D> place;
+        for (int a = 0; a < D; ++a) x[a].v[k] = place[a] = any(random);
+        if (turn > 0 && random() % 3 == 0) continue;  // at first all lanes are full
+        weight.v[k] = 1.5 + any(random);
+        places.push_back(place);
+        mass += weight[k];
+        moment += weight[k] * place;
+      }
+      near.add(x, T(0.25), weight);
+    }
+    near.finish();
+    CHECK_EQUAL(near.count(), places.size());
+    CHECK_CLOSE(near.mass(), mass, 1e-14 * mass);
+    if (mass > 0.0) CHECK(norm(near.centre() - (1.0 / mass) * moment) < 1e-14, turn);
+    std::size_t next = 0;
+    near.for_each([&](const Vec<T, D>& x, T half, T weight) {
+      for (int k = 0; k < T::lanes; ++k) {
+        const bool there = next < places.size();
+        CHECK_EQUAL(weight[k] > 0.0, there);
+        CHECK_EQUAL(half[k], there ? 0.25 : -std::numeric_limits<double>::infinity());
+        for (int a = 0; there && a < D; ++a) CHECK_EQUAL(x[a][k], places[next][a]);
+        next += there;
+      }
+    });
+    CHECK_EQUAL(next, places.size());
+  }
+}
+
 }  // namespace
 
 void test_separation(mpm::testing::Report& report) {
   std::mt19937_64 random(20200915);
   check_two_particles<2>(report, random);
   check_two_particles<3>(report, random);
+  check_packing<2>(report, random);
+  check_packing<3>(report, random);
 
   // At a corner the mean of the gradients of mass is tens of degrees off. The plane is one or
   // two off, and, being soft, seven where only the block's last column is in reach.

@@ -64,13 +64,16 @@ void check_lists(mpm::testing::Report& report, const TileGrid<D>& grid,
   }
 }
 
+/// The lists of all bodies in the end.
 template <int D>
-void check_rounds(mpm::testing::Report& report) {
+std::vector<std::uint32_t> check_rounds(mpm::testing::Report& report, int thread_count,
+                                        bool bonded) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> move(-2.0, 2.0);
-  Threads threads(2);
+  Threads threads(thread_count);
   TileGrid<D> grid;
   grid.cell_size = 0.5;
+  grid.bonded = bonded;
   std::vector<Body<D>> bodies;
   for (int b = 0; b < 3; ++b) bodies.push_back(make_body<D>(random));
   ListScratch<D> scratch;
@@ -104,11 +107,23 @@ void check_rounds(mpm::testing::Report& report) {
   CHECK(failed > 10, failed);
   CHECK_EQUAL(eroded.count, failed);
   CHECK_EQUAL(left.count, std::size_t{0});
+  std::vector<std::uint32_t> lists;
+  for (const Body<D>& body : bodies)
+    lists.insert(lists.end(), body.order.begin(), body.order.end());
+  return lists;
+}
+
+/// The same lists with one thread and with three, and if bodies share their nodes.
+template <int D>
+void check_threads(mpm::testing::Report& report) {
+  const auto lists = check_rounds<D>(report, 1, false);
+  CHECK(check_rounds<D>(report, 3, false) == lists);
+  CHECK(check_rounds<D>(report, 2, true) == lists);
 }
 
 }  // namespace
 
 void test_mend_lists(mpm::testing::Report& report) {
-  check_rounds<2>(report);
-  check_rounds<3>(report);
+  check_threads<2>(report);
+  check_threads<3>(report);
 }
