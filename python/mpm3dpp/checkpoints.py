@@ -117,7 +117,7 @@ def check_same(path: Path, before: dict[str, Any], case: Case) -> None:
 def refuse_to_begin_anew(folder: Path, case: Case) -> None:
     """Raise `CaseError` if a folder holds an unfinished run, or the run of another case.
 
-    A case stays the same when its file is changed, and when the file is moved or written anew.
+    It is the same case if its file is, edited or not, or if its content is, wherever the file.
     """
     _refuse_another_case(folder, case)
     if not (folder / CHECKPOINT).is_file():
@@ -134,10 +134,12 @@ def _refuse_another_case(folder: Path, case: Case) -> None:
         before = read_manifest(folder)
     except CaseError:  # None, or not ours.
         return
-    file = before.get("case_file", "")
+    if "case_file" not in before:  # By an earlier version: the file may be the same one, edited.
+        return
+    file = before["case_file"]
     if before.get("case_hash") in (None, case.case_hash) or (file and file == case.file_text):
         return
-    title = before["case"].get("title", "")
+    title = (before.get("case") or {}).get("title", "")
     name = " of ".join(word for word in (show(title) if title else "", file) if word)
     rule = f"'{folder}' holds the run of another case{', ' if name else ''}{name}"
     raise CaseError(rule, f"choose another --out, or {ANEW}")

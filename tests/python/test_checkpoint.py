@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import errno
 import io
+import json
 import os
 import resource
 import signal
@@ -22,6 +23,7 @@ import pytest
 
 from commands import CASE, command, mpm3dpp, one_sentence, write
 from mpm3dpp import Case, Simulation, load_case, open_results, run_case
+from mpm3dpp.checkpoints import refuse_to_begin_anew
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io import read_manifest
 from mpm3dpp.report import speed_line
@@ -229,6 +231,22 @@ def test_a_run_of_another_case_is_not_lost(tmp_path: Path) -> None:
     assert f"{other.split(' of /')[0]}; {remedy}" in one_sentence(run("two.toml", softer).stderr)
     (tmp_path / "out" / "manifest.json").write_text('["not ours"]')
     assert run("two.toml", softer).returncode == 0
+
+
+def test_results_of_before_manifests_told_the_file_may_be_replaced(tmp_path: Path) -> None:
+    run_case(load_case(write(tmp_path)), tmp_path / "out", threads=1, pictures=False)
+    manifest = tmp_path / "out" / "manifest.json"
+    whole = read_manifest(manifest)
+    (tmp_path / "other").mkdir()
+    edited = load_case(write(tmp_path / "other", CASE.replace("1 MPa", "0.5 MPa")))
+    with pytest.raises(CaseError, match='another case, "Two blocks" of /'):
+        refuse_to_begin_anew(tmp_path / "out", edited)
+    manifest.write_text(json.dumps(whole | {"case": None}))
+    with pytest.raises(CaseError, match="another case, /"):
+        refuse_to_begin_anew(tmp_path / "out", edited)
+    del whole["case_file"]
+    manifest.write_text(json.dumps(whole))
+    refuse_to_begin_anew(tmp_path / "out", edited)
 
 
 def test_two_runs_in_one_folder(tmp_path: Path) -> None:
