@@ -42,6 +42,7 @@ class Case(CaseModel):
         detonation: the points at which explosives are lit.
         text: the file's text, empty for a case built in Python.
         source: the file's path, None for a case built in Python.
+        file_path: the whole path of the file that was read, as text; empty where none was.
     """
 
     title: Text = ""
@@ -57,6 +58,7 @@ class Case(CaseModel):
 
     _text: str = PrivateAttr("")
     _source: Path | None = PrivateAttr(None)
+    _file_path: str = PrivateAttr("")
     _lines: dict[KeyPath, int] = PrivateAttr(default_factory=dict)
 
     @model_validator(mode="after")
@@ -75,9 +77,13 @@ class Case(CaseModel):
         return self._source
 
     @property
-    def file_text(self) -> str:
-        """Whole path of the case file as text; empty for a case built in Python."""
-        return str(self._source.resolve()) if self._source else ""
+    def file_path(self) -> str:
+        """Whole path of the file that was read, as text; empty where none was."""
+        return self._file_path
+
+    def note_file(self, path: Path) -> None:
+        """Note the file that the case was just read from, before the current folder changes."""
+        self._file_path = str(path.resolve())
 
     @classmethod
     def from_file(cls, path: str | Path) -> Case:
@@ -94,7 +100,7 @@ class Case(CaseModel):
         """
         path = arguments.path("path", path)
         case = cls.from_text(case_file.read_text(path), str(path))
-        case._source = path
+        case.note_file(path)
         return case
 
     @classmethod

@@ -137,7 +137,7 @@ def _refuse_another_case(folder: Path, case: Case) -> None:
     if "case_file" not in before:  # By an earlier version: the file may be the same one, edited.
         return
     file = before["case_file"]
-    if before.get("case_hash") in (None, case.case_hash) or (file and file == case.file_text):
+    if before.get("case_hash") in (None, case.case_hash) or (file and file == case.file_path):
         return
     title = (before.get("case") or {}).get("title", "")
     name = " of ".join(word for word in (show(title) if title else "", file) if word)

@@ -240,7 +240,7 @@ def _manifest(
         version=__version__,
         case=case.table(),
         case_text=case.text,
-        case_file=case.file_text,
+        case_file=case.file_path,
         bodies=simulation.bodies,
         parts=simulation.parts,
         cell_size=case.grid.cell_size,

@@ -270,6 +270,19 @@ def test_names_of_the_package() -> None:
         _ = mpm3dpp.nothing
 
 
+def test_the_path_of_the_file_is_that_of_one_that_was_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("case.toml").write_text(RINGS)
+    (tmp_path / "elsewhere").mkdir()
+    case = load_case("case.toml")
+    monkeypatch.chdir("elsewhere")
+    assert case.file_path == str(tmp_path / "case.toml")
+    assert Case.from_text(RINGS).file_path == Case.from_text(RINGS, "rings.toml").file_path == ""
+    assert Case(**case.table()).file_path == ""
+
+
 def test_default_folder_and_threads(monkeypatch: pytest.MonkeyPatch) -> None:
     folder = Path("examples/01_two_rings")
     assert default_folder(folder / "case.toml") == Path("results/01_two_rings")

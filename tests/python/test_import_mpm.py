@@ -490,6 +490,7 @@ def test_a_written_case_is_the_same(tmp_path: Path, kind: str) -> None:
 def test_it_runs(tmp_path: Path) -> None:
     (tmp_path / "x.mpm").write_text(GOOD)
     case, notes = load_any(tmp_path / "x.mpm")
+    assert case.file_path == str(tmp_path / "x.mpm")
     manifest = run_case(case, tmp_path / "out", threads=1)
     assert manifest.status == "completed" and len(notes) == 1
 

@@ -45,7 +45,7 @@ class Manifest:
         energies: see `HistoryWriter.summary`.
         compiler, flags, isa, platform, python: how it was built and where it ran.
         case, case_text: the whole case as data, and the text of its file.
-        case_file: whole path of that file; empty for a case built in Python.
+        case_file: whole path of that file; empty where none was read.
     """
 
     version: str

@@ -56,7 +56,10 @@ def import_mpm(path: str | Path, units: str | None = None) -> Imported:
     Raises:
         CaseError: a mistake in the file, or a keyword that cannot be honoured; its line is named.
     """
-    return import_source(read_source(Path(path)), units)
+    path = Path(path)
+    found = import_source(read_source(path), units)
+    found.case.note_file(path)
+    return found
 
 
 def import_source(source: Source, units: str | None = None) -> Imported:
