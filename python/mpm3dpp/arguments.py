@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Arguments of functions that users call: what is wrong with one is a sentence that names it.
+"""Arguments of functions that users call: a wrong one is refused in a sentence that names it.
 
 Every function returns the argument as the type that is wanted, or raises `CaseError`.
 """
@@ -11,7 +11,10 @@ import os
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .errors import CaseError
+from .units import to_si
 
 
 def whole_number(name: str, value: Any, least: int | None = None, most: int | None = None) -> int:
@@ -32,8 +35,8 @@ def whole_number(name: str, value: Any, least: int | None = None, most: int | No
 
 def quantity(name: str, value: Any, unit: str) -> float:
     """Return a quantity in the SI unit given; it may be text with another."""
-    from .units import to_si
-
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
     try:
         return to_si(value, unit)
     except CaseError as error:
@@ -49,7 +52,11 @@ def text(name: str, value: Any) -> str:
 
 def path(name: str, value: Any) -> Path:
     """Return the path of a file or folder."""
-    if not isinstance(value, (str, os.PathLike)) or value == "":
+    try:
+        found = os.fspath(value)
+    except TypeError:
+        found = ""
+    if not isinstance(found, str) or not found:
         remedy = 'give text such as "results/rings", or a pathlib.Path'
         raise CaseError("must be the path of a file or folder", remedy, key=name, value=value)
-    return Path(value)
+    return Path(found)

@@ -43,8 +43,9 @@ def plot_results(
 
     folder, frame = arguments.path("folder", folder), arguments.whole_number("frame", frame)
     colour = None if colour is None else arguments.text("colour", colour)
-    pictures = make(folder, frame, animation, colour, Path(out) if out else None)
-    contact = first_contact(folder, Path(out) / "first_contact.png" if out else None)
+    out = None if out is None else arguments.path("out", out)
+    pictures = make(folder, frame, animation, colour, out)
+    contact = first_contact(folder, None if out is None else out / "first_contact.png")
     return pictures if contact is None else [*pictures, contact]
 
 
@@ -60,7 +61,8 @@ def first_contact(folder: str | Path, out: str | Path | None = None) -> Path | N
     """
     from mpm3dpp.plots.contact import first_contact as make
 
-    return make(Path(folder), Path(out) if out else None)
+    out = None if out is None else arguments.path("out", out)
+    return make(arguments.path("folder", folder), out)
 
 
 def preview(case: Any, out: str | Path) -> Path:
@@ -72,7 +74,7 @@ def preview(case: Any, out: str | Path) -> Path:
     """
     from mpm3dpp.plots.case_view import preview as make
 
-    return make(case, Path(out))
+    return make(case, arguments.path("out", out))
 
 
 __all__ = ["first_contact", "plot_results", "preview"]
