@@ -44,7 +44,7 @@ class Simulation:
 
     Raises:
         CaseError: the case cannot be filled, or the core refuses a parameter, or an argument is
-            none that can be.
+            wrong.
     """
 
     def __init__(self, case: Case, threads: int | None = None, fused: bool = True) -> None:
@@ -120,7 +120,7 @@ class Simulation:
             The number of steps made.
 
         Raises:
-            CaseError: `steps` is no whole number >= 0, or `end_time` no time.
+            CaseError: `steps` is no whole number >= 0, or `end_time` no time, which is finite.
             RunError: the run has become unstable: who, where, when and why.
         """
         made = 0
@@ -182,14 +182,15 @@ class Simulation:
         if body not in self.bodies:
             raise CaseError("is not a body of the case", nearest(body, self.bodies), value=body)
         number = self.bodies.index(body)
+        shape = self.core.body_particle_count(number), self.case.grid.dimension
         try:
-            values = np.ascontiguousarray(velocities, dtype=float)
-            self.core.set_velocity(number, values)
+            values = np.asarray(velocities, dtype=float)
         except (TypeError, ValueError):
-            shape = self.core.body_particle_count(number), self.case.grid.dimension
+            values = np.array(math.nan)
+        if values.shape != shape or not np.isfinite(values).all():
             remedy = f"give an array of the shape {shape}, a row for each particle"
-            rule = "must be finite numbers, shape (n, D)"
-            raise CaseError(rule, remedy, key="velocities") from None
+            raise CaseError("must be finite numbers, shape (n, D)", remedy, key="velocities")
+        self.core.set_velocity(number, np.ascontiguousarray(values))
 
     def save(self, path: str | Path) -> None:
         """Write the state to a file, in one step; `restore` goes on from it.
