@@ -110,7 +110,8 @@ def run(
 ) -> None:
     """Run a case: frames, history, manifest and pictures in the output folder."""
     from .checkpoints import refuse_to_begin_anew
-    from .folders import default_folder, thread_count, writable_folder
+    from .folders import default_folder, writable_folder
+    from .machine import thread_count
 
     loaded = _load(case, units, quiet)
     folder = out if out is not None else default_folder(case)
@@ -122,8 +123,15 @@ def run(
             refuse_to_begin_anew(folder, loaded)
     from .run import run_case  # The slowest import: after the mistakes.
 
-    workers, pictures = thread_count(threads), not no_pictures
-    run_case(loaded, folder, workers, quiet, json, pictures, resume)
+    run_case(
+        loaded,
+        folder,
+        threads=thread_count(threads),
+        quiet=quiet,
+        json=json,
+        pictures=not no_pictures,
+        resume=resume,
+    )
 
 
 @app.command()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where results go, and how many threads a run takes when the user does not say."""
+"""Where results go: folders that can be written, one run at a time in each."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from .arguments import whole_number
 from .errors import CaseError
 from .io.checkpoint import CHECKPOINT, UNFINISHED
 from .io.disk import cannot_write, make_folder
@@ -28,9 +27,6 @@ def default_folder(case_file: Path) -> Path:
         return Path("results") / f"{folder}_{stem.removeprefix('case_')}"
     return Path("results") / stem
 
-
-MOST_THREADS = 4096
-"""So that a slip of the keyboard is no lack of memory."""
 
 # What a run writes beside the frames and the history, which it begins anew.
 _OF_A_RUN = ("manifest.json", "frame.png", "energies.png", "first_contact.png", "animation.gif")
@@ -91,22 +87,3 @@ def writable_folder(path: Path) -> Path:
             return path
     except OSError as error:
         raise cannot_write(path, error) from error
-
-
-def thread_count(wanted: int | None) -> int:
-    """Return the number of threads: what is wanted, else OMP_NUM_THREADS, else all cores.
-
-    Raises:
-        CaseError: that is no number of threads.
-    """
-    if wanted is not None:
-        return whole_number("threads", wanted, 1, MOST_THREADS)
-    setting = os.environ.get("OMP_NUM_THREADS", "").split(",")[0].strip()
-    if setting:
-        if not setting.isdigit() or int(setting) < 1:
-            remedy = "unset it or give a whole number >= 1"
-            raise CaseError("must be >= 1", remedy, key="OMP_NUM_THREADS", value=setting)
-        return int(setting)
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

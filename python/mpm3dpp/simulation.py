@@ -17,9 +17,9 @@ from .case_notes import notes
 from .checkpoints import check_same
 from .detonation import lighting_times
 from .errors import CaseError, RunError, nearest
-from .folders import thread_count
 from .io.checkpoint import read_about, restore_checkpoint, write_checkpoint
 from .loads import add_load, pieces
+from .machine import thread_count
 from .motion import Motion
 from .time_functions import TimeFunction
 

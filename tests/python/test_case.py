@@ -17,7 +17,8 @@ from mpm3dpp.case_grid import Grid, GridBox
 from mpm3dpp.case_parts import Contact, ContactPair, Output, Run
 from mpm3dpp.echo import echo, occupied_cells, time_step
 from mpm3dpp.errors import CaseError
-from mpm3dpp.folders import default_folder, thread_count
+from mpm3dpp.folders import default_folder
+from mpm3dpp.machine import thread_count
 from mpm3dpp.materials import Failure, Strength, catalogue, listing
 from mpm3dpp.shapes import Box, Disc, Sphere
 
@@ -291,9 +292,11 @@ def test_default_folder_and_threads(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", "3,1")
     assert thread_count(None) == 3
     assert thread_count(2) == 2
-    monkeypatch.setenv("OMP_NUM_THREADS", "many")
-    with pytest.raises(CaseError, match="OMP_NUM_THREADS"):
-        thread_count(None)
+    for wrong in ("many", "0", "-1", "2.5", "4097", "9" * 5000):
+        monkeypatch.setenv("OMP_NUM_THREADS", wrong)
+        sentence = r"OMP_NUM_THREADS = \S+ must be a whole number from 1 to 4096; unset it"
+        with pytest.raises(CaseError, match=sentence):
+            thread_count(None)
 
 
 @pytest.mark.parametrize(

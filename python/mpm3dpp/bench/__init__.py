@@ -27,7 +27,8 @@ from typing import Any
 
 from ..errors import CaseError, nearest
 from ..folders import writable_folder
-from ..shapes.filling import MEMORY, PARTICLE_BYTES
+from ..machine import MEMORY
+from ..shapes.filling import PARTICLE_BYTES_WITH_GRID
 from .cases import BENCHES, Bench
 from .operations import operations_per_particle_step
 from .process import Process
@@ -128,7 +129,8 @@ def _allow(bench: Bench, scheme: str) -> None:
 
 def _check_memory(specs: Sequence[tuple[str, int, int]]) -> None:
     """Raise `CaseError` if benchmarks (name, size, threads) at once have no room in memory."""
-    needed = sum(BENCHES[name].particles(size) for name, size, _ in specs) * PARTICLE_BYTES
+    particles = sum(BENCHES[name].particles(size) for name, size, _ in specs)
+    needed = particles * PARTICLE_BYTES_WITH_GRID
     if needed > MEMORY:
         name, size, _ = max(specs, key=lambda spec: spec[1])
         at_once = f"{len(specs)} benchmarks at once" if len(specs) > 1 else name

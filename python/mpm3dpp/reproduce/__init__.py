@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import CaseError, RunError, nearest
-from ..folders import thread_count, writable_folder
+from ..folders import writable_folder
+from ..machine import thread_count
 from .examples import EXAMPLES, SIZES, chosen, folder_of_cases
 
 STEPS = 100

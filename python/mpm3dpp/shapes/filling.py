@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CaseError
+from ..machine import MEMORY
 from .base import SURFACE_TOLERANCE, Points, Shape
 
 _CHUNK = 1 << 18  # Points looked at together: some 20 MB of temporary arrays.
-MEMORY = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-"""Of this machine [bytes]."""
-PARTICLE_BYTES = 150
-"""That a particle needs about, its share of the grid included."""
-MOST_PARTICLES = MEMORY / PARTICLE_BYTES
+PARTICLE_BYTES_WITH_GRID = 150
+"""That a particle needs about, its share of the grid included, before there is a case to count the
+nodes of; `echo.memory_bytes` does so, and counts particles without them."""
+MOST_PARTICLES = MEMORY / PARTICLE_BYTES_WITH_GRID
 """What the memory of this machine holds of them."""
 LENGTHS_REMEDY = (
     "write lengths with their unit (a plain number is in metres), or give a larger grid.cell_size"
