@@ -102,6 +102,9 @@ def test_what_memory_cannot_hold_is_refused():
     for name, sizes in (("gimp2d", [10**5]), ("elastic3d", [10, 10**5])):  # One has a twin.
         with pytest.raises(CaseError, match=r"--size = 100000 is too large: 2 benchmarks at once"):
             bench.main(name, sizes)
+    for call in (bench.measure, lambda name, size: bench.series(name, [size], [1])):
+        with pytest.raises(CaseError, match="^size = 100000 is too large: "):
+            call("elastic3d", 10**5)
 
 
 def test_the_folder_of_the_picture_is_made_before_measuring(tmp_path):

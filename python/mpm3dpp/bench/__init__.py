@@ -138,7 +138,7 @@ def _check_memory(specs: Sequence[tuple[str, int, int]]) -> None:
             f"is too large: {at_once} would need some {needed / 2**30:,.0f} GiB of memory, and "
             f"this machine has {MEMORY / 2**30:,.1f} GiB",
             "give a smaller one",
-            key="--size",
+            key="size",
             value=size,
         )
 
@@ -260,10 +260,15 @@ def main(
         writable_folder(plot.parent)
     alone = len(sizes) <= 1 and len(threads) == 1
     with progress(quiet=json) as told:
-        if alone:
-            results = [measure(name, next(iter(sizes), None), threads[0], scheme, steps, told)]
-        else:
-            results = series(name, sizes or (bench.size,), threads, scheme, steps, told)
+        try:
+            if alone:
+                results = [measure(name, next(iter(sizes), None), threads[0], scheme, steps, told)]
+            else:
+                results = series(name, sizes or (bench.size,), threads, scheme, steps, told)
+        except CaseError as error:
+            if error.key != "size":
+                raise
+            raise CaseError(error.rule, error.remedy, key="--size", value=error.value) from None
     if json:
         print(json_format.dumps(results[0] if alone else results, indent=2))
     elif alone:
