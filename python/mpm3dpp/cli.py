@@ -123,15 +123,8 @@ def run(
             refuse_to_begin_anew(folder, loaded)
     from .run import run_case  # The slowest import: after the mistakes.
 
-    run_case(
-        loaded,
-        folder,
-        threads=thread_count(threads),
-        quiet=quiet,
-        json=json,
-        pictures=not no_pictures,
-        resume=resume,
-    )
+    workers, pictures = thread_count(threads), not no_pictures
+    run_case(loaded, folder, workers, quiet=quiet, json=json, pictures=pictures, resume=resume)
 
 
 @app.command()

@@ -103,7 +103,7 @@ def test_what_memory_cannot_hold_is_refused():
         with pytest.raises(CaseError, match=r"--size = 100000 is too large: 2 benchmarks at once"):
             bench.main(name, sizes)
     for call in (bench.measure, lambda name, size: bench.series(name, [size], [1])):
-        with pytest.raises(CaseError, match="^size = 100000 is too large: "):
+        with pytest.raises(CaseError, match=r"^size = 100000 is too large: "):
             call("elastic3d", 10**5)
 
 
