@@ -42,7 +42,8 @@ def run_case(
 
     Args:
         case: what to run, or its file.
-        out: the output folder; it is made.
+        out: the output folder; it is made. Results in it are replaced, also those of another case:
+            only the command refuses that.
         threads: how many; by default OMP_NUM_THREADS, else all cores.
         quiet: no progress and no summary.
         json: print the manifest at the end.
