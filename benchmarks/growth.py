@@ -44,7 +44,7 @@ def draw(found: list[dict[str, Any]], path: Path) -> None:
     left.semilogx([r["grains"] for r in found], [r["ns_per_particle_step"] for r in found], "o-")
     left.set_xlabel("grains")
     left.set_ylabel("ns per particle-step")
-    left.set_ylim(bottom=0)
+    left.set_ylim(0, 1.1 * max(r["ns_per_particle_step"] for r in found))
     nodes, kib = [r["overlapped_nodes"] for r in found], [r["bytes"] / 2**10 for r in found]
     right.loglog(nodes, kib, "o")
     share = kib[-1] / nodes[-1]
