@@ -103,8 +103,8 @@ def __getattr__(name: str) -> Any:
             return version("mpm3dpp")
         except PackageNotFoundError:
             return "0+unknown"
-    if name == "shapes":
-        return importlib.import_module(".shapes", __name__)
+    if name in ("io", "shapes"):
+        return importlib.import_module(f".{name}", __name__)
     if name in _HOME:
         return getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

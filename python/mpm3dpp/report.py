@@ -17,11 +17,12 @@ def contact_table(manifest: Manifest) -> list[str]:
     total = sum(manifest.stages.values()) or 1.0
     share = sum(ns for name, ns in manifest.stages.items() if name.startswith("contact")) / total
     unit = "J/m" if manifest.case.get("grid", {}).get("dimension") == 2 else "J"
+    pairs = sum(p.pairs for p in contact.pairs)
     lines = [
         f"contact: {contact.bodies:,} bodies, {contact.overlapped_nodes:,} overlapped nodes at the "
-        f"end, {contact.overlapped_nodes_max:,} at most, {sum(p.pairs for p in contact.pairs):,} "
-        f"pairs, {contact.bodies_per_node_max} bodies at a node at most, "
-        f"{contact.peak_bytes / 2**20:.2f} MiB, {share:.1%} of the step's time"
+        f"end, {contact.overlapped_nodes_max:,} at most, {pairs:,} "
+        f"{'pair' if pairs == 1 else 'pairs'}, {contact.bodies_per_node_max} bodies at a node at "
+        f"most, {contact.peak_bytes / 2**20:.2f} MiB, {share:.1%} of the step's time"
     ]
     if contact.unconverged_nodes:
         lines.append(

@@ -224,7 +224,11 @@ def _fields(case: Case) -> list[str]:
 
 
 def _steps(most: int, frames: list[float], core: Any) -> int:
-    """Return how many steps to make before the next look: not past the next frame's time."""
+    """Return how many steps to make before the next look: not past the next frame's time.
+
+    Looks are at multiples of `most`, so that those at frames do not shift them.
+    """
+    most -= core.step % most
     if not frames or core.dt <= 0.0:
         return most
     return max(1, min(most, math.ceil((frames[0] - core.time) / core.dt)))

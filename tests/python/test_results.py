@@ -231,6 +231,10 @@ def test_unwritable_and_missing_files(tmp_path: Path) -> None:
         open_results(blocked)
     with pytest.raises(CaseError, match="output folder"):
         read_history(tmp_path)
+    table = tmp_path / "table.csv"
+    table.write_text("x\n1\n")
+    with pytest.raises(CaseError, match="no column time"):
+        read_history(table)
     with pytest.raises(CaseError, match="damage"):
         copy_frame(FakeSimulation(), ["damge"])
 

@@ -247,3 +247,25 @@ def test_a_folder_without_permission(tmp_path: Path) -> None:
     done = mpm3dpp("run", write(tmp_path), "--out", folder, cwd=tmp_path)
     assert done.returncode == 2
     assert "may write to" in one_sentence(done.stderr)
+
+
+def test_rows_of_the_history_and_contact_forces(tmp_path: Path) -> None:
+    """Every seventh step, and those of frames and the end; all with the forces of the step."""
+    case = load_case(write(tmp_path, CASE.replace("[output]", "[output]\nhistory_every = 7")))
+    manifest = run_case(case, tmp_path / "out", quiet=True, pictures=False)
+    history = read_history(tmp_path / "out")
+    steps = history["step"].astype(int)
+    others = [step for step in steps if step % 7]
+    assert set(range(0, manifest.steps + 1, 7)) <= set(steps.tolist())
+    assert 0 < len(others) <= len(open_results(tmp_path / "out")) + 1
+    for name in history:
+        if name.startswith("contact_force"):
+            assert np.isfinite(history[name][1:]).all(), name
+
+
+def test_frames_by_their_times(finished: tuple[Path, str, str]) -> None:
+    with open_results(finished[0]) as results:
+        last = len(results) - 1
+        assert results.nearest(1.0) == last == results.nearest("1 s")
+        with pytest.raises(CaseError, match="time"):
+            results.nearest("soon")

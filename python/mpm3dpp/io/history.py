@@ -274,4 +274,6 @@ def read_history(path: str | Path) -> dict[str, np.ndarray]:
         raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
     except (OSError, ValueError, IndexError) as error:
         raise CaseError(f"'{path}' is not a history table of mpm3dpp: {error}") from error
+    if "time" not in header:
+        raise CaseError(f"'{path}' is not a history table of mpm3dpp: it has no column time")
     return {name: columns[:, k] for k, name in enumerate(header)}

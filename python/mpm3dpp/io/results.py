@@ -98,8 +98,12 @@ class Results:
         return arrays
 
     def nearest(self, time: float) -> int:
-        """Number of the frame nearest to `time` [s]."""
-        return int(np.argmin(np.abs(self.times - time)))
+        """Number of the frame nearest to `time` [s].
+
+        Raises:
+            CaseError: `time` is no time.
+        """
+        return int(np.argmin(np.abs(self.times - arguments.quantity("time", time, "s"))))
 
     def __len__(self) -> int:
         return len(self.times)
