@@ -26,6 +26,9 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import CaseError, nearest
+from ..folders import writable_folder
+from ..machine import MEMORY
+from ..shapes.filling import PARTICLE_BYTES_WITH_GRID
 from .cases import BENCHES, Bench
 from .operations import operations_per_particle_step
 from .process import Process
@@ -126,10 +129,6 @@ def _allow(bench: Bench, scheme: str) -> None:
 
 def _check_memory(specs: Sequence[tuple[str, int, int]]) -> None:
     """Raise `CaseError` if benchmarks (name, size, threads) at once have no room in memory."""
-    # Here and not above: the processes whose memory is measured load this module too.
-    from ..machine import MEMORY
-    from ..shapes.filling import PARTICLE_BYTES_WITH_GRID
-
     particles = sum(BENCHES[name].particles(size) for name, size, _ in specs)
     needed = particles * PARTICLE_BYTES_WITH_GRID
     if needed > MEMORY:
@@ -251,7 +250,6 @@ def main(
     plot: Path | None = None,
 ) -> None:
     """Measure a benchmark and print a table, or JSON, and draw it; see `measure` and `series`."""
-    from ..folders import writable_folder
     from .report import progress, show, show_series
 
     bench = find(name)
