@@ -26,7 +26,7 @@ from .errors import CaseError, from_validation, key_text
 from .errors import Path as KeyPath
 from .grains import Grains
 from .loads import Load
-from .materials.material import Material
+from .materials.material import Material as Material  # also for those who import it from here
 from .model import CaseModel, Text
 from .shapes.base import KINDS
 

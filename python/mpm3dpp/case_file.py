@@ -93,8 +93,9 @@ class _Locator:
             elif opening == "{":
                 self.pair(path)
             else:
-                self.lines[(*path, index)] = self.tokens[self.at][2]
-                self.value((*path, index))
+                place = (*path, index)
+                self.lines[place] = self.tokens[self.at][2]
+                self.value(place)
                 index += 1
 
     def header(self, counts: dict[errors.Path, int]) -> errors.Path:

@@ -157,7 +157,7 @@ def _share(side: Surface, owner: NDArray[np.int64], positions: Array) -> Pieces:
         columns = [np.bincount(place, v, len(particles)) for v in values.T]
         return np.stack(columns, axis=1)
 
-    sizes = np.bincount(place, size)
+    sizes = np.asarray(np.bincount(place, size), dtype=np.float64)
     middle = added(size[:, None] * side.points) / sizes[:, None]
     arms = middle - positions[particles]
     return Pieces(particles.astype(np.uint32), added(side.areas), sizes, arms)

@@ -9,8 +9,8 @@ namespace {
 
 /// 1 at the nodes that a patch owns, 0 at those that another patch counts.
 template <int D>
-void ownership(const Patch<D>& patch, double* own) {
-  for (int n = 0; n < patch.shape.node_count; ++n) own[n] = patch.owned[n] ? 1.0 : 0.0;
+void ownership(const Patch<D>& patch, int node_count, double* own) {
+  for (int n = 0; n < node_count; ++n) own[n] = patch.owned[n] ? 1.0 : 0.0;
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ void advance_nodes(Domain<D>& domain) {
         if (held >> a & 1u) block.force(a)[node] = -block.mass()[node] * domain.gravity[a];
     });
     double own[BlockShape<D>::nodes_max];
-    ownership(patch, own);
+    ownership(patch, block.count, own);
     for_each_mirrored_node(grid, patch, [&](int node, int, unsigned) { own[node] = 0.0; });
     double work = 0.0, gravity_first = 0.0, gravity_second = 0.0;
     for (int n = 0; n < block.count; ++n) {

@@ -192,7 +192,7 @@ def _translation(dimension: int, speed: float) -> Array:
     return np.asarray(speed * direction / np.linalg.norm(direction))
 
 
-def _along(values: Array, axis: int, dimension: int) -> Array:
+def _along(values: NDArray[Any], axis: int, dimension: int) -> NDArray[Any]:
     """Return values as an array that varies along one axis of a lattice only."""
     return values.reshape([-1 if a == axis else 1 for a in range(dimension)])
 

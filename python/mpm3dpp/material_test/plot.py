@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from . import Result
 
-_KNOWN = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 1.0}
-_MARK = {"marker": "X", "markersize": 7, "linestyle": "none", "zorder": 5}
+_KNOWN: dict[str, Any] = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 1.0}
+_MARK: dict[str, Any] = {"marker": "X", "markersize": 7, "linestyle": "none", "zorder": 5}
 
 
 def save_picture(path: Path, title: str, result: Result) -> Path:
@@ -83,7 +83,7 @@ def _path(left: Axes, right: Axes, result: Result) -> None:
 def _shocks(left: Axes, right: Axes, result: Result) -> None:
     columns = result.columns
     up, us = columns["particle_velocity"], columns["shock_velocity"]
-    dots = {"color": PALETTE[0], "marker": "o", "markersize": 3.5, "linewidth": 0.8}
+    dots: dict[str, Any] = {"color": PALETTE[0], "marker": "o", "markersize": 3.5, "linewidth": 0.8}
     left.plot(up / 1e3, us / 1e3, label="equation of state", **dots)
     for curve in result.known:
         left.plot(curve.x / 1e3, curve.y / 1e3, label=curve.label, **_KNOWN)
