@@ -82,13 +82,12 @@ template <int W, class F>
                                                   F&& f) {
   for (std::uint32_t k = 0; k < count; k += W) {
     const LaneRows<W> lanes(rows + k, count - k);
-    if constexpr (W > 1) {
-      if (lanes.contiguous && lanes.count == W) {
-        f(WholeRows<W>{lanes.row[0]});
-        continue;
-      }
-    }
-    f(lanes);
+    if constexpr (W == 1)
+      f(lanes);
+    else if (lanes.contiguous && lanes.count == W)
+      f(WholeRows<W>{lanes.row[0]});
+    else
+      f(lanes);
   }
 }
 
