@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .figure import Figure, judge, report
+from .figure import Figure, judge
 from .points import block
 from .scene import Scene, on_time
 
@@ -61,7 +61,7 @@ def two_bars(
         judge("E2", "contact lasts", end - begin),
         judge("E2", "first bar's velocity after", said[-1, 2] / speed),
         judge("E2", "second bar's velocity after", said[-1, 3] / speed),
-        report("energy made over the start", scene.energy_made()),
+        scene.energy_figure(),
     ]
 
 

@@ -39,7 +39,7 @@ def sulsky_discs(
         judge("E5", "restitution", -said[-1, 2] / 0.1),
         judge("E5", f"least kinetic energy, {model}", kinetic.min() / kinetic[0]),
         judge("E5", "contact lasts", end - begin),
-        report("energy made over the start", scene.energy_made()),
+        scene.energy_figure(),
     ]
 
 
@@ -76,7 +76,7 @@ def rings(
         judge("E6", "least kinetic energy", kinetic.min() / kinetic[0]),
         judge("E6", "least height", 1e3 * (said[:, 2].min() + h / points)),
         report("gap at the first contact", pair.first_gap / h, "cells"),
-        report("energy made over the start", scene.energy_made()),
+        scene.energy_figure(),
         report("momentum, largest change over one ring's", momentum),
     ]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from mpm3dpp import Case, Eos, RunError, Simulation, load_case
 
-from .figure import Figure, judge, report
+from .figure import Figure, judge, reference, report
 from .scene import Failed
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -79,10 +79,15 @@ def front(profile: dict[str, Array], level: float) -> float:
     return float(np.interp(level, [p[last + 1], p[last]], [x[last + 1], x[last]]))
 
 
-def plate_impact(scheme: str, dimension: int, basis: str, flyer: str = "copper") -> list[Figure]:
-    """S1 (copper on copper) and S2 (6061-T6 on copper) at 1000 m/s, without strength."""
+def plate_impact(
+    scheme: str, dimension: int, basis: str, flyer: str = "copper", speed: float = 1000.0
+) -> list[Figure]:
+    """S1 (copper on copper) and S2 (6061-T6 on copper) at 1000 m/s or 2000, without strength."""
     case = case_of("11_plate_impact", scheme, basis)
-    problem, pressure = ("S1", 20.9185e9) if flyer == "copper" else ("S2", 11.8525e9)
+    case.body["flyer"].velocity = (speed, 0.0)
+    problem = "S1" if flyer == "copper" else "S2"
+    problem += "" if speed == 1000.0 else f" at {speed:g} m/s"
+    pressure = 1e9 * reference()[problem]["answers"]["pressure of the plateau"]["value"]
     if flyer != "copper":
         light = case.material["copper"].model_copy(deep=True)
         light.density = 2703.0

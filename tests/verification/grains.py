@@ -7,7 +7,7 @@ import numpy as np
 
 from .figure import Figure, judge, report
 from .points import ball
-from .scene import Scene, on_time
+from .scene import Array, Scene, on_time
 
 RADIUS, YOUNG, POISSON, DENSITY = 0.1, 1e7, 0.3, 1000.0
 ANSWER_LASTS = {1.0: 1.2305e-2, 0.5: 1.4134e-2}
@@ -25,7 +25,12 @@ def hertz_wall(
 ) -> list[Figure]:
     """C1: a sphere of `cells` a diameter on a rigid wall, the plane between it and its mirror."""
     assert dimension == 3
-    found = {speed: _bounce(scheme, basis, cells, speed, factor) for speed in (1.0, 0.5)}
+    speeds = (1.0, 0.5)
+    return hertz_figures({v: _bounce(scheme, basis, cells, v, factor) for v in speeds})
+
+
+def hertz_figures(found: dict[float, list[float]]) -> list[Figure]:
+    """Return the figures of C1 from what `bounce` gives for both speeds [m/s]."""
     figures = []
     for speed, (lasts, depth, force, back) in found.items():
         figures += [
@@ -52,6 +57,16 @@ def _bounce(scheme: str, basis: str, cells: int, speed: float, factor: float) ->
         lambda s: [s.time, abs(s.impulse()[0]), -_centre(s), s.mean_velocity(0)[0]],
         4,
     )
+    return bounce(said)
+
+
+def bounce(said: Array) -> list[float]:
+    """Return duration [s], depth [m], force [N] and the speed after [m/s].
+
+    Args:
+        said: of the first sphere, at some times: time [s], impulse so far [N s], distance of its
+            centre from the plane of contact [m] and velocity [m/s], shape (n, 4).
+    """
     begin, end = on_time(said[:, 0], said[:, 1])
     depth = RADIUS - said[:, 2].min()
     smooth = np.convolve(np.gradient(said[:, 1], said[:, 0]), np.ones(5) / 5, "same")
@@ -76,4 +91,4 @@ def hertz_chain(
     scene.start().run(0.06)
     speeds = [scene.mean_velocity(k)[0] for k in range(5)]
     figures = [judge("C2", f"final velocity of sphere {k + 1}", v) for k, v in enumerate(speeds)]
-    return [*figures, report("energy made over the start", scene.energy_made())]
+    return [*figures, scene.energy_figure()]

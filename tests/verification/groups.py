@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .figure import Figure, judge, reference, report
+from .figure import Figure, judge, reference
 from .points import ball, block
 from .scene import Array, Scene
 
@@ -143,7 +143,7 @@ def offset_spheres(
     return [
         judge("E10", "largest error of direction", turn),
         judge("E10", "largest error of speed", fast, remark=note),
-        report("energy made over the start", scene.energy_made()),
+        scene.energy_figure(),
     ]
 
 
@@ -183,5 +183,5 @@ def oblique_impact(
               np.abs(impulse - gained).max() / np.linalg.norm(gained)),
         judge("oblique", "friction work against loss of the balance",
               abs(h_["friction"][-1] - work) / work),
-        report("energy made over the start", scene.energy_made()),
+        scene.energy_figure(),
     ]  # fmt: skip

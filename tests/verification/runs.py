@@ -24,6 +24,7 @@ from . import (
     rolling,
     runout,
     silo,
+    written,
 )
 from .figure import Figure
 from .scene import Failed
@@ -121,15 +122,23 @@ def _runs() -> Iterator[Run]:
     for scheme in both:
         yield Run("S1", examples.plate_impact, scheme, 2, "gimp")
         yield Run("S2", examples.plate_impact, scheme, 2, "gimp", {"flyer": "6061-T6"})
+        yield Run("S1", examples.plate_impact, scheme, 2, "gimp", {"speed": 2000.0})
+        fast = {"flyer": "6061-T6", "speed": 2000.0}
+        yield Run("S2", examples.plate_impact, scheme, 2, "gimp", fast)
         yield Run("S3", examples.sod_tube, scheme, 2, "gimp")
         yield Run("S5", examples.spall, scheme, 2, "gimp")
     yield Run("E4", point.simple_shear, "-", 3, "-")
+    yield Run("E3", written.spinning_disc, "musl", 2, "gimp", {"cells": 10})
+    yield Run("E9", written.rolling_disc, "musl", 2, "gimp", {"cells": 8})
     yield from _slow_runs()
 
 
 def _slow_runs() -> Iterator[Run]:
     for cells in (10, 20):
         yield Run("C1", grains.hertz_wall, "musl", 3, "gimp", {"cells": cells}, slow=True)
+        yield Run("C1", written.hertz_spheres, "musl", 3, "gimp", {"cells": cells}, slow=True)
+    yield Run("E3", written.spinning_disc, "musl", 2, "gimp", {"cells": 20}, slow=True)
+    yield Run("E9", written.rolling_disc, "musl", 2, "gimp", {"cells": 16}, slow=True)
     for cells in (16, 32):
         yield Run("C5", rolling.rolling_on_discs, "musl", 2, "gimp", {"cells": cells}, slow=True)
     for cells in (10, 40):

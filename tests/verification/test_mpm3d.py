@@ -13,6 +13,11 @@ from verification.mpm3d import compare, imported, reference, run
 
 # Difference that we reach in figures that miss: (case, figure) to (lowest, highest).
 REACHED = {
+    # 0.9 % of the bar's energy is left, and it depends on the time step: -1.9 % with as many steps
+    # as MPM3D-F90 made, see below; -3.5 % with the 647 that its factor gives here, since artificial
+    # viscosity bounds the step too; -4.0 and -4.2 % with 1,292 and 2,583. Ours has settled, theirs
+    # is of its time step.
+    ("Taylor", "kinetic energy"): (-0.04, -0.03),
     # The burn, which rises over 1.5 cells: with it 1.5 cells earlier -1.2 %.
     ("TNT3D", "kinetic energy"): (-0.051, -0.041),
     ("TNT3D", "largest kinetic energy"): (-0.051, -0.041),
@@ -43,9 +48,23 @@ def test_beside_mpm3d(name):
     wrong = []
     for row in compare(name, simulation, history):
         known = REACHED.get((name, row.name))
-        if not row.passed and not (known and known[0] <= row.difference <= known[1]):
+        if row.passed and known:
+            wrong.append(f"{row.cells()}: no longer misses; take it out of REACHED")
+        elif not row.passed and not (known and known[0] <= row.difference <= known[1]):
             wrong.append(row.cells())
     assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.slow
+def test_taylor_bar_with_as_many_steps():
+    """With the time step of MPM3D-F90 all of its tolerances are met, kinetic energy too."""
+    case = imported("Taylor")
+    case.run.time_step_factor = 0.83
+    simulation, history = run(case)
+    assert simulation.step == pytest.approx(reference()["Taylor"]["steps"], rel=0.01)
+    rows = [row for row in compare("Taylor", simulation, history) if row.tolerance is not None]
+    assert rows
+    assert all(row.passed for row in rows), "\n".join(row.cells() for row in rows)
 
 
 def test_momentum_of_two_cubes_in_contact():
