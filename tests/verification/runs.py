@@ -129,6 +129,7 @@ def _runs() -> Iterator[Run]:
         yield Run("S5", examples.spall, scheme, 2, "gimp")
     yield Run("E4", point.simple_shear, "-", 3, "-")
     yield Run("E3", written.spinning_disc, "musl", 2, "gimp", {"cells": 10})
+    yield Run("E3", written.spinning_disc, "musl", 2, "gimp", {"cells": 10, "points": 3})
     yield Run("E9", written.rolling_disc, "musl", 2, "gimp", {"cells": 8})
     yield from _slow_runs()
 
@@ -138,6 +139,8 @@ def _slow_runs() -> Iterator[Run]:
         yield Run("C1", grains.hertz_wall, "musl", 3, "gimp", {"cells": cells}, slow=True)
         yield Run("C1", written.hertz_spheres, "musl", 3, "gimp", {"cells": cells}, slow=True)
     yield Run("E3", written.spinning_disc, "musl", 2, "gimp", {"cells": 20}, slow=True)
+    more = {"cells": 20, "points": 3}
+    yield Run("E3", written.spinning_disc, "musl", 2, "gimp", more, slow=True)
     yield Run("E9", written.rolling_disc, "musl", 2, "gimp", {"cells": 16}, slow=True)
     for cells in (16, 32):
         yield Run("C5", rolling.rolling_on_discs, "musl", 2, "gimp", {"cells": cells}, slow=True)
