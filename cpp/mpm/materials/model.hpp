@@ -164,7 +164,7 @@ struct NoState {};
 /// may be copied by their bytes, though `Batch` has a copy constructor.
 template <class State, class T>
 inline constexpr int state_size =
-    std::is_empty_v<State> ? 0 : static_cast<int>(sizeof(State) / sizeof(T));  // NOLINT: all of it is Ts
+    std::is_empty_v<State> ? 0 : static_cast<int>(sizeof(State) / sizeof(T));  // NOLINT: all Ts
 
 template <class State, class T>
 State unpack(const T* values) {
