@@ -117,7 +117,8 @@ DrivenPoint drive_material(const MaterialChoice& choice, const Drive& drive) {
   block.count = 1;
   for (std::size_t n = 0; n < drive.increments.size(); n += 9) {
     for (std::size_t k = 0; k < 9; ++k) block.gradient[k / 3][k % 3][0] = drive.increments[n + k];
-    const double time = static_cast<double>(n / 9 + 1) * drive.time_step;
+    const std::size_t step = n / 9 + 1;
+    const double time = static_cast<double>(step) * drive.time_step;
     const StressSettings settings{drive.time_step, time, drive.cell_size, point.material.viscosity,
                                   false};
     if (drive.lanes)
