@@ -66,6 +66,7 @@ std::vector<PairRecord> SimulationOf<D>::group_pairs() const {
     }
   }
   std::vector<PairRecord> records;
+  records.reserve(found.size());
   for (const auto& [key, sum] : found) records.push_back(sum);
   return records;
 }
