@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "mpm/contact/contact_part.hpp"
+#include "mpm/contact/near_particles.hpp"
 #include "mpm/contact/node_solver.hpp"
-#include "mpm/contact/separation.hpp"
 #include "mpm/contact/settings.hpp"
 #include "mpm/fields/state_stream.hpp"
 
@@ -61,7 +61,6 @@ struct TileBodies {
   std::size_t count = 0;
   std::uint64_t overlapped = 0;    // nodes at which two or more have mass
   std::vector<HeldNodes<D>> held;  // by the holders, in the order of the tile's
-  LastPlanes<D> planes;
 
   std::span<TileBody<D>> all() { return {bodies.data(), count}; }
   std::span<const TileBody<D>> all() const { return {bodies.data(), count}; }

@@ -26,7 +26,6 @@ template <int D>
 void ContactGrid<D>::look_around(const TileGrid<D>& grid, const ContactTile<D>& tile,
                                  TileBodies<D>& found) const {
   found.count = 0;
-  found.planes.forget();
   found.held.clear();
   std::uint64_t once = 0;
   found.overlapped = 0;

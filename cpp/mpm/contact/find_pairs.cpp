@@ -108,9 +108,7 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
         pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
         if (pair.gap > settings.gap_distance + surely_open * grid.cell_size) continue;
       }
-      around.planes.with(sources[r].body, sources[s].body, index, [&](Plane<D>& last) {
-        pair.normal = pair_normal(sources[r], sources[s], settings.normal, node.held, last);
-      });
+      pair.normal = pair_normal(sources[r], sources[s], settings.normal, node.held);
       pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
       pair.closed = may_act(pair, settings);
     }

@@ -50,11 +50,10 @@ struct NormalSource {
   Vec<double, D> normal;  // from the gradient of mass (weighted_normal); zero for `plane`
 };
 
-/// The unit normal from body r to body s by the chosen rule; zero if there is none. `plane` is for
-/// separating_normal.
+/// The unit normal from body r to body s by the chosen rule; zero if there is none.
 template <int D>
 Vec<double, D> pair_normal(const NormalSource<D>& r, const NormalSource<D>& s, NormalRule rule,
-                           unsigned held, Plane<D>& plane) {
+                           unsigned held) {
   constexpr double parallel = 1e-6;  // normals that differ by less give no direction
   const bool r_is_first = r.body < s.body;
   const bool r_is_stiffer = r.stiffness != s.stiffness ? r.stiffness > s.stiffness : r_is_first;
@@ -63,7 +62,7 @@ Vec<double, D> pair_normal(const NormalSource<D>& r, const NormalSource<D>& s, N
   };
   switch (rule) {
     case NormalRule::plane:
-      return separating_normal(r.particles, s.particles, held, plane);
+      return separating_normal(r.particles, s.particles, held);
     case NormalRule::pair:
       return normalised(r.normal - s.normal, parallel);
     case NormalRule::first:

@@ -6,29 +6,18 @@
 // Vapnik 1995), found by Newton's method with a line search (Keerthi & DeCoste 2005).
 #include <algorithm>
 #include <cmath>
-#include <utility>
-#include <vector>
 
 #include "mpm/contact/near_particles.hpp"
 #include "mpm/math/cholesky.hpp"
 
 namespace mpm {
 
-/// A plane a . x + b = 0, x in cells; none if a is zero. a points from one body to another and has
-/// the inverse of the half width of the corridor between them as its length.
+/// A plane a . x + b = 0, x in cells from the node; none if a is zero. a points from one body to
+/// another and has the inverse of the half width of the corridor between them as its length.
 template <int D>
 struct Plane {
   Vec<double, D> a = Vec<double, D>::zero();  // [1/cell]
   double b = 0.0;
-
-  bool exists() const { return dot(a, a) > 0.0; }
-  /// The same plane when x counts from another origin.
-  Plane seen_from(const Index<D>& origin) const {
-    Plane plane = *this;
-    for (int k = 0; k < D; ++k) plane.b += a[k] * origin[static_cast<std::size_t>(k)];
-    return plane;
-  }
-  Plane reversed() const { return {-1.0 * a, -b}; }
 };
 
 /// The fit of a plane a . x + b = 0, x in cells from the node, to the particles of two bodies: the
@@ -36,29 +25,23 @@ struct Plane {
 ///   softness |a|^2 / 2 + sum_p w_p max(0, 1 - c_p (a . x_p + b))^2 / 2,
 /// c = -1 and +1 for the particles of r and s, w each body's masses over their sum. It is the
 /// widest corridor between the two, of half width 1/|a|, that few particles enter.
+///
+/// The function is convex with one least point. Between the places where a particle enters or
+/// leaves the corridor it is a quadratic, of those that are inside; Newton's method goes to the
+/// least of the quadratic, until the same particles are inside there. What it ends with depends on
+/// them alone, and not on the way there; and it begins at the centres of mass, never at a plane
+/// found before: else the order in which nodes are visited would be seen in the last bits.
 template <int D>
 class PlaneFit {
   using T = Batch<contact_lanes<D>>;
   static constexpr int n = D + 1;
 
  public:
-  /// Axes in `held` get no component. A plane near the answer saves steps, and changes nothing
-  /// else.
-  PlaneFit(const NearParticles<D>& r, const NearParticles<D>& s, unsigned held,
-           const Plane<D>& start)
+  /// Axes in `held` get no component.
+  PlaneFit(const NearParticles<D>& r, const NearParticles<D>& s, unsigned held)
       : r_(r), s_(s), held_(held) {
     if (r.count() == 0 || s.count() == 0) return;
-    share_r_ = 1.0 / r.mass();
-    share_s_ = 1.0 / s.mass();
-    thread_local std::vector<T> inside;  // kept, so that fits do not allocate
-    inside.assign((r.count() + s.count()) / T::lanes + 2, T(0.0));
-    inside_ = inside.data();
-    if (start.exists()) {
-      for (int i = 0; i < D; ++i) z_[i] = held >> i & 1u ? 0.0 : start.a[i];
-      z_[D] = start.b;
-    } else {
-      start_between_centres();
-    }
+    start_between_centres();
     find_least();
   }
 
@@ -78,6 +61,39 @@ class PlaneFit {
   // Keeps the system regular where no particle is inside the corridor.
   static constexpr double damping = 1e-12;
 
+  /// The function as it is where the same particles are inside:
+  /// constant / 2 - b . z + z . A z / 2, A symmetric with its lower triangle given.
+  struct Quadratic {
+    double A[n][n] = {}, b[n] = {}, constant = 0.0;
+
+    bool operator==(const Quadratic&) const = default;
+    double along(const double (&y)[n], const double (&z)[n]) const {  // y . A z
+      double total = 0.0;
+      for (int i = 0; i < n; ++i) {
+        total += y[i] * A[i][i] * z[i];
+        for (int j = 0; j < i; ++j) total += A[i][j] * (y[i] * z[j] + y[j] * z[i]);
+      }
+      return total;
+    }
+    double value(const double (&z)[n]) const {
+      double linear = 0.0;
+      for (int i = 0; i < n; ++i) linear += b[i] * z[i];
+      return 0.5 * (constant + along(z, z)) - linear;
+    }
+    /// The derivative at z along a step.
+    double slope(const double (&z)[n], const double (&step)[n]) const {
+      double linear = 0.0;
+      for (int i = 0; i < n; ++i) linear += b[i] * step[i];
+      return along(z, step) - linear;
+    }
+    void find_least(double (&z)[n]) const {
+      double factors[n][n];
+      std::copy(&A[0][0], &A[0][0] + n * n, &factors[0][0]);
+      std::copy(b, b + n, z);
+      solve_symmetric(factors, z);
+    }
+  };
+
   /// Start with the plane midway between the bodies' centres of mass, both on the corridor's edges.
   void start_between_centres() {
     const Vec<double, D> r = r_.centre(), s = s_.centre();
@@ -92,173 +108,113 @@ class PlaneFit {
     z_[D] = -2.0 * middle / square;
   }
 
-  /// Newton's method. Between the places where a particle enters or leaves the corridor the
-  /// function is a quadratic; once its least has the same particles inside as before, that is the
-  /// answer.
   void find_least() {
-    // Some three steps; the limit is against rounding that never settles.
+    // Some four steps; the limit is against rounding that never settles.
     constexpr int most_steps = 50;
-    bool changed = false;
-    double value = classify(z_, changed);
+    Quadratic here = at(z_);
     for (int k = 0; k < most_steps; ++k) {
       double z[n], step[n], change = 0.0, size = 0.0;
-      least_of_quadratic(z);
+      here.find_least(z);
       for (int i = 0; i < n; ++i) {
         step[i] = z[i] - z_[i];
         change = std::max(change, std::abs(step[i]));
-        size = std::max(size, std::abs(z_[i]));
+        size = std::max(size, std::abs(z[i]));
       }
-      double there = classify(z, changed);
-      const bool settled = !changed || !(change > 1e-13 * size);
-      if (!settled && !(there < value)) {  // too long a step
-        const double t = best_length(step);
-        for (int i = 0; i < n; ++i) z[i] = z_[i] + t * step[i];
-        there = classify(z, changed);
-        if (!(there < value)) return;  // as near as rounding lets it come
-      }
+      Quadratic there = at(z);
+      const bool settled = there == here || !(change > 1e-13 * size);
+      if (!settled) shorten(here, step, z, there);
       std::copy(z, z + n, z_);
-      value = there;
+      here = there;
       if (settled) return;
     }
   }
 
-  /// f(position, sign, share of the body's mass, share of it that is inside) over both bodies.
-  template <class F>
-  void for_both(F&& f) {
-    T* inside = inside_;
-    r_.for_each(
-        [&](const Vec<T, D>& x, T, T weight) { f(x, T(-1.0), T(share_r_) * weight, *inside++); });
-    s_.for_each(
-        [&](const Vec<T, D>& x, T, T weight) { f(x, T(1.0), T(share_s_) * weight, *inside++); });
-  }
-  static T height(const double (&z)[n], const Vec<T, D>& x) {
-    T y(z[D]);
-    for (int a = 0; a < D; ++a) y += T(z[a]) * x[a];
-    return y;
-  }
-
-  /// Which particles are inside a plane's corridor or beyond; gives the function there, and whether
-  /// they are others than before.
-  double classify(const double (&z)[n], bool& changed) {
-    T lacks(0.0);
-    auto others = T(1.0) < T(0.0);
-    for_both([&](const Vec<T, D>& x, T sign, T share, T& inside) {
-      const T lack = T(1.0) - sign * height(z, x);
-      const T now = select(lack > T(0.0), share, T(0.0));
-      others = others | (now < inside) | (now > inside);
-      inside = now;
-      lacks += now * lack * lack;
-    });
-    changed = any(others);
-    double value = sum(lacks);
-    for (int i = 0; i < D; ++i) value += softness * z[i] * z[i];
-    return 0.5 * value;
-  }
-
-  /// The least of the function as it were if those inside now always were. It does not depend on
-  /// where the search started.
-  void least_of_quadratic(double (&z)[n]) {
-    T second[D][D], first[n];  // sums of share x x^T, and of sign share (x, 1)
-    T mean[n];                 // and of share (x, 1)
-    for (int i = 0; i < n; ++i) {
-      first[i] = mean[i] = T(0.0);
-      for (int j = 0; j <= i && i < D; ++j) second[i][j] = T(0.0);
+  /// Shorten a step that ends at z, unless the function falls along it, until it does: its slope
+  /// rises along the step, so the root of it lies between.
+  void shorten(const Quadratic& here, const double (&step)[n], double (&z)[n], Quadratic& there) {
+    constexpr int most_trials = 20;
+    constexpr double enough = 0.3;  // of the first slope: the next step mends the rest
+    const double first = here.slope(z_, step), start = here.value(z_);
+    double low = 0.0, high = 1.0, t = 1.0;
+    for (int k = 0; k < most_trials; ++k) {
+      const double slope = there.slope(z, step);
+      if (!(slope > -enough * first) && there.value(z) < start) return;
+      (slope > 0.0 ? high : low) = t;
+      t -= slope / there.along(step, step);
+      if (!(t > low && t < high)) t = 0.5 * (low + high);
+      for (int i = 0; i < n; ++i) z[i] = z_[i] + t * step[i];
+      there = at(z);
     }
-    for_both([&](const Vec<T, D>& x, T sign, T, const T& inside) {
-      first[D] += sign * inside;
-      mean[D] += inside;
+  }
+
+  /// Sums over the particles of a body that are inside a plane's corridor or beyond.
+  struct Moments {
+    T second[D][D], first[n];  // of weight x x^T and of weight (x, 1)
+  };
+  /// `sign` is c.
+  static Moments moments_of(const NearParticles<D>& body, double sign, const double (&z)[n]) {
+    Moments m;
+    for (int i = 0; i < n; ++i) {
+      m.first[i] = T(0.0);
+      for (int j = 0; j <= i && i < D; ++j) m.second[i][j] = T(0.0);
+    }
+    const T level(1.0 - sign * z[D]);
+    T slope[D];
+    for (int a = 0; a < D; ++a) slope[a] = T(-sign * z[a]);
+    body.for_each([&](const Vec<T, D>& x, T, T weight) MPM_INLINE {
+      T lack = level;
+      for (int a = 0; a < D; ++a) lack += slope[a] * x[a];
+      const T inside = select(lack > T(0.0), weight, T(0.0));
+      m.first[D] += inside;
       for (int i = 0; i < D; ++i) {
         const T moment = inside * x[i];
-        first[i] += sign * moment;
-        mean[i] += moment;
-        for (int j = 0; j <= i; ++j) second[i][j] += moment * x[j];
+        m.first[i] += moment;
+        for (int j = 0; j <= i; ++j) m.second[i][j] += moment * x[j];
       }
     });
-    double A[n][n] = {};
-    const auto fixed = [&](int i) { return i < D && (held_ >> i & 1u); };
-    for (int i = 0; i < n; ++i) {
-      z[i] = fixed(i) ? 0.0 : sum(first[i]);
-      for (int j = 0; j <= i; ++j)
-        A[i][j] = fixed(i) || fixed(j) ? 0.0 : sum(i < D ? second[i][j] : mean[j]);
-      A[i][i] = fixed(i) ? 1.0 : A[i][i] + (i < D ? softness : damping);
-    }
-    solve_symmetric(A, z);
+    return m;
   }
 
-  /// The length of a step at which the function is least: the root of a slope that is linear piece
-  /// by piece and rises. Roughly is enough: the next step mends the rest.
-  double best_length(const double (&step)[n]) {
-    constexpr int most_trials = 20;
-    constexpr double tolerance = 0.1;
-    double along = 0.0, square = 0.0;
-    for (int i = 0; i < D; ++i) {
-      along += softness * z_[i] * step[i];
-      square += softness * step[i] * step[i];
+  /// The quadratic of those that are inside the corridor of a plane or beyond.
+  Quadratic at(const double (&z)[n]) const {
+    const Moments r = moments_of(r_, -1.0, z), s = moments_of(s_, 1.0, z);
+    const T of_r(1.0 / r_.mass()), of_s(1.0 / s_.mass());  // shares of a body's mass
+    const auto fixed = [&](int i) { return i < D && (held_ >> i & 1u); };
+    Quadratic q;
+    for (int i = 0; i < n; ++i) {
+      const T first_r = of_r * r.first[i], first_s = of_s * s.first[i];
+      q.b[i] = fixed(i) ? 0.0 : sum(first_s - first_r);
+      q.A[D][i] = fixed(i) ? 0.0 : sum(first_s + first_r);
+      for (int j = 0; j <= i && i < D; ++j)
+        q.A[i][j] = fixed(i) || fixed(j) ? 0.0 : sum(of_r * r.second[i][j] + of_s * s.second[i][j]);
     }
-    double t = 1.0;
-    for (int k = 0; k < most_trials; ++k) {
-      T slope(0.0), curvature(0.0);
-      for_both([&](const Vec<T, D>& x, T sign, T share, const T&) {
-        const T gain = sign * height(step, x);
-        const T lack = T(1.0) - sign * height(z_, x) - T(t) * gain;
-        const T pull = select(lack > T(0.0), share, T(0.0)) * gain;
-        slope -= pull * lack;
-        curvature += pull * gain;
-      });
-      const double stiffness = sum(curvature) + square;
-      if (!(stiffness > 0.0)) break;
-      const double change = (sum(slope) + along + t * square) / stiffness;
-      t -= change;
-      if (!(std::abs(change) > tolerance * t)) break;
-    }
-    return t;
+    q.constant = q.A[D][D];
+    for (int i = 0; i < n; ++i)
+      q.A[i][i] = fixed(i) ? 1.0 : q.A[i][i] + (i < D ? softness : damping);
+    return q;
   }
 
   const NearParticles<D>& r_;
   const NearParticles<D>& s_;
   unsigned held_;
-  double share_r_ = 0.0, share_s_ = 0.0;
   double z_[n] = {};
-  T* inside_ = nullptr;  // of each lane the share that is inside; the thread's until its next fit
 };
+
+/// The plane that best separates the particles of two bodies; none where a body has no particles.
+template <int D>
+Plane<D> separating_plane(const NearParticles<D>& r, const NearParticles<D>& s, unsigned held) {
+  return PlaneFit<D>(r, s, held).plane();
+}
 
 /// The unit normal from r to s of the plane that separates their particles; zero if none does. All
 /// particles lie within 1.5 cells of the node along each axis, so the corridor of two separate
 /// bodies has a half width below 1.5 sqrt(3) = 2.6 cells; a much wider one means that the bodies
-/// fill the same place. `plane` is where to start, if it exists, and then the plane that was found.
+/// fill the same place.
 template <int D>
 Vec<double, D> separating_normal(const NearParticles<D>& r, const NearParticles<D>& s,
-                                 unsigned held, Plane<D>& plane) {
+                                 unsigned held) {
   constexpr double widest = 4.0;  // half width [cells]
-  plane = PlaneFit<D>(r, s, held, plane).plane();
-  return normalised(plane.a, 1.0 / widest);
+  return normalised(separating_plane(r, s, held).a, 1.0 / widest);
 }
-
-/// The planes between the bodies around one tile that were found last, x from the tile's first
-/// node.
-template <int D>
-class LastPlanes {
- public:
-  void forget() { known_.clear(); }
-  /// f(plane) with the plane from body r to body s, x from a node, which f may change.
-  template <class F>
-  void with(int r, int s, Index<D> node, F&& f) {
-    auto at = std::ranges::find(known_, std::pair(std::min(r, s), std::max(r, s)), &Known::bodies);
-    if (at == known_.end()) at = known_.insert(at, {std::pair(std::min(r, s), std::max(r, s)), {}});
-    Plane<D> plane = at->plane.seen_from(node);
-    if (r > s) plane = plane.reversed();
-    f(plane);
-    if (r > s) plane = plane.reversed();
-    for (auto& i : node) i = -i;
-    at->plane = plane.seen_from(node);
-  }
-
- private:
-  struct Known {
-    std::pair<int, int> bodies;
-    Plane<D> plane;
-  };
-  std::vector<Known> known_;
-};
 
 }  // namespace mpm

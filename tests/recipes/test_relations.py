@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contact does not care which way the world is turned, nor how bodies and particles are numbered.
+
+Bodies are filled as a case file fills them, and the particles so placed are then mirrored or
+turned: what a lattice makes of a shape there may differ, but not what contact makes of them.
+The runs are longer than contact needs to act everywhere, and shorter than it takes the rounding of
+sums, 1e-16, to grow to what is tolerated: bodies that collide with friction are chaotic.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from mpm3dpp import Case, Simulation
+from worlds import World, largest_differences
+
+TOLERANCE = 1e-10
+
+RINGS = """
+[grid]
+dimension = 2
+cell_size = "2 mm"
+box = { lower = ["-100 mm", "-52 mm"], upper = ["100 mm", "52 mm"] }
+[run]
+end_time = "3.5 ms"
+[material.rubber]
+density = "1010 kg/m^3"
+strength = { neo_hookean = { K = "121.7 MPa", G = "26.1 MPa" } }
+[body.left]
+material = "rubber"
+shape = { ring = { centre = [-0.041, 0.0], inner_radius = "30 mm", outer_radius = "40 mm" } }
+particles_per_cell = 3
+velocity = ["30 m/s", 0]
+[body.right]
+material = "rubber"
+shape = { ring = { centre = [0.0413, 0.0077], inner_radius = "30 mm", outer_radius = "40 mm" } }
+particles_per_cell = 3
+velocity = ["-30 m/s", 0]
+"""
+
+GRAINS = """
+[grid]
+dimension = 2
+cell_size = "2 mm"
+box = { lower = ["-64 mm", "-64 mm"], upper = ["64 mm", "64 mm"], walls = "slip" }
+[run]
+end_time = "1 s"
+gravity = [0, "-9.81 m/s^2"]
+[contact]
+friction = 0.4
+[material.soft]
+density = "1000 kg/m^3"
+strength = { elastic = { E = "1 MPa", nu = 0.3 } }
+[grains.sand]
+material = "soft"
+velocity = ["1 m/s", "-2 m/s"]
+[grains.sand.packing]
+lower = ["-60 mm", "-62 mm"]
+upper = ["60 mm", "40 mm"]
+radius = ["4 mm", "8 mm"]
+count = 50
+"""
+
+IMPACT = """
+[grid]
+dimension = 3
+cell_size = "1 mm"
+box = { lower = ["-16 mm", "-16 mm", "-16 mm"], upper = ["16 mm", "16 mm", "16 mm"] }
+[run]
+end_time = "50 us"
+[contact]
+friction = 0.2
+[material.copper]
+library = "copper_ofhc"
+failure = { plastic_strain = { limit = 1.5, action = "erode" } }
+[body.ball]
+material = "copper"
+shape = { sphere = { centre = ["1 mm", "0.5 mm", "5 mm"], radius = "4 mm" } }
+velocity = ["300 m/s", "200 m/s", "-300 m/s"]
+[body.plate]
+material = "copper"
+shape = { box = { lower = ["-10 mm", "-10 mm", "-2 mm"], upper = ["10 mm", "10 mm", "0 mm"] } }
+"""
+
+X, Y, Z = 0, 1, 2
+WORLDS = {
+    2: {
+        "mirrored in x": World(((X, -1), (Y, 1))),
+        "mirrored in y, bodies renumbered": World(((X, 1), (Y, -1)), reversed_bodies=True),
+        "a quarter turn": World(((Y, -1), (X, 1))),
+        "particles renumbered": World(((X, 1), (Y, 1)), shuffled=True),
+    },
+    3: {
+        "mirrored in x, particles renumbered": World(((X, -1), (Y, 1), (Z, 1)), shuffled=True),
+        "cyclic axes": World(((Z, 1), (X, 1), (Y, 1))),
+        "cyclic axes, bodies renumbered": World(((Y, 1), (Z, 1), (X, 1)), reversed_bodies=True),
+    },
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [(RINGS, 1800), (GRAINS, 1500), (IMPACT, 600)],
+    ids=["two rings", "fifty grains", "impact with erosion"],
+)
+def test_another_world_is_the_same_to_rounding(text: str, steps: int) -> None:
+    case = Case.from_text(text)
+    filled, here = Simulation(case), Simulation(case)
+    here.advance(steps)
+    assert here.step == steps
+    assert here.core.contact_summary()["overlapped_nodes"] > 50
+    assert (here.eroded()["count"] > 0) == ("erode" in text)
+    for name, world in WORLDS[case.grid.dimension].items():
+        there = Simulation(world.case(case, filled))
+        there.advance(steps)
+        apart = largest_differences(here, there, world)
+        assert max(apart.values()) <= TOLERANCE, (name, apart)

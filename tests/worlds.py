@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A case in another world: mirrored, turned, with other axes, or with other numbers.
+
+What a world does to a case is exact: coordinates change sign or place, and bodies and particles
+their order. So a run there differs from the one here by the rounding of sums alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mpm3dpp import Body, Case, GridBox, Particles, Simulation, Walls
+
+Array = NDArray[np.float64]
+PLACES = {
+    6: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)),
+    4: ((0, 0), (1, 1), (2, 2), (0, 1)),
+}
+"""Places of the numbers of a symmetric tensor, in the order of the columns: 4 in plane strain."""
+
+
+@dataclass(frozen=True)
+class World:
+    """Another world.
+
+    Attributes:
+        axes: which axis here becomes axis k there, and its sign: ((1, -1), (0, 1)) is a quarter
+            turn, x' = -y and y' = x.
+        reversed_bodies: bodies are numbered from the last to the first.
+        shuffled: particles of each body are numbered in a random order.
+    """
+
+    axes: tuple[tuple[int, int], ...]
+    reversed_bodies: bool = False
+    shuffled: bool = False
+
+    def matrix(self) -> Array:
+        """Q of x' = Q x, shape (D, D)."""
+        q = np.zeros((len(self.axes),) * 2)
+        for k, (axis, sign) in enumerate(self.axes):
+            q[k, axis] = sign
+        return q
+
+    def order(self, particles: int) -> NDArray[np.int64]:
+        """Which particle here is number k there, shape (n,)."""
+        random = np.random.default_rng(1)
+        return random.permutation(particles) if self.shuffled else np.arange(particles)
+
+    def case(self, here: Case, filled: Simulation) -> Case:
+        """The case there; `filled` is the simulation of the case here, before its first step."""
+        q, d = self.matrix(), here.grid.dimension
+        names = sorted(filled.bodies, reverse=True) if self.reversed_bodies else filled.bodies
+        bodies = {}
+        for name in names:
+            part = filled.parts[filled.bodies.index(name)]
+            entry: Any = here.grains[part] if part in here.grains else here.body[part]
+            positions = filled.column(name, "position")
+            velocity = np.array(entry.velocity or (0.0,) * d)
+            bodies[name] = Body(
+                material=entry.material,
+                particles=Particles((positions @ q.T)[self.order(len(positions))]),
+                spacing=entry.particle_spacing(here.grid),
+                velocity=tuple((q @ velocity).tolist()),
+            )
+        grid = here.grid.model_copy(update={"box": self._box(here)})
+        gravity = tuple((q @ np.array([float(g) for g in here.run.gravity or (0.0,) * d])).tolist())
+        return Case(
+            grid=grid,
+            run=here.run.model_copy(update={"gravity": gravity}),
+            contact=here.contact,
+            material=here.material,
+            body=bodies,
+        )
+
+    def _box(self, here: Case) -> GridBox | None:
+        box = here.grid.box
+        if box is None:
+            return None
+        sides = {}
+        lower, upper = [], []
+        for k, (axis, sign) in enumerate(self.axes):
+            faces = [getattr(box.walls, f"{'xyz'[axis]}_{end}") for end in ("min", "max")]
+            sides[f"{'xyz'[k]}_min"], sides[f"{'xyz'[k]}_max"] = faces[::sign]
+            low, high = sorted((sign * box.lower[axis], sign * box.upper[axis]))
+            lower.append(low)
+            upper.append(high)
+        return GridBox(lower=lower, upper=upper, walls=Walls(**sides))
+
+    def seen_from_here(self, column: Array) -> Array:
+        """A column of a body there, as it would be here."""
+        q = self.matrix()
+        d, components = len(q), column.shape[1] if column.ndim > 1 else 1
+        back = np.empty_like(column)
+        back[self.order(len(column))] = column
+        if components == d:
+            return back @ q
+        if components in PLACES:
+            places = PLACES[components]
+            whole = np.eye(3)
+            whole[:d, :d] = q
+            tensor = np.zeros((len(back), 3, 3))
+            for k, (i, j) in enumerate(places):
+                tensor[:, i, j] = tensor[:, j, i] = back[:, k]
+            tensor = whole.T @ tensor @ whole
+            return np.stack([tensor[:, i, j] for i, j in places], axis=1)
+        assert components == 1, "a column that no test has had yet"
+        return back
+
+
+def largest_differences(here: Simulation, there: Simulation, world: World) -> dict[str, float]:
+    """Of each column the largest difference of two runs over its largest size in any body here."""
+    sizes: dict[str, float] = {}
+    apart: dict[str, float] = {}
+    for number, name in enumerate(here.bodies):
+        for column in here.core.columns(number):
+            mine = here.column(name, column.name)
+            theirs = world.seen_from_here(there.column(name, column.name))
+            sizes[column.name] = max(sizes.get(column.name, 0.0), float(np.abs(mine).max()))
+            difference = float(np.abs(mine - theirs).max())
+            apart[column.name] = max(apart.get(column.name, 0.0), difference)
+    return {name: apart[name] / (sizes[name] or 1.0) for name in apart}
