@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <span>
+#include <string>
 
 #include "list.hpp"
 
@@ -16,17 +17,18 @@ bool selected(std::string_view name, std::span<char*> wanted) {
 
 /// Run one test, print what failed; true if it checked something and nothing failed.
 bool passes(const mpm::testing::UnitTest& test) {
+  const std::string name(test.name);
   mpm::testing::Report report;
   try {
     test.run(report);
   } catch (const std::exception& error) {
-    std::printf("%s: threw: %s\n", test.name.data(), error.what());
+    std::printf("%s: threw: %s\n", name.c_str(), error.what());
     return false;
   }
   for (const auto& failure : report.failures()) {
-    std::printf("%s: %s\n", test.name.data(), failure.c_str());
+    std::printf("%s: %s\n", name.c_str(), failure.c_str());
   }
-  if (report.check_count() == 0) std::printf("%s: checked nothing\n", test.name.data());
+  if (report.check_count() == 0) std::printf("%s: checked nothing\n", name.c_str());
   return report.check_count() > 0 && report.failures().empty();
 }
 
