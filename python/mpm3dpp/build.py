@@ -14,9 +14,10 @@ from .case_body import Body
 from .errors import CaseError
 from .grains import Grains, fill_grain
 from .grains.packing import ball_volume
+from .machine import MOST_PARTICLES
 from .placement import check_box, check_overlap
 from .shapes import fill, reference_volume
-from .shapes.filling import LENGTHS_REMEDY, MOST_PARTICLES
+from .shapes.filling import LENGTHS_REMEDY
 
 MASS_WARNING = 0.05  # Relative mass error above which a run warns ...
 MASS_ERROR = 0.5  # ... and above which it does not start.

@@ -12,11 +12,16 @@ from typing import Any
 
 from . import errors
 from .errors import CaseError
+from .reading import read_file
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
+
+MOST_BYTES = 4 << 20
+"""Of a case file: what is read, with its lines found, in some seconds."""
+_MOST_FILES = 100  # Files of a folder that are looked at for a name like one that is missing.
 
 _TOKEN = re.compile(
     r"(?P<skip>[ \t\r]+|\#[^\n]*)|(?P<line>\n)"
@@ -146,32 +151,38 @@ def read_text(path: Path) -> str:
     """Return the text of a case file.
 
     Raises:
-        CaseError: the file is missing, a folder, not readable, or not UTF-8 text.
+        CaseError: the file is missing, no regular file, not readable, too large, or not UTF-8 text.
     """
     name = str(path)
-    if path.is_dir():
-        remedy = f'give the file in it, for example "{path / "case.toml"}"'
-        raise CaseError("must be a file but is a folder", remedy, place=name)
     try:
-        return path.read_bytes().decode("utf-8-sig")
+        data = read_file(path, MOST_BYTES, "put particles into a CSV file beside it")
+        return data.decode("utf-8-sig")
     except FileNotFoundError:
         remedy = similar_file(path)
         raise CaseError("there is no such file", remedy, place=name) from None
     except UnicodeDecodeError as error:
         remedy = "save it as UTF-8"
         raise CaseError(f"is not UTF-8 text (byte {error.start})", remedy, place=name) from None
-    except OSError as error:
-        reason = (error.strerror or "unknown reason").lower()
-        raise CaseError(f"cannot be read ({reason})", "check the path", place=name) from None
+    except CaseError as error:
+        remedy = error.remedy
+        if path.is_dir():
+            remedy = f'give the file in it, for example "{path / "case.toml"}"'
+        raise CaseError(error.rule, remedy, place=name) from None
 
 
 def similar_file(path: Path) -> str:
     """Return the remedy for a file that is missing: the case file with the nearest name."""
     folder = path.parent
-    files = [p for p in sorted(folder.iterdir()) if _is_case(p)] if folder.is_dir() else []
+    try:
+        files = sorted(p for p in folder.iterdir() if p.suffix.lower() in (".toml", ".mpm"))
+    except OSError:
+        files = []
     stems = [p.stem.lower() for p in files]
-    close = difflib.get_close_matches(path.stem.lower(), stems, 1, 0.6)
-    return f'did you mean "{files[stems.index(close[0])]}"?' if close else "check the path"
+    close = difflib.get_close_matches(path.stem.lower(), stems, _MOST_FILES, 0.6)
+    # The nearest first; of equal names the first, as the folder has them sorted.
+    found = (files[stems.index(stem)] for stem in close)
+    case = next((file for file in found if _is_case(file)), None)
+    return f'did you mean "{case}"?' if case else "check the path"
 
 
 def _is_case(path: Path) -> bool:
@@ -179,8 +190,8 @@ def _is_case(path: Path) -> bool:
     if path.suffix.lower() == ".mpm":
         return path.is_file()
     try:
-        text = path.read_text("utf-8") if path.suffix.lower() == ".toml" else ""
-    except (OSError, UnicodeDecodeError):
+        text = read_file(path, MOST_BYTES, "").decode("utf-8-sig")
+    except (OSError, UnicodeDecodeError, CaseError):
         return False
     return re.search(r"^\s*(\[\s*grid\b|grid\b.*=)", text, re.M) is not None
 

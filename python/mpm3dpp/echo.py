@@ -18,7 +18,7 @@ from .plots.labels import scaled
 
 # Estimates for the echo [bytes], in 2D and 3D: a particle with its lists but without the state of
 # its material, and a node that it reaches, with those that lie beside it in blocks and in contact.
-# (Before particles are made, PARTICLE_BYTES_WITH_GRID of shapes.filling stands for both together.)
+# (Before particles are made, PARTICLE_BYTES_WITH_GRID of machine.py stands for both together.)
 _PARTICLE_BYTES, _NODE_BYTES = {2: 96, 3: 128}, {2: 150, 3: 200}
 
 
