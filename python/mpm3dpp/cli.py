@@ -273,6 +273,7 @@ def main() -> None:
     try:
         app()
     except CaseError as error:
+        _tell_others(error)
         _stop(str(error), 2)
     except RunError as error:
         _stop(str(error), 1)
