@@ -5,10 +5,7 @@ from __future__ import annotations
 
 import json as json_format
 import math
-import signal
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +21,7 @@ from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import RESULTS, ResultsWriter
 from .progress import Progress
 from .report import contact_table, energy_line, gone_lines, load_lines, speed_line
+from .signals import Notice, as_exceptions
 from .simulation import Simulation
 
 _BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without contact.
@@ -64,8 +62,9 @@ def run_case(
         before = Checkpoint.of(folder)
         before.check(case)
     writable_folder(folder)
+    stop = Notice()
     with only_run_in(folder):
-        manifest = _run(case, folder, threads, quiet or json, before)
+        manifest = _run(case, folder, threads, quiet or json, before, stop)
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
@@ -76,8 +75,10 @@ def run_case(
     if manifest.status == "interrupted" and not quiet:
         text = f"mpm3dpp: {manifest.reason}; results are in {folder}{can_go_on}"
         print(text, file=sys.stderr, flush=True)
-    if pictures:
+    if pictures and not (stop.taken and manifest.status == "completed"):
         _draw(folder, quiet or json)
+    elif pictures and not quiet:
+        print(f"no pictures: `mpm3dpp plot {folder}` makes them later", file=sys.stderr)
     if manifest.status == "failed":
         raise RunError(f"{manifest.reason}; frames and history up to then are in {folder}")
     if manifest.status == "interrupted":
@@ -86,25 +87,31 @@ def run_case(
 
 
 def _run(
-    case: Case, folder: Path, threads: int | None, quiet: bool, before: Checkpoint | None
+    case: Case,
+    folder: Path,
+    threads: int | None,
+    quiet: bool,
+    before: Checkpoint | None,
+    stop: Notice,
 ) -> Manifest:
-    """Make the run, and write all but pictures."""
+    """Make the run, and write all but pictures; `stop` takes notice from where there is a loss."""
     checkpoints = Checkpoints(folder, case, before)
     simulation = Simulation(case, threads)
     if before is not None:
         restore_checkpoint(before.path, simulation.core)
-    forget_last_run(folder, checkpoint=before is None)
-    begin = simulation.step
-    try:
-        status, reason = _write_run(simulation, folder, quiet, checkpoints, before)
-    except CaseError as error:  # The disk: it was no mistake when the run began.
-        if simulation.step == begin:
-            raise
-        can_go_on = ", and --resume goes on" if (folder / CHECKPOINT).exists() else ""
-        raise RunError(f"{error}; what was written before is in {folder}{can_go_on}") from error
-    manifest = _manifest(simulation, status, reason, checkpoints.wall_time, begin)
-    manifest.energies = simulation.summary
-    manifest.write(folder)
+    with stop:
+        forget_last_run(folder, checkpoint=before is None)
+        begin = simulation.step
+        try:
+            status, reason = _write_run(simulation, folder, quiet, checkpoints, before, stop)
+        except CaseError as error:  # The disk: it was no mistake when the run began.
+            if simulation.step == begin:
+                raise
+            can_go_on = ", and --resume goes on" if (folder / CHECKPOINT).exists() else ""
+            raise RunError(f"{error}; what was written before is in {folder}{can_go_on}") from error
+        manifest = _manifest(simulation, status, reason, checkpoints.wall_time, begin)
+        manifest.energies = simulation.summary
+        manifest.write(folder)
     return manifest
 
 
@@ -114,9 +121,10 @@ def _draw(folder: Path, quiet: bool) -> None:
     if not quiet:
         print(f"drawing pictures (Ctrl-C leaves them out, {later})", file=sys.stderr, flush=True)
     try:
-        from .plots import plot_results
+        with as_exceptions():
+            from .plots import plot_results
 
-        plot_results(folder)
+            plot_results(folder)
     except KeyboardInterrupt:
         if not quiet:
             print(f"no pictures: {later}", file=sys.stderr)
@@ -131,6 +139,7 @@ def _write_run(
     quiet: bool,
     checkpoints: Checkpoints,
     before: Checkpoint | None,
+    stop: Notice,
 ) -> tuple[Status, str | None]:
     """Step to the end time, writing frames and history; return how it ended, and why."""
     case, core = simulation.case, simulation.core
@@ -162,7 +171,7 @@ def _write_run(
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
     status: Status = "completed"
     reason: str | None = None
-    with _interrupt() as stopped, BackgroundWriter(file) as results, history, progress:
+    with BackgroundWriter(file) as results, history, progress:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
         for sentence in simulation.notes:
@@ -196,7 +205,7 @@ def _write_run(
             overlapped = core.contact_summary()["overlapped_nodes"] if contact else None
             kinetic, internal = rows[-1, 3:5]
             progress.update(core.time, core.step, core.dt, kinetic, internal, overlapped)
-            if stopped():
+            if stop.taken:
                 status, reason = "interrupted", f"stopped by the user at t = {core.time:.6g} s"
             elif checkpoints.due:
                 _tell(progress, checkpoints.write(core, results, history))
@@ -258,19 +267,3 @@ def _manifest(
         build=_core.build_info(),
     )
 
-
-@contextmanager
-def _interrupt() -> Iterator[Any]:
-    """Within it, Ctrl-C and SIGTERM only set a flag, which the object given tells when called."""
-    hit: list[bool] = []
-    kinds = (signal.SIGINT, signal.SIGTERM)
-    try:
-        old = [signal.signal(kind, lambda *_: hit.append(True)) for kind in kinds]
-    except ValueError:  # Not the main thread: nobody can press Ctrl-C here.
-        yield lambda: False
-        return
-    try:
-        yield lambda: bool(hit)
-    finally:
-        for kind, handler in zip(kinds, old, strict=True):
-            signal.signal(kind, handler)
