@@ -6,6 +6,8 @@ from __future__ import annotations
 import json as json_format
 import math
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -62,9 +64,8 @@ def run_case(
         before = Checkpoint.of(folder)
         before.check(case)
     writable_folder(folder)
-    stop = Notice()
     with only_run_in(folder):
-        manifest = _run(case, folder, threads, quiet or json, before, stop)
+        manifest, late = _run(case, folder, threads, quiet or json, before)
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
@@ -75,7 +76,7 @@ def run_case(
     if manifest.status == "interrupted" and not quiet:
         text = f"mpm3dpp: {manifest.reason}; results are in {folder}{can_go_on}"
         print(text, file=sys.stderr, flush=True)
-    if pictures and not (stop.taken and manifest.status == "completed"):
+    if pictures and not late:
         _draw(folder, quiet or json)
     elif pictures and not quiet:
         print(f"no pictures: `mpm3dpp plot {folder}` makes them later", file=sys.stderr)
@@ -87,23 +88,18 @@ def run_case(
 
 
 def _run(
-    case: Case,
-    folder: Path,
-    threads: int | None,
-    quiet: bool,
-    before: Checkpoint | None,
-    stop: Notice,
-) -> Manifest:
-    """Make the run, and write all but pictures; `stop` takes notice from where there is a loss."""
+    case: Case, folder: Path, threads: int | None, quiet: bool, before: Checkpoint | None
+) -> tuple[Manifest, bool]:
+    """Make the run, and write all but pictures; return also whether Ctrl-C came after its end."""
     checkpoints = Checkpoints(folder, case, before)
     simulation = Simulation(case, threads)
     if before is not None:
         restore_checkpoint(before.path, simulation.core)
-    with stop:
+    with _interrupt() as stopped:
         forget_last_run(folder, checkpoint=before is None)
         begin = simulation.step
         try:
-            status, reason = _write_run(simulation, folder, quiet, checkpoints, before, stop)
+            status, reason = _write_run(simulation, folder, quiet, checkpoints, before, stopped)
         except CaseError as error:  # The disk: it was no mistake when the run began.
             if simulation.step == begin:
                 raise
@@ -112,7 +108,7 @@ def _run(
         manifest = _manifest(simulation, status, reason, checkpoints.wall_time, begin)
         manifest.energies = simulation.summary
         manifest.write(folder)
-    return manifest
+        return manifest, status == "completed" and stopped()
 
 
 def _draw(folder: Path, quiet: bool) -> None:
@@ -139,7 +135,7 @@ def _write_run(
     quiet: bool,
     checkpoints: Checkpoints,
     before: Checkpoint | None,
-    stop: Notice,
+    stopped: Callable[[], bool],
 ) -> tuple[Status, str | None]:
     """Step to the end time, writing frames and history; return how it ended, and why."""
     case, core = simulation.case, simulation.core
@@ -205,7 +201,7 @@ def _write_run(
             overlapped = core.contact_summary()["overlapped_nodes"] if contact else None
             kinetic, internal = rows[-1, 3:5]
             progress.update(core.time, core.step, core.dt, kinetic, internal, overlapped)
-            if stop.taken:
+            if stopped():
                 status, reason = "interrupted", f"stopped by the user at t = {core.time:.6g} s"
             elif checkpoints.due:
                 _tell(progress, checkpoints.write(core, results, history))
@@ -267,3 +263,9 @@ def _manifest(
         build=_core.build_info(),
     )
 
+
+@contextmanager
+def _interrupt() -> Iterator[Callable[[], bool]]:
+    """Within it, Ctrl-C and SIGTERM only set a flag, which the function given tells."""
+    with Notice() as notice:
+        yield lambda: notice.taken
