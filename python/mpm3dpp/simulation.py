@@ -116,12 +116,17 @@ class Simulation:
     def advance(self, steps: int, end_time: float | None = None) -> int:
         """Make up to `steps` steps, to `end_time` [s] at most (the case's by default).
 
+        Ctrl-C and SIGTERM act at the end of the step that is being made, as the program has them
+        act: by default Ctrl-C raises KeyboardInterrupt. If they raise nothing, the steps are not
+        made to the end either, so that the program can see what they have left.
+
         Returns:
-            The number of steps made.
+            The number of steps made: fewer at the end time, and after a signal.
 
         Raises:
             CaseError: `steps` is no whole number >= 0, or `end_time` no time, which is finite.
             RunError: the run has become unstable: who, where, when and why.
+            RuntimeError: another thread is at work in this simulation.
         """
         made = 0
         steps = arguments.whole_number("steps", steps, 0)
@@ -129,11 +134,12 @@ class Simulation:
         if end_time is not None:
             end = arguments.quantity("end_time", end_time, "s")
         while made < steps:
-            done = self.core.advance(min(steps - made, self.core.history_capacity), end)
+            wanted = min(steps - made, self.core.history_capacity)
+            done = self.core.advance(wanted, end)
             made += done
             if self.core.failure is not None:
                 raise RunError(self.core.failure.message)
-            if done == 0:
+            if done < wanted:
                 break
         return made
 
