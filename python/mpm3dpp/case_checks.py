@@ -45,6 +45,11 @@ def _entries(case: Case) -> Found:
             yield violation("must not be empty", f"add a table [{name}.NAME]", path=(name,))
         if "" in what:
             yield violation("must have a name", "write [body.left]", path=(name, ""))
+    for table in ("material", "body", "grains", "load"):
+        for word in getattr(case, table):
+            if not word.isprintable():
+                rule = "has a character in its name that cannot be shown"
+                yield violation(rule, "leave it out", path=(table, word))
     for name, material in case.material.items():
         yield from _check_material(material, ("material", name))
     dimension = case.grid.dimension

@@ -21,6 +21,7 @@ else:
 
 MOST_BYTES = 4 << 20
 """Of a case file: what is read, with its lines found, in some seconds."""
+_DEEPEST = 300  # Tables in tables; the TOML reader itself goes not much deeper.
 _MOST_FILES = 100  # Files of a folder that are looked at for a name like one that is missing.
 
 _TOKEN = re.compile(
@@ -65,6 +66,8 @@ class _Locator:
 
     def note(self, path: errors.Path) -> None:
         """Keep the present line for a path and for the tables above it not seen before."""
+        if len(path) > _DEEPEST:
+            raise RecursionError
         for length in range(1, len(path) + 1):
             self.lines.setdefault(path[:length], self.tokens[self.at - 1][2])
 
@@ -131,9 +134,16 @@ class _Locator:
         return self.lines
 
 
-def locate_keys(text: str) -> dict[errors.Path, int]:
-    """Return the line of each key, table and list item of a valid TOML text, by path."""
-    return _Locator(text).run()
+def locate_keys(text: str, name: str = "") -> dict[errors.Path, int]:
+    """Return the line of each key, table and list item of a valid TOML text, by path.
+
+    Raises:
+        CaseError: the text is nested too deeply; its place is `name`.
+    """
+    try:
+        return _Locator(text).run()
+    except RecursionError:
+        raise too_deep(name) from None
 
 
 def locator(lines: dict[errors.Path, int], name: str) -> Callable[[errors.Path], str]:
@@ -206,12 +216,43 @@ def parse(text: str, name: str) -> dict[str, Any]:
     Raises:
         CaseError: the text is not valid TOML; the place is the line.
     """
+    if any(_is_deep(line) for line in text.splitlines()):
+        raise too_deep(name)
     try:
         return tomllib.loads(text.replace("\r\n", "\n"))
     except tomllib.TOMLDecodeError as error:
         raise _syntax_error(str(error), text, name) from None
     except RecursionError:
-        raise CaseError("is nested too deeply", "use fewer brackets", place=name) from None
+        raise too_deep(name) from None
+    except ValueError:  # Python makes no number of thousands of digits.
+        rule = "has a number of more digits than are read"
+        raise CaseError(rule, "write it with an exponent, 1e30", place=_digits_at(text, name)) from None
+
+
+def _is_deep(line: str) -> bool:
+    """Whether a line has a key `a.b.c` of so many parts that the TOML reader would take for ever."""
+    if line.count(".") < _DEEPEST:
+        return False
+    dots = 0
+    for token in _TOKEN.finditer(line):
+        if token.group() == ".":
+            dots += 1
+        elif token.lastgroup == "mark":
+            dots = 0
+        if dots >= _DEEPEST:
+            return True
+    return False
+
+
+def too_deep(name: str) -> CaseError:
+    """Return the mistake that a file, by its name, has tables in tables in tables ..."""
+    return CaseError("is nested too deeply", "use fewer brackets and dots", place=name)
+
+
+def _digits_at(text: str, name: str) -> str:
+    """Return the place of the longest row of digits of a text."""
+    longest = max(re.finditer(r"[\d_]+", text), key=lambda found: len(found.group()))
+    return f"{name}:{text.count(chr(10), 0, longest.start()) + 1}"
 
 
 def _syntax_error(message: str, text: str, name: str) -> CaseError:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 import itertools
 import json
+import math
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -48,7 +49,7 @@ class CaseError(Exception):
         value = "" if self.value is NO_VALUE else show(self.value)
         subject = " = ".join(part for part in (self.key, value) if part)
         remedy = f"; {self.remedy}" if self.remedy else ""
-        return f"{place}{subject}{' ' if subject else ''}{self.rule}{remedy}"
+        return printable(f"{place}{subject}{' ' if subject else ''}{self.rule}{remedy}")
 
 
 def first_of(errors: Iterable[CaseError]) -> CaseError:
@@ -66,21 +67,33 @@ class RunError(Exception):
 def show(value: Any) -> str:
     """Return a value as it would stand in a case file, at most 60 characters."""
     value = _shortened(value)
+    if isinstance(value, _Words):
+        return value
     try:
         text = json.dumps(value, ensure_ascii=False)
     except (TypeError, ValueError):
         text = str(value)
-    text = " ".join(text.split())
-    text = "".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in text[:100])
+    text = printable(" ".join(text[:200].split()))
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+class _Words(str):
+    """What is said of a value that is too long to be shown; without quotation marks."""
+
+
+def printable(text: str) -> str:
+    """Return text without characters that a terminal would act on, or cannot show."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 def _shortened(value: Any, depth: int = 3) -> Any:
     """Return a value of which what is shown is there, and little more: it may be of any size."""
     if isinstance(value, str):
-        return value[:100]
-    if isinstance(value, int) and not isinstance(value, bool) and value.bit_length() > 200:
-        return float("inf") if value > 0 else float("-inf")
+        return value if isinstance(value, _Words) else value[:100]
+    if isinstance(value, int) and value.bit_length() > 200:
+        return _Words(f"a number of {value.bit_length() * math.log10(2):.0f} digits")
     if isinstance(value, dict):
         some = itertools.islice(value.items(), 30)
         return {k: _shortened(v, depth - 1) for k, v in some} if depth else "..."
@@ -98,7 +111,7 @@ def key_text(path: Path) -> str:
         else:
             bare = part.replace("_", "").replace("-", "").isalnum() and part.isascii()
             text += ("." if text else "") + (part if bare and len(part) <= 60 else show(part))
-    return text
+    return text if len(text) <= 200 else f"{text[:100]} ... {text[-90:]}"
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
@@ -130,6 +143,8 @@ def violation(
     """
     from pydantic_core import PydanticCustomError
 
+    if isinstance(value, int) and not isinstance(value, bool):
+        value = _shortened(value)  # Python refuses to make text of thousands of digits.
     context = {"rule": rule, "remedy": remedy, "value": value, "path": path}
     return PydanticCustomError(VIOLATION, "{rule}", context)
 

@@ -136,6 +136,9 @@ class Choice:
         return {"type": "string", "enum": [*self.words, *dict(self.aliases)]}
 
 
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff]")  # All but tab and line end.
+
+
 @dataclass(frozen=True)
 class Exactly:
     """Annotation of a field of one plain type: whole numbers, text or true/false, never mixed."""
@@ -153,6 +156,9 @@ class Exactly:
             value = operator.index(value)
         if type(value) is not self.kind:
             raise violation(f"must be {names[self.kind]}", give, value=value)
+        if self.kind is str and _CONTROL.search(value):
+            rule = "has a character that cannot be shown"
+            raise violation(rule, "leave it out", value=value)
         checked: Any = value
         if self.least is not None and checked < self.least:
             raise violation(f"must be >= {self.least}", give, value=value)

@@ -83,9 +83,8 @@ def test_at_250_moments_of_the_first_second(tmp_path: Path) -> None:
 
 # What swallows exceptions: a finaliser, a hook of the garbage collector, a key that is compared.
 SWALLOWING = """
-import gc, os, signal, sys, time
+import os, runpy, signal, sys, time
 sys.argv = ["mpm3dpp", "check", sys.argv[1]]
-import mpm3dpp.signals as signals
 class Finaliser:
     def __del__(self):
         os.kill(os.getpid(), signal.SIG{kind})
@@ -97,8 +96,7 @@ def load(*_):
     print("went on")
 import mpm3dpp.importers
 mpm3dpp.importers.load_any = load
-from mpm3dpp.command import main
-main()
+runpy.run_module("mpm3dpp", run_name="__main__")
 """
 
 
