@@ -114,7 +114,7 @@ def read_points(path: Path, name: str, layout: Layout, unit: str = "m") -> Point
 
 
 def _scaled(values: Array, factor: float, power: int) -> Array:
-    """Return values in SI units: "0.3 mm" is the 0.0003 that a user writes, to the last bit."""
+    """Return values in SI units; divided where that is exact: 0.3 mm is 0.3 / 1000 m."""
     parts = round(1.0 / factor) if factor < 1.0 else 0
     if parts and abs(parts * factor - 1.0) < 1e-12:
         return np.asarray(values / float(parts**power))

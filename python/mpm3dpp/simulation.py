@@ -21,6 +21,7 @@ from .io.checkpoint import read_about, restore_checkpoint, write_checkpoint
 from .loads import add_load, pieces
 from .machine import thread_count
 from .motion import Motion
+from .point_warnings import point_warnings
 from .time_functions import TimeFunction
 
 
@@ -57,7 +58,8 @@ class Simulation:
         self.bodies = [body.name for body in filled]
         self.parts = [body.part for body in filled]
         self.materials = [body.material for body in filled]
-        self.warnings, self.notes = warnings(filled), notes(case, filled)
+        self.warnings = [*warnings(filled), *point_warnings(case, filled)]
+        self.notes = notes(case, filled)
         self.core = _core.Simulation(_settings(case, self.threads, fused))
         numbers = {name: self._add_material(name) for name in dict.fromkeys(self.materials)}
         firsts = case.first_bodies()
