@@ -175,7 +175,7 @@ def read_text(path: Path) -> str:
         raise CaseError(f"is not UTF-8 text (byte {error.start})", remedy, place=name) from None
     except CaseError as error:
         remedy = error.remedy
-        if path.is_dir():
+        if error.rule.endswith("a folder"):
             remedy = f'give the file in it, for example "{path / "case.toml"}"'
         raise CaseError(error.rule, remedy, place=name) from None
 
