@@ -145,6 +145,10 @@ def violation(
 
     if isinstance(value, int) and not isinstance(value, bool):
         value = _shortened(value)  # Python refuses to make text of thousands of digits.
+    if isinstance(value, str) and not value.isprintable():
+        value = _Words(printable(json.dumps(value[:100], ensure_ascii=False)))
+    rule, remedy = printable(rule), printable(remedy)
+    path = tuple(part if isinstance(part, int) else printable(part) for part in path)
     context = {"rule": rule, "remedy": remedy, "value": value, "path": path}
     return PydanticCustomError(VIOLATION, "{rule}", context)
 

@@ -163,6 +163,8 @@ def change(tables: Any, path: tuple[str | int, ...], how: str, value: Any) -> No
         parent[path[-1]]
     except (KeyError, IndexError, TypeError):
         return  # An earlier change has taken the place away.
+    if isinstance(parent, str):
+        return
     if how == "replace":
         parent[path[-1]] = copy.deepcopy(value)
     elif how == "remove":
