@@ -2,8 +2,10 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/unique_ptr.h>
 
+#include "interrupt.hpp"
 #include "mpm/run/machine_limits.hpp"
 #include "mpm/run/simulation.hpp"
+#include "one_thread.hpp"
 #include "translate.hpp"
 
 #if defined(__clang__)
@@ -129,9 +131,11 @@ NB_MODULE(_core, m) {
       .def_ro("friction_work", &PairRecord::friction_work)
       .def_ro("pairs", &PairRecord::pairs);
 
-  nb::class_<Simulation>(m, "Simulation")
-      .def(nb::new_([](const Settings& settings) { return make_simulation(settings); }),
-           nb::arg("settings"))
+  SimulationClass simulation(m, "Simulation");
+  simulation.nb::class_<Simulation>::def(
+      nb::new_([](const Settings& settings) { return make_simulation(settings); }),
+      nb::arg("settings"));
+  simulation
       .def(
           "add_material",
           [](Simulation& s, double density, const std::string& strength,
@@ -172,15 +176,40 @@ NB_MODULE(_core, m) {
       .def("set_group", &Simulation::set_group, nb::arg("body"), nb::arg("first"))
       .def("set_friction", &Simulation::set_pair_friction, nb::arg("body_a"), nb::arg("body_b"),
            nb::arg("mu"))
-      .def("prepare", &Simulation::prepare, nb::call_guard<nb::gil_scoped_release>())
-      .def("advance", &Simulation::advance, nb::arg("max_steps"), nb::arg("end_time"),
-           nb::call_guard<nb::gil_scoped_release>())
+      .def("prepare",
+           [](Simulation& s) {
+             const AtWork here(s);
+             const nb::gil_scoped_release without_lock;
+             s.prepare();
+           })
       .def(
-          "save", [](Simulation& s, const nb::callable& write) { s.save(transfer_by(write)); },
+          "advance",
+          [](Simulation& s, std::int64_t max_steps, double end_time) {
+            std::int64_t made = 0;
+            {
+              const AtWork here(s);
+              const InterruptFlag interrupt;
+              if (PyErr_CheckSignals() != 0) throw nb::python_error();
+              const nb::gil_scoped_release without_lock;
+              made = s.advance(max_steps, end_time, interrupt.get());
+            }
+            if (PyErr_CheckSignals() != 0) throw nb::python_error();
+            return made;
+          },
+          nb::arg("max_steps"), nb::arg("end_time"))
+      .def(
+          "save",
+          [](Simulation& s, const nb::callable& write) {
+            const AtWork here(s);
+            s.save(transfer_by(write));
+          },
           nb::arg("write"))
       .def(
           "restore",
-          [](Simulation& s, const nb::callable& readinto) { s.restore(transfer_by(readinto)); },
+          [](Simulation& s, const nb::callable& readinto) {
+            const AtWork here(s);
+            s.restore(transfer_by(readinto));
+          },
           nb::arg("readinto"))
       .def_prop_ro("time", &Simulation::time)
       .def_prop_ro("dt", &Simulation::next_time_step)
@@ -221,9 +250,6 @@ NB_MODULE(_core, m) {
            [](Simulation& s) {
              return to_numpy(s.take_history(), Simulation::history_columns().size());
            })
-      .def_prop_ro_static("history_columns",
-                          [](nb::handle) { return Simulation::history_columns(); })
-      .def_ro_static("history_capacity", &Simulation::history_capacity)
       .def("contact_pairs", &Simulation::pairs)
       .def("contact_groups", &Simulation::group_pairs)
       .def("contact_summary",
@@ -253,6 +279,11 @@ NB_MODULE(_core, m) {
         d["other"] = b.other;
         return d;
       });
+
+  simulation
+      .def_prop_ro_static("history_columns",
+                          [](nb::handle) { return Simulation::history_columns(); })
+      .def_ro_static("history_capacity", &Simulation::history_capacity);
 
   add_materials(m);
   m.def("measure_bandwidth", &measure_bandwidth, nb::arg("threads"),

@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import importlib
 import sys
-from typing import TYPE_CHECKING, Any
 
-from .processor import CoreFinder
-
+TYPE_CHECKING = False  # That of `typing`, which takes a while to import.
 if TYPE_CHECKING:
+    from typing import Any
+
     from . import shapes
     from .case import Case, Material, load_case
     from .case_body import Body
@@ -37,7 +37,20 @@ if TYPE_CHECKING:
 
     __version__: str
 
-sys.meta_path.insert(0, CoreFinder())
+
+class _CoreFinder:
+    """Asks `processor.CoreFinder` for the core, and only then imports it."""
+
+    @staticmethod
+    def find_spec(name: str, path: Any = None, target: Any = None) -> Any:
+        if name != f"{__name__}._core":
+            return None
+        from .processor import CoreFinder
+
+        return CoreFinder.find_spec(name, path, target)
+
+
+sys.meta_path.insert(0, _CoreFinder())  # type: ignore[arg-type]
 
 _HOMES = {
     "case": ("Case", "Material", "load_case"),

@@ -56,7 +56,7 @@ def path(name: str, value: Any) -> Path:
         found = os.fspath(value)
     except TypeError:
         found = ""
-    if not isinstance(found, str) or not found:
+    if not isinstance(found, str) or not found or "\0" in found:
         remedy = 'give text such as "results/rings", or a pathlib.Path'
         raise CaseError("must be the path of a file or folder", remedy, key=name, value=value)
     return Path(found)

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .capacity import capacity_mistakes
 from .case import Case
 from .case_body import Body
-from .errors import CaseError
+from .errors import CaseError, first_of
 from .grains import Grains, fill_grain
 from .grains.packing import ball_volume
-from .placement import check_box, check_overlap
+from .placement import box_mistakes, overlap_mistakes
 from .shapes import fill, reference_volume
-from .shapes.filling import LENGTHS_REMEDY, MOST_PARTICLES
 
 MASS_WARNING = 0.05  # Relative mass error above which a run warns ...
 MASS_ERROR = 0.5  # ... and above which it does not start.
@@ -65,7 +65,7 @@ def build(case: Case) -> list[FilledBody]:
     Raises:
         CaseError: a body holds no particle, misses its mass by more than half, or reaches out of
             the box or of the region that is kept; or particles of two bodies stand in the same
-            place.
+            place; or the case is too large. There may be `others`.
     """
     from .case_checks import check_case
     from .errors import from_violation
@@ -75,9 +75,14 @@ def build(case: Case) -> list[FilledBody]:
     except ValueError as error:
         raise from_violation(error) from None
     bodies = fill_all(case)
-    for body in bodies:
-        check_box(case, body)
-    check_overlap(case, bodies)
+    told: dict[str, list[CaseError]] = {}
+    for body in bodies:  # Of the grains of an entry, the first that is wrong speaks for all.
+        if not told.get(body.part):
+            told[body.part] = list(box_mistakes(case, body))
+    mistakes = [mistake for found in told.values() for mistake in found]
+    mistakes += overlap_mistakes(case, bodies)
+    if mistakes:
+        raise first_of(mistakes)
     return bodies
 
 
@@ -85,11 +90,23 @@ def fill_all(case: Case) -> list[FilledBody]:
     """Fill all bodies as `build` does, but let them overlap and reach out of the box.
 
     Raises:
-        CaseError: a body holds no particle or misses its mass by more than half.
+        CaseError: a body holds no particle or misses its mass by more than half, or the case is
+            too large for the memory.
     """
-    bodies = [_filled(case, name, body) for name, body in case.body.items()]
-    for name, grains in case.grains.items():
-        bodies += _filled_grains(case, name, grains)
+    mistakes = list(capacity_mistakes(case))
+    if mistakes:
+        raise first_of(mistakes)
+    bodies: list[FilledBody] = []
+    for name, part in case.parts().items():
+        try:
+            if isinstance(part, Grains):
+                bodies += _filled_grains(case, name, part)
+            else:
+                bodies.append(_filled(case, name, part))
+        except CaseError as error:
+            mistakes.append(error)
+    if mistakes:
+        raise first_of(mistakes)
     return bodies
 
 
@@ -129,10 +146,6 @@ def _filled_grains(case: Case, part: str, grains: Grains) -> list[FilledBody]:
     try:
         centres, radii = grains.place(grid.dimension)
         volumes = ball_volume(radii, grid.dimension).tolist()
-        wanted = sum(volumes) / spacing**grid.dimension
-        if wanted > MOST_PARTICLES:
-            rule = f"would need some {wanted:.0e} particles, {spacing:.3g} m apart"
-            raise CaseError(rule, LENGTHS_REMEDY)
         for k, name in enumerate(grains.names(part)):
             radius = float(radii[k])
             positions = fill_grain(centres[k], radius, spacing, grains.align, grid, made)

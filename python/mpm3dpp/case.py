@@ -110,7 +110,7 @@ class Case(CaseModel):
         Files that it names are looked for in the folder of `name`.
         """
         tables = case_file.parse(text, name)
-        case = cls.from_tables(tables, name, case_file.locate_keys(text))
+        case = cls.from_tables(tables, name, case_file.locate_keys(text, name))
         case._text = text
         return case
 
@@ -127,6 +127,8 @@ class Case(CaseModel):
             case = cls.model_validate(tables, context={"folder": Path(name).parent})
         except ValidationError as error:
             raise from_validation(error, case_file.locator(lines, name)) from None
+        except RecursionError:
+            raise case_file.too_deep(name) from None
         case._lines, case._source = lines, Path(name)
         return case
 

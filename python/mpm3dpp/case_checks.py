@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
+
+from pydantic_core import PydanticCustomError
 
 from .case_parts import STANDARD_FIELDS
 from .detonation import check_detonations
-from .errors import Path, nearest, violation
+from .errors import Path, nearest, report, violation
 from .loads import check_loads
 from .materials import state_columns
 from .motion import check_motion
@@ -20,29 +23,55 @@ if TYPE_CHECKING:
     from .materials.material import Material
 
 
+Found = Iterator[PydanticCustomError]
+
+
 def check_case(case: Case) -> None:
     """Check a whole case and fill in the defaults that depend on the dimension.
 
     Raises:
-        PydanticCustomError: a violation, with its path in the case.
+        PydanticCustomError, ValidationError: one violation or several, with their paths in the
+            case: all that can be told without what another of them spoils.
     """
+    first = list(_entries(case))
+    report([*first, *_pairs(case), *_interval(case)] if first else [])
+    report([*_bodies_together(case), *_pairs(case), *_output(case), *_interval(case)])
+
+
+def _entries(case: Case) -> Found:
+    """What an entry by itself has wrong, or its material's name and its numbers of components."""
     for name, what in (("material", case.material), ("body", case.body)):
         if not what and not (name == "body" and case.grains):
-            raise violation("must not be empty", f"add a table [{name}.NAME]", path=(name,))
+            yield violation("must not be empty", f"add a table [{name}.NAME]", path=(name,))
         if "" in what:
-            raise violation("must have a name", "write [body.left]", path=(name, ""))
+            yield violation("must have a name", "write [body.left]", path=(name, ""))
+    for table in ("material", "body", "grains", "load"):
+        for word in getattr(case, table):
+            if not word.isprintable():
+                rule = "has a character in its name that cannot be shown"
+                yield violation(rule, "leave it out", path=(table, word))
     for name, material in case.material.items():
-        _check_material(material, ("material", name))
+        yield from _check_material(material, ("material", name))
     dimension = case.grid.dimension
-    _check_vector(case.run, "gravity", dimension, ("run",))
+    yield from _check_vector(case.run, "gravity", dimension, ("run",))
     for name, body in case.body.items():
-        _check_body(case, body, ("body", name))
+        yield from _check_body(case, body, ("body", name))
     for name, grains in case.grains.items():
-        _check_grains(case, name, grains)
+        yield from _check_grains(case, name, grains)
+
+
+def _bodies_together(case: Case) -> Found:
     if all(case.is_rigid(name) for name in case.parts()):
         rule = "holds rigid bodies only, so no wave limits the time step: one must deform"
         path: Path = ("body",) if case.body else ("grains",)
-        raise violation(rule, "give one another strength", path=path)
+        yield violation(rule, "give one another strength", path=path)
+    yield from check_detonations(case)
+    yield from check_loads(case)
+
+
+def _pairs(case: Case) -> Found:
+    if not case.parts() or not case.material:
+        return  # Then no name is known, which is told already.
     for index, pair in enumerate(case.contact.pair):
         key = "bodies" if pair.bodies is not None else "materials"
         known = case.parts() if pair.bodies is not None else case.material
@@ -50,32 +79,30 @@ def check_case(case: Case) -> None:
         if first == second and first in case.body:
             rule, remedy = "must be two different bodies", "a body has no contact with itself"
             path = ("contact", "pair", index, key)
-            raise violation(rule, remedy, value=pair.bodies, path=path)
+            yield violation(rule, remedy, value=pair.bodies, path=path)
         for position, word in enumerate(pair.bodies or pair.materials or []):
             if word not in known:
                 rule = f"is not a {'body' if key == 'bodies' else 'material'} of this case"
                 path = ("contact", "pair", index, key, position)
-                raise violation(rule, nearest(word, known), value=word, path=path)
-    check_detonations(case)
-    check_loads(case)
-    _check_output(case)
+                yield violation(rule, nearest(word, known), value=word, path=path)
 
 
-def _check_material(material: Material, path: Path) -> None:
-    """Raise what the core finds wrong, and if nothing would resist compression at the start."""
+def _check_material(material: Material, path: Path) -> Found:
+    """Yield what the core finds wrong, and if nothing would resist compression at the start."""
     try:
         material.sound_speed()
         speed = material.eos_sound_speed()
     except ValueError as error:
-        raise _refusal(material, str(error), path) from None
+        yield _refusal(material, str(error), path)
+        return
     if material.eos is not None and not speed:
         rule = "has no stiffness at the start: its pressure does not rise when it is compressed"
         model = material.eos.model
         remedy = f"correct its numbers; `mpm3dpp materials {model}` has an example"
-        raise violation(rule, remedy, path=(*path, "eos", model))
+        yield violation(rule, remedy, path=(*path, "eos", model))
 
 
-def _refusal(material: Material, reason: str, path: Path) -> Exception:
+def _refusal(material: Material, reason: str, path: Path) -> PydanticCustomError:
     """Return the violation for what the core says, `johnson_cook.T_melt must be > T_room`.
 
     The key is that of the parameter, and the others that are named have their values.
@@ -96,66 +123,68 @@ def _refusal(material: Material, reason: str, path: Path) -> Exception:
     return violation(f"is refused: {reason}", "see `mpm3dpp materials`", path=path)
 
 
-def _check_vector(owner: object, name: str, dimension: int, path: Path) -> None:
+def _check_vector(owner: object, name: str, dimension: int, path: Path) -> Found:
     """Check the number of components of a vector and replace an absent one by zero."""
     vector = getattr(owner, name)
     if vector and len(vector) != dimension:
         rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
         remedy = f"it has {len(vector)}, give {dimension}"
-        raise violation(rule, remedy, value=list(vector), path=(*path, name))
+        yield violation(rule, remedy, value=list(vector), path=(*path, name))
+        return
     owner.__dict__[name] = vector or (0.0,) * dimension
 
 
-def _check_grains(case: Case, name: str, grains: Grains) -> None:
+def _check_grains(case: Case, name: str, grains: Grains) -> Found:
     path: Path = ("grains", name)
     if not name or name in case.body:
         rule = "has the name of a body" if name else "must have a name"
-        raise violation(rule, "write another name, [grains.sand]", path=path)
+        yield violation(rule, "write another name, [grains.sand]", path=path)
     others = {*case.body, *case.grains}
     taken = next((one for one in grains.names(name) if one in others), None)
     if taken is not None:
         rule = f"has a grain {taken}, which is the name of another entry too"
-        raise violation(rule, "rename one of the two", path=path)
+        yield violation(rule, "rename one of the two", path=path)
     wrong = grains.wrong_dimension(case.grid.dimension)
     if wrong is not None:
-        raise violation(wrong[1], wrong[2], path=(*path, *wrong[0]))
-    _check_motion(case, grains, path)
+        yield violation(wrong[1], wrong[2], path=(*path, *wrong[0]))
+    yield from _check_motion(case, grains, path)
 
 
-def _check_motion(case: Case, body: Body | Grains, path: Path) -> None:
+def _check_motion(case: Case, body: Body | Grains, path: Path) -> Found:
     """Check the material and the velocities, and fill in those that are absent."""
     dimension = case.grid.dimension
     if body.material not in case.material:
         rule, remedy = "is not a material of this case", nearest(body.material, case.material)
-        raise violation(rule, remedy, value=body.material, path=(*path, "material"))
-    _check_vector(body, "velocity", dimension, path)
+        yield violation(rule, remedy, value=body.material, path=(*path, "material"))
+    yield from _check_vector(body, "velocity", dimension, path)
     spin, wanted = body.angular_velocity, 1 if dimension == 2 else 3
     if spin and len(spin) != wanted:
         numbers = "one number" if wanted == 1 else "three numbers"
         rule = f"must be {numbers}, as grid.dimension = {dimension}"
         example = '"10 rad/s"' if wanted == 1 else '[0, 0, "10 rad/s"]'
         remedy = f"for example {example}"
-        raise violation(rule, remedy, value=list(spin), path=(*path, "angular_velocity"))
+        yield violation(rule, remedy, value=list(spin), path=(*path, "angular_velocity"))
+        return
     body.__dict__["angular_velocity"] = spin or (0.0,) * wanted
 
 
-def _check_body(case: Case, body: Body, path: Path) -> None:
+def _check_body(case: Case, body: Body, path: Path) -> Found:
     dimension = case.grid.dimension
     if body.shape is not None:
         wrong = body.shape.wrong_dimension(dimension, (*path, "shape"))
         if wrong is not None:
-            raise violation(wrong[1], wrong[2], path=wrong[0])
+            yield violation(wrong[1], wrong[2], path=wrong[0])
     if body.particles is not None and body.particles.dimension != dimension:
         rule = f"must have {dimension} coordinates, as grid.dimension = {dimension}"
         remedy = f"it has {body.particles.dimension}"
         value = body.particles.file or "an array"
-        raise violation(rule, remedy, value=value, path=(*path, "particles"))
-    _check_motion(case, body, path)
+        yield violation(rule, remedy, value=value, path=(*path, "particles"))
+    yield from _check_motion(case, body, path)
     if body.motion is not None:
-        check_motion(case, body, path)
+        yield from check_motion(case, body, path)
 
 
-def _check_output(case: Case) -> None:
+def _output(case: Case) -> Found:
     used = case.materials_used
     materials = [case.material[name] for name in used]
     extra = ["volume", "mass", *state_columns(set().union(*(m.models for m in materials)))]
@@ -172,18 +201,21 @@ def _check_output(case: Case) -> None:
         if word not in (*STANDARD_FIELDS, *extra):
             rule = "is not a column that this case stores"
             remedy = nearest(word, extra)
-            raise violation(rule, remedy, value=word, path=("output", "fields", index))
+            yield violation(rule, remedy, value=word, path=("output", "fields", index))
     colours = picture_names(case)
     if case.output.picture not in colours:
         remedy = nearest(case.output.picture, colours)
         if case.output.picture in extra:
             remedy = f'add it to output.fields: fields = ["{case.output.picture}"]'
         rule = "is not a column that colours a picture of this case"
-        raise violation(rule, remedy, value=case.output.picture, path=("output", "picture"))
+        yield violation(rule, remedy, value=case.output.picture, path=("output", "picture"))
+
+
+def _interval(case: Case) -> Found:
     interval = case.output.interval
     if interval is not None and case.run.end_time / interval > 100_000:
         rule = "gives more than 100000 frames"
-        raise violation(rule, "give a longer interval", value=interval, path=("output", "interval"))
+        yield violation(rule, "give a longer interval", value=interval, path=("output", "interval"))
 
 
 def picture_names(case: Case) -> list[str]:

@@ -12,11 +12,17 @@ from typing import Any
 
 from . import errors
 from .errors import CaseError
+from .reading import read_file
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
+
+MOST_BYTES = 4 << 20
+"""Of a case file: what is read, with its lines found, in some seconds."""
+_DEEPEST = 300  # Tables in tables; the TOML reader itself goes not much deeper.
+_MOST_FILES = 100  # Files of a folder that are looked at for a name like one that is missing.
 
 _TOKEN = re.compile(
     r"(?P<skip>[ \t\r]+|\#[^\n]*)|(?P<line>\n)"
@@ -60,6 +66,8 @@ class _Locator:
 
     def note(self, path: errors.Path) -> None:
         """Keep the present line for a path and for the tables above it not seen before."""
+        if len(path) > _DEEPEST:
+            raise RecursionError
         for length in range(1, len(path) + 1):
             self.lines.setdefault(path[:length], self.tokens[self.at - 1][2])
 
@@ -127,9 +135,16 @@ class _Locator:
         return self.lines
 
 
-def locate_keys(text: str) -> dict[errors.Path, int]:
-    """Return the line of each key, table and list item of a valid TOML text, by path."""
-    return _Locator(text).run()
+def locate_keys(text: str, name: str = "") -> dict[errors.Path, int]:
+    """Return the line of each key, table and list item of a valid TOML text, by path.
+
+    Raises:
+        CaseError: the text is nested too deeply; its place is `name`.
+    """
+    try:
+        return _Locator(text).run()
+    except RecursionError:
+        raise too_deep(name) from None
 
 
 def locator(lines: dict[errors.Path, int], name: str) -> Callable[[errors.Path], str]:
@@ -147,32 +162,38 @@ def read_text(path: Path) -> str:
     """Return the text of a case file.
 
     Raises:
-        CaseError: the file is missing, a folder, not readable, or not UTF-8 text.
+        CaseError: the file is missing, no regular file, not readable, too large, or not UTF-8 text.
     """
     name = str(path)
-    if path.is_dir():
-        remedy = f'give the file in it, for example "{path / "case.toml"}"'
-        raise CaseError("must be a file but is a folder", remedy, place=name)
     try:
-        return path.read_bytes().decode("utf-8-sig")
+        data = read_file(path, MOST_BYTES, "put particles into a CSV file beside it")
+        return data.decode("utf-8-sig")
     except FileNotFoundError:
         remedy = similar_file(path)
         raise CaseError("there is no such file", remedy, place=name) from None
     except UnicodeDecodeError as error:
         remedy = "save it as UTF-8"
         raise CaseError(f"is not UTF-8 text (byte {error.start})", remedy, place=name) from None
-    except OSError as error:
-        reason = (error.strerror or "unknown reason").lower()
-        raise CaseError(f"cannot be read ({reason})", "check the path", place=name) from None
+    except CaseError as error:
+        remedy = error.remedy
+        if error.rule.endswith("a folder"):
+            remedy = f'give the file in it, for example "{path / "case.toml"}"'
+        raise CaseError(error.rule, remedy, place=name) from None
 
 
 def similar_file(path: Path) -> str:
     """Return the remedy for a file that is missing: the case file with the nearest name."""
     folder = path.parent
-    files = [p for p in sorted(folder.iterdir()) if _is_case(p)] if folder.is_dir() else []
+    try:
+        files = sorted(p for p in folder.iterdir() if p.suffix.lower() in (".toml", ".mpm"))
+    except OSError:
+        files = []
     stems = [p.stem.lower() for p in files]
-    close = difflib.get_close_matches(path.stem.lower(), stems, 1, 0.6)
-    return f'did you mean "{files[stems.index(close[0])]}"?' if close else "check the path"
+    close = difflib.get_close_matches(path.stem.lower(), stems, _MOST_FILES, 0.6)
+    # The nearest first; of equal names the first, as the folder has them sorted.
+    found = (files[stems.index(stem)] for stem in close)
+    case = next((file for file in found if _is_case(file)), None)
+    return f'did you mean "{case}"?' if case else "check the path"
 
 
 def _is_case(path: Path) -> bool:
@@ -180,8 +201,8 @@ def _is_case(path: Path) -> bool:
     if path.suffix.lower() == ".mpm":
         return path.is_file()
     try:
-        text = path.read_text("utf-8") if path.suffix.lower() == ".toml" else ""
-    except (OSError, UnicodeDecodeError):
+        text = read_file(path, MOST_BYTES, "").decode("utf-8-sig")
+    except (OSError, UnicodeDecodeError, CaseError):
         return False
     return re.search(r"^\s*(\[\s*grid\b|grid\b.*=)", text, re.M) is not None
 
@@ -196,12 +217,43 @@ def parse(text: str, name: str) -> dict[str, Any]:
     Raises:
         CaseError: the text is not valid TOML; the place is the line.
     """
+    if any(_is_deep(line) for line in text.splitlines()):
+        raise too_deep(name)
     try:
         return tomllib.loads(text.replace("\r\n", "\n"))
     except tomllib.TOMLDecodeError as error:
         raise _syntax_error(str(error), text, name) from None
     except RecursionError:
-        raise CaseError("is nested too deeply", "use fewer brackets", place=name) from None
+        raise too_deep(name) from None
+    except ValueError:  # Python makes no number of thousands of digits.
+        rule = "has a number of more digits than are read"
+        raise CaseError(rule, "write it with an exponent, 1e30", place=_digits_at(text, name)) from None
+
+
+def _is_deep(line: str) -> bool:
+    """Whether a line has a key `a.b.c` of so many parts that the TOML reader would take for ever."""
+    if line.count(".") < _DEEPEST:
+        return False
+    dots = 0
+    for token in _TOKEN.finditer(line):
+        if token.group() == ".":
+            dots += 1
+        elif token.lastgroup == "mark":
+            dots = 0
+        if dots >= _DEEPEST:
+            return True
+    return False
+
+
+def too_deep(name: str) -> CaseError:
+    """Return the mistake that a file, by its name, has tables in tables in tables ..."""
+    return CaseError("is nested too deeply", "use fewer brackets and dots", place=name)
+
+
+def _digits_at(text: str, name: str) -> str:
+    """Return the place of the longest row of digits of a text."""
+    longest = max(re.finditer(r"[\d_]+", text), key=lambda found: len(found.group()))
+    return f"{name}:{text.count(chr(10), 0, longest.start()) + 1}"
 
 
 def _syntax_error(message: str, text: str, name: str) -> CaseError:

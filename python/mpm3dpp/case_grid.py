@@ -4,15 +4,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, Any
 
 from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
-from .errors import violation
+from .errors import Path, report, violation
 from .model import CaseModel, Choice, Count, Exactly
 from .units import Point, PositiveLength
 
 FACES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
+MOST_CELLS = 2**30
+"""From the grid's origin along an axis: the core counts cells with 32 bits, and needs some beyond
+what particles fill."""
+_MOST_DOUBLINGS = 30  # Cells are a billion times as large then.
 _WHOLE = 1e-6  # A box that misses a whole number of cells by less, per cell, is taken as whole.
 
 _WALL = Choice(("free", "slip", "fixed", "absorbing"), (("symmetry", "slip"),))
@@ -34,9 +40,9 @@ class Walls(CaseModel):
     z_min: Wall = "free"
     z_max: Wall = "free"
 
-    @model_validator(mode="before")
     @classmethod
-    def _one_word(cls, data: Any) -> Any:
+    def complete(cls, data: Any) -> Any:
+        """Return the table of one word that holds for all faces."""
         if isinstance(data, str):
             word = _WALL.parse(data)
             return dict.fromkeys(FACES, word)
@@ -71,7 +77,7 @@ class GridDoubling(CaseModel):
 
     tiles: Count | None = None
     bytes: Count | None = None
-    times: Count = 4
+    times: Annotated[int, Exactly(int, 1, _MOST_DOUBLINGS)] = 4
 
     @model_validator(mode="after")
     def _one_of_two(self) -> GridDoubling:
@@ -124,6 +130,13 @@ class Grid(CaseModel):
 
     @model_validator(mode="after")
     def _consistent(self) -> Grid:
+        report(self._numbers_per_vector())
+        lower = self.box.lower if self.box is not None else (0.0,) * self.dimension
+        self.__dict__["origin"] = self.origin or lower
+        report([*self._box_mistakes(), *self._keep_mistakes()])
+        return self
+
+    def _numbers_per_vector(self) -> Iterator[PydanticCustomError]:
         names: dict[tuple[str, ...], tuple[float, ...]] = {("origin",): self.origin}
         if self.box is not None:
             names |= {("box", "lower"): self.box.lower, ("box", "upper"): self.box.upper}
@@ -132,48 +145,48 @@ class Grid(CaseModel):
         for path, vector in names.items():
             if vector and len(vector) != self.dimension:
                 rule = f"must have {self.dimension} numbers, as grid.dimension = {self.dimension}"
-                raise violation(rule, f"it has {len(vector)}", value=list(vector), path=path)
-        lower = self.box.lower if self.box is not None else (0.0,) * self.dimension
-        self.__dict__["origin"] = self.origin or lower
-        if self.box is not None:
-            self._check_box(self.box)
-            self._check_doubling()
+                yield violation(rule, f"it has {len(vector)}", value=list(vector), path=path)
+
+    def _keep_mistakes(self) -> Iterator[PydanticCustomError]:
         for d, (low, high) in enumerate(zip(*self.kept, strict=True)):
             if low >= high:
                 rule, remedy = f"must be > lower = {low:g} m", "swap the two corners"
-                raise violation(rule, remedy, value=high, path=("keep", "upper", d))
-        return self
+                yield violation(rule, remedy, value=high, path=("keep", "upper", d))
 
-    def _check_doubling(self) -> None:
-        for d, cells in enumerate(self.box_cells or ()):
-            if self.doubling is not None and cells % 2 != 0:
-                rule = (
-                    f"is {cells} cells from lower, an odd number, so that grid.doubling cannot work"
-                )
-                remedy = "make the box one cell larger along this axis"
-                raise violation(rule, remedy, path=("box", "upper", d))
-
-    def _check_box(self, box: GridBox) -> None:
+    def _box_mistakes(self) -> Iterator[PydanticCustomError]:
+        box = self.box
+        if box is None:
+            return
         for d in range(self.dimension):
+            path: Path = ("box", "upper", d)
             cells = (box.upper[d] - box.lower[d]) / self.cell_size
             if cells <= 0:
                 rule, remedy = f"must be > lower = {box.lower[d]:g} m", "swap the two corners"
-                raise violation(rule, remedy, value=box.upper[d], path=("box", "upper", d))
-            if abs(cells - round(cells)) > _WHOLE * max(1.0, cells):
+                yield violation(rule, remedy, value=box.upper[d], path=path)
+            elif cells > MOST_CELLS:
+                rule = f"is {cells:.1e} cells from lower, and {MOST_CELLS:.1e} is the most"
+                remedy = "give a smaller box, or larger cells, or no box: the grid has no bounds then"
+                yield violation(rule, remedy, value=box.upper[d], path=path)
+            elif abs(cells - round(cells)) > _WHOLE * max(1.0, cells):
                 near = box.lower[d] + max(1, round(cells)) * self.cell_size
                 rule = f"must be a whole number of cells from lower (it is {cells:.4f} cells away)"
-                remedy = f"for example {near:.6g} m"
-                raise violation(rule, remedy, value=box.upper[d], path=("box", "upper", d))
+                yield violation(rule, f"for example {near:.6g} m", value=box.upper[d], path=path)
+            elif self.doubling is not None and round(cells) % 2 != 0:
+                rule = (
+                    f"is {round(cells)} cells from lower, an odd number, so that grid.doubling "
+                    "cannot work"
+                )
+                yield violation(rule, "make the box one cell larger along this axis", path=path)
             off = (box.lower[d] - self.origin[d]) / self.cell_size
             if abs(off - round(off)) > _WHOLE * max(1.0, abs(off)):
                 rule = "must be a whole number of cells from the box's lower corner"
                 remedy = "leave it out, then it is that corner"
-                raise violation(rule, remedy, value=self.origin[d], path=("origin", d))
+                yield violation(rule, remedy, value=self.origin[d], path=("origin", d))
         if self.dimension == 2 and (box.walls.z_min, box.walls.z_max) != ("free", "free"):
             uniform = len({getattr(box.walls, face) for face in FACES}) == 1
             if not uniform:
                 rule = "has z faces but the grid is 2D"
-                raise violation(rule, "remove z_min and z_max", path=("box", "walls"))
+                yield violation(rule, "remove z_min and z_max", path=("box", "walls"))
 
     @property
     def kept(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

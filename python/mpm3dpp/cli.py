@@ -1,16 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command line: `mpm3dpp run | check | preview | import | plot | bench | materials | ...`.
 
-Exit codes: 0 done, 1 the run had to stop, 2 a mistake in the case or on the command line.
-Heavy modules are imported by the command that needs them, so that `--help` is fast.
+`command.main` is what runs it. Heavy modules are imported by the command that needs them, so that `--help` is fast.
 """
 
 from __future__ import annotations
 
 import enum
-import os
-import signal
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,7 +14,7 @@ import typer
 
 from .cli_materials import material_test, materials
 from .cli_options import CaseFile, Json, Threads, Units
-from .errors import CaseError, RunError
+from .errors import CaseError
 
 if TYPE_CHECKING:
     from .case import Case
@@ -265,30 +261,3 @@ def reproduce(
 
 app.command()(materials)
 app.command("material-test")(material_test)
-
-
-def main() -> None:
-    """Run the command line and exit with 0, 1 or 2; a mistake is one sentence, no traceback."""
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # As Ctrl-C, wherever it comes.
-    try:
-        app()
-    except CaseError as error:
-        _stop(str(error), 2)
-    except RunError as error:
-        _stop(str(error), 1)
-    except KeyboardInterrupt:
-        _stop("stopped by the user", 130)
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(1)
-    except MemoryError:
-        _stop("there is not enough memory; give a larger grid.cell_size", 1)
-
-
-def _stop(sentence: str, code: int) -> None:
-    typer.echo(f"mpm3dpp: error: {sentence}", err=True)
-    sys.exit(code)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """CSV files of points: coordinates and one more number each, with a line of names at the top.
 
-Blank lines and lines that begin with `#` are skipped. Numbers are in SI units; a unit in brackets
-behind a name, `x [m]`, must say so.
+Blank lines and lines that begin with `#` are skipped. Numbers are in SI units, or in those of the
+length that the case names, `{ file = "points.csv", unit = "mm" }`; a unit in brackets behind a
+name, `x [mm]`, must say the same.
 """
 
 from __future__ import annotations
 
+import hashlib
+import io
+import itertools
+import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,10 +21,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import CaseError, violation
+from .errors import CaseError, nearest, violation
+from .machine import MEMORY, memory_text
+from .reading import open_file, unreadable
+from .units import to_si
 
 Array = NDArray[np.float64]
 _COLUMN = re.compile(r"\s*(\w+)\s*(?:\[\s*(.*?)\s*\])?\s*")
+_LONGEST = 10_000  # Characters of a line; four numbers need a hundred.
+_ROWS = 1 << 16  # Of numbers that are made text at once.
+_SAMPLE = 1 << 16  # Bytes at the beginning from which the number of lines is estimated.
 
 
 @dataclass(frozen=True)
@@ -28,60 +39,119 @@ class Layout:
 
     Attributes:
         extra: name of the last column.
-        units: its SI unit in 2D and 3D.
+        powers: the power of a length that it is, in 2D and 3D.
         needed: whether it must be there.
         thing: what a line is, for messages.
         give: remedy that tells where the columns are described.
+        bytes_each: memory that a line of it needs in a run, about.
     """
 
     extra: str
-    units: tuple[str, str]
+    powers: tuple[int, int]
     needed: bool
     thing: str
     give: str
+    bytes_each: float
 
 
 @dataclass(frozen=True)
 class Points:
-    """The numbers of a file, shape (n, columns), the dimension and the lines that hold them."""
+    """The numbers of a file.
+
+    Attributes:
+        table: in SI units, shape (n, columns).
+        dimension: 2 or 3.
+        line: gives the line that holds a row, its number and its text.
+    """
 
     table: Array
     dimension: int
-    lines: list[tuple[int, str]]
+    line: Callable[[int], tuple[int, str]]
 
 
-def read_points(path: Path, name: str, layout: Layout) -> Points:
+def read_points(path: Path, name: str, layout: Layout, unit: str = "m") -> Points:
     """Read a file of points.
 
     Args:
         path: the file.
         name: its name in messages.
         layout: its columns.
+        unit: of its lengths; areas and volumes are in its powers.
 
     Raises:
-        CaseError: the file is missing or malformed; the rule names the line.
+        CaseError: the file is missing, malformed or no file, or holds more points than the memory;
+            the rule names the line.
     """
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        with _text(path) as file:
+            _check_size(file, name, layout)
+            lines = _lines(file, name)
+            first = next(lines, None)
+            if first is None:
+                raise CaseError("is empty", layout.give, value=name)
+            width, dimension = _header(*first, name, layout, unit)
+            table = _numbers(path, lines, width, name, layout)
     except FileNotFoundError:
         raise CaseError(f"is not a file ({path})", "check the path", value=name) from None
-    except (OSError, UnicodeDecodeError):
+    except UnicodeDecodeError:
         raise CaseError("cannot be read as a text file", "check the file", value=name) from None
-    lines = [
-        (number, line)
-        for number, line in enumerate(text.splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not lines:
-        raise CaseError("is empty", layout.give, value=name)
-    width, dimension = _header(*lines[0], name, layout)
-    if len(lines) == 1:
-        rule = f"holds no {layout.thing}"
-        raise CaseError(rule, f"add a line for each {layout.thing}", value=name)
-    return Points(_numbers(lines[1:], width, name, layout), dimension, lines[1:])
+    except OSError as error:
+        raise CaseError(unreadable(error).rule, "check the file", value=name) from None
+    except CaseError as error:
+        raise CaseError(error.rule, error.remedy, value=name) from None
+    powers = np.array([1] * dimension + [layout.powers[dimension - 2]])[:width]
+    if unit != "m":
+        for column, power in enumerate(powers.tolist()):
+            table[:, column] = _scaled(table[:, column], to_si(f"1 {unit}", "m"), power)
+
+    def line(row: int) -> tuple[int, str]:
+        with _text(path) as again:
+            rows = _lines(again, name)
+            next(rows)
+            return next(found for k, found in enumerate(rows) if k == row)
+
+    return Points(table, dimension, line)
 
 
-def _header(number: int, line: str, name: str, layout: Layout) -> tuple[int, int]:
+def _scaled(values: Array, factor: float, power: int) -> Array:
+    """Return values in SI units; divided where that is exact: 0.3 mm is 0.3 / 1000 m."""
+    parts = round(1.0 / factor) if factor < 1.0 else 0
+    if parts and abs(parts * factor - 1.0) < 1e-12:
+        return np.asarray(values / float(parts**power))
+    return np.asarray(values * factor**power)
+
+
+def _text(path: Path) -> io.TextIOWrapper:
+    return io.TextIOWrapper(open_file(path), encoding="utf-8-sig")
+
+
+def _check_size(file: io.TextIOWrapper, name: str, layout: Layout) -> None:
+    """Raise if a run with so many lines, by the length of the first ones, exceeds the memory."""
+    size = os.fstat(file.fileno()).st_size
+    sample = os.pread(file.fileno(), _SAMPLE, 0)
+    count = size * max(1, sample.count(b"\n")) / max(1, len(sample))
+    need = count * layout.bytes_each
+    if need > MEMORY:
+        rule = (
+            f"has some {count:.1e} lines, a {layout.thing} each, which need {memory_text(need)} of "
+            f"memory, and there are {memory_text(MEMORY)}"
+        )
+        raise CaseError(rule, f"give a file with fewer {layout.thing}s", value=name)
+
+
+def _lines(file: io.TextIOWrapper, name: str) -> Iterator[tuple[int, str]]:
+    """Yield the lines that hold something, each with its number."""
+    number = 0
+    while line := file.readline(_LONGEST):
+        number += 1
+        if len(line) == _LONGEST:
+            rule = f"has more than {_LONGEST:,} characters in line {number}"
+            raise CaseError(rule, "give a line for each point", value=name)
+        if line.strip() and not line.lstrip().startswith("#"):
+            yield number, line
+
+
+def _header(number: int, line: str, name: str, layout: Layout, length: str) -> tuple[int, int]:
     """Return the number of columns and the dimension that the line of names tells."""
     matches = [_COLUMN.fullmatch(word) for word in line.split(",")]
     names = [match.group(1) if match else "?" for match in matches]
@@ -89,26 +159,49 @@ def _header(number: int, line: str, name: str, layout: Layout) -> tuple[int, int
     for dimension in (2, 3):
         wanted = [*"xyz"[:dimension], layout.extra]
         if names == wanted or (names == wanted[:-1] and not layout.needed):
-            right = [*["m"] * dimension, layout.units[dimension - 2]]
-            for unit, si, word in zip(units, right, names, strict=False):
-                if unit not in (None, si):
-                    rule = f"gives {word} in [{unit}] in line {number} but must be in {si}"
-                    raise CaseError(rule, "convert the column to SI units", value=name)
+            power = layout.powers[dimension - 2]
+            right = [*[length] * dimension, f"{length}^{power}" if power > 1 else length]
+            for unit, wanted, word in zip(units, right, names, strict=False):
+                if unit not in (None, wanted):
+                    rule = f"gives {word} in [{unit}] in line {number} but must be in {wanted}"
+                    remedy = f'name the unit, {{ file = "{name}", unit = "{unit}" }}'
+                    if word not in "xyz":
+                        remedy = "convert the column"
+                    raise CaseError(rule, remedy, value=name)
             return len(names), dimension
     choices = f"x,y,z,{layout.extra}" if layout.needed else f"x,y,z or x,y,z,{layout.extra}"
     rule = f"must name its columns {choices} (in 2D without z) in line {number}"
     raise CaseError(f"{rule}, which is: {short(line)}", layout.give, value=name)
 
 
-def _numbers(lines: list[tuple[int, str]], width: int, name: str, layout: Layout) -> Array:
-    """Return the numbers of all lines, shape (n, width)."""
+def _numbers(
+    path: Path, lines: Iterator[tuple[int, str]], width: int, name: str, layout: Layout
+) -> Array:
+    """Return the numbers of all lines that are left, shape (n, width)."""
+    first = next(lines, None)
+    if first is None:
+        rule = f"holds no {layout.thing}"
+        raise CaseError(rule, f"add a line for each {layout.thing}", value=name)
+    texts = itertools.chain([first[1]], (line for _, line in lines))
     try:
-        table = np.loadtxt([line for _, line in lines], delimiter=",", ndmin=2, comments=None)
+        table = np.loadtxt(texts, delimiter=",", ndmin=2, comments=None)
         if table.shape[1] == width:
             return np.asarray(table, dtype=np.float64)
+    except UnicodeDecodeError:
+        raise
     except ValueError:
         pass
-    for number, line in lines:  # Which line is it? Slower, and only now.
+    with _text(path) as file:
+        _find_wrong(_lines(file, name), width, name, layout)
+    raise CaseError("cannot be read as numbers", layout.give, value=name)
+
+
+def _find_wrong(
+    lines: Iterator[tuple[int, str]], width: int, name: str, layout: Layout
+) -> None:
+    """Raise for the first line that is not so many numbers; slower, so only where there is one."""
+    next(lines)
+    for number, line in lines:
         words = line.split(",")
         if len(words) != width:
             rule = f"has {len(words)} numbers in line {number} but {width} columns"
@@ -119,7 +212,6 @@ def _numbers(lines: list[tuple[int, str]], width: int, name: str, layout: Layout
             except ValueError:
                 rule = f"has {short(word.strip())} in line {number}, which is no number"
                 raise CaseError(rule, layout.give, value=name) from None
-    raise CaseError("cannot be read as numbers", layout.give, value=name)
 
 
 def short(text: str) -> str:
@@ -131,15 +223,17 @@ def short(text: str) -> str:
 class FromFile:
     """Annotation of a field of a case: an object, or the name of a file beside the case file.
 
+    A table `{ file = "points.csv", unit = "mm" }` names the unit of its lengths too.
+
     Args:
         kind: the object's class.
-        read: makes one of a path and a name for messages.
+        read: makes one of a path, a name for messages, and the unit of lengths.
         what: it is, for messages.
         example: a name of a file.
     """
 
     def __init__(
-        self, kind: type, read: Callable[[Path, str], Any], what: str, example: str
+        self, kind: type, read: Callable[[Path, str, str], Any], what: str, example: str
     ) -> None:
         self.kind, self.read, self.what, self.example = kind, read, what, example
 
@@ -147,14 +241,33 @@ class FromFile:
         """Return the object, or raise the violation that pydantic collects."""
         if value is None or isinstance(value, self.kind):
             return value
-        if not isinstance(value, str):
+        name, unit = self._of_table(value) if isinstance(value, dict) else (value, "m")
+        if not isinstance(name, str):
             rule = f"must be the name of a file of {self.what}"
             raise violation(rule, f'for example "{self.example}"', value=value)
         folder = Path((info.context or {}).get("folder", "."))
         try:
-            return self.read(folder / value, value)
+            return self.read(folder / name, name, unit)
         except CaseError as error:
-            raise violation(error.rule, error.remedy, value=value) from None
+            raise violation(error.rule, error.remedy, value=name) from None
+
+    def _of_table(self, table: dict[str, Any]) -> tuple[Any, str]:
+        """Return the name of the file and the unit of lengths that a table gives."""
+        for key in table:
+            if key not in ("file", "unit"):
+                remedy = nearest(str(key), ("file", "unit"))
+                raise violation("is not a known key", remedy, path=(str(key),))
+        if "file" not in table:
+            raise violation("is missing", f'add file = "{self.example}"', path=("file",))
+        unit = table.get("unit", "m")
+        remedy = 'give a unit of length such as "mm"'
+        if not isinstance(unit, str):
+            raise violation("must be text", remedy, value=unit, path=("unit",))
+        try:
+            to_si(f"1 {unit}", "m")
+        except CaseError:
+            raise violation("is no unit of length", remedy, value=unit, path=("unit",)) from None
+        return table["file"], unit
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
         from pydantic_core import core_schema
@@ -162,4 +275,26 @@ class FromFile:
         return core_schema.with_info_plain_validator_function(self.parse)
 
     def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
-        return {"type": "string"}
+        text = {"type": "string"}
+        table = {
+            "type": "object",
+            "additionalProperties": False,
+            "required": ["file"],
+            "properties": {"file": text, "unit": text},
+        }
+        return {"anyOf": [text, table]}
+
+
+def file_entry(file: str, unit: str) -> str | dict[str, str]:
+    """Return what a case file says of a file of points: its name, with the unit if not metres."""
+    return file if unit == "m" else {"file": file, "unit": unit}
+
+
+def digest_of(table: Array) -> str:
+    """Return the SHA-256 (hexadecimal) of rows of numbers to 12 digits, without negative zeros."""
+    line = ",".join(["%.12g"] * table.shape[1])
+    found = hashlib.sha256()
+    for start in range(0, len(table), _ROWS):
+        rows = (table[start : start + _ROWS] + 0.0).tolist()
+        found.update(("\n" * (start > 0) + "\n".join(line % tuple(r) for r in rows)).encode())
+    return found.hexdigest()

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
+from pydantic_core import PydanticCustomError
 
 from .errors import nearest, violation
 from .model import CaseModel, Text
@@ -58,8 +60,8 @@ def lighting_times(case: Case, part: str, positions: Array) -> Array | None:
     return np.ascontiguousarray(np.min(arrivals, axis=0))
 
 
-def check_detonations(case: Case) -> None:
-    """Raise a violation for a point of the wrong dimension, or one that has nothing to light."""
+def check_detonations(case: Case) -> Iterator[PydanticCustomError]:
+    """Yield a violation for each point of the wrong dimension, or one that has nothing to light."""
     dimension = case.grid.dimension
     strengths = [case.material[name].strength.model for name in case.materials_used]
     parts = case.parts()
@@ -67,17 +69,18 @@ def check_detonations(case: Case) -> None:
         if EXPLOSIVE not in strengths:
             rule = f"has nothing to light: no body is of an explosive (strength {EXPLOSIVE})"
             remedy = "give a body such a material, or remove the detonation"
-            raise violation(rule, remedy, path=("detonation", index))
+            yield violation(rule, remedy, path=("detonation", index))
+            continue
         if len(detonation.point) != dimension:
             rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
             remedy = f"it has {len(detonation.point)}, give {dimension}"
             path = ("detonation", index, "point")
-            raise violation(rule, remedy, value=list(detonation.point), path=path)
+            yield violation(rule, remedy, value=list(detonation.point), path=path)
         for place, name in enumerate(detonation.bodies):
             where = ("detonation", index, "bodies", place)
             if name not in parts:
                 remedy = nearest(name, parts)
-                raise violation("is not a body of this case", remedy, value=name, path=where)
-            if case.material[parts[name].material].strength.model != EXPLOSIVE:
+                yield violation("is not a body of this case", remedy, value=name, path=where)
+            elif case.material[parts[name].material].strength.model != EXPLOSIVE:
                 rule = f"is not of an explosive (strength {EXPLOSIVE})"
-                raise violation(rule, "name a body that is", value=name, path=where)
+                yield violation(rule, "name a body that is", value=name, path=where)

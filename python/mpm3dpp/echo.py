@@ -15,10 +15,11 @@ from .echo_conditions import condition_lines, load_in_words, motion_in_words
 from .loads import pieces
 from .materials import Failure, catalogue, state_columns
 from .plots.labels import scaled
+from .point_warnings import point_warnings
 
 # Estimates for the echo [bytes], in 2D and 3D: a particle with its lists but without the state of
 # its material, and a node that it reaches, with those that lie beside it in blocks and in contact.
-# (Before particles are made, PARTICLE_BYTES_WITH_GRID of shapes.filling stands for both together.)
+# (Before particles are made, PARTICLE_BYTES_WITH_GRID of machine.py stands for both together.)
 _PARTICLE_BYTES, _NODE_BYTES = {2: 96, 3: 128}, {2: 150, 3: 200}
 
 
@@ -166,5 +167,6 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         f"step about {time_step(case, bodies):.3g} s, "
         f"{steps_in_words(case, bodies)}, {len(case.frame_times())} frames",
     ]
-    lines += [f"warning: {sentence}" for sentence in warnings(bodies)]
+    sentences = [*warnings(bodies), *point_warnings(case, bodies)]
+    lines += [f"warning: {sentence}" for sentence in sentences]
     return "\n".join([*lines, *(f"note: {sentence}" for sentence in notes(case, bodies))])

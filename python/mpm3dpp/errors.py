@@ -7,7 +7,9 @@
 from __future__ import annotations
 
 import difflib
+import itertools
 import json
+import math
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 Path = tuple[str | int, ...]
 NO_VALUE: Any = object()
 VIOLATION = "case_rule"
+MISSING = "is missing"
 
 
 class CaseError(Exception):
@@ -29,7 +32,10 @@ class CaseError(Exception):
         rule: what must hold, for example `must be > 0`.
         remedy: what the user can do about it.
         value: the value given, where there is one.
+        others: the other mistakes that were found with it.
     """
+
+    others: tuple[CaseError, ...] = ()
 
     def __init__(
         self, rule: str, remedy: str = "", *, key: str = "", place: str = "", value: Any = NO_VALUE
@@ -43,7 +49,15 @@ class CaseError(Exception):
         value = "" if self.value is NO_VALUE else show(self.value)
         subject = " = ".join(part for part in (self.key, value) if part)
         remedy = f"; {self.remedy}" if self.remedy else ""
-        return f"{place}{subject}{' ' if subject else ''}{self.rule}{remedy}"
+        return printable(f"{place}{subject}{' ' if subject else ''}{self.rule}{remedy}")
+
+
+def first_of(errors: Iterable[CaseError]) -> CaseError:
+    """Return the first of some mistakes, at least one, which has the rest as its `others`."""
+    unique = {mistake.sentence(): mistake for error in errors for mistake in (error, *error.others)}
+    first, *others = unique.values()
+    first.others = tuple(others)
+    return first
 
 
 class RunError(Exception):
@@ -52,12 +66,40 @@ class RunError(Exception):
 
 def show(value: Any) -> str:
     """Return a value as it would stand in a case file, at most 60 characters."""
+    value = _shortened(value)
+    if isinstance(value, _Words):
+        return value
     try:
         text = json.dumps(value, ensure_ascii=False)
     except (TypeError, ValueError):
         text = str(value)
-    text = " ".join(text.split())
+    text = printable(" ".join(text[:200].split()))
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+class _Words(str):
+    """What is said of a value that is too long to be shown; without quotation marks."""
+
+
+def printable(text: str) -> str:
+    """Return text without characters that a terminal would act on, or cannot show."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
+def _shortened(value: Any, depth: int = 3) -> Any:
+    """Return a value of which what is shown is there, and little more: it may be of any size."""
+    if isinstance(value, str):
+        return value if isinstance(value, _Words) else value[:100]
+    if isinstance(value, int) and value.bit_length() > 200:
+        return _Words(f"a number of {value.bit_length() * math.log10(2):.0f} digits")
+    if isinstance(value, dict):
+        some = itertools.islice(value.items(), 30)
+        return {k: _shortened(v, depth - 1) for k, v in some} if depth else "..."
+    if isinstance(value, list | tuple):
+        return [_shortened(item, depth - 1) for item in value[:30]] if depth else "..."
+    return value
 
 
 def key_text(path: Path) -> str:
@@ -68,8 +110,8 @@ def key_text(path: Path) -> str:
             text += f"[{part}]"
         else:
             bare = part.replace("_", "").replace("-", "").isalnum() and part.isascii()
-            text += ("." if text else "") + (part if bare else json.dumps(part, ensure_ascii=False))
-    return text
+            text += ("." if text else "") + (part if bare and len(part) <= 60 else show(part))
+    return text if len(text) <= 200 else f"{text[:100]} ... {text[-90:]}"
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
@@ -101,14 +143,70 @@ def violation(
     """
     from pydantic_core import PydanticCustomError
 
+    if isinstance(value, int) and not isinstance(value, bool):
+        value = _shortened(value)  # Python refuses to make text of thousands of digits.
+    if isinstance(value, str) and not value.isprintable():
+        value = _Words(printable(json.dumps(value[:100], ensure_ascii=False)))
+    rule, remedy = printable(rule), printable(remedy)
+    path = tuple(part if isinstance(part, int) else printable(part) for part in path)
     context = {"rule": rule, "remedy": remedy, "value": value, "path": path}
     return PydanticCustomError(VIOLATION, "{rule}", context)
+
+
+def report(found: Iterable[Exception]) -> None:
+    """Raise the violations that a validator has found, all of them; none if there are none.
+
+    Raises:
+        PydanticCustomError: the one violation.
+        ValidationError: several, which pydantic takes over into its report.
+    """
+    from pydantic_core import InitErrorDetails, ValidationError
+
+    found = list(found)
+    if len(found) == 1:
+        raise found[0]
+    if found:
+        details = [InitErrorDetails(type=v, loc=(), input={}) for v in found]  # type: ignore
+        raise ValidationError.from_exception_data("case", details)
+
+
+def violations_of(error: Exception) -> list[dict[str, Any]]:
+    """Return rule, remedy, value and path of each violation in what a validator raised."""
+    if hasattr(error, "errors"):
+        keys = ("path", "rule", "remedy", "value")
+        items = error.errors(include_url=False)
+        return [dict(zip(keys, _translate(dict(item), ()), strict=True)) for item in items]
+    context: dict[str, Any] = getattr(error, "context", None) or {}
+    if "rule" not in context:
+        raise error
+    return [context]
+
+
+def below(error: Exception, path: Path, value: Any = NO_VALUE) -> list[PydanticCustomError]:
+    """Return the violations of a part as those of the whole: with the part's path before theirs.
+
+    Args:
+        error: what the part's validator raised.
+        path: of the part.
+        value: shown in place of theirs.
+    """
+    return [
+        violation(
+            found["rule"],
+            found["remedy"],
+            value=found["value"] if value is NO_VALUE else value,
+            path=(*path, *found["path"]),
+        )
+        for found in violations_of(error)
+    ]
 
 
 def from_validation(
     error: ValidationError, locate: Callable[[Path], str] | None = None, prefix: Path = ()
 ) -> CaseError:
-    """Translate pydantic's report: the mistake that stands first in the case, in our words.
+    """Translate pydantic's report in our words: the mistake that stands first in the case.
+
+    The others are its `others`, in the order of the case.
 
     Args:
         error: what pydantic raised.
@@ -116,16 +214,21 @@ def from_validation(
         prefix: path of the object that was validated.
     """
     found = [_translate(dict(item), prefix) for item in error.errors(include_url=False)]
-    if locate is None:
-        path, rule, remedy, value = found[0]
-        return CaseError(rule, remedy, key=key_text(path), value=value)
 
     def line(item: tuple[Path, str, str, Any]) -> int:
-        tail = locate(item[0]).rpartition(":")[2]
+        tail = locate(item[0]).rpartition(":")[2] if locate is not None else ""
         return int(tail) if tail.isdigit() else 0
 
-    path, rule, remedy, value = min(found, key=line)
-    return CaseError(rule, remedy, key=key_text(path), place=locate(path), value=value)
+    return first_of(
+        CaseError(
+            rule,
+            remedy,
+            key=key_text(path),
+            place="" if locate is None else locate(path),
+            value=value,
+        )
+        for path, rule, remedy, value in sorted(found, key=line)
+    )
 
 
 def _translate(item: dict[str, Any], prefix: Path) -> tuple[Path, str, str, Any]:
@@ -138,7 +241,7 @@ def _translate(item: dict[str, Any], prefix: Path) -> tuple[Path, str, str, Any]
             value = item["input"]
         return path + tuple(context["path"]), context["rule"], context["remedy"], value
     if kind == "missing":
-        return path, "is missing", "add this key", NO_VALUE
+        return path, MISSING, "add this key", NO_VALUE
     if kind in ("model_type", "model_attributes_type", "dict_type"):
         return path, "must be a table", "write it as { key = value, ... }", item["input"]
     if kind == "list_type" and isinstance(item["input"], dict):
@@ -152,10 +255,18 @@ def _translate(item: dict[str, Any], prefix: Path) -> tuple[Path, str, str, Any]
     return path, "is not valid here", "see the reference page of the case file", item["input"]
 
 
-def from_violation(error: Exception) -> CaseError:
-    """Return the `CaseError` of a violation that was raised outside pydantic; else the error."""
-    context: dict[str, Any] = getattr(error, "context", None) or {}
-    if "rule" not in context:
-        raise error
-    key = key_text(context["path"])
-    return CaseError(context["rule"], context["remedy"], key=key, value=context["value"])
+def from_violation(error: Exception, locate: Callable[[Path], str] | None = None) -> CaseError:
+    """Return the `CaseError` of violations that were raised outside pydantic.
+
+    Another error is raised as it is.
+    """
+    return first_of(
+        CaseError(
+            found["rule"],
+            found["remedy"],
+            key=key_text(found["path"]),
+            place="" if locate is None else locate(found["path"]),
+            value=found["value"],
+        )
+        for found in violations_of(error)
+    )

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
+from pydantic_core import PydanticCustomError
 
 from . import _core
 from .errors import nearest, violation
@@ -76,37 +78,34 @@ class Pieces:
         return float(self.sizes.sum())
 
 
-def check_loads(case: Case) -> None:
-    """Check the loads of a case against its bodies.
-
-    Raises:
-        PydanticCustomError: a violation, with its path in the case.
-    """
+def check_loads(case: Case) -> Iterator[PydanticCustomError]:
+    """Yield the violations of loads against the bodies of a case, with their paths in it."""
     dimension = case.grid.dimension
     for name, load in case.load.items():
         path = ("load", name)
         if load.body not in case.body:
             rule, remedy = "is not a body of this case", nearest(load.body, case.body)
-            raise violation(rule, remedy, value=load.body, path=(*path, "body"))
+            yield violation(rule, remedy, value=load.body, path=(*path, "body"))
+            continue
         body = case.body[load.body]
         if case.is_rigid(load.body):
             rule = "does not deform, and a load acts on bodies that do"
             remedy = "give its material another strength, remove its motion, or load another body"
-            raise violation(rule, remedy, value=load.body, path=(*path, "body"))
+            yield violation(rule, remedy, value=load.body, path=(*path, "body"))
         known = sides(body.shape, dimension) if body.shape is not None else []
         if not known:
             given = "given particle by particle"
             what = f"a {body.shape.kind}" if body.shape is not None else given
             rule = f"cannot be found: body.{load.body} is {what}, which has no named sides"
             remedy = "give the body as one box, disc, ring, sphere, cylinder or tube"
-            raise violation(rule, remedy, value=load.side, path=(*path, "side"))
-        if load.side not in known:
+            yield violation(rule, remedy, value=load.side, path=(*path, "side"))
+        elif load.side not in known:
             rule = f"is not a side of the {_kind(body)} body.{load.body}"
-            raise violation(rule, nearest(load.side, known), value=load.side, path=(*path, "side"))
+            yield violation(rule, nearest(load.side, known), value=load.side, path=(*path, "side"))
         if load.traction and len(load.traction) != dimension:
             rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
             remedy = f"it has {len(load.traction)}, give {dimension}"
-            raise violation(rule, remedy, path=(*path, "traction"))
+            yield violation(rule, remedy, path=(*path, "traction"))
 
 
 def _kind(body: Body) -> str:

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+import operator
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
 
-from .errors import from_validation, nearest, violation
+from .errors import MISSING, CaseError, below, from_validation, nearest, report, violation
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -20,7 +22,16 @@ else:
 class _CaseMeta(ModelMetaclass):
     """Turns pydantic's error into ours when a user makes an object; nested checks pass by here."""
 
+    by_position: str  # The field that values without a name belong to; empty for none.
+
     def __call__(cls, *args: Any, **kwargs: Any) -> Any:
+        if args and cls.by_position and cls.by_position not in kwargs:
+            alone = len(args) == 1 and isinstance(args[0], list | tuple)
+            args, kwargs = (), {**kwargs, cls.by_position: list(args[0] if alone else args)}
+        if args:
+            keys = ", ".join(f"{name}=..." for name in cls.model_fields)
+            rule = "takes its values by name"
+            raise CaseError(rule, f"write {cls.__name__}({keys})", key=cls.__name__)
         try:
             return super().__call__(*args, **kwargs)
         except ValidationError as error:
@@ -34,20 +45,41 @@ class CaseModel(BaseModel, metaclass=_CaseMeta):
         CaseError: at construction or assignment, when a value breaks a rule.
     """
 
+    by_position: ClassVar[str] = ""
     model_config = ConfigDict(extra="forbid", validate_assignment=True, protected_namespaces=())
 
-    @model_validator(mode="before")
+    @model_validator(mode="wrap")
     @classmethod
-    def _known_keys(cls, data: Any) -> Any:
+    def _known_keys(cls, data: Any, handler: Any) -> Any:
+        """Report every unknown key, and then the mistakes of those that are known."""
         if isinstance(data, cls):
-            return data
+            return handler(data)
+        data = cls.complete(data)
         if not isinstance(data, dict):
             remedy = "write it as { key = value, ... }"
             raise violation("must be a table", remedy, value=data)
+        known = {key: value for key, value in data.items() if key in cls.model_fields}
+        found = []
         for key in data:
-            if key not in cls.model_fields:
-                rule = "is not a known key"
-                raise violation(rule, nearest(str(key), cls.model_fields), path=(str(key),))
+            if key not in known:
+                remedy = nearest(str(key), cls.model_fields)
+                found.append(violation("is not a known key", remedy, path=(str(key),)))
+        if not found:
+            return handler(known)
+        try:
+            handler(known)
+        except (ValidationError, PydanticCustomError) as error:
+            meant = " ".join(v.context["remedy"].partition("?")[0] for v in found if v.context)
+            for other in below(error, ()):
+                context: dict[str, Any] = other.context or {}
+                name = context["path"][-1] if context["path"] else ""
+                if context["rule"] != MISSING or f'"{name}"' not in meant:
+                    found.append(other)
+        report(found)
+
+    @classmethod
+    def complete(cls, data: Any) -> Any:
+        """Return what a user gave with what it leaves out, before it is checked."""
         return data
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -104,6 +136,9 @@ class Choice:
         return {"type": "string", "enum": [*self.words, *dict(self.aliases)]}
 
 
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff]")  # All but tab and line end.
+
+
 @dataclass(frozen=True)
 class Exactly:
     """Annotation of a field of one plain type: whole numbers, text or true/false, never mixed."""
@@ -118,9 +153,12 @@ class Exactly:
         examples = {int: str(self.least or 1), str: '"steel"', bool: "true"}
         give = f"give {names[self.kind]} such as {examples[self.kind]}"
         if self.kind is int and hasattr(value, "__index__") and not isinstance(value, bool):
-            value = int(value)
+            value = operator.index(value)
         if type(value) is not self.kind:
             raise violation(f"must be {names[self.kind]}", give, value=value)
+        if self.kind is str and _CONTROL.search(value):
+            rule = "has a character that cannot be shown"
+            raise violation(rule, "leave it out", value=value)
         checked: Any = value
         if self.least is not None and checked < self.least:
             raise violation(f"must be >= {self.least}", give, value=value)
@@ -141,4 +179,5 @@ class Exactly:
 
 Text = Annotated[str, Exactly(str)]
 Flag = Annotated[bool, Exactly(bool)]
-Count = Annotated[int, Exactly(int, 1)]
+MOST = 10**15  # Of a whole number: the core and doubles hold it, and no case needs more.
+Count = Annotated[int, Exactly(int, 1, MOST)]

@@ -93,30 +93,30 @@ MaybeMotion = Annotated[
 ]
 
 
-def check_motion(case: Case, body: Body, path: Path) -> None:
+def check_motion(case: Case, body: Body, path: Path) -> Iterator[PydanticCustomError]:
     """Check a body's motion against the rest of the case, and fill in its defaults.
 
-    Raises:
-        PydanticCustomError: a violation, with its path in the case.
+    Yields:
+        The violations, with their paths in the case.
     """
     motion, dimension = body.motion, case.grid.dimension
     assert motion is not None
     for name in ("velocity", "angular_velocity"):
         if any(getattr(body, name)):
             rule = "must not be given together with motion"
-            raise violation(rule, f"write motion = {{ {name} = ... }}", path=(*path, name))
+            yield violation(rule, f"write motion = {{ {name} = ... }}", path=(*path, name))
     if case.contact.bonded:
         rule = "must not be given where contact.bonded = true: all bodies move as one there"
-        raise violation(rule, "remove one of the two", path=(*path, "motion"))
+        yield violation(rule, "remove one of the two", path=(*path, "motion"))
     wanted = {"velocity": dimension, "angular_velocity": 1 if dimension == 2 else 3}
     for name, count in {**wanted, "centre": dimension}.items():
         given = getattr(motion, name)
         if given and len(given) != count:
             numbers = "one number" if count == 1 else f"{count} numbers"
             rule = f"must have {numbers}, as grid.dimension = {dimension}"
-            raise violation(rule, f"it has {len(given)}", path=(*path, "motion", name))
+            yield violation(rule, f"it has {len(given)}", path=(*path, "motion", name))
         if not given and name in wanted:
             motion.__dict__[name] = (0.0,) * count
     if motion.centre and not any(bound(f) for f in motion.angular_velocity):
         rule = "must not be given without angular_velocity"
-        raise violation(rule, "remove it", path=(*path, "motion", "centre"))
+        yield violation(rule, "remove it", path=(*path, "motion", "centre"))

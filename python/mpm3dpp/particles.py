@@ -3,12 +3,11 @@
 
 The file's first line names the columns, `x [m],y [m],z [m],volume [m^3]` in 3D and
 `x [m],y [m],volume [m^2]` in 2D; the units and the column `volume` may be left out. Every other
-line is a particle, in SI units. Blank lines and lines that begin with `#` are skipped.
+line is a particle, in SI units or in the unit of length that the case gives. Blank lines and lines that begin with `#` are skipped.
 """
 
 from __future__ import annotations
 
-import hashlib
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
@@ -17,14 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import SkipValidation
 
-from .csv_points import FromFile, Layout, read_points, short
+from .csv_points import FromFile, Layout, digest_of, file_entry, read_points, short
 from .errors import CaseError
 from .io.disk import writing
+from .machine import PARTICLE_BYTES_WITH_GRID
 
 Array = NDArray[np.float64]
 _LARGEST = 1e100
 _GIVE = "see the how-to page of MPM3D files for its columns"
-_LAYOUT = Layout("volume", ("m^2", "m^3"), False, "particle", _GIVE)
+_LAYOUT = Layout("volume", (2, 3), False, "particle", _GIVE, PARTICLE_BYTES_WITH_GRID)
 
 
 class Particles:
@@ -34,6 +34,7 @@ class Particles:
         positions: [m], shape (n, D).
         volumes: [m^3; in 2D m^2], shape (n,); None if all are cubes of the body's spacing.
         file: the name by which a case file knows them; empty if they come from no file.
+        unit: of the lengths in that file.
 
     Raises:
         CaseError: an array has another shape, or numbers that are not finite or volumes <= 0.
@@ -42,7 +43,7 @@ class Particles:
     def __init__(self, positions: Any, volumes: Any = None, file: str = "") -> None:
         self.positions: Array = np.ascontiguousarray(positions, dtype=np.float64)
         self.volumes: Array | None = None
-        self.file = file
+        self.file, self.unit = file, "m"
         if self.positions.ndim != 2 or self.positions.shape[1] not in (2, 3):
             raise CaseError("must have the shape (n, 2) or (n, 3)", key="particles.positions")
         if len(self.positions) == 0:
@@ -81,10 +82,7 @@ class Particles:
     @cached_property
     def digest(self) -> str:
         """SHA-256 (hexadecimal) of the particles, numbers to 12 digits."""
-        table = self.table_of_numbers() + 0.0  # No negative zero.
-        line = ",".join(["%.12g"] * table.shape[1])
-        text = "\n".join(line % tuple(row) for row in table.tolist())
-        return hashlib.sha256(text.encode()).hexdigest()
+        return digest_of(self.table_of_numbers())
 
     def table_of_numbers(self) -> Array:
         """Return positions and, if any, volumes, shape (n, D) or (n, D + 1)."""
@@ -92,9 +90,11 @@ class Particles:
             return self.positions
         return np.column_stack([self.positions, self.volumes])
 
-    def table(self) -> str:
+    def table(self) -> str | dict[str, str]:
         """Return the value of the key `particles` of a case file."""
-        return self.file or f"({len(self.positions)} particles, SHA-256 {self.digest})"
+        if self.file:
+            return file_entry(self.file, self.unit)
+        return f"({len(self.positions)} particles, SHA-256 {self.digest})"
 
 
 def column_names(dimension: int, volumes: bool) -> list[str]:
@@ -117,27 +117,29 @@ def write_particles(path: Path, particles: Particles, about: str = "") -> None:
         path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def read_particles(path: Path, name: str = "") -> Particles:
+def read_particles(path: Path, name: str = "", unit: str = "m") -> Particles:
     """Read a file of particles.
 
     Args:
         path: the file.
         name: its name in messages and in the case; by default its path.
+        unit: of the lengths in it.
 
     Raises:
         CaseError: the file is missing or malformed; the rule names the line.
     """
     name = name or str(path)
-    points = read_points(path, name, _LAYOUT)
+    points = read_points(path, name, _LAYOUT, unit)
     table, dimension = points.table, points.dimension
     width = table.shape[1]
     volumes = table[:, dimension] if width > dimension else None
     found = Particles.__new__(Particles)  # Checked below, where the line is known.
-    found.positions, found.file = np.ascontiguousarray(table[:, :dimension]), name
+    found.positions = np.ascontiguousarray(table[:, :dimension])
+    found.file, found.unit = name, unit
     found.volumes = None if volumes is None else np.ascontiguousarray(volumes)
     wrong = found.first_wrong()
     if wrong is not None:
-        number, line = points.lines[wrong[0]]
+        number, line = points.line(wrong[0])
         raise CaseError(f"{wrong[1]}, in line {number} ({short(line)})", _GIVE, value=name)
     return found
 

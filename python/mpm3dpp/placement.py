@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .case import Case
+from .case_grid import MOST_CELLS
+from .errors import CaseError
 from .errors import Path as KeyPath
 from .neighbours import overlapping_boxes
 from .overlap import close_particles
@@ -19,20 +22,26 @@ CLOSE = 0.25  # Particles of two bodies nearer than this share of their spacing 
 _SLACK = 1e-9  # How far, in cells, a particle may stand outside the box by rounding.
 
 
-def check_box(case: Case, body: FilledBody) -> None:
-    """Raise if a particle stands outside the box, or the region that is kept."""
+def box_mistakes(case: Case, body: FilledBody) -> Iterator[CaseError]:
+    """Yield where particles stand outside the box, or the region that is kept, or any grid."""
     grid = case.grid
+    reach = np.abs(body.positions - np.asarray(grid.lower)).max() / grid.cell_size
+    if not reach < MOST_CELLS:
+        rule = f"is {reach:.1e} cells from the grid's origin, and {MOST_CELLS:.1e} is the most"
+        path, filling = _key(case, body)
+        yield case.error(path, rule, f"give larger cells, or move grid.origin to the {filling}")
+        return
     if grid.box is not None:
-        _check_inside(case, body, "box", (grid.box.lower, grid.box.upper))
-    _check_inside(case, body, "keep", grid.kept)
+        yield from _outside(case, body, "box", (grid.box.lower, grid.box.upper))
+    yield from _outside(case, body, "keep", grid.kept)
 
 
-def _check_inside(
+def _outside(
     case: Case,
     body: FilledBody,
     region: str,
     corners: tuple[tuple[float, ...], tuple[float, ...]],
-) -> None:
+) -> Iterator[CaseError]:
     slack = _SLACK * case.grid.cell_size
     what = "box" if region == "box" else "region"
     for d, axis in enumerate("xyz"[: case.grid.dimension]):
@@ -46,7 +55,7 @@ def _check_inside(
                 path, filling = _key(case, body)
                 who = "its particles" if body.name == body.part else f"the particles of {body.name}"
                 rule = f"reaches out of grid.{region}: {count} of {who} are at {side}"
-                raise case.error(path, rule, f"move the {filling}, or enlarge the {what}")
+                yield case.error(path, rule, f"move the {filling}, or enlarge the {what}")
 
 
 def _key(case: Case, body: FilledBody) -> tuple[KeyPath, str]:
@@ -55,8 +64,8 @@ def _key(case: Case, body: FilledBody) -> tuple[KeyPath, str]:
     return (*case.part_path(body.part), filling), filling
 
 
-def check_overlap(case: Case, bodies: list[FilledBody]) -> None:
-    """Raise if two bodies overlap by more than a quarter spacing.
+def overlap_mistakes(case: Case, bodies: list[FilledBody]) -> Iterator[CaseError]:
+    """Yield which two bodies overlap by more than a quarter spacing; of grains the first only.
 
     Grains are judged as balls: where those touch, particles may be as near as chance has it.
     """
@@ -74,9 +83,10 @@ def check_overlap(case: Case, bodies: list[FilledBody]) -> None:
     depths = radii[a] + radii[b] - np.sqrt(((centres[a] - centres[b]) ** 2).sum(axis=1))
     near = ~(depths <= np.minimum(reach[a], reach[b]))  # With a body that is no ball: not a number.
     rigid = {name: case.is_rigid(name) for name in case.parts()}
+    told: set[tuple[str, str]] = set()
     for k in np.flatnonzero(near).tolist():
         first, second = bodies[a[k]], bodies[b[k]]
-        if rigid[first.part] and rigid[second.part]:
+        if (first.part, second.part) in told or (rigid[first.part] and rigid[second.part]):
             continue  # They do not act on each other.
         how = f"by {depths[k]:.4g} m"
         if np.isnan(depths[k]):
@@ -95,4 +105,5 @@ def check_overlap(case: Case, bodies: list[FilledBody]) -> None:
         else:
             rule = f"has {second.name} overlap {other}: {how}"
             remedy = "move the grains, or make them smaller"
-        raise case.error(_key(case, second)[0], rule, remedy)
+        told.add((first.part, second.part))
+        yield case.error(_key(case, second)[0], rule, remedy)

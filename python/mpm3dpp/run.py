@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import json as json_format
 import math
-import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -24,6 +23,7 @@ from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import RESULTS, ResultsWriter
 from .progress import Progress
 from .report import contact_table, energy_line, gone_lines, load_lines, speed_line
+from .signals import Notice, as_exceptions
 from .simulation import Simulation
 
 _BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without contact.
@@ -65,7 +65,7 @@ def run_case(
         before.check(case)
     writable_folder(folder)
     with only_run_in(folder):
-        manifest = _run(case, folder, threads, quiet or json, before)
+        manifest, late = _run(case, folder, threads, quiet or json, before)
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
@@ -76,8 +76,10 @@ def run_case(
     if manifest.status == "interrupted" and not quiet:
         text = f"mpm3dpp: {manifest.reason}; results are in {folder}{can_go_on}"
         print(text, file=sys.stderr, flush=True)
-    if pictures:
+    if pictures and not late:
         _draw(folder, quiet or json)
+    elif pictures and not quiet:
+        print(f"no pictures: `mpm3dpp plot {folder}` makes them later", file=sys.stderr)
     if manifest.status == "failed":
         raise RunError(f"{manifest.reason}; frames and history up to then are in {folder}")
     if manifest.status == "interrupted":
@@ -87,25 +89,26 @@ def run_case(
 
 def _run(
     case: Case, folder: Path, threads: int | None, quiet: bool, before: Checkpoint | None
-) -> Manifest:
-    """Make the run, and write all but pictures."""
+) -> tuple[Manifest, bool]:
+    """Make the run, and write all but pictures; return also whether Ctrl-C came after its end."""
     checkpoints = Checkpoints(folder, case, before)
     simulation = Simulation(case, threads)
     if before is not None:
         restore_checkpoint(before.path, simulation.core)
-    forget_last_run(folder, checkpoint=before is None)
-    begin = simulation.step
-    try:
-        status, reason = _write_run(simulation, folder, quiet, checkpoints, before)
-    except CaseError as error:  # The disk: it was no mistake when the run began.
-        if simulation.step == begin:
-            raise
-        can_go_on = ", and --resume goes on" if (folder / CHECKPOINT).exists() else ""
-        raise RunError(f"{error}; what was written before is in {folder}{can_go_on}") from error
-    manifest = _manifest(simulation, status, reason, checkpoints.wall_time, begin)
-    manifest.energies = simulation.summary
-    manifest.write(folder)
-    return manifest
+    with _interrupt() as stopped:
+        forget_last_run(folder, checkpoint=before is None)
+        begin = simulation.step
+        try:
+            status, reason = _write_run(simulation, folder, quiet, checkpoints, before, stopped)
+        except CaseError as error:  # The disk: it was no mistake when the run began.
+            if simulation.step == begin:
+                raise
+            can_go_on = ", and --resume goes on" if (folder / CHECKPOINT).exists() else ""
+            raise RunError(f"{error}; what was written before is in {folder}{can_go_on}") from error
+        manifest = _manifest(simulation, status, reason, checkpoints.wall_time, begin)
+        manifest.energies = simulation.summary
+        manifest.write(folder)
+        return manifest, status == "completed" and stopped()
 
 
 def _draw(folder: Path, quiet: bool) -> None:
@@ -114,9 +117,10 @@ def _draw(folder: Path, quiet: bool) -> None:
     if not quiet:
         print(f"drawing pictures (Ctrl-C leaves them out, {later})", file=sys.stderr, flush=True)
     try:
-        from .plots import plot_results
+        with as_exceptions():
+            from .plots import plot_results
 
-        plot_results(folder)
+            plot_results(folder)
     except KeyboardInterrupt:
         if not quiet:
             print(f"no pictures: {later}", file=sys.stderr)
@@ -131,6 +135,7 @@ def _write_run(
     quiet: bool,
     checkpoints: Checkpoints,
     before: Checkpoint | None,
+    stopped: Callable[[], bool],
 ) -> tuple[Status, str | None]:
     """Step to the end time, writing frames and history; return how it ended, and why."""
     case, core = simulation.case, simulation.core
@@ -162,7 +167,7 @@ def _write_run(
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
     status: Status = "completed"
     reason: str | None = None
-    with _interrupt() as stopped, BackgroundWriter(file) as results, history, progress:
+    with BackgroundWriter(file) as results, history, progress:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
         for sentence in simulation.notes:
@@ -260,17 +265,7 @@ def _manifest(
 
 
 @contextmanager
-def _interrupt() -> Iterator[Any]:
-    """Within it, Ctrl-C and SIGTERM only set a flag, which the object given tells when called."""
-    hit: list[bool] = []
-    kinds = (signal.SIGINT, signal.SIGTERM)
-    try:
-        old = [signal.signal(kind, lambda *_: hit.append(True)) for kind in kinds]
-    except ValueError:  # Not the main thread: nobody can press Ctrl-C here.
-        yield lambda: False
-        return
-    try:
-        yield lambda: bool(hit)
-    finally:
-        for kind, handler in zip(kinds, old, strict=True):
-            signal.signal(kind, handler)
+def _interrupt() -> Iterator[Callable[[], bool]]:
+    """Within it, Ctrl-C and SIGTERM only set a flag, which the function given tells."""
+    with Notice() as notice:
+        yield lambda: notice.taken

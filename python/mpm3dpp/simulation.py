@@ -21,6 +21,7 @@ from .io.checkpoint import read_about, restore_checkpoint, write_checkpoint
 from .loads import add_load, pieces
 from .machine import thread_count
 from .motion import Motion
+from .point_warnings import point_warnings
 from .time_functions import TimeFunction
 
 
@@ -57,7 +58,8 @@ class Simulation:
         self.bodies = [body.name for body in filled]
         self.parts = [body.part for body in filled]
         self.materials = [body.material for body in filled]
-        self.warnings, self.notes = warnings(filled), notes(case, filled)
+        self.warnings = [*warnings(filled), *point_warnings(case, filled)]
+        self.notes = notes(case, filled)
         self.core = _core.Simulation(_settings(case, self.threads, fused))
         numbers = {name: self._add_material(name) for name in dict.fromkeys(self.materials)}
         firsts = case.first_bodies()
@@ -116,12 +118,17 @@ class Simulation:
     def advance(self, steps: int, end_time: float | None = None) -> int:
         """Make up to `steps` steps, to `end_time` [s] at most (the case's by default).
 
+        Ctrl-C and SIGTERM act at the end of the step that is being made, as the program has them
+        act: by default Ctrl-C raises KeyboardInterrupt. If they raise nothing, the steps are not
+        made to the end either, so that the program can see what they have left.
+
         Returns:
-            The number of steps made.
+            The number of steps made: fewer at the end time, and after a signal.
 
         Raises:
             CaseError: `steps` is no whole number >= 0, or `end_time` no time, which is finite.
             RunError: the run has become unstable: who, where, when and why.
+            RuntimeError: another thread is at work in this simulation.
         """
         made = 0
         steps = arguments.whole_number("steps", steps, 0)
@@ -129,11 +136,12 @@ class Simulation:
         if end_time is not None:
             end = arguments.quantity("end_time", end_time, "s")
         while made < steps:
-            done = self.core.advance(min(steps - made, self.core.history_capacity), end)
+            wanted = min(steps - made, self.core.history_capacity)
+            done = self.core.advance(wanted, end)
             made += done
             if self.core.failure is not None:
                 raise RunError(self.core.failure.message)
-            if done == 0:
+            if done < wanted:
                 break
         return made
 

@@ -17,7 +17,7 @@ from decimal import Decimal
 from functools import lru_cache
 from typing import Annotated, Any
 
-from .errors import NO_VALUE, CaseError, violation
+from .errors import NO_VALUE, CaseError, report, violation
 from .rules import Bounds, holds, requirement, within
 
 # What a quantity of an SI unit is called, and an example of it.
@@ -67,6 +67,13 @@ COMMON: dict[str, tuple[Decimal, str]] = {
 # Sizes that no case needs; products of such numbers would overflow in double precision.
 _LEAST = 1e-100
 
+# Names of units: words, and powers of one or two digits. What else pint would work out, at any cost.
+_UNIT = re.compile(
+    r"1?(?:[\s*/()·.-]|[^\W\d]\d{0,2}(?!\d)"
+    r"|(?:\^|\*\*)\s*\(?[+-]?\d{1,2}(?!\d)(?!\)?\s*(?:\^|\*\*)))*"
+)
+_LONGEST = 200  # Characters of a quantity.
+
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf))(.*)", re.S)
 
 
@@ -86,7 +93,10 @@ def to_si(value: Any, unit: str) -> float:
     if isinstance(value, str):
         number = _from_text(value, unit)
     elif isinstance(value, numbers.Real) and not isinstance(value, bool):
-        number = float(value)
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
     elif hasattr(value, "to_base_units"):
         number = _from_text(f"{value.magnitude:.17g} {value.units}", unit)
     else:
@@ -102,7 +112,7 @@ def to_si(value: Any, unit: str) -> float:
 @lru_cache(maxsize=4096)
 def _from_text(text: str, unit: str) -> float:
     """Return the SI number of text such as `30 mm`."""
-    match = _NUMBER.fullmatch(text)
+    match = _NUMBER.fullmatch(text) if len(text) <= _LONGEST else None
     if match is None:
         raise CaseError(f"must be {_name(unit)}", _give(unit), value=text)
     number, name = match.group(1), match.group(2).strip()
@@ -112,9 +122,12 @@ def _from_text(text: str, unit: str) -> float:
         raise CaseError(f"has no unit but must be {_name(unit)}", _give(unit), value=text)
     if name == "":
         return float(number)
-    if name in COMMON and COMMON[name][1] == unit:
-        return float(Decimal(number) * COMMON[name][0])
-    return _by_pint(text, number, name, unit)
+    try:
+        if name in COMMON and COMMON[name][1] == unit:
+            return float(Decimal(number) * COMMON[name][0])
+        return _by_pint(text, number, name, unit)
+    except ArithmeticError:  # An exponent of thousands of digits.
+        return math.inf
 
 
 @lru_cache(maxsize=1)
@@ -129,6 +142,8 @@ def _by_pint(text: str, number: str, name: str, unit: str) -> float:
     """Return the SI number as pint converts it."""
     import pint
 
+    if _UNIT.fullmatch(name) is None:
+        raise CaseError(f'has the unit "{name}", which is not known', _give(unit), value=text)
     try:
         given = registry().Quantity(
             Decimal(number), registry().parse_units(name.replace("m3", "m^3"))
@@ -224,13 +239,14 @@ class Vector(Quantity):
         ):
             rule = "must have two numbers in 2D and three in 3D"
             raise violation(rule, _give_vector(self.unit), value=value)
-        numbers_found = []
+        numbers_found, mistakes = [], []
         for index, item in enumerate(value):
             try:
                 numbers_found.append(to_si(item, self.unit))
             except CaseError as error:
                 shown = NO_VALUE if isinstance(item, dict) else item
-                raise violation(error.rule, error.remedy, value=shown, path=(index,)) from None
+                mistakes.append(violation(error.rule, error.remedy, value=shown, path=(index,)))
+        report(mistakes)
         return tuple(numbers_found)
 
     def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:

@@ -159,3 +159,83 @@ def test_numbers_come_back_to_the_last_bit(tmp_path: Path) -> None:
     assert np.array_equal(found.positions, given.positions)
     assert np.array_equal(found.volumes, given.volumes)
     assert found.digest == given.digest
+
+
+def lattice(count: int, apart: float, start: float = 0.0) -> str:
+    axis = [start + (k + 0.5) * apart for k in range(count)]
+    return "x,y\n" + "".join(f"{x!r},{y!r}\n" for x in axis for y in axis)
+
+
+def warnings_of(path: Path) -> list[str]:
+    simulation = Simulation(load_case(path), threads=1)
+    told = echo(load_case(path), build(load_case(path))).splitlines()
+    assert [line.removeprefix("warning: ") for line in told if "warning: " in line] == (
+        simulation.warnings
+    )
+    return simulation.warnings
+
+
+def test_a_unit_of_length(tmp_path: Path) -> None:
+    table = CASE.replace('"rod.csv"', '{ file = "rod.csv", unit = "mm" }')
+    text = "x [mm],y [mm],volume [mm^2]\n0.1,0.1,0.04\n0.3,0.1,0.04\n0.6,0.1,0.1\n"
+    case, metres = load_case(write(tmp_path, text, table)), load_case(write(tmp_path, ROD))
+    assert case.body["rod"].particles is not None
+    assert case.table()["body"]["rod"]["particles"] == {"file": "rod.csv", "unit": "mm"}
+    again = load_case(write(tmp_path, text.replace(" [mm]", "").replace(" [mm^2]", ""), table))
+    assert case.case_hash == again.case_hash == metres.case_hash
+    particles = case.body["rod"].particles
+    assert particles.positions[:, 0].tolist() == [0.0001, 0.0003, 0.0006]
+    assert particles.volumes == pytest.approx([4e-8, 4e-8, 1e-7], rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "part"),
+    [
+        ('{ file = "rod.csv", unit = "kg" }', "particles.unit", "is no unit of length"),
+        ('{ file = "rod.csv", unit = 3 }', "particles.unit", "must be text"),
+        ('{ file = "rod.csv", units = "mm" }', "particles.units", 'did you mean "unit"?'),
+        ('{ unit = "mm" }', "particles.file", "is missing"),
+        ('{ file = "rod.csv", unit = "mm" }', "particles", "gives x in [m] in line 1 but must be"),
+    ],
+)
+def test_a_wrong_unit_of_length(tmp_path: Path, table: str, key: str, part: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        load_case(write(tmp_path, ROD, CASE.replace('"rod.csv"', table)))
+    assert f":11: body.rod.{key}" in str(caught.value) and part in str(caught.value)
+
+
+def test_points_that_fit_are_not_warned_of(tmp_path: Path) -> None:
+    path = write(tmp_path, lattice(20, 0.5e-3), CASE + "particles_per_cell = 2\n")
+    assert warnings_of(path) == []
+
+
+@pytest.mark.parametrize(
+    ("points", "more", "part"),
+    [
+        (lattice(20, 2e-3), 'spacing = "2 mm"\n', "0.002 m apart, 2 cells"),
+        (lattice(20, 5e-5), 'spacing = "0.05 mm"\n', "5e-05 m apart, 20 in a cell"),
+        (lattice(20, 0.5e-3), 'spacing = "0.1 mm"\n', "cubes with edges of 0.0001 m"),
+        (lattice(20, 0.5e-3) + "0.00125,0.00075\n", "", "1 stand where another one does, the first "
+         "of them number 401 where number 42 is"),
+    ],
+)  # fmt: skip
+def test_points_that_are_hardly_meant(tmp_path: Path, points: str, more: str, part: str) -> None:
+    [sentence] = warnings_of(write(tmp_path, points, CASE + more))
+    assert sentence.startswith("body.rod: its points") and part in sentence
+
+
+def test_points_inside_another_body(tmp_path: Path) -> None:
+    disc = (
+        '[body.disc]\nmaterial = "steel"\n'
+        'shape = { disc = { centre = ["14.25 mm", "5.25 mm"], radius = "5 mm" } }\n'
+    )
+    # Half-way between the disc's particles, which stand at multiples of half a millimetre + 0.25.
+    path = write(tmp_path, lattice(20, 0.5e-3, 0.25e-3), CASE + disc)
+    [sentence] = warnings_of(path)
+    assert "of its points stand inside body.disc" in sentence
+    grains = (
+        '[grains.sand]\nmaterial = "steel"\nlattice = { lower = ["9.25 mm", "0.25 mm"], '
+        'count = [1, 1], radius = "5 mm" }\n'
+    )
+    [sentence] = warnings_of(write(tmp_path, lattice(20, 0.5e-3), CASE + grains))
+    assert "of its points stand inside grains.sand" in sentence

@@ -142,7 +142,8 @@ void SimulationOf<D>::prepare() {
 }
 
 template <int D>
-std::int64_t SimulationOf<D>::advance(std::int64_t max_steps, double end_time) {
+std::int64_t SimulationOf<D>::advance(std::int64_t max_steps, double end_time,
+                                      const std::atomic<bool>* stop) {
   check(prepared_, "call prepare() before advance()");
   check(std::isfinite(end_time), "end_time must be a finite number");
   std::int64_t made = 0;
@@ -153,6 +154,7 @@ std::int64_t SimulationOf<D>::advance(std::int64_t max_steps, double end_time) {
     domain_.time_step = last ? left : std::min(next_time_step_, 0.5 * left);
     make_step(last ? end_time : domain_.time + domain_.time_step);
     ++made;
+    if (stop != nullptr && stop->load(std::memory_order_relaxed)) break;
   }
   return made;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The time loop, behind an interface that does not show the dimension.
 #include <array>
+#include <atomic>
 #include <limits>
 #include <map>
 #include <memory>
@@ -122,8 +123,9 @@ class Simulation {
   /// Sort the particles, make the grid, find the first time step. Once, after the last body.
   virtual void prepare() = 0;
   /// Make up to `max_steps` steps, to `end_time` at most; returns how many. Stops early at a
-  /// failure.
-  virtual std::int64_t advance(std::int64_t max_steps, double end_time) = 0;
+  /// failure, and after the step in which `stop`, if there is one, has become true.
+  virtual std::int64_t advance(std::int64_t max_steps, double end_time,
+                               const std::atomic<bool>* stop = nullptr) = 0;
 
   /// The state as it is between two steps, rows of the history that nobody took included; functions
   /// of time are the case's. Restored into a simulation of the same case that has made no step, it

@@ -23,7 +23,8 @@ class SimulationOf final : public Simulation {
   void set_group(int body, int first) override;
   void set_pair_friction(int a, int b, double mu) override;
   void prepare() override;
-  std::int64_t advance(std::int64_t max_steps, double end_time) override;
+  std::int64_t advance(std::int64_t max_steps, double end_time,
+                       const std::atomic<bool>* stop) override;
 
   void save(const StateStream::Transfer& to) override;
   void restore(const StateStream::Transfer& from) override;

@@ -27,8 +27,7 @@ from typing import Any
 
 from ..errors import CaseError, nearest
 from ..folders import writable_folder
-from ..machine import MEMORY
-from ..shapes.filling import PARTICLE_BYTES_WITH_GRID
+from ..machine import MEMORY, PARTICLE_BYTES_WITH_GRID
 from .cases import BENCHES, Bench
 from .operations import operations_per_particle_step
 from .process import Process

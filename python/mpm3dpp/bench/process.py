@@ -24,6 +24,7 @@ class Process:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
+            start_new_session=True,  # Ctrl-C is for this process, whose end ends that one.
         )
 
     def __enter__(self) -> Process:

@@ -7,7 +7,6 @@ The file's first line names the columns, `x [m],y [m],z [m],radius [m]` in 3D an
 
 from __future__ import annotations
 
-import hashlib
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,13 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import SkipValidation
 
-from mpm3dpp.csv_points import FromFile, Layout, read_points, short
+from mpm3dpp.csv_points import FromFile, Layout, digest_of, file_entry, read_points, short
 from mpm3dpp.errors import CaseError
+from mpm3dpp.machine import BODY_BYTES
 
 Array = NDArray[np.float64]
 _LARGEST = 1e100
 _GIVE = "see the how-to page of many grains for its columns"
-_LAYOUT = Layout("radius", ("m", "m"), True, "grain", _GIVE)
+_LAYOUT = Layout("radius", (1, 1), True, "grain", _GIVE, BODY_BYTES)
 
 
 class GrainCentres:
@@ -32,6 +32,7 @@ class GrainCentres:
         centres: [m], shape (n, D).
         radii: [m], shape (n,).
         file: the name by which a case file knows them; empty if they come from no file.
+        unit: of the lengths in that file.
 
     Raises:
         CaseError: an array has another shape, or numbers that are not finite or radii <= 0.
@@ -45,7 +46,7 @@ class GrainCentres:
         self.radii: Array = np.array(radii, dtype=np.float64)
         if self.radii.shape != (len(self.centres),):
             raise CaseError("must have one number for each grain", key="grain_centres.radii")
-        self.file = file
+        self.file, self.unit = file, "m"
         wrong = self.first_wrong()
         if wrong is not None:
             raise CaseError(f"{wrong[1]} (grain {wrong[0]})", key="grain_centres")
@@ -68,34 +69,35 @@ class GrainCentres:
     @cached_property
     def digest(self) -> str:
         """SHA-256 (hexadecimal) of the grains, numbers to 12 digits."""
-        table = np.column_stack([self.centres, self.radii]) + 0.0  # No negative zero.
-        line = ",".join(["%.12g"] * table.shape[1])
-        text = "\n".join(line % tuple(row) for row in table.tolist())
-        return hashlib.sha256(text.encode()).hexdigest()
+        return digest_of(np.column_stack([self.centres, self.radii]))
 
-    def table(self) -> str:
+    def table(self) -> str | dict[str, str]:
         """Return the value of the key `file` of a case file."""
-        return self.file or f"({len(self.radii)} grains, SHA-256 {self.digest})"
+        if self.file:
+            return file_entry(self.file, self.unit)
+        return f"({len(self.radii)} grains, SHA-256 {self.digest})"
 
 
-def read_centres(path: Path, name: str = "") -> GrainCentres:
+def read_centres(path: Path, name: str = "", unit: str = "m") -> GrainCentres:
     """Read a file of centres and radii.
 
     Args:
         path: the file.
         name: its name in messages and in the case; by default its path.
+        unit: of the lengths in it.
 
     Raises:
         CaseError: the file is missing or malformed; the rule names the line.
     """
     name = name or str(path)
-    points = read_points(path, name, _LAYOUT)
+    points = read_points(path, name, _LAYOUT, unit)
     found = GrainCentres.__new__(GrainCentres)  # Checked below, where the line is known.
     found.centres = np.ascontiguousarray(points.table[:, : points.dimension])
-    found.radii, found.file = np.ascontiguousarray(points.table[:, points.dimension]), name
+    found.radii = np.ascontiguousarray(points.table[:, points.dimension])
+    found.file, found.unit = name, unit
     wrong = found.first_wrong()
     if wrong is not None:
-        number, line = points.lines[wrong[0]]
+        number, line = points.line(wrong[0])
         raise CaseError(f"{wrong[1]}, in line {number} ({short(line)})", _GIVE, value=name)
     return found
 

@@ -13,7 +13,8 @@ from pydantic import model_validator
 from mpm3dpp.errors import CaseError, Path, violation
 from mpm3dpp.grains.centres import AnyCentres
 from mpm3dpp.grains.packing import MOST_GRAINS, draw_radii, pack
-from mpm3dpp.model import CaseModel, Choice, Count, Exactly, Text
+from mpm3dpp.machine import BODY_BYTES, MEMORY, memory_text
+from mpm3dpp.model import MOST, CaseModel, Choice, Count, Exactly, Text
 from mpm3dpp.units import Point, PositiveLength, Quantity, Spin, Vector, VelocityVector
 
 Array = NDArray[np.float64]
@@ -60,6 +61,12 @@ class GrainLattice(CaseModel):
             return _needs("spacing", len(self.spacing), dimension)
         return None
 
+    def ends(self) -> tuple[Array, Array]:
+        """Return the lowest and the highest centre along each axis [m], shape (D,)."""
+        count = np.asarray(self.count, dtype=float)
+        spacing = np.asarray(self.spacing or (2 * self.radius,))
+        return self.lower + 0.5 * spacing, self.lower + (count - 0.5) * spacing
+
     def place(self, dimension: int) -> tuple[Array, Array]:
         """Return centres [m], shape (n, D), and radii [m], shape (n,); the last axis is fastest."""
         spacing = np.broadcast_to(np.asarray(self.spacing or (2 * self.radius,)), (dimension,))
@@ -88,7 +95,7 @@ class GrainPacking(CaseModel):
     count: Count | None = None
     fraction: Annotated[float, Quantity("", "0 < f < 1")] | None = None
     gap: Annotated[float, Quantity("m", ">= 0")] = 0.0
-    seed: Annotated[int, Exactly(int, 0)] = 0
+    seed: Annotated[int, Exactly(int, 0, MOST)] = 0
 
     @model_validator(mode="after")
     def _consistent(self) -> GrainPacking:
@@ -180,8 +187,14 @@ class Grains(CaseModel):
             raise violation(rule, "keep one of the two", path=("spacing",))
         if self.particles_per_cell is None and self.spacing is None:
             self.__dict__["particles_per_cell"] = 2
-        if self.count > MOST_GRAINS:
+        need = self.count * BODY_BYTES
+        if self.count > MOST_GRAINS or need > MEMORY:
             rule = f"would be more than {MOST_GRAINS:,} grains"
+            if self.count <= MOST_GRAINS:
+                rule = (
+                    f"would be {self.count:,} grains, which need {memory_text(need)} of memory at "
+                    f"least, and there are {memory_text(MEMORY)}"
+                )
             remedy = "give fewer, or write lengths with their unit (a plain number is in metres)"
             raise violation(rule, remedy, path=(self.filling,))
         return self
@@ -199,6 +212,15 @@ class Grains(CaseModel):
         if self.packing is not None:
             return len(self.packing.radii())
         return 0 if self.file is None else len(self.file.radii)
+
+    def radii(self) -> Array:
+        """Return the radii [m], shape (n,), known without placing the grains."""
+        if self.packing is not None:
+            return self.packing.radii()
+        if self.file is not None:
+            return self.file.radii
+        assert self.lattice is not None
+        return np.broadcast_to(self.lattice.radius, (self.count,))
 
     def names(self, name: str) -> list[str]:
         """Return the names of the bodies, `sand_0000`, ... for the entry `sand`."""

@@ -7,7 +7,7 @@ import importlib
 from functools import lru_cache
 from typing import Any
 
-from mpm3dpp.errors import nearest, violation
+from mpm3dpp.errors import MISSING, below, nearest, report, violation
 from mpm3dpp.units import Quantity
 
 KINDS = {
@@ -55,29 +55,24 @@ def check_parameters(kind: str, model: str, given: Any) -> dict[str, float]:
         remedy = f"write {model} = {example(kind, model)}"
         raise violation("must be a table of parameters", remedy, value=given)
     known = {parameter.name: parameter for parameter in catalogue(kind)[model].parameters}
+    mistakes: list[Exception] = []
     for name in given:
         if name not in known:
-            rule = f"is not a parameter of {model}"
-            raise violation(rule, nearest(str(name), known), path=(str(name),))
+            rule, remedy = f"is not a parameter of {model}", nearest(str(name), known)
+            mistakes.append(violation(rule, remedy, path=(str(name),)))
     found: dict[str, float] = {}
     for name, parameter in known.items():
         if name in given:
             unit = "" if parameter.unit == "1" else parameter.unit
             quantity = Quantity(unit, parameter.rule, parameter.bounds)
-            found[name] = _parsed(quantity, given[name], name)
+            try:
+                found[name] = quantity.parse(given[name])
+            except ValueError as error:
+                mistakes += below(error, (name,), value=given[name])
         elif parameter.default is not None:
             found[name] = float(parameter.default)
-        else:
+        elif not mistakes:
             what = f"{parameter.meaning} [{parameter.unit or '1'}]"
-            raise violation("is missing", f"add {name}, the {what}", path=(name,))
+            mistakes.append(violation(MISSING, f"add {name}, the {what}", path=(name,)))
+    report(mistakes)
     return found
-
-
-def _parsed(quantity: Quantity, value: Any, name: str) -> float:
-    from pydantic_core import PydanticCustomError
-
-    try:
-        return quantity.parse(value)
-    except PydanticCustomError as error:
-        context = error.context or {}
-        raise violation(context["rule"], context["remedy"], value=value, path=(name,)) from None

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, cast
 
 from pydantic import BeforeValidator, SkipValidation, WithJsonSchema, model_validator
 
-from mpm3dpp.errors import Path, nearest, violation
+from mpm3dpp.errors import below, nearest, report, violation
 from mpm3dpp.model import CaseModel, Choice
 
 from .catalogue import KINDS, catalogue, check_parameters
@@ -79,29 +79,20 @@ def _chosen(kind: type[ChosenModel], model: Any, given: Any) -> ChosenModel:
     if model not in known:
         rule = f"is not a known {KINDS[word]}"
         raise violation(rule, nearest(str(model), known), path=(str(model),))
-    from pydantic_core import PydanticCustomError
-
+    mistakes: list[Exception] = []
     extra: dict[str, Any] = {}
+    if kind is Failure and isinstance(given, dict) and "action" in given:
+        try:
+            extra = {"action": Choice(tuple(ACTIONS)).parse(given["action"])}
+        except ValueError as error:
+            mistakes += below(error, (model, "action"), value=given["action"])
+        given = {key: value for key, value in given.items() if key != "action"}
     try:
-        if kind is Failure and isinstance(given, dict) and "action" in given:
-            extra = {"action": _action(given["action"])}
-            given = {key: value for key, value in given.items() if key != "action"}
         parameters = check_parameters(word, model, given)
-    except PydanticCustomError as error:
-        found: Any = error.context
-        path: Path = (model, *found["path"])
-        raise violation(found["rule"], found["remedy"], value=found["value"], path=path) from None
+    except ValueError as error:
+        mistakes += below(error, (model,))
+    report(mistakes)
     return kind.model_construct(model=model, parameters=parameters, **extra)
-
-
-def _action(word: Any) -> str:
-    from pydantic_core import PydanticCustomError
-
-    try:
-        return Choice(tuple(ACTIONS)).parse(word)
-    except PydanticCustomError as error:
-        found: Any = error.context
-        raise violation(found["rule"], found["remedy"], value=word, path=("action",)) from None
 
 
 def _parse_one(kind: type[ChosenModel]) -> Any:
@@ -136,8 +127,15 @@ def _parse_failures(value: Any) -> list[Failure]:
         model = next(iter(catalogue("failure")))
         remedy = f"write {{ {model} = {example('failure', model)} }}"
         raise violation("must be a table of failure models", remedy, value=value)
-    chosen = [_chosen(Failure, model, given) for model, given in value.items()]
-    return [item for item in chosen if isinstance(item, Failure)]
+    chosen: list[Failure] = []
+    mistakes: list[Exception] = []
+    for model, given in value.items():
+        try:
+            chosen.append(cast(Failure, _chosen(Failure, model, given)))
+        except ValueError as error:
+            mistakes += below(error, ())
+    report(mistakes)
+    return chosen
 
 
 _ONE = WithJsonSchema({"type": "object", "minProperties": 1, "maxProperties": 1})

@@ -137,8 +137,11 @@ def fill_in(table: dict[str, Any]) -> dict[str, Any]:
         if without:
             raise violation("has a meaning beside library only", "remove it", path=("without",))
         return _with_failure(table, None)
+    if not isinstance(name, str):
+        remedy = f"valid here: {', '.join(library())}"
+        raise violation("must be the name of a material", remedy, value=name, path=("library",))
     if name not in library():
-        remedy = nearest(str(name), library())
+        remedy = nearest(name, library())
         rule = "is not a material of the library"
         raise violation(rule, remedy, value=name, path=("library",))
     left_out = {*without, ON_REQUEST}

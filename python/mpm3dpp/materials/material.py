@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field
 
 from mpm3dpp.case_parts import Viscosity
 from mpm3dpp.model import CaseModel, Text
@@ -47,9 +47,9 @@ class Material(CaseModel):
     failure: AnyFailure = Field(default_factory=list)
     artificial_viscosity: Viscosity | None = None
 
-    @model_validator(mode="before")
     @classmethod
-    def _from_library(cls, data: Any) -> Any:
+    def complete(cls, data: Any) -> Any:
+        """Return the table with what its key `library` gives."""
         return fill_in(data) if isinstance(data, dict) else data
 
     def table(self) -> dict[str, Any]:

@@ -12,12 +12,19 @@ import numpy as np
 from mpm3dpp.plots.flat import draw_cells, draw_particles, set_view
 from mpm3dpp.plots.frames import paper
 from mpm3dpp.plots.labels import length_unit
-from mpm3dpp.plots.style import body_colours, legend_of_bodies, new_figure, save, styled
+from mpm3dpp.plots.style import (
+    body_colours,
+    legend_of_bodies,
+    new_figure,
+    picture_path,
+    save,
+    styled,
+)
 
 
 def preview(case: Any, out: Path) -> Path:
     """See `mpm3dpp.plots.preview`."""
-    path = out / "preview.png" if out.is_dir() or not out.suffix else out
+    path = picture_path(out / "preview.png" if out.is_dir() or not out.suffix else out)
     names, points, sizes, bodies = filled(case)
     grid = case.grid
     dimension = int(grid.dimension)

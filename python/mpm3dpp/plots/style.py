@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import make_folder, writing
+from mpm3dpp.reading import refuse_nul
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -76,8 +78,29 @@ def new_figure(width: float, height: float, dpi: float = DPI) -> Figure:
     return figure
 
 
+def picture_path(path: Path) -> Path:
+    """Return a picture's path if a picture can be written there.
+
+    Raises:
+        CaseError: its ending is of no picture, or something stands there that is no file.
+    """
+    from matplotlib.backend_bases import FigureCanvasBase
+
+    refuse_nul(path)
+    endings = FigureCanvasBase.get_supported_filetypes()
+    ending = path.suffix.removeprefix(".").lower()
+    if ending not in endings:
+        rule = f'has the ending "{path.suffix}", which is of no picture'
+        raise CaseError(rule, f"valid here: {', '.join(endings)}", key=str(path))
+    with writing(path):
+        if path.exists() and not path.is_file():
+            raise CaseError("is no file", "choose another name for the picture", key=str(path))
+    return path
+
+
 def save(figure: Figure, path: Path) -> Path:
     """Write a picture, the white margin cut off. Raises `CaseError` when that fails."""
+    picture_path(path)
     make_folder(path.parent)
     with writing(path):
         figure.savefig(path, bbox_inches="tight", pad_inches=0.06)

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, SkipValidation, ValidationError, WithJsonSchema
+from pydantic_core import PydanticCustomError
 
-from ..errors import Path, from_validation, nearest, show, violation
+from ..errors import Path, nearest, report, show, violation, violations_of
 from ..model import CaseModel
 
 if TYPE_CHECKING:
@@ -138,16 +139,17 @@ def parse_shape(value: Any) -> Shape:
     try:
         return KINDS[kind].model_validate({"shapes": fields} if is_list else fields)
     except ValidationError as error:
-        raise _below(error, (kind,), is_list) from None
+        report(_below(error, (kind,), is_list))
+        raise
 
 
-def _below(error: ValidationError, path: Path, is_list: bool) -> Exception:
-    """Return a shape's violation with its path written as in the file."""
-    found = from_validation(error)
-    first = error.errors(include_url=False)[0]
-    tail = tuple(first["loc"]) + tuple(first.get("ctx", {}).get("path", ()))
-    tail = tail[1:] if is_list and tail[:1] == ("shapes",) else tail
-    return violation(found.rule, found.remedy, value=found.value, path=path + tail)
+def _below(error: ValidationError, path: Path, is_list: bool) -> list[PydanticCustomError]:
+    """Return a shape's violations with their paths written as in the file."""
+    found = []
+    for one in violations_of(error):
+        tail = one["path"][1:] if is_list and one["path"][:1] == ("shapes",) else one["path"]
+        found.append(violation(one["rule"], one["remedy"], value=one["value"], path=path + tail))
+    return found
 
 
 def register(shape: type[Shape]) -> type[Shape]:

@@ -14,9 +14,13 @@ from .base import AnyShape, Bounds, Mask, Points, Shape, register
 
 
 class _Combined(Shape):
-    """A list of shapes, at least two: `union = [{ disc = {...} }, { box = {...} }]`."""
+    """A list of shapes, at least two: `union = [{ disc = {...} }, { box = {...} }]`.
+
+    In Python `Union([a, b])`, `Union(a, b)` and `Union(shapes=[a, b])` are the same.
+    """
 
     shapes: list[AnyShape]
+    by_position: ClassVar[str] = "shapes"
 
     @model_validator(mode="after")
     def _at_least_two(self) -> Any:

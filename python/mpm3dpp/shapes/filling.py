@@ -10,15 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CaseError
-from ..machine import MEMORY
+from ..machine import MOST_PARTICLES
 from .base import SURFACE_TOLERANCE, Points, Shape
 
 _CHUNK = 1 << 18  # Points looked at together: some 20 MB of temporary arrays.
-PARTICLE_BYTES_WITH_GRID = 150
-"""That a particle needs about, its share of the grid included, before there is a case to count the
-nodes of; `echo.memory_bytes` does so, and counts particles without them."""
-MOST_PARTICLES = MEMORY / PARTICLE_BYTES_WITH_GRID
-"""What the memory of this machine holds of them."""
 LENGTHS_REMEDY = (
     "write lengths with their unit (a plain number is in metres), or give a larger grid.cell_size"
 )

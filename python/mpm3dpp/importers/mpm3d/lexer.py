@@ -14,10 +14,12 @@ from typing import NamedTuple
 
 from mpm3dpp.case_file import similar_file
 from mpm3dpp.errors import CaseError
+from mpm3dpp.reading import read_file
 
 _SPLIT = re.compile(r"[^\s,]+")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
 _ODD = re.compile(r"\+|-?\.")  # Begins a number that MPM3D-F90 does not read as one.
+_MOST_BYTES = 64 << 20  # More than a million particles; each word becomes some 20 times as large.
 _LINE, _WORDS, _LETTERS = 256, 15, 20  # What MPM3D-F90 reads of a line, and of a word.
 
 
@@ -61,15 +63,14 @@ def read_source(path: Path) -> Source:
         CaseError: there is no such file, or it cannot be read.
     """
     name = str(path)
-    if path.is_dir():
-        raise CaseError("must be a file but is a folder", "give the file in it", place=name)
     try:
-        data = path.read_bytes()
+        data = read_file(path, _MOST_BYTES, "give the particles as a CSV file beside a case file")
     except FileNotFoundError:
         raise CaseError("there is no such file", similar_file(path), place=name) from None
-    except OSError as error:
-        reason = (error.strerror or "unknown reason").lower()
-        raise CaseError(f"cannot be read ({reason})", "check the path", place=name) from None
+    except CaseError as error:
+        raise CaseError(error.rule, error.remedy, place=name) from None
+    if b"\0" in data:
+        raise CaseError("is no text: it has NUL bytes", "check the file", place=name)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
