@@ -180,8 +180,10 @@ NB_MODULE(_core, m) {
           nb::arg("write"))
       .def(
           "restore",
-          [](Simulation& s, const nb::callable& readinto) { s.restore(transfer_by(readinto)); },
-          nb::arg("readinto"))
+          [](Simulation& s, const nb::callable& readinto, std::size_t size) {
+            s.restore(transfer_by(readinto), size);
+          },
+          nb::arg("readinto"), nb::arg("size"))
       .def_prop_ro("time", &Simulation::time)
       .def_prop_ro("dt", &Simulation::next_time_step)
       .def_prop_ro("step", &Simulation::step)

@@ -6,19 +6,33 @@ from __future__ import annotations
 import dataclasses
 import os
 import time as clock
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from . import _core
 from .case import Case
 from .errors import CaseError, show
 from .errors import Path as KeyPath
+from .io.about import check_about
 from .io.background import BackgroundWriter
-from .io.checkpoint import ANEW, CHECKPOINT, read_about, write_checkpoint
-from .io.history import HistoryWriter, has_history
+from .io.checkpoint import (
+    ANEW,
+    CHECKPOINT,
+    PREVIOUS,
+    DamagedError,
+    read_about,
+    restore_checkpoint,
+    write_checkpoint,
+)
+from .io.disk import writing
+from .io.frame_file import frames_folder
+from .io.history import HistoryWriter, check_history, has_no_history
 from .io.manifest import read_manifest
-from .io.rows import has_rows
-from .io.vtkhdf import RESULTS
+from .io.vtkhdf import RESULTS, check_frames, has_no_results
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
 
 # What a case may change before it goes on: nothing that a step made so far depends on.
 _MAY_CHANGE = {("title",), ("run", "end_time"), ("run", "energy_growth_limit")}
@@ -40,38 +54,62 @@ class Checkpoint:
     step: int
     time: float
     wall_time: float
-    results: dict[str, int]
+    results: dict[str, Any]
     history: dict[str, Any]
     case: dict[str, Any]
     made_by: dict[str, str]
 
     @classmethod
-    def of(cls, folder: Path) -> Checkpoint:
-        """Read that of an output folder. Raises `CaseError` where there is none."""
-        path = folder / CHECKPOINT
+    def of(cls, path: Path) -> Checkpoint:
+        """Read one. Raises `DamagedError` where there is none that can be used."""
         about = read_about(path)
         try:
-            return cls(path, **about)
-        except TypeError as error:
-            rule = f"'{path}' is not a checkpoint of a run by this version of mpm3dpp"
-            raise CaseError(rule, ANEW) from error
+            check_about(about)
+        except ValueError as error:
+            rule = f"'{path}' is not a checkpoint of a run by this version of mpm3dpp, or damaged"
+            raise DamagedError(rule, ANEW) from error
+        return cls(path, **about)
+
+    @property
+    def results_are_gone(self) -> bool:
+        """Whether none of the frames is there any more."""
+        return has_no_results(self.path.parent / RESULTS)
+
+    @property
+    def history_is_gone(self) -> bool:
+        """Whether no table is there any more."""
+        return has_no_history(self.path.parent)
 
     def check(self, case: Case) -> None:
-        """Raise `CaseError` if a case cannot go on from here, and say why; nothing is changed."""
+        """Raise `CaseError` if a case cannot go on from here, and say why; nothing is changed.
+
+        Frames and tables are compared with their check sums. They may be gone altogether.
+        """
         check_same(self.path, self.case, case)
         if case.run.end_time < self.time:
             rule = f"is before the {self.time:.6g} s that the run of '{self.path}' has reached"
             remedy = f"give a later one, or {ANEW}"
             raise CaseError(rule, remedy, key="run.end_time", value=case.run.end_time)
         folder = self.path.parent
-        for name in ("history.csv", RESULTS):
-            if (folder / name).exists() and not os.access(folder / name, os.W_OK):
-                raise CaseError(f"cannot write '{folder / name}'", "make it writable")
-        if not has_history(folder, self.history):
-            raise CaseError(f"the history in '{folder}' has lost rows since the checkpoint", ANEW)
-        if not has_rows(folder / RESULTS, "VTKHDF", self.results):
-            rule = f"'{folder / RESULTS}' is damaged or has lost frames since the checkpoint"
-            raise CaseError(rule, ANEW)
+        table, results = folder / "history.csv", folder / RESULTS
+        for file in (table, results):
+            if file.exists() and not os.access(file, os.W_OK):
+                raise CaseError(f"cannot write '{file}'", "make it writable")
+        for gone, check, known, names in (
+            (self.history_is_gone, check_history, self.history, f"'{table}'"),
+            (
+                self.results_are_gone,
+                check_frames,
+                self.results,
+                f"'{results}' and '{frames_folder(results)}'",
+            ),
+        ):
+            try:
+                if not gone:
+                    check(results if check is check_frames else folder, known)
+            except CaseError as error:
+                remedy = f"bring it back, remove {names} to go on with new files, or {ANEW}"
+                raise DamagedError(error.rule, remedy) from error
 
     def notes(self, case: Case) -> list[str]:
         """Sentences for the user who goes on from here."""
@@ -83,6 +121,70 @@ class Checkpoint:
             what = " and ".join(f"{name} {self.made_by.get(name)}" for name in changed)
             lines.append(f"the run began with {what}: it will not end with the same bits")
         return lines
+
+
+def go_on(
+    folder: Path, case: Case, make: Callable[[], Simulation]
+) -> tuple[Simulation, Checkpoint, list[str]]:
+    """Return a simulation with the state of the last checkpoint in a folder that can be used.
+
+    Args:
+        folder: of the run.
+        case: that would go on.
+        make: gives a new simulation of it.
+
+    Returns:
+        The simulation, the checkpoint, and what the user should know of it.
+
+    Raises:
+        CaseError: there is none, or it is that of another case; nothing has been changed.
+    """
+
+    def restored(path: Path) -> tuple[Simulation, Checkpoint]:
+        before = Checkpoint.of(path)
+        before.check(case)
+        simulation = make()
+        restore_checkpoint(path, simulation.core)
+        if (simulation.core.step, simulation.core.time) != (before.step, before.time):
+            raise DamagedError(f"the checkpoint '{path}' is damaged: its parts differ", ANEW)
+        return simulation, before
+
+    (simulation, before), why = _first_that_can(folder, restored)
+    notes = [f"{why}: the run goes on from the one before"] if why else []
+    for gone, name in (
+        (before.results_are_gone and before.results["frames"], RESULTS),
+        (before.history_is_gone, "history.csv"),
+    ):
+        if gone:
+            notes.append(f"'{folder / name}' was gone: a new one begins at t = {before.time:.6g} s")
+    return simulation, before, notes + before.notes(case)
+
+
+T = TypeVar("T")
+
+
+def _first_that_can(folder: Path, use: Callable[[Path], T]) -> tuple[T, str]:
+    """Return what `use` makes of the last checkpoint, else of the one before it; and why, if so.
+
+    Raises:
+        CaseError: neither can be used; it is told of the last.
+    """
+    last, previous = folder / CHECKPOINT, folder / PREVIOUS
+    try:
+        return use(last), ""
+    except DamagedError as error:
+        if not previous.is_file():
+            raise
+        first = error
+    try:
+        return use(previous), first.rule
+    except DamagedError:
+        raise first from None
+
+
+def has_checkpoint(folder: Path) -> bool:
+    """Return whether there is a checkpoint in an output folder, or the one before it."""
+    return any((folder / name).is_file() for name in (CHECKPOINT, PREVIOUS))
 
 
 def _program() -> dict[str, str]:
@@ -120,13 +222,18 @@ def refuse_to_begin_anew(folder: Path, case: Case) -> None:
     It is the same case if its file is, edited or not, or if its content is, wherever the file.
     """
     _refuse_another_case(folder, case)
-    if not (folder / CHECKPOINT).is_file():
+    if not has_checkpoint(folder):
         return
-    before = Checkpoint.of(folder)
+    before = _first_that_can(folder, Checkpoint.of)[0]
     done = before.time / before.case["run"]["end_time"]
     if done < 1.0:
         rule = f"'{folder}' holds an unfinished run, at {done:.0%} of its time"
-        raise CaseError(rule, f"go on with --resume, {ANEW}, or choose another --out")
+        try:
+            _first_that_can(folder, lambda path: Checkpoint.of(path).check(case))
+            remedy = f"go on with --resume, {ANEW}, or choose another --out"
+        except CaseError as error:
+            remedy = f"--resume cannot go on with it ({error.sentence()})"
+        raise CaseError(rule, remedy)
 
 
 def _refuse_another_case(folder: Path, case: Case) -> None:
@@ -160,6 +267,9 @@ class Checkpoints:
         self._interval = case.output.checkpoint_interval
         # One that is there must not stay behind the files.
         self._last_too = self._interval > 0.0 or before is not None
+        if before is not None and before.path != self._path:  # The last one cannot be used.
+            with writing(self._path):
+                before.path.replace(self._path)
         self._last = clock.monotonic()
         self._begin = self._last - (before.wall_time if before else 0.0)
 
@@ -194,7 +304,7 @@ class Checkpoints:
         }
         self._last = clock.monotonic()
         try:
-            write_checkpoint(self._path, core, about)
+            write_checkpoint(self._path, core, about, keep=self._path.with_name(PREVIOUS))
         except CaseError as error:
             return str(error)
         return ""
