@@ -14,7 +14,7 @@ from typing import Any
 
 from . import _core, arguments
 from .case import Case, load_case
-from .checkpoints import Checkpoint, Checkpoints, go_on, has_checkpoint
+from .checkpoints import Checkpoint, Checkpoints
 from .errors import CaseError, RunError
 from .folders import forget_last_run, only_run_in, writable_folder
 from .io.background import BackgroundWriter
@@ -24,6 +24,7 @@ from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import RESULTS, ResultsWriter
 from .progress import Progress
 from .report import contact_table, energy_line, gone_lines, load_lines, speed_line
+from .resume import go_on, has_checkpoint
 from .simulation import Simulation
 
 _BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without contact.

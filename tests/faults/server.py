@@ -28,6 +28,7 @@ import numpy as np
 
 import mpm3dpp.checkpoints
 import mpm3dpp.io.background
+import mpm3dpp.resume
 import mpm3dpp.run
 from mpm3dpp import load_case, open_results, run_case
 from mpm3dpp.errors import CaseError, RunError
@@ -105,7 +106,7 @@ class Server:
         if code == DONE:
             self.check_whole()
             return "completed"
-        can = mpm3dpp.checkpoints.has_checkpoint(self.out)
+        can = mpm3dpp.resume.has_checkpoint(self.out)
         if not killed and code == STOPPED:
             assert ("--resume goes on" in said) == can, said
         code, said = self.fork(lambda: self.run(resume=can))

@@ -23,10 +23,10 @@ import pytest
 
 from commands import CASE, command, mpm3dpp, one_sentence, write
 from mpm3dpp import Case, Simulation, load_case, open_results, run_case
-from mpm3dpp.checkpoints import refuse_to_begin_anew
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io import read_history, read_manifest
 from mpm3dpp.report import speed_line
+from mpm3dpp.resume import refuse_to_begin_anew
 
 OFTEN = CASE.replace("frames = 4", 'interval = "20 ms"\ncheckpoint_interval = "50 ms"')
 LONG = OFTEN.replace('"8 ms"', '"1000 s"')

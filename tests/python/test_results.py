@@ -349,22 +349,22 @@ def test_other_arrays_than_those_of_the_first_frame(tmp_path: Path) -> None:
             results.append(1.0, 1, {"position": np.zeros((3, 3)), "p": np.zeros(3)})
 
 
-@pytest.mark.parametrize("at", range(0, 400, 7))
-def test_a_damaged_history(tmp_path: Path, at: int) -> None:
+def test_a_damaged_history(tmp_path: Path) -> None:
     """A bit of its header, or of its first row, is another one."""
+    from mpm3dpp.io.history import COLUMNS as NEEDED
+
     write_history(tmp_path)
     path = tmp_path / "history.csv"
-    data = bytearray(path.read_bytes())
-    for bit in (1, 4, 128):
-        changed = data.copy()
-        changed[at] ^= bit
-        path.write_bytes(changed)
-        try:
-            table = read_history(path)
-        except CaseError as error:
-            assert "\n" not in str(error)
-        else:  # A digit, or a name that nothing needs.
-            assert set(COLUMNS) <= set(table)
+    data = path.read_bytes()
+    for at in range(0, 600, 3):
+        for bit in (1, 4, 128):
+            path.write_bytes(data[:at] + bytes([data[at] ^ bit]) + data[at + 1 :])
+            try:
+                table = read_history(path)
+            except CaseError as error:
+                assert "\n" not in str(error)
+            else:  # A digit, or a name that nothing needs.
+                assert set(NEEDED) <= set(table)
 
 
 def write_history(path: Path, every: int = 1) -> HistoryWriter:

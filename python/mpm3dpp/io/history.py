@@ -3,12 +3,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import csv
-import io
 import itertools
 import os
-import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import bring_to_disk, checksum, make_folder, writing
+from mpm3dpp.io.disk import checksum, make_folder
 from mpm3dpp.io.fields import numbered
+from mpm3dpp.io.table import Table
 
 COLUMNS = (
     *("step", "time", "dt", "kinetic", "internal", "plastic", "viscous", "friction", "contact"),
@@ -124,12 +122,12 @@ class HistoryWriter:
                 header += [f"contact_{kind}_{both}_{x}" for x in _AXES]
         make_folder(self.path.parent)
         known = [None, None] if state is None or anew else state["tables"]
-        self._table = _Table(self.path, header, known[0])
-        self._long: _Table | None = None
+        self._table = Table(self.path, header, known[0])
+        self._long: Table | None = None
         if len(pairs) > PAIR_LIMIT:
             values = [f"contact_{kind}_{x}" for kind in ("force", "impulse") for x in _AXES]
             path = self.path.with_name(PAIRS)
-            self._long = _Table(path, ["step", "time", "body_a", "body_b", *values], known[1])
+            self._long = Table(path, ["step", "time", "body_a", "body_b", *values], known[1])
         self._index = {name: k for k, name in enumerate(own)}
         self._summary: dict[str, Any] = dict(state["summary"] or {}) if state else {}
         self._momentum = np.array(state["momentum"] if state else [])
@@ -227,54 +225,6 @@ class HistoryWriter:
             new[f"{name}_max"] = max(new[f"{name}_max"], float(np.abs(column[name]).max()))
         drift = np.linalg.norm(momentum - self._momentum, axis=1).max()
         new["momentum_drift"] = max(new["momentum_drift"], float(drift))
-
-
-class _Table:
-    """A CSV file that only ever holds whole rows, even when the disk runs full.
-
-    With what `saved` returned, an old one goes on from there.
-    """
-
-    def __init__(
-        self, path: Path, header: list[str], known: Mapping[str, int] | None = None
-    ) -> None:
-        self._path = path
-        self._size, self._check = (known["size"], known["check"]) if known else (0, 0)
-        with writing(path):
-            if known is not None:
-                os.truncate(path, self._size)
-            # Not buffered: what could not be written must not be tried again later.
-            self._file = open(path, "wb" if known is None else "ab", buffering=0)  # noqa: SIM115
-        if known is None:
-            text = io.StringIO()
-            csv.writer(text, lineterminator="\n").writerow(header)
-            self._write(text.getvalue())
-
-    def saved(self) -> dict[str, int]:
-        """Return size [bytes] and CRC-32 of the file, when that much is on the disk."""
-        bring_to_disk(self._path)
-        return {"size": self._size, "check": self._check}
-
-    def append(self, lines: list[list[str]]) -> None:
-        self._write("".join(",".join(cells) + "\n" for cells in lines))
-
-    def _write(self, text: str) -> None:
-        data = memoryview(text.encode())
-        check = zlib.crc32(data, self._check)
-        try:
-            with writing(self._path):
-                left = data
-                while left:
-                    left = left[self._file.write(left) :]
-        except CaseError:
-            with contextlib.suppress(OSError):  # A reader drops half a row.
-                os.truncate(self._path, self._size)
-            raise
-        self._size, self._check = self._size + len(data), check
-
-    def close(self) -> None:
-        with writing(self._path):
-            self._file.close()
 
 
 def _three(vector: Sequence[float]) -> list[float]:
