@@ -81,7 +81,7 @@ class Server:
         self.frames = frames_of(folder / "whole")
         self.hash = read_manifest(folder / "whole")["result_hash"]
         self.half = folder / "half"
-        code, _ = self.fork(lambda: stopped_after(self.case, self.half, 3))
+        code, _ = self.fork(lambda: stopped_after(self.case, self.half, 12))
         assert code == DONE
 
     def count(self, scenario: str) -> int:
@@ -193,12 +193,12 @@ def same(found: list[dict[str, Any]], expected: list[dict[str, Any]]) -> None:
 
 
 def by_steps() -> None:
-    """Let checkpoints be due at every second look, not by the clock."""
+    """Let checkpoints be due at every eighth look, not by the clock."""
     looks = [0]
 
     def due(_: Any) -> bool:
         looks[0] += 1
-        return looks[0] % 2 == 0
+        return looks[0] % 8 == 0
 
     mpm3dpp.checkpoints.Checkpoints.due = property(due)  # type: ignore[assignment,method-assign]
 

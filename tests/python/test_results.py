@@ -29,6 +29,7 @@ from mpm3dpp.io import (
     result_hash,
     von_mises,
 )
+from mpm3dpp.plots.energies import draw_energies
 from mpm3dpp.progress import Progress
 
 TO_VTK = [0, 1, 2, 5, 3, 4]  # xx yy zz xy yz xz from xx yy zz yz xz xy
@@ -351,20 +352,16 @@ def test_other_arrays_than_those_of_the_first_frame(tmp_path: Path) -> None:
 
 def test_a_damaged_history(tmp_path: Path) -> None:
     """A bit of its header, or of its first row, is another one."""
-    from mpm3dpp.io.history import COLUMNS as NEEDED
-
     write_history(tmp_path)
     path = tmp_path / "history.csv"
     data = path.read_bytes()
-    for at in range(0, 600, 3):
-        for bit in (1, 4, 128):
+    for at in [*range(0, 600, 29), data.index(b"_y,") + 1]:
+        for bit in (1, 128):
             path.write_bytes(data[:at] + bytes([data[at] ^ bit]) + data[at + 1 :])
             try:
-                table = read_history(path)
+                draw_energies(read_history(path))  # A digit, or a name that nothing needs.
             except CaseError as error:
                 assert "\n" not in str(error)
-            else:  # A digit, or a name that nothing needs.
-                assert set(NEEDED) <= set(table)
 
 
 def write_history(path: Path, every: int = 1) -> HistoryWriter:

@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 CELLS = "cells"
 """Among the arrays that stand elsewhere: the cells."""
 
+LIBVER = ("v108", "v110")
+"""Versions of HDF5's format: from the first on tables have check sums; virtual data sets need the
+last."""
+
 _NAME = re.compile(r"(\d{6,})\.h5")
 _CHUNK_BYTES = (1 << 32) - 1  # HDF5's limit
 
@@ -94,7 +98,7 @@ def write_frame(path: Path, info: FrameInfo, arrays: Mapping[str, Any], level: i
     Raises:
         CaseError: the file cannot be written; there is none then.
     """
-    with new_h5(path) as file:
+    with _new_h5(path) as file:
         group = file.create_group("arrays")
         for name, array in arrays.items():
             column = as_stored(array)
@@ -143,7 +147,7 @@ def read_arrays(folder: Path, frame: int) -> dict[str, np.ndarray]:
 
 
 @contextlib.contextmanager
-def new_h5(path: Path) -> Iterator[h5py.File]:
+def _new_h5(path: Path) -> Iterator[h5py.File]:
     """Give an HDF5 file to write, which takes the place of `path` in one step (`replacing`).
 
     HDF5 never hears of an error of the disk, for after one it cannot close its file, and takes the
@@ -153,8 +157,7 @@ def new_h5(path: Path) -> Iterator[h5py.File]:
 
     with replacing(path) as raw:
         target = _Deaf(raw)
-        # From version 1.8 of the format on, tables have check sums.
-        with h5py.File(target, "w", libver=("v108", "v110")) as file:
+        with h5py.File(target, "w", libver=LIBVER) as file:
             yield file
         target.tell_error()
 
@@ -197,7 +200,8 @@ class _Deaf(io.RawIOBase):
         self._try(self._raw.flush)
 
     def _write(self, data: Any) -> None:
-        self._raw.seek(self._at)
+        if self._raw.tell() != self._at:  # A seek would empty the buffer.
+            self._raw.seek(self._at)
         self._raw.write(data)
 
     def _try(self, act: Any) -> None:

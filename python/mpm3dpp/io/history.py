@@ -258,7 +258,8 @@ def read_history(path: str | Path) -> dict[str, np.ndarray]:
         raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
     except (OSError, ValueError, IndexError, csv.Error) as error:
         raise CaseError(f"'{path}' is not a history table of mpm3dpp: {error}") from error
-    for name in ("time", *COLUMNS):
+    forces = [n[:-1] for n in header if n.startswith("contact_") and n.endswith("_x")]
+    for name in ("time", *COLUMNS, *NUMERICAL, *(n + x for n in forces for x in _AXES)):
         if name not in header:
             rule = (
                 f"'{path}' is not a history table of mpm3dpp, or damaged: it has no column {name}"

@@ -8,6 +8,7 @@ this file, so that the folder can be moved. What is missing there reads as NaN (
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -15,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.io.frame_file import CELLS, FrameInfo, frame_path, frames_folder, new_h5
+from mpm3dpp.io.disk import replacing
+from mpm3dpp.io.frame_file import CELLS, LIBVER, FrameInfo, frame_path, frames_folder
 
 if TYPE_CHECKING:
     import h5py
@@ -34,8 +36,11 @@ def write_master(path: Path, frames: Sequence[FrameInfo], meta: Mapping[str, Any
     Raises:
         CaseError: it cannot be written; the old one still stands.
     """
+    import h5py
+
     folder = frames_folder(path)
-    with new_h5(path) as file:
+    image = io.BytesIO()  # It is small, and HDF5 must not hear of an error of the disk.
+    with h5py.File(image, "w", libver=LIBVER) as file:
         root = file.create_group("VTKHDF")
         root.attrs["Version"] = np.array([2, 0], dtype=np.int64)
         root.attrs.create("Type", np.bytes_("PolyData"))
@@ -63,6 +68,8 @@ def write_master(path: Path, frames: Sequence[FrameInfo], meta: Mapping[str, Any
                 steps["PointDataOffsets"][name] = offsets
         about = {**meta, "frames": folder.name}
         file.create_group("mpm3dpp").attrs["run"] = json.dumps(about)
+    with replacing(path) as raw:
+        raw.write(image.getbuffer())
 
 
 def _place_cells(

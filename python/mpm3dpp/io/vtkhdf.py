@@ -139,7 +139,7 @@ class ResultsWriter:
 
         It is `frames`, the check sum of each frame's file, and `units`.
         """
-        self._tell()
+        self._tell_of_all()
         bring_folder_to_disk(self._folder)
         bring_folder_to_disk(self.path.parent)
         return {"frames": list(self._checks), "units": dict(self._meta["units"])}
@@ -211,8 +211,7 @@ class ResultsWriter:
         """Let the file tell of all frames. Closing twice does nothing."""
         if not self._closed:
             self._closed = True
-            if self._told < self.frames:
-                self._tell()
+            self._tell_of_all()
 
     def __enter__(self) -> ResultsWriter:
         return self
@@ -224,6 +223,10 @@ class ResultsWriter:
         """Write the VTKHDF file anew."""
         write_master(self.path, self._frames, self._meta)
         self._told = self.frames
+
+    def _tell_of_all(self) -> None:
+        if self._told < self.frames:
+            self._tell()
 
     def _go_on(self, rows: Mapping[str, Any]) -> None:
         """Learn what the frames hold that are kept."""
