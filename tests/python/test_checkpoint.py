@@ -196,6 +196,7 @@ def test_an_unfinished_run_is_not_lost_by_running_it_again(tmp_path: Path) -> No
     assert mpm3dpp(*words, cwd=tmp_path).returncode == 2
     whole = (out / "checkpoint.zip").read_bytes()
     (out / "checkpoint.zip").write_bytes(whole[:2000])
+    (out / "checkpoint_previous.zip").unlink(missing_ok=True)
     broken = mpm3dpp(*words, cwd=tmp_path)
     assert broken.returncode == 2 and "or damaged; begin the run anew" in one_sentence(
         broken.stderr

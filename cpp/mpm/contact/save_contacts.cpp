@@ -78,8 +78,7 @@ void ContactGrid<D>::exchange(StateStream& stream, std::size_t bodies) {
     StateStream::check(size == 0 || size == bodies, damaged);
   StateStream::check(bodies_max_ >= 0 && static_cast<std::size_t>(bodies_max_) <= bodies, damaged);
   check_records(records_, places_.size(), bodies);
-  std::fill(places_.begin(), places_.end(), 0u);
-  for (std::size_t k = 0; k < records_.size(); ++k) enter(k);
+  sort_records();
 }
 
 template void ContactGrid<2>::exchange(StateStream&, std::size_t);
