@@ -22,8 +22,8 @@ from commands import CASE
 FAULTS = Path(__file__).parents[1] / "faults"
 TINY = (
     CASE.replace('cell_size = "10 mm"', 'cell_size = "20 mm"')
-    .replace('"8 ms"', '"4 ms"')
-    .replace("frames = 4", "frames = 3")
+    .replace('"8 ms"', '"2 ms"')
+    .replace("frames = 4", "frames = 2")
 )
 
 
