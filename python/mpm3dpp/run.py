@@ -87,7 +87,8 @@ def run_case(
 
 def _run(case: Case, folder: Path, threads: int | None, quiet: bool, resume: bool) -> Manifest:
     """Make the run, and write all but pictures."""
-    before, notes = None, []
+    before: Checkpoint | None = None
+    notes: list[str] = []
     if resume:
         simulation, before, notes = go_on(folder, case, lambda: Simulation(case, threads))
     else:
@@ -138,7 +139,7 @@ def _write_run(
     contact = case.contact_enabled
     most = min(case.output.history_every if contact else _BLOCK, core.history_capacity // 2)
     frames = [t for t in case.frame_times() if t > core.time]
-    results_anew = before is None or before.results_are_gone
+    kept = None if before is None or before.results_are_gone else before.results
     history_anew = before is not None and before.history_is_gone
     file = ResultsWriter(
         folder / RESULTS,
@@ -151,7 +152,7 @@ def _write_run(
         compression=case.output.compression,
         title=case.title,
         case_hash=case.case_hash,
-        rows=None if results_anew else before.results,
+        rows=kept,
     )
     history = HistoryWriter(
         folder / "history.csv",
@@ -171,8 +172,10 @@ def _write_run(
             progress.note(f"warning: {sentence}")
         for sentence in [*simulation.notes, *notes]:
             progress.note(f"note: {sentence}")
-        if results_anew:
+        if kept is None:
             results.write(core)
+        if before is not None and (kept is None or history_anew):  # Of the new files.
+            _tell(progress, checkpoints.write(core, results, history))
         touched = len(core.contact_groups()) if contact else 0
         while status == "completed" and core.time < case.run.end_time:
             try:

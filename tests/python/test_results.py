@@ -132,6 +132,32 @@ def test_vtk_reads_frames_with_changing_counts(tmp_path: Path) -> None:
         np.testing.assert_array_equal(values, np.arange(count) + 10.0 * k)
 
 
+def test_vtk_reads_while_a_run_goes_on(tmp_path: Path) -> None:
+    """A reader keeps what it has opened; one that opens the file again sees more."""
+    import vtkmodules.vtkIOHDF as vtk_hdf
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    def opened() -> vtk_hdf.vtkHDFReader:
+        reader = vtk_hdf.vtkHDFReader()
+        reader.SetFileName(str(tmp_path / "results.vtkhdf"))
+        reader.UpdateInformation()
+        return reader
+
+    def last(reader: vtk_hdf.vtkHDFReader) -> float:
+        reader.SetStep(reader.GetNumberOfSteps() - 1)
+        reader.Update()
+        return float(vtk_to_numpy(reader.GetOutputDataObject(0).GetPoints().GetData())[0, 0])
+
+    with writer(tmp_path) as results:
+        for k in range(5):
+            results.append(float(k), k, {"position": np.full((4, 3), float(k))})
+            if k == 1:
+                first = opened()
+            assert last(opened()) == k
+        assert first.GetNumberOfSteps() == 2 and last(first) == 1.0
+    assert last(opened()) == 4.0
+
+
 def test_frames_as_pyvista(tmp_path: Path) -> None:
     import pyvista
 

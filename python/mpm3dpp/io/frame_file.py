@@ -112,7 +112,7 @@ def write_frame(path: Path, info: FrameInfo, arrays: Mapping[str, Any], level: i
             cells = file.create_group(CELLS)
             cells["Offsets"] = np.arange(info.count + 1, dtype=np.int64)
             cells["Connectivity"] = np.arange(info.count, dtype=np.int64)
-        about = {"time": info.time, "step": info.step, "count": info.count}
+        about: dict[str, Any] = {"time": info.time, "step": info.step, "count": info.count}
         about |= {"checks": info.checks, "elsewhere": info.elsewhere}
         file.attrs["frame"] = json.dumps(about)
 
