@@ -206,11 +206,11 @@ NB_MODULE(_core, m) {
           nb::arg("write"))
       .def(
           "restore",
-          [](Simulation& s, const nb::callable& readinto) {
+          [](Simulation& s, const nb::callable& readinto, std::size_t size) {
             const AtWork here(s);
-            s.restore(transfer_by(readinto));
+            s.restore(transfer_by(readinto), size);
           },
-          nb::arg("readinto"))
+          nb::arg("readinto"), nb::arg("size"))
       .def_prop_ro("time", &Simulation::time)
       .def_prop_ro("dt", &Simulation::next_time_step)
       .def_prop_ro("step", &Simulation::step)

@@ -13,12 +13,20 @@ from . import _core
 from .case import Case
 from .errors import CaseError, show
 from .errors import Path as KeyPath
+from .io.about import check_about
 from .io.background import BackgroundWriter
-from .io.checkpoint import ANEW, CHECKPOINT, read_about, write_checkpoint
-from .io.history import HistoryWriter, has_history
-from .io.manifest import read_manifest
-from .io.rows import has_rows
-from .io.vtkhdf import RESULTS
+from .io.checkpoint import (
+    ANEW,
+    CHECKPOINT,
+    PREVIOUS,
+    DamagedError,
+    read_about,
+    write_checkpoint,
+)
+from .io.disk import writing
+from .io.frame_file import frames_folder
+from .io.history import HistoryWriter, check_history, has_no_history
+from .io.vtkhdf import RESULTS, check_frames, has_no_results
 
 # What a case may change before it goes on: nothing that a step made so far depends on.
 _MAY_CHANGE = {("title",), ("run", "end_time"), ("run", "energy_growth_limit")}
@@ -40,38 +48,62 @@ class Checkpoint:
     step: int
     time: float
     wall_time: float
-    results: dict[str, int]
+    results: dict[str, Any]
     history: dict[str, Any]
     case: dict[str, Any]
     made_by: dict[str, str]
 
     @classmethod
-    def of(cls, folder: Path) -> Checkpoint:
-        """Read that of an output folder. Raises `CaseError` where there is none."""
-        path = folder / CHECKPOINT
+    def of(cls, path: Path) -> Checkpoint:
+        """Read one. Raises `DamagedError` where there is none that can be used."""
         about = read_about(path)
         try:
-            return cls(path, **about)
-        except TypeError as error:
-            rule = f"'{path}' is not a checkpoint of a run by this version of mpm3dpp"
-            raise CaseError(rule, ANEW) from error
+            check_about(about)
+        except ValueError as error:
+            rule = f"'{path}' is not a checkpoint of a run by this version of mpm3dpp, or damaged"
+            raise DamagedError(rule, ANEW) from error
+        return cls(path, **about)
+
+    @property
+    def results_are_gone(self) -> bool:
+        """Whether none of the frames is there any more."""
+        return has_no_results(self.path.parent / RESULTS)
+
+    @property
+    def history_is_gone(self) -> bool:
+        """Whether no table is there any more."""
+        return has_no_history(self.path.parent)
 
     def check(self, case: Case) -> None:
-        """Raise `CaseError` if a case cannot go on from here, and say why; nothing is changed."""
+        """Raise `CaseError` if a case cannot go on from here, and say why; nothing is changed.
+
+        Frames and tables are compared with their check sums. They may be gone altogether.
+        """
         check_same(self.path, self.case, case)
         if case.run.end_time < self.time:
             rule = f"is before the {self.time:.6g} s that the run of '{self.path}' has reached"
             remedy = f"give a later one, or {ANEW}"
             raise CaseError(rule, remedy, key="run.end_time", value=case.run.end_time)
         folder = self.path.parent
-        for name in ("history.csv", RESULTS):
-            if (folder / name).exists() and not os.access(folder / name, os.W_OK):
-                raise CaseError(f"cannot write '{folder / name}'", "make it writable")
-        if not has_history(folder, self.history):
-            raise CaseError(f"the history in '{folder}' has lost rows since the checkpoint", ANEW)
-        if not has_rows(folder / RESULTS, "VTKHDF", self.results):
-            rule = f"'{folder / RESULTS}' is damaged or has lost frames since the checkpoint"
-            raise CaseError(rule, ANEW)
+        table, results = folder / "history.csv", folder / RESULTS
+        for file in (table, results):
+            if file.exists() and not os.access(file, os.W_OK):
+                raise CaseError(f"cannot write '{file}'", "make it writable")
+        for gone, check, known, names in (
+            (self.history_is_gone, check_history, self.history, f"'{table}'"),
+            (
+                self.results_are_gone,
+                check_frames,
+                self.results,
+                f"'{results}' and '{frames_folder(results)}'",
+            ),
+        ):
+            try:
+                if not gone:
+                    check(results if check is check_frames else folder, known)
+            except CaseError as error:
+                remedy = f"bring it back, remove {names} to go on with new files, or {ANEW}"
+                raise DamagedError(error.rule, remedy) from error
 
     def notes(self, case: Case) -> list[str]:
         """Sentences for the user who goes on from here."""
@@ -114,37 +146,6 @@ def check_same(path: Path, before: dict[str, Any], case: Case) -> None:
         raise case.error(where, f"was {show(then)} in the run of '{path}'", remedy, value=now)
 
 
-def refuse_to_begin_anew(folder: Path, case: Case) -> None:
-    """Raise `CaseError` if a folder holds an unfinished run, or the run of another case.
-
-    It is the same case if its file is, edited or not, or if its content is, wherever the file.
-    """
-    _refuse_another_case(folder, case)
-    if not (folder / CHECKPOINT).is_file():
-        return
-    before = Checkpoint.of(folder)
-    done = before.time / before.case["run"]["end_time"]
-    if done < 1.0:
-        rule = f"'{folder}' holds an unfinished run, at {done:.0%} of its time"
-        raise CaseError(rule, f"go on with --resume, {ANEW}, or choose another --out")
-
-
-def _refuse_another_case(folder: Path, case: Case) -> None:
-    try:
-        before = read_manifest(folder)
-    except CaseError:  # None, or not ours.
-        return
-    if "case_file" not in before:  # By an earlier version: the file may be the same one, edited.
-        return
-    file = before["case_file"]
-    if before.get("case_hash") in (None, case.case_hash) or (file and file == case.file_path):
-        return
-    title = (before.get("case") or {}).get("title", "")
-    name = " of ".join(word for word in (show(title) if title else "", file) if word)
-    rule = f"'{folder}' holds the run of another case{', ' if name else ''}{name}"
-    raise CaseError(rule, f"choose another --out, or {ANEW}")
-
-
 class Checkpoints:
     """Writes the checkpoints of a run into its folder, when they are due.
 
@@ -160,6 +161,9 @@ class Checkpoints:
         self._interval = case.output.checkpoint_interval
         # One that is there must not stay behind the files.
         self._last_too = self._interval > 0.0 or before is not None
+        if before is not None and before.path != self._path:  # The last one cannot be used.
+            with writing(self._path):
+                before.path.replace(self._path)
         self._last = clock.monotonic()
         self._begin = self._last - (before.wall_time if before else 0.0)
 
@@ -194,7 +198,7 @@ class Checkpoints:
         }
         self._last = clock.monotonic()
         try:
-            write_checkpoint(self._path, core, about)
+            write_checkpoint(self._path, core, about, keep=self._path.with_name(PREVIOUS))
         except CaseError as error:
             return str(error)
         return ""

@@ -105,9 +105,9 @@ def run(
     ] = False,
 ) -> None:
     """Run a case: frames, history, manifest and pictures in the output folder."""
-    from .checkpoints import refuse_to_begin_anew
     from .folders import default_folder, writable_folder
     from .machine import thread_count
+    from .resume import refuse_to_begin_anew
 
     loaded = _load(case, units, quiet)
     folder = out if out is not None else default_folder(case)

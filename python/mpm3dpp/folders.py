@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from .errors import CaseError
-from .io.checkpoint import CHECKPOINT, UNFINISHED
-from .io.disk import cannot_write, make_folder
+from .io.checkpoint import CHECKPOINT, PREVIOUS
+from .io.disk import cannot_write, make_folder, unfinished
 
 
 def default_folder(case_file: Path) -> Path:
@@ -42,7 +42,8 @@ def forget_last_run(folder: Path, checkpoint: bool = True) -> None:
     Raises:
         CaseError: it cannot be removed.
     """
-    for name in (*_OF_A_RUN, *((CHECKPOINT, UNFINISHED) if checkpoint else ())):
+    half = unfinished(Path(CHECKPOINT)).name
+    for name in (*_OF_A_RUN, *((half, PREVIOUS, CHECKPOINT) if checkpoint else ())):
         try:
             (folder / name).unlink(missing_ok=True)
         except OSError as error:

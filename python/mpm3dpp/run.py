@@ -17,12 +17,13 @@ from .checkpoints import Checkpoint, Checkpoints
 from .errors import CaseError, RunError
 from .folders import forget_last_run, only_run_in, writable_folder
 from .io.background import BackgroundWriter
-from .io.checkpoint import CHECKPOINT, restore_checkpoint
+from .io.checkpoint import CHECKPOINT
 from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import RESULTS, ResultsWriter
 from .progress import Progress
 from .report import contact_table, energy_line, gone_lines, load_lines, speed_line
+from .resume import go_on, has_checkpoint
 from .signals import Notice, as_exceptions
 from .simulation import Simulation
 
@@ -57,22 +58,21 @@ def run_case(
         RunError: the run became unstable, or the disk is full; what was written before is kept.
         KeyboardInterrupt: the user stopped it; what was computed is kept.
     """
-    folder, before = arguments.path("out", out), None
+    folder = arguments.path("out", out)
     if not isinstance(case, Case):
         case = load_case(arguments.path("case", case))
-    if resume:
-        before = Checkpoint.of(folder)
-        before.check(case)
+    if resume and not has_checkpoint(folder):
+        Checkpoint.of(folder / CHECKPOINT)  # tells it
     writable_folder(folder)
     with only_run_in(folder):
-        manifest, late = _run(case, folder, threads, quiet or json, before)
+        manifest, late = _run(case, folder, threads, quiet or json, resume)
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
         lines = [*contact_table(manifest), *load_lines(manifest), *gone_lines(manifest)]
         lines += [energy_line(manifest)]
         print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]), flush=True)
-    can_go_on = "; --resume goes on" if (folder / CHECKPOINT).exists() else ""
+    can_go_on = "; --resume goes on" if has_checkpoint(folder) else ""
     if manifest.status == "interrupted" and not quiet:
         text = f"mpm3dpp: {manifest.reason}; results are in {folder}{can_go_on}"
         print(text, file=sys.stderr, flush=True)
@@ -88,22 +88,27 @@ def run_case(
 
 
 def _run(
-    case: Case, folder: Path, threads: int | None, quiet: bool, before: Checkpoint | None
+    case: Case, folder: Path, threads: int | None, quiet: bool, resume: bool
 ) -> tuple[Manifest, bool]:
     """Make the run, and write all but pictures; return also whether Ctrl-C came after its end."""
+    before: Checkpoint | None = None
+    notes: list[str] = []
+    if resume:
+        simulation, before, notes = go_on(folder, case, lambda: Simulation(case, threads))
+    else:
+        simulation = Simulation(case, threads)
     checkpoints = Checkpoints(folder, case, before)
-    simulation = Simulation(case, threads)
-    if before is not None:
-        restore_checkpoint(before.path, simulation.core)
     with _interrupt() as stopped:
         forget_last_run(folder, checkpoint=before is None)
         begin = simulation.step
         try:
-            status, reason = _write_run(simulation, folder, quiet, checkpoints, before, stopped)
+            status, reason = _write_run(
+                simulation, folder, quiet, checkpoints, before, notes, stopped
+            )
         except CaseError as error:  # The disk: it was no mistake when the run began.
             if simulation.step == begin:
                 raise
-            can_go_on = ", and --resume goes on" if (folder / CHECKPOINT).exists() else ""
+            can_go_on = ", and --resume goes on" if has_checkpoint(folder) else ""
             raise RunError(f"{error}; what was written before is in {folder}{can_go_on}") from error
         manifest = _manifest(simulation, status, reason, checkpoints.wall_time, begin)
         manifest.energies = simulation.summary
@@ -135,6 +140,7 @@ def _write_run(
     quiet: bool,
     checkpoints: Checkpoints,
     before: Checkpoint | None,
+    notes: list[str],
     stopped: Callable[[], bool],
 ) -> tuple[Status, str | None]:
     """Step to the end time, writing frames and history; return how it ended, and why."""
@@ -142,6 +148,8 @@ def _write_run(
     contact = case.contact_enabled
     most = min(case.output.history_every if contact else _BLOCK, core.history_capacity // 2)
     frames = [t for t in case.frame_times() if t > core.time]
+    kept = None if before is None or before.results_are_gone else before.results
+    history_anew = before is not None and before.history_is_gone
     file = ResultsWriter(
         folder / RESULTS,
         bodies=simulation.parts,
@@ -153,7 +161,7 @@ def _write_run(
         compression=case.output.compression,
         title=case.title,
         case_hash=case.case_hash,
-        rows=before.results if before else None,
+        rows=kept,
     )
     history = HistoryWriter(
         folder / "history.csv",
@@ -162,6 +170,7 @@ def _write_run(
         contact=contact,
         every=case.output.history_every,
         state=before.history if before else None,
+        anew=history_anew,
     )
     unit = "J/m" if case.grid.dimension == 2 else "J"
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
@@ -170,13 +179,12 @@ def _write_run(
     with BackgroundWriter(file) as results, history, progress:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
-        for sentence in simulation.notes:
+        for sentence in [*simulation.notes, *notes]:
             progress.note(f"note: {sentence}")
-        if before is None:
+        if kept is None:
             results.write(core)
-        else:
-            for sentence in before.notes(case):
-                progress.note(f"note: {sentence}")
+        if before is not None and (kept is None or history_anew):  # Of the new files.
+            _tell(progress, checkpoints.write(core, results, history))
         touched = len(core.contact_groups()) if contact else 0
         while status == "completed" and core.time < case.run.end_time:
             try:

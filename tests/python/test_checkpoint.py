@@ -8,6 +8,7 @@ import io
 import json
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -17,16 +18,15 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 
 from commands import CASE, command, mpm3dpp, one_sentence, write
 from mpm3dpp import Case, Simulation, load_case, open_results, run_case
-from mpm3dpp.checkpoints import refuse_to_begin_anew
 from mpm3dpp.errors import CaseError
-from mpm3dpp.io import read_manifest
+from mpm3dpp.io import read_history, read_manifest
 from mpm3dpp.report import speed_line
+from mpm3dpp.resume import refuse_to_begin_anew
 
 OFTEN = CASE.replace("frames = 4", 'interval = "20 ms"\ncheckpoint_interval = "50 ms"')
 LONG = OFTEN.replace('"8 ms"', '"1000 s"')
@@ -196,6 +196,7 @@ def test_an_unfinished_run_is_not_lost_by_running_it_again(tmp_path: Path) -> No
     assert mpm3dpp(*words, cwd=tmp_path).returncode == 2
     whole = (out / "checkpoint.zip").read_bytes()
     (out / "checkpoint.zip").write_bytes(whole[:2000])
+    (out / "checkpoint_previous.zip").unlink(missing_ok=True)
     broken = mpm3dpp(*words, cwd=tmp_path)
     assert broken.returncode == 2 and "or damaged; begin the run anew" in one_sentence(
         broken.stderr
@@ -345,29 +346,102 @@ def test_damaged_checkpoints(tmp_path: Path) -> None:
         assert f"cannot be used: {sentence}" in resumed(tmp_path, CASE)
 
 
-@pytest.mark.parametrize("name", ["history.csv", "results.vtkhdf"])
-def test_files_that_have_changed(tmp_path: Path, name: str) -> None:
-    """What is missing is told before anything is touched."""
+def flipped(data: bytes, at: int) -> bytes:
+    return data[:at] + bytes([data[at] ^ 64]) + data[at + 1 :]
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "sentence"),
+    [
+        ("history.csv", lambda data: data[:-10], "history.csv' has lost rows since the checkpoint"),
+        ("history.csv", lambda data: flipped(data, 8), "history.csv' is damaged: its rows are not"),
+        ("history.csv", lambda data: flipped(data, 9000), "history.csv' is damaged: its rows are"),
+        ("results.frames/000002.h5", lambda data: data[:1000], "frame 2 is damaged: "),
+        ("results.frames/000002.h5", lambda data: flipped(data, 5000), "frame 2 is damaged: "),
+        ("results.frames/000000.h5", None, "frame 0 is missing: there is no file "),
+    ],
+)
+def test_files_that_have_changed(
+    tmp_path: Path, name: str, change: Callable[[bytes], bytes] | None, sentence: str
+) -> None:
+    """It is told before anything is touched."""
     finished(tmp_path)
     file = tmp_path / "out" / name
-    whole = file.read_bytes()
-    later = CASE.replace('"8 ms"', '"9 ms"')
-
-    def refused() -> None:
-        before = {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()}
-        assert "has lost" in resumed(tmp_path, later)
-        assert {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()} == before
-
-    if name == "history.csv":
-        file.write_bytes(whole[:-10])
+    if change:
+        file.write_bytes(change(file.read_bytes()))
     else:
-        with h5py.File(file, "r+") as results:
-            results["VTKHDF/Points"].resize(100, axis=0)
-    refused()
-    file.write_bytes(whole[:1000])
-    refused()
-    file.unlink()
-    refused()
+        file.unlink()
+
+    def files() -> dict[Path, bytes]:
+        return {p: p.read_bytes() for p in (tmp_path / "out").rglob("*") if p.is_file()}
+
+    before = files()
+    said = resumed(tmp_path, CASE.replace('"8 ms"', '"9 ms"'))
+    assert sentence in said
+    assert "; bring it back, remove '" in said and "to go on with new files, or begin the" in said
+    assert files() == before
+
+
+def test_files_that_are_gone(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """New ones begin where the run goes on."""
+    finished(tmp_path)
+    out = tmp_path / "out"
+    shutil.rmtree(out / "results.frames")
+    (out / "results.vtkhdf").unlink()
+    (out / "history.csv").unlink()
+    later = load_case(write(tmp_path, CASE.replace('"8 ms"', '"9 ms"')))
+    done = run_case(later, out, threads=1, quiet=False, pictures=False, resume=True)
+    said = capfd.readouterr().err
+    for name in ("results.vtkhdf", "history.csv"):
+        assert f"note: '{out / name}' was gone: a new one begins at t = 0.008 s" in said
+    with open_results(out) as results:
+        assert results.times[0] == 8e-3 and results.times[-1] == pytest.approx(9e-3)
+        assert "body" in results.arrays(-1)
+    assert read_history(out)["time"][-1] == 9e-3
+    whole = run_case(later, tmp_path / "whole", threads=1, pictures=False)
+    assert done.energies["initial"] == whole.energies["initial"]
+    # What tells where frames are can be made again from them.
+    (out / "results.vtkhdf").unlink()
+    run_case(later, out, threads=1, pictures=False, resume=True)
+    with open_results(out) as results:
+        assert results.times[0] == 8e-3
+
+
+def test_the_checkpoint_before_the_last(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """It is kept until the next is whole, and taken where the last is damaged."""
+    case = load_case(write(tmp_path))
+    whole = run_case(case, tmp_path / "whole", threads=1, pictures=False)
+    out = tmp_path / "out"
+    monkeypatch.setattr("mpm3dpp.checkpoints.Checkpoints.due", True)
+    interrupted(case, out, 3, monkeypatch)
+    steps = []
+    for name in ("checkpoint.zip", "checkpoint_previous.zip"):
+        simulation = Simulation(case, threads=1)
+        simulation.restore(out / name)
+        steps.append(simulation.step)
+    assert 0 < steps[1] < steps[0]
+    last = out / "checkpoint.zip"
+    last.write_bytes(flipped(last.read_bytes(), 20_000))
+    again = run_case(case, out, threads=1, quiet=False, pictures=False, resume=True)
+    said = capfd.readouterr().err
+    assert f"note: the checkpoint '{last}' is damaged: the run goes on from the one before" in said
+    assert again.resumed_step == steps[1] and again.result_hash == whole.result_hash
+    check_files(out, tmp_path / "whole")
+    last.write_bytes(b"")
+    (out / "checkpoint_previous.zip").write_bytes(b"")
+    assert f"'{last}' is not a checkpoint of mpm3dpp, or damaged" in resumed(tmp_path, CASE)
+
+
+def test_going_on_is_recommended_only_where_it_is_possible(tmp_path: Path) -> None:
+    stopped(tmp_path, signal.SIGINT)
+    other = load_case(write(tmp_path, LONG.replace('"5 m/s"', '"6 m/s"')))
+    with pytest.raises(CaseError) as error:
+        refuse_to_begin_anew(tmp_path / "out", other)
+    assert "--resume cannot go on with it (" in str(error.value)
+    assert "was [5.0, 0.0] in the run of" in str(error.value)
+    assert str(error.value).endswith("begin the run anew with --anew)")
 
 
 def test_an_end_that_has_passed(tmp_path: Path) -> None:
@@ -399,7 +473,7 @@ def test_a_checkpoint_that_cannot_be_written_does_not_end_the_run(
     out = tmp_path / "out"
     case = load_case(write(tmp_path))
     with monkeypatch.context() as patch:
-        patch.setattr("mpm3dpp.io.checkpoint.os.fsync", full)
+        patch.setattr("mpm3dpp.io.disk.os.fsync", full)
         done = run_case(case, out, threads=1, quiet=False, pictures=False)
     assert done.status == "completed" and read_manifest(out)["status"] == "completed"
     assert "warning: no checkpoint: cannot write" in capfd.readouterr().err
@@ -456,7 +530,7 @@ def test_half_a_state_does_not_step(tmp_path: Path) -> None:
     simulation.core.save(lambda view: parts.append(bytes(view)) or len(view))
     half = io.BytesIO(b"".join(parts)[: sum(map(len, parts)) // 2])
     with pytest.raises(ValueError, match="it ends too early"):
-        simulation.core.restore(half.readinto)
+        simulation.core.restore(half.readinto, len(half.getvalue()))
     with pytest.raises(ValueError, match=r"prepare\(\)"):
         simulation.core.advance(1, 1.0)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 import signal
 import subprocess
 import sys
@@ -28,6 +29,7 @@ from mpm3dpp.io import (
     result_hash,
     von_mises,
 )
+from mpm3dpp.plots.energies import draw_energies
 from mpm3dpp.progress import Progress
 
 TO_VTK = [0, 1, 2, 5, 3, 4]  # xx yy zz xy yz xz from xx yy zz yz xz xy
@@ -130,6 +132,32 @@ def test_vtk_reads_frames_with_changing_counts(tmp_path: Path) -> None:
         np.testing.assert_array_equal(values, np.arange(count) + 10.0 * k)
 
 
+def test_vtk_reads_while_a_run_goes_on(tmp_path: Path) -> None:
+    """A reader keeps what it has opened; one that opens the file again sees more."""
+    import vtkmodules.vtkIOHDF as vtk_hdf
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    def opened() -> vtk_hdf.vtkHDFReader:
+        reader = vtk_hdf.vtkHDFReader()
+        reader.SetFileName(str(tmp_path / "results.vtkhdf"))
+        reader.UpdateInformation()
+        return reader
+
+    def last(reader: vtk_hdf.vtkHDFReader) -> float:
+        reader.SetStep(reader.GetNumberOfSteps() - 1)
+        reader.Update()
+        return float(vtk_to_numpy(reader.GetOutputDataObject(0).GetPoints().GetData())[0, 0])
+
+    with writer(tmp_path) as results:
+        for k in range(5):
+            results.append(float(k), k, {"position": np.full((4, 3), float(k))})
+            if k == 1:
+                first = opened()
+            assert last(opened()) == k
+        assert first.GetNumberOfSteps() == 2 and last(first) == 1.0
+    assert last(opened()) == 4.0
+
+
 def test_frames_as_pyvista(tmp_path: Path) -> None:
     import pyvista
 
@@ -145,9 +173,10 @@ def test_frames_as_pyvista(tmp_path: Path) -> None:
 def test_compressed_frames_take_less_room(tmp_path: Path) -> None:
     """Of the writer's test data, a tenth at least (whole frames as chunks, however small)."""
     run(tmp_path, 3)
-    plain = (tmp_path / "results.vtkhdf").stat().st_size
+    last = tmp_path / "results.frames" / "000004.h5"
+    plain = last.stat().st_size
     run(tmp_path, 3, compression=1)
-    assert (tmp_path / "results.vtkhdf").stat().st_size < 0.9 * plain
+    assert last.stat().st_size < 0.9 * plain
 
 
 def test_constant_arrays_are_stored_once(tmp_path: Path) -> None:
@@ -159,6 +188,11 @@ def test_constant_arrays_are_stored_once(tmp_path: Path) -> None:
         assert file["VTKHDF/PointData/body"].shape == (count,)
         assert file["VTKHDF/PointData/velocity"].shape == (5 * count, 3)
         assert list(file["VTKHDF"].attrs["Version"]) == [2, 0]
+    for k in range(5):
+        with h5py.File(tmp_path / "results.frames" / f"00000{k}.h5") as file:
+            stored = {"position", "velocity", "stress", "pressure", "von_mises", "damage"}
+            constant = {"body", "material", "size"} if k == 0 else set()
+            assert set(file["arrays"]) == stored | constant
 
 
 _ENDLESS = """
@@ -173,6 +207,7 @@ _ENDLESS = """
     {limit}
     print("ready", flush=True)
     for k in range(10**9):
+        n += {growth}
         v = np.full(n, float(k))
         w.append(float(k), k, {{"position": np.full((n, 3), float(k)), "p": v}})
 """
@@ -193,7 +228,7 @@ def whole_frames(path: Path) -> int:
 @pytest.mark.parametrize("wait", [0.05, 0.17, 0.31])
 def test_killed_run_keeps_its_frames(tmp_path: Path, wait: float, compression: int) -> None:
     path = tmp_path / "results.vtkhdf"
-    code = textwrap.dedent(_ENDLESS.format(limit="", compression=compression))
+    code = textwrap.dedent(_ENDLESS.format(limit="", growth=0, compression=compression))
     with subprocess.Popen([sys.executable, "-c", code, str(path)], stdout=subprocess.PIPE) as run:
         assert run.stdout is not None
         run.stdout.readline()
@@ -206,15 +241,16 @@ def test_killed_run_keeps_its_frames(tmp_path: Path, wait: float, compression: i
 def test_full_disk_is_one_sentence_and_keeps_the_frames(tmp_path: Path) -> None:
     """A limit on the file's size stands for the full disk: both fail in the same call."""
     path = tmp_path / "results.vtkhdf"
-    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (3_000_000,) * 2)"
-    code = textwrap.dedent(_ENDLESS.format(limit=limit, compression=0))
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (500_000,) * 2)"
+    code = textwrap.dedent(_ENDLESS.format(limit=limit, growth=1000, compression=0))
     run = subprocess.run(
         [sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=False
     )
     last = run.stderr.strip().splitlines()[-1]
     assert "CaseError" in last
-    assert "results.vtkhdf" in last
+    assert "results.frames/0000" in last
     assert "file too large" in last
+    assert not list(tmp_path.rglob(".*"))
     assert whole_frames(path) >= 3
 
 
@@ -237,6 +273,121 @@ def test_unwritable_and_missing_files(tmp_path: Path) -> None:
         read_history(table)
     with pytest.raises(CaseError, match="damage"):
         copy_frame(FakeSimulation(), ["damge"])
+
+
+def test_results_of_earlier_versions(tmp_path: Path) -> None:
+    """All frames were in one file then, with the same layout."""
+    import h5py
+
+    frames = run(tmp_path)
+    with h5py.File(tmp_path / "results.vtkhdf") as linked:
+        meta = json.loads(linked["mpm3dpp"].attrs["run"])
+        with h5py.File(tmp_path / "one.vtkhdf", "w") as one:
+
+            def copy(name: str, item: h5py.Dataset | h5py.Group) -> None:
+                if isinstance(item, h5py.Dataset):
+                    one[name] = item[()]
+                else:
+                    one.require_group(name).attrs.update(item.attrs)
+
+            linked.visititems(copy)
+            del meta["frames"]
+            one["mpm3dpp"].attrs["run"] = json.dumps(meta)
+    shutil.rmtree(tmp_path / "results.frames")
+    with open_results(tmp_path / "one.vtkhdf") as results:
+        assert len(results) == 5 and results.steps.tolist() == [0, 4, 8, 12, 16]
+        for k, frame in enumerate(frames):
+            for name, values in frame.items():
+                found = results.arrays(k)[name]
+                np.testing.assert_array_equal(found, values.astype(found.dtype))
+
+
+def test_a_folder_can_be_moved(tmp_path: Path) -> None:
+    """Paths in the file are relative to it, wherever the reader was started."""
+    import h5py
+
+    (tmp_path / "before").mkdir()
+    frames = run(tmp_path / "before")
+    (tmp_path / "before").rename(tmp_path / "after")
+    count = len(frames[0]["body"])
+    with h5py.File(tmp_path / "after" / "results.vtkhdf") as file:
+        points = file["VTKHDF/Points"][2 * count : 3 * count]
+    np.testing.assert_array_equal(points, frames[2]["position"].astype(np.float32))
+    assert len(open_results(tmp_path / "after").arrays(4)) == len(frames[0]) + 1
+
+
+def test_a_missing_frame_is_no_frame_of_zeros(tmp_path: Path) -> None:
+    import h5py
+
+    frames = run(tmp_path)
+    folder, count = tmp_path / "results.frames", len(frames[0]["body"])
+    (folder / "000002.h5").unlink()
+    with h5py.File(tmp_path / "results.vtkhdf") as file:
+        assert np.isnan(file["VTKHDF/Points"][2 * count : 3 * count]).all()
+    data = (folder / "000003.h5").read_bytes()
+    at = data.index(frames[3]["velocity"].astype(np.float32).tobytes())
+    (folder / "000003.h5").write_bytes(data[:at] + b"\x01" + data[at + 1 :])
+    (folder / "000004.h5").write_bytes(data[:500])
+    with open_results(tmp_path) as results:
+        assert len(results) == 5 and len(results.arrays(1)) == len(frames[1]) + 1
+        with pytest.raises(CaseError, match=r"frame 2 is missing: there is no file .*000002\.h5"):
+            results.arrays(2)
+        for k in (3, 4):
+            with pytest.raises(CaseError, match=f"frame {k} is damaged: .*00000{k}.h5"):
+                results.arrays(k)
+
+
+def test_frames_that_the_file_does_not_tell_of_yet(tmp_path: Path) -> None:
+    """It is written anew at every frame, later at every 32nd part of them; a reader finds all."""
+    arrays = {"position": np.zeros((3, 3)), "p": np.zeros(3)}
+    with writer(tmp_path) as results:
+        written = []
+        for k in range(200):
+            before = (tmp_path / "results.vtkhdf").stat().st_ino
+            results.append(float(k), k, arrays)
+            written.append((tmp_path / "results.vtkhdf").stat().st_ino != before)
+            if k % 50 == 49:
+                found = open_results(tmp_path)
+                assert found.times.tolist() == found.steps.tolist() == list(range(k + 1))
+                assert set(found.arrays(-1)) == {"position", "p"}
+        assert all(written[:33]) and 70 < sum(written) < 110
+
+
+def test_closed_results(tmp_path: Path) -> None:
+    run(tmp_path)
+    results = open_results(tmp_path)
+    assert results.fields[0] == "position"
+    results.close()
+    for use in (
+        lambda: results.fields,
+        lambda: results.arrays(0),
+        lambda: results[0],
+        lambda: [*results],
+    ):
+        with pytest.raises(CaseError, match="has been closed; open it again with open_results"):
+            use()
+    assert len(results) == 5 and results.times[1] == 4e-5
+
+
+def test_other_arrays_than_those_of_the_first_frame(tmp_path: Path) -> None:
+    with writer(tmp_path) as results:
+        results.append(0.0, 0, {"position": np.zeros((3, 3))})
+        with pytest.raises(CaseError, match="must have the arrays of the first one"):
+            results.append(1.0, 1, {"position": np.zeros((3, 3)), "p": np.zeros(3)})
+
+
+def test_a_damaged_history(tmp_path: Path) -> None:
+    """A bit of its header, or of its first row, is another one."""
+    write_history(tmp_path)
+    path = tmp_path / "history.csv"
+    data = path.read_bytes()
+    for at in [*range(0, 600, 29), data.index(b"_y,") + 1]:
+        for bit in (1, 128):
+            path.write_bytes(data[:at] + bytes([data[at] ^ bit]) + data[at + 1 :])
+            try:
+                draw_energies(read_history(path))  # A digit, or a name that nothing needs.
+            except CaseError as error:
+                assert "\n" not in str(error)
 
 
 def write_history(path: Path, every: int = 1) -> HistoryWriter:

@@ -226,7 +226,7 @@ def test_an_earlier_run_is_not_taken_for_the_new_one(tmp_path: Path) -> None:
     (tmp_path / "out" / "notes.txt").write_text("the user's own")
     forget_last_run(tmp_path / "out")
     left = {file.name for file in (tmp_path / "out").iterdir()}
-    assert left == {"results.vtkhdf", "history.csv", "notes.txt"}
+    assert left == {"results.vtkhdf", "results.frames", "history.csv", "notes.txt"}
 
 
 @pytest.mark.parametrize("place", ["file", "file/below"])

@@ -91,24 +91,6 @@ void ContactGrid<D>::forget() {
   for (ContactTile<D>& tile : tiles_) tile.known = 0;
 }
 
-template <int D>
-void ContactGrid<D>::exchange(StateStream& stream) {
-  stream.same(tiles_.size(), "its patches and its contacts do not agree");
-  for (ContactTile<D>& tile : tiles_) stream(tile.known, tile.known_part, tile.first_known);
-  stream.length(parts_);
-  for (Part& part : parts_) {
-    stream.vector(part.known_nodes);
-    stream.vector(part.known);
-  }
-  stream.vector(travel_);
-  stream.vector(fastest_);
-  stream.vector(records_);
-  stream.vector(places_);
-  std::size_t unconverged = unconverged_.load();
-  stream(last_time_step_, overlapped_, nodes_max_, bodies_max_, unconverged);
-  unconverged_.store(unconverged);
-}
-
 template class ContactGrid<2>;
 template class ContactGrid<3>;
 

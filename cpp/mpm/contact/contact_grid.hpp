@@ -101,8 +101,9 @@ class ContactGrid {
   ContactSums record(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, double time,
                      double time_step, std::int64_t step);
 
-  /// The records, and what is kept from step to step; the tiles must have been connected.
-  void exchange(StateStream& stream);
+  /// The records, and what is kept from step to step; the tiles must have been connected. Throws
+  /// std::invalid_argument if what is restored is of no such contact.
+  void exchange(StateStream& stream, std::size_t bodies);
 
   const std::vector<PairRecord>& pairs() const { return records_; }
   std::size_t overlapped_nodes() const { return overlapped_; }

@@ -141,7 +141,8 @@ bool ContactGrid<D>::recall(const std::vector<Body<D>>& bodies, const ContactSet
   const Part& before = parts_[tile.known_part];
   const auto place = static_cast<std::uint32_t>(std::popcount(tile.known & (bit - 1)));
   const KnownNode& last = before.last_known_nodes[tile.first_known + place];
-  if (last.who != now.who) return false;
+  const std::size_t end = last.first_pair + std::size_t{pair_count(node.sides)};
+  if (last.who != now.who || end > before.last_known.size()) return false;
   const auto sides = part.sides_of(node);
   SidePair<D>* next = &part.pairs[node.first_pair];
   for (std::uint16_t r = 0; r < node.sides; ++r)

@@ -48,7 +48,7 @@ void ContactGrid<D>::enter(std::size_t record) {
   places_[at] = static_cast<std::uint32_t>(record) + 1;
 }
 
-/// Put new records in their order among the old ones.
+/// Put new records in their order among the old ones, and note where all are.
 template <int D>
 void ContactGrid<D>::sort_records() {
   std::sort(records_.begin(), records_.end(), [](const PairRecord& x, const PairRecord& y) {
@@ -115,6 +115,8 @@ std::size_t ContactGrid<D>::bytes() const {
          size(travel_) + size(fastest_) + size(rigid_share_) + size(records_) + size(places_);
 }
 
+template void ContactGrid<2>::sort_records();
+template void ContactGrid<3>::sort_records();
 template ContactSums ContactGrid<2>::record(TileGrid<2>&, const std::vector<Body<2>>&, double,
                                             double, std::int64_t);
 template ContactSums ContactGrid<3>::record(TileGrid<3>&, const std::vector<Body<3>>&, double,

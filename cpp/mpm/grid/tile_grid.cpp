@@ -69,21 +69,17 @@ int TileGrid<D>::find(int body, const Index<D>& tile) const {
 }
 
 template <int D>
-void TileGrid<D>::exchange(StateStream& stream, Threads& threads) {
+void TileGrid<D>::exchange(StateStream& stream) {
   stream(cell_size, anchor, walls.cells);
-  stream.length(patches);
+  stream.length(patches, sizeof(Patch<D>::body) + sizeof(Patch<D>::cell_begin));
   for (Patch<D>& p : patches)
     stream(p.body, p.tile, p.begin, p.count, p.occupied, p.cell_begin, p.left_cell);
-  if (!stream.restores()) return;
-  release_nodes();
-  connect();
-  cut_blocks(threads);
 }
 
 template void TileGrid<2>::connect();
 template void TileGrid<3>::connect();
-template void TileGrid<2>::exchange(StateStream&, Threads&);
-template void TileGrid<3>::exchange(StateStream&, Threads&);
+template void TileGrid<2>::exchange(StateStream&);
+template void TileGrid<3>::exchange(StateStream&);
 template int TileGrid<2>::find(int, const Index<2>&) const;
 template int TileGrid<3>::find(int, const Index<3>&) const;
 

@@ -117,8 +117,8 @@ class TileGrid {
   /// Cut the blocks to the cells that hold particles, find the owners of shared nodes and the
   /// walls, and make room for the nodes. Call when particles have changed cells.
   void cut_blocks(Threads& threads);
-  /// What a run has made of the grid and its patches. Restored, they are connected and cut.
-  void exchange(StateStream& stream, Threads& threads);
+  /// What a run has made of the grid and its patches. Restored, they must be connected and cut.
+  void exchange(StateStream& stream);
   /// The patch of a body in a tile, or -1.
   int find(int body, const Index<D>& tile) const;
 

@@ -45,15 +45,20 @@ void SimulationOf<D>::exchange(StateStream& stream) {
   stream.same(domain_.loads.size(), other_case);
   for (Body<D>& body : domain_.bodies) exchange_body(stream, body);
   for (SurfaceLoad<D>& load : domain_.loads) exchange_load(stream, load);
-  domain_.grid.exchange(stream, domain_.threads);
-  if (domain_.has_contact()) {
-    if (stream.restores()) domain_.contact.connect(domain_.grid, domain_.bodies);
-    domain_.contact.exchange(stream);
+  domain_.grid.exchange(stream);
+  if (stream.restores()) {
+    check_lists();
+    domain_.grid.release_nodes();
+    domain_.grid.connect();
+    domain_.grid.cut_blocks(domain_.threads);
+    if (domain_.has_contact()) domain_.contact.connect(domain_.grid, domain_.bodies);
   }
+  if (domain_.has_contact()) domain_.contact.exchange(stream, domain_.bodies.size());
   stream(domain_.time, domain_.time_step, domain_.step, domain_.gravity);
   stream(domain_.eroded, domain_.left);
   stream.vector(domain_.sums);
-  stream.vector(domain_.rigid);
+  stream.same(domain_.rigid.size(), other_case);
+  stream.array(std::span(domain_.rigid));
   stream(settings_.cell_size, doublings_, next_time_step_, ledger_);
   stream.vector(history_);
   timers_.exchange(stream);
@@ -68,12 +73,16 @@ void SimulationOf<D>::save(const StateStream::Transfer& to) {
 }
 
 template <int D>
-void SimulationOf<D>::restore(const StateStream::Transfer& from) {
+void SimulationOf<D>::restore(const StateStream::Transfer& from, std::size_t size) {
   if (!prepared_ || domain_.step > 0)
     throw std::invalid_argument("call restore() after prepare() and before any step");
-  StateStream stream(StateStream::Way::restore, from);
+  const double cell_size = settings_.cell_size;
+  const auto walls = domain_.grid.walls.cells;
+  StateStream stream(StateStream::Way::restore, from, size);
   prepared_ = false;  // what has been restored half must not step
   exchange(stream);
+  stream.end();
+  check_rest(cell_size, walls);
   prepared_ = true;
 }
 

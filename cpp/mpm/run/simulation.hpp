@@ -132,7 +132,7 @@ class Simulation {
   /// goes on with the same bits. Throws std::invalid_argument if the state does not fit; what has
   /// been restored half is of no use.
   virtual void save(const StateStream::Transfer& to) = 0;
-  virtual void restore(const StateStream::Transfer& from) = 0;
+  virtual void restore(const StateStream::Transfer& from, std::size_t size) = 0;
 
   virtual double time() const = 0;
   virtual double next_time_step() const = 0;

@@ -27,7 +27,7 @@ class SimulationOf final : public Simulation {
                        const std::atomic<bool>* stop) override;
 
   void save(const StateStream::Transfer& to) override;
-  void restore(const StateStream::Transfer& from) override;
+  void restore(const StateStream::Transfer& from, std::size_t size) override;
 
   double time() const override { return domain_.time; }
   double next_time_step() const override { return next_time_step_; }
@@ -79,6 +79,8 @@ class SimulationOf final : public Simulation {
   void double_cells();
   void write_history_row();
   void exchange(StateStream& stream);
+  void check_lists() const;
+  void check_rest(double cell_size, const Index<D>& walls) const;
   void find_failure();
   Failure failure_at(const std::string& kind, std::size_t body, std::size_t row,
                      const std::string& what) const;

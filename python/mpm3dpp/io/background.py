@@ -49,7 +49,7 @@ class BackgroundWriter:
             self._room.release()
             raise
 
-    def rows(self) -> dict[str, int]:
+    def rows(self) -> dict[str, Any]:
         """Write what waits, and return what a writer needs to go on from here.
 
         Raises:

@@ -7,88 +7,104 @@ check sums. It is no HDF5 file because HDF5 takes the process with it when the d
 
 from __future__ import annotations
 
-import contextlib
 import json
-import os
+import struct
 import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import cannot_write
+from mpm3dpp.io.disk import replacing
 
 CHECKPOINT = "checkpoint.zip"
-UNFINISHED = f".{CHECKPOINT}.new"  # while it is written
+PREVIOUS = "checkpoint_previous.zip"
+"""The last but one, for the case that the last is damaged."""
 ANEW = "begin the run anew with --anew"
 
+_UNREADABLE = (
+    *(OSError, EOFError, LookupError, TypeError, ValueError, OverflowError, RuntimeError),
+    *(struct.error, zlib.error, zipfile.BadZipFile),
+)
+"""What `zipfile` and `json` raise when they meet bytes that nobody has written."""
 
-def write_checkpoint(path: Path, core: Any, about: Mapping[str, Any]) -> None:
+
+class DamagedError(CaseError):
+    """A checkpoint, or a file that goes with it, is not as it was written; another one may be."""
+
+
+def write_checkpoint(
+    path: Path, core: Any, about: Mapping[str, Any], keep: Path | None = None
+) -> None:
     """Write a checkpoint in one step: the file is the old one until the new one is whole.
 
     Args:
         path: the file.
         core: the core's `Simulation`.
         about: what else is needed to go on, as JSON takes it.
+        keep: name that the old one gets then.
 
     Raises:
         CaseError: the file cannot be written; the old one still stands.
     """
-    new = path.parent / f".{path.name}.new"
-    try:
-        with open(new, "wb") as file:
-            with zipfile.ZipFile(file, "w") as archive:
-                archive.writestr("about.json", json.dumps(about))
-                with archive.open("state", "w", force_zip64=True) as state:
-                    core.save(state.write)
-            file.flush()
-            os.fsync(file.fileno())
-        new.replace(path)
-    except BaseException as error:
-        with contextlib.suppress(OSError):
-            new.unlink(missing_ok=True)
-        if isinstance(error, OSError):
-            raise cannot_write(path, error) from error
-        raise
+    with replacing(path, keep) as file, zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("about.json", json.dumps(about))
+        with archive.open("state", "w", force_zip64=True) as state:
+            core.save(state.write)
 
 
 def read_about(path: Path) -> dict[str, Any]:
     """Return what was written with a checkpoint beside the state.
 
     Raises:
-        CaseError: the file is missing or is not a checkpoint.
+        DamagedError: the file is missing or is not a checkpoint.
     """
     if not path.is_file():
         remedy = (
             "give the --out of the run that is to go on; one that was killed or met a full disk "
             "before its first checkpoint has none: leave out --resume"
         )
-        raise CaseError(f"there is no checkpoint '{path}'", remedy)
+        raise DamagedError(f"there is no checkpoint '{path}'", remedy)
     try:
         with zipfile.ZipFile(path) as archive:
-            return dict(json.loads(archive.read("about.json")))
+            return dict(json.loads(archive.read(_stored(archive, "about.json"))))
     except PermissionError as error:
         raise CaseError(f"cannot read '{path}': permission denied", "make it readable") from error
-    except (OSError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
-        raise CaseError(f"'{path}' is not a checkpoint of mpm3dpp, or damaged", ANEW) from error
+    except _UNREADABLE as error:
+        rule = f"'{path}' is not a checkpoint of mpm3dpp, or damaged"
+        raise DamagedError(rule, ANEW) from error
 
 
 def restore_checkpoint(path: Path, core: Any) -> None:
     """Bring a `Simulation` of the core to the state of a checkpoint; it must not have stepped.
 
     Raises:
-        CaseError: the state is damaged, or is that of another case or version.
+        DamagedError: the state is damaged, or is that of another case or version; the simulation
+            steps no more then.
     """
     try:
         with zipfile.ZipFile(path) as archive:
+            member = _stored(archive, "state")
             if archive.testzip() is not None:  # Before the core makes anything of the bytes.
                 raise zipfile.BadZipFile
-            with archive.open("state") as state:
-                core.restore(state.readinto)  # type: ignore[attr-defined]
-                whole = not state.read(1)
-    except (OSError, KeyError, zipfile.BadZipFile) as error:
-        raise CaseError(f"the checkpoint '{path}' is damaged", ANEW) from error
-    except ValueError as error:
-        raise CaseError(f"the checkpoint '{path}' cannot be used: {error}", ANEW) from error
-    if not whole:
-        raise CaseError(f"the checkpoint '{path}' cannot be used: it is too long", ANEW)
+            state = archive.open(member)
+    except _UNREADABLE as error:
+        raise DamagedError(f"the checkpoint '{path}' is damaged", ANEW) from error
+    try:
+        with state:
+            core.restore(state.readinto, member.file_size)  # type: ignore[attr-defined]
+    except (MemoryError, *_UNREADABLE) as error:
+        rule = f"the checkpoint '{path}' cannot be used: {error or 'it does not fit into memory'}"
+        raise DamagedError(rule, ANEW) from error
+
+
+def _stored(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
+    """Return a member that is as `write_checkpoint` has made it: not compressed.
+
+    So nothing gets longer when it is read than the file is.
+    """
+    for other in archive.infolist():
+        if other.compress_type != zipfile.ZIP_STORED or other.file_size != other.compress_size:
+            raise zipfile.BadZipFile
+    return archive.getinfo(name)

@@ -6,12 +6,14 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
-import shutil
-import tempfile
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 from mpm3dpp.errors import CaseError
+
+_PIECE = 1 << 20  # bytes that are read at a time
 
 _REMEDIES = {
     errno.ENOSPC: "free some space, write fewer frames or choose another folder with --out",
@@ -54,51 +56,70 @@ def make_folder(path: Path) -> None:
         path.mkdir(parents=True, exist_ok=True)
 
 
-def reserve(path: Path, end: int) -> None:
-    """Make sure that the file can grow to `end` bytes, before anything in it is changed.
-
-    Uses the system's reservation of disk blocks where it exists, else the free space reported.
-    Raises OSError (ENOSPC, EDQUOT, EFBIG) when there is no room; the file is then as it was.
-    """
-    size = path.stat().st_size
-    if end <= size:
-        return
-    if hasattr(os, "posix_fallocate"):
-        with open(path, "r+b") as file:
-            try:
-                os.posix_fallocate(file.fileno(), size, end - size)
-                return
-            except OSError as error:
-                os.ftruncate(file.fileno(), size)
-                if error.errno not in (errno.EINVAL, errno.EOPNOTSUPP):
-                    raise
-    if shutil.disk_usage(path.parent).free < end - size:
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
-
-
 def bring_to_disk(path: Path) -> None:
     """Wait until all that was written to a file would outlive a power cut."""
     with writing(path), open(path, "rb") as file:
         os.fsync(file.fileno())
 
 
-def write_atomically(path: Path, text: str) -> None:
-    """Replace a text file in one step (write, fsync, rename): never half a file.
-
-    Raises `CaseError` when the folder cannot be written; the old file then still stands.
-    """
+def bring_folder_to_disk(path: Path) -> None:
+    """Wait until the names of the files in a folder would outlive a power cut."""
+    if os.name != "posix":  # Elsewhere a folder cannot be opened.
+        return
     with writing(path):
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        temporary = Path(name)
+        handle = os.open(path, os.O_RDONLY)
         try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(text)
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def unfinished(path: Path) -> Path:
+    """Return the name that a file has while `replacing` writes it."""
+    return path.with_name(f".{path.name}.new")
+
+
+@contextlib.contextmanager
+def replacing(path: Path, keep: Path | None = None) -> Iterator[BinaryIO]:
+    """Give a file to write, which takes the place of `path` when the block ends: never half a file.
+
+    It is written beside the old one, brought to the disk and renamed; the old one gets the name
+    `keep`, if that is given.
+
+    Raises:
+        CaseError: it cannot be written; the old file then still stands.
+    """
+    new = unfinished(path)
+    with writing(path):
+        try:
+            with open(new, "wb") as file:
+                yield file
                 file.flush()
                 os.fsync(file.fileno())
-            umask = os.umask(0)
-            os.umask(umask)
-            temporary.chmod(0o666 & ~umask)
-            temporary.replace(path)
+            if keep is not None and path.exists():
+                path.replace(keep)
+            new.replace(path)
         except BaseException:
-            temporary.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                new.unlink(missing_ok=True)
             raise
+
+
+def write_atomically(path: Path, text: str) -> None:
+    """Replace a text file in one step: see `replacing`."""
+    with replacing(path) as file:
+        file.write(text.encode())
+
+
+def checksum(path: Path, size: int | None = None) -> int | None:
+    """Return the CRC-32 of a file, or of its first `size` bytes; None if it has not so many.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    value, left = 0, size
+    with open(path, "rb") as file:
+        while left != 0 and (piece := file.read(min(_PIECE, left or _PIECE))):
+            value = zlib.crc32(piece, value)
+            left = None if left is None else left - len(piece)
+    return None if left else value

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import bring_to_disk, make_folder, writing
+from mpm3dpp.io.disk import checksum, make_folder
 from mpm3dpp.io.fields import numbered
+from mpm3dpp.io.table import Table
 
 COLUMNS = (
     *("step", "time", "dt", "kinetic", "internal", "plastic", "viscous", "friction", "contact"),
@@ -22,6 +23,9 @@ COLUMNS = (
     *("momentum_x", "momentum_y", "momentum_z"),
 )
 """First columns of the table, in this order; 0 where a term does not exist."""
+
+ENERGIES = COLUMNS[3 : COLUMNS.index("momentum_x")]
+"""Those of them that are energies [J]."""
 
 NUMERICAL = ("numerical_mapping", "numerical_time")
 """The named parts of `numerical`, which follow."""
@@ -42,12 +46,30 @@ _AXES = ("x", "y", "z")
 _LARGEST = ("residual", "numerical", "external")  # of which the largest size is kept
 
 
-def has_history(folder: Path, state: Mapping[str, Any]) -> bool:
-    """Return whether the tables in a folder have at least the rows of `HistoryWriter.state`."""
-    for path, size in zip((folder / "history.csv", folder / PAIRS), state["sizes"], strict=True):
-        if size is not None and not (path.is_file() and path.stat().st_size >= size):
-            return False
-    return True
+def has_no_history(folder: Path) -> bool:
+    """Return whether there is no table in a folder."""
+    return not any((folder / name).exists() for name in ("history.csv", PAIRS))
+
+
+def check_history(folder: Path, state: Mapping[str, Any]) -> None:
+    """Raise `CaseError` if a table has not the rows that it had, and say which.
+
+    Args:
+        folder: of the tables.
+        state: `HistoryWriter.state` then.
+    """
+    for path, known in zip((folder / "history.csv", folder / PAIRS), state["tables"], strict=True):
+        if known is None:
+            continue
+        try:
+            now = checksum(path, known["size"])
+        except OSError as error:
+            reason = os.strerror(error.errno) if error.errno else str(error)
+            raise CaseError(f"cannot read '{path}': {reason.lower()}") from error
+        if now is None:
+            raise CaseError(f"'{path}' has lost rows since the checkpoint")
+        if now != known["check"]:
+            raise CaseError(f"'{path}' is damaged: its rows are not those that were written")
 
 
 class HistoryWriter:
@@ -64,8 +86,9 @@ class HistoryWriter:
             do to each other has no columns.
         contact: whether the run has contact; without it there are no pairs' columns.
         every: keep the rows whose step is a multiple of this, and the last of each block.
-        state: of a run that goes on, `state()` then; the files have what it says (`has_history`),
-            and rows written later are cut off.
+        state: of a run that goes on, `state()` then; the files have what it says
+            (`check_history`), and rows written later are cut off.
+        anew: the tables begin anew, though the run goes on: they have been lost.
 
     Raises:
         CaseError: the file cannot be written; the rows written before stay readable.
@@ -80,6 +103,7 @@ class HistoryWriter:
         contact: bool = True,
         every: int = 1,
         state: Mapping[str, Any] | None = None,
+        anew: bool = False,
     ) -> None:
         self.path = Path(path)
         self._every = max(1, every)
@@ -97,15 +121,15 @@ class HistoryWriter:
                 both = f"{self._bodies[a]}_{self._bodies[b]}"
                 header += [f"contact_{kind}_{both}_{x}" for x in _AXES]
         make_folder(self.path.parent)
-        sizes = state["sizes"] if state else [None, None]
-        self._table = _Table(self.path, header, sizes[0])
-        self._long: _Table | None = None
+        known = [None, None] if state is None or anew else state["tables"]
+        self._table = Table(self.path, header, known[0])
+        self._long: Table | None = None
         if len(pairs) > PAIR_LIMIT:
             values = [f"contact_{kind}_{x}" for kind in ("force", "impulse") for x in _AXES]
             path = self.path.with_name(PAIRS)
-            self._long = _Table(path, ["step", "time", "body_a", "body_b", *values], sizes[1])
+            self._long = Table(path, ["step", "time", "body_a", "body_b", *values], known[1])
         self._index = {name: k for k, name in enumerate(own)}
-        self._summary: dict[str, Any] = dict(state["summary"]) if state else {}
+        self._summary: dict[str, Any] = dict(state["summary"] or {}) if state else {}
         self._momentum = np.array(state["momentum"] if state else [])
 
     def append(self, rows: np.ndarray, pairs: Sequence[Any] = ()) -> None:
@@ -133,8 +157,9 @@ class HistoryWriter:
 
     def state(self) -> dict[str, Any]:
         """Return what a writer needs to go on from here, for JSON; it is on the disk then."""
-        sizes = [table.saved_size() if table else None for table in (self._table, self._long)]
-        return {"sizes": sizes, "summary": self.summary(), "momentum": self._momentum.tolist()}
+        tables = [table.saved() if table else None for table in (self._table, self._long)]
+        summary = self.summary() or None
+        return {"tables": tables, "summary": summary, "momentum": self._momentum.tolist()}
 
     def summary(self) -> dict[str, Any]:
         """Energies of the whole run for the manifest [J], J per metre in 2D.
@@ -188,59 +213,18 @@ class HistoryWriter:
     def _note(self, table: np.ndarray) -> None:
         column = {name: table[:, k] for name, k in self._index.items()}
         momentum = table[:, [self._index[f"momentum_{x}"] for x in _AXES]]
-        energies = COLUMNS[3 : COLUMNS.index("momentum_x")]
         new = self._summary
         if not new:
-            new["initial"] = {name: float(column[name][0]) for name in energies}
+            new["initial"] = {name: float(column[name][0]) for name in ENERGIES}
             new["kinetic_min"] = float("inf")
             new |= dict.fromkeys((*(f"{name}_max" for name in _LARGEST), "momentum_drift"), 0.0)
             self._momentum = momentum[0].copy()
-        new["final"] = {name: float(column[name][-1]) for name in energies}
+        new["final"] = {name: float(column[name][-1]) for name in ENERGIES}
         new["kinetic_min"] = min(new["kinetic_min"], float(column["kinetic"].min()))
         for name in _LARGEST:
             new[f"{name}_max"] = max(new[f"{name}_max"], float(np.abs(column[name]).max()))
         drift = np.linalg.norm(momentum - self._momentum, axis=1).max()
         new["momentum_drift"] = max(new["momentum_drift"], float(drift))
-
-
-class _Table:
-    """A CSV file that only ever holds whole rows, even when the disk runs full.
-
-    With a size, an old one goes on from there.
-    """
-
-    def __init__(self, path: Path, header: list[str], size: int | None = None) -> None:
-        self._path = path
-        with writing(path):
-            if size is not None:
-                os.truncate(path, size)
-            mode = "w" if size is None else "a"
-            self._file = open(path, mode, newline="", encoding="utf-8")  # noqa: SIM115
-            if size is None:
-                csv.writer(self._file, lineterminator="\n").writerow(header)
-            self._file.flush()
-            self._size = self._file.tell()
-
-    def saved_size(self) -> int:
-        """Return the size of the file [bytes], when that much is on the disk."""
-        bring_to_disk(self._path)
-        return self._size
-
-    def append(self, lines: list[list[str]]) -> None:
-        text = "".join(",".join(cells) + "\n" for cells in lines)
-        try:
-            with writing(self._path):
-                self._file.write(text)
-                self._file.flush()
-                self._size = self._file.tell()
-        except CaseError:
-            with open(self._path, "r+b") as file:
-                file.truncate(self._size)
-            raise
-
-    def close(self) -> None:
-        with writing(self._path):
-            self._file.close()
 
 
 def _three(vector: Sequence[float]) -> list[float]:
@@ -272,8 +256,13 @@ def read_history(path: str | Path) -> dict[str, np.ndarray]:
         columns = np.array(table, dtype=float).reshape(len(table), len(header))
     except FileNotFoundError as error:
         raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
-    except (OSError, ValueError, IndexError) as error:
+    except (OSError, ValueError, IndexError, csv.Error) as error:
         raise CaseError(f"'{path}' is not a history table of mpm3dpp: {error}") from error
-    if "time" not in header:
-        raise CaseError(f"'{path}' is not a history table of mpm3dpp: it has no column time")
+    forces = [n[:-1] for n in header if n.startswith("contact_") and n.endswith("_x")]
+    for name in ("time", *COLUMNS, *NUMERICAL, *(n + x for n in forces for x in _AXES)):
+        if name not in header:
+            rule = (
+                f"'{path}' is not a history table of mpm3dpp, or damaged: it has no column {name}"
+            )
+            raise CaseError(rule)
     return {name: columns[:, k] for k, name in enumerate(header)}

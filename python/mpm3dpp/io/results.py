@@ -12,6 +12,7 @@ import numpy as np
 
 from mpm3dpp import arguments
 from mpm3dpp.errors import CaseError
+from mpm3dpp.io.frame_file import frame_path, read_arrays, read_info
 
 if TYPE_CHECKING:
     import pyvista
@@ -48,16 +49,24 @@ class Results:
             self._file = h5py.File(path, "r", locking=False)
             root = self._file["VTKHDF"]
             count = int(root["Steps"].attrs["NSteps"])
+            times, steps = root["Steps/Values"][:count].tolist(), []
+            if "step" in root["FieldData"]:
+                steps = root["FieldData/step"][:count].tolist()
+            self._names = ["position", *root["PointData"]]
             run = json.loads(self._file["mpm3dpp"].attrs["run"])
-        except (OSError, KeyError, ValueError) as error:
+            folder = run.get("frames")
+        except (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError) as error:
             raise CaseError(
                 f"'{path}' is not a results file of mpm3dpp: give the results.vtkhdf of a run"
             ) from error
+        self._folder = path.parent / folder if folder else None
         self._root = root
-        self.times: np.ndarray = root["Steps/Values"][:count]
-        self.steps: np.ndarray = (
-            root["FieldData/step"][:count] if count else np.zeros(0, dtype=np.int64)
-        )
+        if self._folder is not None:
+            self._file.close()  # A run that goes on replaces it.
+            self._add_later(self._folder, times, steps)
+        self._open = True
+        self.times = np.array(times, dtype=float)
+        self.steps = np.array(steps, dtype=np.int64)
         self.title: str = run["title"]
         self.case_hash: str = run["case_hash"]
         self.bodies: list[str] = run["bodies"]
@@ -69,8 +78,13 @@ class Results:
 
     @property
     def fields(self) -> list[str]:
-        """Names of the arrays of every frame, "position" first."""
-        return ["position", *self._root["PointData"]]
+        """Names of the arrays of every frame, "position" first.
+
+        Raises:
+            CaseError: the file has been closed.
+        """
+        self._must_be_open()
+        return list(self._names)
 
     def arrays(self, frame: int) -> dict[str, np.ndarray]:
         """All arrays of a frame, float32 (integers int32), SI units.
@@ -83,9 +97,15 @@ class Results:
 
         Raises:
             IndexError: there is no such frame.
-            CaseError: `frame` is no whole number, or the file has been closed.
+            CaseError: `frame` is no whole number, the file has been closed, or a frame is missing
+                or damaged.
         """
         frame = self._number(frame)
+        arrays = read_arrays(self._folder, frame) if self._folder else self._arrays_of_one(frame)
+        return {k: v[:, FROM_VTK] if _is_tensor(v) else v for k, v in arrays.items()}
+
+    def _arrays_of_one(self, frame: int) -> dict[str, np.ndarray]:
+        """The arrays of a frame, where earlier versions have put all frames into one file."""
         steps = self._root["Steps"]
         part = int(steps["PartOffsets"][frame])
         count = int(self._root["NumberOfPoints"][part])
@@ -93,8 +113,7 @@ class Results:
         arrays = {"position": self._root["Points"][first : first + count]}
         for name, data in self._root["PointData"].items():
             first = int(steps["PointDataOffsets"][name][frame])
-            values = data[first : first + count]
-            arrays[name] = values[:, FROM_VTK] if _is_tensor(values) else values
+            arrays[name] = data[first : first + count]
         return arrays
 
     def nearest(self, time: float) -> int:
@@ -136,6 +155,7 @@ class Results:
 
     def close(self) -> None:
         """Close the file."""
+        self._open = False
         self._file.close()
 
     def __enter__(self) -> Results:
@@ -144,10 +164,24 @@ class Results:
     def __exit__(self, *about: object) -> None:
         self.close()
 
+    def _add_later(self, folder: Path, times: list[float], steps: list[int]) -> None:
+        """Add the frames that have been written since the file was, as long as they are whole."""
+        while frame_path(folder, len(times)).is_file():
+            try:
+                info = read_info(frame_path(folder, len(times)))
+            except CaseError:
+                return
+            self._names = info.names
+            times.append(info.time)
+            steps.append(info.step)
+
+    def _must_be_open(self) -> None:
+        if not self._open:
+            raise CaseError(f"'{self.path}' has been closed", "open it again with open_results")
+
     def _number(self, frame: int) -> int:
         frame = arguments.whole_number("frame", frame)
-        if not self._file:
-            raise CaseError(f"'{self.path}' has been closed", "open it again with open_results")
+        self._must_be_open()
         if not -len(self) <= frame < len(self):
             raise IndexError(f"frame {frame} of '{self.path}': it has {len(self)} frames")
         return frame % len(self)

@@ -1,26 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writer of `results.vtkhdf`: one growing file with every frame, for ParaView and PyVista.
+"""Writer of the frames of a run, for ParaView and PyVista.
 
-Format: VTKHDF 2.0 (VTK file formats, "VTKHDF"), temporal PolyData, one vertex per particle,
-float32 in chunks, compressed if asked for. Arrays that do not change (cells, body, grain, material,
-size) are stored once and referred to by every frame. A frame counts only after all its bytes are in
-the file: the number of frames is raised last, so that a killed run leaves every finished frame
-readable.
+Each frame is a file of its own in `results.frames` (`io/frame_file.py`), and `results.vtkhdf` tells
+where they are (`io/master.py`). Every file is written beside its place, brought to the disk and
+renamed, so that a run that is killed or meets a full disk leaves whole frames, and a frame that
+was written is never touched again. Arrays that do not change (cells, body, grain, material, size)
+stand in the first frame's file only.
 """
 
 from __future__ import annotations
 
-import contextlib
-import json
-import os
+import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import bring_to_disk, cannot_write, make_folder, reserve
+from mpm3dpp.io.disk import bring_folder_to_disk, checksum, make_folder, unfinished, writing
 from mpm3dpp.io.fields import (
     Frame,
     column_units,
@@ -29,26 +27,35 @@ from mpm3dpp.io.fields import (
     numbered,
     particle_sizes,
 )
-from mpm3dpp.io.rows import append_rows, as_stored, cut_rows, hold_metadata, make_rows, row_counts
-
-if TYPE_CHECKING:
-    import h5py
+from mpm3dpp.io.frame_file import (
+    CELLS,
+    FrameInfo,
+    frame_numbers,
+    frame_path,
+    frames_folder,
+    read_arrays,
+    read_info,
+    write_frame,
+)
+from mpm3dpp.io.master import write_master
+from mpm3dpp.io.rows import as_stored
 
 RESULTS = "results.vtkhdf"
 
-_TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
 _CONSTANT = ("body", "grain", "material", "size")
-_SLACK = 1 << 20  # bytes reserved beyond the arrays of a frame: indices and chunk tables
+_OFTEN = 32
+"""`results.vtkhdf` is written anew when the frames since are a 32nd of those it tells of: then its
+writing takes a time proportional to the number of frames, not to its square."""
 
 
 class ResultsWriter:
-    """Appends frames to one temporal VTKHDF file.
+    """Writes frames, each in a file of its own, and the VTKHDF file that tells where they are.
 
     Six-component arrays are given in the order xx yy zz yz xz xy and stored in VTK's order
     xx yy zz xy yz xz, because ParaView names the components by their place.
 
     Args:
-        path: the file, usually `results.vtkhdf`; its folder is made, an old file replaced.
+        path: the file, usually `results.vtkhdf`; its folder is made, old results are removed.
         bodies: name of each body; bodies of one name are the grains of one entry. The array
             `body` counts the names in this order, `grain` the bodies of a name from 0.
         materials: name of the material of each body.
@@ -59,11 +66,11 @@ class ResultsWriter:
         compression: 0 for none, else the level of gzip, 1 to 9, after a shuffle of bytes.
         title: title of the case.
         case_hash: hash of the case, so that a file can be traced to its run.
-        rows: of a run that goes on, `rows()` then; the file has them (`rows.has_rows`), and frames
-            written later are cut off.
+        rows: of a run that goes on, `rows()` then; the frames are there (`check_frames`), and those
+            written later are removed.
 
     Raises:
-        CaseError: the file cannot be written; what it held before stays readable.
+        CaseError: a file cannot be written; frames that were written stay readable.
     """
 
     def __init__(
@@ -79,20 +86,22 @@ class ResultsWriter:
         compression: int = 0,
         title: str = "",
         case_hash: str = "",
-        rows: Mapping[str, int] | None = None,
+        rows: Mapping[str, Any] | None = None,
     ) -> None:
-        import h5py
-
         self.path = Path(path)
-        self.frames = 0
+        self._folder = frames_folder(self.path)
         self._fields = tuple(fields)
         self._level = compression
         self._bodies = list(bodies)
         names, self._materials = numbered(materials)
         self._dimension = dimension
-        self._constant: dict[str, tuple[np.ndarray, int]] = {}
+        self._frames: list[FrameInfo] = []
+        self._checks: list[int] = []  # of the frames' files
+        self._told = 0  # frames that the file tells of
+        self._closed = False
+        self._constant: dict[str, tuple[bytes, int]] = {}  # digest, and the frame that has it
+        self._cells: dict[int, int] = {}  # count of particles -> frame that has their cells
         self._sizes: np.ndarray | None = None
-        self._parts: list[tuple[int, int, int]] = []  # particles, first cell, first index
         self._meta: dict[str, Any] = {
             "title": title,
             "case_hash": case_hash,
@@ -104,28 +113,36 @@ class ResultsWriter:
             "units": {},
         }
         make_folder(self.path.parent)
-        try:
-            # An old superblock has no "open for writing" mark, which a killed run would leave
-            # behind; without locks ParaView can look at a run while it goes on.
-            mode = "w" if rows is None else "r+"
-            self._file: h5py.File | None = h5py.File(
-                self.path, mode, libver=("earliest", "v108"), locking=False
-            )
-            hold_metadata(self._file)
-            if rows is None:
-                self._lay_out(self._file)
-            else:
-                self._go_on(self._file["VTKHDF"], rows)
-            self._file.flush()
-        except (OSError, RuntimeError) as error:
-            raise cannot_write(self.path, error) from error
+        if rows is None:
+            with writing(self.path):  # First, for nobody may take old frames for those of this run.
+                self.path.unlink(missing_ok=True)
+        else:
+            self._go_on(rows)
+        make_folder(self._folder)
+        self._tell()
+        for frame in reversed(frame_numbers(self._folder)):  # So that none is left without another.
+            if frame >= self.frames:
+                old = frame_path(self._folder, frame)
+                with writing(old):
+                    old.unlink(missing_ok=True)
+        with writing(self._folder):
+            for left in self._folder.glob(unfinished(Path("*.h5")).name):
+                left.unlink(missing_ok=True)
 
-    def rows(self) -> dict[str, int]:
-        """Return what a writer needs to go on from here; what it needs is on the disk then."""
-        if self._file is None:
-            return {}
-        bring_to_disk(self.path)
-        return row_counts(self._file["VTKHDF"])
+    @property
+    def frames(self) -> int:
+        """How many frames there are."""
+        return len(self._frames)
+
+    def rows(self) -> dict[str, Any]:
+        """Return what a writer needs to go on from here, for JSON; all of it is on the disk then.
+
+        It is `frames`, the check sum of each frame's file, and `units`.
+        """
+        self._tell_of_all()
+        bring_folder_to_disk(self._folder)
+        bring_folder_to_disk(self.path.parent)
+        return {"frames": list(self._checks), "units": dict(self._meta["units"])}
 
     def write(self, simulation: Any) -> None:
         """Append the present state of the core's `Simulation` as a frame."""
@@ -134,7 +151,7 @@ class ResultsWriter:
     def copy(self, simulation: Any) -> Frame:
         """Copy what a frame holds of the present state of the core's `Simulation`."""
         if self._sizes is None:
-            self._sizes = particle_sizes(simulation, self._dimension)
+            self._sizes = as_stored(particle_sizes(simulation, self._dimension))
             self._meta["units"] = column_units(simulation)
         return copy_frame(simulation, self._fields)
 
@@ -157,37 +174,44 @@ class ResultsWriter:
         Raises:
             CaseError: no room on the disk; the frames written before stay readable.
         """
-        if self._file is None:
+        if self._closed:
             raise CaseError(f"'{self.path}' is closed: no frame can be added to it any more")
-        columns = {name: as_stored(array) for name, array in arrays.items()}
-        need = sum(c.nbytes for c in columns.values()) + _SLACK
-        try:
-            reserve(self.path, self._file.id.get_filesize() + need)
-        except OSError as error:
-            raise cannot_write(self.path, error) from error  # nothing was touched
-        try:
-            self._append(self._file["VTKHDF"], time, step, columns)
-            self._file.flush()
-            # only now does the frame exist for a reader
-            self._file["VTKHDF/Steps"].attrs.modify("NSteps", np.int64(self.frames + 1))
-            self._file.flush()
-        except (OSError, RuntimeError) as error:
-            with contextlib.suppress(CaseError):
-                self.close()
-            raise cannot_write(self.path, error) from error
-        self.frames += 1
+        if self._frames and self._frames[0].names != [
+            "position",
+            *sorted({*arrays} - {"position"}),
+        ]:
+            raise CaseError(f"a frame of '{self.path}' must have the arrays of the first one")
+        number = self.frames
+        info = FrameInfo(float(time), int(step), len(arrays["position"]))
+        digests = {}
+        for name in _CONSTANT:
+            if name in arrays:
+                digest = hashlib.blake2b(as_stored(arrays[name]).data).digest()
+                before, frame = self._constant.get(name, (b"", 0))
+                if digest == before:
+                    info.elsewhere[name] = frame
+                else:
+                    digests[name] = digest, number
+        if info.count in self._cells:
+            info.elsewhere[CELLS] = self._cells[info.count]
+        path = frame_path(self._folder, number)
+        own = {name: array for name, array in arrays.items() if name not in info.elsewhere}
+        write_frame(path, info, own, self._level)
+        with writing(path):
+            check = checksum(path)
+        assert check is not None  # for no size was given
+        self._frames.append(info)
+        self._checks.append(check)
+        self._constant |= digests
+        self._cells.setdefault(info.count, number)
+        if _OFTEN * (self.frames - self._told) >= self._told:
+            self._tell()
 
     def close(self) -> None:
-        """Close the file; it keeps all frames. Closing twice does nothing."""
-        file, self._file = self._file, None
-        if file is not None:
-            try:
-                file.flush()
-                size = file.id.get_filesize()
-                file.close()
-                os.truncate(self.path, size)  # gives back what was reserved and not used
-            except (OSError, RuntimeError) as error:
-                raise cannot_write(self.path, error) from error
+        """Let the file tell of all frames. Closing twice does nothing."""
+        if not self._closed:
+            self._closed = True
+            self._tell_of_all()
 
     def __enter__(self) -> ResultsWriter:
         return self
@@ -195,101 +219,53 @@ class ResultsWriter:
     def __exit__(self, *about: object) -> None:
         self.close()
 
-    def _lay_out(self, file: h5py.File) -> None:
-        """The groups and the index arrays of the format, without any frame."""
-        root = file.create_group("VTKHDF")
-        root.attrs["Version"] = np.array([2, 0], dtype=np.int64)
-        root.attrs.create("Type", np.bytes_("PolyData"))
-        make_rows(root, "NumberOfPoints", (), np.int64, 256)
-        for name in _TOPOLOGIES:
-            group = root.create_group(name)
-            for index in ("NumberOfCells", "NumberOfConnectivityIds"):
-                make_rows(group, index, (), np.int64, 256)
-        for name in ("PointData", "CellData", "FieldData"):
-            root.create_group(name)
-        steps = root.create_group("Steps")
-        steps.attrs["NSteps"] = np.int64(0)
-        make_rows(steps, "Values", (), np.float64, 256)
-        for name in ("PartOffsets", "NumberOfParts", "PointOffsets"):
-            make_rows(steps, name, (), np.int64, 256)
-        for name in ("CellOffsets", "ConnectivityIdOffsets"):
-            make_rows(steps, name, (len(_TOPOLOGIES),), np.int64, 64)
-        for name in ("PointDataOffsets", "CellDataOffsets", "FieldDataOffsets"):
-            steps.create_group(name)
-        file.create_group("mpm3dpp").attrs["run"] = json.dumps(self._meta)
+    def _tell(self) -> None:
+        """Write the VTKHDF file anew."""
+        write_master(self.path, self._frames, self._meta)
+        self._told = self.frames
 
-    def _go_on(self, root: h5py.Group, rows: Mapping[str, int]) -> None:
-        """Cut off the frames that came later, and learn what stands in the file already."""
-        steps = root["Steps"]
-        self.frames = rows["Steps/Values"]
-        steps.attrs.modify("NSteps", np.int64(self.frames))
-        root.file.flush()  # From here on no reader looks at what is cut off.
-        cut_rows(root, rows)
-        cell = 0
-        for particles in root["NumberOfPoints"][:].tolist():
-            self._parts.append((particles, cell, cell))
-            cell += particles
-        count = int(self._parts[int(steps["PartOffsets"][-1])][0])
+    def _tell_of_all(self) -> None:
+        if self._told < self.frames:
+            self._tell()
+
+    def _go_on(self, rows: Mapping[str, Any]) -> None:
+        """Learn what the frames hold that are kept."""
+        self._checks = list(rows["frames"])
+        self._meta["units"] = dict(rows["units"])
+        self._frames = [read_info(frame_path(self._folder, k)) for k in range(len(self._checks))]
+        for k, info in enumerate(self._frames):
+            if CELLS not in info.elsewhere:
+                self._cells[info.count] = k
+        if not self._frames:
+            return
+        last = self.frames - 1
+        arrays = read_arrays(self._folder, last)
         for name in _CONSTANT:
-            if name in root["PointData"]:
-                offset = int(steps["PointDataOffsets"][name][-1])
-                column = root["PointData"][name][offset : offset + count]
-                self._constant[name] = (column, offset)
-        self._sizes = self._constant["size"][0] if "size" in self._constant else None
-        stored = json.loads(root.file["mpm3dpp"].attrs["run"])
-        self._meta["units"] = stored["units"]
-        root.file["mpm3dpp"].attrs["run"] = json.dumps(self._meta)
+            if name in arrays:
+                digest = hashlib.blake2b(arrays[name].data).digest()
+                self._constant[name] = digest, self._frames[last].where(name, last)
+        self._sizes = arrays.get("size")
 
-    def _append(
-        self, root: h5py.Group, time: float, step: int, columns: Mapping[str, np.ndarray]
-    ) -> None:
-        if self.frames == 0:
-            root.file["mpm3dpp"].attrs["run"] = json.dumps(self._meta)
-        steps = root["Steps"]
-        part, cell, index = self._part(root, len(columns["position"]))
-        first = append_rows(root, "Points", columns["position"], self._level)
-        for name, values in (
-            ("PartOffsets", part),
-            ("NumberOfParts", 1),
-            ("PointOffsets", first),
-            ("CellOffsets", [cell, 0, 0, 0]),
-            ("ConnectivityIdOffsets", [index, 0, 0, 0]),
-        ):
-            append_rows(steps, name, np.array([values], dtype=np.int64))
-        for name, column in columns.items():
-            if name == "position":
-                continue
-            offset = self._constant_offset(name, column)
-            if offset is None:
-                offset = append_rows(root["PointData"], name, column, self._level)
-                if name in _CONSTANT:
-                    self._constant[name] = (column.copy(), offset)
-            append_rows(steps["PointDataOffsets"], name, np.array([offset], dtype=np.int64))
-        row = append_rows(root["FieldData"], "step", np.array([step], dtype=np.int64))
-        append_rows(steps["FieldDataOffsets"], "step", np.array([row], dtype=np.int64))
-        append_rows(steps, "Values", np.array([time]))
 
-    def _constant_offset(self, name: str, column: np.ndarray) -> int | None:
-        """Where the same values already stand in the file, if they do."""
-        before = self._constant.get(name)
-        return before[1] if before and np.array_equal(before[0], column) else None
+def has_no_results(path: Path) -> bool:
+    """Return whether neither a results file nor any frame of it is there."""
+    return not path.exists() and not frame_numbers(frames_folder(path))
 
-    def _part(self, root: h5py.Group, particles: int) -> tuple[int, int, int]:
-        """The cells of a frame (one vertex a particle): an earlier set or a new one.
 
-        Returns the number of the part and its first entries in Offsets and Connectivity.
-        """
-        for part, (count, cell, index) in enumerate(self._parts):
-            if count == particles:
-                return part, cell, index
-        append_rows(root, "NumberOfPoints", np.array([particles], dtype=np.int64))
-        cell = sum(count for count, _, _ in self._parts)
-        for name in _TOPOLOGIES:
-            cells = particles if name == "Vertices" else 0
-            group = root[name]
-            append_rows(group, "NumberOfCells", np.array([cells], dtype=np.int64))
-            append_rows(group, "NumberOfConnectivityIds", np.array([cells], dtype=np.int64))
-            append_rows(group, "Offsets", np.arange(cells + 1, dtype=np.int64))
-            append_rows(group, "Connectivity", np.arange(cells, dtype=np.int64))
-        self._parts.append((particles, cell, cell))
-        return len(self._parts) - 1, cell, cell
+def check_frames(path: Path, rows: Mapping[str, Any]) -> None:
+    """Raise `CaseError` if a frame is missing or not as it was written, and say which.
+
+    Args:
+        path: the results file.
+        rows: `ResultsWriter.rows` then.
+    """
+    for frame, check in enumerate(rows["frames"]):
+        file = frame_path(frames_folder(path), frame)
+        try:
+            now = checksum(file)
+        except FileNotFoundError:
+            raise CaseError(f"frame {frame} is missing: there is no file '{file}'") from None
+        except OSError as error:
+            raise CaseError(f"frame {frame}: cannot read '{file}': {error.strerror}") from error
+        if now != check:
+            raise CaseError(f"frame {frame} is damaged: '{file}' is not as it was written")

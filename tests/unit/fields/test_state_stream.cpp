@@ -54,4 +54,24 @@ void test_state_stream(mpm::testing::Report& report) {
   at = 0;
   file.pop_back();
   CHECK_THROWS(restored.exchange(in, 2), "it ends too early");
+
+  // A length that the bytes cannot have is refused before there is room for it.
+  at = 0;
+  StateStream few(StateStream::Way::restore, read, file.size());
+  std::ranges::fill(std::span(file).subspan(sizeof(int) + sizeof(double) + sizeof(int), 7),
+                    std::byte{0x7f});
+  CHECK_THROWS(restored.exchange(few, 2), "it ends too early");
+  CHECK(restored.list.size() < 4, restored.list.size());
+
+  // Neither is there a bool of a byte that is none, nor may anything be left.
+  file = {std::byte{2}, std::byte{1}};
+  at = 0;
+  bool flag = false;
+  StateStream flags(StateStream::Way::restore, read, file.size());
+  CHECK_THROWS(flags(flag), "it is damaged");
+  CHECK_THROWS(flags.end(), "it is too long");
+  flags(flag);
+  flags.end();
+  CHECK(flag);
+  CHECK_THROWS(flags(flag), "it ends too early");
 }

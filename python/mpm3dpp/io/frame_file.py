@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One frame in a file of its own, which is written in one step and never changed after.
+
+The HDF5 file has the group `arrays` with a data set per array, one row per particle, `cells` with
+what VTK wants to know of a vertex per particle where no earlier frame has as many, and an attribute
+`frame`: JSON with time, step and count of particles, the check sum of each array, and the frames
+that hold those arrays which have not changed.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import re
+import zlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import numpy as np
+
+from mpm3dpp.errors import CaseError
+from mpm3dpp.io.disk import replacing
+from mpm3dpp.io.rows import as_stored
+
+if TYPE_CHECKING:
+    import h5py
+
+CELLS = "cells"
+"""Among the arrays that stand elsewhere: the cells."""
+
+LIBVER = ("v108", "v110")
+"""Versions of HDF5's format: from the first on tables have check sums; virtual data sets need the
+last."""
+
+_NAME = re.compile(r"(\d{6,})\.h5")
+_CHUNK_BYTES = (1 << 32) - 1  # HDF5's limit
+
+
+@dataclass
+class FrameInfo:
+    """What a frame's file holds.
+
+    Attributes:
+        time: [s].          step: number of steps made until then.          count: of particles.
+        checks: name -> CRC-32 of each array that the file has.
+        elsewhere: name -> number of the frame whose file has it.
+        kinds: name -> components (0 for one number a particle) and type, of those in the file.
+    """
+
+    time: float
+    step: int
+    count: int
+    checks: dict[str, int] = field(default_factory=dict)
+    elsewhere: dict[str, int] = field(default_factory=dict)
+    kinds: dict[str, tuple[int, str]] = field(default_factory=dict)
+
+    def where(self, name: str, own: int) -> int:
+        """Return the number of the frame whose file has an array; `own` is this one's."""
+        return self.elsewhere.get(name, own)
+
+    @property
+    def names(self) -> list[str]:
+        """Names of all arrays, in alphabetical order but for "position", which comes first."""
+        names = (self.checks.keys() | self.elsewhere.keys()) - {CELLS, "position"}
+        return ["position", *sorted(names)]
+
+
+def frames_folder(results: Path) -> Path:
+    """Return the folder with the frames of a results file: `results.frames`."""
+    return results.with_suffix(".frames")
+
+
+def frame_path(folder: Path, frame: int) -> Path:
+    """Return the file of a frame."""
+    return folder / f"{frame:06d}.h5"
+
+
+def frame_numbers(folder: Path) -> list[int]:
+    """Return the numbers of the frames that have files in a folder, in order."""
+    with contextlib.suppress(OSError):
+        found = (_NAME.fullmatch(path.name) for path in folder.iterdir())
+        return sorted(int(match[1]) for match in found if match)
+    return []
+
+
+def write_frame(path: Path, info: FrameInfo, arrays: Mapping[str, Any], level: int) -> None:
+    """Write the file of a frame.
+
+    Args:
+        path: the file.
+        info: of which `checks` and `kinds` are filled here.
+        arrays: those of its arrays that do not stand elsewhere.
+        level: of compression: 0 for none, else gzip's, 1 to 9, after a shuffle of bytes.
+
+    Raises:
+        CaseError: the file cannot be written; there is none then.
+    """
+    with _new_h5(path) as file:
+        group = file.create_group("arrays")
+        for name, array in arrays.items():
+            column = as_stored(array)
+            info.checks[name] = zlib.crc32(column.data)
+            info.kinds[name] = _kind(column)
+            rows = max(1, min(len(column), _CHUNK_BYTES // max(1, column[:1].nbytes)))
+            how = {"compression": "gzip", "compression_opts": level, "shuffle": True}
+            chunks = {"chunks": (rows, *column.shape[1:]), **how} if level and len(column) else {}
+            group.create_dataset(name, data=column, **chunks)
+        if CELLS not in info.elsewhere:
+            cells = file.create_group(CELLS)
+            cells["Offsets"] = np.arange(info.count + 1, dtype=np.int64)
+            cells["Connectivity"] = np.arange(info.count, dtype=np.int64)
+        about: dict[str, Any] = {"time": info.time, "step": info.step, "count": info.count}
+        about |= {"checks": info.checks, "elsewhere": info.elsewhere}
+        file.attrs["frame"] = json.dumps(about)
+
+
+def read_info(path: Path) -> FrameInfo:
+    """Return what the file of a frame holds. Raises `CaseError` if it is missing or damaged."""
+    with _frame(path) as file:
+        info = _info(file)
+        for name in info.checks:
+            info.kinds[name] = _kind(file["arrays"][name])
+        return info
+
+
+def read_arrays(folder: Path, frame: int) -> dict[str, np.ndarray]:
+    """Return all arrays of a frame, as stored. Raises `CaseError` if a file is missing or damaged.
+
+    Args:
+        folder: with the frames.
+        frame: number.
+    """
+    with _frame(frame_path(folder, frame)) as file:
+        info = _info(file)
+        own = {name: _column(file, info, name) for name in info.checks}
+    others = {k for name, k in info.elsewhere.items() if name != CELLS}
+    for k in others:
+        with _frame(frame_path(folder, k)) as file:
+            there = _info(file)
+            for name, where in info.elsewhere.items():
+                if where == k and name != CELLS:
+                    own[name] = _column(file, there, name)
+    return {name: own[name] for name in info.names}
+
+
+@contextlib.contextmanager
+def _new_h5(path: Path) -> Iterator[h5py.File]:
+    """Give an HDF5 file to write, which takes the place of `path` in one step (`replacing`).
+
+    HDF5 never hears of an error of the disk, for after one it cannot close its file, and takes the
+    process with it.
+    """
+    import h5py
+
+    with replacing(path) as raw:
+        target = _Deaf(raw)
+        with h5py.File(target, "w", libver=LIBVER) as file:
+            yield file
+        target.tell_error()
+
+
+class _Deaf(io.RawIOBase):
+    """A file that keeps its first error for later, and says to whoever writes that all is well."""
+
+    def __init__(self, raw: BinaryIO) -> None:
+        self._raw = raw
+        self._error: OSError | None = None
+        self._at = self._end = 0
+
+    def tell_error(self) -> None:
+        if self._error is not None:
+            raise self._error
+
+    def seekable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        self._at = offset + {io.SEEK_SET: 0, io.SEEK_CUR: self._at, io.SEEK_END: self._end}[whence]
+        return self._at
+
+    def tell(self) -> int:
+        return self._at
+
+    def write(self, data: Any) -> int:
+        size = memoryview(data).nbytes
+        self._try(lambda: self._write(data))
+        self._at += size
+        self._end = max(self._end, self._at)
+        return size
+
+    def truncate(self, size: int | None = None) -> int:
+        self._end = self._at if size is None else size
+        self._try(lambda: self._raw.truncate(self._end))
+        return self._end
+
+    def flush(self) -> None:
+        self._try(self._raw.flush)
+
+    def _write(self, data: Any) -> None:
+        if self._raw.tell() != self._at:  # A seek would empty the buffer.
+            self._raw.seek(self._at)
+        self._raw.write(data)
+
+    def _try(self, act: Any) -> None:
+        if self._error is None:
+            try:
+                act()
+            except OSError as error:
+                self._error = error
+
+
+@contextlib.contextmanager
+def _frame(path: Path) -> Iterator[h5py.File]:
+    """Give the file of a frame to read; what goes wrong in the block is one sentence."""
+    import h5py
+
+    number = path.stem.lstrip("0") or "0"
+    try:
+        with h5py.File(path, "r", locking=False) as file:
+            yield file
+    except FileNotFoundError as error:
+        rule = f"frame {number} is missing: there is no file '{path}'"
+        raise CaseError(rule, "bring it back, or use other frames") from error
+    except PermissionError as error:
+        raise CaseError(f"cannot read '{path}': permission denied", "make it readable") from error
+    except (OSError, KeyError, TypeError, ValueError, RuntimeError, AttributeError) as error:
+        rule = f"frame {number} is damaged: '{path}' cannot be read as it was written"
+        raise CaseError(rule, "bring it back, or use other frames") from error
+
+
+def _info(file: h5py.File) -> FrameInfo:
+    return FrameInfo(**json.loads(file.attrs["frame"]))
+
+
+def _column(file: h5py.File, info: FrameInfo, name: str) -> np.ndarray:
+    column: np.ndarray = file["arrays"][name][()]
+    if len(column) != info.count or zlib.crc32(column.data) != info.checks[name]:
+        raise ValueError(name)
+    return column
+
+
+def _kind(column: Any) -> tuple[int, str]:
+    return (column.shape[1] if len(column.shape) == 2 else 0), np.dtype(column.dtype).str

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`results.vtkhdf`: what ParaView and PyVista open; it holds no frame, only where each one is.
+
+Format: VTKHDF 2.0 (VTK file formats, "VTKHDF"), temporal PolyData, one vertex per particle. The
+data sets are virtual ones (HDF5 1.10) that map to the files of the frames, with paths relative to
+this file, so that the folder can be moved. What is missing there reads as NaN (integers: -1).
+"""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mpm3dpp.io.disk import replacing
+from mpm3dpp.io.frame_file import CELLS, LIBVER, FrameInfo, frame_path, frames_folder
+
+if TYPE_CHECKING:
+    import h5py
+
+_TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
+
+
+def write_master(path: Path, frames: Sequence[FrameInfo], meta: Mapping[str, Any]) -> None:
+    """Write the file anew, in one step.
+
+    Args:
+        path: the file.
+        frames: what the file of each frame holds; all have arrays of the same names.
+        meta: of the run, as JSON takes it.
+
+    Raises:
+        CaseError: it cannot be written; the old one still stands.
+    """
+    import h5py
+
+    folder = frames_folder(path)
+    image = io.BytesIO()  # It is small, and HDF5 must not hear of an error of the disk.
+    with h5py.File(image, "w", libver=LIBVER) as file:
+        root = file.create_group("VTKHDF")
+        root.attrs["Version"] = np.array([2, 0], dtype=np.int64)
+        root.attrs.create("Type", np.bytes_("PolyData"))
+        for name in ("PointData", "CellData", "FieldData"):
+            root.create_group(name)
+        steps = root.create_group("Steps")
+        steps.attrs["NSteps"] = np.int64(len(frames))
+        steps["Values"] = np.array([frame.time for frame in frames], dtype=float)
+        for name in ("PointDataOffsets", "CellDataOffsets", "FieldDataOffsets"):
+            steps.create_group(name)
+        root["FieldData"]["step"] = np.array([frame.step for frame in frames], dtype=np.int64)
+        steps["FieldDataOffsets"]["step"] = np.arange(len(frames))
+        _place_cells(root, steps, folder, frames)
+        for name in frames[0].names if frames else ():
+            counts = [f.count if name in f.checks else 0 for f in frames]
+            firsts = _firsts(counts)
+            offsets = firsts[[f.where(name, k) for k, f in enumerate(frames)]]
+            components, kind = next(f.kinds[name] for f in frames if name in f.kinds)
+            tail = (components,) if components else ()
+            group, place = (root, "Points") if name == "position" else (root["PointData"], name)
+            _virtual(group, place, folder, f"arrays/{name}", counts, tail, np.dtype(kind))
+            if name == "position":
+                steps["PointOffsets"] = offsets
+            else:
+                steps["PointDataOffsets"][name] = offsets
+        about = {**meta, "frames": folder.name}
+        file.create_group("mpm3dpp").attrs["run"] = json.dumps(about)
+    with replacing(path) as raw:
+        raw.write(image.getbuffer())
+
+
+def _place_cells(
+    root: h5py.Group, steps: h5py.Group, folder: Path, frames: Sequence[FrameInfo]
+) -> None:
+    """The cells, one vertex a particle: a part for each number of particles."""
+    own = [CELLS not in frame.elsewhere for frame in frames]
+    counts = np.array([frame.count for frame in frames], dtype=np.int64)
+    parts = counts[own]
+    number = np.cumsum(own) - 1  # of a frame's part, where it has its own
+    part = number[[frame.where(CELLS, k) for k, frame in enumerate(frames)]].astype(np.int64)
+    root["NumberOfPoints"] = parts
+    for name in _TOPOLOGIES:
+        group = root.create_group(name)
+        cells = parts if name == "Vertices" else np.zeros_like(parts)
+        group["NumberOfCells"] = group["NumberOfConnectivityIds"] = cells
+        if name != "Vertices":
+            group["Offsets"] = np.zeros(len(parts), dtype=np.int64)
+            group["Connectivity"] = np.zeros(0, dtype=np.int64)
+    for name, more in (("Offsets", 1), ("Connectivity", 0)):
+        rows = [n + more if mine else 0 for n, mine in zip(counts.tolist(), own, strict=True)]
+        source = f"{CELLS}/{name}"
+        _virtual(root["Vertices"], name, folder, source, rows, (), np.dtype(np.int64))
+    first = np.zeros((len(frames), len(_TOPOLOGIES)), dtype=np.int64)
+    first[:, 0] = _firsts(parts.tolist())[part] if len(parts) else 0
+    steps["PartOffsets"] = part
+    steps["NumberOfParts"] = np.ones(len(frames), dtype=np.int64)
+    steps["CellOffsets"] = steps["ConnectivityIdOffsets"] = first
+
+
+def _firsts(counts: Sequence[int]) -> np.ndarray:
+    """Return the first row of each block, int64, shape (blocks,)."""
+    return np.cumsum([0, *counts[:-1]], dtype=np.int64)[: len(counts)]
+
+
+def _virtual(
+    group: h5py.Group,
+    name: str,
+    folder: Path,
+    source: str,
+    counts: Sequence[int],
+    tail: tuple[int, ...],
+    kind: np.dtype[Any],
+) -> None:
+    """Make a data set whose rows stand in the files of the frames, `counts[k]` in that of k."""
+    import h5py
+
+    plan = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    plan.set_fill_value(np.array(np.nan if kind.kind == "f" else -1, kind))
+    whole = h5py.h5s.create_simple((sum(counts), *tail))
+    first = 0
+    for frame, rows in enumerate(counts):
+        if rows:
+            block = (rows, *tail)
+            whole.select_hyperslab((first, *(0 for _ in tail)), (1,) * len(block), block=block)
+            file = frame_path(Path(folder.name), frame).as_posix()
+            plan.set_virtual(whole, file.encode(), source.encode(), h5py.h5s.create_simple(block))
+            first += rows
+    whole.select_all()
+    if not first:  # HDF5 has no virtual data set without a source.
+        group.create_dataset(name, (0, *tail), kind)
+        return
+    h5py.h5d.create(group.id, name.encode(), h5py.h5t.py_create(kind), whole, plan)

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A CSV file that grows by rows."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import io
+import os
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+
+from mpm3dpp.errors import CaseError
+from mpm3dpp.io.disk import bring_to_disk, writing
+
+
+class Table:
+    """A CSV file that only ever holds whole rows, even when the disk runs full.
+
+    With what `saved` returned, an old one goes on from there.
+    """
+
+    def __init__(
+        self, path: Path, header: list[str], known: Mapping[str, int] | None = None
+    ) -> None:
+        self._path = path
+        self._size, self._check = (known["size"], known["check"]) if known else (0, 0)
+        with writing(path):
+            if known is not None:
+                os.truncate(path, self._size)
+            # Not buffered: what could not be written must not be tried again later.
+            self._file = open(path, "wb" if known is None else "ab", buffering=0)  # noqa: SIM115
+        if known is None:
+            text = io.StringIO()
+            csv.writer(text, lineterminator="\n").writerow(header)
+            self._write(text.getvalue())
+
+    def saved(self) -> dict[str, int]:
+        """Return size [bytes] and CRC-32 of the file, when that much is on the disk."""
+        bring_to_disk(self._path)
+        return {"size": self._size, "check": self._check}
+
+    def append(self, lines: list[list[str]]) -> None:
+        self._write("".join(",".join(cells) + "\n" for cells in lines))
+
+    def _write(self, text: str) -> None:
+        data = memoryview(text.encode())
+        check = zlib.crc32(data, self._check)
+        try:
+            with writing(self._path):
+                left = data
+                while left:
+                    left = left[self._file.write(left) :]
+        except CaseError:
+            with contextlib.suppress(OSError):  # A reader drops half a row.
+                os.truncate(self._path, self._size)
+            raise
+        self._size, self._check = self._size + len(data), check
+
+    def close(self) -> None:
+        with writing(self._path):
+            self._file.close()
