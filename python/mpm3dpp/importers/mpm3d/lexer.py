@@ -8,12 +8,15 @@ in the next line, and several statements may share one.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Container
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
 from mpm3dpp.case_file import similar_file
 from mpm3dpp.errors import CaseError
+
+from .problems import Problems
 
 _SPLIT = re.compile(r"[^\s,]+")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
@@ -42,12 +45,17 @@ class Source:
         words: all of them.
         comments: the text of all comments.
         notes: sentences about what MPM3D-F90 would have read otherwise.
+        problems: its mistakes so far.
     """
 
     name: str
     words: list[Word]
     comments: list[str]
     notes: list[str]
+    problems: Problems = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.problems = Problems(self.name)
 
     def error(self, rule: str, remedy: str, line: int, key: str = "") -> CaseError:
         """Return the mistake that a rule is broken at a line."""
@@ -63,10 +71,14 @@ def read_source(path: Path) -> Source:
     name = str(path)
     if path.is_dir():
         raise CaseError("must be a file but is a folder", "give the file in it", place=name)
+    if path.exists() and not path.is_file():
+        raise CaseError("is not a regular file", "copy what it gives to a file", place=name)
     try:
         data = path.read_bytes()
     except FileNotFoundError:
         raise CaseError("there is no such file", similar_file(path), place=name) from None
+    except ValueError:  # NUL
+        raise CaseError("is not the name of a file", "correct it", key="the path") from None
     except OSError as error:
         reason = (error.strerror or "unknown reason").lower()
         raise CaseError(f"cannot be read ({reason})", "check the path", place=name) from None
@@ -123,13 +135,30 @@ class Reader:
         self.keyword = ""
         self._odd: set[str] = set()
 
+    def skip_to(self, keywords: Container[str], first: bool = True) -> None:
+        """Go on at the next word that is one of these.
+
+        Args:
+            keywords: four letters each.
+            first: only words with which a line begins.
+        """
+        words = self.source.words
+        while self.more():
+            begins = self.at == 0 or words[self.at - 1].line != words[self.at].line
+            if words[self.at].key in keywords and (begins or not first):
+                return
+            self.at += 1
+
     def more(self) -> bool:
         """Are there words left?"""
         return self.at < len(self.source.words)
 
-    def peek(self) -> Word | None:
-        """Return the next word without taking it; None at the end."""
-        return self.source.words[self.at] if self.more() else None
+    def number_follows(self) -> bool:
+        """Does a number follow in this line?"""
+        if not self.more():
+            return False
+        following = self.source.words[self.at]
+        return following.line == self.line and _NUMBER.fullmatch(following.text) is not None
 
     def word(self, what: str) -> Word:
         """Take the next word; `what` says what it should be."""
