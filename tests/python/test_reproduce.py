@@ -163,7 +163,7 @@ def test_the_html_is_the_same_page(made: tuple[Path, str, dict[str, Any]]) -> No
     text = (out / "reproduce.html").read_text()
     assert text == as_html(page)
     assert sorted(re.findall(r'src="(.*?)"', text)) == sorted(re.findall(r"\]\((.*?)\)", page))
-    assert text.count("<table>") == len(re.findall(r"^\| ---", page, re.M)) == 4
+    assert text.count("<table>") == len(re.findall(r"^\| ---", page, re.M)) == 5
     assert as_html("a < b").count("a &lt; b") == 1
 
 
@@ -211,6 +211,25 @@ def test_the_tables_have_the_paper_s_numbers(made: tuple[Path, str, dict[str, An
     assert (second["particles"], second["cells of the box"]) == ("652,000", "137,500")
     assert second["memory with contact [MiB]"] == "305.19"
     assert second["time with contact / without contact"] == "1.556"  # 2.2187 / 1.4263
+
+
+def test_what_the_paper_counts_stands_beside_ours(made: tuple[Path, str, dict[str, Any]]) -> None:
+    """Table 1's four ratios, the 810 contact surfaces of 4.2 and the 29,760 particles of 4.4."""
+    out, page, _ = made
+    theirs, before, ours = (column(page, 1, k) for k in (2, 1, 3))
+    printed = {("time", "without"): "1.342", ("time", "with"): "1.888",
+               ("memory", "without"): "1.349", ("memory", "with"): "1.988"}  # fmt: skip
+    for (what, contact), ratio in printed.items():
+        row = f"{what} {contact} contact, MPM3D / MPM3Dpp"
+        assert (before[row], theirs[row], ours[row]) == ("-", ratio, "-")
+    pairs = json.loads((out / "runs" / "spheres" / "manifest.json").read_text())["contact"]["pairs"]
+    row = "contact surfaces; here pairs of bodies that have touched"
+    touched = sum(pair["pairs"] for pair in pairs)
+    assert touched > 0
+    assert (column(page, 2, 1)[row], column(page, 2, 2)[row]) == ("810", f"{touched:,}")
+    assert row not in column(page, 1, 1)
+    particles = json.loads((out / "runs" / "rings_gap" / "manifest.json").read_text())["particles"]
+    assert f"| particles | 29,760 | {particles:,} |" in page
 
 
 def test_used_cells_are_counted(made: tuple[Path, str, dict[str, Any]]) -> None:
