@@ -370,11 +370,26 @@ def test_bodies_stand_in_the_order_of_their_components() -> None:
     assert list(with_part(*swapped, more=more).case.body) == ["body_2", "body_1"]
 
 
-def test_several_bodies_to_a_component_are_refused() -> None:
-    third = "particle block 2\n 1 7.8d-3 0.5 -1 0 0 2 2 2\n"
+def test_bodies_of_one_component_are_one_body() -> None:
+    third = "particle block 2\n 1 7.8d-3 0.25 1 0 1 4 4 2\n"
     cont = ("endi\n", "contact lagr 0 1\nendi\n")
-    with pytest.raises(CaseError, match="cont comes with several bodies in a component"):
-        with_part(TWO[0], TWO[1].format(2), third, more=(("nbco 1", "nbco 2"), cont))
+    more = (("nbco 1", "nbco 2"), cont)
+    found = with_part(TWO[0], TWO[1].format(2), third, more=more)
+    first, second = build(found.case)
+    assert (first.name, second.name) == ("body_1", "body_2")
+    assert (len(first.positions), len(second.positions)) == (8, 8 + 32)
+    assert second.mass == pytest.approx(7.8e-6 * (1 + 32 / 64), rel=1e-12)
+    assert any("bodies 2, 3 share the grid of component 2" in note for note in found.notes)
+    fast = (more[0], ("endi\n", "velo body 3 1 0 0 endv\ncontact lagr 0 1\nendi\n"))
+    with pytest.raises(CaseError, match="different velocities in component 2"):
+        with_part(TWO[0], TWO[1].format(2), third, more=fast)
+    two = (("nmat 1", "nmat 2"), (MATE, f"{MATE} 2 pla1 {STEEL} 300\n"))
+    with pytest.raises(CaseError, match="different materials in component 2"):
+        with_part(TWO[0], TWO[1].format(2), third.replace("\n 1", "\n 2"), more=(*more, *two))
+
+
+def test_components_are_those_of_nbco() -> None:
+    cont = ("endi\n", "contact lagr 0 1\nendi\n")
     with pytest.raises(CaseError, match="is in component 3 but nbco is 2"):
         with_part(TWO[0], TWO[1].format(3), more=(("nbco 1", "nbco 2"), cont))
     with pytest.raises(CaseError, match="contact of components 1 and 2 only"):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 from .deck import Deck
@@ -36,9 +37,6 @@ def contact_table(deck: Deck) -> dict[str, Any]:
             raise deck.error("part", rule, "correct one of the two", part.line)
     if len(set(components)) == 1:
         return {"bonded": True} if len(components) > 1 else {}
-    if len(components) > len(set(components)):
-        rule = "comes with several bodies in a component, which cannot be honoured"
-        raise deck.error("cont", rule, "exactly one body to a component")
     if deck.contact is None:
         deck.note("cont others: the bodies do not see each other, as in MPM3D-F90")
         return {"enabled": False}
@@ -51,3 +49,30 @@ def contact_table(deck: Deck) -> dict[str, Any]:
         'contact.detection = "gap" would be better'
     )
     return {"detection": "velocity", "normal": _NORMALS[whose], "friction": friction}
+
+
+def joined(deck: Deck) -> list[list[int]]:
+    """Return the indices of the parts that are one body here, in the order of the components.
+
+    With `cont` the bodies of a component share a grid, as if they were one: so they are one here.
+
+    Raises:
+        CaseError: they have different materials or velocities.
+    """
+    order = sorted(range(len(deck.parts)), key=lambda k: deck.parts[k].component)
+    groups = [list(g) for _, g in itertools.groupby(order, lambda k: deck.parts[k].component)]
+    if not deck.separate or len(groups) == 1:
+        return [[k] for k in order]
+    for group in groups:
+        component = deck.parts[group[0]].component
+        velocities = [deck.velocity.get(k + 1, ([0.0] * 3, 0))[0] for k in group]
+        same = all(deck.parts[k].material == deck.parts[group[0]].material for k in group)
+        if not same or any(v != velocities[0] for v in velocities):
+            what = "velocities" if same else "materials"
+            rule = f"comes with bodies of different {what} in component {component}"
+            remedy = "give them components of their own, of which cont knows two"
+            raise deck.error("cont", rule, f"{remedy}, or leave cont out")
+        if len(group) > 1:
+            names = ", ".join(str(k + 1) for k in group)
+            deck.note(f"cont: bodies {names} share the grid of component {component}, as one body")
+    return groups

@@ -95,6 +95,25 @@ def _counts(part: Part) -> tuple[int, float]:
     return int(math.pi * inner**2), (2 * n["nr"]) ** 2
 
 
+def one_part(parts: list[Part]) -> Part:
+    """Return the body that has all particles of some bodies of one material."""
+    first = parts[0]
+    if len(parts) == 1:
+        return first
+    points = [points_of(part) for part in parts]
+    masses = [_masses(part, len(x)) for part, x in zip(parts, points, strict=True)]
+    return Part(
+        "point", first.component, first.material, first.line,
+        masses=np.concatenate(masses), points=np.concatenate(points),
+    )  # fmt: skip
+
+
+def _masses(part: Part, count: int) -> Array:
+    if part.masses is not None:
+        return part.masses
+    return np.full(count, part.numbers["density"] * part.numbers["dp"] ** 3)
+
+
 def particle_mass(part: Part) -> float | None:
     """Return the mass that all particles of a body have, in the units of the file; else None."""
     if part.masses is None:
@@ -132,16 +151,13 @@ def body_table(deck: Deck, part: Part, bounds: Bounds, units: UnitSystem) -> dic
         rule = f"has some {_counts(part)[1]:.0e} particles"
         raise deck.error("part", rule, "give smaller numbers; memory is too small", part.line)
     points = points_of(part)
-    if part.masses is not None:
-        masses = part.masses
-    else:
-        masses = np.full(len(points), part.numbers["density"] * part.numbers["dp"] ** 3)
-        if not _same(part.numbers, density):
-            share = part.numbers["density"] / density - 1
-            deck.note(
-                f"line {part.line}: the density of the part statement is not that of its material "
-                f"({share:+.1%}): like in MPM3D-F90 its particles are that much larger"
-            )
+    masses = _masses(part, len(points))
+    if part.masses is None and not _same(part.numbers, density):
+        share = part.numbers["density"] / density - 1
+        deck.note(
+            f"line {part.line}: the density of the part statement is not that of its material "
+            f"({share:+.1%}): like in MPM3D-F90 its particles are that much larger"
+        )
     if len(points) == 0:
         raise deck.error("part", "holds no particle", "change its numbers", part.line)
     if not inside:

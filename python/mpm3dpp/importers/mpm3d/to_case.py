@@ -10,12 +10,12 @@ from typing import Any
 from mpm3dpp.case import Case
 
 from .box import Bounds, bounds_of, grid_table
-from .contact import contact_table
+from .contact import contact_table, joined
 from .deck import Deck
 from .lexer import Source, read_source
 from .materials import material_name, material_tables
 from .output import fields_of
-from .particles import body_table, check_counts, particle_mass
+from .particles import body_table, check_counts, one_part, particle_mass
 from .statements import read_deck
 from .units import UnitSystem, choose
 
@@ -86,17 +86,17 @@ def _tables(deck: Deck, units: UnitSystem) -> tuple[dict[str, Any], Lines] | Non
     """
     caught = deck.source.problems.caught
     materials = caught(material_tables, deck, units)
-    order = caught(_check_bodies, deck)
+    good = caught(_check_bodies, deck)
     run = caught(_run, deck, units)
-    if order is None:
+    if not good:
         return None
-    contact = caught(contact_table, deck)
+    contact, groups = caught(contact_table, deck), caught(joined, deck)
     bounds = caught(bounds_of, deck)
     grid = caught(grid_table, deck, bounds, units) if bounds is not None else None
     if materials is None or bounds is None:
         return None
     fields = caught(fields_of, deck, materials)
-    bodies = _bodies(deck, order, bounds, units)
+    bodies = None if groups is None else _bodies(deck, groups, bounds, units)
     if grid is None or run is None or contact is None or fields is None or bodies is None:
         return None
     output: dict[str, Any] = {"interval": units.si(deck.interval, "time")}
@@ -111,12 +111,12 @@ def _tables(deck: Deck, units: UnitSystem) -> tuple[dict[str, Any], Lines] | Non
 
 
 def _bodies(
-    deck: Deck, order: list[int], bounds: Bounds, units: UnitSystem
+    deck: Deck, groups: list[list[int]], bounds: Bounds, units: UnitSystem
 ) -> dict[str, dict[str, Any]] | None:
     """Return the tables of the bodies; None if one has a mistake."""
     found: dict[str, dict[str, Any]] = {}
-    for number in order:
-        part = deck.parts[number]
+    for group in groups:
+        number, part = group[0], one_part([deck.parts[k] for k in group])
         table = deck.source.problems.caught(body_table, deck, part, bounds, units)
         if table is None:
             continue
@@ -124,7 +124,7 @@ def _bodies(
         body |= table
         if number + 1 in deck.velocity:
             body["velocity"] = [units.si(v, "velocity") for v in deck.velocity[number + 1][0]]
-    return found if len(found) == len(order) else None
+    return found if len(found) == len(groups) else None
 
 
 def _lines(deck: Deck, materials: dict[str, dict[str, Any]]) -> Lines:
@@ -221,8 +221,8 @@ def _acceleration(deck: Deck, number: int) -> list[float]:
     return [g + f / mass for g, f in zip(gravity, force, strict=True)]
 
 
-def _check_bodies(deck: Deck) -> list[int]:
-    """Check the bodies and return their indices in the order of their components."""
+def _check_bodies(deck: Deck) -> bool:
+    """Check the bodies: True if there are some, and they have materials."""
     if not deck.parts:
         raise deck.error("part", "is missing", "add a part statement for each body")
     if deck.bodies != len(deck.parts):
@@ -233,4 +233,4 @@ def _check_bodies(deck: Deck) -> list[int]:
             rule = f"names material {part.material}, which is not given"
             raise deck.error("part", rule, "number the materials from 1", part.line)
     check_counts(deck)
-    return sorted(range(len(deck.parts)), key=lambda k: deck.parts[k].component)
+    return True
