@@ -212,7 +212,7 @@ def _close_up(axes: Axes, results: Results, arrays: dict[str, np.ndarray], conta
     if contact.gap > 0.3 * cell:  # Room for it between the surfaces.
         arrow["arrowstyle"] = "<|-|>"
         foot, tip = (line.mean(axis=0) for line in ends)
-    axes.annotate("", tip, foot, arrowprops=arrow, zorder=6)
+    axes.annotate("", tuple(tip), tuple(foot), arrowprops=arrow, zorder=6)
     size, cells = round(contact.gap * factor, 3) + 0.0, round(contact.gap / cell, 2) + 0.0
     text = f"gap {size:.3f} {unit} = {cells:.2f} cells"
     axes.set_title(text.replace("-", "\N{MINUS SIGN}"), loc="left")

@@ -9,6 +9,7 @@ from decimal import Decimal
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mpm3dpp.case_grid import FACES
 
@@ -35,13 +36,13 @@ class Bounds:
     closed: list[bool]
     cell: Decimal
 
-    def beyond(self, points: Array) -> Array:
+    def beyond(self, points: Array) -> NDArray[np.bool_]:
         """Return which points, shape (n, 3), stand beyond a closed face, shape (n,)."""
         lower = np.where(self.closed[0::2], np.array(self.lower, float), -np.inf)
         upper = np.where(self.closed[1::2], np.array(self.upper, float), np.inf)
         slack = _SLACK * float(self.cell)
-        found: Array = np.any((points < lower - slack) | (points > upper + slack), axis=1)
-        return found
+        out: NDArray[np.bool_] = (points < lower - slack) | (points > upper + slack)
+        return out.any(axis=1)
 
 
 def bounds_of(deck: Deck) -> Bounds | None:
