@@ -41,8 +41,9 @@ class Bounds:
         lower = np.where(self.closed[0::2], np.array(self.lower, float), -np.inf)
         upper = np.where(self.closed[1::2], np.array(self.upper, float), np.inf)
         slack = _SLACK * float(self.cell)
-        out: NDArray[np.bool_] = (points < lower - slack) | (points > upper + slack)
-        return out.any(axis=1)
+        out = (points < lower - slack) | (points > upper + slack)
+        found: NDArray[np.bool_] = np.any(out, axis=1)
+        return found
 
 
 def bounds_of(deck: Deck) -> Bounds | None:
@@ -105,9 +106,10 @@ def _widen(
             continue
         cells = math.ceil(out)
         corner[axis] += sign * cells * cell
+        count = "a cell" if cells == 1 else f"{cells} cells"
         deck.note(
             f"line {part.line}: body_{number} reaches out of the grid at {FACES[2 * axis + side]}, "
-            f"so the box is widened there by {cells} cells; MPM3D-F90 leaves particles outside its "
+            f"so the box is widened there by {count}; MPM3D-F90 leaves particles outside its "
             "grid where they are"
         )
 
