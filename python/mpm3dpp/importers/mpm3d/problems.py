@@ -54,8 +54,9 @@ class Problems:
             return None
 
     def keep(self, error: CaseError) -> None:
-        """Add a mistake that has been raised."""
-        self._others += error.problems if isinstance(error, CaseErrors) else [error]
+        """Add a mistake that has been raised, and those that came with it."""
+        both = [error, *getattr(error, "others", ())]
+        self._others += error.problems if isinstance(error, CaseErrors) else both
 
     def judge(self) -> None:
         """Raise what has been gathered, if anything."""
