@@ -125,6 +125,9 @@ NB_MODULE(_core, m) {
       .def_prop_ro("bodies", [](const PairRecord& p) { return std::pair(p.a, p.b); })
       .def_ro("first_time", &PairRecord::first_time)
       .def_ro("first_gap", &PairRecord::first_gap)
+      .def_prop_ro("first_normal",
+                   [](const PairRecord& p) { return std::to_array(p.first_normal); })
+      .def_prop_ro("first_node", [](const PairRecord& p) { return std::to_array(p.first_node); })
       .def_ro("first_step", &PairRecord::first_step)
       .def_prop_ro("force", [](const PairRecord& p) { return std::to_array(p.force); })
       .def_prop_ro("impulse", [](const PairRecord& p) { return std::to_array(p.impulse); })

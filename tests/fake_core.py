@@ -79,6 +79,8 @@ class FakeSimulation:
             bodies=(0, 1),
             first_time=self._first if touching else float("nan"),
             first_gap=0.0 if touching else float("nan"),
+            first_normal=[1.0 * touching, 0.0, 0.0],
+            first_node=[0.0, 0.0, 0.0],
             first_step=10 if touching else -1,
             force=[-5.0 * touching, 0.0, 0.0],
             impulse=[-0.1 * touching, 0.0, 0.0],

@@ -185,7 +185,7 @@ def _write_run(
             results.write(core)
         if before is not None and (kept is None or history_anew):  # Of the new files.
             _tell(progress, checkpoints.write(core, results, history))
-        touched = len(core.contact_groups()) if contact else 0
+        touched = _touched(core.contact_groups()) if contact else 0
         while status == "completed" and core.time < case.run.end_time:
             try:
                 simulation.advance(_steps(most, frames, core))
@@ -203,9 +203,9 @@ def _write_run(
             while frames and core.time >= frames[0]:
                 frames.pop(0)
             results.check()
-            if due or len(pairs) > touched:  # A frame too whenever two entries first touch.
+            if due or _touched(pairs) > touched:  # A frame too whenever two entries first touch.
                 results.write(core)
-                touched = len(pairs)
+                touched = _touched(pairs)
             overlapped = core.contact_summary()["overlapped_nodes"] if contact else None
             kinetic, internal = rows[-1, 3:5]
             progress.update(core.time, core.step, core.dt, kinetic, internal, overlapped)
@@ -234,6 +234,12 @@ def _fields(case: Case) -> list[str]:
     goes = any(f.action == "erode" for name in used for f in case.material[name].failure)
     goes = goes or case.grid.keep is not None
     return list(dict.fromkeys([*case.output.fields, *(["failed"] if goes else [])]))
+
+
+def _touched(pairs: list[Any]) -> int:
+    """Return how many pairs have had their first contact; what comes before it, where a body has
+    only just reached a node, is not one."""
+    return sum(pair.first_step >= 0 for pair in pairs)
 
 
 def _steps(most: int, frames: list[float], core: Any) -> int:

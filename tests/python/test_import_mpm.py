@@ -18,57 +18,10 @@ from mpm3dpp.importers.mpm3d import import_mpm, write_case
 from mpm3dpp.importers.mpm3d.lexer import Reader, split
 from mpm3dpp.importers.mpm3d.particles import points_of
 from mpm3dpp.importers.mpm3d.statements import read_deck
-from mpm3dpp.importers.mpm3d.to_case import Imported, import_source
+from mpm3dpp.importers.mpm3d.to_case import Imported
 from mpm3dpp.importers.mpm3d.units import SYSTEMS
 from mpm3dpp.shapes import Box
-
-GOOD = """\
-mpm3d *** a test
-! Unit: mm g N ms MPa
-nbco 1
-nbbo 1
-nbmp 64
-nmat 1
-spx -2 2
-spy -2 2
-spz 0 4
-dcell 1.0
-dtscale 0.5
-endtime 1.0d-3
-outtime 2.0d-4
-musl on
-jaum on
-bulk 1.5 0.06
-fixed 0 0 0 0 2 1
-material
- 1 elas 7.8d-3 210.0d3 0.3
-particle block 1
- 1 7.8d-3 0.5 0 0 0 4 4 4
-velo
- body 1 0.0 0.0 -100.0
-endv
-endi
-"""
-PART = "particle block 1\n 1 7.8d-3 0.5 0 0 0 4 4 4\n"
-MATE = " 1 elas 7.8d-3 210.0d3 0.3\n"
-SEOS = "seos 1 2 3940 1.49 1.96 0\n"
-
-
-def of(text: str, units: str | None = None) -> Imported:
-    return import_source(split(text), units)
-
-
-def edited(*pairs: tuple[str, str]) -> str:
-    text = GOOD
-    for old, new in pairs:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    return text
-
-
-def with_part(*statements: str, more: tuple[tuple[str, str], ...] = ()) -> Imported:
-    text = edited((PART, "".join(statements)), *more)
-    return of(text.replace("nbmp 64", "nbmp 100000").replace("nbbo 1", f"nbbo {len(statements)}"))
+from mpm_text import GOOD, MATE, PART, SEOS, TWO, edited, of, with_part
 
 
 def test_a_case_in_si_units() -> None:
@@ -153,7 +106,10 @@ NOTED = [
     ("outr disx\n", "positions of two frames"),
     ("jaum off\n", "no effect"),
     ("UVFp\n", "always so here"),
-    ("cont others\n", "does nothing"),
+    ("smooth\n", "smooths the pressure of the output only"),
+    ("Damp 0.0\n", "Damp 0 has no effect"),
+    ("nbco 2\n", "stick together (contact.bonded), as in MPM3D-F90"),
+    ("nbco 3\n", "stick together (contact.bonded), as in MPM3D-F90"),
     ("spx -2 2.3\n", "moved to a whole number of cells, from 2.3 to 2"),
 ]
 
@@ -167,21 +123,21 @@ def test_noted(statement: str, part: str) -> None:
 
 # What cannot be: (statement put before endi, or an edit; part of the sentence; words of its line).
 REFUSED: list[tuple[str | tuple[str, str], str]] = [
-    *[(f"{word}\n", f"{word} asks for") for word in ("bimp", "sgmp", "TLmp", "smooth", "drda")],
+    *[(f"{word}\n", f"{word} asks for") for word in ("bimp", "sgmp", "TLmp", "drda")],
     ("Damp 0.1\n", "Damp asks for a force against the velocity"),
     ("QuLo 1.0\n", "QuLo asks for loads that rise"),
     ("dtsc 1.5\n", "dtsc is 1.5 but a factor here must obey 0 < f <= 1"),
     ("load part 1 0 0 1 endl\n", 'has "part": forces on single particles'),
-    ("load body 1 0 0 1 endl\n", 'has "body": forces on a body'),
-    ("load node 1 0 0 1 endl\n", "this load"),
+    ("load node 1 0 0 1 endl\n", "at this load MPM3D-F90 itself stops"),
+    ("load push 1 0 0 1 endl\n", 'has the unknown load "push"'),
     ("load grav 2 0 0 1 endl\n", "names body 2 but nbbo is 1"),
     ("velo node 1 0 0 1 endv\n", 'has "node": velocities of single particles'),
-    *[(f"velo {w} 1 endv\n", f'has "{w}": this velocity') for w in ("vsin", "ksin", "nuli")],
+    *[(f"velo {w} 1 endv\n", f'has "{w[:4]}": this velocity') for w in ("vsin", "ksin 1", "nuli")],
+    ("velo all 1 0 0 endv\n", 'has the unknown velocity "all"'),
     ("usf on\n", "several schemes on: musl, usf"),
     ("cont lagr 0.1 0\n", "asks for contact but nbco is 1"),
     ("cont lagr 0.1 3\n", "the normal 0, 1 or 2"),
     ("cont penalty\n", 'the unknown kind "penalty"'),
-    ("nbco 3\n", "nbco is 3"),
     ("numthread 2\n", "numthread is not a keyword"),
     ("12 spx 0 1\n", "12 is not a keyword"),
     ("outr none\n", 'the unknown variable "none"'),
@@ -213,7 +169,10 @@ REFUSED: list[tuple[str | tuple[str, str], str]] = [
     (("nbmp 64\n", "nbmp 63\n"), "at least 64 particles"),
     ((PART, ""), "part is missing"),
     (("block 1\n 1 7", "block 1\n 3 7"), "names material 3"),
-    (("block 1\n", "block 2\n"), "in component 2 but nbco is 1"),
+    ((PART, "part point 1 3\n 1 1 1 0 0 0\n"), "has 3 particles but only"),
+    ((" 0 0 0 4 4 4", " 5 0 0 4 4 4"), "lies outside the grid: body 1 is beyond its x bounds"),
+    ((" 0 0 0 4 4 4", " 0 0 -3 4 4 4"), "lies outside the grid: body 1 is beyond its z"),
+    ((PART, "part point 1 2\n 1 1 1 1 1 5\n 1 1 1 1 1 -1\n"), "lies wholly beyond a wall"),
     (("block 1\n", "brick 1\n"), 'the unknown kind "brick"'),
     (("4 4 4", "4 4 0"), "has nz = 0"),
     ((" 0.5 0 0 0", " 0 0 0 0"), "has dp = 0"),
@@ -381,12 +340,6 @@ def test_gimp_needs_particles_of_half_a_cell() -> None:
         of(edited(("endi\n", "gimp\nendi\n"), (" 0.5 0 0 0", " 0.25 0 0 0")))
 
 
-TWO = (
-    "particle block 1\n 1 7.8d-3 0.5 0 0 0 2 2 2\n",
-    "particle block {}\n 1 7.8d-3 0.5 1 0 0 2 2 2\n",
-)
-
-
 def two(component: int, *statements: str) -> Imported:
     more = (("nbco 1", f"nbco {max(component, 2)}"), ("endi\n", "\n".join(statements) + "\nendi\n"))
     return with_part(TWO[0], TWO[1].format(component), more=more)
@@ -395,6 +348,10 @@ def two(component: int, *statements: str) -> Imported:
 def test_bodies_of_one_grid_are_bonded() -> None:
     assert with_part(TWO[0], TWO[1].format(1)).case.contact.bonded
     assert two(1).case.contact.bonded
+    found = two(2)  # Without cont MPM3D-F90 never asks for the component.
+    assert found.case.case_hash == two(1).case.case_hash
+    assert any("stick together" in note for note in found.notes)
+    assert with_part(TWO[0], TWO[1].format(7)).case.case_hash == found.case.case_hash
 
 
 @pytest.mark.parametrize(("whose", "rule"), [(0, "pair"), (1, "first"), (2, "second")])
@@ -402,7 +359,9 @@ def test_contact_of_two_components(whose: int, rule: str) -> None:
     contact = two(2, f"contact lagr 0.3 {whose}").case.contact
     assert contact.enabled
     assert (contact.detection, contact.normal, contact.friction) == ("velocity", rule, 0.3)
-    assert not two(2).case.contact.enabled
+    others = two(2, "contact others 0.3 0")  # Grids of their own, and no contact between them.
+    assert not others.case.contact.enabled and "do not see each other" in others.notes[-1]
+    assert two(1, "contact others").case.contact.bonded
 
 
 def test_bodies_stand_in_the_order_of_their_components() -> None:
@@ -411,10 +370,30 @@ def test_bodies_stand_in_the_order_of_their_components() -> None:
     assert list(with_part(*swapped, more=more).case.body) == ["body_2", "body_1"]
 
 
-def test_several_bodies_to_a_component_are_refused() -> None:
-    third = "particle block 2\n 1 7.8d-3 0.5 -1 0 0 2 2 2\n"
-    with pytest.raises(CaseError, match="nbco is 2 with several bodies"):
-        with_part(TWO[0], TWO[1].format(2), third, more=(("nbco 1", "nbco 2"),))
+def test_bodies_of_one_component_are_one_body() -> None:
+    third = "particle block 2\n 1 7.8d-3 0.25 1 0 1 4 4 2\n"
+    cont = ("endi\n", "contact lagr 0 1\nendi\n")
+    more = (("nbco 1", "nbco 2"), cont)
+    found = with_part(TWO[0], TWO[1].format(2), third, more=more)
+    first, second = build(found.case)
+    assert (first.name, second.name) == ("body_1", "body_2")
+    assert (len(first.positions), len(second.positions)) == (8, 8 + 32)
+    assert second.mass == pytest.approx(7.8e-6 * (1 + 32 / 64), rel=1e-12)
+    assert any("bodies 2, 3 share the grid of component 2" in note for note in found.notes)
+    fast = (more[0], ("endi\n", "velo body 3 1 0 0 endv\ncontact lagr 0 1\nendi\n"))
+    with pytest.raises(CaseError, match="different velocities in component 2"):
+        with_part(TWO[0], TWO[1].format(2), third, more=fast)
+    two = (("nmat 1", "nmat 2"), (MATE, f"{MATE} 2 pla1 {STEEL} 300\n"))
+    with pytest.raises(CaseError, match="different materials in component 2"):
+        with_part(TWO[0], TWO[1].format(2), third.replace("\n 1", "\n 2"), more=(*more, *two))
+
+
+def test_components_are_those_of_nbco() -> None:
+    cont = ("endi\n", "contact lagr 0 1\nendi\n")
+    with pytest.raises(CaseError, match="is in component 3 but nbco is 2"):
+        with_part(TWO[0], TWO[1].format(3), more=(("nbco 1", "nbco 2"), cont))
+    with pytest.raises(CaseError, match="contact of components 1 and 2 only"):
+        with_part(TWO[0], TWO[1].format(3), more=(("nbco 1", "nbco 3"), cont))
 
 
 def test_gravity_must_be_that_of_all_bodies() -> None:
@@ -458,8 +437,10 @@ def test_unit_systems() -> None:
 
 
 def test_mistakes_of_the_case_name_the_line_of_the_file() -> None:
+    case = of(GOOD).case
+    case.grid.box.upper = (0.001, 0.002, 0.004)
     with pytest.raises(CaseError, match=r"^case.mpm:20: body.body_1.shape reaches out"):
-        build(of(edited(("4 4 4", "9 4 4"), ("nbmp 64", "nbmp 144"))).case)
+        build(case)
 
 
 def test_a_word_reader_gives_lines() -> None:

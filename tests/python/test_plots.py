@@ -5,17 +5,16 @@ from __future__ import annotations
 
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import matplotlib.image as matplotlib_image
 import numpy as np
 import pytest
 
 from fake_core import COLUMNS, SIZE, FakeSimulation
-from mpm3dpp import open_results, plots, run_case
+from mpm3dpp import open_results, plots
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io import HistoryWriter, ResultsWriter, build_manifest
-from mpm3dpp.plots import contact, energies, flat, labels, raster, space
+from mpm3dpp.plots import energies, flat, frames, labels, raster, space
 
 
 def make_run(path: Path, dimension: int = 2, manifest: bool = True) -> Path:
@@ -126,82 +125,11 @@ def test_first_contact_picture_in_space(tmp_path: Path) -> None:
     pixels(path)
 
 
-GRAINS = """\
-[grid]
-dimension = 2
-cell_size = "1 mm"
-[run]
-end_time = "4 ms"
-[material.rubber]
-density = "1000 kg/m^3"
-strength = { elastic = { E = "1 MPa", nu = 0.3 } }
-[grains.low]
-material = "rubber"
-lattice = { lower = [0, 0], count = [3, 1], radius = "3 mm", spacing = "8 mm" }
-[grains.high]
-material = "rubber"
-lattice = { lower = [0, "6.5 mm"], count = [3, 1], radius = "3 mm", spacing = "8 mm" }
-velocity = [0, "-1 m/s"]
-"""
-
-
-def test_the_first_contact_of_grains_is_that_of_two(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Not of their entries, whose three grains each stand side by side."""
-    (tmp_path / "case.toml").write_text(GRAINS)
-    run_case(tmp_path / "case.toml", tmp_path, threads=1, pictures=False)
-    with open_results(tmp_path) as results:
-        each = np.bincount(results.arrays(0)["body"])
-    counts: list[tuple[int, int]] = []
-    measure = contact.measure_gap
-
-    def noted(first: np.ndarray, second: np.ndarray, *rest: Any) -> contact.Gap:
-        counts.append((len(first), len(second)))
-        return measure(first, second, *rest)
-
-    monkeypatch.setattr(contact, "measure_gap", noted)
-    pixels(plots.first_contact(tmp_path))
-    assert counts == [(each[0] // 3, each[1] // 3)]
-
-
-@pytest.mark.parametrize("gap", [-0.2, 0.0, 1.3])
-def test_gap_of_two_lattices_is_exact(gap: float) -> None:
-    """Faces of two turned lattices: the gap is known from how they are placed."""
-    axis = np.arange(8) + 0.5
-    block = np.stack(np.meshgrid(axis, axis, [0.0], indexing="ij"), -1).reshape(-1, 3)
-    other = block + np.array([8.0 + gap, 0.0, 0.0])
-    turn = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
-    halves = np.full(len(block), 0.5)
-    found = contact.measure_gap(block @ turn.T, other @ turn.T, halves, halves, 2.0)
-    assert found.value == pytest.approx(gap, abs=1e-12)
-    assert found.normal == pytest.approx(turn[:, 0], abs=1e-12)
-    assert found.place == pytest.approx(turn @ [8.0 + gap / 2, 4.0, 0.0], abs=1e-9)
-
-
-def test_the_normal_of_lattices_out_of_step_is_straight() -> None:
-    """Every point of one face lies between two of the other; only those at the end have one."""
-    first = np.column_stack([np.zeros(40), np.arange(40.0), np.zeros(40)])
-    second = first + np.array([1.0, 0.5, 0.0])
-    halves = np.full(40, 0.5)
-    found = contact.measure_gap(first, second, halves, halves, 4.0)
-    assert found.normal == pytest.approx([1.0, 0.0, 0.0], abs=0.05)
-
-
 def test_grains_are_told_apart_where_they_are_large_enough() -> None:
     bodies, grains = np.array([0, 0, 1, 1, 1]), np.array([0, 1, 0, 1, 1])
     parts = flat._parts(bodies, grains, np.full(5, 12.0))
     assert len(set(parts.tolist())) == 4 and parts[3] == parts[4]
     assert flat._parts(bodies, grains, np.full(5, 2.0)).tolist() == bodies.tolist()
-
-
-def test_nearest_pairs_against_all_pairs() -> None:
-    random = np.random.default_rng(1)
-    first = random.normal(size=(300, 3))
-    second = random.normal(size=(200, 3)) + np.array([2.0, 0, 0])
-    every = np.linalg.norm(first[:, None] - second[None], axis=2)
-    _, _, distance = contact.nearest_pairs(first, second)
-    assert distance.min() == pytest.approx(every.min(), rel=1e-12)
 
 
 def test_squares_tile_and_slits_close() -> None:
@@ -238,6 +166,44 @@ def test_the_total_misses_what_numerics_took() -> None:
     [total] = [line for line in figure.axes[0].lines if line.get_label() == "total"]
     expected = 100.0 - history["contact"] - history["numerical"]
     assert np.allclose(total.get_ydata(), expected, rtol=1e-14)
+
+
+def test_pairs_are_told_by_the_names_of_their_bodies() -> None:
+    """The names may have underscores in them, and be many letters long."""
+    history = {name: np.linspace(1.0, 2.0, 5) for name in COLUMNS}
+    bodies = ["big_block", "small_block", "a_body_with_a_name_of_very_many_letters"]
+    for a, b in ((0, 1), (1, 2)):
+        for x in "xyz":
+            history[f"contact_force_{bodies[a]}_{bodies[b]}_{x}"] = np.linspace(0.0, 1.0, 5)
+    figure = energies.draw_energies(history, 2, bodies)
+    key = [text.get_text() for text in figure.axes[3].get_legend().get_texts()]
+    assert key == [
+        "big_block \N{EN DASH} small_block",
+        "small_block \N{EN DASH} a_body_\N{HORIZONTAL ELLIPSIS}letters",
+    ]
+
+
+def test_torn_particles_do_not_take_the_colours() -> None:
+    """Half a per cent of debris at a thousand times the pressure, or a few particles beyond."""
+    bulk = np.linspace(-1.0, 1.0, 2000)
+    low, high = frames._range(np.concatenate([bulk, np.full(10, -900.0)]))
+    assert -1.01 < low < -0.9 and 0.9 < high <= 1.0
+    low, high = frames._range(np.append(bulk, 1.8))
+    assert low == -1.0 and 0.9 < high < 1.1
+    assert frames._range(bulk) == (-1.0, 1.0)
+    wave = np.concatenate([np.zeros(1990), np.linspace(0.0, 1.0, 60)])  # Of few particles, but one.
+    assert frames._range(wave) == (0.0, 1.0)
+
+
+def test_the_legend_of_a_frame_lies_over_nothing(tmp_path: Path) -> None:
+    with open_results(make_run(tmp_path)) as results:
+        results.bodies[:] = ["a_body_with_a_name_of_very_many_letters", "right"]
+        figure = frames.draw_frame(results, -1, "body")
+    figure.canvas.draw()
+    renderer = figure.canvas.get_renderer()
+    key = figure.legends[0].get_window_extent(renderer)
+    [axes] = figure.axes
+    assert not key.overlaps(axes.get_tightbbox(renderer))
 
 
 def test_labels() -> None:

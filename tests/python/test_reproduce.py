@@ -19,6 +19,8 @@ from mpm3dpp.plots import space
 from mpm3dpp.reproduce import examples, paper
 from mpm3dpp.reproduce.examples import EXAMPLES, change_lines, changed, fewer_spheres, load
 from mpm3dpp.reproduce.page import as_html
+from mpm3dpp.reproduce.runs import Done, Measured
+from mpm3dpp.reproduce.tables import comparison
 from mpm3dpp.reproduce.timing import TURNS
 
 RUBBER = """
@@ -163,7 +165,7 @@ def test_the_html_is_the_same_page(made: tuple[Path, str, dict[str, Any]]) -> No
     text = (out / "reproduce.html").read_text()
     assert text == as_html(page)
     assert sorted(re.findall(r'src="(.*?)"', text)) == sorted(re.findall(r"\]\((.*?)\)", page))
-    assert text.count("<table>") == len(re.findall(r"^\| ---", page, re.M)) == 4
+    assert text.count("<table>") == len(re.findall(r"^\| ---", page, re.M)) == 5
     assert as_html("a < b").count("a &lt; b") == 1
 
 
@@ -211,6 +213,27 @@ def test_the_tables_have_the_paper_s_numbers(made: tuple[Path, str, dict[str, An
     assert (second["particles"], second["cells of the box"]) == ("652,000", "137,500")
     assert second["memory with contact [MiB]"] == "305.19"
     assert second["time with contact / without contact"] == "1.556"  # 2.2187 / 1.4263
+
+
+def test_what_the_paper_counts_stands_beside_ours(made: tuple[Path, str, dict[str, Any]]) -> None:
+    """Table 1's four ratios, the 810 contact surfaces of 4.2 and the 29,760 particles of 4.4."""
+    out, page, _ = made
+    theirs, before, ours = (column(page, 1, k) for k in (2, 1, 3))
+    printed = {("time", "without"): "1.342", ("time", "with"): "1.888",
+               ("memory", "without"): "1.349", ("memory", "with"): "1.988"}  # fmt: skip
+    for (what, contact), ratio in printed.items():
+        row = f"{what} {contact} contact, MPM3D / MPM3Dpp"
+        assert (before[row], theirs[row], ours[row]) == ("-", ratio, "-")
+    row = "contact surfaces; here pairs of bodies that have touched"
+    assert (column(page, 2, 1)[row], column(page, 2, 2)[row]) == ("810", "0")  # Not yet here.
+    manifest = json.loads((out / "runs" / "spheres" / "manifest.json").read_text())
+    manifest["contact"]["pairs"] = [{"pairs": 1700}, {"pairs": 100}]
+    done = Done("", Case.from_text(SPHERES), {}, out, manifest)
+    rows = comparison(paper.SPHERES, Measured(EXAMPLES["spheres"], [done]), "paper")
+    assert f"| {row} | 810 | 1,800 |" in rows
+    assert row not in column(page, 1, 1)
+    particles = json.loads((out / "runs" / "rings_gap" / "manifest.json").read_text())["particles"]
+    assert f"| particles | 29,760 | {particles:,} |" in page
 
 
 def test_used_cells_are_counted(made: tuple[Path, str, dict[str, Any]]) -> None:

@@ -28,7 +28,10 @@ struct PairRecord {
   int a = 0, b = 0;        // bodies, a < b; or groups of bodies, a <= b
   std::int64_t pairs = 0;  // of bodies, that the record is the sum of
   double first_time = std::numeric_limits<double>::quiet_NaN();  // [s]
+  // Of the first contact [m]: the distance of the surfaces, the unit vector from a to b along which
+  // it was measured and acted, and the position of the node.
   double first_gap = std::numeric_limits<double>::quiet_NaN();
+  double first_normal[3] = {}, first_node[3] = {};
   double first_share = 0.0;  // mass of the node of first_gap over a particle's
   std::int64_t first_step = -1;
   double force[3] = {};        // on a, in the last step [N]

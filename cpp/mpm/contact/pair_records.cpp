@@ -88,6 +88,11 @@ ContactSums ContactGrid<D>::record(TileGrid<D>& grid, const std::vector<Body<D>>
           r.first_time = time;
           r.first_gap = pair.gap;
           r.first_share = lighter;
+          const Vec<double, D> x = grid.position_of(place_of(grid, node));
+          for (int a = 0; a < D; ++a) {
+            r.first_normal[a] = sign * pair.normal[a];
+            r.first_node[a] = x[a];
+          }
         }
       }
       const Vec<double, D> impulse = pair.impulse();

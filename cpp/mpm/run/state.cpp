@@ -53,13 +53,17 @@ std::vector<PairRecord> SimulationOf<D>::group_pairs() const {
     sum.b = key.second;
     ++sum.pairs;
     sum.friction_work += pair.friction_work;
+    const double sign = a < b ? 1.0 : a > b ? -1.0 : 0.0;
     if (pair.first_step >= 0 && (sum.first_step < 0 || pair.first_step < sum.first_step)) {
       sum.first_step = pair.first_step;
       sum.first_time = pair.first_time;
       sum.first_gap = pair.first_gap;
       sum.first_share = pair.first_share;
+      for (int k = 0; k < 3; ++k) {
+        sum.first_normal[k] = (a > b ? -1.0 : 1.0) * pair.first_normal[k];
+        sum.first_node[k] = pair.first_node[k];
+      }
     }
-    const double sign = a < b ? 1.0 : a > b ? -1.0 : 0.0;
     for (int k = 0; k < 3; ++k) {
       sum.force[k] += sign * pair.force[k];
       sum.impulse[k] += sign * pair.impulse[k];

@@ -214,6 +214,8 @@ def _contact(simulation: Any, parts: Sequence[str]) -> ContactRecord:
             pairs=int(pair.pairs),
             first_time=float(pair.first_time),
             first_gap=float(pair.first_gap),
+            first_normal=list(pair.first_normal) if pair.first_step >= 0 else None,
+            first_node=list(pair.first_node) if pair.first_step >= 0 else None,
             impulse=[float(v) for v in pair.impulse],
             friction_work=float(pair.friction_work),
         )

@@ -15,6 +15,9 @@ class PairRecord:
         pairs: how many pairs of single bodies have touched.
         first_time: time of the first contact force [s]; None when they never touched.
         first_gap: distance of the two surfaces at that time [m]; None when never.
+        first_normal: unit vector from the first to the second along which that contact acted, three
+            numbers; None when never.
+        first_node: the node of the grid at which it acted [m], three numbers; None when never.
         impulse: impulse on the first body until the end [N s] (per metre in 2D); 0 for grains
             among themselves.
         friction_work: energy lost by friction [J] (per metre in 2D).
@@ -24,6 +27,8 @@ class PairRecord:
     pairs: int
     first_time: float | None
     first_gap: float | None
+    first_normal: list[float] | None
+    first_node: list[float] | None
     impulse: list[float]
     friction_work: float
 

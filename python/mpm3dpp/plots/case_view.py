@@ -42,8 +42,7 @@ def preview(case: Any, out: Path) -> Path:
         figure = draw(grid, box, view, points, sizes, bodies)
         axes = figure.axes[0]
         counts = np.bincount(bodies, minlength=len(names))
-        labels = [f"{name} ({count:,})" for name, count in zip(names, counts, strict=True)]
-        legend_of_bodies(axes, labels, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4)
+        legend_of_bodies(figure, names, [f" ({count:,})" for count in counts])
         axes.set_title(f"{len(points):,} particles", loc="left")
         return save(figure, path)
 

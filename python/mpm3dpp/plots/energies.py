@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mpm3dpp.plots.labels import prefix
+from mpm3dpp.plots.labels import prefix, short
 from mpm3dpp.plots.style import PALETTE, new_figure, save, styled
 
 if TYPE_CHECKING:
@@ -33,17 +33,21 @@ _NUMERICAL = {
     "numerical_time": "numerical, time",
 }
 _MOST_PAIRS = 8
+_NAME = 15  # Letters of a body's name in the legend of pairs.
 
 
-def draw_energies(history: dict[str, np.ndarray], dimension: int = 3) -> Figure:
+def draw_energies(
+    history: dict[str, np.ndarray], dimension: int = 3, bodies: list[str] | None = None
+) -> Figure:
     """Draw the curves; the caller saves them.
 
     Args:
         history: of `read_history`.
         dimension: 2 (per metre of thickness) or 3.
+        bodies: their names, which tell where in the name of a column one ends and the next begins.
     """
     per = "/m" if dimension == 2 else ""
-    forces = _forces(history)
+    forces = _forces(history, bodies or [])
     with styled():
         figure = new_figure(10.0, 5.6)
         grid = figure.subplots(2, 2, sharex=True)
@@ -65,9 +69,14 @@ def draw_energies(history: dict[str, np.ndarray], dimension: int = 3) -> Figure:
     return figure
 
 
-def save_energies(history: dict[str, np.ndarray], path: Path, dimension: int = 3) -> Path:
+def save_energies(
+    history: dict[str, np.ndarray],
+    path: Path,
+    dimension: int = 3,
+    bodies: list[str] | None = None,
+) -> Path:
     """Draw the curves and write them as PNG; arguments of `draw_energies`."""
-    figure = draw_energies(history, dimension)
+    figure = draw_energies(history, dimension, bodies)
     with styled():
         return save(figure, path)
 
@@ -168,15 +177,20 @@ def _positive(curve: np.ndarray) -> np.ndarray:
     return np.where(curve > 0.0, curve, np.nan)
 
 
-def _forces(history: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Size of the contact force of each pair that ever touched, "a - b" -> (rows,)."""
+def _forces(history: dict[str, np.ndarray], bodies: list[str]) -> dict[str, np.ndarray]:
+    """Size of the contact force of each pair that ever touched, "a \N{EN DASH} b" -> (rows,)."""
     forces = {}
     head = "contact_force_"
+    both = {f"{a}_{b}": (a, b) for a in bodies for b in bodies}
     for name in history:
         if name.startswith(head) and name.endswith("_x"):
             pair = name[len(head) : -2]
             parts = [history[f"{head}{pair}_{x}"] for x in "xyz"]
             size = np.sqrt(sum(part**2 for part in parts))
             if np.nansum(size) > 0.0:
-                forces[pair.replace("_", " – ", 1) if pair.count("_") == 1 else pair] = size
+                names = both.get(pair, (pair,))
+                label = " \N{EN DASH} ".join(short(each, _NAME) for each in names)
+                if label in forces:  # Cut to the same: their whole names.
+                    label = " \N{EN DASH} ".join(names)
+                forces[label] = size
     return forces

@@ -167,8 +167,7 @@ def _key(axes: Axes, results: Results, colour: str, bar: ColourBar | None) -> No
         place.spines["outline"].set_linewidth(0.6)
         return
     names = results.bodies if colour == "body" else results.materials
-    if len(names) > 1:
-        legend_of_bodies(axes, names, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=6)
+    legend_of_bodies(figure, names)
 
 
 @dataclasses.dataclass
@@ -202,15 +201,21 @@ def paint(
     return rgb, ColourBar(ScalarMappable(shown, colours), label, extend)
 
 
+# Of debris and the like [%]: the share of the values that colours leave out at either end if it
+# stretches their range by more than a factor; a larger share, as of torn particles, must stretch it
+# more than what is a few particles.
+_TAILS = ((1.0, 10.0), (0.1, 1.3))
+
+
 def _range(values: np.ndarray) -> tuple[float, float]:
     """Range for the colours: all values, without a few that lie far outside the others."""
     low, high = float(values.min()), float(values.max())
-    bottom, top = np.percentile(values, [0.1, 99.9])
-    reach = 1.3 * (top - bottom)
-    return (
-        float(bottom) if top - low > reach else low,
-        float(top) if high - bottom > reach else high,
-    )
+    for tail, factor in _TAILS:
+        bottom, top = (float(x) for x in np.percentile(values, [tail, 100.0 - tail]))
+        reach = factor * (top - bottom)
+        if reach > 0.0 and (top - low > reach or high - bottom > reach):
+            return bottom if top - low > reach else low, top if high - bottom > reach else high
+    return low, high
 
 
 def save_frame(

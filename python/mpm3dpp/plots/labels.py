@@ -56,6 +56,14 @@ def scaled(value: float, unit: str, digits: int = 4) -> str:
     return f"{value * factor:.{digits}g} {text}"
 
 
+def short(name: str, most: int = 28) -> str:
+    """A name for a title or a legend, its middle left out where it has more letters than `most`."""
+    if len(name) <= most:
+        return name
+    half = (most - 1) // 2
+    return f"{name[:half]}\N{HORIZONTAL ELLIPSIS}{name[-half:]}"
+
+
 def at_time(time: float, end: float) -> str:
     """A time for a title, in the unit that suits the whole run, always with the same digits."""
     factor, unit = prefix(end, "s")

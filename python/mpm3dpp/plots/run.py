@@ -40,7 +40,9 @@ def plot_results(
 
             history = read_history(source)
             if len(history["time"]):
-                made.append(save_energies(history, out / "energies.png", results.dimension))
+                made.append(
+                    save_energies(history, out / "energies.png", results.dimension, results.bodies)
+                )
         if animation:
             from mpm3dpp.plots.animation import save_animation
 

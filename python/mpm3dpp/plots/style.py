@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
+from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,10 +13,10 @@ import numpy as np
 
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import make_folder, writing
+from mpm3dpp.plots.labels import short
 from mpm3dpp.reading import refuse_nul
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 DPI = 200
@@ -32,6 +33,7 @@ MOST_NAMES = 12
 MAPS = {"speed": "plasma", "velocity": "plasma"}
 """Colour maps of some arrays; signed arrays get a map that is white at zero, others viridis."""
 
+_LETTER, _SQUARE = 0.065, 0.45  # Inches of a legend: a letter's width, and what a name needs more.
 _NOISE = 0.02  # a range that passes zero by less than this share counts as one-sided
 
 _SETTINGS: Any = {
@@ -138,13 +140,25 @@ def colour_scale(name: str, low: float, high: float) -> tuple[Any, Any]:
     return matplotlib.colormaps[MAPS.get(name, "viridis")], Normalize(low, high)
 
 
-def legend_of_bodies(axes: Axes, names: list[str], **options: Any) -> None:
-    """A legend with one coloured square per body; nothing when there are too many bodies."""
+def legend_of_bodies(figure: Figure, names: list[str], notes: list[str] | None = None) -> None:
+    """A legend with one coloured square per body, below all else, where it hides nothing.
+
+    Args:
+        figure: gets the legend, unless there are too many bodies, or one alone without a note.
+        names: of the bodies; long ones are cut.
+        notes: what to say behind the names.
+    """
     from matplotlib.patches import Patch
 
-    if len(names) > MOST_NAMES:
+    if len(names) > MOST_NAMES or (len(names) == 1 and notes is None):
         return
+    names = [short(name) + note for name, note in zip(names, notes or cycle([""]), strict=False)]
+    wide = _LETTER * max(map(len, names)) + _SQUARE
+    columns = max(1, min(len(names), int(figure.get_figwidth() / wide)))
     patches = [
         Patch(facecolor=PALETTE[k % len(PALETTE)], label=name) for k, name in enumerate(names)
     ]
-    axes.legend(handles=patches, handlelength=1.0, handleheight=1.0, **options)
+    figure.legend(
+        handles=patches, handlelength=1.0, handleheight=1.0, ncols=columns,
+        loc="outside lower center",
+    )  # fmt: skip

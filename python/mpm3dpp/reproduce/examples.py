@@ -31,6 +31,7 @@ class Example:
         table: the paper's table, if its time and memory are measured.
         timed_from: share of the end time after which steps are timed.
         projectile: the body whose residual speed counts.
+        particles: what the paper says of them, where it has no table.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Example:
     table: paper.Table | None = None
     timed_from: float = 0.0
     projectile: str = ""
+    particles: int | None = None
 
 
 def _coarser(factor: float) -> Callable[[Case], Changes]:
@@ -119,6 +121,7 @@ EXAMPLES = {
             figures=(14, 15),
             frames=14,
             quick=_coarser(2.5),
+            particles=paper.RING_PARTICLES,
         ),
     )
 }

@@ -64,6 +64,11 @@ def _example(found: Measured, pictures: dict[int, list[Picture]], size: str) -> 
     parts = [f"## {example.section} {example.title}"]
     parts += [f"**Not as it should be:** {sentence}." for sentence in found.wrong]
     parts.append("\n".join(_run_line(done, example) for done in found.runs))
+    if example.particles is not None:
+        head = ["", "paper", f"here, {size}"]
+        ours = found.runs[-1].manifest["particles"]
+        rows = [["particles", f"{example.particles:,}", f"{ours:,}"]]
+        parts.append("\n".join(markdown(head, rows)))
     if example.table is not None:
         parts += [
             f"### Table {example.table.number}: {example.table.title}",
@@ -97,9 +102,10 @@ def _how_timed(found: Measured) -> str:
         "(`contact.enabled = false`) the bodies do not see each other, so that they do not load "
         "each other either, and a material that would yield has less to do. Bonded "
         "(`contact.bonded = true`) they have one velocity field, as the method has it without a "
-        "contact algorithm; the paper does not say which of the two it means by disabled. Memory "
-        "here: what the program holds for particles, grid and contact, reserved room included; the "
-        "paper's is that of the whole program, and its M are taken as MiB."
+        "contact algorithm; the paper does not say which of the two it means by disabled. Its "
+        "ratios MPM3D / MPM3Dpp are of its two programs on its machine, so there are none here. "
+        "Memory here: what the program holds for particles, grid and contact, reserved room "
+        "included; the paper's is that of the whole program, and its M are taken as MiB."
     )
 
 

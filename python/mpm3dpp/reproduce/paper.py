@@ -34,6 +34,9 @@ class Table:
         programs: by name, ours last.
         used: most cells in use, as a share of all; None where the paper does not say.
         speed: residual speed of the projectile [m/s], computed and measured; None without one.
+        ratios: of the first program over the last, as printed there: of times and of memory, each
+            without contact and with it; None without a comparison.
+        contacts: how many contact surfaces there are; None where the paper does not say.
     """
 
     number: int
@@ -43,6 +46,8 @@ class Table:
     programs: dict[str, Program]
     used: float | None = None
     speed: tuple[float, float] | None = None
+    ratios: tuple[tuple[float, float], tuple[float, float]] | None = None
+    contacts: int | None = None
 
 
 PENETRATION = Table(
@@ -56,6 +61,7 @@ PENETRATION = Table(
     },
     used=0.1313,  # Section 4.1, of figure 10.
     speed=(441.0, 455.0),  # Section 4.1; the experiment: Piekutowski et al. (1996).
+    ratios=((1.342, 1.888), (1.349, 1.988)),
 )
 
 SPHERES = Table(
@@ -64,7 +70,11 @@ SPHERES = Table(
     particles=652_000,
     cells=137_500,
     programs={"MPM3Dpp": Program((1.4263, 2.2187), (288.60, 305.19))},
+    contacts=810,  # Section 4.2.
 )
+
+
+RING_PARTICLES = 29_760  # Section 4.4, which leaves open whether that is each ring or both.
 
 
 @dataclass(frozen=True)

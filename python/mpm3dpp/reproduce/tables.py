@@ -37,19 +37,23 @@ def comparison(table: Table, measured: Measured, size: str) -> list[str]:
 
 
 _WORDS = {"off": "without contact", "bonded": "bonded", "on": "with contact"}
+_CONTACTS = "contact surfaces; here pairs of bodies that have touched"
 _ROWS = (
     "particles",
     "cells of the box",
     "cells in use at most",
     "cells of tiles at most, each body's counted",
+    _CONTACTS,
     *(f"time of a step {word} [s]" for word in _WORDS.values()),
     "time with contact / without contact",
     "time with contact / bonded",
+    *(f"time {word}, MPM3D / MPM3Dpp" for word in ("without contact", "with contact")),
     *(f"time per particle {word} [ns]" for word in _WORDS.values()),
     "time of a step with contact, mean of the whole run [s]",
     *(f"memory {word} [MiB]" for word in _WORDS.values()),
     "memory with contact / without contact",
     "memory with contact / bonded",
+    *(f"memory {word}, MPM3D / MPM3Dpp" for word in ("without contact", "with contact")),
     *(f"memory per particle {word} [bytes]" for word in _WORDS.values()),
     *(f"... of which {name} [bytes]" for name in ("particles", "grid", "contact")),
     "memory at the end of the whole run [MiB]",
@@ -65,10 +69,17 @@ def _paper_column(table: Table, program: Program) -> dict[str, str]:
         **_times({"off": off, "on": on}, {"off": on / off}, table.particles),
         **_memories({"off": MIB * light, "on": MIB * heavy}, table.particles),
     }
-    if table.used is not None and program is list(table.programs.values())[-1]:
+    if program is not list(table.programs.values())[-1]:
+        return column
+    if table.used is not None:
         column["cells in use at most"] = f"{table.used:.2%}"
-    if table.speed is not None and program is list(table.programs.values())[-1]:
+    if table.speed is not None:
         column["residual speed [m/s]"] = f"{table.speed[0]:.0f} (experiment {table.speed[1]:.0f})"
+    if table.contacts is not None:
+        column[_CONTACTS] = f"{table.contacts:,}"
+    for what, ratios in zip(("time", "memory"), table.ratios or (), strict=False):
+        for turn, ratio in zip(("off", "on"), ratios, strict=True):
+            column[f"{what} {_WORDS[turn]}, MPM3D / MPM3Dpp"] = f"{ratio:.3f}"
     return column
 
 
@@ -87,6 +98,9 @@ def _our_column(measured: Measured) -> dict[str, str]:
     column["time of a step with contact, mean of the whole run [s]"] = f"{mean:.4g}"
     used = sum(manifest["bytes"][name] for name in ("particles", "grid", "contact"))
     column["memory at the end of the whole run [MiB]"] = f"{used / MIB:.2f}"
+    if measured.example.table is not None and measured.example.table.contacts is not None:
+        touched = sum(pair["pairs"] for pair in manifest["contact"]["pairs"])
+        column[_CONTACTS] = f"{touched:,}"
     if measured.speed is not None:
         column["residual speed [m/s]"] = f"{measured.speed:.0f}"
     timed = measured.timed

@@ -55,6 +55,9 @@ def material(reader: Reader, deck: Deck) -> None:
             raise reader.error(f'has the unknown material type "{word.text}"', remedy)
         names = MATERIALS[kind].split()
         found = reader.numbers(*(f"{name} of {kind}" for name in names))
+        if not found[0] > 0:
+            rule = f"has rho = {found[0]:g} of {kind}, which must be > 0"
+            raise reader.error(rule, "give a density", line)
         deck.materials[number] = Record(kind, dict(zip(names, found, strict=True)), line)
         if number == deck.material_count:
             return
@@ -106,6 +109,10 @@ def _points(reader: Reader, deck: Deck, line: int) -> Part:
     count = reader.integer("the number of particles")
     if not 1 <= count < _MOST:
         raise reader.error(f"has {count} particles", "give a whole number >= 1")
+    left = len(reader.source.words) - reader.at
+    if 6 * count > left:
+        rule = f"has {count} particles but only {left} words follow, and each has 6"
+        raise reader.error(rule, "correct the number, or complete the file")
     table = np.empty((count, 6))
     for k in range(count):
         row = table[k]
@@ -125,46 +132,68 @@ def _points(reader: Reader, deck: Deck, line: int) -> Part:
 
 
 def load(reader: Reader, deck: Deck) -> None:
-    """Read loads until `endl`; gravity alone can be honoured."""
+    """Read loads until `endl`; forces on single particles cannot be honoured."""
     while True:
         word = reader.word("endl")
+        line = reader.line
         if word.key == "endl":
             return
-        if word.key != "grav":
-            known = {"part": "forces on single particles", "body": "forces on a body's particles"}
-            what = known.get(word.key, "this load")
-            rule = f'has "{word.text}": {what} cannot be honoured'
-            raise reader.error(rule, "of the loads only grav can be")
-        line = reader.line
-        body = _body(reader, deck)
-        deck.gravity[body] = (reader.numbers("gx", "gy", "gz"), line)
+        if word.key == "grav":
+            body = _body(reader, deck)
+            deck.gravity[body] = (reader.numbers("gx", "gy", "gz"), line)
+        elif word.key == "body":
+            body = _body(reader, deck)
+            deck.force[body] = (reader.numbers("fx", "fy", "fz"), line)
+        elif word.key == "part":
+            reader.integer("the number of a particle")
+            if any(reader.numbers("fx", "fy", "fz")) or deck.force:
+                rule = f'has "{word.text}": forces on single particles cannot be honoured'
+                remedy = "of the loads grav can be, and body where all particles have one mass"
+                deck.refuse(reader.keyword, rule, remedy, line)
+        elif word.key == "node":
+            while reader.number_follows():
+                reader.number("a force")
+            rule = f'has "{word.text}": at this load MPM3D-F90 itself stops'
+            deck.refuse(reader.keyword, rule, "it is called part now", line)
+        else:
+            rule = f'has the unknown load "{word.text}"'
+            raise reader.error(rule, "the loads are grav, body and part; endl ends them")
+
+
+# Initial velocities that cannot be honoured: what they are, and the numbers that follow.
+_VELOCITIES = {
+    "node": ("velocities of single particles", ("its particle", "vx", "vy", "vz")),
+    "vsin": ("this velocity field", ("v0",)),
+    "ksin": ("this velocity field", ("v0", "its body")),
+    "nuli": ("this velocity field", ("its amplitude",)),
+}
 
 
 def velocity(reader: Reader, deck: Deck) -> None:
     """Read initial velocities until `endv`; those of whole bodies can be honoured."""
     while True:
         word = reader.word("endv")
+        line = reader.line
         if word.key == "endv":
             return
-        if word.key != "body":
-            known = {
-                "node": "velocities of single particles",
-                "vsin": "this velocity field",
-                "ksin": "this velocity field",
-                "nuli": "this velocity field",
-            }
-            what = known.get(word.key, "this velocity")
+        if word.key == "body":
+            body = _body(reader, deck)
+            deck.velocity[body] = (reader.numbers("vx", "vy", "vz"), line)
+        elif word.key in _VELOCITIES:
+            what, numbers = _VELOCITIES[word.key]
+            reader.numbers(*numbers)
             rule = f'has "{word.text}": {what} cannot be honoured'
-            remedy = "use body, or set them in Python with Simulation.set_velocity"
-            raise reader.error(rule, remedy)
-        line = reader.line
-        body = _body(reader, deck)
-        deck.velocity[body] = (reader.numbers("vx", "vy", "vz"), line)
+            remedy = "use body, or leave it out and call Simulation.set_velocity in Python"
+            deck.refuse(reader.keyword, rule, remedy, line)
+        else:
+            rule = f'has the unknown velocity "{word.text}"'
+            raise reader.error(rule, "the velocities are body, node, vsin; endv ends them")
 
 
 def _body(reader: Reader, deck: Deck) -> int:
     number = reader.integer("the number of a body")
     if not 1 <= number <= max(deck.bodies, 1):
         rule = f"names body {number} but nbbo is {deck.bodies}"
-        raise reader.error(rule, "bodies are numbered from 1 in the order of the part statements")
+        remedy = "bodies are numbered from 1 in the order of the part statements"
+        deck.refuse(reader.keyword, rule, remedy, reader.line)
     return number

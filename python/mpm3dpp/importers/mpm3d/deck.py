@@ -68,10 +68,11 @@ class Deck:
         bulk: quadratic and linear factor.
         gimp: whether it was asked for.
         contact: friction and whose normal; None without.
+        separate: whether each component has a grid of its own, as with any `cont`.
         materials, eos: by number.
         detonations: points, with their lines.
         parts: the bodies, in their order.
-        gravity, velocity: by number of the body, with the line.
+        gravity, force, velocity: by number of the body, with the line; force on each particle.
         variables: of outr, curv and curx, with their lines.
     """
 
@@ -92,17 +93,23 @@ class Deck:
     bulk: tuple[float, float] = (1.5, 0.06)
     gimp: bool = False
     contact: tuple[float, int] | None = None
+    separate: bool = False
     materials: dict[int, Record] = field(default_factory=dict)
     eos: dict[int, Record] = field(default_factory=dict)
     detonations: list[tuple[list[float], int]] = field(default_factory=list)
     parts: list[Part] = field(default_factory=list)
     gravity: dict[int, tuple[list[float], int]] = field(default_factory=dict)
+    force: dict[int, tuple[list[float], int]] = field(default_factory=dict)
     velocity: dict[int, tuple[list[float], int]] = field(default_factory=dict)
     variables: list[tuple[str, int]] = field(default_factory=list)
 
     def error(self, keyword: str, rule: str, remedy: str = "", line: int | None = None) -> Any:
         """Return the mistake that a rule is broken by the last statement of a keyword."""
         return self.source.error(rule, remedy, line or self.lines.get(keyword, 1), keyword)
+
+    def refuse(self, keyword: str, rule: str, remedy: str, line: int) -> None:
+        """Add the mistake that a rule is broken, and let the reading go on."""
+        self.source.problems.add(keyword, rule, remedy, line)
 
     def note(self, sentence: str) -> None:
         """Add a sentence about what is not the same as in MPM3D-F90; each once."""

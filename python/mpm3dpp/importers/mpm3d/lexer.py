@@ -8,13 +8,16 @@ in the next line, and several statements may share one.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Container
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
 from mpm3dpp.case_file import similar_file
 from mpm3dpp.errors import CaseError
 from mpm3dpp.reading import read_file
+
+from .problems import Problems
 
 _SPLIT = re.compile(r"[^\s,]+")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
@@ -44,12 +47,17 @@ class Source:
         words: all of them.
         comments: the text of all comments.
         notes: sentences about what MPM3D-F90 would have read otherwise.
+        problems: its mistakes so far.
     """
 
     name: str
     words: list[Word]
     comments: list[str]
     notes: list[str]
+    problems: Problems = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.problems = Problems(self.name)
 
     def error(self, rule: str, remedy: str, line: int, key: str = "") -> CaseError:
         """Return the mistake that a rule is broken at a line."""
@@ -124,13 +132,30 @@ class Reader:
         self.keyword = ""
         self._odd: set[str] = set()
 
+    def skip_to(self, keywords: Container[str], first: bool = True) -> None:
+        """Go on at the next word that is one of these.
+
+        Args:
+            keywords: four letters each.
+            first: only words with which a line begins.
+        """
+        words = self.source.words
+        while self.more():
+            begins = self.at == 0 or words[self.at - 1].line != words[self.at].line
+            if words[self.at].key in keywords and (begins or not first):
+                return
+            self.at += 1
+
     def more(self) -> bool:
         """Are there words left?"""
         return self.at < len(self.source.words)
 
-    def peek(self) -> Word | None:
-        """Return the next word without taking it; None at the end."""
-        return self.source.words[self.at] if self.more() else None
+    def number_follows(self) -> bool:
+        """Does a number follow in this line?"""
+        if not self.more():
+            return False
+        following = self.source.words[self.at]
+        return following.line == self.line and _NUMBER.fullmatch(following.text) is not None
 
     def word(self, what: str) -> Word:
         """Take the next word; `what` says what it should be."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 from .deck import Deck, Record
@@ -34,22 +35,27 @@ def material_name(deck: Deck, number: int) -> str:
     return f"{deck.materials[number].kind}_{number}"
 
 
-def material_tables(deck: Deck, units: UnitSystem) -> dict[str, Table]:
+def material_tables(deck: Deck, units: UnitSystem) -> dict[str, Table] | None:
     """Return all materials by name.
 
+    None if one needs an equation of state that is not there, or has numbers that cannot be, which
+    are among `deck.source.problems` then.
+
     Raises:
-        CaseError: a material has no equation of state but needs one, or numbers that cannot be.
+        CaseError: there are not those materials that the file speaks of.
     """
-    for number in range(1, deck.material_count + 1):
-        if number not in deck.materials:
-            remedy = "give all of them in one mate statement"
-            raise deck.error("mate", f"does not give material {number} of {deck.material_count}",
-                             remedy)  # fmt: skip
+    if len(deck.materials) < deck.material_count:
+        number = next(n for n in itertools.count(1) if n not in deck.materials)
+        rule = f"does not give material {number} of {deck.material_count}"
+        raise deck.error("mate", rule, "give all of them in one mate statement")
     for number, eos in deck.eos.items():
         if number not in deck.materials:
             rule = f"is for material {number}, which is not given"
             raise deck.error("seos", rule, "number the materials from 1", eos.line)
-    return {material_name(deck, n): _table(deck, n, units) for n in sorted(deck.materials)}
+    caught = deck.source.problems.caught
+    found = {material_name(deck, n): caught(_table, deck, n, units) for n in sorted(deck.materials)}
+    tables = {name: table for name, table in found.items() if table is not None}
+    return tables if len(tables) == len(found) else None
 
 
 def _table(deck: Deck, number: int, units: UnitSystem) -> Table:
@@ -117,6 +123,9 @@ def _strength(deck: Deck, record: Record, v: dict[str, float]) -> Table:
     if kind == "dpm":
         soil = {"q_phi": v["qphi"], "k_phi": v["kphi"], "q_psi": v["qpsi"], "tension": v["tenf"]}
         return {"drucker_prager": {**elastic, **soil}}
+    if not -1 < v["nu"] < 0.5:
+        rule = f"has nu = {v['nu']:g} in neoh"
+        raise deck.error("mate", rule, "it must obey -1 < nu < 0.5", record.line)
     bulk, shear = v["E"] / (3 * (1 - 2 * v["nu"])), v["E"] / (2 * (1 + v["nu"]))
     return {"neo_hookean": {"K": bulk, "G": shear}}
 

@@ -6,59 +6,106 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from mpm3dpp.errors import CaseError
+
 from . import blocks
 from .deck import Deck
 from .lexer import Reader, Source
 
 Statement = Callable[[Reader, Deck], None]
 
-# Keywords that change the physics in ways that a case cannot: why, and what to do.
+# Keywords that change the physics in ways that a case cannot: how many numbers follow, why, and
+# what to do.
 REFUSED = {
-    "bimp": ("quadratic B-spline shape functions", "use gimp or the linear basis"),
-    "sgmp": ("the staggered-grid method", "leave it out for the standard method"),
-    "tlmp": ("the total Lagrangian method", "leave it out for the standard method"),
-    "smoo": ("smoothing of the pressure", "leave it out; it changes no motion, only output"),
-    "qulo": ("loads that rise with time", "leave it out"),
-    "damp": ("a force against the velocity", "leave it out"),
-    "drda": ("kinetic damping", "leave it out"),
+    "bimp": (0, "quadratic B-spline shape functions", "use gimp or the linear basis"),
+    "sgmp": (0, "the staggered-grid method", "leave it out for the standard method"),
+    "tlmp": (0, "the total Lagrangian method", "leave it out for the standard method"),
+    "qulo": (
+        1,
+        "loads that rise with time, and a run that goes on until it is at rest",
+        "leave it out",
+    ),
+    "damp": (1, "a force against the velocity", "leave it out"),
+    "drda": (0, "kinetic damping", "leave it out"),
 }
 # Keywords about output that have another counterpart or none.
 OUTPUT = {
     "tecp": "TecPlot files are not written; results.vtkhdf opens in ParaView",
     "para": "results.vtkhdf is written in place of the vtu files",
+    "smoo": "smooths the pressure of the output only; the pressure written here is the particles'",
 }
+# Blocks in which keywords have another meaning, and their ends.
+BLOCKS = {"load": "endl", "velo": "endv"}
 
 
 def read_deck(source: Source) -> Deck:
-    """Return what a file says.
+    """Return what a file says; keywords that cannot be honoured are among `source.problems`.
 
     Raises:
-        CaseError: an unknown keyword, a missing or wrong value, or a keyword that cannot be
-            honoured; the place is the line.
+        CaseError: unknown keywords, missing or wrong values; the place is the line.
     """
     reader, deck = Reader(source), Deck(source)
     if not reader.more():
         raise source.error("is empty", "its last word must be endi", 1)
-    key = ""
+    before, broken = "", False
     while True:
-        before, reader.keyword = key, ""
-        word = reader.word("endi")
-        key = word.key
+        reader.keyword = ""
+        try:
+            key = _statement(reader, deck, before)
+        except CaseError as error:
+            source.problems.keep(error)
+            _go_on(reader)
+            broken, key = True, ""
+            if not reader.more():
+                break
         if key == "endi":
-            return deck
-        reader.keyword = word.text
-        if key in REFUSED:
-            what, remedy = REFUSED[key]
-            raise reader.error(f"asks for {what}, which cannot be honoured", remedy)
-        if key not in STATEMENTS and before == "mate" and word.text.isdigit():
-            reader.keyword = "mate"
-            rule = f"has material {word.text} but nmat is {deck.material_count}"
-            raise reader.error(rule, "correct nmat, or leave the material out")
-        if key not in STATEMENTS:
-            remedy = "the line above may have a value too many; words after ! are comments"
-            raise reader.error("is not a keyword of MPM3D-F90", remedy)
-        deck.lines[key] = word.line
-        STATEMENTS[key](reader, deck)
+            break
+        before = key
+    if broken:
+        source.problems.judge()
+    return deck
+
+
+def _statement(reader: Reader, deck: Deck, before: str) -> str:
+    """Read a statement, return its keyword; `before` is that of the last one."""
+    word = reader.word("endi")
+    key = word.key
+    if key == "endi":
+        return key
+    reader.keyword = word.text
+    if key in REFUSED:
+        _refuse(reader, deck, key)
+        return key
+    if key not in STATEMENTS and before == "mate" and word.text.isdigit():
+        reader.keyword = "mate"
+        rule = f"has material {word.text} but nmat is {deck.material_count}"
+        raise reader.error(rule, "correct nmat, or leave the material out")
+    if key not in STATEMENTS:
+        remedy = "the line above may have a value too many; words after ! are comments"
+        raise reader.error("is not a keyword of MPM3D-F90", remedy)
+    deck.lines[key] = word.line
+    STATEMENTS[key](reader, deck)
+    return key
+
+
+def _refuse(reader: Reader, deck: Deck, key: str) -> None:
+    keyword, line = reader.keyword, reader.line
+    count, what, remedy = REFUSED[key]
+    numbers = [reader.number("its factor") for _ in range(count)]
+    if key == "damp" and not any(numbers):
+        deck.note("Damp 0 has no effect")
+        return
+    deck.refuse(keyword, f"asks for {what}, which cannot be honoured", remedy, line)
+
+
+def _go_on(reader: Reader) -> None:
+    """After a mistake, go to the next statement that begins a line."""
+    end = BLOCKS.get(reader.keyword[:4].lower())
+    if end and any(word.key == end for word in reader.source.words[reader.at :]):
+        reader.skip_to({end}, first=False)
+        reader.word(end)
+    else:
+        reader.skip_to({*STATEMENTS, *REFUSED, "endi"})
 
 
 def _title(reader: Reader, deck: Deck) -> None:
@@ -119,12 +166,14 @@ def _volume(reader: Reader, deck: Deck) -> None:
 
 def _contact(reader: Reader, deck: Deck) -> None:
     word = reader.word("lagr")
+    if word.key not in ("lagr", "othe"):
+        raise reader.error(f'has the unknown kind "{word.text}"', "write cont lagr mu ib")
+    deck.separate = True
     if word.key == "othe":
         deck.contact = None
-        deck.note(f"line {word.line}: cont others does nothing, as in MPM3D-F90")
+        if reader.number_follows():
+            reader.numbers("the friction", "whose normal")
         return
-    if word.key != "lagr":
-        raise reader.error(f'has the unknown kind "{word.text}"', "write cont lagr mu ib")
     friction, whose = reader.number("the friction"), reader.integer("whose normal")
     if friction < 0 or whose not in (0, 1, 2):
         rule = f"has friction {friction:g} and normal {whose}"
@@ -139,8 +188,7 @@ def _variable(reader: Reader, deck: Deck) -> None:
 
 def _curve(reader: Reader, deck: Deck) -> None:
     _variable(reader, deck)
-    following = reader.peek()
-    if following is not None and following.line == reader.line and following.text[0].isdigit():
+    if reader.number_follows():
         reader.integer("the number of a particle")
     _no_curves(deck)
 
@@ -243,6 +291,7 @@ STATEMENTS: dict[str, Statement] = {
     "velo": blocks.velocity,
     "tecp": _noted("tecp"),
     "para": _noted("para"),
+    "smoo": _noted("smoo"),
     "outr": _variable,
     "curv": _curve,
     "curx": _curve_at,

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm3dpp.errors import CaseError
+from mpm3dpp.importers import MPM3D_SUFFIX
 from mpm3dpp.io.disk import make_folder, writing
 from mpm3dpp.particles import Particles, write_particles
 
@@ -39,7 +40,7 @@ def write_case(found: Imported, target: Path, force: bool = False) -> list[Path]
         The files written, the case file first.
 
     Raises:
-        CaseError: a file cannot be written, or is there already.
+        CaseError: a file cannot be written, is there already, or is the one that was imported.
     """
     tables = dict(found.tables)
     tables["body"] = {name: dict(body) for name, body in tables["body"].items()}
@@ -49,6 +50,7 @@ def write_case(found: Imported, target: Path, force: bool = False) -> list[Path]
         if isinstance(body.get("particles"), Particles)
     }
     files = [target, *(target.with_name(f"{target.stem}_{name}.csv") for name in clouds)]
+    _keep_source(Path(found.name), files)
     there = next((file for file in files if file.exists()), None)
     if there is not None and not force:
         remedy = "give another name with -o, or --force to write over it"
@@ -63,6 +65,21 @@ def write_case(found: Imported, target: Path, force: bool = False) -> list[Path]
     with writing(target):
         target.write_text(case_text(found, tables), encoding="utf-8")
     return files
+
+
+def _keep_source(source: Path, files: list[Path]) -> None:
+    """Refuse to write over what was imported, by whatever name: a link, another path to it."""
+    for file in files:
+        if file.suffix.lower() == MPM3D_SUFFIX:
+            rule = f"ends in {MPM3D_SUFFIX}, so that it would be read as a file of MPM3D-F90"
+            raise CaseError(rule, "give a name that ends in .toml with -o", key=str(file))
+        try:
+            same = file.samefile(source)
+        except (OSError, ValueError):
+            same = False  # One of them is not there.
+        if same:
+            rule = "is the file that is imported, which must not be written over"
+            raise CaseError(rule, "give another name with -o", key=str(file))
 
 
 def case_text(found: Imported, tables: dict[str, Any]) -> str:

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the words beside the tables say, held to the figures."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from verification import bars
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize(
+    ("cells", "speed", "passes"), [(50, 0.1, True), (100, 0.03, True), (100, 0.1, False)]
+)
+def test_two_bars_at_small_speeds(cells: int, speed: float, passes: bool) -> None:
+    """about.md: the linear basis is right where no stressed point crosses a cell."""
+    figures = bars.two_bars("musl", 2, "linear", cells, speed)
+    judged = {figure.name: figure for figure in figures if figure.judged}
+    assert all(figure.passed for figure in judged.values()) == passes
+    stress = judged["contact stress"]
+    assert stress.ours / stress.answer - 1 == pytest.approx(0.0 if passes else -0.025, abs=5e-3)
+
+
+def test_the_dam_s_front_is_that_of_the_page() -> None:
+    page = (ROOT / "docs" / "verification.md").read_text()
+    [told] = re.findall(r"W1 dam_break musl 2D gimp.*?at most \((.*?)\)", page)
+    found = dict(part.split(": ") for part in told.split(", "))
+    rows = (ROOT / "examples" / "15_dam_break" / "README.md").read_text().splitlines()
+    [times] = [row.split("|")[2:-1] for row in rows if row.startswith("| T ")]
+    [ours] = [row.split("|")[2:-1] for row in rows if row.startswith("| here ")]
+    assert {t.strip(): z.strip() for t, z in zip(times, ours, strict=True)}.items() <= found.items()
