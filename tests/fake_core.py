@@ -109,6 +109,9 @@ class FakeSimulation:
     def loads(self) -> list[Any]:
         return []
 
+    def warnings(self) -> list[Any]:
+        return []
+
     def timers(self) -> dict[str, float]:
         return {"map momentum": 2e-3, "advance particles": 1e-3}
 

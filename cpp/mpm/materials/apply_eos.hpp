@@ -19,6 +19,7 @@ template <class T, int D, class Model>
                                 MaterialBlock<D>& block, BlockEnd<T, D>& end) {
   const bool burns = material.burns(), damped = material.damps();
   const bool viscosity = settings.viscosity.active(), last = material.failures.empty();
+  const EosBounds bounds = material.bounds;
   for_each_group<T>(block, [&](const Group<T, D>& group) {
     const Swelling<T> swelling(group.read(columns.mass), group.read(columns.volume),
                                group.get(block.volume), group.get(block.dilation),
@@ -28,11 +29,13 @@ template <class T, int D, class Model>
     const T V = swelling.J, per_volume = swelling.per_volume;
     const T change = (swelling.after - swelling.before) * per_volume;  // of V
     const T mean_before = group.get(block.mean_before);
+    T heating = mean_before;  // tension at its limit opens voids, and heats nothing
+    if (bounds.active) heating = select(bounds.limits(mean_before), T(0.0), mean_before);
 
     LinearInEnergy<T> p = model.at(V);
     if (burns) p = p.burnt(group.get(block.burnt));
     T energy =
-        group.read(columns.energy) + work.deviatoric * per_volume + T(0.5) * mean_before * change;
+        group.read(columns.energy) + work.deviatoric * per_volume + T(0.5) * heating * change;
     const T guess = p.A + p.B * energy;
     T speed =
         sqrt(sound_speed_squared(p, V, energy, guess, material.density) + group.get(block.speed));
@@ -48,7 +51,12 @@ template <class T, int D, class Model>
     // the energy's part of the denominator would pass zero; a shock ends below that volume.
     T implicit = T(1.0) + T(0.5) * p.B * change;
     implicit = select(V > T(1.0), max(implicit, T(0.5)), implicit);
-    const T pressure = (p.A + p.B * energy) / implicit;
+    T pressure = (p.A + p.B * energy) / implicit;
+    if (bounds.active) {
+      const auto below = energy - T(0.5) * pressure * change < T(bounds.lowest_energy);
+      pressure = select(below, p.A + p.B * T(bounds.lowest_energy), pressure);
+      pressure = max(pressure, T(-bounds.tension));
+    }
     const T mean = T(1.0 / 3.0) * trace(strength);
     const T shift = mean + pressure;  // of the mean stress, downwards
     const Sym<T, D> stress = strength - Sym<T, D>::isotropic(shift);

@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 2;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 3;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
@@ -38,7 +38,8 @@ void SimulationOf<D>::exchange(StateStream& stream) {
   stream.same(format, other_version);
   for (const std::size_t size :
        {sizeof(Rounded), sizeof(Ledger), sizeof(PatchSums<D>), sizeof(Gone<D>), sizeof(RigidMotion),
-        sizeof(PairRecord), sizeof(KnownNode), sizeof(KnownPair<D>)})
+        sizeof(StepWatch), sizeof(Note), sizeof(PairRecord), sizeof(KnownNode),
+        sizeof(KnownPair<D>)})
     stream.same(size, other_version);
   stream.same(D, other_case);
   stream.same(domain_.bodies.size(), other_case);
@@ -56,6 +57,8 @@ void SimulationOf<D>::exchange(StateStream& stream) {
   stream.vector(domain_.rigid);
   stream(settings_.cell_size, doublings_, next_time_step_, ledger_);
   stream.vector(history_);
+  stream(watch_, looked_);
+  stream.vector(notes_);
   timers_.exchange(stream);
 }
 
