@@ -29,13 +29,13 @@ template <class T, int D, class Model>
     const T V = swelling.J, per_volume = swelling.per_volume;
     const T change = (swelling.after - swelling.before) * per_volume;  // of V
     const T mean_before = group.get(block.mean_before);
-    T heating = mean_before;  // tension at its limit opens voids, and heats nothing
-    if (bounds.active) heating = select(bounds.limits(mean_before), T(0.0), mean_before);
 
     LinearInEnergy<T> p = model.at(V);
     if (burns) p = p.burnt(group.get(block.burnt));
     T energy =
-        group.read(columns.energy) + work.deviatoric * per_volume + T(0.5) * heating * change;
+        group.read(columns.energy) + work.deviatoric * per_volume + T(0.5) * mean_before * change;
+    if (bounds.active && any(bounds.limits(mean_before)))
+      energy = bounds.without_voids(energy, mean_before, change);
     const T guess = p.A + p.B * energy;
     T speed =
         sqrt(sound_speed_squared(p, V, energy, guess, material.density) + group.get(block.speed));
@@ -52,11 +52,9 @@ template <class T, int D, class Model>
     T implicit = T(1.0) + T(0.5) * p.B * change;
     implicit = select(V > T(1.0), max(implicit, T(0.5)), implicit);
     T pressure = (p.A + p.B * energy) / implicit;
-    if (bounds.active) {
-      const auto below = energy - T(0.5) * pressure * change < T(bounds.lowest_energy);
-      pressure = select(below, p.A + p.B * T(bounds.lowest_energy), pressure);
-      pressure = max(pressure, T(-bounds.tension));
-    }
+    if (bounds.active && any((pressure < T(-bounds.tension)) |
+                             (energy - T(0.5) * pressure * change < T(bounds.lowest_energy))))
+      pressure = bounds.held(pressure, energy, change, p);
     const T mean = T(1.0 / 3.0) * trace(strength);
     const T shift = mean + pressure;  // of the mean stress, downwards
     const Sym<T, D> stress = strength - Sym<T, D>::isotropic(shift);

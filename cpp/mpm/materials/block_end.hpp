@@ -41,7 +41,12 @@ class BlockEnd {
     if (columns_.energy) {
       const T energy = group.read(columns_.energy);
       T energy_after = energy + heat * swelling.per_volume;
-      if (bounds_.active) taken = bound(swelling, mean_stress, after.stress, valid, energy_after);
+      if (bounds_.active) {
+        const T last = T(1.0 / 3.0) * trace(after.stress), first = T(2.0) * mean_stress - last;
+        if (any(bounds_.limits(first) | bounds_.limits(last) |
+                (energy_after < T(bounds_.lowest_energy))))
+          taken = bound(swelling, first, last, valid, energy_after);
+      }
       group.write(columns_.energy, energy_after);
     }
     if (columns_.recoverable) {
@@ -77,12 +82,12 @@ class BlockEnd {
   }
 
  private:
-  /// Keep the energy within the bounds; returns what they have taken [J]. Work that tension at its
-  /// limit does opens voids between fragments, in place of straining the matter: it is taken, and
-  /// given back when they close. What is missing to the least energy is given.
-  T bound(const Swelling<T>& swelling, T mean_stress, const Sym<T, D>& stress, Truth<T> valid,
-          T& energy) {
-    const T last = T(1.0 / 3.0) * trace(stress), first = T(2.0) * mean_stress - last;
+  /// Keep the energy within the bounds; returns what they have taken [J]. `first`, `last`: mean
+  /// stresses before and after. Work that tension at its limit does opens voids between fragments,
+  /// in place of straining the matter: it is taken, and given back when they close. What is missing
+  /// to the least energy is given.
+  [[gnu::noinline, gnu::cold]] T bound(const Swelling<T>& swelling, T first, T last, Truth<T> valid,
+                                       T& energy) {
     const T limited = T(0.5) * (select(bounds_.limits(first), first, T(0.0)) +
                                 select(bounds_.limits(last), last, T(0.0)));
     const T opening = swelling.work(limited);

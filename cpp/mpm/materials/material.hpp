@@ -45,6 +45,22 @@ struct EosBounds {
   auto limits(T mean_stress) const {
     return mean_stress >= T(tension * (1.0 - 1e-6));
   }
+
+  // Out of line: bounds act seldom, and what is not there neither slows nor rounds the rest.
+
+  /// The energy without the work that tension at its limit has done on a change of volume: that
+  /// opens voids between fragments, and heats nothing.
+  template <class T>
+  [[gnu::noinline, gnu::cold]] T without_voids(T energy, T mean_stress, T change) const {
+    return energy - select(limits(mean_stress), T(0.5) * mean_stress * change, T(0.0));
+  }
+  /// The pressure within the bounds; `energy` is that of the end but for the new pressure's work.
+  template <class T>
+  [[gnu::noinline, gnu::cold]] T held(T pressure, T energy, T change,
+                                      const LinearInEnergy<T>& p) const {
+    const auto below = energy - T(0.5) * pressure * change < T(lowest_energy);
+    return max(select(below, p.A + p.B * T(lowest_energy), pressure), T(-tension));
+  }
 };
 
 struct Material {

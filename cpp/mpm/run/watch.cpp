@@ -60,7 +60,8 @@ void SimulationOf<D>::watch_step() {
   if (made > 0.0)
     note_at({.kind = NoteKind::energy_made, .value = made, .against = ledger_.largest},
             fastest.body, row);
-  if (work > 0.0)
+  // A load may be meant to be sudden; but what it moves faster than waves run is torn off.
+  if (work > 0.0 && fastest.speed > fastest.sound_speed)
     note_at({.kind = NoteKind::load_energy, .value = work, .against = ledger_.largest},
             fastest.body, row);
 }

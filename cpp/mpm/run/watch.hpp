@@ -55,15 +55,15 @@ class StepWatch {
   static constexpr double jump =
       10.0;  // load's work over its median, which a smooth load keeps below
 
-  /// The median of the last time steps, if `time_step` lies below a tenth of it, else 0.
+  /// The median of the last time steps, or of earlier ones if that was larger, if `time_step` lies
+  /// below a tenth of it, else 0: a step may fall slowly too.
   double median_fallen_below(double time_step) {
-    double found = 0.0;
-    // Found anew now and then: 10 to 20 operations a step.
-    if (steps_.seen >= first_steps && time_step < drop * median_) found = median_ = steps_.median();
-    if (!(time_step < drop * found)) found = 0.0;
+    const double found = time_step < drop * median_ ? median_ : 0.0;
     steps_.add(time_step);
-    const std::size_t often = steps_.seen < 1000 ? 50 : 500;
-    if (steps_.seen == first_steps || steps_.seen % often == 0) median_ = steps_.median();
+    // Found anew now and then: some ten operations a step.
+    const std::size_t often = steps_.seen < LastValues::window ? 50 : LastValues::window;
+    if (steps_.seen == first_steps || steps_.seen % often == 0)
+      median_ = std::max(median_, steps_.median());
     return found;
   }
   /// The energy that numerics have made in a step, if it is more than a twentieth of `largest`.
@@ -91,7 +91,8 @@ class StepWatch {
 
  private:
   LastValues steps_, loads_;
-  double median_ = 0.0, made_before_ = 0.0, work_before_ = 0.0;
+  double median_ = 0.0;  // the largest so far
+  double made_before_ = 0.0, work_before_ = 0.0;
 };
 
 }  // namespace mpm
