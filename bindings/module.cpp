@@ -97,7 +97,9 @@ NB_MODULE(_core, m) {
       .def_rw("normal_travel", &Settings::normal_travel)
       .def_rw("friction", &Settings::friction)
       .def_rw("threads", &Settings::threads)
-      .def_rw("energy_growth_limit", &Settings::energy_growth_limit);
+      .def_rw("energy_growth_limit", &Settings::energy_growth_limit)
+      .def_rw("outside_limit", &Settings::outside_limit)
+      .def_rw("volume_limit", &Settings::volume_limit);
 
   nb::class_<LoadRecord>(m, "Load")
       .def_ro("name", &LoadRecord::name)
@@ -112,6 +114,17 @@ NB_MODULE(_core, m) {
       .def_ro("time", &Failure::time)
       .def_ro("position", &Failure::position)
       .def_ro("message", &Failure::message);
+  nb::class_<Warning>(m, "Warning")
+      .def_ro("kind", &Warning::kind)
+      .def_ro("body", &Warning::body)
+      .def_ro("particle", &Warning::particle)
+      .def_ro("step", &Warning::step)
+      .def_ro("time", &Warning::time)
+      .def_ro("position", &Warning::position)
+      .def_ro("share", &Warning::share)
+      .def_ro("count", &Warning::count)
+      .def_ro("is_error", &Warning::is_error)
+      .def_ro("message", &Warning::message);
   nb::class_<Limiter>(m, "Limiter")
       .def_ro("body", &Limiter::body)
       .def_ro("particle", &Limiter::particle)
@@ -231,6 +244,7 @@ NB_MODULE(_core, m) {
       .def("loads", &Simulation::loads)
       .def_prop_ro("failure", &Simulation::failure)
       .def("limiter", &Simulation::limiter)
+      .def("warnings", &Simulation::warnings)
       .def("set_threads", &Simulation::set_threads, nb::arg("count"))
       .def("columns", &Simulation::columns, nb::arg("body"))
       .def(

@@ -35,6 +35,11 @@ class Run(CaseModel):
             of FLIP; takes away noise that the grid does not see, over very long runs.
         energy_growth_limit: the run stops when the numerical error has created this share of
             the largest energy seen.
+        outside_limit: the run stops when more than this share of the particles of a body, or of
+            all grains of an entry, lies beyond slip or fixed walls of the box; 1 for never.
+        volume_limit: the run stops when more than this share of them has less than 0.01 or more
+            than 100 times the volume that it began with; gases, products of detonation and
+            particles that have failed do not count; 1 for never.
     """
 
     end_time: Time
@@ -44,6 +49,8 @@ class Run(CaseModel):
     viscosity: Viscosity | None = None
     pic_damping: Annotated[float, Quantity("1/s", ">= 0")] = 0.0
     energy_growth_limit: Annotated[float, Quantity("", "> 0")] = 1.0
+    outside_limit: Annotated[float, Quantity("", "0 < f <= 1")] = 0.05
+    volume_limit: Annotated[float, Quantity("", "0 < f <= 1")] = 0.2
 
 
 class Output(CaseModel):

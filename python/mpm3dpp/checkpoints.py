@@ -29,7 +29,8 @@ from .io.history import HistoryWriter, check_history, has_no_history
 from .io.vtkhdf import RESULTS, check_frames, has_no_results
 
 # What a case may change before it goes on: nothing that a step made so far depends on.
-_MAY_CHANGE = {("title",), ("run", "end_time"), ("run", "energy_growth_limit")}
+_LIMITS = ("energy_growth_limit", "outside_limit", "volume_limit")
+_MAY_CHANGE = {("title",), ("run", "end_time"), *(("run", key) for key in _LIMITS)}
 _BITS = ("compiler", "flags", "isa", "velocity_and_stress")
 
 

@@ -84,6 +84,15 @@ def gone_lines(manifest: Manifest) -> list[str]:
     return lines
 
 
+def warning_lines(manifest: Manifest) -> list[str]:
+    """Return a line for each thing that the run has warned of, or told, with how often it was."""
+    return [
+        f"{'warning' if w.is_error else 'note'}: {w.message}; "
+        f"so at {w.count:,} {'looks' if w.share else 'steps'}"
+        for w in manifest.warnings
+    ]
+
+
 def load_lines(manifest: Manifest) -> list[str]:
     """Return a line for each load on a surface: its impulse and, at the end, its force and area."""
     flat = manifest.case.get("grid", {}).get("dimension") == 2

@@ -22,11 +22,12 @@ from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import RESULTS, ResultsWriter
 from .progress import Progress
-from .report import contact_table, energy_line, gone_lines, load_lines, speed_line
+from .report import contact_table, energy_line, gone_lines, load_lines, speed_line, warning_lines
 from .resume import go_on, has_checkpoint
 from .signals import Notice, as_exceptions
 from .simulation import Simulation
 
+_NO_STATE = ("non-finite", "negative volume")  # Failures after which particles have no values.
 _BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without contact.
 
 
@@ -70,6 +71,7 @@ def run_case(
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
         lines = [*contact_table(manifest), *load_lines(manifest), *gone_lines(manifest)]
+        lines += warning_lines(manifest)
         lines += [energy_line(manifest)]
         print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]), flush=True)
     can_go_on = "; --resume goes on" if has_checkpoint(folder) else ""
@@ -186,17 +188,17 @@ def _write_run(
         if before is not None and (kept is None or history_anew):  # Of the new files.
             _tell(progress, checkpoints.write(core, results, history))
         touched = _touched(core.contact_groups()) if contact else 0
+        told = len(core.warnings())  # Those of the parts of the run before.
         while status == "completed" and core.time < case.run.end_time:
             try:
                 simulation.advance(_steps(most, frames, core))
             except RunError as error:
                 status, reason = "failed", str(error)
+            told = _tell_new(progress, core, told)
             rows, pairs = core.history(), core.contact_groups() if contact else []
             history.append(rows, pairs)
             if status == "failed":
-                if (
-                    core.failure.kind == "energy growth"
-                ):  # Else the last frame is the last good one.
+                if core.failure.kind not in _NO_STATE:  # Else the last frame is the last good one.
                     results.write(core)
                 break
             due = bool(frames) and core.time >= frames[0]
@@ -217,6 +219,14 @@ def _write_run(
             _tell(progress, checkpoints.write_last(core, results, history))
     simulation.summary = history.summary()
     return status, reason
+
+
+def _tell_new(progress: Progress, core: Any, told: int) -> int:
+    """Tell what the core has to warn of since the first `told` times; return how often now."""
+    found = core.warnings()
+    for warning in found[told:]:
+        progress.note(f"{'warning' if warning.is_error else 'note'}: {warning.message}")
+    return len(found)
 
 
 def _tell(progress: Progress, problem: str) -> None:

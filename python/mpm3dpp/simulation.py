@@ -287,4 +287,6 @@ def _settings(case: Case, threads: int, fused: bool) -> _core.Settings:
     settings.threads = threads
     settings.fused = fused
     settings.energy_growth_limit = run.energy_growth_limit
+    settings.outside_limit = run.outside_limit
+    settings.volume_limit = run.volume_limit
     return settings

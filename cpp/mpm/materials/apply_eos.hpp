@@ -19,6 +19,7 @@ template <class T, int D, class Model>
                                 MaterialBlock<D>& block, BlockEnd<T, D>& end) {
   const bool burns = material.burns(), damped = material.damps();
   const bool viscosity = settings.viscosity.active(), last = material.failures.empty();
+  const EosBounds bounds = material.bounds;
   for_each_group<T>(block, [&](const Group<T, D>& group) {
     const Swelling<T> swelling(group.read(columns.mass), group.read(columns.volume),
                                group.get(block.volume), group.get(block.dilation),
@@ -33,6 +34,8 @@ template <class T, int D, class Model>
     if (burns) p = p.burnt(group.get(block.burnt));
     T energy =
         group.read(columns.energy) + work.deviatoric * per_volume + T(0.5) * mean_before * change;
+    if (bounds.active && any(bounds.limits(mean_before)))
+      energy = bounds.without_voids(energy, mean_before, change);
     const T guess = p.A + p.B * energy;
     T speed =
         sqrt(sound_speed_squared(p, V, energy, guess, material.density) + group.get(block.speed));
@@ -48,7 +51,10 @@ template <class T, int D, class Model>
     // the energy's part of the denominator would pass zero; a shock ends below that volume.
     T implicit = T(1.0) + T(0.5) * p.B * change;
     implicit = select(V > T(1.0), max(implicit, T(0.5)), implicit);
-    const T pressure = (p.A + p.B * energy) / implicit;
+    T pressure = (p.A + p.B * energy) / implicit;
+    if (bounds.active && any((pressure < T(-bounds.tension)) |
+                             (energy - T(0.5) * pressure * change < T(bounds.lowest_energy))))
+      pressure = bounds.held(pressure, energy, change, p);
     const T mean = T(1.0 / 3.0) * trace(strength);
     const T shift = mean + pressure;  // of the mean stress, downwards
     const Sym<T, D> stress = strength - Sym<T, D>::isotropic(shift);

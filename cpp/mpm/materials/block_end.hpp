@@ -15,8 +15,8 @@ struct Updated {
 template <class T, int D>
 class BlockEnd {
  public:
-  BlockEnd(const BlockColumns<D>& columns, const StressSettings& settings)
-      : columns_(columns), settings_(settings) {}
+  BlockEnd(const BlockColumns<D>& columns, const StressSettings& settings, const EosBounds& bounds)
+      : columns_(columns), settings_(settings), bounds_(bounds) {}
 
   /// `work`: with the stress at the end of the step. `mean_stress`: over the step the average of a
   /// third of the stress's trace, which works on the change of volume.
@@ -37,17 +37,25 @@ class BlockEnd {
               swelling.dilation;
       heat += viscous_work;
     }
+    T taken(0.0);  // by bounds
     if (columns_.energy) {
       const T energy = group.read(columns_.energy);
-      group.write(columns_.energy, energy + heat * swelling.per_volume);
+      T energy_after = energy + heat * swelling.per_volume;
+      if (bounds_.active) {
+        const T last = T(1.0 / 3.0) * trace(after.stress), first = T(2.0) * mean_stress - last;
+        if (any(bounds_.limits(first) | bounds_.limits(last) |
+                (energy_after < T(bounds_.lowest_energy))))
+          taken = bound(swelling, first, last, valid, energy_after);
+      }
+      group.write(columns_.energy, energy_after);
     }
     if (columns_.recoverable) {
       const T energy = group.read(columns_.recoverable);
-      group.write(columns_.recoverable, energy + (done - lost) * swelling.per_volume);
+      group.write(columns_.recoverable, energy + (done - lost - taken) * swelling.per_volume);
     }
     group.write(columns_.volume, swelling.after);
     for (int i = 0; i < Sym<T, D>::size; ++i) group.write(columns_.stress[i], after.stress.c[i]);
-    internal_ += select(valid, done - lost, T(0.0));
+    internal_ += select(valid, done - lost - taken, T(0.0));
     dissipated_ += select(valid, lost, T(0.0));
     force_power_ += select(valid, used, T(0.0));
 
@@ -66,16 +74,37 @@ class BlockEnd {
     sums.internal += sum(internal_);
     sums.plastic += sum(dissipated_);
     sums.viscous += sum(viscous_);
+    sums.bounded += sum(bounded_);
+    sums.energy_floor += sum(floor_);
     sums.force_power += sum(force_power_);
     sums.fastest = max(sums.fastest, largest(fastest_));
     sums.negative_volume = sums.negative_volume || any(negative_);
   }
 
  private:
+  /// Keep the energy within the bounds; returns what they have taken [J]. `first`, `last`: mean
+  /// stresses before and after. Work that tension at its limit does opens voids between fragments,
+  /// in place of straining the matter: it is taken, and given back when they close. What is missing
+  /// to the least energy is given.
+  [[gnu::noinline, gnu::cold]] T bound(const Swelling<T>& swelling, T first, T last, Truth<T> valid,
+                                       T& energy) {
+    const T limited = T(0.5) * (select(bounds_.limits(first), first, T(0.0)) +
+                                select(bounds_.limits(last), last, T(0.0)));
+    const T opening = swelling.work(limited);
+    energy -= opening * swelling.per_volume;
+    const T missing = max(T(bounds_.lowest_energy) - energy, T(0.0));
+    energy = max(energy, T(bounds_.lowest_energy));
+    const T given = missing / swelling.per_volume;
+    bounded_ += select(valid, opening - given, T(0.0));
+    floor_ -= select(valid, given, T(0.0));
+    return opening - given;
+  }
+
   const BlockColumns<D>& columns_;
   const StressSettings& settings_;
+  const EosBounds bounds_;
   T internal_ = T(0.0), dissipated_ = T(0.0), viscous_ = T(0.0), force_power_ = T(0.0),
-    fastest_ = T(0.0);
+    bounded_ = T(0.0), floor_ = T(0.0), fastest_ = T(0.0);
   Truth<T> negative_ = T(1.0) < T(0.0);
 };
 

@@ -73,6 +73,33 @@ void check_together(const Strength& strength, const Failure& failure, bool has_e
       throw std::invalid_argument("failure." + name + " needs an internal energy: give an eos");
 }
 
+/// The heat that a material holds at the start [J per initial volume]: with a constant specific
+/// heat, which is more than there is, as it goes to zero with the temperature (Debye 1912);
+/// infinite where the strength model has none.
+double heat_at_start(const Material& material) {
+  return std::visit(
+      [&]<class M>(const M& model) {
+        if constexpr (requires { model.cp * model.T0; })
+          return material.density * model.cp * model.T0;
+        else
+          return unbounded;
+      },
+      material.strength);
+}
+
+EosBounds bounds_of(const Material& material) {
+  if (!material.eos) return {};
+  return std::visit(
+      [&]<class M>(const M& model) {
+        EosBounds bounds{.lowest_energy = model.energy_at_zero(heat_at_start(material))};
+        if constexpr (requires { model.spall_strength; })
+          if (model.spall_strength > 0.0) bounds.tension = model.spall_strength;
+        bounds.active = std::isfinite(bounds.lowest_energy) || std::isfinite(bounds.tension);
+        return bounds;
+      },
+      *material.eos);
+}
+
 }  // namespace
 
 double shear_modulus(const Material& material) {
@@ -155,6 +182,7 @@ Material make_material(const MaterialChoice& choice) {
     if (!satisfies(Rule::not_negative, factor))
       refuse("viscosity", factor, rule_text(Rule::not_negative));
   material.viscosity = choice.viscosity;
+  material.bounds = bounds_of(material);
   return material;
 }
 

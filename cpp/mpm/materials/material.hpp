@@ -32,12 +32,44 @@ struct BulkViscosity {
   bool active() const { return quadratic > 0.0 || linear > 0.0; }
 };
 
+/// What an equation of state must not exceed. The pressure of a solid is linear in its energy also
+/// where a particle is debris of many times its volume, most of which is void; there an energy
+/// below zero pulls the void shut, which lowers the energy further, exponentially with the volume.
+struct EosBounds {
+  double lowest_energy = -unbounded;  // at absolute zero [J/m^3 of initial volume]
+  double tension = unbounded;         // spall strength [Pa]
+  bool active = false;
+
+  /// Is a mean stress that limit, as far as it may have been rounded to a float?
+  template <class T>
+  auto limits(T mean_stress) const {
+    return mean_stress >= T(tension * (1.0 - 1e-6));
+  }
+
+  // Out of line: bounds act seldom, and what is not there neither slows nor rounds the rest.
+
+  /// The energy without the work that tension at its limit has done on a change of volume: that
+  /// opens voids between fragments, and heats nothing.
+  template <class T>
+  [[gnu::noinline, gnu::cold]] T without_voids(T energy, T mean_stress, T change) const {
+    return energy - select(limits(mean_stress), T(0.5) * mean_stress * change, T(0.0));
+  }
+  /// The pressure within the bounds; `energy` is that of the end but for the new pressure's work.
+  template <class T>
+  [[gnu::noinline, gnu::cold]] T held(T pressure, T energy, T change,
+                                      const LinearInEnergy<T>& p) const {
+    const auto below = energy - T(0.5) * pressure * change < T(lowest_energy);
+    return max(select(below, p.A + p.B * T(lowest_energy), pressure), T(-tension));
+  }
+};
+
 struct Material {
   double density = 0.0;  // initial [kg/m^3]
   StrengthModels::Any strength;
   std::optional<EosModels::Any> eos;
   std::vector<Failing> failures;
   BulkViscosity viscosity{};
+  EosBounds bounds{};
 
   bool moves_as_one() const {
     return std::visit([]<class M>(const M&) { return requires { M::moves_as_one; }; }, strength);
@@ -47,6 +79,10 @@ struct Material {
   }
   bool damps() const {
     return std::visit([]<class M>(const M&) { return Damps<M>; }, strength);
+  }
+  /// Does it fill any volume? Products of detonation do.
+  bool is_gas() const {
+    return eos && std::visit([](const auto& model) { return model.is_gas(); }, *eos);
   }
   bool erodes() const {
     return std::any_of(failures.begin(), failures.end(),

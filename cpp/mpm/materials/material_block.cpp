@@ -9,7 +9,7 @@ template <class T, int D>
 void update_block(const Material& material, Columns& all, const MaterialColumns& at,
                   MaterialBlock<D>& block, const StressSettings& settings, StressSums& sums) {
   const BlockColumns<D> columns(all, at);
-  BlockEnd<T, D> end(columns, settings);
+  BlockEnd<T, D> end(columns, settings, material.bounds);
   std::visit(
       [&](const auto& model) { apply_strength(model, material, columns, settings, block, end); },
       material.strength);

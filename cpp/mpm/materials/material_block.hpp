@@ -52,11 +52,13 @@ struct StressSettings {
 
 /// What the ledger and the time step need from a block; energies in J.
 struct StressSums {
-  double internal = 0.0;     // recoverable work of the stress, mean of old and new
-  double plastic = 0.0;      // dissipated by plastic or viscous flow
-  double viscous = 0.0;      // work of the artificial viscosity
-  double force_power = 0.0;  // work over this strain of the stress that the nodal forces use
-  double fastest = 0.0;      // largest c + |v| [m/s]
+  double internal = 0.0;      // recoverable work of the stress, mean of old and new
+  double plastic = 0.0;       // dissipated by plastic or viscous flow
+  double viscous = 0.0;       // work of the artificial viscosity
+  double bounded = 0.0;       // taken by the bounds of an equation of state; negative: given
+  double energy_floor = 0.0;  // the part that the least energy has, never positive
+  double force_power = 0.0;   // work over this strain of the stress that the nodal forces use
+  double fastest = 0.0;       // largest c + |v| [m/s]
   bool negative_volume = false;
   bool eroded = false;  // some particle is to be eroded
 };

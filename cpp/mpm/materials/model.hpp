@@ -45,6 +45,8 @@ struct StateColumn {
 /// pressure and needs one.
 enum class EosUse { never, may, must };
 
+inline constexpr double unbounded = std::numeric_limits<double>::infinity();
+
 /// The motion of a particle over one step.
 template <class T, int D>
 struct Motion {
@@ -125,11 +127,15 @@ struct LinearInEnergy {
 };
 
 /// An equation of state that is linear in the energy. `E0` [J/m^3] is the internal energy at the
-/// start.
+/// start, `energy_at_zero(heat)` the least that there is, at absolute zero, where the material
+/// holds `heat` [J/m^3] at the start (infinite if that is unknown); minus infinity where the
+/// pressure does not depend on it. A gas, as products of detonation are, fills any volume.
 template <class M>
 concept EosModel = Model<M> && requires(M m, double V) {
   { m.at(V) } -> std::same_as<LinearInEnergy<double>>;
   { m.initial_energy() } -> std::convertible_to<double>;
+  { m.energy_at_zero(1.0) } -> std::convertible_to<double>;
+  { m.is_gas() } -> std::same_as<bool>;
 };
 
 /// What a failure model may judge by: of the end of a step, but for the energy, which is that of

@@ -189,6 +189,7 @@ void SimulationOf<D>::set_velocity(int number, std::span<const double> velocitie
   ledger_.external += kinetic_energy() - before;
   ledger_.kinetic = kinetic_energy();
   ledger_.momentum = momentum();
+  watch_.start_from(ledger_.made(), ledger_.load_work);
   probe_speeds();
   domain_.contact.forget();  // gaps change with the velocities that particles had
 }

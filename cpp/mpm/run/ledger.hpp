@@ -1,7 +1,7 @@
 #pragma once
 // Where the energy and the momentum go. Every term is accumulated from its own sums:
 //   kinetic + internal + plastic + viscous + friction + contact + absorbed + eroded + left
-//   + numerical - external = start + residual.
+//   + bounded + numerical - external = start + residual.
 //
 // Derivation: a particle's velocity changes by the interpolated increments
 // dv_p = sum N_ip f_i dt / m_i, eq. (17), so
@@ -28,6 +28,9 @@
 // eroded, and their momentum out of the sum; the dissipated energies stay where they are. Particles
 // that leave the region that is kept take theirs to the term left.
 //
+// The bounds of an equation of state (materials/material.hpp, EosBounds) take the work of tension
+// at its limit, and give what an energy below that of absolute zero lacks: the term bounded.
+//
 // A positive numerical term is energy lost, a negative one energy made. The residual tests that
 // particles and nodes exchange exactly the same work; internal, viscous and friction enter
 // numerical with the opposite sign, so their own values are tested elsewhere: internal and viscous
@@ -42,13 +45,14 @@ namespace mpm {
 
 struct Ledger {
   double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0,
-         external = 0.0, absorbed = 0.0, eroded = 0.0, left = 0.0, mapping = 0.0,
-         time_integration = 0.0;     // [J]
-  double damped = 0.0;               // the part of time_integration that PIC damping has taken [J]
-  double load_work = 0.0;            // the part of external that loads have done [J]
-  double gone_recoverable = 0.0;     // the part of eroded and left that was internal [J]
-  double start = 0.0;                // kinetic and internal energy at the start [J]
-  double largest = 0.0;              // largest energy brought in so far [J]
+         external = 0.0, absorbed = 0.0, eroded = 0.0, left = 0.0, bounded = 0.0, mapping = 0.0,
+         time_integration = 0.0;  // [J]
+  double energy_floor = 0.0;      // the part of bounded that the least energy has given, <= 0 [J]
+  double damped = 0.0;            // the part of time_integration that PIC damping has taken [J]
+  double load_work = 0.0;         // the part of external that loads have done [J]
+  double gone_recoverable = 0.0;  // the part of eroded and left that was internal [J]
+  double start = 0.0;             // kinetic and internal energy at the start [J]
+  double largest = 0.0;           // largest energy brought in so far [J]
   std::array<double, 3> momentum{};  // [kg m/s]
   double motion_work = 0.0;          // the part of external that prescribed motions have done [J]
   std::array<double, 3> motion_impulse{};       // that they have given [N s]
@@ -58,13 +62,14 @@ struct Ledger {
   double numerical() const { return mapping + time_integration; }
   double residual() const {
     return kinetic + internal + plastic + viscous + friction + contact + absorbed + eroded + left +
-           numerical() - external - start;
+           bounded + numerical() - external - start;
   }
   /// Energy made by numerics, as a fraction of the largest energy brought in; 0 while there is
   /// none. What PIC damping takes does not hide what is made.
-  double growth() const {
-    return largest > 0.0 ? std::max(0.0, damped - numerical() - contact) / largest : 0.0;
-  }
+  double growth() const { return largest > 0.0 ? std::max(0.0, made()) / largest : 0.0; }
+  /// Energy made by numerics so far, lost if negative; that which an energy below absolute zero was
+  /// given is made as well [J].
+  double made() const { return damped - numerical() - contact - energy_floor; }
 
   /// Count a body with prescribed motion at the start.
   template <int D>
@@ -87,6 +92,8 @@ struct Ledger {
       s.stress.internal += p.stress.internal;
       s.stress.plastic += p.stress.plastic;
       s.stress.viscous += p.stress.viscous;
+      s.stress.bounded += p.stress.bounded;
+      s.stress.energy_floor += p.stress.energy_floor;
       s.stress.force_power += p.stress.force_power;
       s.kinetic += p.kinetic;
       s.second_order += p.second_order;
@@ -125,6 +132,8 @@ struct Ledger {
     internal += s.stress.internal;
     plastic += s.stress.plastic;
     viscous += s.stress.viscous;
+    bounded += s.stress.bounded;
+    energy_floor += s.stress.energy_floor;
     friction += contacts.friction;
     contact += contacts.energy;
     load_work += s.load_first + s.load_second;
@@ -135,7 +144,7 @@ struct Ledger {
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
     damped += s.damped;
     time_integration += s.made_rigid + s.damped;
-    time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous -
+    time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous + s.stress.bounded -
                         s.stress.force_power + second + contacts.friction -
                         contacts.friction_first - at_end;
     largest = std::max({largest, std::abs(start), std::abs(external)});

@@ -38,7 +38,8 @@ void SimulationOf<D>::exchange(StateStream& stream) {
   stream.same(format, other_version);
   for (const std::size_t size :
        {sizeof(Rounded), sizeof(Ledger), sizeof(PatchSums<D>), sizeof(Gone<D>), sizeof(RigidMotion),
-        sizeof(PairRecord), sizeof(KnownNode), sizeof(KnownPair<D>)})
+        sizeof(StepWatch), sizeof(Note), sizeof(PairRecord), sizeof(KnownNode),
+        sizeof(KnownPair<D>)})
     stream.same(size, other_version);
   stream.same(D, other_case);
   stream.same(domain_.bodies.size(), other_case);
@@ -61,6 +62,8 @@ void SimulationOf<D>::exchange(StateStream& stream) {
   stream.array(std::span(domain_.rigid));
   stream(settings_.cell_size, doublings_, next_time_step_, ledger_);
   stream.vector(history_);
+  stream(watch_, looked_);
+  stream.vector(notes_);
   timers_.exchange(stream);
 }
 

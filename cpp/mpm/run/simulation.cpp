@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -35,6 +34,8 @@ void check(const Settings& s) {
   }
   check(!(s.contact && s.bonded), "bodies are bonded or have contact, not both");
   check(s.energy_growth_limit > 0.0, "energy_growth_limit must be > 0");
+  check(s.outside_limit > 0.0 && s.outside_limit <= 1.0, "outside_limit must lie in (0, 1]");
+  check(s.volume_limit > 0.0 && s.volume_limit <= 1.0, "volume_limit must lie in (0, 1]");
 }
 
 }  // namespace
@@ -53,6 +54,7 @@ const std::vector<std::string>& Simulation::history_columns() {
                                                  "absorbed",
                                                  "eroded",
                                                  "left",
+                                                 "bounded",
                                                  "numerical",
                                                  "residual",
                                                  "momentum_x",
@@ -66,7 +68,8 @@ const std::vector<std::string>& Simulation::history_columns() {
                                                  "motion_work",
                                                  "motion_impulse_x",
                                                  "motion_impulse_y",
-                                                 "motion_impulse_z"};
+                                                 "motion_impulse_z",
+                                                 "energy_floor"};
   return names;
 }
 
@@ -136,6 +139,8 @@ void SimulationOf<D>::prepare() {
   ledger_.momentum = momentum();
   for (const Body<D>& b : bodies)
     if (b.prescribed) ledger_.add_prescribed(b);
+  sights_.resize(bodies.size());
+  notes_.reserve(2 * note_names.size());
   domain_.time_step = 0.0;
   write_history_row();  // the state at the start
   prepared_ = true;
@@ -156,6 +161,7 @@ std::int64_t SimulationOf<D>::advance(std::int64_t max_steps, double end_time,
     ++made;
     if (stop != nullptr && stop->load(std::memory_order_relaxed)) break;
   }
+  if (made > 0 && domain_.time >= end_time && looked_ != domain_.step && !failure_) look();
   return made;
 }
 
@@ -180,6 +186,8 @@ void SimulationOf<D>::make_step(double time_after) {
   find_failure();
   if (failure_) return;
   choose_time_step();
+  watch_step();
+  if (domain_.step % look_every == 0) look();
   if (must_double()) double_cells();
 }
 
@@ -217,6 +225,7 @@ void SimulationOf<D>::write_history_row() {
                              l.absorbed,
                              l.eroded,
                              l.left,
+                             l.bounded,
                              l.numerical(),
                              l.residual(),
                              l.momentum[0],
@@ -230,7 +239,8 @@ void SimulationOf<D>::write_history_row() {
                              l.motion_work,
                              l.motion_impulse[0],
                              l.motion_impulse[1],
-                             l.motion_impulse[2]})
+                             l.motion_impulse[2],
+                             l.energy_floor})
     history_.push_back(value);
 }
 
@@ -239,61 +249,6 @@ std::vector<double> SimulationOf<D>::take_history() {
   std::vector<double> rows = history_;
   history_.clear();
   return rows;
-}
-
-template <int D>
-void SimulationOf<D>::find_failure() {
-  bool negative = false;
-  for (const PatchSums<D>& s : domain_.sums) negative = negative || s.stress.negative_volume;
-  if (!negative && std::isfinite(ledger_.kinetic) && std::isfinite(ledger_.residual())) {
-    if (ledger_.growth() <= settings_.energy_growth_limit) return;
-    const Limiter fastest = limiter();
-    const Body<D>& b = body(fastest.body);
-    std::size_t row = 0;
-    while (static_cast<std::int64_t>(b.id[row]) != fastest.particle) ++row;
-    std::ostringstream text;
-    text << "the numerical terms have made " << ledger_.growth()
-         << " of the largest energy brought in";
-    failure_ = failure_at("energy growth", static_cast<std::size_t>(fastest.body), row, text.str());
-    return;
-  }
-  for (std::size_t b = 0; b < domain_.bodies.size(); ++b) {
-    const Body<D>& body = domain_.bodies[b];
-    for (std::size_t i = 0; i < body.count(); ++i) {
-      bool finite = true;
-      for (int c = 0; c < body.columns.component_count(); ++c)
-        finite = finite && std::isfinite(body.columns.value(c, i));
-      if (!finite) {
-        failure_ = failure_at("non-finite", b, i, "a value of the particle is not a finite number");
-        return;
-      }
-      if (!(body.volume()[i] > 0.0)) {
-        failure_ = failure_at("negative volume", b, i, "the particle has been turned inside out");
-        return;
-      }
-    }
-  }
-  failure_ = failure_at("non-finite", 0, 0, "the energy is not a finite number");
-}
-
-template <int D>
-Failure SimulationOf<D>::failure_at(const std::string& kind, std::size_t b, std::size_t row,
-                                    const std::string& what) const {
-  const Body<D>& body = domain_.bodies[b];
-  Failure f;
-  f.kind = kind;
-  f.body = static_cast<int>(b);
-  f.particle = body.id[row];
-  f.step = domain_.step;
-  f.time = domain_.time;
-  for (int a = 0; a < D; ++a) f.position[static_cast<std::size_t>(a)] = body.x(a)[row];
-  std::ostringstream text;
-  text << kind << " at step " << f.step << ", t = " << f.time << " s: " << what << " (body \""
-       << body.name << "\", particle " << f.particle << ", at";
-  for (int a = 0; a < D; ++a) text << ' ' << body.x(a)[row];
-  text << " m)";
-  f.message = text.str();
-  return f;
 }
 
 template class SimulationOf<2>;

@@ -47,16 +47,32 @@ struct Settings {
   int threads = 1;
   bool fused = true;                 // neighbouring stages of a step are fused
   double energy_growth_limit = 0.0;  // fraction of the largest energy brought in
+  double outside_limit = 1.0;        // share of a body's particles beyond closed walls
+  double volume_limit = 1.0;         // share with less than 0.01 or more than 100 of their volume
 };
 
 /// Why a run had to stop.
 struct Failure {
-  std::string kind;  // "non-finite", "negative volume" or "energy growth"
+  std::string kind;  // "non-finite", "negative volume", "energy growth", "outside walls", "volume"
   int body = -1;
   std::int64_t particle = -1;  // in the order in which the user gave them
   std::int64_t step = 0;
   double time = 0.0;
   std::array<double, 3> position{};
+  std::string message;
+};
+
+/// What goes on but may be going wrong; told once for each kind and body, then counted.
+struct Warning {
+  std::string kind;  // of note_names (run/watch.hpp)
+  int body = -1;
+  std::int64_t particle = -1;
+  std::int64_t step = 0;  // when and where it was first so
+  double time = 0.0;
+  std::array<double, 3> position{};
+  double share = 0.0;      // of the particles, the largest so far; 0 where it is about one
+  std::int64_t count = 0;  // steps at which it was so; of places and volumes, looks
+  bool is_error = true;    // else it is only told: particles may leave through an open face
   std::string message;
 };
 
@@ -145,6 +161,7 @@ class Simulation {
   virtual std::vector<LoadRecord> loads() const = 0;
   virtual const std::optional<Failure>& failure() const = 0;
   virtual Limiter limiter() const = 0;
+  virtual std::vector<Warning> warnings() const = 0;
   virtual Bytes bytes() const = 0;
   virtual const std::vector<std::pair<std::string_view, double>>& stage_seconds() const = 0;
   virtual void reset_timers() = 0;

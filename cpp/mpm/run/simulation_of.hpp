@@ -3,6 +3,7 @@
 #include "mpm/run/ledger.hpp"
 #include "mpm/run/simulation.hpp"
 #include "mpm/run/timers.hpp"
+#include "mpm/run/watch.hpp"
 
 namespace mpm {
 
@@ -40,6 +41,7 @@ class SimulationOf final : public Simulation {
   std::vector<LoadRecord> loads() const override;
   const std::optional<Failure>& failure() const override { return failure_; }
   Limiter limiter() const override;
+  std::vector<Warning> warnings() const override;
   Bytes bytes() const override;
   const std::vector<std::pair<std::string_view, double>>& stage_seconds() const override {
     return timers_.seconds();
@@ -82,6 +84,12 @@ class SimulationOf final : public Simulation {
   void check_lists() const;
   void check_rest(double cell_size, const Index<D>& walls) const;
   void find_failure();
+  void watch_step();
+  void look();
+  void judge();
+  void note(const Note& found);
+  void note_at(Note found, int b, std::size_t row);
+  std::size_t row_of(const Body<D>& b, std::int64_t particle) const;
   Failure failure_at(const std::string& kind, std::size_t body, std::size_t row,
                      const std::string& what) const;
 
@@ -94,6 +102,28 @@ class SimulationOf final : public Simulation {
   int doublings_ = 0;  // of the cells so far
   bool prepared_ = false;
   std::optional<Failure> failure_;
+  static constexpr std::int64_t look_every = 64;  // steps
+  /// Particles of a group that something is true of, and the one of which it is most so.
+  struct Seen {
+    std::size_t count = 0, body = 0, row = 0;
+    double most = 0.0, value = 0.0;
+    void add(std::size_t b, std::size_t at, double size, double shown) {
+      if (count++ == 0 || size > most) {
+        most = size;
+        body = b;
+        row = at;
+        value = shown;
+      }
+    }
+  };
+  struct Sight {
+    std::size_t particles = 0;
+    Seen outside, odd, left[2 * D];
+  };
+  StepWatch watch_;
+  std::int64_t looked_ = -1;  // step of the last look
+  std::vector<Note> notes_;
+  std::vector<Sight> sights_;    // scratch, one per body
   std::vector<double> history_;  // rows not yet taken; room for history_capacity is made once
 };
 

@@ -19,7 +19,7 @@ from mpm3dpp.io.table import Table
 
 COLUMNS = (
     *("step", "time", "dt", "kinetic", "internal", "plastic", "viscous", "friction", "contact"),
-    *("external", "absorbed", "eroded", "left", "numerical", "residual"),
+    *("external", "absorbed", "eroded", "left", "bounded", "numerical", "residual"),
     *("momentum_x", "momentum_y", "momentum_z"),
 )
 """First columns of the table, in this order; 0 where a term does not exist."""
@@ -36,6 +36,9 @@ GRID = ("load_work", "cell_size", "tiles")
 
 MOTION = ("motion_work", *(f"motion_impulse_{x}" for x in ("x", "y", "z")))
 """Then the work of prescribed motions, which is part of `external` [J], and their impulse [N s]."""
+
+BOUNDS = ("energy_floor",)
+"""Then the part of `bounded` that energies below that of absolute zero were given [J]."""
 
 PAIR_LIMIT = 66
 """Most pairs that get columns of their own (12 names); more go to `contact_pairs.csv`."""

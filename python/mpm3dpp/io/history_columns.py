@@ -17,6 +17,7 @@ MEANINGS: dict[str, tuple[str, str]] = {
     "absorbed": ("J", "energy that absorbing walls have taken up"),
     "eroded": ("J", "kinetic and recoverable energy that eroded particles took with them"),
     "left": ("J", "the same of particles that left `grid.keep`"),
+    "bounded": ("J", "energy that the bounds of equations of state have taken, negative: given"),
     "numerical": ("J", "energy that the method has lost, negative: made; an error"),
     "residual": ("J", "what the terms above leave unexplained: rounding"),
     "momentum_x": ("N s", "momentum of the particles that take part"),
@@ -31,6 +32,7 @@ MEANINGS: dict[str, tuple[str, str]] = {
     "motion_impulse_x": ("N s", "impulse that prescribed motions have given"),
     "motion_impulse_y": ("N s", "likewise"),
     "motion_impulse_z": ("N s", "likewise; 0 in 2D"),
+    "energy_floor": ("J", "the part of `bounded` that energies below absolute zero were given"),
 }
 """Unit and meaning of each column of every run, in their order."""
 

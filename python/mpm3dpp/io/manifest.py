@@ -16,7 +16,7 @@ import numpy as np
 
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import write_atomically
-from mpm3dpp.io.records import ContactRecord, LoadRecord, PairRecord
+from mpm3dpp.io.records import ContactRecord, LoadRecord, PairRecord, WarningRecord
 from mpm3dpp.io.result_hash import result_hash
 
 Status = Literal["completed", "interrupted", "failed"]
@@ -38,6 +38,7 @@ class Manifest:
         peak_memory_bytes: largest resident size of the process [bytes].
         bytes: of the core: particles, grid, contact, other.
         loads: see `LoadRecord`, by name.
+        warnings: see `WarningRecord`.
         result_hash: see `mpm3dpp.io.result_hash`.
         contact: see `ContactRecord`.          end_time: time reached [s].
         status, reason: "completed", "interrupted" or "failed", and why.
@@ -69,6 +70,7 @@ class Manifest:
     result_hash: str
     contact: ContactRecord
     loads: dict[str, LoadRecord]
+    warnings: list[WarningRecord]
     limiter: dict[str, Any] | None
     energies: dict[str, Any]
     compiler: str
@@ -157,6 +159,7 @@ def build_manifest(
         result_hash=result_hash(simulation),
         contact=_contact(simulation, parts or bodies),
         loads=_loads(simulation),
+        warnings=_warnings(simulation, bodies),
         limiter=_limiter(simulation, bodies),
         energies=dict(energies or {}),
         compiler=str(build.get("compiler", "unknown")),
@@ -237,6 +240,24 @@ def _loads(simulation: Any) -> dict[str, LoadRecord]:
         load.name: LoadRecord(list(load.impulse), list(load.force), float(load.area))
         for load in simulation.loads()
     }
+
+
+def _warnings(simulation: Any, bodies: Sequence[str]) -> list[WarningRecord]:
+    return [
+        WarningRecord(
+            kind=w.kind,
+            body=bodies[w.body],
+            particle=int(w.particle),
+            step=int(w.step),
+            time=float(w.time),
+            position=[float(x) for x in w.position],
+            share=float(w.share),
+            count=int(w.count),
+            is_error=bool(w.is_error),
+            message=w.message,
+        )
+        for w in simulation.warnings()
+    ]
 
 
 def _limiter(simulation: Any, bodies: Sequence[str]) -> dict[str, Any] | None:

@@ -49,6 +49,33 @@ class LoadRecord:
 
 
 @dataclasses.dataclass
+class WarningRecord:
+    """Something that a run went on with but warned of, once for each kind and body.
+
+    Attributes:
+        kind: "time step", "energy of a step", "load", "outside walls", "volume", "left box".
+        body, particle: whom it first was about; the particle in the order of filling.
+        step, time, position: when [s] and where [m] that was.
+        share: of the particles of the body, or of all grains of its entry, the largest at a look;
+            0 where it is about one particle.
+        count: steps at which it was so; with a share looks, of which there is one in 64 steps.
+        is_error: false for what may be meant: particles leave through an open face of the box.
+        message: the sentence that was told.
+    """
+
+    kind: str
+    body: str
+    particle: int
+    step: int
+    time: float
+    position: list[float]
+    share: float
+    count: int
+    is_error: bool
+    message: str
+
+
+@dataclasses.dataclass
 class ContactRecord:
     """Contact of the whole run: bodies, overlapped nodes at the end and at most, pairs, bytes.
 

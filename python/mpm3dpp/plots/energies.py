@@ -25,6 +25,7 @@ _LOST = {
     "absorbed": "absorbed",
     "eroded": "eroded",
     "left": "left",
+    "bounded": "bounded",
     "external": "external work",
 }
 _NUMERICAL = {

@@ -26,6 +26,8 @@ struct IdealGas {
     return gamma > 1.0 ? std::string() : "ideal_gas.gamma must be > 1";
   }
   double initial_energy() const { return E0; }
+  double energy_at_zero(double) const { return 0.0; }
+  bool is_gas() const { return true; }
 
   template <Real T>
   LinearInEnergy<T> at(T V) const {

@@ -28,6 +28,8 @@ struct Jwl {
   void prepare(double) {}
   std::string problem() const { return {}; }
   double initial_energy() const { return E0; }
+  double energy_at_zero(double) const { return 0.0; }
+  bool is_gas() const { return true; }
 
   template <Real T>
   LinearInEnergy<T> at(T V) const {

@@ -22,6 +22,8 @@ struct LinearBulk {
   void prepare(double) {}
   std::string problem() const { return {}; }
   double initial_energy() const { return 0.0; }
+  double energy_at_zero(double) const { return -unbounded; }
+  bool is_gas() const { return false; }
 
   template <Real T>
   LinearInEnergy<T> at(T V) const {

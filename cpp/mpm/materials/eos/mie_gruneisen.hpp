@@ -17,7 +17,7 @@ struct MieGruneisen {
   static constexpr std::string_view source =
       "Meyers 1994, eqs. 5.8 and 5.20; tension: Hallquist 2006";
 
-  double c0{}, s{}, gamma0{}, E0{};
+  double c0{}, s{}, gamma0{}, E0{}, spall_strength{};
   double stiffness{};
 
   static constexpr auto params = std::array{
@@ -27,11 +27,22 @@ struct MieGruneisen {
                           Rule::not_negative},
       Param<MieGruneisen>{"E0", &MieGruneisen::E0, "Pa", "internal energy per initial volume",
                           Rule::not_negative, 0.0},
+      Param<MieGruneisen>{"spall_strength", &MieGruneisen::spall_strength, "Pa",
+                          "largest tension that the pressure becomes; 0 for no limit",
+                          Rule::not_negative, 0.0},
   };
 
   void prepare(double density) { stiffness = density * c0 * c0; }
   std::string problem() const { return {}; }
   double initial_energy() const { return E0; }
+  /// Nothing lies below the energy that the heat of the start leaves when it is gone: every other
+  /// state at absolute zero is one that this has been strained to. Where the heat is unknown it is
+  /// less than what evaporates the solid: the isentrope of absolute zero, dE/dV = -p, ends for
+  /// large V at rho0 c0^2 / gamma0, where the energy's pressure outweighs the tension rho0 c0^2.
+  double energy_at_zero(double heat) const {
+    return E0 - min(heat, gamma0 > 0.0 ? stiffness / gamma0 : unbounded);
+  }
+  bool is_gas() const { return false; }
 
   template <Real T>
   LinearInEnergy<T> at(T V) const {

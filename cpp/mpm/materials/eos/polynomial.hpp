@@ -35,6 +35,11 @@ struct Polynomial {
     return "polynomial has no stiffness at the start: give c1 > 0, or c4 or c5 with E0 > 0";
   }
   double initial_energy() const { return E0; }
+  /// As in MieGruneisen, with c4 for gamma0; without c1 it is a gas.
+  double energy_at_zero(double heat) const {
+    return is_gas() ? 0.0 : E0 - min(heat, c4 > 0.0 ? c1 / c4 : unbounded);
+  }
+  bool is_gas() const { return c1 == 0.0; }
 
   template <Real T>
   LinearInEnergy<T> at(T V) const {

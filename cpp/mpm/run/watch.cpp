@@ -1,0 +1,221 @@
+// The part of a simulation that looks whether what it computes can be so.
+#include "mpm/run/watch.hpp"
+
+#include <sstream>
+
+#include "mpm/run/simulation_of.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double small_volume = 0.01, large_volume = 100.0;  // over that at the start
+constexpr double beyond = 0.1;  // of a cell, behind a wall: GIMP may push a centre a little past it
+constexpr std::array face_names = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+
+std::size_t number(int k) { return static_cast<std::size_t>(k); }
+
+}  // namespace
+
+/// Count something that is so, and note it if that is new.
+template <int D>
+void SimulationOf<D>::note(const Note& found) {
+  for (Note& known : notes_)
+    if (known.kind == found.kind && known.group == found.group && known.face == found.face) {
+      ++known.count;
+      known.share = std::max(known.share, found.share);
+      return;
+    }
+  notes_.push_back(found);
+  notes_.back().count = 1;
+}
+
+/// The same about a particle.
+template <int D>
+void SimulationOf<D>::note_at(Note found, int b, std::size_t row) {
+  const Body<D>& at = body(b);
+  found.body = b;
+  found.group = at.group;
+  found.particle = at.id[row];
+  found.step = domain_.step;
+  found.time = domain_.time;
+  for (int a = 0; a < D; ++a) found.position[number(a)] = at.x(a)[row];
+  note(found);
+}
+
+/// Judge the step that has been made, by the ledger and the next time step.
+template <int D>
+void SimulationOf<D>::watch_step() {
+  const double median = watch_.median_fallen_below(next_time_step_);
+  const double made = watch_.energy_made(ledger_.made(), ledger_.largest);
+  const double work =
+      domain_.has_loads() ? watch_.load_energy(ledger_.load_work, ledger_.largest) : 0.0;
+  if (median == 0.0 && made == 0.0 && work == 0.0) return;
+  const Limiter fastest = limiter();  // an unstable particle is the fastest, or soon will be
+  if (fastest.body < 0) return;
+  const Body<D>& b = body(fastest.body);
+  const std::size_t row = row_of(b, fastest.particle);
+  if (median > 0.0)
+    note_at({.kind = NoteKind::time_step, .value = next_time_step_, .against = median},
+            fastest.body, row);
+  if (made > 0.0)
+    note_at({.kind = NoteKind::energy_made, .value = made, .against = ledger_.largest},
+            fastest.body, row);
+  // A load may be meant to be sudden; but what it moves faster than waves run is torn off.
+  if (work > 0.0 && fastest.speed > fastest.sound_speed)
+    note_at({.kind = NoteKind::load_energy, .value = work, .against = ledger_.largest},
+            fastest.body, row);
+}
+
+template <int D>
+std::size_t SimulationOf<D>::row_of(const Body<D>& b, std::int64_t particle) const {
+  std::size_t row = 0;
+  while (static_cast<std::int64_t>(b.id[row]) != particle) ++row;
+  return row;
+}
+
+/// Look at the places and volumes of all particles, in the order of the bodies' lists, which no
+/// number of threads changes; some ten operations for each.
+template <int D>
+void SimulationOf<D>::look() {
+  looked_ = domain_.step;
+  const TileGrid<D>& grid = domain_.grid;
+  Vec<double, D> lower, upper;
+  for (int a = 0; a < D; ++a) {
+    lower[a] = grid.origin[a] - beyond * grid.cell_size;
+    upper[a] = grid.origin[a] + (grid.walls.cells[a] + beyond) * grid.cell_size;
+  }
+  std::vector<Sight>& seen = sights_;
+  seen.assign(domain_.bodies.size(), {});
+  for (std::size_t number_of = 0; number_of < domain_.bodies.size(); ++number_of) {
+    const Body<D>& b = domain_.bodies[number_of];
+    Sight& sight = seen[number(b.group)];
+    sight.particles += b.active();
+    const bool solid = !b.rigid && !domain_.materials[number(b.material)].is_gas();
+    const double* failed = b.at.failed >= 0 ? b.columns.component(b.at.failed) : nullptr;
+    const bool placed = grid.walls.exist && !b.prescribed;
+    if (!solid && !placed) continue;
+    for (std::size_t k = 0; k < b.active(); ++k) {
+      const std::size_t i = b.order[k];
+      if (solid && !(failed && failed[i] > 0.0)) {
+        const double J = b.volume()[i] * b.initial_density / b.mass()[i];
+        if (J < small_volume || J > large_volume)
+          sight.odd.add(number_of, i, std::abs(std::log(J)), J);
+      }
+      if (!placed) continue;
+      bool outside = false;
+      for (int a = 0; a < D; ++a) {
+        const double x = b.x(a)[i];
+        const double depth = std::max(lower[a] - x, x - upper[a]);
+        if (!(depth > 0.0)) continue;
+        const int side = x > upper[a] ? 1 : 0;
+        const Wall wall = grid.walls.face[a][side];
+        if (wall == Wall::fixed || wall == Wall::slip) {
+          if (!outside) sight.outside.add(number_of, i, depth, depth / grid.cell_size + beyond);
+          outside = true;
+        } else {
+          sight.left[number(2 * a + side)].add(number_of, i, depth, 0.0);
+        }
+      }
+    }
+  }
+  judge();
+}
+
+/// Tell what was seen, and stop if it is too much.
+template <int D>
+void SimulationOf<D>::judge() {
+  for (std::size_t g = 0; g < sights_.size(); ++g) {
+    const Sight& sight = sights_[g];
+    const auto tell = [&](NoteKind kind, const Seen& seen, int face, double limit) {
+      if (seen.count == 0) return;
+      const double share = static_cast<double>(seen.count) / static_cast<double>(sight.particles);
+      note_at({.kind = kind, .value = seen.value, .against = limit, .face = face, .share = share},
+              static_cast<int>(seen.body), seen.row);
+      if (!(share > limit) || failure_) return;
+      std::ostringstream text;
+      text << 100.0 * share << " % of the particles of body \"" << body(static_cast<int>(g)).name
+           << (kind == NoteKind::volume
+                   ? "\" have less than 0.01 or more than 100 times their initial volume"
+                   : "\" lie beyond closed walls of the box")
+           << ", and run." << (kind == NoteKind::volume ? "volume_limit" : "outside_limit")
+           << " allows " << 100.0 * limit
+           << " %; give smaller steps or cells, or a stiffer material";
+      failure_ =
+          failure_at(note_names[number(static_cast<int>(kind))], seen.body, seen.row, text.str());
+    };
+    tell(NoteKind::outside, sight.outside, -1, settings_.outside_limit);
+    tell(NoteKind::volume, sight.odd, -1, settings_.volume_limit);
+    for (int face = 0; face < 2 * D; ++face)
+      tell(NoteKind::left_box, sight.left[number(face)], face, 1.0);
+  }
+}
+
+template <int D>
+std::vector<Warning> SimulationOf<D>::warnings() const {
+  std::vector<Warning> told;
+  for (const Note& n : notes_) {
+    Warning& w = told.emplace_back();
+    w.kind = note_names[number(static_cast<int>(n.kind))];
+    w.body = n.body;
+    w.particle = n.particle;
+    w.step = n.step;
+    w.time = n.time;
+    w.position = n.position;
+    w.share = n.share;
+    w.count = n.count;
+    w.is_error = n.kind != NoteKind::left_box;
+    std::ostringstream text;
+    const bool loaded = std::any_of(domain_.loads.begin(), domain_.loads.end(),
+                                    [&](const auto& load) { return load.body == n.body; });
+    const char* const torn =
+        loaded
+            ? "a load may have torn off a part of the surface: lower it, let it rise slowly, or "
+              "give "
+              "smaller cells"
+            : "a particle may have been torn off: give its material a failure model with action = "
+              "\"erode\", a spall_strength or artificial viscosity, or lower run.time_step_factor";
+    const auto per_cent = [&] { text << 100.0 * n.share << " % of the particles"; };
+    switch (n.kind) {
+      case NoteKind::time_step:
+        text << "the time step has fallen to " << n.value
+             << " s, less than a tenth of the median of "
+             << "the last 1000 (" << n.against << " s), for the fastest particle; " << torn;
+        break;
+      case NoteKind::energy_made:
+        text << "one step has made " << n.value
+             << " J by numerical error, more than 5 % of the largest "
+             << "energy brought in so far (" << n.against << " J); " << torn;
+        break;
+      case NoteKind::load_energy:
+        text << "loads have done the work " << n.value
+             << " J in one step, more than 5 % of the largest "
+             << "energy brought in so far (" << n.against << " J) and ten times the median; "
+             << torn;
+        break;
+      case NoteKind::outside:
+        per_cent();
+        text << " lie beyond closed walls of the box, this one " << n.value
+             << " cells; give smaller steps or cells, or a stiffer material";
+        break;
+      case NoteKind::volume:
+        per_cent();
+        text << " have less than 0.01 or more than 100 times their initial volume, this one "
+             << n.value << "; " << torn;
+        break;
+      case NoteKind::left_box:
+        text << "particles leave the box through its open face " << face_names[number(n.face)]
+             << " (" << 100.0 * n.share << " % at most so far)";
+        break;
+    }
+    text << " (body \"" << body(n.body).name << "\", particle " << n.particle << ", at";
+    for (int a = 0; a < D; ++a) text << ' ' << n.position[number(a)];
+    text << " m, step " << n.step << ", t = " << n.time << " s)";
+    w.message = text.str();
+  }
+  return told;
+}
+
+template class SimulationOf<2>;
+template class SimulationOf<3>;
+
+}  // namespace mpm
