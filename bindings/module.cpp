@@ -24,6 +24,12 @@ nb::dict dict_of(const GoneSum& gone) {
   return d;
 }
 
+std::size_t particle_count(const Simulation& s) {
+  std::size_t n = 0;
+  for (int b = 0; b < s.body_count(); ++b) n += s.particle_count(b);
+  return n;
+}
+
 }  // namespace
 
 NB_MODULE(_core, m) {
@@ -187,12 +193,7 @@ NB_MODULE(_core, m) {
       .def_prop_ro("step", &Simulation::step)
       .def_prop_ro("body_count", &Simulation::body_count)
       .def("body_particle_count", &Simulation::particle_count, nb::arg("body"))
-      .def_prop_ro("particle_count",
-                   [](const Simulation& s) {
-                     std::size_t n = 0;
-                     for (int b = 0; b < s.body_count(); ++b) n += s.particle_count(b);
-                     return n;
-                   })
+      .def_prop_ro("particle_count", particle_count)
       .def_prop_ro("total_mass", &Simulation::total_mass)
       .def("eroded", [](const Simulation& s) { return dict_of(s.eroded()); })
       .def("left", [](const Simulation& s) { return dict_of(s.left()); })
@@ -210,6 +211,23 @@ NB_MODULE(_core, m) {
             return to_numpy(std::move(values), width);
           },
           nb::arg("body"), nb::arg("name"))
+      .def(
+          "rounded_column",
+          [](const Simulation& s, const std::string& name, const std::vector<int>& places,
+             std::size_t width, float elsewhere) {
+            Floats values = floats(particle_count(s), width, elsewhere);
+            s.round_column(name, places, width, {values.data(), values.size()});
+            return values;
+          },
+          nb::arg("name"), nb::arg("places"), nb::arg("width"), nb::arg("elsewhere"))
+      .def("rounded_invariants",
+           [](const Simulation& s) {
+             Floats pressure = floats(particle_count(s), 1, 0.0F);
+             Floats von_mises = floats(particle_count(s), 1, 0.0F);
+             s.round_invariants({pressure.data(), pressure.size()},
+                                {von_mises.data(), von_mises.size()});
+             return std::pair(pressure, von_mises);
+           })
       .def(
           "set_velocity",
           [](Simulation& s, int body, const Input& velocities) {

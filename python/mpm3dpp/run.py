@@ -26,6 +26,8 @@ from .progress import Progress
 from .report import contact_table, energy_line, gone_lines, load_lines, speed_line
 from .simulation import Simulation
 
+_FRAME_SHARE = 1 / 6
+"""Of the core's memory, for columns of frames that are not written yet: see decision 0031."""
 _BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without contact.
 
 
@@ -162,7 +164,8 @@ def _write_run(
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
     status: Status = "completed"
     reason: str | None = None
-    with _interrupt() as stopped, BackgroundWriter(file) as results, history, progress:
+    room = _FRAME_SHARE * sum(core.bytes().values())
+    with _interrupt() as stopped, BackgroundWriter(file, room) as results, history, progress:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
         for sentence in simulation.notes:

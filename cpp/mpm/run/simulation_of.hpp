@@ -51,6 +51,9 @@ class SimulationOf final : public Simulation {
   }
   int column_components(int body, const std::string& name) const override;
   void copy_column(int body, const std::string& name, std::span<double> to) const override;
+  void round_column(const std::string& name, std::span<const int> places, std::size_t width,
+                    std::span<float> to) const override;
+  void round_invariants(std::span<float> pressure, std::span<float> von_mises) const override;
   void set_gravity(const std::array<TimeFunction, 3>& gravity) override;
   void set_velocity(int body, std::span<const double> velocities) override;
 

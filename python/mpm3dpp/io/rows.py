@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.io.fields import three
-
 if TYPE_CHECKING:
     import h5py
 
@@ -26,7 +24,7 @@ def as_stored(array: np.ndarray) -> np.ndarray:
     if array.ndim == 2 and array.shape[1] == 6:
         array = array[:, TO_VTK]
     if array.ndim == 2 and array.shape[1] == 2:
-        array = three(array)
+        array = np.column_stack([array, np.zeros(len(array))])
     kind = np.int32 if np.issubdtype(array.dtype, np.integer) else np.float32
     with np.errstate(over="ignore"):  # beyond float32 means a run that blew up: stored as inf
         return np.ascontiguousarray(array, dtype=kind)

@@ -11,6 +11,7 @@ readable.
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import json
 import os
 from collections.abc import Mapping, Sequence
@@ -21,14 +22,7 @@ import numpy as np
 
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import bring_to_disk, cannot_write, make_folder, reserve
-from mpm3dpp.io.fields import (
-    Frame,
-    column_units,
-    copy_frame,
-    frame_arrays,
-    numbered,
-    particle_sizes,
-)
+from mpm3dpp.io.fields import Frame, column_units, frame_of, numbered
 from mpm3dpp.io.rows import append_rows, as_stored, cut_rows, hold_metadata, make_rows, row_counts
 
 if TYPE_CHECKING:
@@ -90,8 +84,8 @@ class ResultsWriter:
         self._bodies = list(bodies)
         names, self._materials = numbered(materials)
         self._dimension = dimension
-        self._constant: dict[str, tuple[np.ndarray, int]] = {}
-        self._sizes: np.ndarray | None = None
+        self._constant: dict[str, tuple[bytes, int]] = {}  # digest of the bytes, first row
+        self._knows_constants = False
         self._parts: list[tuple[int, int, int]] = []  # particles, first cell, first index
         self._meta: dict[str, Any] = {
             "title": title,
@@ -129,21 +123,17 @@ class ResultsWriter:
 
     def write(self, simulation: Any) -> None:
         """Append the present state of the core's `Simulation` as a frame."""
-        self.add(self.copy(simulation))
+        self.add(self.frame_of(simulation))
 
-    def copy(self, simulation: Any) -> Frame:
-        """Copy what a frame holds of the present state of the core's `Simulation`."""
-        if self._sizes is None:
-            self._sizes = particle_sizes(simulation, self._dimension)
+    def frame_of(self, simulation: Any) -> Frame:
+        """Return the present state of the core's `Simulation`, as `fields.frame_of`.
+
+        What does not change is in the first frame alone.
+        """
+        if not self._knows_constants:
             self._meta["units"] = column_units(simulation)
-        return copy_frame(simulation, self._fields)
-
-    def add(self, frame: Frame) -> None:
-        """Append a copy as a frame. Raises what `append` raises."""
-        arrays = frame_arrays(frame, self._bodies, self._materials)
-        if self._sizes is not None:
-            arrays["size"] = self._sizes
-        self.append(frame.time, frame.step, arrays)
+        new, self._knows_constants = not self._knows_constants, True
+        return frame_of(simulation, self._fields, self._bodies, self._materials, constants=new)
 
     def append(self, time: float, step: int, arrays: Mapping[str, np.ndarray]) -> None:
         """Append one frame.
@@ -157,24 +147,34 @@ class ResultsWriter:
         Raises:
             CaseError: no room on the disk; the frames written before stay readable.
         """
+        columns = {"position": np.zeros(0)} | {k: as_stored(a) for k, a in arrays.items()}
+        total = sum(column.nbytes for column in columns.values())
+        self.add(Frame(time, step, len(columns["position"]), total, iter(columns.items())))
+
+    def add(self, frame: Frame) -> None:
+        """Append a frame; each of its columns is asked for when the one before is in the file.
+
+        A column that does not change may be left out of later frames. Raises what `append` raises,
+        and what the columns raise; the file is closed then, and keeps the frames before.
+        """
         if self._file is None:
             raise CaseError(f"'{self.path}' is closed: no frame can be added to it any more")
-        columns = {name: as_stored(array) for name, array in arrays.items()}
-        need = sum(c.nbytes for c in columns.values()) + _SLACK
         try:
-            reserve(self.path, self._file.id.get_filesize() + need)
+            reserve(self.path, self._file.id.get_filesize() + frame.bytes + _SLACK)
         except OSError as error:
             raise cannot_write(self.path, error) from error  # nothing was touched
         try:
-            self._append(self._file["VTKHDF"], time, step, columns)
+            self._append(self._file["VTKHDF"], frame)
             self._file.flush()
             # only now does the frame exist for a reader
             self._file["VTKHDF/Steps"].attrs.modify("NSteps", np.int64(self.frames + 1))
             self._file.flush()
-        except (OSError, RuntimeError) as error:
+        except BaseException as error:
             with contextlib.suppress(CaseError):
                 self.close()
-            raise cannot_write(self.path, error) from error
+            if isinstance(error, (OSError, RuntimeError)):
+                raise cannot_write(self.path, error) from error
+            raise
         self.frames += 1
 
     def close(self) -> None:
@@ -234,20 +234,20 @@ class ResultsWriter:
             if name in root["PointData"]:
                 offset = int(steps["PointDataOffsets"][name][-1])
                 column = root["PointData"][name][offset : offset + count]
-                self._constant[name] = (column, offset)
-        self._sizes = self._constant["size"][0] if "size" in self._constant else None
+                self._constant[name] = (_digest(column), offset)
+        self._knows_constants = "size" in self._constant
         stored = json.loads(root.file["mpm3dpp"].attrs["run"])
         self._meta["units"] = stored["units"]
         root.file["mpm3dpp"].attrs["run"] = json.dumps(self._meta)
 
-    def _append(
-        self, root: h5py.Group, time: float, step: int, columns: Mapping[str, np.ndarray]
-    ) -> None:
+    def _append(self, root: h5py.Group, frame: Frame) -> None:
         if self.frames == 0:
             root.file["mpm3dpp"].attrs["run"] = json.dumps(self._meta)
         steps = root["Steps"]
-        part, cell, index = self._part(root, len(columns["position"]))
-        first = append_rows(root, "Points", columns["position"], self._level)
+        _, points = next(frame.columns)
+        part, cell, index = self._part(root, frame.particles)
+        first = append_rows(root, "Points", points, self._level)
+        del points
         for name, values in (
             ("PartOffsets", part),
             ("NumberOfParts", 1),
@@ -256,23 +256,24 @@ class ResultsWriter:
             ("ConnectivityIdOffsets", [index, 0, 0, 0]),
         ):
             append_rows(steps, name, np.array([values], dtype=np.int64))
-        for name, column in columns.items():
-            if name == "position":
-                continue
-            offset = self._constant_offset(name, column)
-            if offset is None:
-                offset = append_rows(root["PointData"], name, column, self._level)
-                if name in _CONSTANT:
-                    self._constant[name] = (column.copy(), offset)
+        offsets = {name: offset for name, (_, offset) in self._constant.items()}
+        for name, column in frame.columns:
+            offsets[name] = self._append_column(root["PointData"], name, column)
+            del column  # Before the next one is made.
+        for name, offset in offsets.items():
             append_rows(steps["PointDataOffsets"], name, np.array([offset], dtype=np.int64))
-        row = append_rows(root["FieldData"], "step", np.array([step], dtype=np.int64))
+        row = append_rows(root["FieldData"], "step", np.array([frame.step], dtype=np.int64))
         append_rows(steps["FieldDataOffsets"], "step", np.array([row], dtype=np.int64))
-        append_rows(steps, "Values", np.array([time]))
+        append_rows(steps, "Values", np.array([frame.time]))
 
-    def _constant_offset(self, name: str, column: np.ndarray) -> int | None:
-        """Where the same values already stand in the file, if they do."""
-        before = self._constant.get(name)
-        return before[1] if before and np.array_equal(before[0], column) else None
+    def _append_column(self, group: h5py.Group, name: str, column: np.ndarray) -> int:
+        """Return the row where a column starts, which may be where the same values stand."""
+        if name not in _CONSTANT:
+            return append_rows(group, name, column, self._level)
+        digest = _digest(column)
+        if self._constant.get(name, (b"", 0))[0] != digest:
+            self._constant[name] = digest, append_rows(group, name, column, self._level)
+        return self._constant[name][1]
 
     def _part(self, root: h5py.Group, particles: int) -> tuple[int, int, int]:
         """The cells of a frame (one vertex a particle): an earlier set or a new one.
@@ -293,3 +294,8 @@ class ResultsWriter:
             append_rows(group, "Connectivity", np.arange(cells, dtype=np.int64))
         self._parts.append((particles, cell, cell))
         return len(self._parts) - 1, cell, cell
+
+
+def _digest(column: np.ndarray) -> bytes:
+    """Return what tells one column from another, in place of the column."""
+    return hashlib.blake2b(np.ascontiguousarray(column), digest_size=16).digest()
