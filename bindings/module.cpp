@@ -2,6 +2,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/unique_ptr.h>
 
+#include "mpm/run/allocator.hpp"
 #include "mpm/run/machine_limits.hpp"
 #include "mpm/run/simulation.hpp"
 #include "translate.hpp"
@@ -28,6 +29,13 @@ std::size_t particle_count(const Simulation& s) {
   std::size_t n = 0;
   for (int b = 0; b < s.body_count(); ++b) n += s.particle_count(b);
   return n;
+}
+
+template <void (Simulation::*round)(std::span<float>) const>
+Floats rounded(const Simulation& s) {
+  Floats values = floats(particle_count(s), 1, 0.0F);
+  (s.*round)({values.data(), values.size()});
+  return values;
 }
 
 }  // namespace
@@ -220,14 +228,8 @@ NB_MODULE(_core, m) {
             return values;
           },
           nb::arg("name"), nb::arg("places"), nb::arg("width"), nb::arg("elsewhere"))
-      .def("rounded_invariants",
-           [](const Simulation& s) {
-             Floats pressure = floats(particle_count(s), 1, 0.0F);
-             Floats von_mises = floats(particle_count(s), 1, 0.0F);
-             s.round_invariants({pressure.data(), pressure.size()},
-                                {von_mises.data(), von_mises.size()});
-             return std::pair(pressure, von_mises);
-           })
+      .def("rounded_pressure", rounded<&Simulation::round_pressure>)
+      .def("rounded_von_mises", rounded<&Simulation::round_von_mises>)
       .def(
           "set_velocity",
           [](Simulation& s, int body, const Input& velocities) {
@@ -277,6 +279,7 @@ NB_MODULE(_core, m) {
         nb::call_guard<nb::gil_scoped_release>());
   m.def("measure_arithmetic", &measure_arithmetic, nb::arg("threads"),
         nb::call_guard<nb::gil_scoped_release>());
+  m.def("return_freed_memory", &return_freed_memory);
   m.def("build_info", [] {
     nb::dict d;
     d["compiler"] = MPM_COMPILER;

@@ -99,10 +99,15 @@ class FakeSimulation:
             end += count
         return rounded
 
-    def rounded_invariants(self) -> tuple[np.ndarray, np.ndarray]:
+    def rounded_pressure(self) -> np.ndarray:
+        return self._rounded(pressure)
+
+    def rounded_von_mises(self) -> np.ndarray:
+        return self._rounded(von_mises)
+
+    def _rounded(self, of_stress: Any) -> np.ndarray:
         stress = np.concatenate([self.column(b, "stress") for b in range(self.body_count)])
-        found = [f(stress).astype(np.float32)[:, None] for f in (pressure, von_mises)]
-        return found[0], found[1]
+        return of_stress(stress).astype(np.float32)[:, None]
 
     def contact_pairs(self) -> list[Any]:
         touching = self.time >= self._first

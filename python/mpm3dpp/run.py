@@ -60,6 +60,7 @@ def run_case(
         KeyboardInterrupt: the user stopped it; what was computed is kept.
     """
     folder, before = arguments.path("out", out), None
+    _core.return_freed_memory()
     if not isinstance(case, Case):
         case = load_case(arguments.path("case", case))
     if resume:

@@ -38,25 +38,38 @@ void SimulationOf<D>::round_column(const std::string& name, std::span<const int>
   }
 }
 
+/// f(xx, yy, zz, yz, xz, xy) of the stress of each particle.
 template <int D>
-void SimulationOf<D>::round_invariants(std::span<float> pressure,
-                                       std::span<float> von_mises) const {
+template <class F>
+void SimulationOf<D>::round_stress(std::span<float> to, const F& f) const {
   std::size_t first = 0;
   for (const Body<D>& b : domain_.bodies) {
     const std::size_t end = first + b.count();
-    if (std::min(pressure.size(), von_mises.size()) < end)
-      throw std::invalid_argument("round_invariants: wrong size");
+    if (to.size() < end) throw std::invalid_argument("round_stress: wrong size");
     for (std::size_t k = 0; k < b.count(); ++k) {
       const auto s = [&](int c) -> double { return b.stress(c)[k]; };
-      const double xx = s(0), yy = s(1), zz = s(2);
-      const double yz = D == 3 ? s(3) : 0.0, xz = D == 3 ? s(4) : 0.0, xy = D == 3 ? s(5) : s(3);
-      const double a = xx - yy, c = yy - zz, d = zz - xx;
-      const double normal = a * a + c * c + d * d, shear = yz * yz + xz * xz + xy * xy;
-      pressure[first + b.id[k]] = static_cast<float>(-(xx + yy + zz) / 3.0);
-      von_mises[first + b.id[k]] = static_cast<float>(std::sqrt(0.5 * normal + 3.0 * shear));
+      const double value = D == 2 ? f(s(0), s(1), s(2), 0.0, 0.0, s(3))
+                                  : f(s(0), s(1), s(2), s(3), s(4), s(5));
+      to[first + b.id[k]] = static_cast<float>(value);
     }
     first = end;
   }
+}
+
+template <int D>
+void SimulationOf<D>::round_pressure(std::span<float> to) const {
+  round_stress(to, [](double xx, double yy, double zz, double, double, double) {
+    return -(xx + yy + zz) / 3.0;
+  });
+}
+
+template <int D>
+void SimulationOf<D>::round_von_mises(std::span<float> to) const {
+  round_stress(to, [](double xx, double yy, double zz, double yz, double xz, double xy) {
+    const double a = xx - yy, b = yy - zz, c = zz - xx;
+    const double normal = a * a + b * b + c * c, shear = yz * yz + xz * xz + xy * xy;
+    return std::sqrt(0.5 * normal + 3.0 * shear);
+  });
 }
 
 template class SimulationOf<2>;

@@ -158,9 +158,10 @@ class Simulation {
   /// as it is.
   virtual void round_column(const std::string& name, std::span<const int> places, std::size_t width,
                             std::span<float> to) const = 0;
-  /// Mean compressive stress and equivalent stress of von Mises [Pa] of all particles, rounded to
-  /// floats.
-  virtual void round_invariants(std::span<float> pressure, std::span<float> von_mises) const = 0;
+  /// Mean compressive stress -(xx + yy + zz)/3, and equivalent stress sqrt(3/2 s:s), s the deviator
+  /// (von Mises, 1913), of all particles [Pa], rounded to floats.
+  virtual void round_pressure(std::span<float> to) const = 0;
+  virtual void round_von_mises(std::span<float> to) const = 0;
   virtual void set_gravity(
       const std::array<TimeFunction, 3>& gravity) = 0;  // [m/s^2], from the next step on
   virtual void set_velocity(int body, std::span<const double> velocities) = 0;

@@ -14,9 +14,20 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp.errors import CaseError
+from mpm3dpp.io.fields import Column
 from mpm3dpp.io.vtkhdf import ResultsWriter
 
-_Column = tuple[str, np.ndarray]
+
+@dataclasses.dataclass
+class _Once:
+    """Gives an array that has been made, and drops it."""
+
+    array: np.ndarray | None
+
+    def __call__(self) -> np.ndarray:
+        array, self.array = self.array, None
+        assert array is not None
+        return array
 
 
 class BackgroundWriter:
@@ -60,9 +71,9 @@ class BackgroundWriter:
         self._handed.put(frame)
         end: CaseError | None = None
         try:
-            for name, column in frame.columns:
-                self._hand_over((name, column))
-                del column  # Before the next one is made.
+            for column in frame.columns:
+                self._wait_for_room(column.bytes)
+                self._handed.put(column._replace(make=_Once(column.make())))
         except BaseException:
             end = CaseError("a frame was broken off while it was copied")
             raise
@@ -112,26 +123,22 @@ class BackgroundWriter:
             self._told = True
             raise self._error
 
-    def _hand_over(self, column: _Column) -> None:
-        """Give a column to the thread that writes, when there is room."""
-        size = column[1].nbytes
+    def _wait_for_room(self, size: int) -> None:
         with self._changed:
             self._changed.wait_for(
                 lambda: self._waiting == 0 or self._waiting + size <= self._room
             )
             self._waiting += size
-        self._handed.put(column)
 
-    def _taken(self) -> Iterator[_Column]:
+    def _taken(self) -> Iterator[Column]:
         """Take the columns of a frame as they come; each has been written when the next is."""
         while (got := self._handed.get()) is not None:
             if isinstance(got, CaseError):
                 raise got
-            size = got[1].nbytes
             yield got
-            del got
+            got.make.array = None
             with self._changed:
-                self._waiting -= size
+                self._waiting -= got.bytes
                 self._changed.notify_all()
 
     def _work(self) -> None:

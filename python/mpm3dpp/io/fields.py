@@ -8,9 +8,10 @@ doubles, would be the larger part of a run's memory.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -42,6 +43,20 @@ def numbered(names: Sequence[str]) -> tuple[list[str], list[int]]:
     return list(numbers), [numbers[name] for name in names]
 
 
+class Column(NamedTuple):
+    """An array that is made when its turn comes.
+
+    Attributes:
+        name: of the array.
+        bytes: that it takes.
+        make: gives the array, float32 or int32, a row for each particle.
+    """
+
+    name: str
+    bytes: int
+    make: Callable[[], np.ndarray]
+
+
 @dataclass(frozen=True)
 class Frame:
     """What a simulation holds at one time, as it is stored.
@@ -51,15 +66,14 @@ class Frame:
         step: number of steps made until then.
         particles: count.
         bytes: of all columns together.
-        columns: name and array of each, "position" first: float32 or int32, a row for each
-            particle, all bodies one after another in their original order. They can be taken once.
+        columns: "position" first; all bodies one after another in their original order.
     """
 
     time: float
     step: int
     particles: int
     bytes: int
-    columns: Iterator[tuple[str, np.ndarray]]
+    columns: Iterable[Column]
 
 
 def frame_of(
@@ -92,20 +106,22 @@ def frame_of(
     stored = {name: _components(simulation, name) for name in ("position", "velocity", "stress")}
     stored |= {name: _components(simulation, name) for name in fields if name not in STANDARD}
     widths = {name: _width(name, components) for name, components in stored.items()}
-    fixed = _constants(simulation, names, materials) if constants else {}
     count = int(simulation.particle_count)
 
-    def columns() -> Iterator[tuple[str, np.ndarray]]:
-        for name, width in widths.items():
-            yield name, _column(simulation, name, stored[name], width)
-        for name, column in zip(("pressure", "von_mises"), simulation.rounded_invariants()):
-            yield name, column[:, 0]
-        for name, make in fixed.items():
-            yield name, make()
+    def column(name: str, make: Callable[[], np.ndarray], width: int = 1) -> Column:
+        return Column(name, 4 * width * count, make)
 
-    time, step = float(simulation.time), int(simulation.step)
-    each = sum(widths.values()) + 2 + len(fixed)
-    return Frame(time, step, count, 4 * each * count, columns())
+    columns = [
+        column(name, partial(_column, simulation, name, stored[name], width), width)
+        for name, width in widths.items()
+    ]
+    columns.append(column("pressure", lambda: simulation.rounded_pressure()[:, 0]))
+    columns.append(column("von_mises", lambda: simulation.rounded_von_mises()[:, 0]))
+    if constants:
+        fixed = _constants(simulation, names, materials)
+        columns += [column(name, make) for name, make in fixed.items()]
+    total = sum(column.bytes for column in columns)
+    return Frame(float(simulation.time), int(simulation.step), count, total, columns)
 
 
 def column_units(simulation: Any) -> dict[str, str]:

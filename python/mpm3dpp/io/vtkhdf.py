@@ -22,7 +22,7 @@ import numpy as np
 
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import bring_to_disk, cannot_write, make_folder, reserve
-from mpm3dpp.io.fields import Frame, column_units, frame_of, numbered
+from mpm3dpp.io.fields import Column, Frame, column_units, frame_of, numbered
 from mpm3dpp.io.rows import append_rows, as_stored, cut_rows, hold_metadata, make_rows, row_counts
 
 if TYPE_CHECKING:
@@ -147,9 +147,11 @@ class ResultsWriter:
         Raises:
             CaseError: no room on the disk; the frames written before stay readable.
         """
-        columns = {"position": np.zeros(0)} | {k: as_stored(a) for k, a in arrays.items()}
-        total = sum(column.nbytes for column in columns.values())
-        self.add(Frame(time, step, len(columns["position"]), total, iter(columns.items())))
+        stored = [as_stored(array) for array in arrays.values()]
+        columns = [Column(n, a.nbytes, lambda a=a: a) for n, a in zip(arrays, stored, strict=True)]
+        columns.sort(key=lambda column: column.name != "position")
+        total = sum(column.bytes for column in columns)
+        self.add(Frame(time, step, len(arrays["position"]), total, columns))
 
     def add(self, frame: Frame) -> None:
         """Append a frame; each of its columns is asked for when the one before is in the file.
@@ -244,10 +246,9 @@ class ResultsWriter:
         if self.frames == 0:
             root.file["mpm3dpp"].attrs["run"] = json.dumps(self._meta)
         steps = root["Steps"]
-        _, points = next(frame.columns)
         part, cell, index = self._part(root, frame.particles)
-        first = append_rows(root, "Points", points, self._level)
-        del points
+        columns = iter(frame.columns)
+        first = append_rows(root, "Points", next(columns).make(), self._level)
         for name, values in (
             ("PartOffsets", part),
             ("NumberOfParts", 1),
@@ -257,9 +258,8 @@ class ResultsWriter:
         ):
             append_rows(steps, name, np.array([values], dtype=np.int64))
         offsets = {name: offset for name, (_, offset) in self._constant.items()}
-        for name, column in frame.columns:
-            offsets[name] = self._append_column(root["PointData"], name, column)
-            del column  # Before the next one is made.
+        for name, _, make in columns:
+            offsets[name] = self._append_column(root["PointData"], name, make())
         for name, offset in offsets.items():
             append_rows(steps["PointDataOffsets"], name, np.array([offset], dtype=np.int64))
         row = append_rows(root["FieldData"], "step", np.array([frame.step], dtype=np.int64))
