@@ -103,7 +103,7 @@ ERRORS = [CaseError("the disk is full"), MemoryError("no room")]
 @pytest.mark.parametrize("error", ERRORS)
 def test_a_failure_is_told(tmp_path: Path, error: Exception) -> None:
     simulation, file = FakeSimulation(), SlowWriter(tmp_path, error)
-    results = BackgroundWriter(file)
+    results = BackgroundWriter(file, room=FRAME)
     file.allowed.release(9)
     results.write(simulation)
     with pytest.raises(type(error), match=str(error)):
