@@ -22,6 +22,7 @@ from .io.checkpoint import CHECKPOINT, restore_checkpoint
 from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import RESULTS, ResultsWriter
+from .plots.apart import draw_apart
 from .progress import Progress
 from .report import contact_table, energy_line, gone_lines, load_lines, speed_line
 from .simulation import Simulation
@@ -116,10 +117,11 @@ def _draw(folder: Path, quiet: bool) -> None:
     later = f"`mpm3dpp plot {folder}` makes them later"
     if not quiet:
         print(f"drawing pictures (Ctrl-C leaves them out, {later})", file=sys.stderr, flush=True)
+    _core.return_freed_memory()  # It is the pictures' turn.
     try:
-        from .plots import plot_results
-
-        plot_results(folder)
+        said = draw_apart(folder)
+        if said and not quiet:
+            print(said, file=sys.stderr)
     except KeyboardInterrupt:
         if not quiet:
             print(f"no pictures: {later}", file=sys.stderr)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -72,11 +72,12 @@ class Results:
         """Names of the arrays of every frame, "position" first."""
         return ["position", *self._root["PointData"]]
 
-    def arrays(self, frame: int) -> dict[str, np.ndarray]:
+    def arrays(self, frame: int, names: Collection[str] | None = None) -> dict[str, np.ndarray]:
         """All arrays of a frame, float32 (integers int32), SI units.
 
         Args:
             frame: number of the frame; negative numbers count from the end.
+            names: of the arrays that are wanted beside "position"; default all.
 
         Returns:
             name -> (n,) or (n, c); symmetric tensors (n, 6) in the order xx yy zz yz xz xy.
@@ -92,6 +93,8 @@ class Results:
         first = int(steps["PointOffsets"][frame])
         arrays = {"position": self._root["Points"][first : first + count]}
         for name, data in self._root["PointData"].items():
+            if names is not None and name not in names:
+                continue
             first = int(steps["PointDataOffsets"][name][frame])
             values = data[first : first + count]
             arrays[name] = values[:, FROM_VTK] if _is_tensor(values) else values

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.io.disk import make_folder, writing
+from mpm3dpp.io.disk import make_folder, replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,8 +79,9 @@ def new_figure(width: float, height: float, dpi: float = DPI) -> Figure:
 def save(figure: Figure, path: Path) -> Path:
     """Write a picture, the white margin cut off. Raises `CaseError` when that fails."""
     make_folder(path.parent)
-    with writing(path):
-        figure.savefig(path, bbox_inches="tight", pad_inches=0.06)
+    with replacing(path) as new:
+        form = path.suffix.lstrip(".") or "png"
+        figure.savefig(new, format=form, bbox_inches="tight", pad_inches=0.06)
     return path
 
 
@@ -88,7 +89,7 @@ def body_colours(bodies: np.ndarray) -> np.ndarray:
     """Colour of each particle by its body, shape (n, 3), values 0 to 1."""
     from matplotlib.colors import to_rgb
 
-    table = np.array([to_rgb(colour) for colour in PALETTE])
+    table = np.array([to_rgb(colour) for colour in PALETTE], dtype=np.float32)
     return table[np.asarray(bodies, dtype=int) % len(PALETTE)]
 
 
