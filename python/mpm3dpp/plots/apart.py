@@ -68,7 +68,7 @@ def _end(process: subprocess.Popen[str]) -> None:
 
 
 def _end_with_parent() -> None:
-    sys.stdin.buffer.read()
+    os.read(0, 1)  # Not by sys.stdin, whose lock the end of the interpreter needs.
     os._exit(1)
 
 
@@ -78,8 +78,10 @@ def main(folder: str) -> None:
         signal.signal(kind, signal.default_int_handler)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     try:
+        from mpm3dpp import _core
         from mpm3dpp.plots import plot_results
 
+        _core.return_freed_memory()
         plot_results(folder)
     except KeyboardInterrupt:
         sys.exit(130)
