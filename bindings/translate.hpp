@@ -1,5 +1,8 @@
 #pragma once
 // Between NumPy and Python's tables on one side, spans and structs of the core on the other.
+#include <algorithm>
+#include <memory>
+
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/map.h>
@@ -8,9 +11,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
-
-#include <algorithm>
-#include <memory>
 
 #include "mpm/fields/aligned.hpp"
 #include "mpm/fields/state_stream.hpp"

@@ -17,7 +17,7 @@ from .case import Case, load_case
 from .checkpoints import Checkpoint, Checkpoints
 from .errors import CaseError, RunError
 from .folders import forget_last_run, only_run_in, writable_folder
-from .io.background import BackgroundWriter
+from .io.background import FRAME_SHARE, BackgroundWriter
 from .io.checkpoint import CHECKPOINT, restore_checkpoint
 from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
@@ -27,8 +27,6 @@ from .progress import Progress
 from .report import contact_table, energy_line, gone_lines, load_lines, speed_line
 from .simulation import Simulation
 
-_FRAME_SHARE = 1 / 6
-"""Of the core's memory, for columns of frames that are not written yet: see decision 0031."""
 _BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without contact.
 
 
@@ -167,7 +165,7 @@ def _write_run(
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
     status: Status = "completed"
     reason: str | None = None
-    room = _FRAME_SHARE * sum(core.bytes().values())
+    room = FRAME_SHARE * sum(core.bytes().values())
     with _interrupt() as stopped, BackgroundWriter(file, room) as results, history, progress:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")

@@ -48,8 +48,8 @@ void SimulationOf<D>::round_stress(std::span<float> to, const F& f) const {
     if (to.size() < end) throw std::invalid_argument("round_stress: wrong size");
     for (std::size_t k = 0; k < b.count(); ++k) {
       const auto s = [&](int c) -> double { return b.stress(c)[k]; };
-      const double value = D == 2 ? f(s(0), s(1), s(2), 0.0, 0.0, s(3))
-                                  : f(s(0), s(1), s(2), s(3), s(4), s(5));
+      const double value =
+          D == 2 ? f(s(0), s(1), s(2), 0.0, 0.0, s(3)) : f(s(0), s(1), s(2), s(3), s(4), s(5));
       to[first + b.id[k]] = static_cast<float>(value);
     }
     first = end;

@@ -17,6 +17,9 @@ from mpm3dpp.errors import CaseError
 from mpm3dpp.io.fields import Column
 from mpm3dpp.io.vtkhdf import ResultsWriter
 
+FRAME_SHARE = 1 / 6
+"""Of the core's memory, the room that a run has for columns that are not written yet."""
+
 
 @dataclasses.dataclass
 class _Once:
@@ -125,9 +128,7 @@ class BackgroundWriter:
 
     def _wait_for_room(self, size: int) -> None:
         with self._changed:
-            self._changed.wait_for(
-                lambda: self._waiting == 0 or self._waiting + size <= self._room
-            )
+            self._changed.wait_for(lambda: self._waiting == 0 or self._waiting + size <= self._room)
             self._waiting += size
 
     def _taken(self) -> Iterator[Column]:

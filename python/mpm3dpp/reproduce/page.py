@@ -98,8 +98,10 @@ def _how_timed(found: Measured) -> str:
         "each other either, and a material that would yield has less to do. Bonded "
         "(`contact.bonded = true`) they have one velocity field, as the method has it without a "
         "contact algorithm; the paper does not say which of the two it means by disabled. Memory "
-        "here: what the program holds for particles, grid and contact, reserved room included; the "
-        "paper's is that of the whole program, and its M are taken as MiB."
+        "of the core: what it holds for particles, grid and contact, reserved room included. The "
+        "paper's is that of the whole program, its M taken as MiB: compare it with that of the "
+        "process, the most that was resident in the whole run, with Python, its libraries and "
+        "frames."
     )
 
 
