@@ -3,6 +3,7 @@
 #include <nanobind/stl/unique_ptr.h>
 
 #include "interrupt.hpp"
+#include "mpm/run/allocator.hpp"
 #include "mpm/run/machine_limits.hpp"
 #include "mpm/run/simulation.hpp"
 #include "one_thread.hpp"
@@ -24,6 +25,19 @@ nb::dict dict_of(const GoneSum& gone) {
   d["mass"] = gone.mass;
   d["count"] = gone.count;
   return d;
+}
+
+std::size_t particle_count(const Simulation& s) {
+  std::size_t n = 0;
+  for (int b = 0; b < s.body_count(); ++b) n += s.particle_count(b);
+  return n;
+}
+
+template <void (Simulation::*round)(std::span<float>) const>
+Floats rounded(const Simulation& s) {
+  Floats values = floats(particle_count(s), 1, 0.0F);
+  (s.*round)({values.data(), values.size()});
+  return values;
 }
 
 }  // namespace
@@ -232,12 +246,7 @@ NB_MODULE(_core, m) {
       .def_prop_ro("step", &Simulation::step)
       .def_prop_ro("body_count", &Simulation::body_count)
       .def("body_particle_count", &Simulation::particle_count, nb::arg("body"))
-      .def_prop_ro("particle_count",
-                   [](const Simulation& s) {
-                     std::size_t n = 0;
-                     for (int b = 0; b < s.body_count(); ++b) n += s.particle_count(b);
-                     return n;
-                   })
+      .def_prop_ro("particle_count", particle_count)
       .def_prop_ro("total_mass", &Simulation::total_mass)
       .def("eroded", [](const Simulation& s) { return dict_of(s.eroded()); })
       .def("left", [](const Simulation& s) { return dict_of(s.left()); })
@@ -256,6 +265,17 @@ NB_MODULE(_core, m) {
             return to_numpy(std::move(values), width);
           },
           nb::arg("body"), nb::arg("name"))
+      .def(
+          "rounded_column",
+          [](const Simulation& s, const std::string& name, const std::vector<int>& places,
+             std::size_t width, float elsewhere) {
+            Floats values = floats(particle_count(s), width, elsewhere);
+            s.round_column(name, places, width, {values.data(), values.size()});
+            return values;
+          },
+          nb::arg("name"), nb::arg("places"), nb::arg("width"), nb::arg("elsewhere"))
+      .def("rounded_pressure", rounded<&Simulation::round_pressure>)
+      .def("rounded_von_mises", rounded<&Simulation::round_von_mises>)
       .def(
           "set_velocity",
           [](Simulation& s, int body, const Input& velocities) {
@@ -307,6 +327,7 @@ NB_MODULE(_core, m) {
         nb::call_guard<nb::gil_scoped_release>());
   m.def("measure_arithmetic", &measure_arithmetic, nb::arg("threads"),
         nb::call_guard<nb::gil_scoped_release>());
+  m.def("return_freed_memory", &return_freed_memory);
   m.def("build_info", [] {
     nb::dict d;
     d["compiler"] = MPM_COMPILER;

@@ -1,5 +1,8 @@
 #pragma once
 // Between NumPy and Python's tables on one side, spans and structs of the core on the other.
+#include <algorithm>
+#include <memory>
+
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/map.h>
@@ -9,6 +12,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "mpm/fields/aligned.hpp"
 #include "mpm/fields/state_stream.hpp"
 #include "mpm/materials/material.hpp"
 
@@ -18,6 +22,7 @@ namespace nb = nanobind;
 
 using Input = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 using Output = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
+using Floats = nb::ndarray<nb::numpy, float, nb::ndim<2>>;
 using Parameters = std::map<std::string, double>;
 using Named = std::pair<std::string, Parameters>;
 using Viscosity = std::pair<double, double>;  // quadratic, linear
@@ -29,6 +34,18 @@ inline Output to_numpy(std::vector<double>&& values, std::size_t columns) {
   auto* owned = new std::vector<double>(std::move(values));
   nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
   return Output(owned->data(), {owned->size() / columns, columns}, owner);
+}
+
+/// Rows of floats, all of one value, in memory that goes back to the system with the array.
+inline Floats floats(std::size_t rows, std::size_t columns, float value) {
+  auto owned = std::make_unique<AlignedArray<float>>();
+  owned->release_and_allocate(rows * columns);
+  std::fill_n(owned->data(), rows * columns, value);
+  float* const data = owned->data();
+  nb::capsule owner(owned.get(),
+                    [](void* p) noexcept { delete static_cast<AlignedArray<float>*>(p); });
+  owned.release();
+  return Floats(data, {rows, columns}, owner);
 }
 
 inline MaterialChoice choice_of(double density, const std::string& strength,

@@ -17,6 +17,19 @@ COLUMNS = (
 SPEED, STEP, SIZE = 10.0, 1e-5, 1e-3
 
 
+def pressure(stress: np.ndarray) -> np.ndarray:
+    """Mean compressive stress -(xx + yy + zz)/3, of (n, 6) in the order xx yy zz yz xz xy."""
+    return -(stress[:, 0] + stress[:, 1] + stress[:, 2]) / 3.0
+
+
+def von_mises(stress: np.ndarray) -> np.ndarray:
+    """Equivalent stress sqrt(3/2 s:s), s the deviator, of (n, 6) (von Mises, 1913)."""
+    xx, yy, zz, yz, xz, xy = stress.T
+    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    shear = yz**2 + xz**2 + xy**2
+    return np.sqrt(0.5 * normal + 3.0 * shear)
+
+
 class FakeSimulation:
     """Two square (or cubic) blocks of 8 particles a side; only the second has `damage`."""
 
@@ -72,6 +85,29 @@ class FakeSimulation:
             "mass": np.full((count, 1), 1000.0 * SIZE**self.dimension),
             "damage": rows / count,
         }[name]
+
+    def rounded_column(
+        self, name: str, places: list[int], width: int, elsewhere: float
+    ) -> np.ndarray:
+        """As the core: the columns of all bodies, component c at places[c]."""
+        rounded = np.full((self.particle_count, width), elsewhere, dtype=np.float32)
+        end = 0
+        for body in range(self.body_count):
+            count = self.body_particle_count(body)
+            if name in [column.name for column in self.columns(body)]:
+                rounded[end : end + count, places] = self.column(body, name)
+            end += count
+        return rounded
+
+    def rounded_pressure(self) -> np.ndarray:
+        return self._rounded(pressure)
+
+    def rounded_von_mises(self) -> np.ndarray:
+        return self._rounded(von_mises)
+
+    def _rounded(self, of_stress: Any) -> np.ndarray:
+        stress = np.concatenate([self.column(b, "stress") for b in range(self.body_count)])
+        return of_stress(stress).astype(np.float32)[:, None]
 
     def contact_pairs(self) -> list[Any]:
         touching = self.time >= self._first

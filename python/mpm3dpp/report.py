@@ -119,5 +119,6 @@ def speed_line(manifest: Manifest) -> str:
     return (
         f"{manifest.status}: {manifest.steps:,} steps of {manifest.particles:,} particles in "
         f"{manifest.wall_time:.1f} s, {manifest.ns_per_particle_step:.1f} ns per particle-step "
-        f"{on}, {used:.0f} bytes per particle"
+        f"{on}, memory {manifest.peak_memory_bytes / 2**20:,.0f} MiB, of which the core "
+        f"{sum(manifest.bytes.values()) / 2**20:,.1f} MiB ({used:.0f} bytes per particle)"
     )

@@ -16,11 +16,12 @@ from .case import Case, load_case
 from .checkpoints import Checkpoint, Checkpoints
 from .errors import CaseError, RunError
 from .folders import forget_last_run, only_run_in, writable_folder
-from .io.background import BackgroundWriter
+from .io.background import FRAME_SHARE, BackgroundWriter
 from .io.checkpoint import CHECKPOINT
 from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import RESULTS, ResultsWriter
+from .plots.apart import draw_apart
 from .progress import Progress
 from .report import contact_table, energy_line, gone_lines, load_lines, speed_line, warning_lines
 from .resume import go_on, has_checkpoint
@@ -60,6 +61,7 @@ def run_case(
         KeyboardInterrupt: the user stopped it; what was computed is kept.
     """
     folder = arguments.path("out", out)
+    _core.return_freed_memory()
     if not isinstance(case, Case):
         case = load_case(arguments.path("case", case))
     if resume and not has_checkpoint(folder):
@@ -123,11 +125,12 @@ def _draw(folder: Path, quiet: bool) -> None:
     later = f"`mpm3dpp plot {folder}` makes them later"
     if not quiet:
         print(f"drawing pictures (Ctrl-C leaves them out, {later})", file=sys.stderr, flush=True)
+    _core.return_freed_memory()  # It is the pictures' turn.
     try:
         with as_exceptions():
-            from .plots import plot_results
-
-            plot_results(folder)
+            said = draw_apart(folder)
+        if said and not quiet:
+            print(said, file=sys.stderr)
     except KeyboardInterrupt:
         if not quiet:
             print(f"no pictures: {later}", file=sys.stderr)
@@ -178,7 +181,8 @@ def _write_run(
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
     status: Status = "completed"
     reason: str | None = None
-    with BackgroundWriter(file) as results, history, progress:
+    room = FRAME_SHARE * sum(core.bytes().values())
+    with BackgroundWriter(file, room) as results, history, progress:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
         for sentence in [*simulation.notes, *notes]:

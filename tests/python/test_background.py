@@ -54,20 +54,47 @@ def test_frames_are_those_of_their_time(tmp_path: Path) -> None:
         np.testing.assert_array_equal(found.arrays(k)["stress"], stress.astype(np.float32))
 
 
-def test_a_step_waits_when_two_frames_are_behind(tmp_path: Path) -> None:
+FRAME = 14 * 4 * 128  # bytes of 128 particles; the first has body, material and size too
+
+
+def test_a_step_waits_for_room(tmp_path: Path) -> None:
+    """Two frames have room; the third waits for it, and is that of its time all the same."""
     simulation, file = FakeSimulation(), SlowWriter(tmp_path)
-    with BackgroundWriter(file) as results:
+    with BackgroundWriter(file, room=2.5 * FRAME) as results:
         results.write(simulation)
         results.write(simulation)
         third = threading.Thread(target=results.write, args=(simulation,))
         third.start()
         third.join(timeout=0.2)
         assert third.is_alive()
-        file.allowed.release()
+        file.allowed.release(2)
         third.join(timeout=LONG)
         assert not third.is_alive()
-        file.allowed.release(2)
+        file.allowed.release()
     assert len(open_results(tmp_path)) == 3
+
+
+def test_a_frame_larger_than_the_room_goes_through_column_by_column(tmp_path: Path) -> None:
+    """What waits is never more than the room, or one column where that is more."""
+    simulation, file = FakeSimulation(), SlowWriter(tmp_path)
+    largest, room = 6 * 4 * 128, 4 * 4 * 128
+    waiting: list[int] = []
+    file.allowed.release(3)
+    with BackgroundWriter(file, room=room) as results:
+        add = file._append_column
+
+        def watched(*arguments):
+            waiting.append(results._waiting)
+            return add(*arguments)
+
+        file._append_column = watched
+        for _ in range(3):
+            results.write(simulation)
+            simulation.advance(4)
+    assert max(waiting) == largest
+    found = open_results(tmp_path)
+    assert found.steps.tolist() == [0, 4, 8]
+    assert found.arrays(2)["position"][0, 0] > found.arrays(0)["position"][0, 0]
 
 
 ERRORS = [CaseError("the disk is full"), MemoryError("no room")]
@@ -76,7 +103,7 @@ ERRORS = [CaseError("the disk is full"), MemoryError("no room")]
 @pytest.mark.parametrize("error", ERRORS)
 def test_a_failure_is_told(tmp_path: Path, error: Exception) -> None:
     simulation, file = FakeSimulation(), SlowWriter(tmp_path, error)
-    results = BackgroundWriter(file)
+    results = BackgroundWriter(file, room=FRAME)
     file.allowed.release(9)
     results.write(simulation)
     with pytest.raises(type(error), match=str(error)):
@@ -98,6 +125,25 @@ def test_a_frame_that_cannot_be_copied_takes_no_room(tmp_path: Path) -> None:
         results.write(FakeSimulation())
         file.allowed.release()
     assert len(open_results(tmp_path)) == 1
+
+
+class Breaking(FakeSimulation):
+    """Has no memory left for a column in the middle of its second frame."""
+
+    def rounded_pressure(self) -> np.ndarray:
+        if self.step:
+            raise MemoryError("no room")
+        return super().rounded_pressure()
+
+
+def test_a_frame_that_breaks_off_leaves_those_before(tmp_path: Path) -> None:
+    simulation, file = Breaking(), SlowWriter(tmp_path)
+    file.allowed.release(9)
+    with pytest.raises(MemoryError, match="no room"), BackgroundWriter(file) as results:
+        results.write(simulation)
+        simulation.advance(4)
+        results.write(simulation)
+    assert open_results(tmp_path).steps.tolist() == [0]
 
 
 @pytest.mark.parametrize("error", ERRORS)

@@ -30,7 +30,8 @@ def strip(shape: tuple[int, ...], axis: int = 0) -> SimpleNamespace:
         "size": np.full(len(points), 0.5 * CELL),
     }
     return SimpleNamespace(
-        arrays=lambda frame: arrays,
+        arrays=lambda frame, names=None: arrays,
+        fields=list(arrays),
         bodies=["left", "right"],
         materials=["soft", "hard"],
         units={"pressure": "Pa"},

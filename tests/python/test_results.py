@@ -15,19 +15,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fake_core import COLUMNS, SIZE, FakeSimulation
+from fake_core import COLUMNS, SIZE, FakeSimulation, pressure, von_mises
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io import (
     HistoryWriter,
     ResultsWriter,
     build_manifest,
-    copy_frame,
-    frame_arrays,
+    frame_of,
     open_results,
     read_history,
     read_manifest,
     result_hash,
-    von_mises,
 )
 from mpm3dpp.plots.energies import draw_energies
 from mpm3dpp.progress import Progress
@@ -46,12 +44,34 @@ def writer(path: Path, dimension: int = 2, **more) -> ResultsWriter:
     )
 
 
+def arrays_of(simulation: FakeSimulation) -> dict[str, np.ndarray]:
+    """What a frame must hold of a simulation, in doubles."""
+    damage = [np.full((simulation.body_particle_count(0), 1), np.nan)]
+    damage.append(simulation.column(1, "damage"))
+    stress, position, velocity = (
+        np.concatenate([simulation.column(b, name) for b in range(2)])
+        for name in ("stress", "position", "velocity")
+    )
+    empty = np.zeros((len(stress), 3 - simulation.dimension))
+    numbers = np.repeat([0, 1], [simulation.body_particle_count(b) for b in range(2)])
+    return {
+        "position": np.hstack([position, empty]),
+        "velocity": np.hstack([velocity, empty]),
+        "stress": stress,
+        "pressure": pressure(stress),
+        "von_mises": von_mises(stress),
+        "body": numbers,
+        "material": numbers,
+        "damage": np.concatenate(damage)[:, 0],
+    }
+
+
 def run(path: Path, dimension: int = 2, compression: int = 0) -> list[dict[str, np.ndarray]]:
     """Write five frames; returns what was handed to the writer."""
     simulation, frames = FakeSimulation(dimension), []
     with writer(path, dimension, fields=["damage"], compression=compression) as results:
         for _ in range(5):
-            frames.append(frame_arrays(copy_frame(simulation, ["damage"]), ["a", "b"], [0, 1]))
+            frames.append(arrays_of(simulation))
             results.write(simulation)
             simulation.advance(4)
     return frames
@@ -272,7 +292,7 @@ def test_unwritable_and_missing_files(tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="no column time"):
         read_history(table)
     with pytest.raises(CaseError, match="damage"):
-        copy_frame(FakeSimulation(), ["damge"])
+        frame_of(FakeSimulation(), ["damge"])
 
 
 def test_results_of_earlier_versions(tmp_path: Path) -> None:

@@ -172,6 +172,15 @@ class Simulation {
   /// has six components in 2D too.
   virtual int column_components(int body, const std::string& name) const = 0;
   virtual void copy_column(int body, const std::string& name, std::span<double> to) const = 0;
+  /// A column of all bodies, one after another, rounded to floats: component c of particle i goes
+  /// to to[i * width + places[c]]. What belongs to bodies without the column, or to no component,
+  /// stays as it is.
+  virtual void round_column(const std::string& name, std::span<const int> places, std::size_t width,
+                            std::span<float> to) const = 0;
+  /// Mean compressive stress -(xx + yy + zz)/3, and equivalent stress sqrt(3/2 s:s), s the deviator
+  /// (von Mises, 1913), of all particles [Pa], rounded to floats.
+  virtual void round_pressure(std::span<float> to) const = 0;
+  virtual void round_von_mises(std::span<float> to) const = 0;
   virtual void set_gravity(
       const std::array<TimeFunction, 3>& gravity) = 0;  // [m/s^2], from the next step on
   virtual void set_velocity(int body, std::span<const double> velocities) = 0;

@@ -54,6 +54,10 @@ class SimulationOf final : public Simulation {
   }
   int column_components(int body, const std::string& name) const override;
   void copy_column(int body, const std::string& name, std::span<double> to) const override;
+  void round_column(const std::string& name, std::span<const int> places, std::size_t width,
+                    std::span<float> to) const override;
+  void round_pressure(std::span<float> to) const override;
+  void round_von_mises(std::span<float> to) const override;
   void set_gravity(const std::array<TimeFunction, 3>& gravity) override;
   void set_velocity(int body, std::span<const double> velocities) override;
 
@@ -68,6 +72,8 @@ class SimulationOf final : public Simulation {
   std::size_t unconverged_nodes() const override { return domain_.contact.unconverged(); }
 
  private:
+  template <class F>
+  void round_stress(std::span<float> to, const F& f) const;
   const Body<D>& body(int b) const { return domain_.bodies.at(static_cast<std::size_t>(b)); }
   double kinetic_energy() const;
   std::array<double, 3> momentum() const;

@@ -5,10 +5,9 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
-from pathlib import Path
 from typing import Any
 
+from .. import child
 from ..errors import RunError
 
 
@@ -16,14 +15,12 @@ class Process:
     """A benchmark running in a process of its own; a context manager that ends it."""
 
     def __init__(self, name: str, size: int, threads: int, scheme: str, warm_up: int) -> None:
-        package = Path(__file__).absolute().parents[2]  # -m looks in the current folder first.
         numbers = [str(size), str(threads), scheme, str(warm_up)]
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", f"{__package__}.worker", name, *numbers],
-            cwd=package,
-            stdin=subprocess.PIPE,
+        self._process = child.start(
+            "bench.worker",
+            name,
+            *numbers,
             stdout=subprocess.PIPE,
-            text=True,
             start_new_session=True,  # Ctrl-C is for this process, whose end ends that one.
         )
 

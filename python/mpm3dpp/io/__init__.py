@@ -5,7 +5,7 @@ Nothing heavy is imported here; h5py is loaded when a file is opened, vtk never.
 """
 
 from mpm3dpp.io.background import BackgroundWriter
-from mpm3dpp.io.fields import Frame, copy_frame, frame_arrays, pressure, von_mises
+from mpm3dpp.io.fields import Frame, frame_of
 from mpm3dpp.io.history import HistoryWriter, read_history
 from mpm3dpp.io.manifest import Manifest, build_manifest, read_manifest
 from mpm3dpp.io.result_hash import result_hash
@@ -20,12 +20,9 @@ __all__ = [
     "Results",
     "ResultsWriter",
     "build_manifest",
-    "copy_frame",
-    "frame_arrays",
+    "frame_of",
     "open_results",
-    "pressure",
     "read_history",
     "read_manifest",
     "result_hash",
-    "von_mises",
 ]

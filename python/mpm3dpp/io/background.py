@@ -4,50 +4,84 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
+import math
 import queue
 import threading
+from collections.abc import Iterator
 from typing import Any
 
-from mpm3dpp.io.fields import Frame
+import numpy as np
+
+from mpm3dpp.errors import CaseError
+from mpm3dpp.io.fields import Column
 from mpm3dpp.io.vtkhdf import ResultsWriter
 
-BEHIND = 2
-"""Frames that may be copied and not yet written before a step waits for the disk."""
+FRAME_SHARE = 1 / 6
+"""Of the core's memory, the room that a run has for columns that are not written yet."""
+
+
+@dataclasses.dataclass
+class _Once:
+    """Gives an array that has been made, and drops it."""
+
+    array: np.ndarray | None
+
+    def __call__(self) -> np.ndarray:
+        array, self.array = self.array, None
+        assert array is not None
+        return array
 
 
 class BackgroundWriter:
-    """Writes frames from copies, in a thread of its own; a context manager that ends it.
+    """Writes frames column by column, in a thread of its own; a context manager that ends it.
 
-    A frame that could not be written ends the run at its next look: `write` raises the error,
-    `check` and `close` do if nobody has told it yet. Frames written before stay readable; those
-    that wait are dropped.
+    The thread that steps copies a column when there is room for it beside those that are not
+    written yet, so that what waits for the disk is never more than `room`, whatever the frame. A
+    frame that could not be written ends the run at its next look: `write` raises the error, `check`
+    and `close` do if nobody has told it yet. Frames written before stay readable; those that wait
+    are dropped.
 
     Args:
         results: the writer of the file, closed at the end.
+        room: for columns that are copied and not written [bytes]; one is always let in.
     """
 
-    def __init__(self, results: ResultsWriter) -> None:
+    def __init__(self, results: ResultsWriter, room: float = math.inf) -> None:
         self._results = results
-        self._frames: queue.SimpleQueue[Frame | None] = queue.SimpleQueue()
-        self._room = threading.Semaphore(BEHIND)
+        self._room = room
+        self._waiting = 0  # bytes of the columns that are not written
+        self._unwritten = 0  # frames
+        self._changed = threading.Condition()
+        # A frame, then its columns, then None in place of one more, or what went wrong with it; at
+        # the end None in place of a frame.
+        self._handed: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._error: Exception | None = None  # set once, by the thread that writes
         self._told = False
         self._thread = threading.Thread(target=self._work, name="frames", daemon=True)
         self._thread.start()
 
     def write(self, simulation: Any) -> None:
-        """Hand over a copy of the core's `Simulation`; wait only while two others are not written.
+        """Hand over the present state of the core's `Simulation`; wait only for room.
 
         Raises:
             CaseError: an earlier frame could not be written, or there is no such column.
         """
-        self._room.acquire()
+        self._tell()
+        frame = self._results.frame_of(simulation)
+        with self._changed:
+            self._unwritten += 1
+        self._handed.put(frame)
+        end: CaseError | None = None
         try:
-            self._tell()
-            self._frames.put(self._results.copy(simulation))
+            for column in frame.columns:
+                self._wait_for_room(column.bytes)
+                self._handed.put(column._replace(make=_Once(column.make())))
         except BaseException:
-            self._room.release()
+            end = CaseError("a frame was broken off while it was copied")
             raise
+        finally:
+            self._handed.put(end)
 
     def rows(self) -> dict[str, Any]:
         """Write what waits, and return what a writer needs to go on from here.
@@ -55,9 +89,8 @@ class BackgroundWriter:
         Raises:
             CaseError: a frame could not be written.
         """
-        for _ in range(BEHIND):
-            self._room.acquire()
-        self._room.release(BEHIND)
+        with self._changed:
+            self._changed.wait_for(lambda: self._unwritten == 0)
         self._tell()
         return self._results.rows()
 
@@ -73,7 +106,7 @@ class BackgroundWriter:
             CaseError: a frame could not be written, and nobody has told it yet.
         """
         if self._thread.is_alive():
-            self._frames.put(None)
+            self._handed.put(None)
             self._thread.join()
         try:
             self._results.close()
@@ -93,12 +126,34 @@ class BackgroundWriter:
             self._told = True
             raise self._error
 
+    def _wait_for_room(self, size: int) -> None:
+        with self._changed:
+            self._changed.wait_for(lambda: self._waiting == 0 or self._waiting + size <= self._room)
+            self._waiting += size
+
+    def _taken(self) -> Iterator[Column]:
+        """Take the columns of a frame as they come; each has been written when the next is."""
+        while (got := self._handed.get()) is not None:
+            if isinstance(got, CaseError):
+                raise got
+            yield got
+            got.make.array = None
+            with self._changed:
+                self._waiting -= got.bytes
+                self._changed.notify_all()
+
     def _work(self) -> None:
-        while (frame := self._frames.get()) is not None:
+        while (frame := self._handed.get()) is not None:
+            columns = self._taken()
             try:
                 if self._error is None:
-                    self._results.add(frame)
+                    self._results.add(dataclasses.replace(frame, columns=columns))
             except Exception as error:  # Whatever it is, the thread that steps must hear of it.
                 self._error = error
             finally:
-                self._room.release()
+                with contextlib.suppress(CaseError):
+                    for _ in columns:  # Those that were not wanted.
+                        pass
+                with self._changed:
+                    self._unwritten -= 1
+                    self._changed.notify_all()

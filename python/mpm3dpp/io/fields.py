@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The arrays of one frame: copied from a simulation body by body, and what follows from them."""
+"""The arrays of one frame, as they are stored: each is made when its turn comes, and then dropped.
+
+A particle has a number of them for every eight that the core holds, so that all at once, or in
+doubles, would be the larger part of a run's memory.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -27,33 +33,8 @@ UNITS = {
 }
 """Unit of each standard array; the columns of the core bring their own."""
 
-
-def pressure(stress: np.ndarray) -> np.ndarray:
-    """Mean compressive stress -(xx + yy + zz)/3 [Pa], shape (n,).
-
-    Args:
-        stress: Cauchy stress [Pa], shape (n, 6), order xx yy zz yz xz xy, tension positive.
-    """
-    return -(stress[:, 0] + stress[:, 1] + stress[:, 2]) / 3.0
-
-
-def von_mises(stress: np.ndarray) -> np.ndarray:
-    """Equivalent stress sqrt(3/2 s:s), s the deviator [Pa], shape (n,) (von Mises, 1913).
-
-    Args:
-        stress: Cauchy stress [Pa], shape (n, 6), order xx yy zz yz xz xy.
-    """
-    xx, yy, zz, yz, xz, xy = stress.T
-    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-    shear = yz**2 + xz**2 + xy**2
-    return np.sqrt(0.5 * normal + 3.0 * shear)
-
-
-def three(vectors: np.ndarray) -> np.ndarray:
-    """Vectors of shape (n, 2) or (n, 3) as (n, 3), with z = 0 in two dimensions."""
-    if vectors.shape[1] == 3:
-        return vectors
-    return np.column_stack([vectors, np.zeros(len(vectors))])
+_PLACES = {2: (0, 1), 4: (0, 1, 2, 3), 6: (0, 1, 2, 4, 5, 3)}
+"""Where VTK has our components: vectors have three there, tensors xx yy zz xy yz xz."""
 
 
 def numbered(names: Sequence[str]) -> tuple[list[str], list[int]]:
@@ -62,90 +43,85 @@ def numbered(names: Sequence[str]) -> tuple[list[str], list[int]]:
     return list(numbers), [numbers[name] for name in names]
 
 
-def particle_sizes(simulation: Any, dimension: int) -> np.ndarray:
-    """Edge length of the square or cube of each particle's volume [m], shape (n,)."""
-    volumes = [_flat(simulation.column(b, "volume")) for b in range(simulation.body_count)]
-    return np.concatenate(volumes) ** (1.0 / dimension)
+class Column(NamedTuple):
+    """An array that is made when its turn comes.
+
+    Attributes:
+        name: of the array.
+        bytes: that it takes.
+        make: gives the array, float32 or int32, a row for each particle.
+    """
+
+    name: str
+    bytes: int
+    make: Callable[[], np.ndarray]
 
 
 @dataclass(frozen=True)
 class Frame:
-    """A copy of what a simulation held at one time; `frame_arrays` makes of it what is stored.
+    """What a simulation holds at one time, as it is stored.
 
     Attributes:
         time: [s].
         step: number of steps made until then.
-        counts: particles of each body.
-        columns: position [m], velocity [m/s], stress [Pa] and further columns by name, all bodies
-            one after another in their original order.
+        particles: count.
+        bytes: of all columns together.
+        columns: "position" first; all bodies one after another in their original order.
     """
 
     time: float
     step: int
-    counts: list[int]
-    columns: dict[str, np.ndarray]
+    particles: int
+    bytes: int
+    columns: Iterable[Column]
 
 
-def copy_frame(simulation: Any, fields: Sequence[str] = ()) -> Frame:
-    """Copy the present state of the core's `Simulation`.
+def frame_of(
+    simulation: Any,
+    fields: Sequence[str] = (),
+    names: Sequence[str] = (),
+    materials: Sequence[int] = (),
+    constants: bool = True,
+) -> Frame:
+    """Return the present state of the core's `Simulation`; its columns are made as they are taken.
 
     Args:
-        simulation: the core's.
+        simulation: the core's; it must not step until the last column has been taken.
         fields: names of further columns of the core, e.g. "left_cauchy_green"; NaN where the model
             of a body has no such column.
+        names: of each body; bodies of one name are grains.
+        materials: number of the material of each body.
+        constants: whether the columns that do not change are among them.
+
+    Returns:
+        A frame with position [m] and velocity [m/s] (n, 3), z = 0 in 2D; stress [Pa] (n, 6) in
+        VTK's order xx yy zz xy yz xz; pressure and von_mises [Pa] (n,); further columns with their
+        own number of components; and, if constant: body and material (n,); grain (n,), the body's
+        number among those of its name, if any name comes twice; size [m] (n,), the edge of the
+        square or cube of the particle's volume.
 
     Raises:
         CaseError: no body has a column of that name.
     """
-    bodies = range(simulation.body_count)
-    counts = [int(simulation.body_particle_count(b)) for b in bodies]
-    columns = {
-        name: np.concatenate([simulation.column(b, name) for b in bodies])
-        for name in ("position", "velocity", "stress")
-    }
-    for name in fields:
-        if name not in STANDARD:
-            columns[name] = _optional(simulation, name, counts)
-    return Frame(float(simulation.time), int(simulation.step), counts, columns)
+    stored = {name: _components(simulation, name) for name in ("position", "velocity", "stress")}
+    stored |= {name: _components(simulation, name) for name in fields if name not in STANDARD}
+    widths = {name: _width(name, components) for name, components in stored.items()}
+    count = int(simulation.particle_count)
 
+    def column(name: str, make: Callable[[], np.ndarray], width: int = 1) -> Column:
+        return Column(name, 4 * width * count, make)
 
-def frame_arrays(
-    frame: Frame, names: Sequence[str], materials: Sequence[int]
-) -> dict[str, np.ndarray]:
-    """Every array that is stored of a frame.
-
-    Args:
-        frame: the copy.
-        names: of each body; bodies of one name are grains.
-        materials: number of the material of each body, one per body.
-
-    Returns:
-        name -> array with n rows: position [m] and velocity [m/s] (n, 3), z = 0 in 2D;
-        stress [Pa] (n, 6) in the order xx yy zz yz xz xy; pressure and von_mises [Pa] (n,);
-        body and material (n,) int32; grain (n,) int32, the body's number among those of its
-        name, if any name comes twice; the further columns of the frame with their own number of
-        components.
-    """
-
-    def of_body(numbers: Sequence[int]) -> np.ndarray:
-        return np.repeat(np.asarray(numbers, dtype=np.int32), frame.counts)
-
-    columns = dict(frame.columns)
-    stress = columns.pop("stress")
-    different, numbers = numbered(names)
-    arrays = {
-        "position": three(columns.pop("position")),
-        "velocity": three(columns.pop("velocity")),
-        "stress": stress,
-        "pressure": pressure(stress),
-        "von_mises": von_mises(stress),
-        "body": of_body(numbers),
-        "material": of_body(materials),
-    }
-    if len(different) < len(numbers):
-        firsts = [numbers.index(k) for k in range(len(different))]
-        arrays["grain"] = of_body([b - firsts[k] for b, k in enumerate(numbers)])
-    return arrays | columns
+    columns = [
+        column(name, partial(_column, simulation, name, stored[name], width), width)
+        for name, width in widths.items()
+    ]
+    columns.append(column("pressure", lambda: simulation.rounded_pressure()[:, 0]))
+    columns.append(column("von_mises", lambda: simulation.rounded_von_mises()[:, 0]))
+    if constants:
+        fixed = _constants(simulation, names, materials)
+        columns += [column(name, make) for name, make in fixed.items()]
+    total = sum(column.bytes for column in columns)
+    return Frame(float(simulation.time), int(simulation.step), count, total, columns)
 
 
 def column_units(simulation: Any) -> dict[str, str]:
@@ -156,27 +132,61 @@ def column_units(simulation: Any) -> dict[str, str]:
     return units
 
 
-def _optional(simulation: Any, name: str, counts: Sequence[int]) -> np.ndarray:
-    """A column that only some of the bodies have; NaN for the particles of the others."""
-    columns = [{c.name: c for c in simulation.columns(b)} for b in range(len(counts))]
-    found = [c[name] for c in columns if name in c]
-    if not found:
-        known = sorted({key for c in columns for key in c} - set(STANDARD))
-        raise CaseError(
-            f"output.fields: no material of this case stores '{name}'; "
-            f"choose from {', '.join(known) or 'the standard fields only'}"
-        )
-    parts = []
-    for b, count in enumerate(counts):
-        if name in columns[b]:
-            parts.append(np.asarray(simulation.column(b, name)).reshape(count, -1))
-        else:
-            parts.append(np.full((count, found[0].components), np.nan))
-    whole = np.concatenate(parts)
-    if whole.shape[1] == 1:
-        return whole[:, 0]
-    return three(whole) if whole.shape[1] == 2 else whole
+def _column(simulation: Any, name: str, components: int, width: int) -> np.ndarray:
+    """Return a column of the core as it is stored."""
+    places = _PLACES.get(components, tuple(range(components)))
+    elsewhere = 0.0 if name in STANDARD else math.nan
+    if components < width:  # The third component of vectors in 2D.
+        elsewhere = 0.0
+    column: np.ndarray = simulation.rounded_column(name, list(places), width, elsewhere)
+    return column if width > 1 else column[:, 0]
 
 
-def _flat(column: np.ndarray) -> np.ndarray:
-    return np.asarray(column).reshape(-1)
+def _components(simulation: Any, name: str) -> int:
+    """Return those of a column of the core. Raises `CaseError` where no body has it."""
+    known: set[str] = set()
+    for b in range(simulation.body_count):
+        for column in simulation.columns(b):
+            if column.name == name:
+                return int(column.components)
+            known.add(column.name)
+    raise CaseError(
+        f"output.fields: no material of this case stores '{name}'; "
+        f"choose from {', '.join(sorted(known - set(STANDARD))) or 'the standard fields only'}"
+    )
+
+
+def _width(name: str, components: int) -> int:
+    """Return the numbers that are stored of a column: vectors have three, stress six, in 2D too."""
+    if name == "stress":
+        return 6
+    return 3 if components == 2 else components
+
+
+def _constants(
+    simulation: Any, names: Sequence[str], materials: Sequence[int]
+) -> dict[str, Callable[[], np.ndarray]]:
+    """Return what makes the columns that do not change, by name."""
+    counts = [int(simulation.body_particle_count(b)) for b in range(simulation.body_count)]
+
+    def of_body(numbers: Sequence[int]) -> Callable[[], np.ndarray]:
+        return lambda: np.repeat(np.asarray(numbers, dtype=np.int32), counts)
+
+    dimension = _components(simulation, "position")
+
+    def sizes() -> np.ndarray:
+        found = np.empty(sum(counts), dtype=np.float32)
+        end = 0
+        for b, count in enumerate(counts):
+            volumes = np.asarray(simulation.column(b, "volume")).reshape(-1)
+            found[end : end + count] = volumes ** (1.0 / dimension)
+            end += count
+        return found
+
+    different, numbers = numbered(names)
+    made = {"body": of_body(numbers), "material": of_body(materials)}
+    if len(different) < len(numbers):
+        firsts = [numbers.index(k) for k in range(len(different))]
+        made["grain"] = of_body([b - firsts[k] for b, k in enumerate(numbers)])
+    made["size"] = sizes
+    return made

@@ -14,7 +14,7 @@ import io
 import json
 import re
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -23,7 +23,6 @@ import numpy as np
 
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import replacing
-from mpm3dpp.io.rows import as_stored
 
 if TYPE_CHECKING:
     import h5py
@@ -86,13 +85,16 @@ def frame_numbers(folder: Path) -> list[int]:
     return []
 
 
-def write_frame(path: Path, info: FrameInfo, arrays: Mapping[str, Any], level: int) -> None:
+def write_frame(
+    path: Path, info: FrameInfo, arrays: Iterable[tuple[str, np.ndarray]], level: int
+) -> None:
     """Write the file of a frame.
 
     Args:
         path: the file.
         info: of which `checks` and `kinds` are filled here.
-        arrays: those of its arrays that do not stand elsewhere.
+        arrays: (name, array as stored) of those that do not stand elsewhere, each asked for when
+            the one before is in the file.
         level: of compression: 0 for none, else gzip's, 1 to 9, after a shuffle of bytes.
 
     Raises:
@@ -100,8 +102,7 @@ def write_frame(path: Path, info: FrameInfo, arrays: Mapping[str, Any], level: i
     """
     with _new_h5(path) as file:
         group = file.create_group("arrays")
-        for name, array in arrays.items():
-            column = as_stored(array)
+        for name, column in arrays:
             info.checks[name] = zlib.crc32(column.data)
             info.kinds[name] = _kind(column)
             rows = max(1, min(len(column), _CHUNK_BYTES // max(1, column[:1].nbytes)))
@@ -126,24 +127,27 @@ def read_info(path: Path) -> FrameInfo:
         return info
 
 
-def read_arrays(folder: Path, frame: int) -> dict[str, np.ndarray]:
-    """Return all arrays of a frame, as stored. Raises `CaseError` if a file is missing or damaged.
+def read_arrays(
+    folder: Path, frame: int, names: Collection[str] | None = None
+) -> dict[str, np.ndarray]:
+    """Return arrays of a frame, as stored. Raises `CaseError` if a file is missing or damaged.
 
     Args:
         folder: with the frames.
         frame: number.
+        names: of the arrays; those that there are not are left out. All if None.
     """
     with _frame(frame_path(folder, frame)) as file:
         info = _info(file)
-        own = {name: _column(file, info, name) for name in info.checks}
-    others = {k for name, k in info.elsewhere.items() if name != CELLS}
-    for k in others:
+        wanted = [name for name in info.names if names is None or name in names]
+        found = {name: _column(file, info, name) for name in wanted if name in info.checks}
+    for k in {info.elsewhere[name] for name in wanted if name in info.elsewhere}:
         with _frame(frame_path(folder, k)) as file:
             there = _info(file)
-            for name, where in info.elsewhere.items():
-                if where == k and name != CELLS:
-                    own[name] = _column(file, there, name)
-    return {name: own[name] for name in info.names}
+            for name in wanted:
+                if info.elsewhere.get(name) == k:
+                    found[name] = _column(file, there, name)
+    return {name: found[name] for name in wanted}
 
 
 @contextlib.contextmanager

@@ -35,8 +35,9 @@ class Manifest:
         ns_per_particle_step, stages: time in the steps and in each stage [ns].
         resumed_step: from which the run went on last with `--resume`, else 0. Steps, times and
             energies are those of all its parts together, `threads` and memory those of the last.
-        peak_memory_bytes: largest resident size of the process [bytes].
-        bytes: of the core: particles, grid, contact, other.
+        peak_memory_bytes: largest resident size of the process so far, the program, frames and
+            checkpoints included, pictures not: they have a process of their own [bytes].
+        bytes: of the core alone: particles, grid, contact, other.
         loads: see `LoadRecord`, by name.
         warnings: see `WarningRecord`.
         result_hash: see `mpm3dpp.io.result_hash`.

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -86,11 +86,12 @@ class Results:
         self._must_be_open()
         return list(self._names)
 
-    def arrays(self, frame: int) -> dict[str, np.ndarray]:
+    def arrays(self, frame: int, names: Collection[str] | None = None) -> dict[str, np.ndarray]:
         """All arrays of a frame, float32 (integers int32), SI units.
 
         Args:
             frame: number of the frame; negative numbers count from the end.
+            names: of the arrays that are wanted beside "position"; default all.
 
         Returns:
             name -> (n,) or (n, c); symmetric tensors (n, 6) in the order xx yy zz yz xz xy.
@@ -101,17 +102,23 @@ class Results:
                 or damaged.
         """
         frame = self._number(frame)
-        arrays = read_arrays(self._folder, frame) if self._folder else self._arrays_of_one(frame)
+        wanted = None if names is None else {"position", *names}
+        if self._folder:
+            arrays = read_arrays(self._folder, frame, wanted)
+        else:
+            arrays = self._arrays_of_one(frame, wanted)
         return {k: v[:, FROM_VTK] if _is_tensor(v) else v for k, v in arrays.items()}
 
-    def _arrays_of_one(self, frame: int) -> dict[str, np.ndarray]:
-        """The arrays of a frame, where earlier versions have put all frames into one file."""
+    def _arrays_of_one(self, frame: int, names: Collection[str] | None) -> dict[str, np.ndarray]:
+        """Arrays of a frame, where earlier versions have put all frames into one file."""
         steps = self._root["Steps"]
         part = int(steps["PartOffsets"][frame])
         count = int(self._root["NumberOfPoints"][part])
         first = int(steps["PointOffsets"][frame])
         arrays = {"position": self._root["Points"][first : first + count]}
         for name, data in self._root["PointData"].items():
+            if names is not None and name not in names:
+                continue
             first = int(steps["PointDataOffsets"][name][frame])
             arrays[name] = data[first : first + count]
         return arrays

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from mpm3dpp.io.fields import three
-
 TO_VTK = (0, 1, 2, 5, 3, 4)
 """Order of VTK's symmetric tensors (xx yy zz xy yz xz) taken from ours (xx yy zz yz xz xy)."""
 
@@ -17,7 +15,7 @@ def as_stored(array: np.ndarray) -> np.ndarray:
     if array.ndim == 2 and array.shape[1] == 6:
         array = array[:, TO_VTK]
     if array.ndim == 2 and array.shape[1] == 2:
-        array = three(array)
+        array = np.column_stack([array, np.zeros(len(array))])
     kind = np.int32 if np.issubdtype(array.dtype, np.integer) else np.float32
     with np.errstate(over="ignore"):  # beyond float32 means a run that blew up: stored as inf
         return np.ascontiguousarray(array, dtype=kind)

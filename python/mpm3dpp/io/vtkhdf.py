@@ -11,7 +11,7 @@ stand in the first frame's file only.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,14 +19,7 @@ import numpy as np
 
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import bring_folder_to_disk, checksum, make_folder, unfinished, writing
-from mpm3dpp.io.fields import (
-    Frame,
-    column_units,
-    copy_frame,
-    frame_arrays,
-    numbered,
-    particle_sizes,
-)
+from mpm3dpp.io.fields import Column, Frame, column_units, frame_of, numbered
 from mpm3dpp.io.frame_file import (
     CELLS,
     FrameInfo,
@@ -101,7 +94,7 @@ class ResultsWriter:
         self._closed = False
         self._constant: dict[str, tuple[bytes, int]] = {}  # digest, and the frame that has it
         self._cells: dict[int, int] = {}  # count of particles -> frame that has their cells
-        self._sizes: np.ndarray | None = None
+        self._knows_constants = False
         self._meta: dict[str, Any] = {
             "title": title,
             "case_hash": case_hash,
@@ -146,21 +139,17 @@ class ResultsWriter:
 
     def write(self, simulation: Any) -> None:
         """Append the present state of the core's `Simulation` as a frame."""
-        self.add(self.copy(simulation))
+        self.add(self.frame_of(simulation))
 
-    def copy(self, simulation: Any) -> Frame:
-        """Copy what a frame holds of the present state of the core's `Simulation`."""
-        if self._sizes is None:
-            self._sizes = as_stored(particle_sizes(simulation, self._dimension))
+    def frame_of(self, simulation: Any) -> Frame:
+        """Return the present state of the core's `Simulation`, as `fields.frame_of`.
+
+        What does not change is in the first frame alone.
+        """
+        if not self._knows_constants:
             self._meta["units"] = column_units(simulation)
-        return copy_frame(simulation, self._fields)
-
-    def add(self, frame: Frame) -> None:
-        """Append a copy as a frame. Raises what `append` raises."""
-        arrays = frame_arrays(frame, self._bodies, self._materials)
-        if self._sizes is not None:
-            arrays["size"] = self._sizes
-        self.append(frame.time, frame.step, arrays)
+        new, self._knows_constants = not self._knows_constants, True
+        return frame_of(simulation, self._fields, self._bodies, self._materials, constants=new)
 
     def append(self, time: float, step: int, arrays: Mapping[str, np.ndarray]) -> None:
         """Append one frame.
@@ -174,38 +163,58 @@ class ResultsWriter:
         Raises:
             CaseError: no room on the disk; the frames written before stay readable.
         """
+        stored = [as_stored(array) for array in arrays.values()]
+        columns = [Column(n, a.nbytes, lambda a=a: a) for n, a in zip(arrays, stored, strict=True)]
+        total = sum(column.bytes for column in columns)
+        self.add(Frame(time, step, len(arrays["position"]), total, columns))
+
+    def add(self, frame: Frame) -> None:
+        """Append a frame; each of its columns is asked for when the one before is in the file.
+
+        A column that does not change may be left out of later frames. Raises what `append` raises,
+        and what the columns raise; the frames written before stay.
+        """
         if self._closed:
             raise CaseError(f"'{self.path}' is closed: no frame can be added to it any more")
-        if self._frames and self._frames[0].names != [
-            "position",
-            *sorted({*arrays} - {"position"}),
-        ]:
-            raise CaseError(f"a frame of '{self.path}' must have the arrays of the first one")
         number = self.frames
-        info = FrameInfo(float(time), int(step), len(arrays["position"]))
-        digests = {}
-        for name in _CONSTANT:
-            if name in arrays:
-                digest = hashlib.blake2b(as_stored(arrays[name]).data).digest()
-                before, frame = self._constant.get(name, (b"", 0))
-                if digest == before:
-                    info.elsewhere[name] = frame
-                else:
-                    digests[name] = digest, number
+        info = FrameInfo(float(frame.time), int(frame.step), frame.particles)
+        info.elsewhere = {name: where for name, (_, where) in self._constant.items()}
         if info.count in self._cells:
             info.elsewhere[CELLS] = self._cells[info.count]
+        new: dict[str, bytes] = {}
         path = frame_path(self._folder, number)
-        own = {name: array for name, array in arrays.items() if name not in info.elsewhere}
-        write_frame(path, info, own, self._level)
+        write_frame(path, info, self._own(frame.columns, info, new), self._level)
         with writing(path):
             check = checksum(path)
         assert check is not None  # for no size was given
         self._frames.append(info)
         self._checks.append(check)
-        self._constant |= digests
+        self._constant |= {name: (digest, number) for name, digest in new.items()}
         self._cells.setdefault(info.count, number)
         if _OFTEN * (self.frames - self._told) >= self._told:
             self._tell()
+
+    def _own(
+        self, columns: Iterable[Column], info: FrameInfo, new: dict[str, bytes]
+    ) -> Iterator[tuple[str, np.ndarray]]:
+        """Give the arrays that a frame's file has to hold, and note where the others are.
+
+        Args:
+            columns: of the frame.
+            info: of the frame.
+            new: gets the digests of those that seldom change.
+        """
+        for name, _, make in columns:
+            column = make()
+            if name in _CONSTANT:
+                digest = _digest(column)
+                if digest == self._constant.get(name, (b"", 0))[0]:
+                    continue
+                new[name] = digest
+            info.elsewhere.pop(name, None)
+            yield name, column
+        if self._frames and self._frames[0].names != info.names:
+            raise CaseError(f"a frame of '{self.path}' must have the arrays of the first one")
 
     def close(self) -> None:
         """Let the file tell of all frames. Closing twice does nothing."""
@@ -239,12 +248,9 @@ class ResultsWriter:
         if not self._frames:
             return
         last = self.frames - 1
-        arrays = read_arrays(self._folder, last)
-        for name in _CONSTANT:
-            if name in arrays:
-                digest = hashlib.blake2b(arrays[name].data).digest()
-                self._constant[name] = digest, self._frames[last].where(name, last)
-        self._sizes = arrays.get("size")
+        for name, column in read_arrays(self._folder, last, _CONSTANT).items():
+            self._constant[name] = _digest(column), self._frames[last].where(name, last)
+        self._knows_constants = "size" in self._constant
 
 
 def has_no_results(path: Path) -> bool:
@@ -269,3 +275,8 @@ def check_frames(path: Path, rows: Mapping[str, Any]) -> None:
             raise CaseError(f"frame {frame}: cannot read '{file}': {error.strerror}") from error
         if now != check:
             raise CaseError(f"frame {frame} is damaged: '{file}' is not as it was written")
+
+
+def _digest(column: np.ndarray) -> bytes:
+    """Return what tells one column from another, in place of the column."""
+    return hashlib.blake2b(np.ascontiguousarray(column), digest_size=16).digest()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.plots.raster import tile
+from mpm3dpp.plots.raster import FINER, tile
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 _INK = "#1a1a1a"
 _DISCS_FROM = 9.0  # pixels a particle must span to be drawn as a disc of its own
 _GRAINS_FROM = 8.0  # Pixels across the median grain, from which grains get outlines.
-_FINER = 2  # pixels of the particles' image per pixel of the picture, along each side
 
 
 def set_view(
@@ -79,14 +78,14 @@ def draw_particles(
             mine = bodies == body
             _discs(axes, points[mine], sizes[mine], colours[mine])
         return
-    fine = scale * _FINER
     image = tile(
-        (points - [left, low]) * fine,
-        sizes * fine,
+        (points - [left, low]) * scale,
+        sizes * scale,
         bodies,
         colours,
-        (round((high - low) * fine), round((right - left) * fine)),
-        round(0.8 * _FINER * figure.dpi / 100.0) if outline else 0,
+        (round((high - low) * scale), round((right - left) * scale)),
+        round(0.8 * FINER * figure.dpi / 100.0) if outline else 0,
+        FINER,
     )
     axes.imshow(
         image, origin="lower", extent=(left, right, low, high), interpolation="hanning", zorder=2

@@ -46,16 +46,32 @@ class View:
     along: int | None = None
 
 
+_BLOCK = 65536  # particles that are coloured at a time
 _GONE = 3  # in the column `failed`: eroded; 4: left the region that is kept
 
 
-def drawn(results: Results, frame: int) -> dict[str, np.ndarray]:
-    """Return the arrays of a frame without the particles that have eroded or left."""
-    arrays = results.arrays(frame)
+_PLACED = ("size", "body", "grain", "material", "failed")  # Arrays that say what is drawn where.
+
+
+def drawn(results: Results, frame: int, colour: str | None = None) -> dict[str, np.ndarray]:
+    """Return the arrays of a frame without the particles that have eroded or left.
+
+    With a colour (see `labels.choose`) only those that a picture in it needs.
+    """
+    arrays = results.arrays(frame, _needed(results, colour))
     if "failed" not in arrays:
         return arrays
     stays = ~(arrays["failed"] >= _GONE)  # NaN where nothing can fail
-    return {name: values[stays] for name, values in arrays.items()}
+    return arrays if stays.all() else {name: values[stays] for name, values in arrays.items()}
+
+
+def _needed(results: Results, colour: str | None) -> list[str] | None:
+    """Return the names of the arrays that a colour needs; None, which are all, where none fits."""
+    if colour is None:
+        return None
+    colour = "velocity" if colour == "speed" else colour
+    found = [name for name in results.fields if colour == name or colour.startswith(f"{name}_")]
+    return [*_PLACED, *found] if found else None
 
 
 def view_of(results: Results, frames: list[int], colour: str) -> View:
@@ -63,7 +79,7 @@ def view_of(results: Results, frames: list[int], colour: str) -> View:
     lower, upper = np.full(3, np.inf), np.full(3, -np.inf)
     least, most, low, high = np.inf, -np.inf, np.inf, -np.inf
     for frame in frames:
-        arrays = drawn(results, frame)
+        arrays = drawn(results, frame, colour)
         position = arrays["position"][np.isfinite(arrays["position"]).all(axis=1)]
         if len(position) == 0:
             continue
@@ -77,7 +93,7 @@ def view_of(results: Results, frames: list[int], colour: str) -> View:
             low, high = min(low, bottom), max(high, top)
             least, most = min(least, float(values.min())), max(most, float(values.max()))
     if not np.isfinite(lower).all():  # All are gone: an empty picture of where they were.
-        position = results.arrays(frames[0])["position"]
+        position = results.arrays(frames[0], ())["position"]
         lower, upper = position.min(axis=0), position.max(axis=0) + results.cell_size
     margin = 0.03 * float(np.max(upper - lower))
     along = line_axis(lower, upper, results.cell_size, results.dimension)
@@ -106,7 +122,7 @@ def draw_frame(
         CaseError: the frame has no such array.
     """
     view = view or view_of(results, [frame], colour)
-    arrays = drawn(results, frame)
+    arrays = drawn(results, frame, colour)
     with styled():
         if view.along is not None:
             figure = draw_line(results, arrays, colour, view, dpi)
@@ -142,7 +158,7 @@ def _draw_space(
 
     colours, mappable = paint(arrays, results, colour, view)
     image, camera = render(
-        arrays["position"].astype(float),
+        arrays["position"],
         sizes_of(arrays, results),
         colours,
         view.lower,
@@ -188,12 +204,15 @@ def paint(
     values, name, unit = choose(arrays, results.units, colour)
     if colour in ("body", "material"):
         return body_colours(values), None
-    values = values.astype(float)
     colours, norm = colour_scale(colour, view.low, view.high)
     factor, unit = prefix(max(abs(norm.vmin), abs(norm.vmax)), unit)
     shown = type(norm)(norm.vmin * factor, norm.vmax * factor)
-    rgb = colours(norm(np.nan_to_num(values, nan=norm.vmin)))[:, :3]
-    rgb[~np.isfinite(values)] = 0.75  # no such value there: grey
+    rgb = np.empty((len(values), 3), dtype=np.float32)
+    for first in range(0, len(values), _BLOCK):
+        some = values[first : first + _BLOCK].astype(float)
+        part = rgb[first : first + _BLOCK]
+        part[:] = colours(norm(np.nan_to_num(some, nan=norm.vmin)))[:, :3]
+        part[~np.isfinite(some)] = 0.75  # no such value there: grey
     slack = 0.01 * (norm.vmax - norm.vmin)
     below, above = (values < norm.vmin - slack).any(), (values > norm.vmax + slack).any()
     extend = "both" if below and above else "min" if below else "max" if above else "neither"
@@ -230,8 +249,8 @@ def save_frame(
 def sizes_of(arrays: dict[str, np.ndarray], results: Any) -> np.ndarray:
     """Edge of each particle's square or cube [m]; half a cell where the file does not say."""
     if "size" in arrays:
-        return arrays["size"].astype(float)
-    return np.full(len(arrays["position"]), 0.5 * results.cell_size)
+        return arrays["size"]
+    return np.full(len(arrays["position"]), 0.5 * results.cell_size, dtype=np.float32)
 
 
 def paper(aspect: float) -> tuple[float, float]:

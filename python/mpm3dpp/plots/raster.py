@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Particles as pixels: squares that tile a body, or lit balls seen from a camera.
 
-Pure numpy, so that a picture needs no graphics driver; the images are made larger than they
-are shown, and what draws them smooths the edges.
+Pure numpy, so that a picture needs no graphics driver. Images are bytes, worked out a band of rows
+at a time, so that little memory is needed beside the image itself.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+FINER = 2
+"""Pixels that are worked out for each one of an image, along each side, to smooth its edges."""
+
 _INK = np.array([0.1, 0.1, 0.1])
+_ROWS = 64  # of pixels that are worked out at a time
 
 
 def tile(
@@ -19,6 +23,7 @@ def tile(
     colours: np.ndarray,
     shape: tuple[int, int],
     outline: int,
+    finer: int = 1,
 ) -> np.ndarray:
     """Squares of the particles' sizes, slits between stretched neighbours closed, outlines inside.
 
@@ -28,33 +33,50 @@ def tile(
         bodies: number of each particle's body (n,), 0 or more.
         colours: (n, 3), 0 to 1.
         shape: height and width of the image.
-        outline: width of the dark line along the edge of each body [pixels]; 0 for none.
+        outline: width of the dark line along the edge of each body [finer pixels]; 0 for none.
+        finer: edges are smoothed with so many finer pixels along each side of one.
 
     Returns:
-        image (height, width, 4), 0 to 1, transparent where no body is; row 0 is the lowest.
+        image (height, width, 4), 0 to 255, transparent where no body is; row 0 is the lowest.
     """
-    image = np.zeros((*shape, 4), dtype=np.float32)
+    image = np.zeros((*shape, 4), dtype=np.uint8)
+    centres, sizes = finer * centres, finer * sizes
+    height, width = finer * shape[0], finer * shape[1]
     order = np.argsort(bodies, kind="stable")
     ends = np.flatnonzero(np.diff(bodies[order])) + 1
+    windows = []
     for mine in np.split(order, ends):
         reach = 0.5 * sizes[mine].max()
         close = int(np.ceil(0.6 * reach))
         margin = int(np.ceil(reach)) + close + 2
         low = np.maximum(np.floor(centres[mine].min(axis=0)).astype(int) - margin, 0)
         high = np.ceil(centres[mine].max(axis=0)).astype(int) + margin
-        high = np.minimum(high, [shape[1], shape[0]])
-        if (high <= low).any():
-            continue
-        window = (int(high[1] - low[1]), int(high[0] - low[0]))
-        owner = _squares(centres[mine] - low, sizes[mine], window)
-        owner = _closed(owner, close)
-        inside = owner >= 0
-        part = image[low[1] : high[1], low[0] : high[0]]
-        part[inside, :3] = colours[mine][owner[inside]]
-        part[inside, 3] = 1.0
-        if outline:
-            edge = inside & ~_shrunk(inside, outline)
-            part[edge, :3] = _INK
+        high = np.minimum(high, [width, height])
+        if (high > low).all():
+            windows.append((mine, reach, close, low, high))
+    for row in range(0, height, finer * _ROWS):
+        band = np.zeros((min(finer * _ROWS, height - row), width, 4), dtype=np.uint8)
+        for mine, reach, close, low, high in windows:
+            first, last = max(row, low[1]), min(row + len(band), high[1])
+            if first >= last:
+                continue
+            # What a row shows depends on those so near to it.
+            near = 2 * close + outline + 1
+            bottom, top = max(first - near, low[1]), min(last + near, high[1])
+            y = centres[mine, 1]
+            here = mine[(y >= bottom - reach - 2) & (y <= top + reach + 2)]
+            corner = np.array([low[0], bottom])
+            owner = _squares(centres[here] - corner, sizes[here], (top - bottom, high[0] - low[0]))
+            owner = _closed(owner, close)
+            inside = owner >= 0
+            edge = inside & ~_shrunk(inside, outline) if outline else np.zeros_like(inside)
+            rows = slice(first - bottom, last - bottom)
+            owner, inside, edge = owner[rows], inside[rows], edge[rows]
+            part = band[first - row : last - row, low[0] : high[0]]
+            part[inside, :3] = _bytes(colours[here[owner[inside]]])
+            part[inside, 3] = 255
+            part[edge, :3] = _bytes(_INK)
+        image[row // finer : (row + len(band)) // finer] = coarser(band, finer)
     return image
 
 
@@ -64,53 +86,91 @@ def balls(
     radii: np.ndarray,
     colours: np.ndarray,
     shape: tuple[int, int],
+    finer: int = 1,
 ) -> np.ndarray:
-    """Lit balls, the nearer hiding the farther; arguments as for `tile`.
+    """Lit balls, the nearer hiding the farther; arguments and result as for `tile`.
 
     Args:
         depths: distance towards the viewer (n,) [pixels]; larger is nearer.
         radii: (n,) [pixels].
     """
-    height, width = shape
-    surface = np.full(height * width, -np.inf)
-    owner = np.full(height * width, -1, dtype=np.int32)
-    normal = np.zeros((height * width, 2))
+    image = np.zeros((*shape, 4), dtype=np.uint8)
     # Far to near, so that where two balls cover a pixel the nearer is written last.
     order = np.flatnonzero(_not_buried(centres, depths, radii))
     order = order[np.argsort(depths[order], kind="stable")]
+    centres, depths = finer * centres[order], finer * depths[order]
+    radii, colours = finer * radii[order], colours[order]
+    height, width = finer * shape[0], finer * shape[1]
+    radius, reach = float(np.median(radii)), int(np.ceil(radii.max()))
+    near = max(1, round(0.5 * radius))  # As far as `_step` looks.
+    for row in range(0, height, finer * _ROWS):
+        end = min(row + finer * _ROWS, height)
+        bottom, top = max(row - near, 0), min(end + near, height)
+        y = centres[:, 1]
+        here = np.flatnonzero((y >= bottom - reach - 1) & (y <= top + reach + 1))
+        at = centres[here] - np.array([0.0, bottom])
+        owner, surface = _nearest(at, depths[here], radii[here], (top - bottom, width), reach)
+        rows = slice(row - bottom, end - bottom)
+        shade = 1.0 - 0.55 * _step(surface, radius, near)[rows]
+        drawn = owner[rows] >= 0
+        y, x = np.nonzero(drawn)
+        who = owner[rows][drawn]
+        n = (np.column_stack([x, y + rows.start]) - at[who]) / radii[here][who, None]
+        towards = np.sqrt(np.maximum(0.0, 1.0 - (n**2).sum(axis=1)))
+        light = 0.62 + 0.38 * np.clip(-0.35 * n[:, 0] + 0.55 * n[:, 1] + 0.76 * towards, 0.0, 1.0)
+        band = np.zeros((end - row, width, 4), dtype=np.uint8)
+        band[drawn, :3] = _bytes(colours[here[who]] * (light * shade[drawn])[:, None])
+        band[drawn, 3] = 255
+        image[row // finer : end // finer] = coarser(band, finer)
+    return image
+
+
+def coarser(image: np.ndarray, finer: int) -> np.ndarray:
+    """Pixels that are the means of finer ones, as much of each as is covered."""
+    if finer == 1:
+        return image
+    height, width = image.shape[0] // finer, image.shape[1] // finer
+    parts = image.reshape(height, finer, width, finer, 4)
+    cover = parts[..., 3].sum(axis=(1, 3), dtype=np.float32)
+    found = np.empty((height, width, 4), dtype=np.float32)
+    for k in range(3):
+        found[..., k] = (parts[..., k] * (parts[..., 3] > 0)).sum(axis=(1, 3), dtype=np.float32)
+    found[..., :3] *= 255.0 / np.maximum(cover, 1.0)[..., None]
+    found[..., 3] = cover / finer**2
+    return np.round(found).astype(np.uint8)
+
+
+def _bytes(colours: np.ndarray) -> np.ndarray:
+    """Colours from 0 to 1 as whole numbers from 0 to 255."""
+    return np.round(255.0 * colours).astype(np.uint8)
+
+
+def _nearest(
+    centres: np.ndarray, depths: np.ndarray, radii: np.ndarray, shape: tuple[int, int], reach: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Number of the ball in front at each pixel, -1 for none, and how near it is [pixels]."""
+    height, width = shape
+    surface = np.full(height * width, -np.inf)
+    owner = np.full(height * width, -1, dtype=np.int32)
     base = np.round(centres).astype(int)
-    reach = int(np.ceil(radii.max()))
     for dy in range(-reach, reach + 1):
         for dx in range(-reach, reach + 1):
-            x, y = base[order, 0] + dx, base[order, 1] + dy
-            away = np.column_stack([x, y]) - centres[order]
-            flat = (away**2).sum(axis=1) / radii[order] ** 2
+            x, y = base[:, 0] + dx, base[:, 1] + dy
+            flat = ((x - centres[:, 0]) ** 2 + (y - centres[:, 1]) ** 2) / radii**2
             seen = (flat <= 1.0) & (x >= 0) & (x < width) & (y >= 0) & (y < height)
-            if not seen.any():
-                continue
-            who, pixel = order[seen], (y * width + x)[seen]
+            who, pixel = np.flatnonzero(seen), (y * width + x)[seen]
             front = depths[who] + radii[who] * np.sqrt(1.0 - flat[seen])
             nearer = front > surface[pixel]
             who, pixel, front = who[nearer], pixel[nearer], front[nearer]
             surface[pixel] = front  # last writer wins, which is the nearest ball
             owner[pixel] = who
-            normal[pixel] = away[seen][nearer] / radii[who, None]
-    image = np.zeros((height * width, 4))
-    drawn = owner >= 0
-    n = normal[drawn]
-    towards = np.sqrt(np.maximum(0.0, 1.0 - (n**2).sum(axis=1)))
-    light = 0.62 + 0.38 * np.clip(-0.35 * n[:, 0] + 0.55 * n[:, 1] + 0.76 * towards, 0.0, 1.0)
-    image[drawn, :3] = colours[owner[drawn]] * light[:, None]
-    image[drawn, 3] = 1.0
-    picture = image.reshape(height, width, 4)
-    _darken_steps(picture, surface.reshape(height, width), float(np.median(radii)))
-    return picture
+    return owner.reshape(shape), surface.reshape(shape)
 
 
 def _not_buried(centres: np.ndarray, depths: np.ndarray, radii: np.ndarray) -> np.ndarray:
     """Balls that may be seen: not far behind the nearest ones all around them."""
     radius = float(radii.max())
-    place = np.floor(centres / (1.6 * radius)).astype(int)
+    place = np.floor(centres / (1.6 * radius)).astype(np.int32)
     place -= place.min(axis=0) - 1
     front = np.full(place.max(axis=0) + 2, -np.inf)
     np.maximum.at(front, (place[:, 0], place[:, 1]), depths)
@@ -121,17 +181,17 @@ def _not_buried(centres: np.ndarray, depths: np.ndarray, radii: np.ndarray) -> n
     return depths > least[place[:, 0], place[:, 1]] - 4.0 * radius
 
 
-def _darken_steps(image: np.ndarray, surface: np.ndarray, radius: float) -> None:
-    """Shade where the surface falls away behind a nearer part: edges and corners show."""
-    reach = max(1, round(0.5 * radius))
+def _step(surface: np.ndarray, radius: float, reach: int) -> np.ndarray:
+    """How far the surface falls away behind a nearer part, 0 to 1: edges and corners show."""
     nearer = surface.copy()
-    for shift in (-reach, reach):
-        for axis in (0, 1):
-            nearer = np.maximum(nearer, np.roll(surface, shift, axis=axis))
+    for axis in (0, 1):
+        across, shifted = np.moveaxis(nearer, axis, 0), np.moveaxis(surface, axis, 0)
+        np.maximum(across[reach:], shifted[:-reach], out=across[reach:])
+        np.maximum(across[:-reach], shifted[reach:], out=across[:-reach])
     with np.errstate(invalid="ignore"):
         step = np.clip((nearer - surface) / (6.0 * radius) - 0.15, 0.0, 1.0)
     step[~np.isfinite(step)] = 0.0
-    image[..., :3] *= (1.0 - 0.55 * step)[..., None]
+    return step
 
 
 def _squares(centres: np.ndarray, sizes: np.ndarray, shape: tuple[int, int]) -> np.ndarray:

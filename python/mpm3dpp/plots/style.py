@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import make_folder, writing
+from mpm3dpp.io.disk import make_folder, replacing, writing
 from mpm3dpp.plots.labels import short
 from mpm3dpp.reading import refuse_nul
 
@@ -104,8 +104,9 @@ def save(figure: Figure, path: Path) -> Path:
     """Write a picture, the white margin cut off. Raises `CaseError` when that fails."""
     picture_path(path)
     make_folder(path.parent)
-    with writing(path):
-        figure.savefig(path, bbox_inches="tight", pad_inches=0.06)
+    with replacing(path) as file:
+        form = path.suffix.lstrip(".") or "png"
+        figure.savefig(file, format=form, bbox_inches="tight", pad_inches=0.06)
     return path
 
 
@@ -113,7 +114,7 @@ def body_colours(bodies: np.ndarray) -> np.ndarray:
     """Colour of each particle by its body, shape (n, 3), values 0 to 1."""
     from matplotlib.colors import to_rgb
 
-    table = np.array([to_rgb(colour) for colour in PALETTE])
+    table = np.array([to_rgb(colour) for colour in PALETTE], dtype=np.float32)
     return table[np.asarray(bodies, dtype=int) % len(PALETTE)]
 
 

@@ -104,8 +104,10 @@ def _how_timed(found: Measured) -> str:
         "(`contact.bonded = true`) they have one velocity field, as the method has it without a "
         "contact algorithm; the paper does not say which of the two it means by disabled. Its "
         "ratios MPM3D / MPM3Dpp are of its two programs on its machine, so there are none here. "
-        "Memory here: what the program holds for particles, grid and contact, reserved room "
-        "included; the paper's is that of the whole program, and its M are taken as MiB."
+        "Memory of the core: what it holds for particles, grid and contact, reserved room "
+        "included. The paper's is that of the whole program, its M taken as MiB: compare it with that of the "
+        "process, the most that was resident in the whole run, with Python, its libraries and "
+        "frames."
     )
 
 

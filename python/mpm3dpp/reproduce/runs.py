@@ -14,6 +14,7 @@ import numpy as np
 
 from .. import case_file
 from ..bench.report import progress
+from ..bench.worker import forget_peak
 from ..case import Case
 from ..errors import CaseError, RunError
 from ..io.history import read_history
@@ -92,6 +93,7 @@ def run_example(
         name = " ".join(word for word in (example.name, label) if word)
         say(f"{name}: {case.title}", quiet)
         folder = out / name.replace(" ", "_")
+        forget_peak()  # Of the runs before.
         try:
             run_case(case, folder, threads=threads, quiet=quiet, pictures=False)
         except RunError as error:

@@ -50,13 +50,17 @@ _ROWS = (
     *(f"time {word}, MPM3D / MPM3Dpp" for word in ("without contact", "with contact")),
     *(f"time per particle {word} [ns]" for word in _WORDS.values()),
     "time of a step with contact, mean of the whole run [s]",
-    *(f"memory {word} [MiB]" for word in _WORDS.values()),
+    *(f"memory {word}, program [MiB]" for word in _WORDS.values()),
+    *(f"memory {word}, core [MiB]" for word in _WORDS.values()),
     "memory with contact / without contact",
     "memory with contact / bonded",
     *(f"memory {word}, MPM3D / MPM3Dpp" for word in ("without contact", "with contact")),
-    *(f"memory per particle {word} [bytes]" for word in _WORDS.values()),
+    *(f"memory per particle {word}, program [bytes]" for word in _WORDS.values()),
+    *(f"memory per particle {word}, core [bytes]" for word in _WORDS.values()),
     *(f"... of which {name} [bytes]" for name in ("particles", "grid", "contact")),
-    "memory at the end of the whole run [MiB]",
+    "memory of the whole run, process [MiB]",
+    "memory of the whole run, process, per particle [bytes]",
+    "memory at the end of the whole run, core [MiB]",
     "residual speed [m/s]",
 )
 
@@ -67,7 +71,7 @@ def _paper_column(table: Table, program: Program) -> dict[str, str]:
         "particles": f"{table.particles:,}",
         "cells of the box": f"{table.cells:,}",
         **_times({"off": off, "on": on}, {"off": on / off}, table.particles),
-        **_memories({"off": MIB * light, "on": MIB * heavy}, table.particles),
+        **_memories({"off": MIB * light, "on": MIB * heavy}, table.particles, "program"),
     }
     if program is not list(table.programs.values())[-1]:
         return column
@@ -97,7 +101,10 @@ def _our_column(measured: Measured) -> dict[str, str]:
     mean = 1e-9 * manifest["ns_per_particle_step"] * count
     column["time of a step with contact, mean of the whole run [s]"] = f"{mean:.4g}"
     used = sum(manifest["bytes"][name] for name in ("particles", "grid", "contact"))
-    column["memory at the end of the whole run [MiB]"] = f"{used / MIB:.2f}"
+    column["memory at the end of the whole run, core [MiB]"] = f"{used / MIB:.2f}"
+    peak = manifest["peak_memory_bytes"]
+    column["memory of the whole run, process [MiB]"] = f"{peak / MIB:.2f}"
+    column["memory of the whole run, process, per particle [bytes]"] = f"{peak / count:.0f}"
     if measured.example.table is not None and measured.example.table.contacts is not None:
         touched = sum(pair["pairs"] for pair in manifest["contact"]["pairs"])
         column[_CONTACTS] = f"{touched:,}"
@@ -107,7 +114,7 @@ def _our_column(measured: Measured) -> dict[str, str]:
     if timed is not None:
         ratios = {turn: timed.ratio(turn) for turn in ("off", "bonded")}
         column |= _times({turn: timed.seconds(turn) for turn in TURNS}, ratios, timed.particles)
-        column |= _memories({turn: timed.total(turn) for turn in TURNS}, timed.particles)
+        column |= _memories({turn: timed.total(turn) for turn in TURNS}, timed.particles, "core")
         for name, size in timed.bytes["on"].items():
             column[f"... of which {name} [bytes]"] = f"{size / timed.particles:.1f}"
     return column
@@ -123,12 +130,12 @@ def _times(seconds: dict[str, float], ratios: dict[str, float], particles: int) 
     return rows
 
 
-def _memories(sizes: Mapping[str, float], particles: int) -> dict[str, str]:
+def _memories(sizes: Mapping[str, float], particles: int, of: str) -> dict[str, str]:
     """Return the rows about memory: of each turn [bytes], and of contact over the others."""
     rows = {}
     for turn, size in sizes.items():
-        rows[f"memory {_WORDS[turn]} [MiB]"] = f"{size / MIB:.2f}"
-        rows[f"memory per particle {_WORDS[turn]} [bytes]"] = f"{size / particles:.0f}"
+        rows[f"memory {_WORDS[turn]}, {of} [MiB]"] = f"{size / MIB:.2f}"
+        rows[f"memory per particle {_WORDS[turn]}, {of} [bytes]"] = f"{size / particles:.0f}"
         if turn != "on":
             rows[f"memory with contact / {_WORDS[turn]}"] = f"{sizes['on'] / size:.3f}"
     return rows
