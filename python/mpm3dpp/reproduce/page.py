@@ -105,9 +105,9 @@ def _how_timed(found: Measured) -> str:
         "contact algorithm; the paper does not say which of the two it means by disabled. Its "
         "ratios MPM3D / MPM3Dpp are of its two programs on its machine, so there are none here. "
         "Memory of the core: what it holds for particles, grid and contact, reserved room "
-        "included. The paper's is that of the whole program, its M taken as MiB: compare it with that of the "
-        "process, the most that was resident in the whole run, with Python, its libraries and "
-        "frames."
+        "included. The paper's is that of the whole program, its M taken as MiB: compare it with "
+        "that of the process, the most that was resident in the whole run, with Python, its "
+        "libraries and frames."
     )
 
 
