@@ -5,6 +5,7 @@
 
 #include "mpm/contact/tile_particles.hpp"
 #include "mpm/fields/aligned.hpp"
+#include "mpm/math/store_chosen.hpp"
 
 namespace mpm {
 

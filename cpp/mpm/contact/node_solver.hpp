@@ -65,7 +65,11 @@ inline double reduced_mass(double r, double s) {
 template <bool with_friction, int D>
 bool solve_node(NodeSolution<D>& node) {
   auto& [sides, pairs] = node;
-  constexpr int most_sweeps = 20000;
+  // Hundreds of bodies at a node would otherwise take minutes a step: what a sweep costs grows with
+  // the square of their number.
+  constexpr std::size_t most_sweeps = 20000, fewest_sweeps = 20, most_solved_pairs = 500'000;
+  const std::size_t sweeps = std::clamp(most_solved_pairs / std::max<std::size_t>(pairs.size(), 1),
+                                        fewest_sweeps, most_sweeps);
   constexpr double tolerance = 1e-12;
   // Bodies that move together exert impulses on each other that are rounding: no sweeps settle
   // them.
@@ -76,7 +80,7 @@ bool solve_node(NodeSolution<D>& node) {
       const double lighter = std::min(sides[pair.r].size(), sides[pair.s].size());
       unresolved = std::max(unresolved, rounding * lighter);
     }
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+  for (std::size_t sweep = 0; sweep < sweeps; ++sweep) {
     double change = 0.0, scale = 0.0;
     for (SolvedPair<D>& pair : pairs) {
       if (!pair.takes_part) continue;

@@ -246,18 +246,6 @@ Batch<W> load_first(const double* from, int count, double rest) {
   return b;
 }
 
-/// Store the lanes whose bits are set one after another; what is behind them, up to W numbers in
-/// all, may be overwritten.
-template <int W>
-void store_chosen(double* to, Batch<W> a, std::uint64_t lanes) {
-#if defined(__AVX512VL__)
-  const auto chosen = static_cast<__mmask8>(lanes);
-  if constexpr (W == 8) return Batch<W>(_mm512_maskz_compress_pd(chosen, a.v)).store(to);
-  if constexpr (W == 4) return Batch<W>(_mm256_maskz_compress_pd(chosen, a.v)).store(to);
-#endif
-  for (; lanes != 0; lanes &= lanes - 1) *to++ = a[std::countr_zero(lanes)];
-}
-
 /// The lanes brought together by f(x, y) until two are left, those half the lanes apart first,
 /// whatever the instruction set.
 template <int W, class F>

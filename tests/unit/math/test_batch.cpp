@@ -7,6 +7,7 @@
 #include "check.hpp"
 #include "mpm/math/batch_math.hpp"
 #include "mpm/math/scalar.hpp"
+#include "mpm/math/store_chosen.hpp"
 
 namespace {
 
