@@ -91,6 +91,16 @@ void ContactGrid<D>::forget() {
   for (ContactTile<D>& tile : tiles_) tile.known = 0;
 }
 
+template <int D>
+Crowd ContactGrid<D>::crowd() const {
+  Crowd most;
+  for (const Part& part : parts_)
+    for (const ContactNode& node : part.nodes)
+      if (static_cast<int>(node.sides) > most.bodies)
+        most = {static_cast<int>(node.sides), part.sides[node.first_side].body};
+  return most;
+}
+
 template class ContactGrid<2>;
 template class ContactGrid<3>;
 

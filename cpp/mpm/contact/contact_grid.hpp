@@ -39,6 +39,12 @@ struct PairRecord {
   double friction_work = 0.0;  // [J]
 };
 
+/// The node at which most bodies meet.
+struct Crowd {
+  int bodies = 0;  // at the node
+  int body = -1;   // one of them
+};
+
 /// Sums over all contacts of one step, for the ledger [J].
 struct ContactSums {
   double friction = 0.0;        // lost to friction
@@ -112,6 +118,8 @@ class ContactGrid {
   std::size_t overlapped_nodes() const { return overlapped_; }
   std::size_t overlapped_nodes_max() const { return nodes_max_; }
   int bodies_per_node_max() const { return bodies_max_; }
+  /// Of the nodes of this step where bodies may act on each other.
+  Crowd crowd() const;
   /// Solutions at nodes with several bodies that stopped short of the tolerance, since the start.
   std::size_t unconverged() const { return unconverged_.load(); }
   std::size_t bytes() const;

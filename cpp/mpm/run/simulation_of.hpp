@@ -91,6 +91,7 @@ class SimulationOf final : public Simulation {
   void check_rest(double cell_size, const Index<D>& walls) const;
   void find_failure();
   void watch_step();
+  void watch_crowd();
   void look();
   void judge();
   void note(const Note& found);

@@ -10,6 +10,9 @@ namespace {
 
 constexpr double small_volume = 0.01, large_volume = 100.0;  // over that at the start
 constexpr double beyond = 0.1;  // of a cell, behind a wall: GIMP may push a centre a little past it
+// At a node: each meets each, 435 pairs. Equal spheres have twelve neighbours, grains of two cells
+// ten.
+constexpr int many_bodies = 30;
 constexpr std::array face_names = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
 std::size_t number(int k) { return static_cast<std::size_t>(k); }
@@ -42,9 +45,25 @@ void SimulationOf<D>::note_at(Note found, int b, std::size_t row) {
   note(found);
 }
 
+/// Note the first node at which so many bodies meet that steps take long, and count such steps.
+template <int D>
+void SimulationOf<D>::watch_crowd() {
+  if (domain_.contact.bodies_per_node_max() <= many_bodies) return;
+  const Crowd most = domain_.contact.crowd();
+  if (most.bodies <= many_bodies) return;
+  for (Note& known : notes_)
+    if (known.kind == NoteKind::crowd) {
+      ++known.count;
+      return;
+    }
+  note_at({.kind = NoteKind::crowd, .value = static_cast<double>(most.bodies)}, most.body,
+          body(most.body).order[0]);
+}
+
 /// Judge the step that has been made, by the ledger and the next time step.
 template <int D>
 void SimulationOf<D>::watch_step() {
+  watch_crowd();
   const double median = watch_.median_fallen_below(next_time_step_);
   const double made = watch_.energy_made(ledger_.made(), ledger_.largest);
   const double work =
@@ -201,6 +220,10 @@ std::vector<Warning> SimulationOf<D>::warnings() const {
         per_cent();
         text << " have less than 0.01 or more than 100 times their initial volume, this one "
              << n.value << "; " << torn;
+        break;
+      case NoteKind::crowd:
+        text << n.value << " bodies meet at one node, and the time of a step grows with the square "
+             << "of their number; give smaller cells, larger grains, or one body in place of many";
         break;
       case NoteKind::left_box:
         text << "particles leave the box through its open face " << face_names[number(n.face)]

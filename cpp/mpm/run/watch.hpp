@@ -10,9 +10,9 @@
 namespace mpm {
 
 /// Why a note is made, by its place in `note_names`.
-enum class NoteKind { time_step, energy_made, load_energy, outside, volume, left_box };
-inline constexpr std::array note_names = {"time step",     "energy of a step", "load",
-                                          "outside walls", "volume",           "left box"};
+enum class NoteKind { time_step, energy_made, load_energy, outside, volume, left_box, crowd };
+inline constexpr std::array note_names = {
+    "time step", "energy of a step", "load", "outside walls", "volume", "left box", "crowded node"};
 
 /// Told once for each kind and body (the first of its group), then counted. Trivially copyable, so
 /// that a checkpoint holds it.
@@ -36,6 +36,9 @@ struct LastValues {
   std::size_t seen = 0;
 
   void add(double value) { values[seen++ % window] = value; }
+  bool finite() const {
+    return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+  }
   double median() const {
     const std::size_t n = std::min(seen, window);
     if (n == 0) return 0.0;
@@ -82,6 +85,11 @@ class StepWatch {
     const double found = much && step > jump * loads_.median() ? step : 0.0;
     loads_.add(step);
     return found;
+  }
+  /// Whether it can have been left so by steps.
+  bool sound() const {
+    return steps_.finite() && loads_.finite() && std::isfinite(median_) &&
+           std::isfinite(made_before_) && std::isfinite(work_before_);
   }
   /// Work that somebody has done between two steps is none of the next one's.
   void start_from(double made, double work) {

@@ -53,7 +53,8 @@ class WarningRecord:
     """Something that a run went on with but warned of, once for each kind and body.
 
     Attributes:
-        kind: "time step", "energy of a step", "load", "outside walls", "volume", "left box".
+        kind: "time step", "energy of a step", "load", "outside walls", "volume", "left box",
+            "crowded node".
         body, particle: whom it first was about; the particle in the order of filling.
         step, time, position: when [s] and where [m] that was.
         share: of the particles of the body, or of all grains of its entry, the largest at a look;
