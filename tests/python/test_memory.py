@@ -86,7 +86,7 @@ def test_frames_and_checkpoints_take_a_fourth_of_stepping_at_most(tmp_path: Path
 
 
 def test_pictures_do_not_raise_the_peak(tmp_path: Path) -> None:
-    case_file(tmp_path, 10, "0.1 ms")
+    case_file(tmp_path, 5, "0.1 ms")
     running, drawing = peak(tmp_path, "run"), peak(tmp_path, "draw")
     assert (tmp_path / "out" / "frame.png").is_file()
     assert drawing <= running + 4 * MIB
@@ -147,11 +147,15 @@ def children(process: subprocess.Popen[str]) -> list[int]:
     raise AssertionError("nothing draws")
 
 
-def gone(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return True
+def ends(pid: int) -> bool:
+    """Whether a process ends."""
+    end = clock.monotonic() + LONG
+    while clock.monotonic() < end:
+        try:
+            os.kill(pid, 0)
+        except ProcessLookupError:
+            return True
+        clock.sleep(0.01)
     return False
 
 
@@ -163,7 +167,7 @@ def test_a_signal_leaves_out_the_pictures(tmp_path: Path, kind: signal.Signals) 
     _, said = process.communicate(timeout=LONG)
     assert process.returncode == 0
     assert said.startswith("no pictures: `mpm3dpp plot") and said.count("\n") == 1
-    assert gone(child)
+    assert ends(child)
     assert not [path for path in (tmp_path / "out").iterdir() if ".png" in path.name]
 
 
@@ -180,7 +184,4 @@ def test_what_draws_ends_with_the_run(tmp_path: Path) -> None:
     [child] = children(process)
     process.kill()
     process.communicate(timeout=LONG)
-    end = clock.monotonic() + LONG
-    while not gone(child) and clock.monotonic() < end:
-        clock.sleep(0.01)
-    assert gone(child)
+    assert ends(child)

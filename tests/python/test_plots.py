@@ -244,8 +244,9 @@ def test_few_balls_are_drawn_as_many_are(monkeypatch: pytest.MonkeyPatch) -> Non
         *(np.repeat(a, 8, axis=0) for a in (centres, depths, radii)), (80, 100), 9
     )
     assert np.array_equal(few[0] < 0, many[0] < 0)
-    # Where two balls reach a pixel from the same side, the many take the one whose centre is nearer.
-    assert (few[1] >= many[1]).all() and (few[1] == many[1]).mean() > 0.9
+    # Where two balls reach a pixel from one side, the many take that whose centre is nearer.
+    assert (few[1] >= many[1] - 1e-9).all()
+    assert np.isclose(few[1], many[1]).mean() > 0.9
 
 
 def test_the_total_misses_what_numerics_took() -> None:
