@@ -86,7 +86,7 @@ def test_frames_and_checkpoints_take_a_fourth_of_stepping_at_most(tmp_path: Path
 
 
 def test_pictures_do_not_raise_the_peak(tmp_path: Path) -> None:
-    case_file(tmp_path, 5, "0.1 ms")
+    case_file(tmp_path, 20, "0.1 ms", 2)
     running, drawing = peak(tmp_path, "run"), peak(tmp_path, "draw")
     assert (tmp_path / "out" / "frame.png").is_file()
     assert drawing <= running + 4 * MIB
