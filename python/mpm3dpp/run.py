@@ -123,10 +123,11 @@ def _run(
 def _draw(folder: Path, quiet: bool) -> None:
     """Draw the pictures of a run; it is not lost if they cannot be drawn, nor by Ctrl-C."""
     later = f"`mpm3dpp plot {folder}` makes them later"
-    if not quiet:
-        print(f"drawing pictures (Ctrl-C leaves them out, {later})", file=sys.stderr, flush=True)
-    _core.return_freed_memory()  # It is the pictures' turn.
     try:
+        if not quiet:
+            text = f"drawing pictures (Ctrl-C leaves them out, {later})"
+            print(text, file=sys.stderr, flush=True)
+        _core.return_freed_memory()  # It is the pictures' turn.
         with as_exceptions():
             said = draw_apart(folder)
         if said and not quiet:

@@ -486,7 +486,7 @@ def test_control_c_leaves_out_the_pictures_of_a_finished_run(
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("mpm3dpp.plots.plot_results", stop)
+    monkeypatch.setattr("mpm3dpp.run.draw_apart", stop)
     done = run_case(load_case(write(tmp_path)), tmp_path / "out", threads=1, quiet=False)
     assert done.status == "completed"
     assert "no pictures: `mpm3dpp plot" in capfd.readouterr().err

@@ -81,7 +81,7 @@ def test_pictures_leave_eroded_particles_out(tmp_path: Path) -> None:
         assert len(kept["position"]) == (~gone).sum()
         assert (kept["body"] == 1).sum() == (every["body"] == 1).sum()  # it cannot fail: NaN
         assert shown(draw_frame(results, -1))
-        results.arrays = lambda frame: every | {"failed": np.full(len(gone), 3.0)}
+        results.arrays = lambda frame, names=None: every | {"failed": np.full(len(gone), 3.0)}
         assert np.isfinite(view_of(results, [-1], "von_mises").upper).all()
         assert not shown(draw_frame(results, -1))
 

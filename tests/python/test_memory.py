@@ -23,10 +23,9 @@ from mpm3dpp.io import frame_of
 MIB = 2**20
 LONG = 60.0  # [s] Until a process that hangs is given up.
 
-# Two blocks of 2 x 62,500 particles that meet at once.
 CASE = """\
 [grid]
-dimension = 3
+dimension = {dimension}
 cell_size = "1 mm"
 [run]
 end_time = "{end}"
@@ -38,11 +37,11 @@ density = "1000 kg/m^3"
 strength = {{ neo_hookean = {{ K = "2 MPa", G = "1 MPa" }} }}
 [body.left]
 material = "rubber"
-shape = {{ box = {{ lower = [0, 0, 0], size = ["{edge} mm", "{edge} mm", "{edge} mm"] }} }}
+shape = {{ box = {{ lower = {low}, upper = {high} }} }}
 [body.right]
 material = "rubber"
-shape = {{ box = {{ lower = ["{edge} mm", 0, 0], size = ["{edge} mm", "{edge} mm", "{edge} mm"] }} }}
-velocity = ["-1 m/s", 0, 0]
+shape = {{ box = {{ lower = {next_low}, upper = {next_high} }} }}
+velocity = {velocity}
 """
 
 PROGRAM = """\
@@ -60,8 +59,13 @@ for line in open("/proc/self/status"):
 """
 
 
-def case_file(folder: Path, edge: int, end: str) -> Path:
-    (folder / "case.toml").write_text(CASE.format(edge=edge, end=end))
+def case_file(folder: Path, edge: int, end: str, dimension: int = 3) -> Path:
+    """Two blocks with so many cells along their edges, of which the right meets the left."""
+    x = np.eye(dimension)[0]
+    corners = {"low": 0 * x, "high": 1 + 0 * x, "next_low": x, "next_high": 1 + x}
+    places = {name: (1e-3 * edge * place).tolist() for name, place in corners.items()}
+    text = CASE.format(end=end, dimension=dimension, velocity=(-x).tolist(), **places)
+    (folder / "case.toml").write_text(text)
     return folder / "case.toml"
 
 
@@ -82,7 +86,7 @@ def test_frames_and_checkpoints_take_a_fourth_of_stepping_at_most(tmp_path: Path
 
 
 def test_pictures_do_not_raise_the_peak(tmp_path: Path) -> None:
-    case_file(tmp_path, 10, "0.1 ms")
+    case_file(tmp_path, 20, "0.1 ms", 2)
     running, drawing = peak(tmp_path, "run"), peak(tmp_path, "draw")
     assert (tmp_path / "out" / "frame.png").is_file()
     assert drawing <= running + 4 * MIB
@@ -91,12 +95,7 @@ def test_pictures_do_not_raise_the_peak(tmp_path: Path) -> None:
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_frame_is_what_the_core_holds_rounded(tmp_path: Path, dimension: int) -> None:
     """To the bit, pressure and von Mises stress by their formulas in double precision."""
-    text = CASE.format(edge=6, end="0.2 ms")
-    if dimension == 2:
-        text = text.replace("dimension = 3", "dimension = 2").replace(', "6 mm"]', "]")
-        text = text.replace("0, 0]", "0]")
-    (tmp_path / "case.toml").write_text(text)
-    simulation = Simulation(load_case(tmp_path / "case.toml"), threads=1)
+    simulation = Simulation(load_case(case_file(tmp_path, 6, "0.2 ms", dimension)), threads=1)
     simulation.advance(40)
     core = simulation.core
     names = ["right", "left"]  # In the order of their numbers, whatever they are called.
@@ -148,11 +147,15 @@ def children(process: subprocess.Popen[str]) -> list[int]:
     raise AssertionError("nothing draws")
 
 
-def gone(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return True
+def ends(pid: int) -> bool:
+    """Whether a process ends."""
+    end = clock.monotonic() + LONG
+    while clock.monotonic() < end:
+        try:
+            os.kill(pid, 0)
+        except ProcessLookupError:
+            return True
+        clock.sleep(0.01)
     return False
 
 
@@ -164,7 +167,7 @@ def test_a_signal_leaves_out_the_pictures(tmp_path: Path, kind: signal.Signals) 
     _, said = process.communicate(timeout=LONG)
     assert process.returncode == 0
     assert said.startswith("no pictures: `mpm3dpp plot") and said.count("\n") == 1
-    assert gone(child)
+    assert ends(child)
     assert not [path for path in (tmp_path / "out").iterdir() if ".png" in path.name]
 
 
@@ -181,7 +184,4 @@ def test_what_draws_ends_with_the_run(tmp_path: Path) -> None:
     [child] = children(process)
     process.kill()
     process.communicate(timeout=LONG)
-    end = clock.monotonic() + LONG
-    while not gone(child) and clock.monotonic() < end:
-        clock.sleep(0.01)
-    assert gone(child)
+    assert ends(child)

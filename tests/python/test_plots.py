@@ -156,6 +156,27 @@ def test_nearer_balls_hide_farther_ones() -> None:
         assert image[20, 20, :3].argmax() == (0 if near == 0 else 2)
 
 
+def test_few_balls_are_drawn_as_many_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ball by ball or pixel by pixel of all balls, in one band or in many: the same image."""
+    random = np.random.default_rng(4)
+    centres, depths = random.uniform(0.0, 90.0, (300, 2)), np.sort(random.uniform(0.0, 60.0, 300))
+    radii, colours = random.uniform(2.0, 9.0, 300), random.uniform(0.0, 1.0, (300, 3))
+    images = []
+    for rows in (200, 64, 7):
+        monkeypatch.setattr(raster, "_ROWS", rows)
+        images.append(raster.balls(centres, depths, radii, colours, (80, 100)).astype(int))
+    assert images[0][..., 3].any()
+    assert max(np.abs(image - images[0]).max() for image in images) <= 1  # rounding
+    few = raster._nearest(centres, depths, radii, (80, 100), 9)
+    many = raster._nearest(
+        *(np.repeat(a, 8, axis=0) for a in (centres, depths, radii)), (80, 100), 9
+    )
+    assert np.array_equal(few[0] < 0, many[0] < 0)
+    # Where two balls reach a pixel from one side, the many take that whose centre is nearer.
+    assert (few[1] >= many[1] - 1e-9).all()
+    assert np.isclose(few[1], many[1]).mean() > 0.9
+
+
 def test_the_total_misses_what_numerics_took() -> None:
     rng = np.random.default_rng(1)
     history = {name: rng.uniform(1.0, 2.0, 9) for name in COLUMNS}

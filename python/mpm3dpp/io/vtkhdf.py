@@ -165,8 +165,8 @@ class ResultsWriter:
         """
         stored = [as_stored(array) for array in arrays.values()]
         columns = [Column(n, a.nbytes, lambda a=a: a) for n, a in zip(arrays, stored, strict=True)]
-        total = sum(column.bytes for column in columns)
-        self.add(Frame(time, step, len(arrays["position"]), total, columns))
+        columns.sort(key=lambda column: column.name != "position")
+        self.add(Frame(time, step, len(stored[0]), sum(a.nbytes for a in stored), columns))
 
     def add(self, frame: Frame) -> None:
         """Append a frame; each of its columns is asked for when the one before is in the file.

@@ -58,7 +58,8 @@ def drawn(results: Results, frame: int, colour: str | None = None) -> dict[str, 
 
     With a colour (see `labels.choose`) only those that a picture in it needs.
     """
-    arrays = results.arrays(frame, _needed(results, colour))
+    needed = _needed(results, colour)
+    arrays = results.arrays(frame) if needed is None else results.arrays(frame, needed)
     if "failed" not in arrays:
         return arrays
     stays = ~(arrays["failed"] >= _GONE)  # NaN where nothing can fail

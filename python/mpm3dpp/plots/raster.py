@@ -7,6 +7,8 @@ at a time, so that little memory is needed beside the image itself.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 FINER = 2
@@ -152,6 +154,11 @@ def _nearest(
     height, width = shape
     surface = np.full(height * width, -np.inf)
     owner = np.full(height * width, -1, dtype=np.int32)
+    if len(centres) < 4 * (2 * reach + 1) ** 2:  # Few large ones: ball by ball.
+        front_of = surface.reshape(shape), owner.reshape(shape)
+        for k, ((x, y), radius) in enumerate(zip(centres, radii, strict=True)):
+            _cover(*front_of, k, float(x), float(y), float(depths[k]), float(radius))
+        return front_of[1], front_of[0]
     base = np.round(centres).astype(int)
     for dy in range(-reach, reach + 1):
         for dx in range(-reach, reach + 1):
@@ -165,6 +172,24 @@ def _nearest(
             surface[pixel] = front  # last writer wins, which is the nearest ball
             owner[pixel] = who
     return owner.reshape(shape), surface.reshape(shape)
+
+
+def _cover(
+    surface: np.ndarray, owner: np.ndarray, k: int, x: float, y: float, depth: float, radius: float
+) -> None:
+    """Put ball `k` before what lies behind it."""
+    height, width = owner.shape
+    left, right = max(math.ceil(x - radius), 0), min(math.floor(x + radius) + 1, width)
+    low, high = max(math.ceil(y - radius), 0), min(math.floor(y + radius) + 1, height)
+    if left >= right or low >= high:
+        return
+    across, along = (np.arange(left, right) - x) / radius, (np.arange(low, high) - y) / radius
+    flat = across**2 + along[:, None] ** 2
+    front = depth + radius * np.sqrt(np.maximum(0.0, 1.0 - flat))
+    part = surface[low:high, left:right]
+    nearer = (flat <= 1.0) & (front > part)
+    part[nearer] = front[nearer]
+    owner[low:high, left:right][nearer] = k
 
 
 def _not_buried(centres: np.ndarray, depths: np.ndarray, radii: np.ndarray) -> np.ndarray:
