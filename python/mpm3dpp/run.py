@@ -26,7 +26,7 @@ from .report import contact_table, energy_line, gone_lines, load_lines, speed_li
 from .signals import Notice, as_exceptions
 from .simulation import Simulation
 
-_BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without contact.
+_BLOCK = 64  # Steps between two looks at the clock, without contact.
 
 
 def run_case(

@@ -13,8 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from commands import CASE, command, one_sentence, write
 
+from commands import CASE, command, one_sentence, write
 from mpm3dpp import CaseError, Simulation, load_case, shapes
 from mpm3dpp.build import build
 from mpm3dpp.case_file import MOST_BYTES
