@@ -256,7 +256,11 @@ TOO_MUCH = {
     "brackets": ('title = "Two blocks"', f"title = {'[' * 5000}{']' * 5000}", "too deeply"),
     "dots": ('title = "Two blocks"', f"title{'.a' * 20000} = 1", "too deeply"),
     "a unit to work out": ('"1 MPa"', '"1 MPa**9**9**9"', "which is not known"),
-    "a material as a list": ('density = "1000 kg/m^3"', "library = [1]", "is not a material of the library"),
+    "a material as a list": (
+        'density = "1000 kg/m^3"',
+        "library = [1]",
+        "is not a material of the library",
+    ),
     "a name with a NUL": ("[body.left]", '[body."le\\u0000ft"]', "cannot be shown"),
 }
 
