@@ -50,7 +50,7 @@ class _CoreFinder:
         return CoreFinder.find_spec(name, path, target)
 
 
-sys.meta_path.insert(0, _CoreFinder())  # type: ignore[arg-type]
+sys.meta_path.insert(0, _CoreFinder())
 
 _HOMES = {
     "case": ("Case", "Material", "load_case"),

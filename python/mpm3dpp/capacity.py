@@ -71,8 +71,8 @@ def _lattice_outside(case: Case, grains: Grains) -> str:
     for low, high, x, y, axis in zip(*lattice.ends(), box.lower, box.upper, "xyz", strict=False):
         if low < x or high > y:
             return (
-                f"reaches out of grid.box: centres stand from {axis} = {low:.6g} m to {high:.6g} m, "
-                f"and the box is from {x:g} m to {y:g} m"
+                f"reaches out of grid.box: centres stand from {axis} = {low:.6g} m to "
+                f"{high:.6g} m, and the box is from {x:g} m to {y:g} m"
             )
     return ""
 

@@ -72,6 +72,7 @@ def _bodies_together(case: Case) -> Found:
 def _pairs(case: Case) -> Found:
     if not case.parts() or not case.material:
         return  # Then no name is known, which is told already.
+    path: Path
     for index, pair in enumerate(case.contact.pair):
         key = "bodies" if pair.bodies is not None else "materials"
         known = case.parts() if pair.bodies is not None else case.material

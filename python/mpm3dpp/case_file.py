@@ -227,11 +227,13 @@ def parse(text: str, name: str) -> dict[str, Any]:
         raise too_deep(name) from None
     except ValueError:  # Python makes no number of thousands of digits.
         rule = "has a number of more digits than are read"
-        raise CaseError(rule, "write it with an exponent, 1e30", place=_digits_at(text, name)) from None
+        raise CaseError(
+            rule, "write it with an exponent, 1e30", place=_digits_at(text, name)
+        ) from None
 
 
 def _is_deep(line: str) -> bool:
-    """Whether a line has a key `a.b.c` of so many parts that the TOML reader would take for ever."""
+    """Whether a line has a key `a.b.c` of so many parts that the TOML reader takes for ever."""
     if line.count(".") < _DEEPEST:
         return False
     dots = 0

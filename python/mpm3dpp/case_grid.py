@@ -165,7 +165,9 @@ class Grid(CaseModel):
                 yield violation(rule, remedy, value=box.upper[d], path=path)
             elif cells > MOST_CELLS:
                 rule = f"is {cells:.1e} cells from lower, and {MOST_CELLS:.1e} is the most"
-                remedy = "give a smaller box, or larger cells, or no box: the grid has no bounds then"
+                remedy = (
+                    "give a smaller box, or larger cells, or no box: the grid has no bounds then"
+                )
                 yield violation(rule, remedy, value=box.upper[d], path=path)
             elif abs(cells - round(cells)) > _WHOLE * max(1.0, cells):
                 near = box.lower[d] + max(1, round(cells)) * self.cell_size

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command line: `mpm3dpp run | check | preview | import | plot | bench | materials | ...`.
 
-`command.main` is what runs it. Heavy modules are imported by the command that needs them, so that `--help` is fast.
+`command.main` is what runs it. Heavy modules are imported by the command that needs them, so that
+`--help` is fast.
 """
 
 from __future__ import annotations

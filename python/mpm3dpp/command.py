@@ -7,6 +7,7 @@ stopped by the user.
 
 from __future__ import annotations
 
+import contextlib
 import io
 import os
 import sys
@@ -58,10 +59,8 @@ class _Lenient(io.TextIOWrapper):
             return len(text)
 
     def flush(self) -> None:
-        try:
+        with contextlib.suppress(OSError):
             super().flush()
-        except OSError:
-            pass
 
 
 def _mend_streams() -> None:
@@ -72,15 +71,15 @@ def _mend_streams() -> None:
         except OSError:  # Closed: the next file would get this number, and what is printed.
             os.open(os.devnull, os.O_RDWR)
     if sys.stdout is None:
-        sys.stdout = open(1, "w", encoding="utf-8", closefd=False)
+        sys.stdout = os.fdopen(1, "w", encoding="utf-8", closefd=False)
     if sys.stderr is None:
-        sys.stderr = open(2, "w", encoding="utf-8", closefd=False)
+        sys.stderr = os.fdopen(2, "w", encoding="utf-8", closefd=False)
     # A name that the terminal's encoding does not have is shown by its numbers.
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")
     if isinstance(sys.stderr, io.TextIOWrapper):
         encoding = sys.stderr.encoding
-        sys.stderr = sys.__stderr__ = _Lenient(
+        sys.stderr = _Lenient(
             sys.stderr.detach(), encoding, errors="backslashreplace", line_buffering=True
         )
 

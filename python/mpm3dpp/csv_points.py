@@ -104,13 +104,13 @@ def read_points(path: Path, name: str, layout: Layout, unit: str = "m") -> Point
         for column, power in enumerate(powers.tolist()):
             table[:, column] = _scaled(table[:, column], to_si(f"1 {unit}", "m"), power)
 
-    def line(row: int) -> tuple[int, str]:
+    def line_of(row: int) -> tuple[int, str]:
         with _text(path) as again:
             rows = _lines(again, name)
             next(rows)
             return next(found for k, found in enumerate(rows) if k == row)
 
-    return Points(table, dimension, line)
+    return Points(table, dimension, line_of)
 
 
 def _scaled(values: Array, factor: float, power: int) -> Array:
@@ -161,9 +161,9 @@ def _header(number: int, line: str, name: str, layout: Layout, length: str) -> t
         if names == wanted or (names == wanted[:-1] and not layout.needed):
             power = layout.powers[dimension - 2]
             right = [*[length] * dimension, f"{length}^{power}" if power > 1 else length]
-            for unit, wanted, word in zip(units, right, names, strict=False):
-                if unit not in (None, wanted):
-                    rule = f"gives {word} in [{unit}] in line {number} but must be in {wanted}"
+            for unit, own, word in zip(units, right, names, strict=False):
+                if unit not in (None, own):
+                    rule = f"gives {word} in [{unit}] in line {number} but must be in {own}"
                     remedy = f'name the unit, {{ file = "{name}", unit = "{unit}" }}'
                     if word not in "xyz":
                         remedy = "convert the column"
@@ -196,9 +196,7 @@ def _numbers(
     raise CaseError("cannot be read as numbers", layout.give, value=name)
 
 
-def _find_wrong(
-    lines: Iterator[tuple[int, str]], width: int, name: str, layout: Layout
-) -> None:
+def _find_wrong(lines: Iterator[tuple[int, str]], width: int, name: str, layout: Layout) -> None:
     """Raise for the first line that is not so many numbers; slower, so only where there is one."""
     next(lines)
     for number, line in lines:

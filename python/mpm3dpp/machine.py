@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import resource
 from collections.abc import Iterator
@@ -22,10 +23,8 @@ def _memories() -> Iterator[int]:
     """Yield what bounds the memory of this process [bytes]: the machine, and limits set for it."""
     yield os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     for path in _LIMITS:
-        try:
+        with contextlib.suppress(OSError, ValueError):  # There is none, or it is the word "max".
             yield int(path.read_text())
-        except (OSError, ValueError):  # There is none, or it is the word "max".
-            pass
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     if limit != resource.RLIM_INFINITY:
         yield limit

@@ -25,15 +25,16 @@ class _CaseMeta(ModelMetaclass):
     by_position: str  # The field that values without a name belong to; empty for none.
 
     def __call__(cls, *args: Any, **kwargs: Any) -> Any:
+        fields: dict[str, Any] = cls.__dict__["__pydantic_fields__"]
         if args and cls.by_position and cls.by_position not in kwargs:
             alone = len(args) == 1 and isinstance(args[0], list | tuple)
-            args, kwargs = (), {**kwargs, cls.by_position: list(args[0] if alone else args)}
-        if args:
-            keys = ", ".join(f"{name}=..." for name in cls.model_fields)
+            kwargs[cls.by_position] = list(args[0] if alone else args)
+        elif args:
+            keys = ", ".join(f"{name}=..." for name in fields)
             rule = "takes its values by name"
             raise CaseError(rule, f"write {cls.__name__}({keys})", key=cls.__name__)
         try:
-            return super().__call__(*args, **kwargs)
+            return super().__call__(**kwargs)
         except ValidationError as error:
             raise from_validation(error, prefix=(_table_name(cls.__name__),)) from None
 
@@ -76,6 +77,7 @@ class CaseModel(BaseModel, metaclass=_CaseMeta):
                 if context["rule"] != MISSING or f'"{name}"' not in meant:
                     found.append(other)
         report(found)
+        return data
 
     @classmethod
     def complete(cls, data: Any) -> Any:
@@ -156,7 +158,7 @@ class Exactly:
             value = operator.index(value)
         if type(value) is not self.kind:
             raise violation(f"must be {names[self.kind]}", give, value=value)
-        if self.kind is str and _CONTROL.search(value):
+        if isinstance(value, str) and _CONTROL.search(value):
             rule = "has a character that cannot be shown"
             raise violation(rule, "leave it out", value=value)
         checked: Any = value

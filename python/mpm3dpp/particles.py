@@ -3,7 +3,8 @@
 
 The file's first line names the columns, `x [m],y [m],z [m],volume [m^3]` in 3D and
 `x [m],y [m],volume [m^2]` in 2D; the units and the column `volume` may be left out. Every other
-line is a particle, in SI units or in the unit of length that the case gives. Blank lines and lines that begin with `#` are skipped.
+line is a particle, in SI units or in the unit of length that the case gives. Blank lines and lines
+that begin with `#` are skipped.
 """
 
 from __future__ import annotations

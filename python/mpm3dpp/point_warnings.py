@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from .build import FilledBody
 from .case import Case
+from .errors import key_text
 
 Array = NDArray[np.float64]
 
@@ -66,8 +67,9 @@ def _of_points(body: FilledBody, cell: float) -> list[str]:
         )
     if apart > 0.0 and not 1.0 / _VOLUME < body.spacing / apart < _VOLUME:
         found.append(
-            f"{who} stand {apart:.3g} m apart, but their volumes are on average those of cubes with "
-            f"edges of {body.spacing:.3g} m; look at volume, or at spacing or particles_per_cell"
+            f"{who} stand {apart:.3g} m apart, but their volumes are on average those of "
+            f"cubes with edges of {body.spacing:.3g} m; look at volume, or at spacing or "
+            "particles_per_cell"
         )
     twice = _given_twice(body.positions, _SAME * max(apart, body.spacing))
     if twice is not None:
@@ -117,7 +119,7 @@ def _inside_others(case: Case, body: FilledBody, bodies: list[FilledBody]) -> li
             inside = shape.contains(some)
         counts[other.part] = counts.get(other.part, 0) + int(inside.sum())
     return [
-        f"body.{body.name}: {count:,} of its points stand inside {'.'.join(case.part_path(part))}"
+        f"body.{body.name}: {count:,} of its points stand inside {key_text(case.part_path(part))}"
         ", which fills the same place then; move one of the two, or leave these points out"
         for part, count in counts.items()
         if count

@@ -29,7 +29,7 @@ from .signals import Notice, as_exceptions
 from .simulation import Simulation
 
 _NO_STATE = ("non-finite", "negative volume")  # Failures after which particles have no values.
-_BLOCK = 64  # Steps between two looks at the clock and at Ctrl-C, without contact.
+_BLOCK = 64  # Steps between two looks at the clock, without contact.
 
 
 def run_case(

@@ -67,7 +67,7 @@ COMMON: dict[str, tuple[Decimal, str]] = {
 # Sizes that no case needs; products of such numbers would overflow in double precision.
 _LEAST = 1e-100
 
-# Names of units: words, and powers of one or two digits. What else pint would work out, at any cost.
+# Names of units: words, and powers of one or two digits. The rest pint works out, at any cost.
 _UNIT = re.compile(
     r"1?(?:[\s*/()·.-]|[^\W\d]\d{0,2}(?!\d)"
     r"|(?:\^|\*\*)\s*\(?[+-]?\d{1,2}(?!\d)(?!\)?\s*(?:\^|\*\*)))*"

@@ -6,8 +6,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from commands import CASE, mpm3dpp, write
 
+from commands import CASE, mpm3dpp, write
 from mpm3dpp import Case, CaseError, Grid, GridBox, shapes
 from mpm3dpp.build import build
 from mpm3dpp.case import load_case

@@ -13,8 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from commands import CASE, command, one_sentence, write
 
+from commands import CASE, command, one_sentence, write
 from mpm3dpp import CaseError, Simulation, load_case, shapes
 from mpm3dpp.build import build
 from mpm3dpp.case_file import MOST_BYTES
@@ -256,7 +256,11 @@ TOO_MUCH = {
     "brackets": ('title = "Two blocks"', f"title = {'[' * 5000}{']' * 5000}", "too deeply"),
     "dots": ('title = "Two blocks"', f"title{'.a' * 20000} = 1", "too deeply"),
     "a unit to work out": ('"1 MPa"', '"1 MPa**9**9**9"', "which is not known"),
-    "a material as a list": ('density = "1000 kg/m^3"', "library = [1]", "name of a material"),
+    "a material as a list": (
+        'density = "1000 kg/m^3"',
+        "library = [1]",
+        "is not a material of the library",
+    ),
     "a name with a NUL": ("[body.left]", '[body."le\\u0000ft"]', "cannot be shown"),
 }
 

@@ -170,7 +170,7 @@ def change(tables: Any, path: tuple[str | int, ...], how: str, value: Any) -> No
     elif how == "remove":
         del parent[path[-1]]
     elif how == "add" and isinstance(parent, dict):
-        parent[str(value)[:30]] = 1
+        parent[f"{path[-1]}_too"] = copy.deepcopy(value)
     elif how == "rename" and isinstance(parent, dict):
         parent[f"{path[-1]}s"] = parent.pop(path[-1])
 

@@ -13,8 +13,8 @@ import time
 from pathlib import Path
 
 import pytest
-from commands import CASE, command, write
 
+from commands import CASE, command, write
 from mpm3dpp import Case, Simulation
 
 LONG = CASE.replace("8 ms", "1000 s")
@@ -23,7 +23,8 @@ KINDS = (signal.SIGINT, signal.SIGTERM)
 STEPPING = """
 import signal, sys, time
 from mpm3dpp import Case, Simulation
-case = Case.from_text(open(sys.argv[1]).read().replace('cell_size = "10 mm"', 'cell_size = "0.2 mm"'))
+text = open(sys.argv[1]).read().replace('cell_size = "10 mm"', 'cell_size = "0.2 mm"')
+case = Case.from_text(text)
 simulation = Simulation(case, threads=1)
 begin = time.monotonic()
 simulation.advance(10)
@@ -44,9 +45,7 @@ def caught(process: subprocess.Popen[str]) -> bool:
 
 def end(arguments: list[str], kind: signal.Signals, after: float) -> tuple[int, str, str]:
     """Send a signal so many seconds after the program has begun; return code, output, errors."""
-    process = subprocess.Popen(
-        arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+    process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
         while process.poll() is None and not caught(process):
             time.sleep(0.0005)

@@ -154,7 +154,8 @@ class Grains(CaseModel):
         lattice: equal grains in rows.
         packing: grains at random places, of one size or many.
         file: a CSV file beside the case file with the columns x, y, z (in 2D without z) and
-            radius, in SI units (in Python: `mpm3dpp.GrainCentres`).
+            radius, in SI units, or `{ file = "grains.csv", unit = "mm" }` (in Python:
+            `mpm3dpp.GrainCentres`).
         particles_per_cell: particles per cell along each direction; default 2.
         spacing: distance of the particles of a grain [m], in place of `particles_per_cell`.
         align: how the particles stand in each grain: "between" (its centre is in the middle

@@ -13,7 +13,7 @@ from functools import lru_cache
 from importlib import resources
 from typing import Any
 
-from mpm3dpp.errors import CaseError, nearest, violation
+from mpm3dpp.errors import CaseError, nearest, show, violation
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -137,11 +137,8 @@ def fill_in(table: dict[str, Any]) -> dict[str, Any]:
         if without:
             raise violation("has a meaning beside library only", "remove it", path=("without",))
         return _with_failure(table, None)
-    if not isinstance(name, str):
-        remedy = f"valid here: {', '.join(library())}"
-        raise violation("must be the name of a material", remedy, value=name, path=("library",))
-    if name not in library():
-        remedy = nearest(name, library())
+    if not isinstance(name, str) or name not in library():
+        remedy = nearest(show(name), library())
         rule = "is not a material of the library"
         raise violation(rule, remedy, value=name, path=("library",))
     left_out = {*without, ON_REQUEST}
