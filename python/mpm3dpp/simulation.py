@@ -223,7 +223,8 @@ class Simulation:
             raise CaseError("a simulation that has made steps cannot be restored", "make a new one")
         path = arguments.path("path", path)
         try:
-            check_same(path, read_about(path).get("case", {}), self.case)
+            before = read_about(path).get("case")
+            check_same(path, before if isinstance(before, dict) else {}, self.case)
             restore_checkpoint(path, self.core)
         except CaseError as error:
             remedy = "give a state that was saved with this case"

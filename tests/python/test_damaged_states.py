@@ -160,6 +160,19 @@ def test_damaged_abouts(tmp_path: Path) -> None:
     assert refused > 350 and taken + refused == 2 * len(texts)
 
 
+def test_damaged_abouts_of_saved_states(tmp_path: Path) -> None:
+    path = stepped(tmp_path, CASE, 1)
+    with zipfile.ZipFile(path) as archive:
+        state = archive.read("state")
+    simulation = Simulation(load_case(tmp_path / "case.toml"), threads=1)
+    for about in [*({"case": odd} for odd in ODD), {}, [], [["case", {"grid": 3}]], 1]:
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("about.json", json.dumps(about))
+            archive.writestr("state", state)
+        with pytest.raises(CaseError, match="give a state that was saved with this case"):
+            simulation.restore(path)
+
+
 def test_what_unpacks_to_far_more_than_the_file(tmp_path: Path) -> None:
     """Nobody unpacks it: a checkpoint is not compressed."""
     state = stepped(tmp_path, CASE, 1)

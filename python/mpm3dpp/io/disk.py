@@ -76,7 +76,7 @@ def bring_folder_to_disk(path: Path) -> None:
 
 def unfinished(path: Path) -> Path:
     """Return the name that a file has while `replacing` writes it."""
-    return path.with_name(f".{path.name}.new")
+    return path.parent / f".{path.name}.new"
 
 
 @contextlib.contextmanager
