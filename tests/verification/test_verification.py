@@ -32,15 +32,15 @@ def wrong(title: str, figures: list[Figure], stopped: str, misses: dict) -> list
         said.append("no longer stops: take it out of misses.json")
     for figure in figures:
         miss = known.pop(figure.name, None)
-        if miss is None and not figure.passed:
-            said.append(f"{figure.name}: {figure.ours:.6g}, answer {figure.answer}, "
-                        f"tolerance {figure.tolerance}")  # fmt: skip
-        elif miss is not None and figure.passed and "decided_by" not in miss:
-            said.append(f"{figure.name}: {figure.ours:.6g} no longer misses {figure.answer} with "
-                        f"tolerance {figure.tolerance}: take it out of misses.json")  # fmt: skip
-        elif miss is not None and not miss["reached"][0] <= figure.ours <= miss["reached"][1]:
-            said.append(f"{figure.name}: {figure.ours:.6g}, answer {figure.answer}, known range "
-                        f"{miss['reached']}")  # fmt: skip
+        text = f"{figure.name}: {figure.ours:.6g}, answer {figure.answer}"
+        if miss is None:
+            if not figure.passed:
+                said.append(f"{text}, tolerance {figure.tolerance}")
+        elif figure.passed:
+            if "decided_by" not in miss:
+                said.append(f"{text}: no longer misses, take it out of misses.json")
+        elif not miss["reached"][0] <= figure.ours <= miss["reached"][1]:
+            said.append(f"{text}, known range {miss['reached']}")
     if not stopped:
         said += [f"{figure}: no such figure, but a miss of it" for figure in known]
     return said

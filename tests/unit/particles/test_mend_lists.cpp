@@ -75,6 +75,7 @@ std::vector<std::uint32_t> check_rounds(mpm::testing::Report& report, int thread
   grid.cell_size = 0.5;
   grid.bonded = bonded;
   std::vector<Body<D>> bodies;
+  bodies.reserve(3);
   for (int b = 0; b < 3; ++b) bodies.push_back(make_body<D>(random));
   ListScratch<D> scratch;
   Gone<D> eroded, left;
