@@ -70,6 +70,7 @@ inline StateStream::Transfer transfer_by(const nb::callable& f) {
 }
 
 /// The catalogue of material models and the single material point.
+void add_records(nb::module_& m);
 void add_materials(nb::module_& m);
 
 }  // namespace mpm::bindings
