@@ -81,13 +81,14 @@ def test_a_frame_larger_than_the_room_goes_through_column_by_column(tmp_path: Pa
     waiting: list[int] = []
     file.allowed.release(3)
     with BackgroundWriter(file, room=room) as results:
-        add = file._append_column
+        own = file._own
 
         def watched(*arguments):
-            waiting.append(results._waiting)
-            return add(*arguments)
+            for found in own(*arguments):
+                waiting.append(results._waiting)
+                yield found
 
-        file._append_column = watched
+        file._own = watched
         for _ in range(3):
             results.write(simulation)
             simulation.advance(4)
