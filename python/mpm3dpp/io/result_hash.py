@@ -18,5 +18,5 @@ def result_hash(simulation: Any) -> str:
     digest = hashlib.sha256()
     for body in range(simulation.body_count):
         for name in ("position", "velocity"):
-            digest.update(np.ascontiguousarray(simulation.column(body, name), dtype="<f8"))
+            digest.update(np.ascontiguousarray(simulation.column(body, name), dtype="<f8").data)
     return digest.hexdigest()

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -164,7 +165,10 @@ class ResultsWriter:
             CaseError: no room on the disk; the frames written before stay readable.
         """
         stored = [as_stored(array) for array in arrays.values()]
-        columns = [Column(n, a.nbytes, lambda a=a: a) for n, a in zip(arrays, stored, strict=True)]
+        columns = [
+            Column(name, array.nbytes, partial(np.asarray, array))
+            for name, array in zip(arrays, stored, strict=True)
+        ]
         columns.sort(key=lambda column: column.name != "position")
         self.add(Frame(time, step, len(stored[0]), sum(a.nbytes for a in stored), columns))
 
@@ -279,4 +283,4 @@ def check_frames(path: Path, rows: Mapping[str, Any]) -> None:
 
 def _digest(column: np.ndarray) -> bytes:
     """Return what tells one column from another, in place of the column."""
-    return hashlib.blake2b(np.ascontiguousarray(column), digest_size=16).digest()
+    return hashlib.blake2b(np.ascontiguousarray(column).data, digest_size=16).digest()

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mpm3dpp.errors import CaseError
+from mpm3dpp.machine import MOST_PARTICLES
 from mpm3dpp.particles import Particles
-from mpm3dpp.shapes.filling import MOST_PARTICLES
 
 from .deck import Array, Deck, Part
 from .units import UnitSystem
