@@ -42,9 +42,8 @@ inline Floats floats(std::size_t rows, std::size_t columns, float value) {
   owned->release_and_allocate(rows * columns);
   std::fill_n(owned->data(), rows * columns, value);
   float* const data = owned->data();
-  nb::capsule owner(owned.get(),
+  nb::capsule owner(owned.release(),
                     [](void* p) noexcept { delete static_cast<AlignedArray<float>*>(p); });
-  owned.release();
   return Floats(data, {rows, columns}, owner);
 }
 

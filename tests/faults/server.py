@@ -213,10 +213,8 @@ def one_thread_at_a_time() -> None:
 
     def wait(self: Any, simulation: Any) -> None:
         write(self, simulation)
-        behind = mpm3dpp.io.background.BEHIND
-        for _ in range(behind):
-            self._room.acquire()
-        self._room.release(behind)
+        with self._changed:
+            self._changed.wait_for(lambda: self._unwritten == 0)
 
     writer.write = wait  # type: ignore[method-assign]
 

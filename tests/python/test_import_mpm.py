@@ -199,7 +199,7 @@ STEEL = "7.8d-3 210.0d3 0.3"
 COOK = {"A": 90e6, "B": 292e6, "n": 0.31, "C": 0.025}
 HEAT = {"m": 1.09, "T_room": 20.0, "T_melt": 1083.0, "T0": 293.0, "cp": 385.0, "chi": 1.0}
 ELASTIC = {"E": 210e9, "nu": 0.3}
-MIE = ("mie_gruneisen", {"c0": 3940.0, "s": 1.49, "gamma0": 1.96, "E0": 0.0})
+MIE = ("mie_gruneisen", {"c0": 3940.0, "s": 1.49, "gamma0": 1.96, "E0": 0.0, "spall_strength": 0.0})
 POLYNOMIAL = dict.fromkeys(("c0", "c2", "c3", "c4", "c5", "c6", "E0"), 0.0)
 # Material, its seos, then the strength and the equation of state that are wanted.
 MATERIALS: list[tuple[str, str, str, dict[str, float], Any]] = [

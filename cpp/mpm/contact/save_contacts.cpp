@@ -15,8 +15,8 @@ constexpr const char* damaged = "its contacts are damaged";
 
 /// Pairs of two bodies or more.
 bool is_pair_count(std::uint32_t pairs) {
-  const auto sides = static_cast<std::uint32_t>(0.5 + std::sqrt(0.25 + 2.0 * pairs));
-  return pairs > 0 && (pair_count(sides) == pairs || pair_count(sides + 1) == pairs);
+  const auto sides = static_cast<std::uint32_t>(std::lround(0.5 + std::sqrt(0.25 + 2.0 * pairs)));
+  return pairs > 0 && pair_count(sides) == pairs;
 }
 
 /// The pairs of one node follow those of another.

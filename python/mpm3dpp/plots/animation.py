@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.io.disk import make_folder, writing
+from mpm3dpp.io.disk import make_folder, replacing
 from mpm3dpp.plots.frames import draw_frame, view_of
 from mpm3dpp.plots.style import styled
 
@@ -40,8 +40,10 @@ def save_animation(results: Results, path: Path, colour: str = "von_mises") -> P
     durations = [milliseconds] * len(shown)
     durations[-1] = 1200
     make_folder(path.parent)
-    with writing(path):
-        shown[0].save(path, save_all=True, append_images=shown[1:], duration=durations, loop=0)
+    with replacing(path) as file:
+        shown[0].save(
+            file, format="GIF", save_all=True, append_images=shown[1:], duration=durations, loop=0
+        )
     return path
 
 

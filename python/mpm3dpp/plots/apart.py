@@ -19,6 +19,7 @@ from pathlib import Path
 
 from mpm3dpp import child
 from mpm3dpp.errors import RunError
+from mpm3dpp.io.disk import unfinished
 
 _PATIENCE = 2.0  # Seconds for a process that is told to end; some libraries do not listen.
 
@@ -46,6 +47,9 @@ def draw_apart(folder: Path) -> str:
         process.wait()
     finally:
         _end(process)
+        for ending in ("png", "gif"):
+            for half in folder.glob(unfinished(Path(f"*.{ending}")).name):
+                half.unlink(missing_ok=True)
     if process.returncode == 0:
         return said
     if process.returncode < 0:
@@ -74,8 +78,8 @@ def _end_with_parent() -> None:
 
 def main(folder: str) -> None:
     """Draw; say in one sentence what went wrong."""
-    for kind in (signal.SIGTERM, signal.SIGINT):  # So that no half picture is left.
-        signal.signal(kind, signal.default_int_handler)
+    for kind in (signal.SIGTERM, signal.SIGINT):  # An exception could get lost in a callback.
+        signal.signal(kind, signal.SIG_DFL)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     try:
         from mpm3dpp import _core
@@ -83,8 +87,6 @@ def main(folder: str) -> None:
 
         _core.return_freed_memory()
         plot_results(folder)
-    except KeyboardInterrupt:
-        sys.exit(130)
     except MemoryError:
         sys.exit("there is not enough memory")
     except Exception as error:
