@@ -25,7 +25,7 @@ class BlockEnd {
     const auto valid = group.valid();
     negative_ = negative_ | (valid & !(swelling.after > T(0.0)));
 
-    const T done = work.deviatoric + swelling.work(mean_stress);
+    T done = work.deviatoric + swelling.work(mean_stress);
     const T lost = T(0.5) * (swelling.before + swelling.after) * after.dissipated;
     T used = work.force, heat = done;
     if (settings_.viscosity.active()) {
@@ -37,7 +37,6 @@ class BlockEnd {
               swelling.dilation;
       heat += viscous_work;
     }
-    T taken(0.0);  // by bounds
     if (columns_.energy) {
       const T energy = group.read(columns_.energy);
       T energy_after = energy + heat * swelling.per_volume;
@@ -45,17 +44,17 @@ class BlockEnd {
         const T last = T(1.0 / 3.0) * trace(after.stress), first = T(2.0) * mean_stress - last;
         if (any(bounds_.limits(first) | bounds_.limits(last) |
                 (energy_after < T(bounds_.lowest_energy))))
-          taken = bound(swelling, first, last, valid, energy_after);
+          done -= bound(swelling, first, last, valid, energy_after);
       }
       group.write(columns_.energy, energy_after);
     }
     if (columns_.recoverable) {
       const T energy = group.read(columns_.recoverable);
-      group.write(columns_.recoverable, energy + (done - lost - taken) * swelling.per_volume);
+      group.write(columns_.recoverable, energy + (done - lost) * swelling.per_volume);
     }
     group.write(columns_.volume, swelling.after);
     for (int i = 0; i < Sym<T, D>::size; ++i) group.write(columns_.stress[i], after.stress.c[i]);
-    internal_ += select(valid, done - lost - taken, T(0.0));
+    internal_ += select(valid, done - lost, T(0.0));
     dissipated_ += select(valid, lost, T(0.0));
     force_power_ += select(valid, used, T(0.0));
 
