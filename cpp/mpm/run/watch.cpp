@@ -152,6 +152,7 @@ void SimulationOf<D>::judge() {
               static_cast<int>(seen.body), seen.row);
       if (!(share > limit) || failure_) return;
       std::ostringstream text;
+      text.precision(4);
       text << 100.0 * share << " % of the particles of body \"" << body(static_cast<int>(g)).name
            << (kind == NoteKind::volume
                    ? "\" have less than 0.01 or more than 100 times their initial volume"
@@ -184,6 +185,7 @@ std::vector<Warning> SimulationOf<D>::warnings() const {
     w.count = n.count;
     w.is_error = n.kind != NoteKind::left_box;
     std::ostringstream text;
+    text.precision(4);
     const bool loaded = std::any_of(domain_.loads.begin(), domain_.loads.end(),
                                     [&](const auto& load) { return load.body == n.body; });
     const char* const torn =

@@ -6,31 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
-from mpm3dpp.errors import CaseError
-
-_SHOWN = 30  # Sentences; the count tells of the rest.
+from mpm3dpp.errors import CaseError, first_of
 
 P = ParamSpec("P")
 T = TypeVar("T")
-
-
-class CaseErrors(CaseError):
-    """Several mistakes: a line of text for each, by their lines in the file, then their count.
-
-    Attributes:
-        problems: the mistakes.
-    """
-
-    def __init__(self, name: str, problems: list[CaseError]) -> None:
-        self.problems = problems
-        super().__init__(f"has {len(problems)} problems", place=name)
-
-    def sentence(self) -> str:
-        """Return all sentences, a line of text each, and their count."""
-        lines = [problem.sentence() for problem in self.problems[:_SHOWN]]
-        left = len(self.problems) - len(lines)
-        shown = f"; {left} are not shown" if left else ""
-        return "\n".join([*lines, f"{self.place}: {len(self.problems)} problems{shown}"])
 
 
 class Problems:
@@ -55,21 +34,18 @@ class Problems:
 
     def keep(self, error: CaseError) -> None:
         """Add a mistake that has been raised, and those that came with it."""
-        both = [error, *getattr(error, "others", ())]
-        self._others += error.problems if isinstance(error, CaseErrors) else both
+        self._others += [error, *error.others]
 
     def judge(self) -> None:
-        """Raise what has been gathered, if anything."""
+        """Raise what has been gathered, if anything: the first has the rest as its `others`."""
         found = list(self._others)
         for (key, rule, remedy), lines in self._found.items():
             more = f" (and so {len(lines) - 1} times more)" if len(lines) > 1 else ""
             place = f"{self.name}:{lines[0]}"
             found.append(CaseError(rule + more, remedy, key=key, place=place))
         found.sort(key=_line)
-        if len(found) == 1:
-            raise found[0]
         if found:
-            raise CaseErrors(self.name, found)
+            raise first_of(found)
 
 
 def _line(error: CaseError) -> int:
