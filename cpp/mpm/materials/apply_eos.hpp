@@ -60,8 +60,8 @@ template <class T, int D, class Model>
     const Sym<T, D> stress = strength - Sym<T, D>::isotropic(shift);
     if (last) {
       if (settings.forces_follow) work.force -= swelling.after * shift * swelling.dilation;
-      end.add(group, swelling, work, T(0.5) * (mean_before - pressure),
-              {stress, group.get(block.dissipated), speed, q});
+      end.template add<true>(group, swelling, work, T(0.5) * (mean_before - pressure),
+                             {stress, group.get(block.dissipated), speed, q});
       return;
     }
     group.put_stress(block, stress);

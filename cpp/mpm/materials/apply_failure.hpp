@@ -52,9 +52,10 @@ template <class T, int D>
     const auto loose =
         (failed >= T(static_cast<double>(FailureAction::no_tension))) & (kept >= T(0.0));
     const Moved<T, D> moved(group, block, columns, material.density, settings);
-    end.add(group, moved, group.read_stress(columns),
-            {left, group.get(block.dissipated), select(loose, T(0.0), group.get(block.speed)),
-             select(loose, T(0.0), group.get(block.viscous_pressure))});
+    end.template add<true>(
+        group, moved, group.read_stress(columns),
+        {left, group.get(block.dissipated), select(loose, T(0.0), group.get(block.speed)),
+         select(loose, T(0.0), group.get(block.viscous_pressure))});
   });
   sums.eroded = sums.eroded || any(eroded);
 }

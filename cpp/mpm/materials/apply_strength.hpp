@@ -35,7 +35,7 @@ template <class T, int D, class Model>
         }
       }
     if (last) {
-      end.add(group, moved, stress_before, {stress, dissipated, speed, q});
+      end.template add<false>(group, moved, stress_before, {stress, dissipated, speed, q});
       return;
     }
     group.put_stress(block, stress);

@@ -19,7 +19,9 @@ class BlockEnd {
       : columns_(columns), settings_(settings), bounds_(bounds) {}
 
   /// `work`: with the stress at the end of the step. `mean_stress`: over the step the average of a
-  /// third of the stress's trace, which works on the change of volume.
+  /// third of the stress's trace, which works on the change of volume. `with_eos`: is there, or may
+  /// there be, an equation of state, and with it an energy and its bounds?
+  template <bool with_eos>
   void add(const Group<T, D>& group, const Swelling<T>& swelling, const StressWork<T>& work,
            T mean_stress, const Updated<T, D>& after) {
     const auto valid = group.valid();
@@ -37,16 +39,20 @@ class BlockEnd {
               swelling.dilation;
       heat += viscous_work;
     }
-    if (columns_.energy) {
-      const T energy = group.read(columns_.energy);
-      T energy_after = energy + heat * swelling.per_volume;
+    if (with_eos && columns_.energy) {
+      T energy = group.read(columns_.energy) + heat * swelling.per_volume;
       if (bounds_.active) {
         const T last = T(1.0 / 3.0) * trace(after.stress), first = T(2.0) * mean_stress - last;
         if (any(bounds_.limits(first) | bounds_.limits(last) |
-                (energy_after < T(bounds_.lowest_energy))))
-          done -= bound(swelling, first, last, valid, energy_after);
+                (energy < T(bounds_.lowest_energy)))) {
+          const Taken taken = bound(bounds_, swelling, first, last, energy);
+          energy = taken.energy;
+          done -= taken.opening - taken.given;
+          bounded_ += select(valid, taken.opening - taken.given, T(0.0));
+          floor_ -= select(valid, taken.given, T(0.0));
+        }
       }
-      group.write(columns_.energy, energy_after);
+      group.write(columns_.energy, energy);
     }
     if (columns_.recoverable) {
       const T energy = group.read(columns_.recoverable);
@@ -63,10 +69,11 @@ class BlockEnd {
     // An empty lane holds a particle that is taken elsewhere, without its motion.
     fastest_ = max(fastest_, select(valid, after.speed + sqrt(dot(v, v)), T(0.0)));
   }
+  template <bool with_eos>
   void add(const Group<T, D>& group, const Moved<T, D>& moved, const Sym<T, D>& before,
            const Updated<T, D>& after) {
-    add(group, moved.swelling, moved.work(settings_, before, after.stress),
-        T(1.0 / 6.0) * trace(before + after.stress), after);
+    add<with_eos>(group, moved.swelling, moved.work(settings_, before, after.stress),
+                  T(1.0 / 6.0) * trace(before + after.stress), after);
   }
 
   void add_to(StressSums& sums) const {
@@ -81,22 +88,22 @@ class BlockEnd {
   }
 
  private:
-  /// Keep the energy within the bounds; returns what they have taken [J]. `first`, `last`: mean
-  /// stresses before and after. Work that tension at its limit does opens voids between fragments,
-  /// in place of straining the matter: it is taken, and given back when they close. What is missing
-  /// to the least energy is given.
-  [[gnu::noinline, gnu::cold]] T bound(const Swelling<T>& swelling, T first, T last, Truth<T> valid,
-                                       T& energy) {
-    const T limited = T(0.5) * (select(bounds_.limits(first), first, T(0.0)) +
-                                select(bounds_.limits(last), last, T(0.0)));
+  /// What the bounds leave of an energy [J/m^3], and the work that they take and give [J].
+  struct Taken {
+    T energy, opening, given;
+  };
+  /// Keep the energy within the bounds. `first`, `last`: mean stresses before and after. Work that
+  /// tension at its limit does opens voids between fragments, in place of straining the matter: it
+  /// is taken, and given back when they close. What is missing to the least energy is given.
+  /// All by value: sums whose address is known stay in memory through the loop over the groups.
+  [[gnu::noinline, gnu::cold]] static Taken bound(EosBounds bounds, Swelling<T> swelling, T first,
+                                                  T last, T energy) {
+    const T limited = T(0.5) * (select(bounds.limits(first), first, T(0.0)) +
+                                select(bounds.limits(last), last, T(0.0)));
     const T opening = swelling.work(limited);
-    energy -= opening * swelling.per_volume;
-    const T missing = max(T(bounds_.lowest_energy) - energy, T(0.0));
-    energy = max(energy, T(bounds_.lowest_energy));
-    const T given = missing / swelling.per_volume;
-    bounded_ += select(valid, opening - given, T(0.0));
-    floor_ -= select(valid, given, T(0.0));
-    return opening - given;
+    const T left = energy - opening * swelling.per_volume;
+    const T missing = max(T(bounds.lowest_energy) - left, T(0.0));
+    return {max(left, T(bounds.lowest_energy)), opening, missing / swelling.per_volume};
   }
 
   const BlockColumns<D>& columns_;

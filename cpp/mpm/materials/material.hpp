@@ -56,8 +56,7 @@ struct EosBounds {
   }
   /// The pressure within the bounds; `energy` is that of the end but for the new pressure's work.
   template <class T>
-  [[gnu::noinline, gnu::cold]] T held(T pressure, T energy, T change,
-                                      const LinearInEnergy<T>& p) const {
+  [[gnu::noinline, gnu::cold]] T held(T pressure, T energy, T change, LinearInEnergy<T> p) const {
     const auto below = energy - T(0.5) * pressure * change < T(lowest_energy);
     return max(select(below, p.A + p.B * T(lowest_energy), pressure), T(-tension));
   }
