@@ -13,7 +13,7 @@ from typing import BinaryIO
 
 from mpm3dpp.errors import CaseError
 
-_PIECE = 1 << 20  # bytes that are read at a time
+_PIECE = 1 << 16  # bytes that are read at a time, less than what is mapped anew for each
 
 _REMEDIES = {
     errno.ENOSPC: "free some space, write fewer frames or choose another folder with --out",
