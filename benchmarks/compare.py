@@ -1,72 +1,119 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compare the speed of two installed builds, in the order A B A B ..., so that drift cancels.
+"""Compare the speed of two builds: two processes that live side by side take steps in turns.
 
-    python benchmarks/compare.py old/.venv/bin/python new/.venv/bin/python elastic3d --threads 2
+    python benchmarks/compare.py old/.venv/bin/python build/release/python elastic3d:40 jc:40
 
-The ratio is the median over the rounds of B / A: below 1 means that B is faster. The range of the
-ratios says how far to trust it.
+Each process makes two steps, then the other does: the drift of the machine meets both. A
+round has two fresh processes, which lie elsewhere in memory; the ratio is the median of its turns,
+B / A: below 1 means that B is faster. The range over the rounds says how far to trust it.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
+import os
 import statistics
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
-from record import measured
+STEPS, WARM_UP = "2", "5"
 
 
-def ratios(a: list[dict[str, Any]], b: list[dict[str, Any]], key: str) -> list[float]:
-    """Return B / A of each round: of the step for key "", else of a stage that both have."""
+class Build:
+    """A benchmark of one build, in a process of its own (`mpm3dpp.bench.worker`).
 
-    def value(result: dict[str, Any]) -> float:
-        return float(result["stages"][key] if key else result["ns_per_particle_step"])
+    Args:
+        where: the Python interpreter of an environment, or a folder with the package.
+        words: name, size, threads and scheme.
+    """
 
-    return [value(y) / value(x) for x, y in zip(a, b, strict=True) if value(x) > 0]
-
-
-def table(a: list[dict[str, Any]], b: list[dict[str, Any]]) -> list[str]:
-    """Return the lines of the comparison: each stage, the step, the memory."""
-    lines = [f"{'':22}{'A ns':>9}{'B ns':>9}{'B / A':>9}   range"]
-    shared = [stage for stage in a[0]["stages"] if stage in b[0]["stages"]]
-    for key in [*shared, ""]:
-        pick = [
-            statistics.median(r["stages"][key] if key else r["ns_per_particle_step"] for r in s)
-            for s in (a, b)
-        ]
-        found = ratios(a, b, key)
-        if max(pick) < 0.05 or not found:
-            continue  # A stage that does nothing in this benchmark.
-        lines.append(
-            f"{key or 'step':22}{pick[0]:9.2f}{pick[1]:9.2f}{statistics.median(found):9.3f}   "
-            f"{min(found):.3f} to {max(found):.3f}"
+    def __init__(self, where: str, words: list[str]) -> None:
+        folder = Path(where).is_dir()
+        python = sys.executable if folder else where
+        environment = {**os.environ, "PYTHONPATH": str(Path(where).absolute())} if folder else None
+        self._process = subprocess.Popen(
+            [python, "-m", "mpm3dpp.bench.worker", *words, WARM_UP],
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
         )
-    memory = [statistics.median(r["bytes_per_particle"]["total"] for r in s) for s in (a, b)]
-    lines.append(
-        f"{'bytes per particle':22}{memory[0]:9.1f}{memory[1]:9.1f}{memory[1] / memory[0]:9.3f}"
-    )
-    only = [s for r, o in ((a, b), (b, a)) for s in r[0]["stages"] if s not in o[0]["stages"]]
-    if only:
-        lines.append(f"stages that only one of them has: {', '.join(only)}")
+        self.blocks: list[dict[str, float]] = []  # of each turn, ns per particle-step by stage
+        self._answer()
+
+    def _answer(self) -> dict[str, Any]:
+        assert self._process.stdout is not None
+        content = json.loads(
+            self._process.stdout.readline() or '{"error": "its process has ended"}'
+        )
+        if "error" in content:
+            sys.exit(f"{self._process.args}: {content['error']}")
+        return dict(content)
+
+    def step(self) -> None:
+        """Make some steps, and note what they took; "step" is the whole."""
+        assert self._process.stdin is not None
+        self._process.stdin.write(f"block {STEPS}\n")
+        self._process.stdin.flush()
+        content = self._answer()
+        self.blocks.append({**content["stages"], "step": content["ns"]})
+
+    def end(self) -> None:
+        """End the process."""
+        self._process.kill()
+        self._process.communicate()
+
+
+def one_round(places: list[str], words: list[str], turns: int) -> list[list[dict[str, float]]]:
+    """Return the blocks of each build; who begins changes from turn to turn."""
+    builds = [Build(where, words) for where in places]
+    for turn in range(turns):
+        for build in builds if turn % 2 else reversed(builds):
+            build.step()
+    for build in builds:
+        build.end()
+    return [build.blocks for build in builds]
+
+
+def table(rounds: list[list[list[dict[str, float]]]]) -> list[str]:
+    """Return the lines of the comparison: each stage, and the step."""
+    lines = [f"{'':30}{'A ns':>9}{'B ns':>9}{'B / A':>9}   rounds"]
+    for key in rounds[0][0][0]:
+        both = [
+            [[block.get(key, 0.0) for block in blocks] for blocks in builds] for builds in rounds
+        ]
+        a, b = (statistics.median(x for builds in both for x in builds[k]) for k in (0, 1))
+        if min(a, b) < 0.05:
+            continue  # A stage that does nothing in this benchmark, or that one of them has not.
+        ratios = [statistics.median(y / x for x, y in zip(*builds, strict=True)) for builds in both]
+        lines.append(
+            f"{key:30}{a:9.2f}{b:9.2f}{statistics.median(ratios):9.3f}   "
+            f"{min(ratios):.3f} to {max(ratios):.3f}"
+        )
     return lines
 
 
 def main() -> None:
     """Compare what the command line names."""
-    parser = argparse.ArgumentParser(description="Compare two installed builds, A B A B ...")
-    parser.add_argument("a", help="Python interpreter of the environment with build A")
-    parser.add_argument("b", help="the same for build B")
-    parser.add_argument("name", help="benchmark: elastic3d, two_cubes, ...")
-    parser.add_argument("--rounds", type=int, default=5)
-    given, options = parser.parse_known_args()  # What is left over goes to `mpm3dpp bench`.
-    results: dict[str, list[dict[str, Any]]] = {"A": [], "B": []}
-    for number in range(given.rounds):
-        for name, python in (("A", given.a), ("B", given.b)):
-            result = measured(python, given.name, options)
-            results[name].append(result)
-            ns = result["ns_per_particle_step"]
-            print(f"round {number + 1} {name}: {ns:.2f} ns per particle-step", flush=True)
-    print("\n".join(table(results["A"], results["B"])))
+    parser = argparse.ArgumentParser(description="Compare the speed of two builds, in turns.")
+    where = "Python interpreter of an environment, or folder that holds the package mpm3dpp"
+    parser.add_argument("a", help=f"build A: {where}")
+    parser.add_argument("b", help="build B, likewise")
+    parser.add_argument("names", nargs="+", metavar="NAME[:SIZE]", help="elastic3d:40, spheres:300")
+    parser.add_argument("--threads", default="1")
+    parser.add_argument("--scheme", default="musl", choices=["usf", "usl", "musl"])
+    parser.add_argument("--rounds", type=int, default=4)
+    parser.add_argument("--turns", type=int, default=12, help="in a round")
+    given = parser.parse_args()
+    for name in given.names:
+        bench, _, size = name.partition(":")
+        words = [bench, size or "40", given.threads, given.scheme]
+        print(f"{bench}, size {words[1]}, {given.threads} threads, {given.scheme}")
+        rounds = [one_round([given.a, given.b], words, given.turns) for _ in range(given.rounds)]
+        print("\n".join(table(rounds)), flush=True)
 
 
 if __name__ == "__main__":
