@@ -50,7 +50,7 @@ class Build:
             self._process.stdout.readline() or '{"error": "its process has ended"}'
         )
         if "error" in content:
-            sys.exit(f"{self._process.args}: {content['error']}")
+            sys.exit(str(content["error"]))
         return dict(content)
 
     def step(self) -> None:
