@@ -76,6 +76,11 @@ def told(simulation: Simulation) -> dict[str, Any]:
     return found
 
 
+def history(simulation: Simulation) -> dict[str, Any]:
+    """The columns of the last steps, as many as the core keeps."""
+    return dict(zip(simulation.core.history_columns, simulation.core.history().T, strict=True))
+
+
 @pytest.mark.parametrize("basis", ["gimp", "linear"])
 @pytest.mark.parametrize("walls", ["fixed", "slip"])
 def test_a_disc_crushed_into_a_wall_stops_the_run(walls: str, basis: str) -> None:
@@ -172,8 +177,23 @@ def test_a_load_that_tears_a_corner_off_is_told_of() -> None:
     assert warning.count > 100
     for part in ('body "block"', "particle", "a load may have torn", "median"):
         assert part in warning.message
-    numerical = abs(np.array(simulation.core.history())[-1][13])
-    assert numerical < 1e-3 * simulation.core.loads()[0].impulse[0] ** 2
+    assert abs(history(simulation)["numerical"][-1]) < 1e-3 * simulation.core.loads()[0].impulse[0] ** 2
+
+
+def test_a_step_that_makes_energy_is_told_of() -> None:
+    """USL with the linear basis: a node that a particle barely reaches gets any velocity."""
+    run = {"scheme": "usl", "time_step_factor": 0.5, "energy_growth_limit": 1e9}
+    case = disc("slip", speed=20.0, end=20e-3, **run)
+    case = case.model_copy(update={"grid": case.grid.model_copy(update={"basis": "linear"})})
+    simulation, _ = ended(case)
+    note = told(simulation)["energy of a step"]
+    columns = history(simulation)
+    (row,) = np.flatnonzero(columns["step"] == note.step)
+    made = columns["numerical"][row - 1] - columns["numerical"][row]
+    assert note.is_error and f"{made:.4g} J" in note.message
+    assert made > 0.05 * columns["kinetic"][0]
+    for part in ("5 %", 'body "disc"', f"particle {note.particle}", "time_step_factor"):
+        assert part in note.message
 
 
 def test_a_load_that_does_its_work_in_one_step_is_told_of() -> None:
