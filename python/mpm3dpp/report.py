@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from .io.manifest import Manifest
 
 _PAIRS_SHOWN = 10
+_OF_A_KIND = 3  # warnings shown
 _NUMERICAL_WARNING = 0.05
 
 
@@ -85,12 +88,20 @@ def gone_lines(manifest: Manifest) -> list[str]:
 
 
 def warning_lines(manifest: Manifest) -> list[str]:
-    """Return a line for each thing that the run has warned of, or told, with how often it was."""
-    return [
-        f"{'warning' if w.is_error else 'note'}: {w.message}; "
-        f"so at {w.count:,} {'looks' if w.share else 'steps'}"
-        for w in manifest.warnings
-    ]
+    """Return a line for each thing that the run has warned of, or told, with how often it was.
+
+    Of each kind the first three; the manifest has all.
+    """
+    lines, told = [], Counter[str]()
+    for w in manifest.warnings:
+        told[w.kind] += 1
+        if told[w.kind] <= _OF_A_KIND:
+            often = f"so at {w.count:,} {'looks' if w.share else 'steps'}"
+            lines.append(f"{'warning' if w.is_error else 'note'}: {w.message}; {often}")
+    for kind, count in told.items():
+        if count > _OF_A_KIND:
+            lines.append(f"note: {count - _OF_A_KIND:,} more of {kind}, in manifest.json")
+    return lines
 
 
 def load_lines(manifest: Manifest) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mpm3dpp.report import energy_line
+from mpm3dpp.report import energy_line, warning_lines
 
 
 def manifest(initial: dict[str, float], final: dict[str, float]) -> Any:
@@ -38,3 +38,19 @@ def test_work_that_has_gone_out_again_came_in() -> None:
     found = manifest({}, {"external": 10.0, "numerical": -1.0})
     found.energies["external_max"] = 100.0
     assert "made 1.00% of what came in" in energy_line(found)
+
+
+def test_three_warnings_of_a_kind_are_shown() -> None:
+    """A hundred grains may leave the box."""
+    left = [
+        SimpleNamespace(kind="left box", message=f"grain {k}", share=0.5, count=2, is_error=False)
+        for k in range(100)
+    ]
+    step = SimpleNamespace(kind="time step", message="it fell", share=0.0, count=7, is_error=True)
+    found: Any = SimpleNamespace(warnings=[*left, step])
+    lines = warning_lines(found)
+    assert lines == [
+        *(f"note: grain {k}; so at 2 looks" for k in range(3)),
+        "warning: it fell; so at 7 steps",
+        "note: 97 more of left box, in manifest.json",
+    ]

@@ -147,7 +147,7 @@ void SimulationOf<D>::check_rest(double cell_size, const Index<D>& walls) const 
   check(history_.size() % columns == 0 && history_.size() <= (history_capacity + 1) * columns,
         "its history is damaged");
   check(finite(ledger_.kinetic) && finite(ledger_.residual()), "its energies are damaged");
-  check(watch_.sound() && looked_ <= domain_.step, "its warnings are damaged");
+  check(watch_.plausible() && looked_ <= domain_.step, "its warnings are damaged");
   const auto number_of = [&](int n) { return n >= 0 && n < body_count(); };
   for (const Note& note : notes_)
     check(static_cast<std::size_t>(note.kind) < note_names.size() && number_of(note.body) &&

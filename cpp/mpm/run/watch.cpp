@@ -191,27 +191,25 @@ std::vector<Warning> SimulationOf<D>::warnings() const {
     const char* const torn =
         loaded
             ? "a load may have torn off a part of the surface: lower it, let it rise slowly, or "
-              "give "
-              "smaller cells"
+              "give smaller cells"
             : "a particle may have been torn off: give its material a failure model with action = "
               "\"erode\", a spall_strength or artificial viscosity, or lower run.time_step_factor";
     const auto per_cent = [&] { text << 100.0 * n.share << " % of the particles"; };
     switch (n.kind) {
       case NoteKind::time_step:
         text << "the time step has fallen to " << n.value
-             << " s, less than a tenth of the median of "
-             << "the last 1000 (" << n.against << " s), for the fastest particle; " << torn;
+             << " s, less than a tenth of the median of the last 1000 (" << n.against
+             << " s), for the fastest particle; " << torn;
         break;
       case NoteKind::energy_made:
         text << "one step has made " << n.value
-             << " J by numerical error, more than 5 % of the largest "
-             << "energy brought in so far (" << n.against << " J); " << torn;
+             << " J by numerical error, more than 5 % of the largest energy brought in so far ("
+             << n.against << " J); " << torn;
         break;
       case NoteKind::load_energy:
         text << "loads have done the work " << n.value
-             << " J in one step, more than 5 % of the largest "
-             << "energy brought in so far (" << n.against << " J) and ten times the median; "
-             << torn;
+             << " J in one step, more than 5 % of the largest energy brought in so far ("
+             << n.against << " J) and ten times the median; " << torn;
         break;
       case NoteKind::outside:
         per_cent();

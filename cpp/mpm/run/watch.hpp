@@ -55,8 +55,7 @@ class StepWatch {
   static constexpr std::size_t first_steps = 10;  // of a run, or of a load's work, are not judged
   static constexpr double drop = 0.1;             // of the median time step
   static constexpr double share = 0.05;           // of the largest energy so far
-  static constexpr double jump =
-      10.0;  // load's work over its median, which a smooth load keeps below
+  static constexpr double jump = 10.0;  // load's work over its median; a smooth load keeps below
 
   /// The median of the last time steps, or of earlier ones if that was larger, if `time_step` lies
   /// below a tenth of it, else 0: a step may fall slowly too.
@@ -86,8 +85,8 @@ class StepWatch {
     loads_.add(step);
     return found;
   }
-  /// Whether it can have been left so by steps.
-  bool sound() const {
+  /// Can steps have left it so? What is restored may be anything.
+  bool plausible() const {
     return steps_.finite() && loads_.finite() && std::isfinite(median_) &&
            std::isfinite(made_before_) && std::isfinite(work_before_);
   }
