@@ -143,8 +143,7 @@ def violation(
     """
     from pydantic_core import PydanticCustomError
 
-    if isinstance(value, int) and not isinstance(value, bool):
-        value = _shortened(value)  # Python refuses to make text of thousands of digits.
+    value = _shortened(value)  # pydantic makes text of it; Python refuses thousands of digits.
     if isinstance(value, str) and not value.isprintable():
         value = _Words(printable(json.dumps(value[:100], ensure_ascii=False)))
     rule, remedy = printable(rule), printable(remedy)

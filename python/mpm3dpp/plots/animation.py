@@ -33,9 +33,14 @@ def save_animation(results: Results, path: Path, colour: str = "von_mises") -> P
     """
     frames = _evenly(results.times)
     view = view_of(results, frames, colour)
-    pictures = _without_margins([_pixels(results, frame, colour, view) for frame in frames])
-    palette = _palette(pictures)
-    shown = [picture.quantize(palette=palette, dither=0) for picture in pictures]
+    few = {k: _pixels(results, k, colour, view) for k in _spread(frames, 4)}
+    palette = _palette(list(few.values()))
+    shown, inked = [], []
+    for frame in frames:  # A byte a pixel stays of each.
+        picture = few.pop(frame, None) or _pixels(results, frame, colour, view)
+        inked.append(_inked(picture))
+        shown.append(picture.quantize(palette=palette, dither=0))
+    shown = _without_margins(shown, [box for box in inked if box])
     milliseconds = int(np.clip(1e3 * _LENGTH / len(shown), 40, 250))
     durations = [milliseconds] * len(shown)
     durations[-1] = 1200
@@ -55,6 +60,11 @@ def _evenly(times: np.ndarray) -> list[int]:
     return list(dict.fromkeys(nearest))
 
 
+def _spread(frames: list[int], count: int) -> list[int]:
+    """Some of the frames, from the first to the last."""
+    return [frames[k] for k in np.linspace(0, len(frames) - 1, count).astype(int)]
+
+
 def _pixels(results: Results, frame: int, colour: str, view: Any) -> Any:
     from PIL import Image
 
@@ -69,10 +79,9 @@ def _palette(pictures: list[Any]) -> Any:
     """One set of colours for the whole animation, from a few of its pictures side by side."""
     from PIL import Image
 
-    chosen = [pictures[k] for k in np.linspace(0, len(pictures) - 1, 4).astype(int)]
-    width, height = chosen[0].size
-    sheet = Image.new("RGB", (width * len(chosen), height))
-    for k, picture in enumerate(chosen):
+    width, height = pictures[0].size
+    sheet = Image.new("RGB", (width * len(pictures), height))
+    for k, picture in enumerate(pictures):
         sheet.paste(picture, (k * width, 0))
     colours = sheet.quantize(colors=254, method=Image.Quantize.MEDIANCUT)
     table = np.array(colours.getpalette() or [], dtype=np.uint8).reshape(-1, 3)[:254]
@@ -81,13 +90,18 @@ def _palette(pictures: list[Any]) -> Any:
     return colours
 
 
-def _without_margins(pictures: list[Any]) -> list[Any]:
-    """All pictures cut alike, so that only a thin white margin remains."""
+def _inked(picture: Any) -> tuple[int, int, int, int] | None:
+    """The box of a picture that is not white: left, top, right, low; None if there is none."""
     from PIL import Image, ImageChops
 
-    white = Image.new("RGB", pictures[0].size, "white")
-    boxes = [ImageChops.difference(p, white).getbbox() for p in pictures]
-    used = np.array([box for box in boxes if box])
+    white = Image.new("RGB", picture.size, "white")
+    box: tuple[int, int, int, int] | None = ImageChops.difference(picture, white).getbbox()
+    return box
+
+
+def _without_margins(pictures: list[Any], inked: list[tuple[int, int, int, int]]) -> list[Any]:
+    """All pictures cut alike, so that only a thin white margin remains."""
+    used = np.array(inked)
     width, height = pictures[0].size
     left, top = np.maximum(used[:, :2].min(axis=0) - 8, 0).tolist()
     right, low = np.minimum(used[:, 2:].max(axis=0) + 8, [width, height]).tolist()

@@ -15,7 +15,7 @@ from mpm3dpp.io.history import read_history
 from mpm3dpp.io.manifest import read_manifest
 from mpm3dpp.io.results import open_results
 from mpm3dpp.plots.flat import draw_cells, draw_particles, set_view
-from mpm3dpp.plots.frames import drawn, sizes_of, view_of
+from mpm3dpp.plots.frames import PLACED, drawn, sizes_of, view_of
 from mpm3dpp.plots.labels import at_time, length_unit, short
 from mpm3dpp.plots.style import body_colours, legend_of_bodies, new_figure, save, styled
 
@@ -98,13 +98,15 @@ def plane_of(
     """
     if touch.gap is None or touch.normal is None or touch.node is None:
         return None
-    apart = positions - touch.node
+    near = np.ones(len(positions), dtype=bool)
+    for axis, place in enumerate(touch.node):
+        near &= np.abs(positions[:, axis] - place) < _REACH * cell
+    apart, sizes, bodies = positions[near].astype(float) - touch.node, sizes[near], bodies[near]
     along = apart @ touch.normal
-    near = (np.abs(apart) < _REACH * cell).all(axis=1)
-    on_line = near & ((apart**2).sum(axis=1) - along**2 < cell**2)
+    on_line = (apart**2).sum(axis=1) - along**2 < cell**2
     ends = []
     for body, sign in ((touch.a, 1.0), (touch.b, -1.0)):
-        for some in (on_line & (bodies == body), near & (bodies == body)):
+        for some in (on_line & (bodies == body), bodies == body):
             if some.any():
                 ends.append(sign * float((sign * along[some] + 0.5 * sizes[some]).max()))
                 break
@@ -138,14 +140,13 @@ def _first(folder: Path, bodies: list[str]) -> Touch | None:
 
 def draw_contact(results: Results, frame: int, touch: Touch) -> Figure:
     """Draw both bodies, and beside them the plane of contact from near, if it is recorded."""
-    arrays = drawn(results, frame)
-    if not {touch.a, touch.b} <= set(arrays["body"].tolist()):  # One has eroded as it touched.
-        arrays = results.arrays(frame)
-    points = arrays["position"].astype(float)
-    sizes = sizes_of(arrays, results)
+    view = view_of(results, [frame], "body")
+    arrays = drawn(results, frame, "body")
+    if not np.isin([touch.a, touch.b], arrays["body"]).all():  # One has eroded as it touched.
+        arrays = results.arrays(frame, PLACED)
+    points, sizes = arrays["position"], sizes_of(arrays, results)
     cell = results.cell_size
     plane = plane_of(touch, points, sizes, arrays["body"], cell)
-    view = view_of(results, [frame], "body")
     colours = body_colours(arrays["body"])
     aspect = float((view.upper - view.lower)[0] / (view.upper - view.lower)[1])
     wide = min(max(aspect, 0.8), 2.4) if results.dimension == 2 else 1.2
@@ -157,9 +158,8 @@ def draw_contact(results: Results, frame: int, touch: Touch) -> Figure:
     if results.dimension == 2:
         set_view(whole, factor * view.lower, factor * view.upper, unit)
         grains = arrays.get("grain")
-        draw_particles(
-            whole, factor * points[:, :2], factor * sizes, arrays["body"], colours, grains=grains
-        )
+        flat = factor * points[:, :2].astype(float)
+        draw_particles(whole, flat, factor * sizes, arrays["body"], colours, grains=grains)
         if plane is not None:
             half = 0.5 * _WINDOW * cell
             low = np.maximum(plane.place - half, view.lower)[:2]

@@ -50,7 +50,8 @@ _BLOCK = 65536  # particles that are coloured at a time
 _GONE = 3  # in the column `failed`: eroded; 4: left the region that is kept
 
 
-_PLACED = ("size", "body", "grain", "material", "failed")  # Arrays that say what is drawn where.
+PLACED = ("size", "body", "grain", "material", "failed")
+"""Arrays that say what is drawn where."""
 
 
 def drawn(results: Results, frame: int, colour: str | None = None) -> dict[str, np.ndarray]:
@@ -72,7 +73,7 @@ def _needed(results: Results, colour: str | None) -> list[str] | None:
         return None
     colour = "velocity" if colour == "speed" else colour
     found = [name for name in results.fields if colour == name or colour.startswith(f"{name}_")]
-    return [*_PLACED, *found] if found else None
+    return [*PLACED, *found] if found else None
 
 
 def view_of(results: Results, frames: list[int], colour: str) -> View:
