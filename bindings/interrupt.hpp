@@ -20,8 +20,8 @@ namespace mpm::bindings {
 class InterruptFlag {
  public:
   InterruptFlag() {
+    if (!in_main_thread()) return;  // The flag is the main thread's.
     raised().store(false);
-    if (!in_main_thread()) return;
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       struct sigaction& old = olds()[k];
       if (sigaction(kinds[k], nullptr, &old) != 0) continue;

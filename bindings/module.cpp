@@ -162,6 +162,7 @@ NB_MODULE(_core, m) {
           nb::arg("name"), nb::arg("places"), nb::arg("width"), nb::arg("elsewhere"))
       .def("rounded_pressure", rounded<&Simulation::round_pressure>)
       .def("rounded_von_mises", rounded<&Simulation::round_von_mises>)
+      .def("rounded_size", rounded<&Simulation::round_size>)
       .def(
           "set_velocity",
           [](Simulation& s, int body, const Input& velocities) {

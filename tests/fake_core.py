@@ -105,6 +105,9 @@ class FakeSimulation:
     def rounded_von_mises(self) -> np.ndarray:
         return self._rounded(von_mises)
 
+    def rounded_size(self) -> np.ndarray:
+        return np.full((self.particle_count, 1), SIZE, dtype=np.float32)
+
     def _rounded(self, of_stress: Any) -> np.ndarray:
         stress = np.concatenate([self.column(b, "stress") for b in range(self.body_count)])
         return of_stress(stress).astype(np.float32)[:, None]

@@ -16,8 +16,10 @@ from .units import Point, PositiveLength
 
 FACES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 MOST_CELLS = 2**30
-"""From the grid's origin along an axis: the core counts cells with 32 bits, and needs some beyond
-what particles fill."""
+"""Of a box along an axis: the core counts cells with 32 bits, and needs some beyond it."""
+FARTHEST = 2**19
+"""Cells from the grid's origin to the farthest particle along an axis, at the start: the core lists
+particles by keys in which tiles have so many bits."""
 _MOST_DOUBLINGS = 30  # Cells are a billion times as large then.
 _WHOLE = 1e-6  # A box that misses a whole number of cells by less, per cell, is taken as whole.
 

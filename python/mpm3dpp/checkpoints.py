@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import os
 import time as clock
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +27,7 @@ from .io.checkpoint import (
 )
 from .io.disk import writing
 from .io.frame_file import frames_folder
-from .io.history import HistoryWriter, check_history, has_no_history
+from .io.history import PAIRS, HistoryWriter, check_history, has_no_history
 from .io.vtkhdf import RESULTS, check_frames, has_no_results
 
 # What a case may change before it goes on: nothing that a step made so far depends on.
@@ -86,25 +88,16 @@ class Checkpoint:
             remedy = f"give a later one, or {ANEW}"
             raise CaseError(rule, remedy, key="run.end_time", value=case.run.end_time)
         folder = self.path.parent
-        table, results = folder / "history.csv", folder / RESULTS
+        table, pairs, results = folder / "history.csv", folder / PAIRS, folder / RESULTS
         for file in (table, results):
             if file.exists() and not os.access(file, os.W_OK):
                 raise CaseError(f"cannot write '{file}'", "make it writable")
-        for gone, check, known, names in (
-            (self.history_is_gone, check_history, self.history, f"'{table}'"),
-            (
-                self.results_are_gone,
-                check_frames,
-                self.results,
-                f"'{results}' and '{frames_folder(results)}'",
-            ),
-        ):
-            try:
-                if not gone:
-                    check(results if check is check_frames else folder, known)
-            except CaseError as error:
-                remedy = f"bring it back, remove {names} to go on with new files, or {ANEW}"
-                raise DamagedError(error.rule, remedy) from error
+        with _damaged(table, *([pairs] if pairs.exists() else [])):
+            if not self.history_is_gone:
+                check_history(folder, self.history)
+        with _damaged(results, frames_folder(results)):
+            if not self.results_are_gone:
+                check_frames(results, self.results)
 
     def notes(self, case: Case) -> list[str]:
         """Sentences for the user who goes on from here."""
@@ -116,6 +109,17 @@ class Checkpoint:
             what = " and ".join(f"{name} {self.made_by.get(name)}" for name in changed)
             lines.append(f"the run began with {what}: it will not end with the same bits")
         return lines
+
+
+@contextlib.contextmanager
+def _damaged(*names: Path) -> Iterator[None]:
+    """Let a mistake in files say that they may be removed, by their names."""
+    try:
+        yield
+    except CaseError as error:
+        listed = " and ".join(f"'{name}'" for name in names)
+        remedy = f"bring it back, remove {listed} to go on with new files, or {ANEW}"
+        raise DamagedError(error.rule, remedy) from error
 
 
 def _program() -> dict[str, str]:

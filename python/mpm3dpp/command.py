@@ -8,6 +8,7 @@ stopped by the user.
 from __future__ import annotations
 
 import contextlib
+import errno
 import io
 import os
 import sys
@@ -42,11 +43,31 @@ def main() -> None:
         _say(f"error: {signals.SENTENCE}")
         sys.exit(signals.CODE)
     except OSError as error:
-        _end_output(error)
+        _refused(error)
         sys.exit(1)
     except MemoryError:
         _say("error: there is not enough memory; give a larger grid.cell_size")
         sys.exit(1)
+
+
+class _OutputError(OSError):
+    """Standard output is full or gone."""
+
+
+class _Output(io.TextIOWrapper):
+    """Standard output, whose errors are known from those of files."""
+
+    def write(self, text: str) -> int:
+        try:
+            return super().write(text)
+        except OSError as error:
+            raise _OutputError(error.errno, error.strerror) from error
+
+    def flush(self) -> None:
+        try:
+            super().flush()
+        except OSError as error:
+            raise _OutputError(error.errno, error.strerror) from error
 
 
 class _Lenient(io.TextIOWrapper):
@@ -76,7 +97,10 @@ def _mend_streams() -> None:
         sys.stderr = os.fdopen(2, "w", encoding="utf-8", closefd=False)
     # A name that the terminal's encoding does not have is shown by its numbers.
     if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")
+        encoding, by_line = sys.stdout.encoding, sys.stdout.line_buffering
+        sys.stdout = _Output(
+            sys.stdout.detach(), encoding, errors="backslashreplace", line_buffering=by_line
+        )
     if isinstance(sys.stderr, io.TextIOWrapper):
         encoding = sys.stderr.encoding
         sys.stderr = _Lenient(
@@ -98,11 +122,14 @@ def _tell(error: CaseError) -> None:
         _say(f"{len(every)} mistakes{rest}")
 
 
-def _end_output(error: OSError) -> None:
-    """Say what the system refused: a file by its name, else standard output."""
-    if error.filename is None:
+def _refused(error: OSError) -> None:
+    """Say what the system refused: standard output, or a file by its name."""
+    reason = (error.strerror or str(error) or "unknown reason").lower()
+    if isinstance(error, _OutputError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # What is left is not tried again at the end.
-    if not isinstance(error, BrokenPipeError):  # Nobody reads any more, `mpm3dpp ... | head`.
-        reason = (error.strerror or str(error) or "unknown reason").lower()
-        what = "write to standard output" if error.filename is None else f"use '{error.filename}'"
-        _say(f"error: cannot {what}: {reason}")
+        if error.errno != errno.EPIPE:  # Else nobody reads any more, `mpm3dpp ... | head`.
+            _say(f"error: cannot write to standard output: {reason}")
+    elif error.filename is not None:
+        _say(f"error: cannot use '{error.filename}': {reason}")
+    else:
+        _say(f"error: {reason}")

@@ -12,6 +12,7 @@ from pathlib import Path
 from .errors import CaseError
 from .io.checkpoint import CHECKPOINT, PREVIOUS
 from .io.disk import cannot_write, make_folder, unfinished
+from .io.history import PAIRS
 
 
 def default_folder(case_file: Path) -> Path:
@@ -37,13 +38,15 @@ def forget_last_run(folder: Path, checkpoint: bool = True) -> None:
 
     Args:
         folder: of the runs.
-        checkpoint: remove its checkpoint too, for the new run does not go on from it.
+        checkpoint: remove its checkpoint and table of pairs too, for the new run does not go on
+            from them.
 
     Raises:
         CaseError: it cannot be removed.
     """
     half = unfinished(Path(CHECKPOINT)).name
-    for name in (*_OF_A_RUN, *((half, PREVIOUS, CHECKPOINT) if checkpoint else ())):
+    anew = (PAIRS, half, PREVIOUS, CHECKPOINT)  # A run that begins anew may have no such table.
+    for name in (*_OF_A_RUN, *(anew if checkpoint else ())):
         try:
             (folder / name).unlink(missing_ok=True)
         except OSError as error:

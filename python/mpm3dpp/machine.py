@@ -7,24 +7,41 @@ import contextlib
 import os
 import resource
 from collections.abc import Iterator
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from .arguments import whole_number
 from .errors import CaseError
 
-# Where Linux tells a container's or a batch job's limit, of control groups of version 2 and 1.
-_LIMITS = (
-    Path("/sys/fs/cgroup/memory.max"),
-    Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
-)
+# Where Linux tells the limits of control groups, which containers and batch jobs have: those of
+# version 2, and of version 1, where memory has a tree of its own.
+_GROUPS = Path("/sys/fs/cgroup")
+_LIMITS = {"": (_GROUPS, "memory.max"), "memory": (_GROUPS / "memory", "memory.limit_in_bytes")}
+
+
+def group_limits(groups: str) -> Iterator[Path]:
+    """Yield the files that may tell a limit: of the process's control group and those around it.
+
+    Args:
+        groups: content of /proc/self/cgroup, a line for each tree: number:controllers:path.
+    """
+    for line in groups.splitlines():
+        _, _, rest = line.partition(":")
+        controllers, _, path = rest.partition(":")
+        for controller in controllers.split(","):
+            if controller in _LIMITS:
+                root, name = _LIMITS[controller]
+                yield root.joinpath(path.strip("/"), name)
+                for group in PurePosixPath(path.strip("/")).parents:
+                    yield root.joinpath(group, name)
 
 
 def _memories() -> Iterator[int]:
     """Yield what bounds the memory of this process [bytes]: the machine, and limits set for it."""
     yield os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    for path in _LIMITS:
-        with contextlib.suppress(OSError, ValueError):  # There is none, or it is the word "max".
-            yield int(path.read_text())
+    with contextlib.suppress(OSError):  # Another system.
+        for path in group_limits(Path("/proc/self/cgroup").read_text()):
+            with contextlib.suppress(OSError, ValueError):  # None, or it is the word "max".
+                yield int(path.read_text())
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     if limit != resource.RLIM_INFINITY:
         yield limit

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .case import Case
-from .case_grid import MOST_CELLS
+from .case_grid import FARTHEST
 from .errors import CaseError
 from .errors import Path as KeyPath
 from .neighbours import overlapping_boxes
@@ -26,8 +26,8 @@ def box_mistakes(case: Case, body: FilledBody) -> Iterator[CaseError]:
     """Yield where particles stand outside the box, or the region that is kept, or any grid."""
     grid = case.grid
     reach = np.abs(body.positions - np.asarray(grid.lower)).max() / grid.cell_size
-    if not reach < MOST_CELLS:
-        rule = f"is {reach:.1e} cells from the grid's origin, and {MOST_CELLS:.1e} is the most"
+    if not reach < FARTHEST:
+        rule = f"is {reach:.2e} cells from the grid's origin, and {FARTHEST:,} is the most"
         path, filling = _key(case, body)
         yield case.error(path, rule, f"give larger cells, or move grid.origin to the {filling}")
         return

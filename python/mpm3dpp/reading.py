@@ -42,7 +42,11 @@ def open_file(path: Path) -> BinaryIO:
         _refuse_other_kinds(os.stat(path).st_mode)
         # If it has just become a pipe, it is not waited for.
         handle = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NONBLOCK)
-        _refuse_other_kinds(os.fstat(handle).st_mode)
+        try:
+            _refuse_other_kinds(os.fstat(handle).st_mode)
+        except CaseError:
+            os.close(handle)
+            raise
         return os.fdopen(handle, "rb")
     except FileNotFoundError:
         raise

@@ -6,8 +6,6 @@ from __future__ import annotations
 import json as json_format
 import math
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +15,7 @@ from .checkpoints import Checkpoint, Checkpoints
 from .errors import CaseError, RunError
 from .folders import forget_last_run, only_run_in, writable_folder
 from .io.background import FRAME_SHARE, BackgroundWriter
-from .io.checkpoint import CHECKPOINT
+from .io.checkpoint import CHECKPOINT, no_checkpoint
 from .io.history import HistoryWriter
 from .io.manifest import Manifest, Status, build_manifest
 from .io.vtkhdf import RESULTS, ResultsWriter
@@ -65,7 +63,7 @@ def run_case(
     if not isinstance(case, Case):
         case = load_case(arguments.path("case", case))
     if resume and not has_checkpoint(folder):
-        Checkpoint.of(folder / CHECKPOINT)  # tells it
+        raise no_checkpoint(folder / CHECKPOINT)
     writable_folder(folder)
     with only_run_in(folder):
         manifest, late = _run(case, folder, threads, quiet or json, resume)
@@ -102,12 +100,12 @@ def _run(
     else:
         simulation = Simulation(case, threads)
     checkpoints = Checkpoints(folder, case, before)
-    with _interrupt() as stopped:
+    with Notice() as notice:
         forget_last_run(folder, checkpoint=before is None)
         begin = simulation.step
         try:
             status, reason = _write_run(
-                simulation, folder, quiet, checkpoints, before, notes, stopped
+                simulation, folder, quiet, checkpoints, before, notes, notice
             )
         except CaseError as error:  # The disk: it was no mistake when the run began.
             if simulation.step == begin:
@@ -117,7 +115,7 @@ def _run(
         manifest = _manifest(simulation, status, reason, checkpoints.wall_time, begin)
         manifest.energies = simulation.summary
         manifest.write(folder)
-        return manifest, status == "completed" and stopped()
+        return manifest, status == "completed" and notice.taken
 
 
 def _draw(folder: Path, quiet: bool) -> None:
@@ -147,7 +145,7 @@ def _write_run(
     checkpoints: Checkpoints,
     before: Checkpoint | None,
     notes: list[str],
-    stopped: Callable[[], bool],
+    notice: Notice,
 ) -> tuple[Status, str | None]:
     """Step to the end time, writing frames and history; return how it ended, and why."""
     case, core = simulation.case, simulation.core
@@ -156,19 +154,7 @@ def _write_run(
     frames = [t for t in case.frame_times() if t > core.time]
     kept = None if before is None or before.results_are_gone else before.results
     history_anew = before is not None and before.history_is_gone
-    file = ResultsWriter(
-        folder / RESULTS,
-        bodies=simulation.parts,
-        materials=simulation.materials,
-        dimension=case.grid.dimension,
-        cell_size=case.grid.cell_size,
-        origin=case.grid.lower,
-        fields=_fields(case),
-        compression=case.output.compression,
-        title=case.title,
-        case_hash=case.case_hash,
-        rows=kept,
-    )
+    file = _results_writer(simulation, folder, kept)
     history = HistoryWriter(
         folder / "history.csv",
         columns=core.history_columns,
@@ -216,7 +202,7 @@ def _write_run(
             overlapped = core.contact_summary()["overlapped_nodes"] if contact else None
             kinetic, internal = rows[-1, 3:5]
             progress.update(core.time, core.step, core.dt, kinetic, internal, overlapped)
-            if stopped():
+            if notice.taken:
                 status, reason = "interrupted", f"stopped by the user at t = {core.time:.6g} s"
             elif checkpoints.due:
                 _tell(progress, checkpoints.write(core, results, history))
@@ -224,6 +210,26 @@ def _write_run(
             _tell(progress, checkpoints.write_last(core, results, history))
     simulation.summary = history.summary()
     return status, reason
+
+
+def _results_writer(
+    simulation: Simulation, folder: Path, kept: dict[str, Any] | None
+) -> ResultsWriter:
+    """Return the writer of the frames; `kept`: those that are there, as `ResultsWriter.rows`."""
+    case = simulation.case
+    return ResultsWriter(
+        folder / RESULTS,
+        bodies=simulation.parts,
+        materials=simulation.materials,
+        dimension=case.grid.dimension,
+        cell_size=case.grid.cell_size,
+        origin=case.grid.lower,
+        fields=_fields(case),
+        compression=case.output.compression,
+        title=case.title,
+        case_hash=case.case_hash,
+        rows=kept,
+    )
 
 
 def _tell_new(progress: Progress, core: Any, told: int) -> int:
@@ -291,10 +297,3 @@ def _manifest(
         case_hash=case.case_hash,
         build=_core.build_info(),
     )
-
-
-@contextmanager
-def _interrupt() -> Iterator[Callable[[], bool]]:
-    """Within it, Ctrl-C and SIGTERM only set a flag, which the function given tells."""
-    with Notice() as notice:
-        yield lambda: notice.taken

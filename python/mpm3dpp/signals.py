@@ -69,7 +69,8 @@ class Notice:
 
     def __exit__(self, *_about: object) -> None:
         for kind, handler in self._old.items():
-            signal.signal(kind, handler)  # type: ignore[arg-type]
+            if handler is not None:  # Else it was one of C, which Python cannot set.
+                signal.signal(kind, handler)  # type: ignore[arg-type]
 
     def _take(self, kind: int, _frame: object) -> None:
         self.taken = True

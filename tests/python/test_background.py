@@ -137,6 +137,25 @@ class Breaking(FakeSimulation):
         return super().rounded_pressure()
 
 
+def test_nothing_is_written_after_the_end(tmp_path: Path) -> None:
+    results = BackgroundWriter(SlowWriter(tmp_path), room=FRAME)
+    results.close()
+    with pytest.raises(CaseError, match="is closed: no frame can be added"):
+        results.write(FakeSimulation())
+
+
+def test_a_column_that_cannot_be_made_takes_no_room(tmp_path: Path) -> None:
+    file, simulation = SlowWriter(tmp_path), Breaking()
+    simulation.step = 1
+    file.allowed.release(9)
+    results = BackgroundWriter(file, room=1)  # One column at a time.
+    with pytest.raises(MemoryError):
+        results.write(simulation)
+    with pytest.raises(CaseError, match="broken off"):
+        results.close()
+    assert results._waiting == 0
+
+
 def test_a_frame_that_breaks_off_leaves_those_before(tmp_path: Path) -> None:
     simulation, file = Breaking(), SlowWriter(tmp_path)
     file.allowed.release(9)

@@ -11,15 +11,18 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
-from commands import CASE, command, one_sentence, write
+from commands import CASE, command, mpm3dpp, one_sentence, write
 from mpm3dpp import CaseError, Simulation, load_case, shapes
 from mpm3dpp.build import build
 from mpm3dpp.case_file import MOST_BYTES
 from mpm3dpp.importers import load_any
+from mpm3dpp.machine import group_limits
 from mpm3dpp.plots import preview
+from mpm3dpp.reading import open_file
 
 POINTS = """\
 [grid]
@@ -294,6 +297,45 @@ def test_a_limit_of_memory_counts(tmp_path: Path) -> None:
         "from mpm3dpp.machine import MEMORY; assert MEMORY <= 3 << 30"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_limits_of_control_groups() -> None:
+    """Of the process's group and those around it: a batch job's is not at the top."""
+    root = "/sys/fs/cgroup"
+    two = [str(path) for path in group_limits("0::/user/job_7\n")]
+    assert two == [f"{root}{group}/memory.max" for group in ("/user/job_7", "/user", "")]
+    one = [str(path) for path in group_limits("4:cpu,memory:/job\n3:cpuset:/x\n")]
+    assert one == [f"{root}/memory{group}/memory.limit_in_bytes" for group in ("/job", "")]
+    assert list(group_limits("3:cpuset:/x\n")) == []
+
+
+def test_a_file_that_becomes_another_kind_is_closed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def opened() -> int:
+        return len(list(Path("/proc/self/fd").iterdir()))
+
+    (tmp_path / "case.toml").touch()
+    looks = Mock(side_effect=[None, CaseError("is a folder")])
+    monkeypatch.setattr("mpm3dpp.reading._refuse_other_kinds", looks)
+    before = opened()
+    with pytest.raises(CaseError, match="is a folder"):
+        open_file(tmp_path / "case.toml")
+    assert opened() == before
+
+
+def test_a_body_beyond_what_the_core_can_list(tmp_path: Path) -> None:
+    """`check` says it, with the key."""
+    for cells, fine in ((2**19 - 10, True), (2**19 + 10, False)):
+        low = round(cells * 10e-3, 2)
+        corners = f"lower = [{low}, 0], upper = [{low + 0.05}, 0.05]"
+        text = CASE.replace('lower = ["60 mm", "10 mm"], upper = ["110 mm", "60 mm"]', corners)
+        done = mpm3dpp("check", write(tmp_path, text), cwd=tmp_path)
+        assert (done.returncode == 0) == fine, done.stderr
+        if fine:
+            assert Simulation(load_case(tmp_path / "case.toml"), threads=1).advance(1) == 1
+        else:
+            assert "body.right.shape" in done.stderr and "524,288 is the most" in done.stderr
 
 
 def test_numbers_of_steps_that_no_loop_ends(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import io
 import json
@@ -14,9 +15,9 @@ import subprocess
 import sys
 import time
 import zipfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -92,12 +93,14 @@ def interrupted(case: Case, folder: Path, looks: int, monkeypatch: pytest.Monkey
     """Run a case as if Ctrl-C had been pressed after so many looks at it."""
     left = iter(range(looks))
 
-    @contextmanager
-    def interrupt() -> Iterator[Callable[[], bool]]:
-        yield lambda: next(left, None) is None
+    class Pressed(contextlib.nullcontext[Any]):
+        taken = property(lambda _: next(left, None) is None)
+
+        def __enter__(self) -> Pressed:
+            return self
 
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr("mpm3dpp.run._interrupt", interrupt)
+        patch.setattr("mpm3dpp.run.Notice", Pressed)
         run_case(case, folder, threads=1, pictures=False)
 
 
@@ -273,6 +276,18 @@ def finished(folder: Path, text: str = CASE) -> Path:
     return folder / "out" / "checkpoint.zip"
 
 
+def test_a_run_whose_particles_have_all_left_goes_on(tmp_path: Path) -> None:
+    """Its next step is infinite."""
+    kept = 'keep = { lower = ["-20 mm", "-20 mm"], upper = ["120 mm", "80 mm"] }'
+    text = CASE.replace("[run]", kept + "\n[run]").replace("-5 m/s", "5 m/s")
+    text = text.replace("8 ms", "40 ms")
+    path = finished(tmp_path, text)
+    with open_results(tmp_path / "out") as results:
+        assert (results.arrays(-1)["failed"] == 4).all()
+    later = load_case(write(tmp_path, text.replace("40 ms", "50 ms")))
+    assert run_case(later, path.parent, threads=1, pictures=False, resume=True).end_time == 50e-3
+
+
 def resumed(folder: Path, text: str) -> str:
     """Try to go on with a case; return what is said against it."""
     with pytest.raises(CaseError) as error:
@@ -397,8 +412,11 @@ def test_files_that_are_gone(tmp_path: Path, capfd: pytest.CaptureFixture[str]) 
     with open_results(out) as results:
         assert results.times[0] == 8e-3 and results.times[-1] == pytest.approx(9e-3)
         assert "body" in results.arrays(-1)
+        size = results.arrays(-1)["size"]  # That of the start, though bodies are pressed by now.
     assert read_history(out)["time"][-1] == 9e-3
     whole = run_case(later, tmp_path / "whole", threads=1, pictures=False)
+    with open_results(tmp_path / "whole") as results:
+        np.testing.assert_array_equal(size, results.arrays(0)["size"])
     assert done.energies["initial"] == whole.energies["initial"]
     # What tells where frames are can be made again from them.
     (out / "results.vtkhdf").unlink()

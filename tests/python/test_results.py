@@ -11,6 +11,7 @@ import subprocess
 import sys
 import textwrap
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -387,6 +388,45 @@ def test_closed_results(tmp_path: Path) -> None:
         with pytest.raises(CaseError, match="has been closed; open it again with open_results"):
             use()
     assert len(results) == 5 and results.times[1] == 4e-5
+
+
+def test_frames_of_a_run_before_are_nobodys(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They are gone before the new file tells of a run: a kill in between leaves none of them."""
+    run(tmp_path)
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr("mpm3dpp.io.vtkhdf.write_master", Mock(side_effect=KeyboardInterrupt))
+        writer(tmp_path, title="another")
+    assert not list((tmp_path / "results.frames").glob("*.h5"))
+    with pytest.raises(CaseError):
+        open_results(tmp_path)
+
+
+def test_arrays_that_a_frame_cannot_hold(tmp_path: Path) -> None:
+    places = np.zeros((4, 2))
+    with writer(tmp_path) as results:
+        for wrong, sentence in (
+            ({"position": places, "mass": np.ones(3)}, "'mass' has 3 rows, and 'position' has 4"),
+            ({"mass": np.ones(3)}, "needs the array 'position'"),
+            ({}, "needs the array 'position'"),
+        ):
+            with pytest.raises(CaseError, match=sentence):
+                results.append(0.0, 0, wrong)
+        results.append(0.0, 0, {"position": places})
+    assert len(open_results(tmp_path)) == 1
+
+
+def test_a_first_frame_that_failed_does_not_take_the_constants_with_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    simulation = FakeSimulation()
+    with writer(tmp_path) as results:
+        with monkeypatch.context() as patch, pytest.raises(OSError):
+            patch.setattr("mpm3dpp.io.vtkhdf.write_frame", Mock(side_effect=OSError()))
+            results.write(simulation)
+        results.write(simulation)
+    assert {"body", "material", "size"} <= open_results(tmp_path).arrays(0).keys()
 
 
 def test_other_arrays_than_those_of_the_first_frame(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from commands import CASE, command, write
-from mpm3dpp import Case, Simulation
+from mpm3dpp import Case, Simulation, signals
 
 LONG = CASE.replace("8 ms", "1000 s")
 KINDS = (signal.SIGINT, signal.SIGTERM)
@@ -134,6 +134,44 @@ def test_a_handler_that_only_takes_notice_gets_the_program_back() -> None:
         assert simulation.step == made
     finally:
         signal.signal(signal.SIGTERM, old)
+
+
+def test_a_simulation_in_another_thread_takes_no_signal_away() -> None:
+    small, big = (Simulation(Case.from_text(LONG), threads=1) for _ in range(2))
+    ended = threading.Event()
+
+    def many_short_ones() -> None:
+        while not ended.is_set():
+            small.core.advance(1, 1e9)
+            small.core.history()
+
+    worker = threading.Thread(target=many_short_ones)
+    old = signal.signal(signal.SIGTERM, lambda *_: None)
+    worker.start()
+    try:
+        threading.Timer(0.2, os.kill, [os.getpid(), signal.SIGTERM]).start()
+        assert 0 < big.advance(10**6) < 10**6
+    finally:
+        ended.set()
+        worker.join()
+        signal.signal(signal.SIGTERM, old)
+
+
+def test_a_handler_of_another_language_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Python tells None of it, and cannot set it again."""
+    real = signal.signal
+    before = {kind: signal.getsignal(kind) for kind in KINDS}
+
+    def told_none(kind: signal.Signals, new: signal.Handlers) -> None:
+        real(kind, new)
+
+    monkeypatch.setattr(signal, "signal", told_none)
+    try:
+        with signals.Notice():
+            pass
+    finally:
+        for kind, handler in before.items():
+            real(kind, handler)
 
 
 def test_a_second_thread_is_refused() -> None:

@@ -260,4 +260,5 @@ def test_many_bodies_at_a_node_are_told_and_do_not_hold_up_a_step() -> None:
     warning = told(simulation)["crowded node"]
     assert warning.is_error and warning.count == 3
     assert f"{count * count + 1} bodies meet at one node" in warning.message
+    assert np.array(warning.position) == pytest.approx(0.0, abs=1e-12) and warning.particle == -1
     assert "smaller cells" in warning.message

@@ -92,12 +92,16 @@ void ContactGrid<D>::forget() {
 }
 
 template <int D>
-Crowd ContactGrid<D>::crowd() const {
+Crowd ContactGrid<D>::crowd(const TileGrid<D>& grid) const {
   Crowd most;
   for (const Part& part : parts_)
-    for (const ContactNode& node : part.nodes)
-      if (static_cast<int>(node.sides) > most.bodies)
-        most = {static_cast<int>(node.sides), part.sides[node.first_side].body};
+    for (const ContactNode& node : part.nodes) {
+      if (static_cast<int>(node.sides) <= most.bodies) continue;
+      most.bodies = node.sides;
+      most.body = part.sides[node.first_side].body;
+      const Vec<double, D> x = grid.position_of(place_of(grid, node));
+      for (int a = 0; a < D; ++a) most.position[a] = x[a];
+    }
   return most;
 }
 

@@ -41,8 +41,9 @@ struct PairRecord {
 
 /// The node at which most bodies meet.
 struct Crowd {
-  int bodies = 0;  // at the node
-  int body = -1;   // one of them
+  int bodies = 0;           // at the node
+  int body = -1;            // one of them
+  double position[3] = {};  // of the node [m]
 };
 
 /// Sums over all contacts of one step, for the ledger [J].
@@ -119,7 +120,7 @@ class ContactGrid {
   std::size_t overlapped_nodes_max() const { return nodes_max_; }
   int bodies_per_node_max() const { return bodies_max_; }
   /// Of the nodes of this step where bodies may act on each other.
-  Crowd crowd() const;
+  Crowd crowd(const TileGrid<D>& grid) const;
   /// Solutions at nodes with several bodies that stopped short of the tolerance, since the start.
   std::size_t unconverged() const { return unconverged_.load(); }
   std::size_t bytes() const;

@@ -125,14 +125,16 @@ void SimulationOf<D>::check_rest(double cell_size, const Index<D>& walls) const 
     same = same && (grid.walls.cells[a] == walls[a] >> std::min(doublings_, 31));
   check(same && grid.cell_size == settings_.cell_size, "its grid is damaged");
   check(domain_.step >= 0 && domain_.step < std::int64_t{1} << 62 && finite(domain_.time) &&
-            domain_.time >= 0.0 && finite(domain_.time_step) && finite(next_time_step_) &&
-            next_time_step_ > 0.0 && finite(domain_.gravity),
+            domain_.time >= 0.0 && finite(domain_.time_step) && next_time_step_ > 0.0 &&
+            finite(domain_.gravity),
         "its time is damaged");
   for (const Body<D>& body : domain_.bodies)
     for (std::size_t k = 0; k < body.active(); ++k)
-      for (int a = 0; a < D; ++a)
-        check(std::abs(body.v(a)[body.order[k]]) * next_time_step_ < farthest * grid.cell_size,
+      for (int a = 0; a < D; ++a) {
+        const double v = body.v(a)[body.order[k]];  // The next step is infinite where none moves.
+        check(v == 0.0 || std::abs(v) * next_time_step_ < farthest * grid.cell_size,
               "its particles are damaged");
+      }
   check(domain_.sums.size() == grid.patches.size(), "its sums are damaged");
   for (const PatchSums<D>& s : domain_.sums) {
     StateStream::check_flag(s.stress.negative_volume);

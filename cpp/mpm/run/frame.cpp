@@ -72,6 +72,21 @@ void SimulationOf<D>::round_von_mises(std::span<float> to) const {
   });
 }
 
+/// The edge of the square or cube that a particle was at the start.
+template <int D>
+void SimulationOf<D>::round_size(std::span<float> to) const {
+  std::size_t first = 0;
+  for (const Body<D>& b : domain_.bodies) {
+    const std::size_t end = first + b.count();
+    if (to.size() < end) throw std::invalid_argument("round_size: wrong size");
+    for (std::size_t k = 0; k < b.count(); ++k) {
+      const double volume = b.mass()[k] / b.initial_density;
+      to[first + b.id[k]] = static_cast<float>(D == 2 ? std::sqrt(volume) : std::cbrt(volume));
+    }
+    first = end;
+  }
+}
+
 template class SimulationOf<2>;
 template class SimulationOf<3>;
 

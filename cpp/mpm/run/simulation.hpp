@@ -181,6 +181,7 @@ class Simulation {
   /// (von Mises, 1913), of all particles [Pa], rounded to floats.
   virtual void round_pressure(std::span<float> to) const = 0;
   virtual void round_von_mises(std::span<float> to) const = 0;
+  virtual void round_size(std::span<float> to) const = 0;
   virtual void set_gravity(
       const std::array<TimeFunction, 3>& gravity) = 0;  // [m/s^2], from the next step on
   virtual void set_velocity(int body, std::span<const double> velocities) = 0;

@@ -58,6 +58,7 @@ class SimulationOf final : public Simulation {
                     std::span<float> to) const override;
   void round_pressure(std::span<float> to) const override;
   void round_von_mises(std::span<float> to) const override;
+  void round_size(std::span<float> to) const override;
   void set_gravity(const std::array<TimeFunction, 3>& gravity) override;
   void set_velocity(int body, std::span<const double> velocities) override;
 
@@ -94,7 +95,8 @@ class SimulationOf final : public Simulation {
   void watch_crowd();
   void look();
   void judge();
-  void note(const Note& found);
+  void note(Note found);
+  std::string group_name(int first) const;
   void note_at(Note found, int b, std::size_t row);
   std::size_t row_of(const Body<D>& b, std::int64_t particle) const;
   Failure failure_at(const std::string& kind, std::size_t body, std::size_t row,

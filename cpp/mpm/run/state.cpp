@@ -108,7 +108,7 @@ std::array<double, 3> SimulationOf<D>::momentum() const {
 template <int D>
 Limiter SimulationOf<D>::limiter() const {
   Limiter result;
-  if (domain_.sums.size() != domain_.grid.patches.size()) return result;
+  if (domain_.sums.empty() || domain_.sums.size() != domain_.grid.patches.size()) return result;
   std::size_t fastest = 0;
   for (std::size_t p = 1; p < domain_.sums.size(); ++p)
     if (domain_.sums[p].stress.fastest > domain_.sums[fastest].stress.fastest) fastest = p;

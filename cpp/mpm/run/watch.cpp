@@ -13,15 +13,17 @@ constexpr double beyond = 0.1;  // of a cell, behind a wall: GIMP may push a cen
 // At a node: each meets each, 435 pairs. Equal spheres have twelve neighbours, grains of two cells
 // ten.
 constexpr int many_bodies = 30;
-constexpr std::array face_names = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
 std::size_t number(int k) { return static_cast<std::size_t>(k); }
 
 }  // namespace
 
-/// Count something that is so, and note it if that is new.
+/// Count something that is so about a body, and note it if that is new.
 template <int D>
-void SimulationOf<D>::note(const Note& found) {
+void SimulationOf<D>::note(Note found) {
+  found.group = body(found.body).group;
+  found.step = domain_.step;
+  found.time = domain_.time;
   for (Note& known : notes_)
     if (known.kind == found.kind && known.group == found.group && known.face == found.face) {
       ++known.count;
@@ -37,10 +39,7 @@ template <int D>
 void SimulationOf<D>::note_at(Note found, int b, std::size_t row) {
   const Body<D>& at = body(b);
   found.body = b;
-  found.group = at.group;
   found.particle = at.id[row];
-  found.step = domain_.step;
-  found.time = domain_.time;
   for (int a = 0; a < D; ++a) found.position[number(a)] = at.x(a)[row];
   note(found);
 }
@@ -49,15 +48,16 @@ void SimulationOf<D>::note_at(Note found, int b, std::size_t row) {
 template <int D>
 void SimulationOf<D>::watch_crowd() {
   if (domain_.contact.bodies_per_node_max() <= many_bodies) return;
-  const Crowd most = domain_.contact.crowd();
+  const Crowd most = domain_.contact.crowd(domain_.grid);
   if (most.bodies <= many_bodies) return;
   for (Note& known : notes_)
     if (known.kind == NoteKind::crowd) {
       ++known.count;
       return;
     }
-  note_at({.kind = NoteKind::crowd, .value = static_cast<double>(most.bodies)}, most.body,
-          body(most.body).order[0]);
+  Note found{.kind = NoteKind::crowd, .body = most.body, .value = static_cast<double>(most.bodies)};
+  std::copy(std::begin(most.position), std::end(most.position), found.position.begin());
+  note(found);
 }
 
 /// Judge the step that has been made, by the ledger and the next time step.
@@ -90,6 +90,14 @@ std::size_t SimulationOf<D>::row_of(const Body<D>& b, std::int64_t particle) con
   std::size_t row = 0;
   while (static_cast<std::int64_t>(b.id[row]) != particle) ++row;
   return row;
+}
+
+/// The body, and that it stands for all of its entry.
+template <int D>
+std::string SimulationOf<D>::group_name(int first) const {
+  const bool several = std::ranges::any_of(
+      domain_.bodies, [&](const Body<D>& b) { return b.group == first && &b != &body(first); });
+  return "body \"" + body(first).name + '"' + (several ? " and those grouped with it" : "");
 }
 
 /// Look at the places and volumes of all particles, in the order of the bodies' lists, which no
@@ -153,10 +161,10 @@ void SimulationOf<D>::judge() {
       if (!(share > limit) || failure_) return;
       std::ostringstream text;
       text.precision(4);
-      text << 100.0 * share << " % of the particles of body \"" << body(static_cast<int>(g)).name
+      text << 100.0 * share << " % of the particles of " << group_name(static_cast<int>(g))
            << (kind == NoteKind::volume
-                   ? "\" have less than 0.01 or more than 100 times their initial volume"
-                   : "\" lie beyond closed walls of the box")
+                   ? " have less than 0.01 or more than 100 times their initial volume"
+                   : " lie beyond closed walls of the box")
            << ", and run." << (kind == NoteKind::volume ? "volume_limit" : "outside_limit")
            << " allows " << 100.0 * limit
            << " %; give smaller steps or cells, or a stiffer material";
@@ -168,74 +176,6 @@ void SimulationOf<D>::judge() {
     for (int face = 0; face < 2 * D; ++face)
       tell(NoteKind::left_box, sight.left[number(face)], face, 1.0);
   }
-}
-
-template <int D>
-std::vector<Warning> SimulationOf<D>::warnings() const {
-  std::vector<Warning> told;
-  for (const Note& n : notes_) {
-    Warning& w = told.emplace_back();
-    w.kind = note_names[number(static_cast<int>(n.kind))];
-    w.body = n.body;
-    w.particle = n.particle;
-    w.step = n.step;
-    w.time = n.time;
-    w.position = n.position;
-    w.share = n.share;
-    w.count = n.count;
-    w.is_error = n.kind != NoteKind::left_box;
-    std::ostringstream text;
-    text.precision(4);
-    const bool loaded = std::any_of(domain_.loads.begin(), domain_.loads.end(),
-                                    [&](const auto& load) { return load.body == n.body; });
-    const char* const torn =
-        loaded
-            ? "a load may have torn off a part of the surface: lower it, let it rise slowly, or "
-              "give smaller cells"
-            : "a particle may have been torn off: give its material a failure model with action = "
-              "\"erode\", a spall_strength or artificial viscosity, or lower run.time_step_factor";
-    const auto per_cent = [&] { text << 100.0 * n.share << " % of the particles"; };
-    switch (n.kind) {
-      case NoteKind::time_step:
-        text << "the time step has fallen to " << n.value
-             << " s, less than a tenth of the median of the last 1000 (" << n.against
-             << " s), for the fastest particle; " << torn;
-        break;
-      case NoteKind::energy_made:
-        text << "one step has made " << n.value
-             << " J by numerical error, more than 5 % of the largest energy brought in so far ("
-             << n.against << " J); " << torn;
-        break;
-      case NoteKind::load_energy:
-        text << "loads have done the work " << n.value
-             << " J in one step, more than 5 % of the largest energy brought in so far ("
-             << n.against << " J) and ten times the median; " << torn;
-        break;
-      case NoteKind::outside:
-        per_cent();
-        text << " lie beyond closed walls of the box, this one " << n.value
-             << " cells; give smaller steps or cells, or a stiffer material";
-        break;
-      case NoteKind::volume:
-        per_cent();
-        text << " have less than 0.01 or more than 100 times their initial volume, this one "
-             << n.value << "; " << torn;
-        break;
-      case NoteKind::crowd:
-        text << n.value << " bodies meet at one node, and the time of a step grows with the square "
-             << "of their number; give smaller cells, larger grains, or one body in place of many";
-        break;
-      case NoteKind::left_box:
-        text << "particles leave the box through its open face " << face_names[number(n.face)]
-             << " (" << 100.0 * n.share << " % at most so far)";
-        break;
-    }
-    text << " (body \"" << body(n.body).name << "\", particle " << n.particle << ", at";
-    for (int a = 0; a < D; ++a) text << ' ' << n.position[number(a)];
-    text << " m, step " << n.step << ", t = " << n.time << " s)";
-    w.message = text.str();
-  }
-  return told;
 }
 
 template class SimulationOf<2>;

@@ -60,6 +60,7 @@ class StepWatch {
   /// The median of the last time steps, or of earlier ones if that was larger, if `time_step` lies
   /// below a tenth of it, else 0: a step may fall slowly too.
   double median_fallen_below(double time_step) {
+    if (!std::isfinite(time_step)) return 0.0;  // All particles are gone.
     const double found = time_step < drop * median_ ? median_ : 0.0;
     steps_.add(time_step);
     // Found anew now and then: some ten operations a step.

@@ -68,6 +68,8 @@ class BackgroundWriter:
             CaseError: an earlier frame could not be written, or there is no such column.
         """
         self._tell()
+        if not self._thread.is_alive():
+            raise self._results.closed()
         frame = self._results.frame_of(simulation)
         with self._changed:
             self._unwritten += 1
@@ -76,7 +78,12 @@ class BackgroundWriter:
         try:
             for column in frame.columns:
                 self._wait_for_room(column.bytes)
-                self._handed.put(column._replace(make=_Once(column.make())))
+                try:
+                    made = _Once(column.make())
+                except BaseException:
+                    self._give_back(column.bytes)
+                    raise
+                self._handed.put(column._replace(make=made))
         except BaseException:
             end = CaseError("a frame was broken off while it was copied")
             raise
@@ -131,6 +138,11 @@ class BackgroundWriter:
             self._changed.wait_for(lambda: self._waiting == 0 or self._waiting + size <= self._room)
             self._waiting += size
 
+    def _give_back(self, size: int) -> None:
+        with self._changed:
+            self._waiting -= size
+            self._changed.notify_all()
+
     def _taken(self) -> Iterator[Column]:
         """Take the columns of a frame as they come; each has been written when the next is."""
         while (got := self._handed.get()) is not None:
@@ -138,9 +150,7 @@ class BackgroundWriter:
                 raise got
             yield got
             got.make.array = None
-            with self._changed:
-                self._waiting -= got.bytes
-                self._changed.notify_all()
+            self._give_back(got.bytes)
 
     def _work(self) -> None:
         while (frame := self._handed.get()) is not None:

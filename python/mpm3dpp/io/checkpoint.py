@@ -54,6 +54,15 @@ def write_checkpoint(
             core.save(state.write)
 
 
+def no_checkpoint(path: Path) -> DamagedError:
+    """Return the mistake that there is none."""
+    remedy = (
+        "give the --out of the run that is to go on; one that was killed or met a full disk before "
+        "its first checkpoint has none: leave out --resume"
+    )
+    return DamagedError(f"there is no checkpoint '{path}'", remedy)
+
+
 def read_about(path: Path) -> dict[str, Any]:
     """Return what was written with a checkpoint beside the state.
 
@@ -61,11 +70,7 @@ def read_about(path: Path) -> dict[str, Any]:
         DamagedError: the file is missing or is not a checkpoint.
     """
     if not path.is_file():
-        remedy = (
-            "give the --out of the run that is to go on; one that was killed or met a full disk "
-            "before its first checkpoint has none: leave out --resume"
-        )
-        raise DamagedError(f"there is no checkpoint '{path}'", remedy)
+        raise no_checkpoint(path)
     try:
         with zipfile.ZipFile(path) as archive:
             return dict(json.loads(archive.read(_stored(archive, "about.json"))))

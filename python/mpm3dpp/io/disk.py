@@ -36,7 +36,7 @@ def cannot_write(path: Path, error: Exception) -> CaseError:
         error: what the system (or HDF5) said.
     """
     number = getattr(error, "errno", None)
-    reason = os.strerror(number) if number else str(error).splitlines()[0]
+    reason = os.strerror(number) if number else (str(error) or "unknown reason").splitlines()[0]
     remedy = _REMEDIES.get(number or 0, "check the disk and the folder, or choose another --out")
     return CaseError(f"cannot write '{path}': {reason.lower()}; {remedy}")
 
@@ -97,12 +97,21 @@ def replacing(path: Path, keep: Path | None = None) -> Iterator[BinaryIO]:
                 file.flush()
                 os.fsync(file.fileno())
             if keep is not None and path.exists():
-                path.replace(keep)
+                _second_name(path, keep)
             new.replace(path)
         except BaseException:
             with contextlib.suppress(OSError):
                 new.unlink(missing_ok=True)
             raise
+
+
+def _second_name(path: Path, name: Path) -> None:
+    """Let a file stand under another name too; under that alone on a disk without such names."""
+    try:
+        name.unlink(missing_ok=True)
+        os.link(path, name)
+    except OSError:
+        path.replace(name)
 
 
 def write_atomically(path: Path, text: str) -> None:

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mpm3dpp.errors import CaseError
+from mpm3dpp.io.rows import FROM_VTK
 
 STANDARD = ("position", "velocity", "stress", "pressure", "von_mises", "body", "material")
 """Arrays that every frame has."""
@@ -33,7 +34,7 @@ UNITS = {
 }
 """Unit of each standard array; the columns of the core bring their own."""
 
-_PLACES = {2: (0, 1), 4: (0, 1, 2, 3), 6: (0, 1, 2, 4, 5, 3)}
+_PLACES = {2: (0, 1), 4: (0, 1, 2, 3), 6: FROM_VTK}
 """Where VTK has our components: vectors have three there, tensors xx yy zz xy yz xz."""
 
 
@@ -65,14 +66,12 @@ class Frame:
         time: [s].
         step: number of steps made until then.
         particles: count.
-        bytes: of all columns together.
         columns: "position" first; all bodies one after another in their original order.
     """
 
     time: float
     step: int
     particles: int
-    bytes: int
     columns: Iterable[Column]
 
 
@@ -98,7 +97,7 @@ def frame_of(
         VTK's order xx yy zz xy yz xz; pressure and von_mises [Pa] (n,); further columns with their
         own number of components; and, if constant: body and material (n,); grain (n,), the body's
         number among those of its name, if any name comes twice; size [m] (n,), the edge of the
-        square or cube of the particle's volume.
+        square or cube of the particle's volume at the start.
 
     Raises:
         CaseError: no body has a column of that name.
@@ -120,8 +119,7 @@ def frame_of(
     if constants:
         fixed = _constants(simulation, names, materials)
         columns += [column(name, make) for name, make in fixed.items()]
-    total = sum(column.bytes for column in columns)
-    return Frame(float(simulation.time), int(simulation.step), count, total, columns)
+    return Frame(float(simulation.time), int(simulation.step), count, columns)
 
 
 def column_units(simulation: Any) -> dict[str, str]:
@@ -172,21 +170,10 @@ def _constants(
     def of_body(numbers: Sequence[int]) -> Callable[[], np.ndarray]:
         return lambda: np.repeat(np.asarray(numbers, dtype=np.int32), counts)
 
-    dimension = _components(simulation, "position")
-
-    def sizes() -> np.ndarray:
-        found = np.empty(sum(counts), dtype=np.float32)
-        end = 0
-        for b, count in enumerate(counts):
-            volumes = np.asarray(simulation.column(b, "volume")).reshape(-1)
-            found[end : end + count] = volumes ** (1.0 / dimension)
-            end += count
-        return found
-
     different, numbers = numbered(names)
     made = {"body": of_body(numbers), "material": of_body(materials)}
     if len(different) < len(numbers):
         firsts = [numbers.index(k) for k in range(len(different))]
         made["grain"] = of_body([b - firsts[k] for b, k in enumerate(numbers)])
-    made["size"] = sizes
+    made["size"] = lambda: simulation.rounded_size()[:, 0]
     return made

@@ -13,12 +13,10 @@ import numpy as np
 from mpm3dpp import arguments
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.frame_file import frame_path, read_arrays, read_info
+from mpm3dpp.io.rows import FROM_VTK, TO_VTK
 
 if TYPE_CHECKING:
     import pyvista
-
-FROM_VTK = (0, 1, 2, 4, 5, 3)
-"""Our order of symmetric tensors (xx yy zz yz xz xy) taken from VTK's (xx yy zz xy yz xz)."""
 
 
 class Results:
@@ -150,9 +148,7 @@ class Results:
         arrays = self.arrays(frame)
         cloud = pyvista.PolyData(arrays.pop("position"))
         for name, values in arrays.items():
-            cloud.point_data[name] = (
-                values[:, np.argsort(FROM_VTK)] if _is_tensor(values) else values
-            )
+            cloud.point_data[name] = values[:, TO_VTK] if _is_tensor(values) else values
         cloud.field_data["time"] = [float(self.times[frame])]
         cloud.field_data["step"] = [int(self.steps[frame])]
         return cloud

@@ -7,6 +7,8 @@ import numpy as np
 
 TO_VTK = (0, 1, 2, 5, 3, 4)
 """Order of VTK's symmetric tensors (xx yy zz xy yz xz) taken from ours (xx yy zz yz xz xy)."""
+FROM_VTK = (0, 1, 2, 4, 5, 3)
+"""Our order taken from VTK's: where VTK has each of our components."""
 
 
 def as_stored(array: np.ndarray) -> np.ndarray:

@@ -88,7 +88,6 @@ class ResultsWriter:
         self._level = compression
         self._bodies = list(bodies)
         names, self._materials = numbered(materials)
-        self._dimension = dimension
         self._frames: list[FrameInfo] = []
         self._checks: list[int] = []  # of the frames' files
         self._told = 0  # frames that the file tells of
@@ -110,15 +109,12 @@ class ResultsWriter:
         if rows is None:
             with writing(self.path):  # First, for nobody may take old frames for those of this run.
                 self.path.unlink(missing_ok=True)
+            self._remove_frames()
         else:
             self._go_on(rows)
         make_folder(self._folder)
         self._tell()
-        for frame in reversed(frame_numbers(self._folder)):  # So that none is left without another.
-            if frame >= self.frames:
-                old = frame_path(self._folder, frame)
-                with writing(old):
-                    old.unlink(missing_ok=True)
+        self._remove_frames()
         with writing(self._folder):
             for left in self._folder.glob(unfinished(Path("*.h5")).name):
                 left.unlink(missing_ok=True)
@@ -140,7 +136,19 @@ class ResultsWriter:
 
     def write(self, simulation: Any) -> None:
         """Append the present state of the core's `Simulation` as a frame."""
-        self.add(self.frame_of(simulation))
+        try:
+            self.add(self.frame_of(simulation))
+        except BaseException:
+            self._knows_constants = "size" in self._constant
+            raise
+
+    def _remove_frames(self) -> None:
+        """Remove the frames that are none of this run's."""
+        for frame in reversed(frame_numbers(self._folder)):  # So that none is left without another.
+            if frame >= self.frames:
+                old = frame_path(self._folder, frame)
+                with writing(old):
+                    old.unlink(missing_ok=True)
 
     def frame_of(self, simulation: Any) -> Frame:
         """Return the present state of the core's `Simulation`, as `fields.frame_of`.
@@ -162,15 +170,18 @@ class ResultsWriter:
                 needed. Every frame must bring the same names as the first.
 
         Raises:
-            CaseError: no room on the disk; the frames written before stay readable.
+            CaseError: no room on the disk; the frames written before stay readable. Or an array
+                that a frame cannot hold.
         """
+        if "position" not in arrays:
+            raise CaseError("a frame needs the array 'position'")
         stored = [as_stored(array) for array in arrays.values()]
         columns = [
             Column(name, array.nbytes, partial(np.asarray, array))
             for name, array in zip(arrays, stored, strict=True)
         ]
         columns.sort(key=lambda column: column.name != "position")
-        self.add(Frame(time, step, len(stored[0]), sum(a.nbytes for a in stored), columns))
+        self.add(Frame(time, step, len(arrays["position"]), columns))
 
     def add(self, frame: Frame) -> None:
         """Append a frame; each of its columns is asked for when the one before is in the file.
@@ -179,7 +190,7 @@ class ResultsWriter:
         and what the columns raise; the frames written before stay.
         """
         if self._closed:
-            raise CaseError(f"'{self.path}' is closed: no frame can be added to it any more")
+            raise self.closed()
         number = self.frames
         info = FrameInfo(float(frame.time), int(frame.step), frame.particles)
         info.elsewhere = {name: where for name, (_, where) in self._constant.items()}
@@ -215,10 +226,17 @@ class ResultsWriter:
                 if digest == self._constant.get(name, (b"", 0))[0]:
                     continue
                 new[name] = digest
+            if len(column) != info.count:
+                rule = f"'{name}' has {len(column):,} rows, and 'position' has {info.count:,}"
+                raise CaseError(f"a frame of '{self.path}': {rule}")
             info.elsewhere.pop(name, None)
             yield name, column
         if self._frames and self._frames[0].names != info.names:
             raise CaseError(f"a frame of '{self.path}' must have the arrays of the first one")
+
+    def closed(self) -> CaseError:
+        """Return the mistake of a frame that comes after the end."""
+        return CaseError(f"'{self.path}' is closed: no frame can be added to it any more")
 
     def close(self) -> None:
         """Let the file tell of all frames. Closing twice does nothing."""

@@ -105,7 +105,7 @@ def save(figure: Figure, path: Path) -> Path:
     picture_path(path)
     make_folder(path.parent)
     with replacing(path) as file:
-        form = path.suffix.lstrip(".") or "png"
+        form = path.suffix.lstrip(".")
         figure.savefig(file, format=form, bbox_inches="tight", pad_inches=0.06)
     return path
 

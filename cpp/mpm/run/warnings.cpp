@@ -1,0 +1,99 @@
+// The part of a simulation that puts what it has noted into sentences.
+#include <array>
+#include <sstream>
+
+#include "mpm/run/simulation_of.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::array face_names = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+constexpr const char* crushed = "give smaller steps or cells, or a stiffer material";
+
+const char* remedy_for_torn(bool loaded) {
+  return loaded
+             ? "a load may have torn off a part of the surface: lower it, let it rise slowly, or "
+               "give smaller cells"
+             : "a particle may have been torn off: give its material a failure model with action "
+               "= \"erode\", a spall_strength or artificial viscosity, or lower "
+               "run.time_step_factor";
+}
+
+/// What is so, and what can be done. `whose`: the body, or all of its entry.
+std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded) {
+  std::ostringstream text;
+  text.precision(4);
+  const double per_cent = 100.0 * n.share;
+  const char* const torn = remedy_for_torn(loaded);
+  switch (n.kind) {
+    case NoteKind::time_step:
+      text << "the time step has fallen to " << n.value << " s, less than a tenth of " << n.against
+           << " s, the largest median of 1000 steps so far, for the fastest particle; " << torn;
+      break;
+    case NoteKind::energy_made:
+      text << "one step has made " << n.value
+           << " J by numerical error, more than 5 % of the largest energy brought in so far ("
+           << n.against << " J); " << torn;
+      break;
+    case NoteKind::load_energy:
+      text << "loads have done the work " << n.value
+           << " J in one step, more than 5 % of the largest energy brought in so far (" << n.against
+           << " J) and ten times the median; " << torn;
+      break;
+    case NoteKind::outside:
+      text << per_cent << " % of the particles of " << whose
+           << " lie beyond closed walls of the box, this one " << n.value << " cells; " << crushed;
+      break;
+    case NoteKind::volume:
+      text << per_cent << " % of the particles of " << whose
+           << " have less than 0.01 or more than 100 times their initial volume, this one "
+           << n.value << "; " << (n.value < 1.0 ? crushed : torn);
+      break;
+    case NoteKind::crowd:
+      text << n.value << " bodies meet at one node, and the time of a step grows with the square "
+           << "of their number; give smaller cells, larger grains, or one body in place of many";
+      break;
+    case NoteKind::left_box:
+      text << "particles of " << whose << " leave the box through its open face "
+           << face_names[static_cast<std::size_t>(n.face)] << " (" << per_cent
+           << " % at most so far)";
+      break;
+  }
+  return text.str();
+}
+
+}  // namespace
+
+template <int D>
+std::vector<Warning> SimulationOf<D>::warnings() const {
+  std::vector<Warning> told;
+  for (const Note& n : notes_) {
+    Warning& w = told.emplace_back();
+    w.kind = note_names[static_cast<std::size_t>(n.kind)];
+    w.body = n.body;
+    w.particle = n.particle;
+    w.step = n.step;
+    w.time = n.time;
+    w.position = n.position;
+    w.share = n.share;
+    w.count = n.count;
+    w.is_error = n.kind != NoteKind::left_box;
+    const bool loaded =
+        std::ranges::any_of(domain_.loads, [&](const auto& load) { return load.body == n.body; });
+    std::ostringstream text;
+    text.precision(4);
+    text << what_and_remedy(n, group_name(n.group), loaded) << " (body \"" << body(n.body).name
+         << "\", ";
+    if (n.particle >= 0) text << "particle " << n.particle << ", ";
+    text << "at";
+    for (std::size_t a = 0; a < D; ++a) text << ' ' << n.position[a];
+    text << " m, step " << n.step << ", t = " << n.time << " s)";
+    w.message = text.str();
+  }
+  return told;
+}
+
+template std::vector<Warning> SimulationOf<2>::warnings() const;
+template std::vector<Warning> SimulationOf<3>::warnings() const;
+
+}  // namespace mpm
