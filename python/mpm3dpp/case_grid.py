@@ -171,6 +171,12 @@ class Grid(CaseModel):
                     "give a smaller box, or larger cells, or no box: the grid has no bounds then"
                 )
                 yield violation(rule, remedy, value=box.upper[d], path=path)
+            elif cells < 1.0 - _WHOLE:
+                size = f"{self.cell_size:g} m"
+                rule = f"is less than one cell from lower: grid.cell_size = {size}"
+                yield violation(
+                    rule, 'a plain number is in m: "2 mm"', value=box.upper[d], path=path
+                )
             elif abs(cells - round(cells)) > _WHOLE * max(1.0, cells):
                 near = box.lower[d] + max(1, round(cells)) * self.cell_size
                 rule = f"must be a whole number of cells from lower (it is {cells:.4f} cells away)"

@@ -184,11 +184,12 @@ def plot(
     out: Annotated[Path | None, typer.Option(help="Folder for the pictures.")] = None,
 ) -> None:
     """Make the pictures of a run again."""
-    from .plots import plot_results
+    from .plots.run import draw_all
 
     if not folder.is_dir():
-        raise CaseError("there is no such folder", "give the --out of a run", place=str(folder))
-    for picture in plot_results(folder, frame=frame, animation=animation, colour=colour, out=out):
+        rule = "is not a folder" if folder.exists() else "there is no such folder"
+        raise CaseError(rule, "give the --out of a run", place=str(folder))
+    for picture in draw_all(folder, frame, animation, colour, out):
         typer.echo(picture)
 
 

@@ -18,6 +18,9 @@ from .materials import Failure, catalogue, state_columns
 from .plots.labels import scaled
 from .point_warnings import point_warnings
 
+_FRAME_BYTES = (
+    4 * 14
+)  # Of a particle, without further fields: position, velocity, stress, two more.
 # Estimates for the echo [bytes], in 2D and 3D: a particle with its lists but without the state of
 # its material, and a node that it reaches, with those that lie beside it in blocks and in contact.
 # (Before particles are made, PARTICLE_BYTES_WITH_GRID of machine.py stands for both together.)
@@ -52,6 +55,14 @@ def steps_in_words(case: Case, bodies: list[FilledBody]) -> str:
     compressible = any(case.material[body.material].eos is not None for body in bodies)
     word = "at least" if compressible or any(case.run.gravity) else "about"
     return f"{word} {math.ceil(case.run.end_time / time_step(case, bodies)):,} steps"
+
+
+def frames_in_words(case: Case, particles: int) -> str:
+    """Return the number of frames, and the room that they need on the disk if it is much."""
+    count = len(case.frame_times())
+    room = count * _FRAME_BYTES * particles
+    much = f" of {room / 2**30:,.0f} GiB together" if room > 2**30 else ""
+    return f"{count:,} frames{much}"
 
 
 def occupied_cells(case: Case, bodies: list[FilledBody]) -> int:
@@ -177,7 +188,7 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         f"contact: {contact}",
         f"time: {case.run.scheme}, end {case.run.end_time:.6g} s, "
         f"step about {time_step(case, bodies):.3g} s, "
-        f"{steps_in_words(case, bodies)}, {len(case.frame_times())} frames",
+        f"{steps_in_words(case, bodies)}, {frames_in_words(case, particles)}",
     ]
     sentences = [*warnings(bodies), *point_warnings(case, bodies)]
     lines += [f"warning: {sentence}" for sentence in sentences]

@@ -88,19 +88,18 @@ def gone_lines(manifest: Manifest) -> list[str]:
 
 
 def warning_lines(manifest: Manifest) -> list[str]:
-    """Return a line for each thing that the run has warned of, or told, with how often it was.
+    """Return a line for each thing that the run has warned of, with how often it was seen.
 
-    Of each kind the first three; the manifest has all.
+    Of each kind the first three; the manifest has all, and the notes, which are no warnings.
     """
     lines, told = [], Counter[str]()
     for w in manifest.warnings:
-        told[w.kind] += 1
-        if told[w.kind] <= _OF_A_KIND:
-            often = f"so at {w.count:,} {'looks' if w.share else 'steps'}"
-            lines.append(f"{'warning' if w.is_error else 'note'}: {w.message}; {often}")
+        told[w.kind] += w.is_error
+        if w.is_error and told[w.kind] <= _OF_A_KIND:
+            lines.append(f"warning: {w.message}; seen {w.count:,} times")
     for kind, count in told.items():
         if count > _OF_A_KIND:
-            lines.append(f"note: {count - _OF_A_KIND:,} more of {kind}, in manifest.json")
+            lines.append(f"warning: {count - _OF_A_KIND:,} more of {kind}, in manifest.json")
     return lines
 
 

@@ -151,6 +151,11 @@ def _by_pint(text: str, number: str, name: str, unit: str) -> float:
     except Exception as error:  # pint's parser raises many kinds for text that is no unit
         rule = f'has the unit "{name}", which is not known'
         raise CaseError(rule, _give(unit), value=text) from error
+    if unit == "" and "radian" in str(
+        given.to_base_units().units
+    ):  # Which is a plain number to pint.
+        rule = f'has the unit "{name}" ({_name("rad")}) but must be {_name(unit)}'
+        raise CaseError(rule, _give(unit), value=text)
     try:
         return float(given.to(unit or "dimensionless").magnitude)
     except pint.DimensionalityError:

@@ -90,6 +90,17 @@ def test_wrong_colour_frame_and_folder(tmp_path: Path) -> None:
         plots.plot_results(tmp_path, frame=9)
 
 
+def test_a_picture_that_cannot_be_drawn_takes_no_other_with_it(tmp_path: Path) -> None:
+    """The frame of the first contact is damaged; another one is wanted."""
+    make_run(tmp_path)
+    broken = tmp_path / "results.frames" / "000002.h5"
+    broken.write_bytes(b"no frame")
+    with pytest.raises(CaseError, match="frame 2 is damaged"):
+        plots.plot_results(tmp_path, frame=3, animation=False)
+    made = {path.name for path in tmp_path.glob("*.png")}
+    assert made == {"frame_0003.png", "energies.png"}
+
+
 @pytest.mark.usefixtures("without_pyvista")
 def test_three_dimensions_without_pyvista(tmp_path: Path) -> None:
     made = plots.plot_results(make_run(tmp_path, dimension=3), colour="body")
@@ -144,6 +155,16 @@ def test_squares_tile_and_slits_close() -> None:
     two = np.array([[20.0, 20.0], [31.0, 20.0]])
     image = raster.tile(two, np.full(2, 8.0), np.array([0, 1]), red[:2], (40, 60), 0)
     assert (image[20, 25:27, 3] == 0.0).all()  # the gap between two bodies stays open
+
+
+def test_a_body_in_two_parts_far_apart() -> None:
+    """Between them lie bands of rows without a particle."""
+    centres = np.array([[5.0, 5.0], [5.0, 395.0]])
+    image = raster.tile(
+        centres, np.full(2, 4.0), np.zeros(2, dtype=int), np.full((2, 3), 0.5), (400, 10), 1
+    )
+    rows = (image[..., 3] == 255).any(axis=1).nonzero()[0]
+    assert rows.tolist() == [3, 4, 5, 6, 393, 394, 395, 396]
 
 
 def test_nearer_balls_hide_farther_ones() -> None:

@@ -41,16 +41,17 @@ def test_work_that_has_gone_out_again_came_in() -> None:
 
 
 def test_three_warnings_of_a_kind_are_shown() -> None:
-    """A hundred grains may leave the box."""
+    """A hundred bodies may lie outside; what is only a note has been told already."""
     left = [
-        SimpleNamespace(kind="left box", message=f"grain {k}", share=0.5, count=2, is_error=False)
+        SimpleNamespace(kind="outside walls", message=f"grain {k}", count=2, is_error=True)
         for k in range(100)
     ]
-    step = SimpleNamespace(kind="time step", message="it fell", share=0.0, count=7, is_error=True)
-    found: Any = SimpleNamespace(warnings=[*left, step])
+    note = SimpleNamespace(kind="left box", message="one left", count=9, is_error=False)
+    step = SimpleNamespace(kind="time step", message="it fell", count=7, is_error=True)
+    found: Any = SimpleNamespace(warnings=[*left, note, step])
     lines = warning_lines(found)
     assert lines == [
-        *(f"note: grain {k}; so at 2 looks" for k in range(3)),
-        "warning: it fell; so at 7 steps",
-        "note: 97 more of left box, in manifest.json",
+        *(f"warning: grain {k}; seen 2 times" for k in range(3)),
+        "warning: it fell; seen 7 times",
+        "warning: 97 more of outside walls, in manifest.json",
     ]

@@ -115,7 +115,7 @@ def write_frame(
             cells["Connectivity"] = np.arange(info.count, dtype=np.int64)
         about: dict[str, Any] = {"time": info.time, "step": info.step, "count": info.count}
         about |= {"checks": info.checks, "elsewhere": info.elsewhere}
-        file.attrs["frame"] = json.dumps(about)
+        file.attrs["frame"] = json.dumps(about, sort_keys=True)
 
 
 def read_info(path: Path) -> FrameInfo:

@@ -259,6 +259,8 @@ def read_history(path: str | Path) -> dict[str, np.ndarray]:
         columns = np.array(table, dtype=float).reshape(len(table), len(header))
     except FileNotFoundError as error:
         raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
+    except UnicodeDecodeError as error:
+        raise CaseError(f"'{path}' is not a history table of mpm3dpp: it is no text") from error
     except (OSError, ValueError, IndexError, csv.Error) as error:
         raise CaseError(f"'{path}' is not a history table of mpm3dpp: {error}") from error
     forces = [n[:-1] for n in header if n.startswith("contact_") and n.endswith("_x")]

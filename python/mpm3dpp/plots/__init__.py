@@ -37,16 +37,15 @@ def plot_results(
         `animation.gif`.
 
     Raises:
-        CaseError: there are no results, no such frame or no such array.
+        CaseError: there are no results, no such frame or no such array; or a picture could not be
+            drawn, after all others have been.
     """
-    from mpm3dpp.plots.run import plot_results as make
+    from mpm3dpp.plots.run import draw_all
 
     folder, frame = arguments.path("folder", folder), arguments.whole_number("frame", frame)
     colour = None if colour is None else arguments.text("colour", colour)
     out = None if out is None else arguments.path("out", out)
-    pictures = make(folder, frame, animation, colour, out)
-    contact = first_contact(folder, None if out is None else out / "first_contact.png")
-    return pictures if contact is None else [*pictures, contact]
+    return list(draw_all(folder, frame, animation, colour, out))
 
 
 def first_contact(folder: str | Path, out: str | Path | None = None) -> Path | None:

@@ -67,6 +67,8 @@ def tile(
             bottom, top = max(first - near, low[1]), min(last + near, high[1])
             y = centres[mine, 1]
             here = mine[(y >= bottom - reach - 2) & (y <= top + reach + 2)]
+            if len(here) == 0:  # A gap in the body.
+                continue
             corner = np.array([low[0], bottom])
             owner = _squares(centres[here] - corner, sizes[here], (top - bottom, high[0] - low[0]))
             owner = _closed(owner, close)

@@ -3,19 +3,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from mpm3dpp.errors import CaseError
+from mpm3dpp.errors import CaseError, first_of
 from mpm3dpp.io.history import read_history
 from mpm3dpp.io.manifest import read_manifest
-from mpm3dpp.io.results import open_results
+from mpm3dpp.io.results import Results, open_results
+from mpm3dpp.plots.contact import first_contact
 
 
-def plot_results(
+def draw_all(
     folder: Path, frame: int, animation: bool | None, colour: str | None, out: Path | None
-) -> list[Path]:
-    """See `mpm3dpp.plots.plot_results`."""
+) -> Iterator[Path]:
+    """See `mpm3dpp.plots.plot_results`; gives each picture when it is there."""
     from mpm3dpp.plots.frames import save_frame
 
     source = folder if folder.is_dir() else folder.parent
@@ -23,7 +25,6 @@ def plot_results(
     wishes = _output(source)
     colour = colour or wishes.get("picture") or "von_mises"
     animation = bool(wishes.get("animation")) if animation is None else animation
-    made = []
     with open_results(folder) as results:
         count = len(results)
         if count == 0:
@@ -34,20 +35,39 @@ def plot_results(
                 f"give 0 to {count - 1}, or -1 for the last"
             )
         name = "frame.png" if frame == -1 else f"frame_{frame % count:04d}.png"
-        made.append(save_frame(results, frame, out / name, colour))
-        if (source / "history.csv").is_file():
-            from mpm3dpp.plots.energies import save_energies
+        yield save_frame(results, frame, out / name, colour)
+        refused = []
+        for make in (
+            lambda: _energies(results, source, out),
+            lambda: _animation(results, out, colour) if animation else None,
+            lambda: first_contact(folder, out / "first_contact.png"),
+        ):
+            try:
+                picture = make()
+            except CaseError as error:  # It is no reason to leave out the others.
+                refused.append(error)
+            else:
+                if picture is not None:
+                    yield picture
+    if refused:
+        raise first_of(refused)
 
-            history = read_history(source)
-            if len(history["time"]):
-                made.append(
-                    save_energies(history, out / "energies.png", results.dimension, results.bodies)
-                )
-        if animation:
-            from mpm3dpp.plots.animation import save_animation
 
-            made.append(save_animation(results, out / "animation.gif", colour))
-    return made
+def _energies(results: Results, source: Path, out: Path) -> Path | None:
+    if not (source / "history.csv").is_file():
+        return None
+    from mpm3dpp.plots.energies import save_energies
+
+    history = read_history(source)
+    if len(history["time"]) == 0:
+        return None
+    return save_energies(history, out / "energies.png", results.dimension, results.bodies)
+
+
+def _animation(results: Results, out: Path, colour: str) -> Path:
+    from mpm3dpp.plots.animation import save_animation
+
+    return save_animation(results, out / "animation.gif", colour)
 
 
 def _output(folder: Path) -> dict[str, Any]:
