@@ -56,7 +56,7 @@ class GridBox(CaseModel):
 
     Attributes:
         lower, upper: opposite corners [m], D numbers, a whole number of cells apart.
-        walls: what the faces do.
+        walls: what the faces do, without friction: for that give a body with motion = "fixed".
     """
 
     lower: Point

@@ -24,7 +24,7 @@ from .machine import PARTICLE_BYTES_WITH_GRID
 
 Array = NDArray[np.float64]
 _LARGEST = 1e100
-_GIVE = "see the how-to page of MPM3D files for its columns"
+_GIVE = 'see "A file of particles" in docs/how-to/run-a-case.md for its columns'
 _LAYOUT = Layout("volume", (2, 3), False, "particle", _GIVE, PARTICLE_BYTES_WITH_GRID)
 
 

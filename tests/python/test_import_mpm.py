@@ -508,3 +508,13 @@ def test_the_command_line(tmp_path: Path) -> None:
     assert (
         "y.toml is a case file, but import wants an input file of MPM3D-F90 (.mpm)" in done.stderr
     )
+
+
+def test_the_file_of_the_how_to_page(tmp_path: Path) -> None:
+    """It runs as it stands there."""
+    page = (Path(__file__).parents[2] / "docs/how-to/bring-mpm3d-files.md").read_text()
+    text = page.split("Such a file", 1)[1].split("```\n")[1]
+    (tmp_path / "two.mpm").write_text(text)
+    case = load_any(tmp_path / "two.mpm")[0]
+    assert list(case.body) == ["body_1", "body_2"] and case.title == "two blocks"
+    assert Simulation(case, threads=1).advance(10) == 10

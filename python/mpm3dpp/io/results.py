@@ -143,7 +143,7 @@ class Results:
             import pyvista
         except ImportError as error:
             raise CaseError(
-                "results[k] needs PyVista: pip install 'mpm3dpp[viz]', or use results.arrays(k)"
+                "results[k] needs PyVista: pip install pyvista, or use results.arrays(k)"
             ) from error
         arrays = self.arrays(frame)
         cloud = pyvista.PolyData(arrays.pop("position"))

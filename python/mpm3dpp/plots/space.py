@@ -169,7 +169,7 @@ def _pyvista_works() -> bool:
     if not works:
         print(
             "note: PyVista is missing or cannot draw off-screen; the built-in renderer is used"
-            " (for PyVista: pip install 'mpm3dpp[viz]', and libegl1 libegl-mesa0 libgl1-mesa-dri)",
+            " (for PyVista: pip install pyvista, and libegl1 libegl-mesa0 libgl1-mesa-dri)",
             file=sys.stderr,
         )
     return works
