@@ -10,6 +10,7 @@ process that started it, whose end closes its standard input.
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import subprocess
@@ -83,10 +84,12 @@ def main(folder: str) -> None:
     threading.Thread(target=_end_with_parent, daemon=True).start()
     try:
         from mpm3dpp import _core
-        from mpm3dpp.plots import plot_results
+        from mpm3dpp.plots.run import draw_all
 
         _core.return_freed_memory()
-        plot_results(folder)
+        for _ in draw_all(Path(folder), -1, None, None, None):
+            gc.collect()  # Figures hold themselves.
+            _core.return_freed_memory()
     except MemoryError:
         sys.exit("there is not enough memory")
     except Exception as error:
