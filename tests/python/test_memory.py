@@ -101,7 +101,9 @@ def test_a_frame_is_what_the_core_holds_rounded(tmp_path: Path, dimension: int) 
     names = ["right", "left"]  # In the order of their numbers, whatever they are called.
     frame = frame_of(core, ["volume", "left_cauchy_green"], names, [0, 0])
     found = {column.name: column.make() for column in frame.columns}
-    assert sum(values.nbytes for values in found.values()) == frame.bytes
+    assert {name: values.nbytes for name, values in found.items()} == {
+        column.name: column.bytes for column in frame.columns
+    }
     held = {
         name: np.concatenate([core.column(b, name) for b in range(2)])
         for name in ("position", "velocity", "stress", "volume", "left_cauchy_green")
