@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -36,12 +36,12 @@ def draw_all(
             )
         name = "frame.png" if frame == -1 else f"frame_{frame % count:04d}.png"
         yield save_frame(results, frame, out / name, colour)
+        others: list[Callable[[], Path | None]] = [lambda: _energies(results, source, out)]
+        if animation:
+            others.append(lambda: _animation(results, out, colour))
+        others.append(lambda: first_contact(folder, out / "first_contact.png"))
         refused = []
-        for make in (
-            lambda: _energies(results, source, out),
-            lambda: _animation(results, out, colour) if animation else None,
-            lambda: first_contact(folder, out / "first_contact.png"),
-        ):
+        for make in others:
             try:
                 picture = make()
             except CaseError as error:  # It is no reason to leave out the others.

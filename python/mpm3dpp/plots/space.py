@@ -208,6 +208,7 @@ def _with_pyvista(
     plotter.camera.clipping_range = (0.5, 6.0)
     image = plotter.screenshot(transparent_background=True, return_img=True)
     plotter.close()
+    assert image is not None  # for it was asked for
     rows, columns = (FINER * (size // FINER) for size in image.shape[:2])
     return coarser(np.asarray(image, dtype=np.uint8)[:rows, :columns], FINER)
 
