@@ -23,6 +23,7 @@ KINDS = (signal.SIGINT, signal.SIGTERM)
 STEPPING = """
 import signal, sys, time
 from mpm3dpp import Case, Simulation
+signal.signal(signal.SIGINT, signal.default_int_handler)  # A shell's background job ignores it.
 text = open(sys.argv[1]).read().replace('cell_size = "10 mm"', 'cell_size = "0.2 mm"')
 case = Case.from_text(text)
 simulation = Simulation(case, threads=1)
@@ -116,7 +117,10 @@ def test_many_steps_from_python_end_with_the_present_one(tmp_path: Path) -> None
         time.sleep(0.3)
         sent = time.monotonic()
         run.send_signal(signal.SIGINT)
-        out, err = run.communicate(timeout=30)
+        try:
+            out, err = run.communicate(timeout=30)
+        finally:
+            run.kill()
     assert (run.returncode, err) == (0, "")
     steps, ended = out.split()
     # A step and the way of the signal; on a busy machine a step may take many times as long.
