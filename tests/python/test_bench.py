@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import mpm3dpp
 from mpm3dpp import CaseError, _core, bench
 from mpm3dpp.bench import cases, operations, report, spheres, traffic
 
@@ -247,15 +248,26 @@ def test_history_takes_a_row(script, cubes, tmp_path):
 
 
 def test_comparison_takes_the_median_of_the_ratios(script):
-    def result(ns):
-        memory = {"total": 100.0}
-        return {"ns_per_particle_step": ns, "stages": {"all": ns}, "bytes_per_particle": memory}
+    """Over the turns of a round, then over the rounds."""
 
-    a, b = [result(ns) for ns in (10.0, 20.0, 40.0)], [result(ns) for ns in (5.0, 30.0, 20.0)]
-    compare = script("compare")
-    assert compare.ratios(a, b, "") == [0.5, 1.5, 0.5]
-    [step] = [line for line in compare.table(a, b) if line.startswith("step")]
-    assert step.split()[1:4] == ["20.00", "20.00", "0.500"]
+    def blocks(*ns):
+        return [{"moves": 1.0, "idle": 0.0, "step": each} for each in ns]
+
+    one = [blocks(10.0, 20.0, 40.0), blocks(5.0, 30.0, 20.0)]
+    two = [blocks(10.0, 10.0, 10.0), blocks(20.0, 20.0, 20.0)]
+    three = [blocks(8.0, 8.0, 8.0), blocks(8.0, 8.0, 8.0)]
+    lines = script("compare").table([one, two, three])
+    [step] = [line for line in lines if line.startswith("step")]
+    assert step.split() == ["step", "10.00", "20.00", "1.000", "0.500", "to", "2.000"]
+    assert not [line for line in lines if line.startswith("idle")]
+
+
+def test_comparison_of_a_build_with_itself(script):
+    """Two processes take steps in turns."""
+    here = str(Path(mpm3dpp.__file__).parents[1])
+    rounds = [script("compare").one_round([here, here], ["elastic2d", "4", "1", "usf"], 3)]
+    assert [len(blocks) for blocks in rounds[0]] == [3, 3]
+    assert all(block["step"] > 0.0 for blocks in rounds[0] for block in blocks)
 
 
 @pytest.mark.parametrize("bench_name", ["gimp2d", "gimp3d"])
