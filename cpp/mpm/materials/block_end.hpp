@@ -95,7 +95,6 @@ class BlockEnd {
   /// Keep the energy within the bounds. `first`, `last`: mean stresses before and after. Work that
   /// tension at its limit does opens voids between fragments, in place of straining the matter: it
   /// is taken, and given back when they close. What is missing to the least energy is given.
-  /// All by value: sums whose address is known stay in memory through the loop over the groups.
   [[gnu::noinline, gnu::cold]] static Taken bound(EosBounds bounds, Swelling<T> swelling, T first,
                                                   T last, T energy) {
     const T limited = T(0.5) * (select(bounds.limits(first), first, T(0.0)) +

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 
 from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import replacing
+from mpm3dpp.io.disk import replacing, writing
 
 if TYPE_CHECKING:
     import h5py
@@ -83,6 +83,15 @@ def frame_numbers(folder: Path) -> list[int]:
         found = (_NAME.fullmatch(path.name) for path in folder.iterdir())
         return sorted(int(match[1]) for match in found if match)
     return []
+
+
+def remove_frames(folder: Path, first: int) -> None:
+    """Remove the frames from number `first` on. Raises `CaseError` if one cannot be removed."""
+    for frame in reversed(frame_numbers(folder)):  # So that none is left without those it needs.
+        if frame >= first:
+            old = frame_path(folder, frame)
+            with writing(old):
+                old.unlink(missing_ok=True)
 
 
 def write_frame(

@@ -29,6 +29,7 @@ from mpm3dpp.io.frame_file import (
     frames_folder,
     read_arrays,
     read_info,
+    remove_frames,
     write_frame,
 )
 from mpm3dpp.io.master import write_master
@@ -109,12 +110,12 @@ class ResultsWriter:
         if rows is None:
             with writing(self.path):  # First, for nobody may take old frames for those of this run.
                 self.path.unlink(missing_ok=True)
-            self._remove_frames()
+            remove_frames(self._folder, 0)
         else:
             self._go_on(rows)
         make_folder(self._folder)
         self._tell()
-        self._remove_frames()
+        remove_frames(self._folder, self.frames)
         with writing(self._folder):
             for left in self._folder.glob(unfinished(Path("*.h5")).name):
                 left.unlink(missing_ok=True)
@@ -141,14 +142,6 @@ class ResultsWriter:
         except BaseException:
             self._knows_constants = "size" in self._constant
             raise
-
-    def _remove_frames(self) -> None:
-        """Remove the frames that are none of this run's."""
-        for frame in reversed(frame_numbers(self._folder)):  # So that none is left without another.
-            if frame >= self.frames:
-                old = frame_path(self._folder, frame)
-                with writing(old):
-                    old.unlink(missing_ok=True)
 
     def frame_of(self, simulation: Any) -> Frame:
         """Return the present state of the core's `Simulation`, as `fields.frame_of`.
