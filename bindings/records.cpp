@@ -66,6 +66,7 @@ void add_records(nb::module_& m) {
       .def_rw("bonded", &Settings::bonded)
       .def_rw("pic_damping", &Settings::pic_damping)
       .def_rw("fused", &Settings::fused)
+      .def_rw("disorder", &Settings::disorder)
       .def_rw("detection", &Settings::detection)
       .def_rw("normal_rule", &Settings::normal_rule)
       .def_rw("gap_distance", &Settings::gap_distance)

@@ -1,14 +1,15 @@
 # Compiler flags of our own code, as an interface target for each level of instructions: mpm_flags_LEVEL.
 include(CheckCXXCompilerFlag)
 
-# Contraction to fused multiply-add is asked for: strict C++ mode may switch it off.
 set(flags -Wall -Wextra -Wconversion -Wno-psabi)
 if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
   list(APPEND flags -Wno-sign-conversion)   # which is part of -Wconversion here, not of g++'s
 endif()
 # No -ffast-math: NaN and infinity are tested for, and the order of sums is fixed. These two change
-# no result; they let sqrt and select become plain vector instructions.
-list(APPEND flags -ffp-contract=fast -fno-math-errno -fno-trapping-math)
+# no result; they let sqrt and select become plain vector instructions. What is one multiplication and
+# addition says so (fma in math/batch.hpp): were it left to the compiler, two loops of one source
+# could give different bits.
+list(APPEND flags -ffp-contract=off -fno-math-errno -fno-trapping-math)
 if(MPM_WERROR)
   list(APPEND flags -Werror)
 endif()
@@ -29,7 +30,7 @@ if(MPM_HAS_INLINE_LIMITS)
   list(APPEND flags ${inline_limits})
 endif()
 if(MPM_SAME_BITS)
-  list(APPEND flags -ffp-contract=off -DMPM_SAME_BITS)
+  list(APPEND flags -DMPM_SAME_BITS)
 endif()
 if(MPM_FLOAT32)
   list(APPEND flags -DMPM_FLOAT32)

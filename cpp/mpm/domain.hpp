@@ -56,6 +56,7 @@ struct Domain {
   Vec<double, D> gravity = Vec<double, D>::zero();  // mean over the step being made [m/s^2]
   Threads threads;
 
+  double disorder = disorder_that_pays;  // share of a body's particles at which it is sorted
   double pic_damping = 0.0;  // rate at which particles take over the velocity of the grid [1/s]
 
   double time = 0.0;       // [s]

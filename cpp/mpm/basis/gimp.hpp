@@ -30,7 +30,7 @@ struct GimpAxis {
     const T right = max(u, T(0.0)), left = max(-u, T(0.0));
     const T a = max(T(l) - (left + right), T(0.0)), A = T(0.25 / l) * a * a;
     N[0] = left + A;
-    N[1] = T(1.0) - (left + right) - T(2.0) * A;
+    N[1] = fma(T(-2.0), A, T(1.0) - (left + right));
     N[2] = right + A;
     const T dA = select(above, T(-0.5 / l), T(0.5 / l)) * a;
     dN[0] = select(above, T(0.0), T(-1.0)) + dA;
@@ -64,8 +64,9 @@ struct GimpField {
     for_each_row([&](auto y, auto z, const NodeLines& row) MPM_INLINE {
       T share = w.axis[1].N[y];
       if constexpr (D == 3) share *= w.axis[D - 1].N[z];
-      unrolled<D>([&](auto i)
-                      MPM_INLINE { total[i] += share * along(row.at(at + i), w.axis[0].N); });
+      unrolled<D>([&](auto i) MPM_INLINE {
+        total[i] = fma(share, along(row.at(at + i), w.axis[0].N), total[i]);
+      });
     });
     return total;
   }
@@ -84,9 +85,9 @@ struct GimpField {
       }
       unrolled<D>([&](auto i) MPM_INLINE {
         const T value = along(row.at(at + i), w.axis[0].N);
-        g[i][0] += N * along(row.at(at + i), w.axis[0].dN);
-        g[i][1] += dy * value;
-        if constexpr (D == 3) g[i][2] += dz * value;
+        g[i][0] = fma(N, along(row.at(at + i), w.axis[0].dN), g[i][0]);
+        g[i][1] = fma(dy, value, g[i][1]);
+        if constexpr (D == 3) g[i][2] = fma(dz, value, g[i][2]);
       });
     });
     return g;
@@ -103,7 +104,7 @@ struct GimpField {
   /// Of a row, whose lines begin at the number that is wanted: the sum with factors along x.
   template <class T>
   [[gnu::always_inline]] static T along(const NodeLines& row, const T* x) {
-    return x[0] * T(*row[0]) + x[1] * T(*row[1]) + x[2] * T(*row[2]);
+    return fma(x[2], T(*row[2]), fma(x[1], T(*row[1]), x[0] * T(*row[0])));
   }
 };
 
@@ -200,7 +201,8 @@ struct Gimp {
     const auto gift = m * Batch<quad>::load(gifts.velocity[p]);
     unrolled<3>([&](auto y) MPM_INLINE {
       const Batch<quad> part = gift * of.N[1][y][p];
-      to(y, [&](Batch<quad>& sum, auto x) MPM_INLINE { sum += part * of.N[0][x][p]; });
+      to(y, [&](Batch<quad>& sum, auto x)
+                MPM_INLINE { sum = fma(part, Batch<quad>(of.N[0][x][p]), sum); });
     });
   }
   template <int room, class F>
@@ -214,10 +216,10 @@ struct Gimp {
     unrolled<3>([&](auto y) MPM_INLINE {
       const Batch<quad> N(of.N[1][y][p]), along_x = traction[0] * N;
       Batch<quad> across = traction[1] * of.dN[1][y][p];
-      if constexpr (D == 3) across += traction[2] * N;
+      if constexpr (D == 3) across = fma(traction[2], N, across);
       to(y, [&](Batch<quad>& sum, auto x) MPM_INLINE {
-        sum += along_x * of.dN[0][x][p];
-        sum += across * of.N[0][x][p];
+        sum = fma(along_x, Batch<quad>(of.dN[0][x][p]), sum);
+        sum = fma(across, Batch<quad>(of.N[0][x][p]), sum);
       });
     });
   }

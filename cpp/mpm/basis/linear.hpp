@@ -74,24 +74,24 @@ struct LinearField {
   template <class T>
   T value(int f, const Vec<T, D>& xi) const {
     const auto bilinear = [&](int k) {
-      return (T(c[k][f]) + T(c[k + 1][f]) * xi[0]) +
-             xi[1] * (T(c[k + 2][f]) + T(c[k + 3][f]) * xi[0]);
+      return fma(xi[1], fma(T(c[k + 3][f]), xi[0], T(c[k + 2][f])),
+                 fma(T(c[k + 1][f]), xi[0], T(c[k][f])));
     };
     if constexpr (D == 2)
       return bilinear(0);
     else
-      return bilinear(0) + xi[2] * bilinear(4);
+      return fma(xi[2], bilinear(4), bilinear(0));
   }
 
   template <class T>
   Vec<T, D> gradient(int f, const Vec<T, D>& xi) const {
-    const auto C = [&](int k) { return T(c[k][f]); };
+    const auto linear = [&](int k, int l, T x) { return fma(T(c[l][f]), x, T(c[k][f])); };
     if constexpr (D == 2) {
-      return {C(1) + C(3) * xi[1], C(2) + C(3) * xi[0]};
+      return {linear(1, 3, xi[1]), linear(2, 3, xi[0])};
     } else {
-      const T x = (C(1) + C(3) * xi[1]) + xi[2] * (C(5) + C(7) * xi[1]);
-      const T y = (C(2) + C(3) * xi[0]) + xi[2] * (C(6) + C(7) * xi[0]);
-      const T z = (C(4) + C(5) * xi[0]) + xi[1] * (C(6) + C(7) * xi[0]);
+      const T x = fma(xi[2], linear(5, 7, xi[1]), linear(1, 3, xi[1]));
+      const T y = fma(xi[2], linear(6, 7, xi[0]), linear(2, 3, xi[0]));
+      const T z = fma(xi[1], linear(6, 7, xi[0]), linear(4, 5, xi[0]));
       return {x, y, z};
     }
   }
@@ -238,8 +238,8 @@ struct Linear {
   static constexpr int place(int a, int k) { return k * Sums::width >> a & 1; }
   /// One-axis factor of an inner axis, and of an outer one in register k.
   static Part lanes(int a, double xi) {
-    return Part::load(linear_detail::base<D>[static_cast<std::size_t>(a)].data()) +
-           Part(xi) * Part::load(slopes(a));
+    return fma(Part(xi), Part::load(slopes(a)),
+               Part::load(linear_detail::base<D>[static_cast<std::size_t>(a)].data()));
   }
   static Part along(int a, int k, double xi) {
     return place(a, k) ? Part(xi) : Part(1.0) - Part(xi);

@@ -24,7 +24,7 @@ struct NodeLanes {
   }
   /// this += s * w
   void add(double s, const NodeLanes& w) {
-    for (int k = 0; k < parts; ++k) part[k] += Part(s) * w.part[k];
+    for (int k = 0; k < parts; ++k) part[k] = fma(Part(s), w.part[k], part[k]);
   }
 };
 

@@ -31,11 +31,14 @@ Vec<double, D> between_centres(const NearParticles<D>& r, const NearParticles<D>
   return normalised(n, 1e-9);
 }
 
-/// Does a pair pass the test of the gap, eq. (5), if that is asked for?
+/// Does a pair pass the test of the gap, eq. (5), if that is asked for? Bodies that just touch do,
+/// as they are often put into a case: rounding must not choose.
 template <int D>
-bool may_act(const SidePair<D>& pair, const ContactSettings& settings) {
+bool may_act(const SidePair<D>& pair, const ContactSettings& settings, double cell_size) {
+  constexpr double rounding = 1e-9;  // [cells]; positions are good to 1e-10 at 2^19 cells
   return dot(pair.normal, pair.normal) > 0.0 &&
-         (settings.detection == Detection::velocity || pair.gap < settings.gap_distance);
+         (settings.detection == Detection::velocity ||
+          pair.gap < settings.gap_distance + rounding * cell_size);
 }
 
 }  // namespace
@@ -110,7 +113,7 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
       }
       pair.normal = pair_normal(sources[r], sources[s], settings.normal, node.held);
       pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
-      pair.closed = may_act(pair, settings);
+      pair.closed = may_act(pair, settings, grid.cell_size);
     }
 }
 
@@ -159,7 +162,7 @@ bool ContactGrid<D>::recall(const std::vector<Body<D>>& bodies, const ContactSet
                    const Vec<double, D> parting = sides[pair.s].mapped - sides[pair.r].mapped;
                    if (!last.solved) known.gap += last_time_step_ * dot(parting, pair.normal);
                    pair.gap = known.gap;
-                   pair.closed = may_act(pair, settings);
+                   pair.closed = may_act(pair, settings, cell_size);
                    holds = holds && travel_of(sides, pair) - known.travel <=
                                         settings.normal_travel * cell_size;
                  });

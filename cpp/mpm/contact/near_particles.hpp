@@ -14,7 +14,7 @@ namespace mpm {
 template <int D>
 class NearParticles {
  public:
-  using T = Batch<contact_lanes<D>>;
+  using T = Batch<contact_lanes>;
 
   /// Forget all, with room for so many.
   void clear(std::size_t room) {
@@ -51,7 +51,7 @@ class NearParticles {
     Vec<T, D> moment = Vec<T, D>::zero();
     for_each([&](const Vec<T, D>& x, T, T weight) {
       mass += weight;
-      for (int a = 0; a < D; ++a) moment[a] += weight * x[a];
+      for (int a = 0; a < D; ++a) moment[a] = fma(weight, x[a], moment[a]);
     });
     mass_ = sum(mass);
     for (int a = 0; a < D; ++a) centre_[a] = sum(moment[a]) / mass_;
@@ -84,13 +84,13 @@ class NearParticles {
     for_each([&](const Vec<T, D>& x, T half, T) {
       T along(0.0), square(0.0);
       for (int a = 0; a < D; ++a) {
-        along += T(normal[a]) * x[a];
-        square += x[a] * x[a];
+        along = fma(T(normal[a]), x[a], along);
+        square = fma(x[a], x[a], square);
       }
       const T distance = along + half;
       anywhere = max(anywhere, distance);
       on_line =
-          select(square - along * along < T(radius * radius), max(on_line, distance), on_line);
+          select(fma(-along, along, square) < T(radius * radius), max(on_line, distance), on_line);
     });
     const double there = largest(on_line);
     return there > -std::numeric_limits<double>::infinity() ? there : largest(anywhere);
@@ -111,7 +111,7 @@ class NearParticles {
 template <int D>
 void collect_near(const TileParticles<D>& particles, const Index<D>& node, double reach,
                   NearParticles<D>& to) {
-  using T = Batch<contact_lanes<D>>;
+  using T = Batch<contact_lanes>;
   // Over this length [cells] a particle's weight falls to 0 where its reach ends: particles on a
   // lattice lie there in whole rows, and rounding must not choose among them.
   constexpr double rim = 1e-3;

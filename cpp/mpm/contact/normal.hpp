@@ -12,7 +12,7 @@ namespace mpm {
 template <int D>
 Vec<double, D> mass_gradient(const TileParticles<D>& particles, const Index<D>& node,
                              const TileGrid<D>& grid, double edge) {
-  using T = Batch<contact_lanes<D>>;
+  using T = Batch<contact_lanes>;
   Vec<T, D> total = Vec<T, D>::zero();
   with_basis<D>(grid.basis, {}, edge, [&](const auto& basis) {
     particles.around(node, [&](const Index<D>& place, const auto& lanes) {

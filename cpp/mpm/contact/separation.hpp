@@ -33,7 +33,7 @@ struct Plane {
 /// found before: else the order in which nodes are visited would be seen in the last bits.
 template <int D>
 class PlaneFit {
-  using T = Batch<contact_lanes<D>>;
+  using T = Batch<contact_lanes>;
   static constexpr int n = D + 1;
 
  public:
@@ -163,13 +163,13 @@ class PlaneFit {
     for (int a = 0; a < D; ++a) slope[a] = T(-sign * z[a]);
     body.for_each([&](const Vec<T, D>& x, T, T weight) MPM_INLINE {
       T lack = level;
-      for (int a = 0; a < D; ++a) lack += slope[a] * x[a];
+      for (int a = 0; a < D; ++a) lack = fma(slope[a], x[a], lack);
       const T inside = select(lack > T(0.0), weight, T(0.0));
       m.first[D] += inside;
       for (int i = 0; i < D; ++i) {
         const T moment = inside * x[i];
         m.first[i] += moment;
-        for (int j = 0; j <= i; ++j) m.second[i][j] += moment * x[j];
+        for (int j = 0; j <= i; ++j) m.second[i][j] = fma(moment, x[j], m.second[i][j]);
       }
     });
     return m;

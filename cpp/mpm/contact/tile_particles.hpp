@@ -56,7 +56,7 @@ std::uint64_t cells_in_reach(std::uint64_t nodes, const Index<D>& offset, int ma
 template <int D>
 class TileParticles {
  public:
-  using T = Batch<contact_lanes<D>>;
+  using T = Batch<contact_lanes>;
   /// Empty places in the lanes repeat a particle of the cell and have no mass.
   struct Lanes {
     Vec<T, D> xi;  // position in the cell, in [0, 1]
@@ -169,7 +169,7 @@ class TileParticles {
   /// The particles of a patch's cell; `place` is that of the cell as counted from the tile's first.
   void read(const TileGrid<D>& grid, const Body<D>& body, const Index<D>& first,
             const Patch<D>& patch, int cell, const Index<D>& place) {
-    constexpr int W = contact_lanes<D>;
+    constexpr int W = contact_lanes;
     const CellCoordinates<D> coordinates = grid.coordinates();
     const auto n = static_cast<std::size_t>(number(place)), c = static_cast<std::size_t>(cell);
     filled_[n / 64] |= std::uint64_t{1} << n % 64;

@@ -18,15 +18,9 @@ inline constexpr int cell_lanes = std::min(native_lanes, 1 << D);
 template <int D>
 inline constexpr int few_lanes = cell_lanes<D> == 8 ? 4 : cell_lanes<D>;
 
-/// Lanes over particles of which contact makes sums across the lanes; these decide normals and
-/// gaps, so where the bits are to be the same on any processor the width is.
-#if defined(MPM_SAME_BITS)
-template <int D>
+/// Lanes over particles of which contact makes sums across the lanes: these decide normals and
+/// gaps, so the width is the same whatever the instruction set.
 inline constexpr int contact_lanes = 4;
-#else
-template <int D>
-inline constexpr int contact_lanes = cell_lanes<D>;
-#endif
 
 /// Up to W rows of a column. Lanes from `count` on repeat the last row when read and are never
 /// written.

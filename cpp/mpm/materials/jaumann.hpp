@@ -17,15 +17,15 @@ struct Corotated {
 template <class T>
 Mat<T, 2> cayley(const Mat<T, 2>& w) {
   const T h = T(0.5) * w[0][1];
-  const T s = T(1.0) / (T(1.0) + h * h);
-  const T cosine = (T(1.0) - h * h) * s, sine = T(2.0) * h * s;
+  const T s = T(1.0) / fma(h, h, T(1.0));
+  const T cosine = fma(-h, h, T(1.0)) * s, sine = T(2.0) * h * s;
   return {{{cosine, sine}, {-sine, cosine}}};
 }
 /// The same in 3D: 1 + (w + w^2 / 2) / (1 + |a|^2), where a is half the axial vector of w.
 template <class T>
 Mat<T, 3> cayley(const Mat<T, 3>& w) {
   const T ax = T(0.5) * w[2][1], ay = T(0.5) * w[0][2], az = T(0.5) * w[1][0];
-  const T s = T(2.0) / (T(1.0) + ax * ax + ay * ay + az * az);
+  const T s = T(2.0) / fma(az, az, fma(ay, ay, fma(ax, ax, T(1.0))));
   const T xx = s * ax * ax, yy = s * ay * ay, zz = s * az * az;
   const T xy = s * ax * ay, xz = s * ax * az, yz = s * ay * az;
   const T x = s * ax, y = s * ay, z = s * az;
@@ -53,10 +53,10 @@ Corotated<T, D> corotate(const Motion<T, D>& motion, const Sym<T, D>& stress) {
       // (w d - d w)/2 for skew w and symmetric d is the symmetric part of w d.
       T wd = spin[i][0] * strain(0, j), dw = spin[j][0] * strain(0, i);
       for (int k = 1; k < D; ++k) {
-        wd = wd + spin[i][k] * strain(k, j);
-        dw = dw + spin[j][k] * strain(k, i);
+        wd = fma(spin[i][k], strain(k, j), wd);
+        dw = fma(spin[j][k], strain(k, i), dw);
       }
-      r.strain(i, j) = strain(i, j) + T(0.5) * (wd + dw);
+      r.strain(i, j) = fma(T(0.5), wd + dw, strain(i, j));
     }
   return r;
 }

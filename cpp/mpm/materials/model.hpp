@@ -64,7 +64,7 @@ Mat<T, D> mid_step(const Mat<T, D>& gradient) {
   const Mat<T, D> square = gradient * gradient;
   Mat<T, D> middle;
   for (int i = 0; i < D; ++i)
-    for (int j = 0; j < D; ++j) middle[i][j] = gradient[i][j] - T(0.5) * square[i][j];
+    for (int j = 0; j < D; ++j) middle[i][j] = fma(T(-0.5), square[i][j], gradient[i][j]);
   return middle;
 }
 

@@ -14,6 +14,11 @@
 /// memory.
 #define MPM_INLINE __attribute__((always_inline))
 
+// Where the processor can, a b + c is rounded once; never where bits are to be the same on all.
+#if (defined(__FMA__) || defined(__aarch64__)) && !defined(MPM_SAME_BITS)
+#define MPM_FUSES
+#endif
+
 namespace mpm {
 
 #if defined(__AVX512F__)
@@ -100,6 +105,24 @@ struct Batch {
   friend Batch operator*(Batch a, Batch b) { return Batch(a.v * b.v); }
   friend Batch operator/(Batch a, Batch b) { return Batch(a.v / b.v); }
   friend Batch operator-(Batch a) { return Batch(-a.v); }
+  /// a b + c
+  friend Batch fma(Batch a, Batch b, Batch c) {
+#if defined(MPM_FUSES)
+#if defined(__AVX512F__)
+    if constexpr (W == 8) return Batch(_mm512_fmadd_pd(a.v, b.v, c.v));
+#endif
+#if defined(__FMA__)
+    if constexpr (W == 4) return Batch(_mm256_fmadd_pd(a.v, b.v, c.v));
+    if constexpr (W == 2) return Batch(_mm_fmadd_pd(a.v, b.v, c.v));
+#elif defined(__aarch64__)
+    if constexpr (W == 2) return Batch(vfmaq_f64(c.v, a.v, b.v));
+    Batch r;
+    for (int k = 0; k < W; ++k) r.v[k] = __builtin_fma(a.v[k], b.v[k], c.v[k]);
+    return r;
+#endif
+#endif
+    return Batch(a.v * b.v + c.v);
+  }
   Batch& operator+=(Batch b) { return *this = *this + b; }
   Batch& operator-=(Batch b) { return *this = *this - b; }
   Batch& operator*=(Batch b) { return *this = *this * b; }

@@ -6,6 +6,15 @@
 
 namespace mpm {
 
+/// The polynomial with these coefficients, the constant one first.
+template <int W, class... Rest>
+Batch<W> horner(Batch<W> x, double first, Rest... rest) {
+  if constexpr (sizeof...(rest) == 0)
+    return Batch<W>(first);
+  else
+    return fma(x, horner(x, rest...), Batch<W>(first));
+}
+
 /// Natural logarithm of positive, finite, normal lanes, within 1 ulp: x = 2^k (1 + f), and the
 /// minimax series of log(1 + f) in s = f / (2 + f) of Sun's fdlibm (e_log.c, 1993).
 template <int W>
@@ -31,17 +40,13 @@ Batch<W> log(Batch<W> x) {
   const Batch<W> z = s * s;
   const Batch<W> w = z * z;
   const Batch<W> even =
-      w * (Batch<W>(3.999999999940941908e-01) +
-           w * (Batch<W>(2.222219843214978396e-01) + w * Batch<W>(1.531383769920937332e-01)));
-  const Batch<W> odd =
-      z * (Batch<W>(6.666666666666735130e-01) +
-           w * (Batch<W>(2.857142874366239149e-01) +
-                w * (Batch<W>(1.818357216161805012e-01) + w * Batch<W>(1.479819860511658591e-01))));
+      w * horner(w, 3.999999999940941908e-01, 2.222219843214978396e-01, 1.531383769920937332e-01);
+  const Batch<W> odd = z * horner(w, 6.666666666666735130e-01, 2.857142874366239149e-01,
+                                  1.818357216161805012e-01, 1.479819860511658591e-01);
   const Batch<W> half_square = Batch<W>(0.5) * f * f;
-  return k * Batch<W>(6.93147180369123816490e-01) -
-         ((half_square -
-           (s * (half_square + even + odd) + k * Batch<W>(1.90821492927058770002e-10))) -
-          f);
+  const Batch<W> rest =
+      half_square - fma(s, half_square + even + odd, k * Batch<W>(1.90821492927058770002e-10));
+  return fma(k, Batch<W>(6.93147180369123816490e-01), f - rest);
 }
 
 /// Exponential of lanes between -708 and 709 (beyond them, of these), within 2 ulp: x = k ln 2 + r,
@@ -52,24 +57,25 @@ Batch<W> exp(Batch<W> x) {
   const Batch<W> bounded = min(max(x, Batch<W>(-708.0)), Batch<W>(709.0));
   // Adding 1.5 x 2^52 rounds to a whole number and leaves it in the low bits.
   const Batch<W> magic(6755399441055744.0);
-  const Batch<W> shifted = bounded * Batch<W>(1.44269504088896338700) + magic;
+  const Batch<W> shifted = fma(bounded, Batch<W>(1.44269504088896338700), magic);
   const Batch<W> k = shifted - magic;
-  const Batch<W> r =
-      bounded - k * Batch<W>(6.93147180369123816490e-01) - k * Batch<W>(1.90821492927058770002e-10);
+  const Batch<W> r = fma(k, Batch<W>(-1.90821492927058770002e-10),
+                         fma(k, Batch<W>(-6.93147180369123816490e-01), bounded));
   const Batch<W> r2 = r * r, r4 = r2 * r2;
-  const Batch<W> a = Batch<W>(1.0 / 2.0) + r * Batch<W>(1.0 / 6.0);
-  const Batch<W> b = Batch<W>(1.0 / 24.0) + r * Batch<W>(1.0 / 120.0);
-  const Batch<W> c = Batch<W>(1.0 / 720.0) + r * Batch<W>(1.0 / 5040.0);
-  const Batch<W> d = Batch<W>(1.0 / 40320.0) + r * Batch<W>(1.0 / 362880.0);
-  const Batch<W> e = Batch<W>(1.0 / 3628800.0) + r * Batch<W>(1.0 / 39916800.0);
-  const Batch<W> f = Batch<W>(1.0 / 479001600.0) + r * Batch<W>(1.0 / 6227020800.0);
-  const Batch<W> series = r + r2 * ((a + r2 * b) + r4 * ((c + r2 * d) + r4 * (e + r2 * f)));
+  const Batch<W> a = horner(r, 1.0 / 2.0, 1.0 / 6.0);
+  const Batch<W> b = horner(r, 1.0 / 24.0, 1.0 / 120.0);
+  const Batch<W> c = horner(r, 1.0 / 720.0, 1.0 / 5040.0);
+  const Batch<W> d = horner(r, 1.0 / 40320.0, 1.0 / 362880.0);
+  const Batch<W> e = horner(r, 1.0 / 3628800.0, 1.0 / 39916800.0);
+  const Batch<W> f = horner(r, 1.0 / 479001600.0, 1.0 / 6227020800.0);
+  const Batch<W> high = fma(r4, fma(r2, f, e), fma(r2, d, c));
+  const Batch<W> series = fma(r2, fma(r4, high, fma(r2, b, a)), r);
   Bits bits;
   std::memcpy(&bits, &shifted.v, sizeof(bits));
   bits = (bits << 52) + (Bits{} + 0x3ff0000000000000LL);  // 2^k; the shift drops the magic's bits
   Batch<W> scale;
   std::memcpy(&scale.v, &bits, sizeof(bits));
-  return scale + scale * series;
+  return fma(scale, series, scale);
 }
 
 /// x to the power y for positive, finite, normal x: exp(y log x), within 2 + 2 |y log x| ulp.

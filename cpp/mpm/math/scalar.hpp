@@ -11,6 +11,13 @@
 namespace mpm {
 
 inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+inline double fma(double a, double b, double c) {
+#if defined(MPM_FUSES)
+  return __builtin_fma(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
 inline double min(double a, double b) { return a < b ? a : b; }
 inline double max(double a, double b) { return a > b ? a : b; }
 inline double sqrt(double a) { return std::sqrt(a); }
@@ -48,7 +55,7 @@ struct PowerNearOne {
   template <class T>
   T operator()(T x) const {
     T sum(factor[terms]);
-    for (int k = terms - 1; k >= 0; --k) sum = T(factor[k]) + x * sum;
+    for (int k = terms - 1; k >= 0; --k) sum = fma(x, sum, T(factor[k]));
     return sum;
   }
 };

@@ -19,7 +19,7 @@ Mat<T, D> operator*(const Mat<T, D>& a, const Mat<T, D>& b) {
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
       T s = a[i][0] * b[0][j];
-      for (int k = 1; k < D; ++k) s = s + a[i][k] * b[k][j];
+      for (int k = 1; k < D; ++k) s = fma(a[i][k], b[k][j], s);
       r[i][j] = s;
     }
   return r;
@@ -27,13 +27,12 @@ Mat<T, D> operator*(const Mat<T, D>& a, const Mat<T, D>& b) {
 
 template <class T>
 T determinant(const Mat<T, 2>& a) {
-  return a[0][0] * a[1][1] - a[0][1] * a[1][0];
+  return fma(a[0][0], a[1][1], -(a[0][1] * a[1][0]));
 }
 template <class T>
 T determinant(const Mat<T, 3>& a) {
-  return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) -
-         a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
-         a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+  const auto minor = [&](int i, int j) { return fma(a[1][i], a[2][j], -(a[1][j] * a[2][i])); };
+  return fma(a[0][0], minor(1, 2), fma(-a[0][1], minor(0, 2), a[0][2] * minor(0, 1)));
 }
 
 /// A symmetric tensor; components xx yy zz yz xz xy in 3D, xx yy zz xy in 2D.
@@ -80,10 +79,10 @@ T trace(const Sym<T, D>& a) {
 /// a : b, every shear component counted twice.
 template <class T, int D>
 T inner(const Sym<T, D>& a, const Sym<T, D>& b) {
-  T s = a.c[0] * b.c[0] + a.c[1] * b.c[1] + a.c[2] * b.c[2];
+  const T normal = fma(a.c[2], b.c[2], fma(a.c[1], b.c[1], a.c[0] * b.c[0]));
   T shear = a.c[3] * b.c[3];
-  for (int k = 4; k < Sym<T, D>::size; ++k) shear = shear + a.c[k] * b.c[k];
-  return s + T(2.0) * shear;
+  for (int k = 4; k < Sym<T, D>::size; ++k) shear = fma(a.c[k], b.c[k], shear);
+  return fma(T(2.0), shear, normal);
 }
 
 /// The symmetric part of a gradient; zz is zero in plane strain.
@@ -102,14 +101,14 @@ Sym<T, D> congruence(const Mat<T, D>& f, const Sym<T, D>& s) {
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
       T t = f[i][0] * s(0, j);
-      for (int k = 1; k < D; ++k) t = t + f[i][k] * s(k, j);
+      for (int k = 1; k < D; ++k) t = fma(f[i][k], s(k, j), t);
       fs[i][j] = t;
     }
   Sym<T, D> r = s;
   for (int i = 0; i < D; ++i)
     for (int j = i; j < D; ++j) {
       T t = fs[i][0] * f[j][0];
-      for (int k = 1; k < D; ++k) t = t + fs[i][k] * f[j][k];
+      for (int k = 1; k < D; ++k) t = fma(fs[i][k], f[j][k], t);
       r(i, j) = t;
     }
   return r;

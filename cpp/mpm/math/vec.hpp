@@ -40,7 +40,7 @@ struct Vec {
 template <class T, int D>
 T dot(const Vec<T, D>& x, const Vec<T, D>& y) {
   T s = x.c[0] * y.c[0];
-  for (int a = 1; a < D; ++a) s = s + x.c[a] * y.c[a];
+  for (int a = 1; a < D; ++a) s = fma(x.c[a], y.c[a], s);
   return s;
 }
 

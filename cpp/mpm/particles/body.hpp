@@ -20,7 +20,7 @@ struct Body {
   int position = 0;               // first component of each column; position [m], D components
   MaterialColumns at{};           // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
   std::vector<std::uint32_t> id;  // place of each particle in the order in which the user gave them
-  std::vector<std::uint32_t> order;  // particles by patch, then by cell, then by row; behind them
+  std::vector<std::uint32_t> order;  // particles by patch, then by cell, then by id; behind them
                                      // those that are gone, which no patch holds
   double initial_density = 0.0;      // [kg/m^3]
   double mean_mass = 0.0;            // of a particle at the start [kg]

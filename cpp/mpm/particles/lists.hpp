@@ -106,9 +106,13 @@ bool mend_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
 template <int D>
 void sort_columns(TileGrid<D>& grid, Body<D>& body, Threads& threads, ListScratch<D>& scratch);
 
-/// The same for the bodies whose particles have moved about so much that it pays.
+/// Sorting moves every column once; reading particles out of order costs about that once this share
+/// of them is.
+inline constexpr double disorder_that_pays = 0.25;
+
+/// The same for the bodies of whose particles that `share` has changed cell since they were sorted.
 template <int D>
 void sort_disordered(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
-                     ListScratch<D>& scratch);
+                     double share, ListScratch<D>& scratch);
 
 }  // namespace mpm

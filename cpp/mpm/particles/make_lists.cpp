@@ -11,7 +11,7 @@ namespace {
 
 struct Key {
   std::uint64_t value;  // tile (last axis highest), then cell
-  std::uint32_t row;
+  std::uint32_t id, row;
 };
 
 template <int D>
@@ -93,10 +93,10 @@ void make_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& thread
         const Index<D> first = grid.first_cell(tile);
         Index<D> local;
         for (int a = 0; a < D; ++a) local[a] = cell[a] - first[a];
-        keys[i] = {key_of<D>(tile, Tile<D>::cell(local)), row};
+        keys[i] = {key_of<D>(tile, Tile<D>::cell(local)), body.id[row], row};
       }
       std::sort(keys.begin(), keys.end(), [](const Key& x, const Key& y) {
-        return x.value != y.value ? x.value < y.value : x.row < y.row;
+        return x.value != y.value ? x.value < y.value : x.id < y.id;
       });
       for (std::size_t i = 0; i < n; ++i) body.order[i] = keys[i].row;
     }

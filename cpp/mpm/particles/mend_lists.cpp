@@ -25,7 +25,8 @@ typename ListScratch<D>::Note note_changes(const TileGrid<D>& grid, const Body<D
   return note;
 }
 
-/// Write a patch's new list: the particles it keeps and those that come, by cell, then by row.
+/// Write a patch's new list: the particles it keeps and those that come, by cell, then by id: sums
+/// over the particles of a cell must not depend on where their rows are.
 template <int D>
 void write_list(const Body<D>& body, Patch<D>& patch, const typename ListScratch<D>::Change& change,
                 ListScratch<D>& scratch) {
@@ -51,7 +52,7 @@ void write_list(const Body<D>& body, Patch<D>& patch, const typename ListScratch
   auto next = begin;
   auto put = [&](std::uint8_t c, std::uint32_t row) {
     std::uint32_t at = next[c]++;
-    for (; at > begin[c] && to[at - 1] > row; --at) to[at] = to[at - 1];
+    for (; at > begin[c] && body.id[to[at - 1]] > body.id[row]; --at) to[at] = to[at - 1];
     to[at] = row;
   };
   for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k)

@@ -33,16 +33,17 @@ void sort_columns(TileGrid<D>& grid, Body<D>& body, Threads& threads, ListScratc
 
 template <int D>
 void sort_disordered(TileGrid<D>& grid, std::vector<Body<D>>& bodies, Threads& threads,
-                     ListScratch<D>& scratch) {
-  // Sorting moves every column once; reading particles out of order costs about that once a quarter
-  // of them is.
+                     double share, ListScratch<D>& scratch) {
   for (auto& body : bodies)
-    if (4 * body.moved >= body.count()) sort_columns(grid, body, threads, scratch);
+    if (static_cast<double>(body.moved) >= share * static_cast<double>(body.count()))
+      sort_columns(grid, body, threads, scratch);
 }
 
 template void sort_columns<2>(TileGrid<2>&, Body<2>&, Threads&, ListScratch<2>&);
 template void sort_columns<3>(TileGrid<3>&, Body<3>&, Threads&, ListScratch<3>&);
-template void sort_disordered<2>(TileGrid<2>&, std::vector<Body<2>>&, Threads&, ListScratch<2>&);
-template void sort_disordered<3>(TileGrid<3>&, std::vector<Body<3>>&, Threads&, ListScratch<3>&);
+template void sort_disordered<2>(TileGrid<2>&, std::vector<Body<2>>&, Threads&, double,
+                                 ListScratch<2>&);
+template void sort_disordered<3>(TileGrid<3>&, std::vector<Body<3>>&, Threads&, double,
+                                 ListScratch<3>&);
 
 }  // namespace mpm

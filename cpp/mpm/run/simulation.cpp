@@ -20,6 +20,7 @@ void check(const Settings& s) {
         "time_step_factor must lie in (0, 1]");
   check(s.pic_damping >= 0.0 && std::isfinite(s.pic_damping),
         "pic_damping must be a finite number >= 0");
+  check(s.disorder >= 0.0, "disorder must be >= 0");
   check(s.threads >= 1, "threads must be >= 1");
   check(s.friction >= 0.0 && std::isfinite(s.friction), "friction must be a finite number >= 0");
   // Beyond it a pair that was found well apart could meet along a normal that is not one of
@@ -102,6 +103,7 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
   domain_.gravity_of_time = settings.gravity;
   grid.has_dashpots = grid.walls.absorb();
   domain_.pic_damping = settings.pic_damping;
+  domain_.disorder = settings.disorder;
   domain_.contact_settings.enabled = settings.contact;
   domain_.contact_settings.detection = settings.detection;
   domain_.contact_settings.normal = settings.normal_rule;

@@ -45,7 +45,9 @@ struct Settings {
   double normal_travel = ContactSettings{}.normal_travel;  // [cells]
   double friction = 0.0;
   int threads = 1;
-  bool fused = true;                 // neighbouring stages of a step are fused
+  bool fused = true;  // neighbouring stages of a step are fused
+  // Share of a body's particles that changes cell before its columns are sorted; moves no bit.
+  double disorder = disorder_that_pays;
   double energy_growth_limit = 0.0;  // fraction of the largest energy brought in
   double outside_limit = 1.0;        // share of a body's particles beyond closed walls
   double volume_limit = 1.0;         // share with less than 0.01 or more than 100 of their volume

@@ -57,7 +57,7 @@ void activate_tiles(Domain<D>& domain) {
   if (domain.grid.keep.exist) mark_leaving(domain);
   const bool changed = mend_lists(domain.grid, domain.bodies, domain.threads, domain.list_scratch,
                                   domain.eroded, domain.left);
-  sort_disordered(domain.grid, domain.bodies, domain.threads, domain.list_scratch);
+  sort_disordered(domain.grid, domain.bodies, domain.threads, domain.disorder, domain.list_scratch);
   domain.sums.assign(domain.grid.patches.size(), {});
   if (changed && domain.has_contact()) domain.contact.connect(domain.grid, domain.bodies);
   balance(domain);

@@ -48,16 +48,16 @@ template <int W, Also also, bool damped, int D, class Functions>
         v[a] = load(velocities[a], rows) + dv;
         if constexpr (damped) {
           lost += m * v[a] * v[a];
-          v[a] += pic * (of_grid[a] - v[a]);
+          v[a] = fma(pic, of_grid[a] - v[a], v[a]);
           lost -= m * v[a] * v[a];
         }
         store(velocities[a], rows, v[a]);
-        momentum[a] += m * v[a];
-        speed2 += v[a] * v[a];
-        change2 += dv * dv;
+        momentum[a] = fma(m, v[a], momentum[a]);
+        speed2 = fma(v[a], v[a], speed2);
+        change2 = fma(dv, dv, change2);
       });
-      kinetic += m * speed2;
-      second_order += m * change2;
+      kinetic = fma(m, speed2, kinetic);
+      second_order = fma(m, change2, second_order);
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {
         auto& particles = cells.next();

@@ -18,7 +18,7 @@ class Moving {
     using T = Batch<Rows::lanes>;
     const Vec<T, D> velocity = nodes.vector(velocity_at, w);
     unrolled<D>([&](auto a) {
-      const T x = load(x_[a], rows) + T(time_step_) * velocity[a];
+      const T x = fma(T(time_step_), velocity[a], load(x_[a], rows));
       store(x_[a], rows, x);
       const T local = cells_.in_cells(x, a) - T(cell.cell[a]);
       left_ |= lane_bits((local < T(0.0)) | (local >= T(1.0)));

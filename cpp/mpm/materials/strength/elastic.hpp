@@ -59,8 +59,10 @@ struct Elastic {
   template <Real T, int D>
   void update(const Motion<T, D>& motion, Sym<T, D>& stress) const {
     const Corotated<T, D> at_end = corotate(motion, stress);
-    stress = at_end.stress + Sym<T, D>::isotropic(T(lambda) * trace(at_end.strain)) +
-             T(2.0 * G) * at_end.strain;
+    const Sym<T, D> with_volume =
+        at_end.stress + Sym<T, D>::isotropic(T(lambda) * trace(at_end.strain));
+    for (int c = 0; c < Sym<T, D>::size; ++c)
+      stress.c[c] = fma(T(2.0 * G), at_end.strain.c[c], with_volume.c[c]);
   }
   template <Real T>
   T sound_speed(T J) const {
