@@ -14,6 +14,7 @@ LAYERS = {
     "grid": 2,
     "materials": 2,
     "particles": 3,
+    "reference": 4,
     "contact": 4,
     "domain.hpp": 5,
     "step": 6,

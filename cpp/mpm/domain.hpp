@@ -51,7 +51,6 @@ struct Domain {
   std::vector<Material> materials;
   ContactSettings contact_settings;
   ContactGrid<D> contact;
-  std::vector<double> stiffness;                    // rho c^2 of each body [Pa]
   std::array<TimeFunction, 3> gravity_of_time{};    // [m/s^2]
   Vec<double, D> gravity = Vec<double, D>::zero();  // mean over the step being made [m/s^2]
   Threads threads;

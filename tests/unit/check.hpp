@@ -20,7 +20,7 @@ class Report {
   void check(bool passed, const char* file, int line, std::string_view what, std::string_view names,
              const Values&... values) {
     ++check_count_;
-    if (passed) return;
+    if (passed || ++failure_count_ > most_kept) return;
     std::ostringstream text;
     text << std::setprecision(17) << file << ':' << line << ": " << what;
     if constexpr (sizeof...(values) > 0) {
@@ -33,7 +33,8 @@ class Report {
   const std::vector<std::string>& failures() const { return failures_; }
 
  private:
-  std::size_t check_count_ = 0;
+  static constexpr std::size_t most_kept = 20;  // a million do not tell more
+  std::size_t check_count_ = 0, failure_count_ = 0;
   std::vector<std::string> failures_;
 };
 

@@ -93,9 +93,8 @@ class ContactGrid {
 
   /// Find the overlapped nodes with their normals, pairs and gaps, eq. (5). Needs mass and velocity
   /// at the nodes, and the length of the step that begins.
-  void find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-            const std::vector<double>& stiffness, const ContactSettings& settings, double time_step,
-            Threads& threads);
+  void find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, const ContactSettings& settings,
+            double time_step, Threads& threads);
 
   /// Remove approaching momentum, eqs. (6)-(7), from the nodal velocities.
   void adjust_momentum(TileGrid<D>& grid, Threads& threads);
@@ -151,8 +150,8 @@ class ContactGrid {
   /// Normals, gaps and frictions of the pairs at the nodes of a tile, those of a part from the
   /// first-th on: known ones that still hold, else found.
   void fill_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                  const std::vector<double>& stiffness, const ContactSettings& settings,
-                  std::size_t tile, TileBodies<D>& around, std::size_t part, std::size_t first);
+                  const ContactSettings& settings, std::size_t tile, TileBodies<D>& around,
+                  std::size_t part, std::size_t first);
   /// The vector at number `at` of the line of a side's node; and write it to all copies.
   Vec<double, D> read(TileGrid<D>& grid, const Side<D>& side, int at) const;
   void write(TileGrid<D>& grid, const Part& part, const Side<D>& side, const Vec<double, D>& value,
@@ -170,8 +169,8 @@ class ContactGrid {
   void solve(NodeSolution<D>& solution);
   /// Normals, gaps and frictions of the pairs at a node whose sides are known.
   void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                  const std::vector<double>& stiffness, const ContactSettings& settings,
-                  TileBodies<D>& around, Part& part, const ContactNode& node);
+                  const ContactSettings& settings, TileBodies<D>& around, Part& part,
+                  const ContactNode& node);
   void remember_pairs(Part& part, const ContactNode& node);
   double travel_of(std::span<const Side<D>> sides, const SidePair<D>& pair) const;
   /// Change the gaps that are known by what the bodies do in this step.

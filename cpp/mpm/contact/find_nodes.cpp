@@ -150,7 +150,6 @@ void ContactGrid<D>::add_travel(std::size_t bodies) {
 
 template <int D>
 void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                                const std::vector<double>& stiffness,
                                 const ContactSettings& settings, std::size_t t,
                                 TileBodies<D>& around, std::size_t p, std::size_t first) {
   ContactTile<D>& tile = tiles_[t];
@@ -169,7 +168,7 @@ void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<
                           holders_of(at), at.nodes & unknown);
   for (const ContactNode& node : nodes)
     if (unknown >> node.cell & 1u) {
-      find_pairs(grid, bodies, stiffness, settings, around, part, node);
+      find_pairs(grid, bodies, settings, around, part, node);
       if (keeps_) remember_pairs(part, node);
     }
   tile.known = keeps_ ? around.overlapped : 0;
@@ -179,8 +178,7 @@ void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<
 
 template <int D>
 void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                          const std::vector<double>& stiffness, const ContactSettings& settings,
-                          double time_step, Threads& threads) {
+                          const ContactSettings& settings, double time_step, Threads& threads) {
   keeps_ = settings.normal_travel > 0.0;
   masses_.find(grid, threads);
   if (keeps_) add_travel(bodies.size());
@@ -203,7 +201,7 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       const std::size_t first = part.nodes.size();
       if (!keeps_) fetch_particles(grid, bodies, around, around.overlapped);
       add_nodes(grid, bodies, t, around, part);
-      fill_pairs(grid, bodies, stiffness, settings, t, around, p, first);
+      fill_pairs(grid, bodies, settings, t, around, p, first);
       // A rigid body's mass is spread over all its nodes, so they stay.
       if (!keeps_)
         part.leave_out(first, [&](const ContactNode& node) {
@@ -230,10 +228,8 @@ void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
 }
 
 template void ContactGrid<2>::find(TileGrid<2>&, const std::vector<Body<2>>&,
-                                   const std::vector<double>&, const ContactSettings&, double,
-                                   Threads&);
+                                   const ContactSettings&, double, Threads&);
 template void ContactGrid<3>::find(TileGrid<3>&, const std::vector<Body<3>>&,
-                                   const std::vector<double>&, const ContactSettings&, double,
-                                   Threads&);
+                                   const ContactSettings&, double, Threads&);
 
 }  // namespace mpm

@@ -70,7 +70,6 @@ void ContactGrid<D>::for_each_known(Part& part, const ContactNode& node, Known* 
 
 template <int D>
 void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                                const std::vector<double>& stiffness,
                                 const ContactSettings& settings, TileBodies<D>& around, Part& part,
                                 const ContactNode& node) {
   const auto sides = part.sides_of(node);
@@ -85,7 +84,7 @@ void ContactGrid<D>::find_pairs(const TileGrid<D>& grid, const std::vector<Body<
     const auto b = static_cast<std::size_t>(sides[k].body);
     NormalSource<D>& source = sources[k];
     source.body = sides[k].body;
-    source.stiffness = stiffness[b];
+    source.stiffness = bodies[b].stiffness;
     Vec<double, D> gradient = Vec<double, D>::zero();
     TileBody<D>& at = around.with(sides[k].body);
     const double edge = bodies[b].mean_edge / grid.cell_size;
@@ -187,14 +186,14 @@ template bool ContactGrid<2>::recall(const std::vector<Body<2>>&, const ContactS
                                      const ContactTile<2>&, Part&, const ContactNode&);
 template void ContactGrid<2>::move_gaps(Part&, const ContactNode&, const NodeSolution<2>&, double);
 template void ContactGrid<2>::find_pairs(const TileGrid<2>&, const std::vector<Body<2>>&,
-                                         const std::vector<double>&, const ContactSettings&,
-                                         TileBodies<2>&, Part&, const ContactNode&);
+                                         const ContactSettings&, TileBodies<2>&, Part&,
+                                         const ContactNode&);
 template void ContactGrid<3>::remember_pairs(Part&, const ContactNode&);
 template bool ContactGrid<3>::recall(const std::vector<Body<3>>&, const ContactSettings&, double,
                                      const ContactTile<3>&, Part&, const ContactNode&);
 template void ContactGrid<3>::move_gaps(Part&, const ContactNode&, const NodeSolution<3>&, double);
 template void ContactGrid<3>::find_pairs(const TileGrid<3>&, const std::vector<Body<3>>&,
-                                         const std::vector<double>&, const ContactSettings&,
-                                         TileBodies<3>&, Part&, const ContactNode&);
+                                         const ContactSettings&, TileBodies<3>&, Part&,
+                                         const ContactNode&);
 
 }  // namespace mpm

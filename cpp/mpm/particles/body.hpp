@@ -23,6 +23,7 @@ struct Body {
   std::vector<std::uint32_t> order;  // particles by patch, then by cell, then by id; behind them
                                      // those that are gone, which no patch holds
   double initial_density = 0.0;      // [kg/m^3]
+  double stiffness = 0.0;            // rho c^2 of the start [Pa]; infinite if it is rigid
   double mean_mass = 0.0;            // of a particle at the start [kg]
   double mean_edge = 0.0;   // edge of a square or cube of the mean initial particle volume [m]
   double total_mass = 0.0;  // [kg]

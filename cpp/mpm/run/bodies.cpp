@@ -4,15 +4,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "mpm/particles/make_body.hpp"
 #include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
 namespace {
-
-void check_finite(std::span<const double> values, const std::string& what) {
-  for (const double v : values)
-    if (!std::isfinite(v)) throw std::invalid_argument(what + " must be finite numbers");
-}
 
 void check_functions(const std::array<TimeFunction, 3>& functions, const std::string& what) {
   for (const TimeFunction& f : functions)
@@ -33,61 +29,8 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
                               std::span<const double> volumes) {
   if (prepared_) throw std::invalid_argument("bodies must be added before prepare()");
   const Material& material = domain_.materials.at(static_cast<std::size_t>(material_number));
-  const std::size_t n = positions.size() / D;
-  if (n == 0 || n * D != positions.size())
-    throw std::invalid_argument(name + ": positions must be (n, D) with n > 0");
-  if (velocities.size() != D && velocities.size() != n * D)
-    throw std::invalid_argument(name + ": velocities must be (n, D) or (1, D)");
-  if (volumes.size() != 1 && volumes.size() != n)
-    throw std::invalid_argument(name + ": volumes must be (n,) or (1,)");
-  check_finite(positions, name + ": positions");
-  check_finite(velocities, name + ": velocities");
-  check_finite(volumes, name + ": volumes");
-  for (const double v : volumes)
-    if (!(v > 0.0)) throw std::invalid_argument(name + ": volumes must be > 0");
-
-  Body<D> body;
-  body.name = name;
+  Body<D> body = make_body(name, material, positions, velocities, volumes, domain_.grid);
   body.material = material_number;
-  Columns& c = body.columns;
-  body.position = c.add("position", "m", D);
-  body.at.velocity = c.add("velocity", "m/s", D, Kept::rounded);
-  body.at.mass = c.add("mass", "kg", 1);
-  body.at.volume = c.add("volume", "m^3", 1);
-  body.at.stress = c.add("stress", "Pa", Sym<double, D>::size, Kept::rounded);
-  add_material_columns<D>(material, c, body.at);
-  if (domain_.grid.keep.exist) {  // what particles that leave it need
-    if (body.at.recoverable < 0) body.at.recoverable = c.add("recoverable_energy", "J/m^3", 1);
-    if (body.at.failed < 0) body.at.failed = c.add("failed", "1", 1);
-  }
-  c.allocate(n);
-
-  const bool one_velocity = velocities.size() == D, one_volume = volumes.size() == 1;
-  double total = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t a = 0; a < D; ++a) {
-      body.x(static_cast<int>(a))[i] = positions[i * D + a];
-      body.v(static_cast<int>(a))[i] =
-          static_cast<Rounded>(velocities[one_velocity ? a : i * D + a]);
-    }
-    const double volume = volumes[one_volume ? 0 : i];
-    total += volume;
-    body.volume()[i] = volume;
-    body.mass()[i] = material.density * volume;
-  }
-  start_material_columns<D>(material, c, body.at);
-  const double speed = sound_speed<D>(material, c, body.at, 0, domain_.grid.cell_size);
-  body.rigid = material.moves_as_one();
-  body.total_mass = material.density * total;
-  domain_.stiffness.push_back(body.rigid ? std::numeric_limits<double>::infinity()
-                                         : material.density * speed * speed);
-  body.initial_density = material.density;
-  body.pressure_impedance = material.density * speed;
-  body.shear_impedance = std::sqrt(material.density * shear_modulus(material));
-  body.mean_mass = material.density * total / static_cast<double>(n);
-  body.mean_edge = std::pow(total / static_cast<double>(n), 1.0 / D);
-  body.id.resize(n);
-  for (std::size_t i = 0; i < n; ++i) body.id[i] = static_cast<std::uint32_t>(i);
   body.group = static_cast<int>(domain_.bodies.size());
   domain_.bodies.push_back(std::move(body));
   return static_cast<int>(domain_.bodies.size()) - 1;
@@ -124,7 +67,7 @@ void SimulationOf<D>::set_motion(int number, const std::array<TimeFunction, 3>& 
   b.motion->velocity = velocity;
   b.motion->spin = spin;
   b.motion->start({centre[0], centre[1], D == 3 ? centre[2] : 0.0}, domain_.time);
-  domain_.stiffness[static_cast<std::size_t>(number)] = std::numeric_limits<double>::infinity();
+  b.stiffness = std::numeric_limits<double>::infinity();
 }
 
 /// Give the particles of bodies with prescribed motion their velocities at the start.

@@ -21,8 +21,8 @@ void reflect(Domain<D>& domain, int at) {
 template <int D>
 void contact_momentum(Domain<D>& domain) {
   if (!domain.has_contact()) return;
-  domain.contact.find(domain.grid, domain.bodies, domain.stiffness, domain.contact_settings,
-                      domain.time_step, domain.threads);
+  domain.contact.find(domain.grid, domain.bodies, domain.contact_settings, domain.time_step,
+                      domain.threads);
   domain.contact.adjust_momentum(domain.grid, domain.threads);
   reflect(domain, velocity_at);
 }

@@ -1,0 +1,243 @@
+#pragma once
+// A whole step as the paper writes it (Ma, Zhang & Huang 2010, section 3.6): one particle and one
+// node at a time, in doubles, without tiles, vectors or threads. Read it first. It is slow; what
+// runs is in step/, and tests hold every stage there to it (tests/unit/step).
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "mpm/grid/walls.hpp"
+#include "mpm/materials/strength/elastic.hpp"
+#include "mpm/particles/prescribed_motion.hpp"
+#include "mpm/reference/shape.hpp"
+
+namespace mpm::reference {
+
+template <int D>
+struct Particle {
+  Vec<double, D> x, v;   // position [m], velocity [m/s]
+  double m, V;           // mass [kg], volume [m^3]
+  Sym<double, D> sigma;  // stress [Pa]
+};
+
+template <int D>
+struct Node {
+  double m = 0.0;                                 // mass [kg]
+  Vec<double, D> v = Vec<double, D>::zero();      // velocity [m/s]; a momentum while it is summed
+  Vec<double, D> f = Vec<double, D>::zero();      // force [N]
+  Vec<double, D> dv = Vec<double, D>::zero();     // change of the velocity in this step [m/s]
+  Vec<double, D> v_new = Vec<double, D>::zero();  // remapped velocity [m/s]
+};
+
+/// A body; every body has its own velocity field on the common grid.
+template <int D>
+struct Body {
+  std::vector<Particle<D>> particles;
+  Elastic material;
+  bool rigid = false;  // it has no stress, and its particles move as one
+  RigidMotion motion;
+  std::map<Index<D>, Node<D>> nodes;
+};
+
+/// Two bodies r and s at a node, and what eqs. (6)-(7) and (11)-(15) need there.
+template <int D>
+struct Contact {
+  Index<D> node;
+  Node<D>*r, *s;
+  Vec<double, D> n;       // unit normal from r to s
+  bool touching = false;  // the bodies approach, or rest against each other
+};
+
+template <int D>
+struct Step {
+  double h = 0.0, dt = 0.0;                   // cell size [m], time step [s]
+  Vec<double, D> g = Vec<double, D>::zero();  // gravity [m/s^2]
+  double mu = 0.0;                            // coefficient of friction
+  double pic = 0.0;                           // share of the grid's velocity that particles take
+  std::function<ShapeValue(double)> S;        // shape function along an axis, of d [cells]
+  Walls<D> walls{};                           // the grid's node 0 is the lower corner of the box
+  std::vector<Body<D>> bodies;
+  std::vector<Contact<D>> contacts;  // of this step
+
+  /// f(node, N_ip, grad N_ip [1/m]) for the nodes that a place reaches.
+  template <class F>
+  void for_each_node(const Vec<double, D>& x, F&& f) const {
+    Index<D> low, high;
+    for (int a = 0; a < D; ++a) {
+      const auto k = static_cast<std::size_t>(a);
+      low[k] = static_cast<std::int32_t>(std::floor(x[a] / h)) - 1;
+      high[k] = low[k] + 3;
+    }
+    for_each_index<D>(low, high, [&](const Index<D>& i) {
+      double N = 1.0;
+      Vec<double, D> dN;
+      for (int a = 0; a < D; ++a) {
+        N *= S(x[a] / h - i[static_cast<std::size_t>(a)]).N;
+        dN[a] = 1.0 / h;
+        for (int b = 0; b < D; ++b) {
+          const ShapeValue s = S(x[b] / h - i[static_cast<std::size_t>(b)]);
+          dN[a] *= a == b ? s.dN : s.N;
+        }
+      }
+      if (N > 0.0) f(i, N, dN);
+    });
+  }
+
+  /// m_i = sum m_p N_ip, eq. (2); p_i = sum m_p v_p N_ip, eq. (3); v_i = p_i / m_i.
+  void map_momentum() {
+    for (Body<D>& b : bodies) {
+      b.nodes.clear();
+      for (const Particle<D>& p : b.particles)
+        for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>&) {
+          b.nodes[i].m += p.m * N;
+          b.nodes[i].v += p.m * N * p.v;
+        });
+      fold(b, [](Node<D>& node, Node<D>& image, auto&& mirrored) {
+        image.m += node.m;
+        image.v += mirrored(node.v);
+      });
+      find_velocities(b, &Node<D>::v);
+    }
+  }
+
+  /// f_i = sum m_p N_ip g - sum V_p sigma_p . grad N_ip, eqs. (9)-(10).
+  void map_forces() {
+    for (Body<D>& b : bodies) {
+      for (auto& [i, node] : b.nodes) node.f = Vec<double, D>::zero();
+      for (const Particle<D>& p : b.particles)
+        for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>& dN) {
+          for (int a = 0; a < D; ++a) {
+            b.nodes[i].f[a] += p.m * N * g[a];
+            for (int c = 0; c < D; ++c) b.nodes[i].f[a] -= p.V * p.sigma(a, c) * dN[c];
+          }
+        });
+      fold(b, [](Node<D>& node, Node<D>& image, auto&& mirrored) { image.f += mirrored(node.f); });
+      for (auto& [i, node] : b.nodes) hold(i, node.f);
+    }
+  }
+
+  /// v_i += dt f_i / m_i, eq. (8).
+  void advance_nodes() {
+    for (Body<D>& b : bodies) {
+      for (auto& [i, node] : b.nodes) {
+        node.dv = (dt / node.m) * node.f;
+        node.v += node.dv;
+      }
+      reflect(b, &Node<D>::v);
+      reflect(b, &Node<D>::dv);
+    }
+  }
+
+  /// v_p += sum dv_i N_ip, eq. (17); of a share `pic` the velocity of the grid takes the place.
+  void advance_particles() {
+    for (Body<D>& b : bodies)
+      for (Particle<D>& p : b.particles) {
+        Vec<double, D> of_grid = Vec<double, D>::zero();
+        for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>&) {
+          p.v += N * b.nodes[i].dv;
+          of_grid += N * b.nodes[i].v;
+        });
+        if (!b.rigid) p.v += pic * (of_grid - p.v);
+      }
+  }
+
+  /// MUSL: the nodes' velocities anew from those of the particles, section 3.6, step 10.
+  void remap_momentum() {
+    for (Body<D>& b : bodies) {
+      for (auto& [i, node] : b.nodes) node.v_new = Vec<double, D>::zero();
+      for (const Particle<D>& p : b.particles)
+        for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>&) {
+          b.nodes[i].v_new += p.m * N * p.v;
+        });
+      fold(b, [](Node<D>& node, Node<D>& image, auto&& mirrored) {
+        image.v_new += mirrored(node.v_new);
+      });
+      find_velocities(b, &Node<D>::v_new);
+    }
+  }
+
+  /// Strain, rotation and stress by the gradient dt sum v_i grad N_ip, eqs. (18)-(20); USF and USL
+  /// take the nodes' velocities `v`, MUSL the remapped ones.
+  void update_stress(Vec<double, D> Node<D>::* velocity) {
+    for (Body<D>& b : bodies) {
+      if (b.rigid) continue;
+      for (Particle<D>& p : b.particles) {
+        Motion<double, D> motion{};
+        for_each_node(p.x, [&](const Index<D>& i, double, const Vec<double, D>& dN) {
+          for (int a = 0; a < D; ++a)
+            for (int c = 0; c < D; ++c)
+              motion.gradient[a][c] += dt * (b.nodes[i].*velocity)[a] * dN[c];
+        });
+        b.material.update(motion, p.sigma);
+        Mat<double, D> f = motion.gradient;
+        for (int a = 0; a < D; ++a) f[a][a] += 1.0;
+        p.V *= determinant(f);
+      }
+    }
+  }
+
+  /// x_p += dt sum v_i N_ip, eq. (16).
+  void move_particles() {
+    for (Body<D>& b : bodies) {
+      if (b.rigid) continue;
+      for (Particle<D>& p : b.particles) {
+        Vec<double, D> v = Vec<double, D>::zero();
+        for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>&) {
+          v += N * b.nodes[i].v;
+        });
+        p.x += dt * v;
+      }
+    }
+  }
+
+  /// contact.hpp: where two bodies meet, with the normals of their gradients of mass, eq. (4); the
+  /// momentum of approach, eqs. (6)-(7); normal force and friction, eqs. (11)-(15).
+  void find_contacts();
+  void contact_momentum(Vec<double, D> Node<D>::* velocity);
+  void contact_forces();
+  /// absorb.hpp, rigid.hpp
+  void absorb_at_walls();
+  void hold_rigid_bodies();
+  void move_rigid_bodies();
+
+ private:
+  /// Take away the components along the axes that walls hold at a node.
+  void hold(const Index<D>& i, Vec<double, D>& v) const {
+    for (int a = 0; a < D; ++a)
+      if (walls.held(i) >> a & 1u) v[a] = 0.0;
+  }
+  /// Nodes beyond a wall belong to a mirrored body. add(node, image, mirrored): what particles give
+  /// to the node is the image's, vectors mirrored.
+  template <class F>
+  void fold(Body<D>& b, F&& add) {
+    for (auto& [i, node] : b.nodes)
+      for_image(b, i, [&](Node<D>& image, auto&& mirrored) { add(node, image, mirrored); });
+  }
+  /// Such a node moves as its image does.
+  void reflect(Body<D>& b, Vec<double, D> Node<D>::* velocity) {
+    for (auto& [i, node] : b.nodes)
+      for_image(b, i, [&](Node<D>& image, auto&& mirrored) {
+        node.*velocity = mirrored(image.*velocity);
+      });
+  }
+  template <class F>
+  void for_image(Body<D>& b, const Index<D>& i, F&& f) {
+    Index<D> image;
+    const unsigned axes = walls.mirrored(i, image);
+    if (axes == 0) return;
+    f(b.nodes[image], [axes](Vec<double, D> v) {
+      for (int a = 0; a < D; ++a) v[a] = axes >> a & 1u ? -v[a] : v[a];
+      return v;
+    });
+  }
+  /// From momenta to velocities.
+  void find_velocities(Body<D>& b, Vec<double, D> Node<D>::* velocity) {
+    for (auto& [i, node] : b.nodes) {
+      node.*velocity = (1.0 / node.m) * (node.*velocity);
+      hold(i, node.*velocity);
+    }
+    reflect(b, velocity);
+  }
+};
+
+}  // namespace mpm::reference

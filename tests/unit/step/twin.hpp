@@ -1,0 +1,113 @@
+#pragma once
+// The same bodies twice: in a domain, for the stages, and in the reference step.
+#include <random>
+
+#include "mpm/particles/make_body.hpp"
+#include "mpm/reference/absorb.hpp"
+#include "mpm/reference/contact.hpp"
+#include "mpm/reference/rigid.hpp"
+#include "mpm/step/fused.hpp"
+
+namespace mpm::testing {
+
+inline constexpr double cell_size = 0.5;  // [m]
+inline constexpr double edge = 0.7;       // of the particles at the start [cells]
+
+/// What a test chooses; all else is at random.
+template <int D>
+struct Choice {
+  Basis basis = Basis::linear;
+  bool contact = false;
+  bool rigid = false;        // the first body
+  double pic_damping = 0.0;  // [1/s]
+  std::array<Wall, 2 * D> walls{};
+};
+
+template <int D>
+struct Twin {
+  Domain<D> domain;
+  reference::Step<D> reference;
+  std::mt19937_64 random{7};
+
+  explicit Twin(const Choice<D>& choice) {
+    TileGrid<D>& grid = domain.grid;
+    grid.cell_size = reference.h = cell_size;
+    grid.basis = choice.basis;
+    grid.walls.exist = true;
+    for (std::size_t a = 0; a < D; ++a) {
+      grid.walls.cells[a] = box_cells;
+      for (std::size_t side = 0; side < 2; ++side)
+        grid.walls.face[a][side] = choice.walls[2 * a + side];
+    }
+    reference.walls = grid.walls;
+    grid.has_dashpots = grid.walls.absorb();
+    reference.S = shape(choice.basis);
+    domain.time_step = reference.dt = 1e-5;
+    domain.pic_damping = choice.pic_damping;
+    reference.pic = choice.pic_damping * domain.time_step;
+    for (int a = 0; a < D; ++a) domain.gravity[a] = reference.g[a] = 1e4 * any();
+    domain.contact_settings.enabled = choice.contact;
+    domain.contact_settings.detection = Detection::velocity;
+    domain.contact_settings.normal = NormalRule::pair;
+    domain.contact_settings.friction = 0.3;
+    reference.mu = 0.3;
+    domain.threads.resize(1);
+    add_material();
+    for (int k = 0; k < 2; ++k) add_body(k, choice.rigid && k == 0);
+    if (choice.rigid) domain.rigid.resize(2);
+    make_lists(grid, domain.bodies, domain.threads, domain.list_scratch);
+    if (domain.has_contact()) domain.contact.connect(grid, domain.bodies);
+    domain.sums.resize(grid.patches.size());
+  }
+
+  static std::function<reference::ShapeValue(double)> shape(Basis basis) {
+    if (basis == Basis::linear) return reference::linear;
+    return [](double d) { return reference::gimp(d, 0.5 * edge); };
+  }
+
+ private:
+  static constexpr int box_cells = 7;  // along an axis: more than one tile in 3D
+  static constexpr std::size_t particles = 150;
+  static constexpr double density = 1000.0, E = 1e9, nu = 0.3;
+
+  double any() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }
+  void add_material() {
+    MaterialChoice choice;
+    choice.density = density;
+    choice.strength = {"elastic", {{"E", E}, {"nu", nu}}};
+    domain.materials.push_back(make_material(choice));
+  }
+  /// Two bodies that overlap: the second begins at a third of the box along x.
+  void add_body(int k, bool rigid) {
+    std::vector<double> x, v;
+    for (std::size_t i = 0; i < particles; ++i)
+      for (int a = 0; a < D; ++a) {
+        const double span = a == 0 ? 0.6 : 1.0, from = a == 0 && k == 1 ? 0.4 : 0.0;
+        x.push_back(cell_size * box_cells * (from + span * 0.5 * (1.0 + any())));
+        v.push_back(100.0 * any());
+      }
+    const double volume = std::pow(edge * cell_size, D);
+    Body<D> body = make_body<D>("body", domain.materials[0], x, v, std::array{volume}, domain.grid);
+    reference::Body<D> other;
+    body.rigid = other.rigid = rigid;
+    other.material = Elastic::of(E, nu, density);
+    for (std::size_t i = 0; i < particles; ++i) {
+      body.volume()[i] *= 1.0 + 0.2 * any();
+      reference::Particle<D> p;
+      for (int a = 0; a < D; ++a) {
+        p.x[a] = body.x(a)[i];
+        p.v[a] = body.v(a)[i];
+      }
+      p.m = body.mass()[i];
+      p.V = body.volume()[i];
+      for (int c = 0; c < Sym<double, D>::size; ++c)
+        p.sigma.c[c] = body.columns.rounded(body.at.stress + c)[i] =
+            static_cast<Rounded>(rigid ? 0.0 : 1e8 * any());
+      other.particles.push_back(p);
+    }
+    domain.bodies.push_back(std::move(body));
+    reference.bodies.push_back(std::move(other));
+  }
+};
+
+}  // namespace mpm::testing
