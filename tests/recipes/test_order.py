@@ -36,10 +36,10 @@ def test_everything(tmp_path: Path, dimension: int, scheme: str, basis: str) -> 
 
 
 @pytest.mark.parametrize("scheme", ["usf", "musl"])
-@pytest.mark.parametrize(("name", "size"), [("spheres", 12), ("gimp3d", 6), ("jc", 6), ("debris", 6)])
-def test_benchmarks(
-    name: str, size: int, scheme: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.parametrize(
+    ("name", "size"), [("spheres", 12), ("gimp3d", 6), ("jc", 6), ("debris", 6)]
+)
+def test_benchmarks(name: str, size: int, scheme: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Contact of many bodies, cells that all particles cross, a plastic law with a search."""
     plain = bench._settings
     digests = {}
