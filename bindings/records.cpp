@@ -11,7 +11,20 @@ void add_records(nb::module_& m) {
       .value("usf", Scheme::usf)
       .value("usl", Scheme::usl)
       .value("musl", Scheme::musl);
-  nb::enum_<Basis>(m, "Basis").value("linear", Basis::linear).value("gimp", Basis::gimp);
+  nb::enum_<BasisId> basis_ids(m, "Basis");
+  nb::dict bases;  // name -> what is to be known of it
+  Bases::for_each([&]<BasisModel B>(BasisId id, const B&) {
+    const nb::str name(B::name.data(), B::name.size());
+    basis_ids.value(name.c_str(), id);
+    nb::dict known;
+    known["doc"] = nb::str(B::doc.data(), B::doc.size());
+    known["source"] = nb::str(B::source.data(), B::source.size());
+    known["nodes"] = B::nodes;
+    known["before"] = B::before;
+    known["own_node"] = B::own_node;
+    bases[name] = known;
+  });
+  m.attr("bases") = bases;
   nb::enum_<Wall>(m, "Wall")
       .value("free", Wall::free)
       .value("slip", Wall::slip)

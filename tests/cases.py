@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from mpm3dpp import Body, Case, Contact, Grid, Material, Run, load_case, shapes
+from mpm3dpp import Body, Case, Contact, Grid, Material, Run, _core, load_case, shapes
 
 CELL = 2.0**-7
 """Cell size [m]: a power of two, so that cells add up without rounding."""
 
 SCHEMES = ("usf", "usl", "musl")
-BASES = ("linear", "gimp")
+BASES = tuple(_core.bases)
 DENSITY, YOUNG = 1000.0, 1e6
 
 

@@ -11,14 +11,16 @@ LAYERS = {
     "parallel": 0,
     "fields": 1,
     "basis": 1,
-    "grid": 2,
+    "layout": 2,
     "materials": 2,
-    "particles": 3,
-    "reference": 4,
-    "contact": 4,
-    "domain.hpp": 5,
-    "step": 6,
-    "run": 7,
+    "grid": 3,
+    "particles": 4,
+    "schedule": 5,
+    "contact": 5,
+    "reference": 5,
+    "domain.hpp": 6,
+    "step": 7,
+    "run": 8,
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"][^>"]+)[>"]')
 PYTHON = re.compile(r'^[<"](nanobind/|pybind11/|Python\.h|numpy/)')

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from . import _core
 from .errors import Path, report, violation
 from .model import CaseModel, Choice, Count, Exactly
 from .units import Point, PositiveLength
@@ -118,8 +119,9 @@ class Grid(CaseModel):
         box: bounds and walls; None for an unbounded grid.
         keep: region outside which particles are taken out of the run; None for none.
         doubling: when the cells double; None for never.
-        basis: shape functions. "gimp" (uniform GIMP, Bardenhagen & Kober 2004) stays accurate
-            where stressed particles cross cells; "linear" is the paper's, the fastest.
+        basis: shape functions. "gimp" (uniform GIMP, Bardenhagen & Kober 2004) and
+            "quadratic_bspline" (Steffen, Kirby & Berzins 2008) stay accurate where stressed
+            particles cross cells; "linear" is the paper's, the fastest.
     """
 
     dimension: Annotated[int, Exactly(int, 2, 3)]
@@ -128,7 +130,7 @@ class Grid(CaseModel):
     box: GridBox | None = None
     keep: GridKeep | None = None
     doubling: GridDoubling | None = None
-    basis: Annotated[str, Choice(("gimp", "linear"))] = "gimp"
+    basis: Annotated[str, Choice(tuple(_core.bases))] = "gimp"
 
     @model_validator(mode="after")
     def _consistent(self) -> Grid:

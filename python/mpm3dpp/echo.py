@@ -8,6 +8,7 @@ import textwrap
 
 import numpy as np
 
+from . import _core
 from .build import FilledBody, by_part, warnings
 from .case import Case
 from .case_notes import notes
@@ -73,29 +74,28 @@ def occupied_cells(case: Case, bodies: list[FilledBody]) -> int:
 def _cells(case: Case, members: list[FilledBody], shift: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the numbers of the cells that hold particles, and the steps to the next on each axis.
 
-    Cells begin `shift` of a cell before the nodes; around a body there is room for one more.
+    Cells begin `shift` of a cell before the nodes; around a body there is room for what it reaches.
     """
+    room = max(basis["nodes"] for basis in _core.bases.values()) - 1
     positions = np.concatenate([body.positions for body in members])
     owner = np.repeat(np.arange(len(members)), [len(body.positions) for body in members])
     cells = np.floor((positions - np.asarray(case.grid.lower)) / case.grid.cell_size + shift)
-    cells -= cells.min(axis=0) - 1
-    strides = np.cumprod([1.0, *(cells.max(axis=0) + 2)])
+    cells -= cells.min(axis=0) - room
+    strides = np.cumprod([1.0, *(cells.max(axis=0) + room + 1)])
     return np.unique(cells @ strides[:-1] + owner * strides[-1]), strides[:-1]
 
 
 def memory_bytes(case: Case, bodies: list[FilledBody]) -> int:
     """Return about what the core will need, of particles and the nodes that each body reaches."""
-    gimp, total = case.grid.basis == "gimp", 0
+    basis, total = _core.bases[case.grid.basis], 0
+    reached = np.arange(basis["nodes"]) - basis["before"]  # From a cell's own node, along an axis.
     for members in by_part(bodies).values():
         state = state_columns(case.material[members[0].material].models)
         each = _PARTICLE_BYTES[case.grid.dimension] + 8 * len(state)
         total += each * sum(len(body.positions) for body in members)
-        # With GIMP a particle reaches the node nearest to it and those on both sides of that.
-        nodes, strides = _cells(case, members, 0.5 if gimp else 0.0)
+        nodes, strides = _cells(case, members, basis["own_node"])
         for stride in strides:
-            nodes = np.unique(
-                np.add.outer((-stride, 0.0, stride) if gimp else (0.0, stride), nodes)
-            )
+            nodes = np.unique(np.add.outer(stride * reached, nodes))
         total += _NODE_BYTES[case.grid.dimension] * len(nodes)
     return total
 

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import mpm3dpp
+from cases import BASES
 from mpm3dpp import _core
 from mpm3dpp.processor import LEVELS, processor_flags
 
@@ -62,7 +63,7 @@ def columns_of(
 
 @pytest.mark.skipif(len(USABLE) < 2, reason="this package has one core that runs here")
 @pytest.mark.parametrize("dimension", [2, 3])
-@pytest.mark.parametrize("basis", ["linear", "gimp"])
+@pytest.mark.parametrize("basis", BASES)
 @pytest.mark.parametrize("law", ["elastic", "flows"])
 def test_levels_agree(dimension: int, basis: str, law: str, tmp_path: Path) -> None:
     """To rounding; to the bit where a multiplication and addition are rounded once, or nowhere."""

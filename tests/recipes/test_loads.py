@@ -78,6 +78,8 @@ def test_one_particle_in_each_cube_between_nodes(dimension: int, shift: float) -
 def test_a_bar_that_is_pressed_suddenly(dimension: int, scheme: str, basis: str) -> None:
     """A wave of stress -p and velocity p / (rho c); means of its plateau, to 1 %.
 
+    The quadratic B-spline spreads the loaded end over half a cell more: 1.5 %.
+
     Artificial viscosity takes the ringing of a front as steep as the grid, 2 % in such means.
 
     Momentum is p A t and the work p v A t; the area does not change in uniaxial strain.
@@ -86,8 +88,9 @@ def test_a_bar_that_is_pressed_suddenly(dimension: int, scheme: str, basis: str)
     x = simulation.column("body", "position")[:, 0] / CELL - 4
     plateau = (x > 2) & (x < 14)
     stress, v = (simulation.column("body", n)[plateau, 0] for n in ("stress", "velocity"))
-    assert stress.mean() == pytest.approx(-1000.0, rel=0.01)
-    assert v.mean() == pytest.approx(1000.0 / (DENSITY * WAVE), rel=0.01)
+    near = 0.015 if basis == "quadratic_bspline" else 0.01
+    assert stress.mean() == pytest.approx(-1000.0, rel=near)
+    assert v.mean() == pytest.approx(1000.0 / (DENSITY * WAVE), rel=near)
     force = 1000.0 * (2 * CELL) ** (dimension - 1)
     [load] = simulation.core.loads()
     assert load.force[0] == pytest.approx(force, rel=1e-11)
@@ -95,7 +98,7 @@ def test_a_bar_that_is_pressed_suddenly(dimension: int, scheme: str, basis: str)
     assert load.impulse[0] == pytest.approx(row["momentum_x"][-1], rel=1e-12)
     work = force * 1000.0 / (DENSITY * WAVE) * simulation.time
     # The end moves by a part of a cell before a wave of the grid's resolution has built up.
-    assert row["load_work"][-1] == pytest.approx(work, rel=0.03)
+    assert row["load_work"][-1] == pytest.approx(work, rel=0.06 if near > 0.01 else 0.03)
     assert row["external"][-1] == row["load_work"][-1]
     assert np.abs(row["residual"]).max() < 1e-12 * work  # some thousand roundings
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from cases import BASES
 from mpm3dpp import Body, Case, Contact, Grid, GridBox, Material, Run, Simulation, Walls
 
 CELL = 0.1
@@ -42,7 +43,7 @@ def run(
     return simulation
 
 
-@pytest.mark.parametrize("basis", ["linear", "gimp"])
+@pytest.mark.parametrize("basis", BASES)
 @pytest.mark.parametrize("scheme", ["musl", "usf"])
 def test_half_a_body_at_a_wall_is_half_of_a_whole_one(basis: str, scheme: str) -> None:
     """Thrown at the wall fast enough that particles come within half a particle of it."""

@@ -103,8 +103,9 @@ WORLDS = {
     [(RINGS, 1800), (GRAINS, 1500), (IMPACT, 600)],
     ids=["two rings", "fifty grains", "impact with erosion"],
 )
-def test_another_world_is_the_same_to_rounding(text: str, steps: int) -> None:
-    case = Case.from_text(text)
+@pytest.mark.parametrize("basis", ["gimp", "quadratic_bspline"])
+def test_another_world_is_the_same_to_rounding(text: str, steps: int, basis: str) -> None:
+    case = Case.from_text(text.replace("[run]", f'basis = "{basis}"\n[run]'))
     filled, here = Simulation(case), Simulation(case)
     here.advance(steps)
     assert here.step == steps

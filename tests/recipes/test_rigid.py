@@ -97,7 +97,8 @@ def test_hits_an_elastic_bar(scheme: str, basis: str) -> None:
     """A rigid mass M stops on a long bar as v0 exp(-rho c A t / M) until the wave comes back.
 
     De Saint-Venant 1867 (Timoshenko & Goodier 1970, art. 167). The mass is a third of the bar's; 2
-    % of v0 is the front of the wave, which is spread over some cells.
+    % of v0 is the front of the wave, which is spread over some cells; with the quadratic B-spline
+    over half a cell more.
     """
     length, M = 120, 13 * CELL * 3000.0
     bar = {"elastic": {"E": YOUNG, "nu": 0.0}}
@@ -124,10 +125,11 @@ def test_hits_an_elastic_bar(scheme: str, basis: str) -> None:
     sim = Simulation(case, threads=1)
     end = 1.6 * length * CELL / c
     times = np.linspace(0.1, 1.0, 10) * end
+    near = 0.025 if basis == "quadratic_bspline" else 0.02
     for t in times:
         sim.advance(10**9, end_time=float(t))
         v = mean(sim.column("stone", "velocity"))[0]
-        assert v == pytest.approx(speed * np.exp(-DENSITY * c * t / M), abs=0.02 * speed)
+        assert v == pytest.approx(speed * np.exp(-DENSITY * c * t / M), abs=near * speed)
     assert np.ptp(sim.column("stone", "velocity")[:, 0]) < 1e-15
     rows, names = sim.core.history(), sim.core.history_columns
     momentum = rows[:, names.index("momentum_x")]

@@ -1,47 +1,72 @@
 #pragma once
-// The choice of shape functions.
+// Every basis, one line in all. From it come the case's words, checks and documentation.
 #include <algorithm>
+#include <array>
+#include <cstdint>
 
 #include "mpm/basis/gimp.hpp"
 #include "mpm/basis/linear.hpp"
+#include "mpm/basis/quadratic_bspline.hpp"
 
 namespace mpm {
 
-/// linear: the paper's, and the fastest. gimp: smooth where particles cross cells, dearer.
-enum class Basis { linear, gimp };
+/// Which basis: its place in `Bases`.
+enum class BasisId : std::uint8_t {};
 
-/// Nodes before a cell's own that its particles reach; behind it they reach one.
-constexpr int margin_of(Basis basis) { return basis == Basis::gimp ? 1 : 0; }
+/// Nodes that a cell's particles reach before and after its own, and where that lies in the cell.
+struct Reach {
+  int before, after;
+  double own_node;
+};
 
-/// Place of a cell's own node in the cell along each axis: in its corner, or with GIMP its middle.
-constexpr double node_in_cell(Basis basis) { return basis == Basis::gimp ? 0.5 : 0.0; }
+template <BasisModel... B>
+struct BasisList {
+  static constexpr int count = sizeof...(B);
+  static constexpr int before_max = std::max({B::before...});
+  static constexpr int after_max = std::max({B::nodes - 1 - B::before...});
+  static constexpr std::array<Reach, sizeof...(B)> reach = {
+      Reach{B::before, B::nodes - 1 - B::before, B::own_node}...};
+  static constexpr std::array<bool, sizeof...(B)> odd_at_fixed_walls = {B::odd_at_fixed_walls...};
 
-/// Position within the cell, in [1e-12, 1 - 1e-12], from the position in cells and the cell's
-/// coordinate. A particle exactly on a cell's face would give force to nodes to which it gives no
-/// mass; it is held 1e-12 cells away.
-template <class T>
-T local_coordinate(T cells, double cell) {
-  constexpr double from_face = 1e-12;
-  return min(max(cells - T(cell), T(from_face)), T(1.0 - from_face));
-}
-
-/// Half the edge of a GIMP particle [cells] from its edge at the start [cells]; at most half a
-/// cell.
-inline double gimp_half(double edge) { return std::min(0.5 * edge, 0.5); }
-
-/// Distance along an axis at which a particle's shape function ends [cells].
-inline double support(Basis basis, double edge) {
-  return 1.0 + (basis == Basis::gimp ? gimp_half(edge) : 0.0);
-}
-
-/// f(basis object) for the chosen basis; `edge` is the particles' edge at the start [cells].
-template <int D, class F>
-void with_basis(Basis basis, const BlockShape<D>& shape, double edge, F&& f) {
-  if (basis == Basis::linear) {
-    f(Linear<D>{shape});
-  } else {
-    f(Gimp<D>{shape, gimp_half(edge)});
+  /// f(basis of particles with that edge [cells]).
+  template <class F>
+  static void with(BasisId id, double edge, F&& f) {
+    int k = 0;
+    ((static_cast<int>(id) == k++ ? static_cast<void>(f(B(edge))) : void()), ...);
   }
+  /// f(id, basis) for each, of particles of half a cell.
+  template <class F>
+  static void for_each(F&& f) {
+    int k = 0;
+    (f(static_cast<BasisId>(k++), B(0.5)), ...);
+  }
+  template <class One>
+  static constexpr BasisId id_of() {
+    int k = 0, found = -1;
+    ((std::is_same_v<One, B> ? found = k++ : k++), ...);
+    return static_cast<BasisId>(found);
+  }
+};
+
+using Bases = BasisList<Gimp, Linear, QuadraticBSpline>;
+
+template <BasisModel B>
+inline constexpr BasisId basis_id = Bases::id_of<B>();
+
+constexpr Reach reach_of(BasisId id) { return Bases::reach[static_cast<std::size_t>(id)]; }
+
+constexpr bool odd_at_fixed_walls(BasisId id) {
+  return Bases::odd_at_fixed_walls[static_cast<std::size_t>(id)];
 }
+
+/// Half the width of the box over which a particle's function is the mean of the hat [cells], from
+/// the particles' edge at the start [cells].
+inline double half_width(BasisId id, double edge) {
+  double half = 0.0;
+  Bases::with(id, edge, [&](const auto& basis) { half = basis.half_width(); });
+  return half;
+}
+/// Distance along an axis at which a particle's function ends [cells].
+inline double support(BasisId id, double edge) { return 1.0 + half_width(id, edge); }
 
 }  // namespace mpm

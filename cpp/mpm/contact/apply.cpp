@@ -46,8 +46,8 @@ void ContactGrid<D>::for_each_closed(TileGrid<D>& grid, Threads& threads, F&& f)
   const auto fetch = [&](Part& part, const ContactNode& node) {
     if (!part.any_closed(node)) return;
     for (const Side<D>& side : part.sides_of(node))
-      part.for_each_place(side,
-                          [&](std::uint32_t place) { __builtin_prefetch(grid.line_at(place), 1); });
+      part.for_each_place(
+          side, [&](std::uint32_t place) { __builtin_prefetch(grid.record_at(place), 1); });
   };
   threads.for_each(parts_.size(), [&](std::size_t p) {
     Part& part = parts_[p];
@@ -134,15 +134,15 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
         const Vec<double, D> change = contact - side.mass * velocity;  // of all forces
         contact = change - time_step * force_of(side);
         // The node itself has its own mass only.
-        const double own_mass = grid.line_at(side.place)[mass_at];
+        const double own_mass = grid.record_at(side.place)[mass_at];
         const Vec<double, D> own =
             change - (time_step * (side.mass - own_mass)) * free_gravity(node, gravity);
         correction -= dot(own, velocity - side.mapped);
       }
       force_work += dot(contact, velocity);
       part.for_each_place(side, [&](std::uint32_t place) {
-        double* const line = grid.line_at(place);
-        for (int a = 0; a < D; ++a) line[force_at + a] += (1.0 / time_step) * contact[a];
+        double* const numbers = grid.record_at(place);
+        for (int a = 0; a < D; ++a) numbers[force_at + a] += (1.0 / time_step) * contact[a];
       });
     }
     node.force_work = force_work;

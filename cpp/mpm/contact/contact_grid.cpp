@@ -8,10 +8,11 @@ namespace {
 
 /// May a block reach any node that belongs to neighbour k?
 template <int D>
-bool reaches(int margin, int k) {
+bool reaches(const Reach& reach, int k) {
   bool any = true;
   const Index<D> o = Tile<D>::offset(k);
-  for (int a = 0; a < D; ++a) any = any && (o[a] >= 0 || margin > 0);
+  for (int a = 0; a < D; ++a)
+    any = any && (o[a] == 0 || (o[a] < 0 ? reach.before : reach.after) > 0);
   return any;
 }
 
@@ -33,7 +34,7 @@ void ContactGrid<D>::connect(TileGrid<D>& grid, const std::vector<Body<D>>& bodi
   };
   for (std::size_t p = 0; p < grid.patches.size(); ++p)
     for (int k = 0; k < Tile<D>::neighbours; ++k)
-      if (reaches<D>(grid.margin(), k)) holders_.emplace_back(grid.patches[p].body, p, k);
+      if (reaches<D>(grid.reach(), k)) holders_.emplace_back(grid.patches[p].body, p, k);
   std::sort(holders_.begin(), holders_.end(), [&](const TileHolder& x, const TileHolder& y) {
     const Index<D> tx = tile_of(x), ty = tile_of(y);
     if (tx != ty) return tile_less<D>(tx, ty);

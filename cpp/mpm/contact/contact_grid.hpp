@@ -152,7 +152,7 @@ class ContactGrid {
   void fill_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const ContactSettings& settings, std::size_t tile, TileBodies<D>& around,
                   std::size_t part, std::size_t first);
-  /// The vector at number `at` of the line of a side's node; and write it to all copies.
+  /// The vector at number `at` of the record of a side's node; and write it to all copies.
   Vec<double, D> read(TileGrid<D>& grid, const Side<D>& side, int at) const;
   void write(TileGrid<D>& grid, const Part& part, const Side<D>& side, const Vec<double, D>& value,
              int at) const;
@@ -213,7 +213,7 @@ class ContactGrid {
 
 template <int D>
 Vec<double, D> ContactGrid<D>::read(TileGrid<D>& grid, const Side<D>& side, int at) const {
-  const double* const numbers = grid.line_at(side.place) + at;
+  const double* const numbers = grid.record_at(side.place) + at;
   Vec<double, D> value;
   for (int a = 0; a < D; ++a) value[a] = numbers[a];
   return value;
@@ -223,8 +223,8 @@ template <int D>
 void ContactGrid<D>::write(TileGrid<D>& grid, const Part& part, const Side<D>& side,
                            const Vec<double, D>& value, int at) const {
   part.for_each_place(side, [&](std::uint32_t place) {
-    double* const line = grid.line_at(place);
-    for (int a = 0; a < D; ++a) line[at + a] = value[a];
+    double* const numbers = grid.record_at(place);
+    for (int a = 0; a < D; ++a) numbers[at + a] = value[a];
   });
 }
 

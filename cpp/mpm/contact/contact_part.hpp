@@ -31,7 +31,7 @@ struct ContactPart {
   std::vector<ContactNode> nodes;
   std::vector<Side<D>> sides;
   std::vector<SidePair<D>> pairs;
-  std::vector<std::uint32_t> further_places;  // of lines of the sides, each node's in a row
+  std::vector<std::uint32_t> further_places;  // of records of the sides, each node's in a row
   std::size_t overlapped = 0;                 // nodes, those left out too
   int bodies_max = 0;                         // at a node
   // Where pairs are kept: of this step and the last, in the order of `nodes` and of `pairs`.
@@ -44,7 +44,7 @@ struct ContactPart {
   std::span<SidePair<D>> pairs_of(const ContactNode& node) {
     return {&pairs[node.first_pair], pair_count(node.sides)};
   }
-  /// f(place) of a side's line in each patch that has it (TileGrid::line_at).
+  /// f(place) of a side's record in each patch that has it (TileGrid::record_at).
   template <class F>
   void for_each_place(const Side<D>& side, F&& f) const {
     f(side.place);

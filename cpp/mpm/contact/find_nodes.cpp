@@ -48,10 +48,10 @@ void ContactGrid<D>::look_around(const TileGrid<D>& grid, const ContactTile<D>& 
   if (!grid.walls.exist) return;
   for (std::uint64_t left = found.overlapped; left != 0; left &= left - 1) {
     const int cell = std::countr_zero(left);
-    Index<D> node = Tile<D>::cell_index(cell), image;
+    Index<D> node = Tile<D>::cell_index(cell);
     for (std::size_t a = 0; a < D; ++a) node[a] += grid.first_cell(tile.tile)[a];
-    // A node beyond a slip wall follows its image.
-    if (grid.walls.mirrored(node, image)) found.overlapped &= ~(std::uint64_t{1} << cell);
+    // A node beyond a wall follows its image.
+    if (grid.walls.image(node)) found.overlapped &= ~(std::uint64_t{1} << cell);
   }
 }
 
@@ -84,7 +84,7 @@ void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around,
         part.further_places.push_back(place);
     }
     side.further_count = static_cast<std::uint8_t>(part.further_places.size() - side.first_further);
-    __builtin_prefetch(grid.line_at(side.place));
+    __builtin_prefetch(grid.record_at(side.place));
   }
 }
 
@@ -98,7 +98,7 @@ void ContactGrid<D>::read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& b
     const auto b = static_cast<std::size_t>(side.body);
     who = mix(mix(who, b), bodies[b].active());
     side.prescribed = bodies[b].prescribed;
-    side.mass = grid.line_at(side.place)[mass_at];
+    side.mass = grid.record_at(side.place)[mass_at];
     side.mapped = read(grid, side, velocity_at);
   }
   if (keeps_) part.known_of(node).who = who;

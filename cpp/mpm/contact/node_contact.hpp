@@ -13,8 +13,8 @@ namespace mpm {
 template <int D>
 struct Side {
   std::int32_t body;
-  std::uint32_t place;          // of its line in the first patch that has it (TileGrid::line_at)
-  std::uint32_t first_further;  // of ContactPart::further_places: its lines in further patches
+  std::uint32_t place;  // of its record in the first patch that has it (TileGrid::record_at)
+  std::uint32_t first_further;  // of ContactPart::further_places: its records in further patches
   std::uint8_t further_count;
   bool prescribed;  // the body moves as it does, whatever pushes it
   double mass;  // [kg]; of a rigid body, with its share of the whole body's; of a prescribed one

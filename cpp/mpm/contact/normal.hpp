@@ -14,13 +14,14 @@ Vec<double, D> mass_gradient(const TileParticles<D>& particles, const Index<D>& 
                              const TileGrid<D>& grid, double edge) {
   using T = Batch<contact_lanes>;
   Vec<T, D> total = Vec<T, D>::zero();
-  with_basis<D>(grid.basis, {}, edge, [&](const auto& basis) {
+  Bases::with(grid.basis, edge, [&]<BasisModel B>(const B& basis) {
     particles.around(node, [&](const Index<D>& place, const auto& lanes) {
       for (int a = 0; a < D; ++a) {
         T g = lanes.mass;
         for (int b = 0; b < D; ++b) {
-          const int e = place[static_cast<std::size_t>(b)];
-          g = g * (b == a ? basis.slope(e, lanes.xi[b]) : basis.factor(e, lanes.xi[b]));
+          const auto w = basis.along(lanes.xi[b]);
+          const int k = place[static_cast<std::size_t>(b)] + B::before;
+          g = g * (b == a ? w.dN[k] : w.N[k]);
         }
         total[a] += g;
       }

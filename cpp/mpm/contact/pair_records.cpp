@@ -64,7 +64,7 @@ ContactSums ContactGrid<D>::record(TileGrid<D>& grid, const std::vector<Body<D>>
   ContactSums sums;
   // Mass of a side's node over that of a particle.
   const auto share = [&](const Side<D>& side) {
-    return grid.line_at(side.place)[mass_at] /
+    return grid.record_at(side.place)[mass_at] /
            bodies[static_cast<std::size_t>(side.body)].mean_mass;
   };
   const std::size_t known = records_.size();

@@ -43,19 +43,19 @@ int node_in_holder(const TileGrid<D>& grid, const TileHolder& holder, const Inde
 template <int D>
 struct HeldNodes {
   std::uint64_t with_mass;  // a bit each by Tile<D>::cell
-  std::int64_t first = 0;   // where the line of the tile's first node is, or would be
-  Index<D> stride{};        // from line to line along each axis
+  std::int64_t first = 0;   // where the record of the tile's first node is, or would be
+  Index<D> stride{};        // from record to record along each axis
 
-  /// Find out where the lines are.
+  /// Find out where the records are.
   void locate(TileGrid<D>& grid, const TileHolder& holder) {
     const BlockShape<D>& shape = shape_of(grid, holder);
-    first = grid.place_of_line(grid.block(holder.patch).lines.data) +
+    first = grid.index_of_record(grid.block(holder.patch).records.data) +
             std::int64_t{node_in_holder<D>(grid, holder, Index<D>{})};
     for (std::size_t a = 0, step = 1; a < D; step *= static_cast<std::size_t>(shape.nodes[a++]))
       stride[a] = static_cast<std::int32_t>(step);
   }
-  /// Of the line of a node `with_mass`, by its coordinates from the tile's first
-  /// (TileGrid::line_at).
+  /// Of the record of a node `with_mass`, by its coordinates from the tile's first
+  /// (TileGrid::record_at).
   std::uint32_t place(const Index<D>& node) const {
     std::int64_t at = first;
     for (std::size_t a = 0; a < D; ++a) at += std::int64_t{stride[a]} * node[a];
@@ -69,7 +69,9 @@ template <int D>
 class NodesWithMass {
  public:
   void find(TileGrid<D>& grid, Threads& threads) {
-    words_ = static_cast<std::size_t>(BlockShape<D>::count_max(grid.margin())) / 64 +
+    words_ = static_cast<std::size_t>(
+                 BlockShape<D>::count_max(grid.reach().before, grid.reach().after)) /
+                 64 +
              2;  // one to read beyond
     bits_.assign(grid.patches.size() * words_, 0);
     threads.for_each(grid.patches.size(), [&](std::size_t p) {

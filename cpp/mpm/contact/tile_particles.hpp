@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mpm/contact/tile_holder.hpp"
@@ -33,21 +34,14 @@ T particle_edge(T volume, double mean_edge) {
 }
 
 /// The cells of the tile at an offset from which any of a tile's nodes is in reach; cells and nodes
-/// a bit each by Tile<D>::cell. Along each axis a node is reached from the cell before it, from its
-/// own, and with a margin from the one behind.
+/// a bit each by Tile<D>::cell. Along each axis a cell c reaches the nodes c - before to c + after.
 template <int D>
-std::uint64_t cells_in_reach(std::uint64_t nodes, const Index<D>& offset, int margin) {
+std::uint64_t cells_in_reach(std::uint64_t nodes, const Index<D>& offset, const Reach& reach) {
   std::uint64_t cells = nodes;
   for (std::size_t a = 0; a < D; ++a) {
-    const int one = power(Tile<D>::cells, static_cast<int>(a)), last = Tile<D>::cells - 1;
-    const std::uint64_t low = Tile<D>::slice(a, 0), high = Tile<D>::slice(a, last);
-    const std::uint64_t behind = margin > 0 ? cells : 0;
-    if (offset[a] < 0)
-      cells = (cells & low) << last * one;
-    else if (offset[a] > 0)
-      cells = (behind & high) >> last * one;
-    else
-      cells |= (cells & ~low) >> one | (behind & ~high) << one;
+    const std::uint64_t along = std::exchange(cells, 0);
+    for (int k = -reach.after; k <= reach.before; ++k)  // as counted from the other tile's first
+      cells |= Tile<D>::moved(along, a, k - Tile<D>::cells * offset[a]);
   }
   return cells;
 }
@@ -65,7 +59,7 @@ class TileParticles {
   };
 
   /// Place of a cell's own node in the cell along each axis.
-  double own_node() const { return own_node_; }
+  double own_node() const { return reach_of(basis_).own_node; }
   /// No more particles than so many are around any node.
   std::size_t most_around() const { return lanes_.size() * T::lanes; }
 
@@ -80,8 +74,7 @@ class TileParticles {
   /// Forget all and take what is around these nodes of another tile.
   void gather(const TileGrid<D>& grid, const Body<D>& body, const Index<D>& tile,
               std::span<const TileHolder> holders, std::uint64_t nodes) {
-    margin_ = grid.margin();
-    own_node_ = node_in_cell(grid.basis);
+    basis_ = grid.basis;
     lanes_.clear();
     filled_.fill(0);
     for_each_cell(grid, holders, nodes,
@@ -96,8 +89,8 @@ class TileParticles {
   /// from the cell's own.
   template <class F>
   void around(const Index<D>& node, F&& f) const {
-    const CellsAround& cells = around_[static_cast<std::size_t>(margin_)];
-    const int width = margin_ + 2, own = number(node);
+    const CellsAround& cells = around_[static_cast<std::size_t>(basis_)];
+    const int width = cells.width, own = number(node);
     std::uint64_t filled = 0;  // those with particles, a bit each
     for (int k = 0; k < power(width, D); k += width)
       filled |= (bits_from(filled_.data(), own + cells.number[k]) & low_bits(width)) << k;
@@ -112,29 +105,38 @@ class TileParticles {
   struct Cell {
     std::uint32_t begin, end;  // of lanes_
   };
-  // Cells from which nodes of a tile may be in reach: its own, and one more on each side.
-  static constexpr int edge = Tile<D>::cells + 2, cell_count = power(edge, D);
+  // Cells from which nodes of a tile may be in reach: its own, and some on each side.
+  static constexpr int before_tile = Bases::after_max;
+  static constexpr int edge = Tile<D>::cells + before_tile + Bases::before_max;
+  static constexpr int cell_count = power(edge, D);
 
   /// The cells from which a node is in reach, the first axis fastest.
   struct CellsAround {
-    Index<D> place[Tile<D>::neighbours]{};  // the node's, as counted from the cell's own
-    int number[Tile<D>::neighbours]{};      // the cell's, as counted from that of the node
-
-    constexpr explicit CellsAround(int margin) {
-      for (int k = 0; k < power(margin + 2, D); ++k)
-        for (int a = 0, left = k, stride = 1; a < D; ++a, left /= margin + 2, stride *= edge) {
-          const int o = left % (margin + 2) - 1;
-          place[k][static_cast<std::size_t>(a)] = -o;
-          number[k] += stride * o;
+    static constexpr int most = power(Bases::before_max + Bases::after_max + 1, D);
+    int width = 0;           // of them along an axis
+    Index<D> place[most]{};  // the node's, as counted from the cell's own
+    int number[most]{};      // the cell's, as counted from that of the node
+  };
+  static constexpr std::array<CellsAround, Bases::count> around_ = [] {
+    std::array<CellsAround, Bases::count> all;
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      CellsAround& cells = all[b];
+      const Reach& reach = Bases::reach[b];
+      cells.width = reach.before + reach.after + 1;
+      for (int k = 0; k < power(cells.width, D); ++k)
+        for (int a = 0, left = k, stride = 1; a < D; ++a, left /= cells.width, stride *= edge) {
+          const int o = left % cells.width - reach.after;
+          cells.place[k][static_cast<std::size_t>(a)] = -o;
+          cells.number[k] += stride * o;
         }
     }
-  };
-  static constexpr std::array<CellsAround, 2> around_ = {CellsAround(0), CellsAround(1)};
+    return all;
+  }();
 
   /// Of a cell, by its coordinates from the tile's first.
   static int number(const Index<D>& cell) {
     int n = 0;
-    for (std::size_t a = D; a-- > 0;) n = n * edge + cell[a] + 1;
+    for (std::size_t a = D; a-- > 0;) n = n * edge + cell[a] + before_tile;
     return n;
   }
 
@@ -146,7 +148,7 @@ class TileParticles {
     for (const TileHolder& h : holders) {
       const Patch<D>& patch = grid.patches[static_cast<std::size_t>(h.patch)];
       const Index<D> offset = Tile<D>::offset(Tile<D>::neighbours - 1 - h.neighbour);
-      std::uint64_t cells = patch.occupied & cells_in_reach<D>(nodes, offset, grid.margin());
+      std::uint64_t cells = patch.occupied & cells_in_reach<D>(nodes, offset, grid.reach());
       for (; cells != 0; cells &= cells - 1) f(patch, offset, std::countr_zero(cells));
     }
   }
@@ -190,8 +192,7 @@ class TileParticles {
     cells_[n].end = static_cast<std::uint32_t>(lanes_.size());
   }
 
-  int margin_ = 0;
-  double own_node_ = 0.0;
+  BasisId basis_{};
   // A bit for each cell whose particles were taken; one word more, for rows that are read across
   // the end.
   std::array<std::uint64_t, cell_count / 64 + 2> filled_{};

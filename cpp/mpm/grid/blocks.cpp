@@ -26,7 +26,7 @@ template <int D>
 bool TileGrid<D>::find_shapes(Threads& threads) {
   reshaped_.assign(patches.size(), bonded);
   threads.for_each(patches.size(), [&](std::size_t p) {
-    const auto shape = BlockShape<D>::around(patches[p].occupied, margin());
+    const auto shape = BlockShape<D>::around(patches[p].occupied, reach());
     if (patches[p].shape == shape) return;
     patches[p].shape = shape;
     reshaped_[p] = true;
@@ -47,7 +47,7 @@ void TileGrid<D>::cut_blocks(Threads& threads) {
   for (Patch<D>& patch : patches) {
     patch.memory = needed_;
     const auto nodes = static_cast<std::size_t>(patch.shape.node_count);
-    needed_ += line * (nodes + (has_dashpots ? (nodes + 1) / 2 : 0));  // whole cache lines
+    needed_ += record * (nodes + (has_dashpots ? (nodes + 1) / 2 : 0));  // whole cache lines
   }
   make_room(node_memory_, needed_, needed_ + needed_ / 16);
   threads.for_each(patches.size(), [&](std::size_t p) {

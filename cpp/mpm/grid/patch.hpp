@@ -4,10 +4,9 @@
 #include <bit>
 #include <cstdint>
 
-#include "mpm/basis/basis.hpp"
-#include "mpm/basis/node_bits.hpp"
-#include "mpm/basis/node_lines.hpp"
 #include "mpm/grid/shared_nodes.hpp"
+#include "mpm/layout/node_bits.hpp"
+#include "mpm/layout/node_records.hpp"
 
 namespace mpm {
 
@@ -18,13 +17,13 @@ namespace mpm {
 /// factors [kg/s], then forces, until the remap.
 template <int D>
 struct NodeBlock {
-  NodeLines lines;
+  NodeRecords records;
   int count;
-  NodeField<line> mass() const { return {lines.data + mass_at}; }
-  NodeField<line> velocity(int a) const { return {lines.data + velocity_at + a}; }
-  NodeField<line> force(int a) const { return {lines.data + force_at + a}; }
-  NodeField<quad> dashpot(int a) const { return {dashpots().data + a}; }
-  NodeQuads dashpots() const { return {lines[count]}; }  // behind the lines
+  NodeField<record> mass() const { return {records.data + mass_at}; }
+  NodeField<record> velocity(int a) const { return {records.data + velocity_at + a}; }
+  NodeField<record> force(int a) const { return {records.data + force_at + a}; }
+  NodeField<half_record> dashpot(int a) const { return {dashpots().data + a}; }
+  HalfRecords dashpots() const { return {records[count]}; }  // behind the records
 };
 
 template <int D>

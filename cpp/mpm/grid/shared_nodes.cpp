@@ -137,7 +137,7 @@ void TileGrid<D>::for_each_follower(Threads& threads, F&& f) {
 
 /// Of the nodes that a patch owns and others hold too.
 template <int D>
-template <int quads, int width, class F>
+template <int halves, int width, class F>
 void TileGrid<D>::sum_shared_nodes_of(const Patch<D>& patch, F&& begin_of) {
   std::array<Nodes<width>, Tile<D>::neighbours> block{};
   for (std::size_t k = Tile<D>::self; k < Tile<D>::neighbours; ++k)
@@ -149,53 +149,56 @@ void TileGrid<D>::sum_shared_nodes_of(const Patch<D>& patch, F&& begin_of) {
     for (int left = patch.shared.groups[holders]; left > 0; --left, entry += holders) {
       double* numbers[holders];
       for (int h = 0; h < holders; ++h) numbers[h] = block[entry[h].neighbour][entry[h].node];
-      unrolled<quads>([&](auto q) {
-        auto sum = Batch<quad>::load(numbers[0] + q * quad);
-        for (int h = 1; h < holders; ++h) sum += Batch<quad>::load(numbers[h] + q * quad);
-        for (int h = 0; h < holders; ++h) sum.store(numbers[h] + q * quad);
+      unrolled<halves>([&](auto q) {
+        auto sum = Batch<half_record>::load(numbers[0] + q * half_record);
+        for (int h = 1; h < holders; ++h)
+          sum += Batch<half_record>::load(numbers[h] + q * half_record);
+        for (int h = 0; h < holders; ++h) sum.store(numbers[h] + q * half_record);
       });
     }
   });
 }
 
 template <int D>
-template <int quads, int width, class F>
+template <int halves, int width, class F>
 void TileGrid<D>::sum_shared(Threads& threads, F&& begin_of) {
-  /// f(p's quad, q's quad) for the nodes that both hold.
+  /// f(p's half record, q's) for the nodes that both hold.
   const auto each_quad = [&](const Patch<D>& p, const Patch<D>& q, auto&& f) {
     const Nodes<width> of_p{begin_of(p)}, of_q{begin_of(q)};
     for_each_shared_row(p, q, [&](int here, int there, int count) {
       for (int i = 0; i < count; ++i)
-        for (int k = 0; k < quads * quad; k += quad) f(of_p[here + i] + k, of_q[there + i] + k);
+        for (int k = 0; k < halves * half_record; k += half_record)
+          f(of_p[here + i] + k, of_q[there + i] + k);
     });
   };
   for_each_follower(threads, [&](const Patch<D>& patch, const Patch<D>& leader) {
     each_quad(leader, patch, [](double* to, const double* from) {
-      (Batch<quad>::load(to) + Batch<quad>::load(from)).store(to);
+      (Batch<half_record>::load(to) + Batch<half_record>::load(from)).store(to);
     });
   });
   // All entries of a node are read and written by the one patch that owns it.
   threads.for_each(leaders_.size(), [&](std::size_t k) {
-    sum_shared_nodes_of<quads, width>(patches[leaders_[k]], begin_of);
+    sum_shared_nodes_of<halves, width>(patches[leaders_[k]], begin_of);
   });
   for_each_follower(threads, [&](const Patch<D>& patch, const Patch<D>& leader) {
     each_quad(patch, leader,
-              [](double* to, const double* from) { Batch<quad>::load(from).store(to); });
+              [](double* to, const double* from) { Batch<half_record>::load(from).store(to); });
   });
 }
 
 template <int D>
 void TileGrid<D>::sum_shared_nodes(Threads& threads, int first, int last) {
-  const auto begin_of = [&](const Patch<D>& p) { return block_of(p).lines.data + first; };
-  if (last - first == line)
-    sum_shared<2, line>(threads, begin_of);
+  const auto begin_of = [&](const Patch<D>& p) { return block_of(p).records.data + first; };
+  if (last - first == record)
+    sum_shared<2, record>(threads, begin_of);
   else
-    sum_shared<1, line>(threads, begin_of);
+    sum_shared<1, record>(threads, begin_of);
 }
 
 template <int D>
 void TileGrid<D>::sum_shared_dashpots(Threads& threads) {
-  sum_shared<1, quad>(threads, [&](const Patch<D>& p) { return block_of(p).dashpots().data; });
+  sum_shared<1, half_record>(threads,
+                             [&](const Patch<D>& p) { return block_of(p).dashpots().data; });
 }
 
 template void TileGrid<2>::list_shared_nodes(Threads&);

@@ -1,6 +1,6 @@
 #pragma once
 // The nodes that several patches hold, listed when the blocks are cut: a sum goes down the lists.
-#include "mpm/basis/block_shape.hpp"
+#include "mpm/layout/block_shape.hpp"
 
 namespace mpm {
 

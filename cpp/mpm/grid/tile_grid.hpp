@@ -28,12 +28,21 @@ struct CellCoordinates {
   }
 };
 
+/// Position within the cell, in [1e-12, 1 - 1e-12], from the position in cells and the cell's
+/// coordinate. A particle exactly on a cell's face would give force to nodes to which it gives no
+/// mass; it is held 1e-12 cells away.
+template <class T>
+T local_coordinate(T cells, double cell) {
+  constexpr double from_face = 1e-12;
+  return min(max(cells - T(cell), T(from_face)), T(1.0 - from_face));
+}
+
 template <int D>
 class TileGrid {
  public:
   Vec<double, D> origin = Vec<double, D>::zero();  // position of node 0 [m]
   double cell_size = 0.0;                          // [m]
-  Basis basis = Basis::linear;                     // of all bodies
+  BasisId basis = basis_id<Linear>;                // of all bodies
   // Cell at the lower corner of tile 0. Tied to the particles' first place, so that a problem
   // shifted by whole cells is cut into the same tiles and gives the same bits.
   Index<D> anchor{};
@@ -45,7 +54,7 @@ class TileGrid {
 
   CellCoordinates<D> coordinates() const {
     Vec<double, D> corner = origin;
-    for (int a = 0; a < D; ++a) corner[a] -= node_in_cell(basis) * cell_size;
+    for (int a = 0; a < D; ++a) corner[a] -= reach().own_node * cell_size;
     return {corner, 1.0 / cell_size};
   }
   /// Position along an axis in cells from the corner of cell 0.
@@ -86,14 +95,18 @@ class TileGrid {
     return c;
   }
 
-  /// Nodes before a cell's own that its particles reach.
-  int margin() const { return margin_of(basis); }
+  /// Nodes around a cell's own that its particles reach.
+  Reach reach() const { return reach_of(basis); }
+  /// Do nodes beyond walls follow their images before them?
+  bool has_ghosts() const { return walls.exist && reach().before > 0; }
   NodeBlock<D> block(std::size_t patch) { return block_of(patches[patch]); }
-  /// A node's line as a number, for those who come back to it before blocks are cut anew.
-  std::uint32_t place_of_line(const double* at) const {
-    return static_cast<std::uint32_t>((at - node_memory_.data()) / line);
+  /// A node's record as a number, for those who come back to it before blocks are cut anew.
+  std::uint32_t index_of_record(const double* at) const {
+    return static_cast<std::uint32_t>((at - node_memory_.data()) / record);
   }
-  double* line_at(std::uint32_t place) { return node_memory_.data() + std::size_t{place} * line; }
+  double* record_at(std::uint32_t place) {
+    return node_memory_.data() + std::size_t{place} * record;
+  }
   /// What the patches and their nodes need now.
   std::size_t needed_bytes() const {
     return needed_ * sizeof(double) + patches.size() * sizeof(Patch<D>);
@@ -122,9 +135,9 @@ class TileGrid {
   /// The patch of a body in a tile, or -1.
   int find(int body, const Index<D>& tile) const;
 
-  /// Add up what the patches sharing a node have put there, for numbers [first, last) of the lines,
-  /// a quad or two, always in the order of the tiles (of bonded bodies in one tile: of the bodies);
-  /// then every patch holds the sum.
+  /// Add up what the patches sharing a node have put there, for numbers [first, last) of the
+  /// records, half a record or a whole, always in the order of the tiles (of bonded bodies in one
+  /// tile: of the bodies); then every patch holds the sum.
   void sum_shared_nodes(Threads& threads, int first, int last);
   /// The same for the dashpots.
   void sum_shared_dashpots(Threads& threads);
@@ -139,10 +152,10 @@ class TileGrid {
   void find_outdated(Threads& threads);
   void find_owned(Patch<D>& patch) const;
   void list_shared_nodes(Threads& threads);
-  /// `begin_of(patch)`: the first of the numbers of its nodes that are summed, so many quads.
-  template <int quads, int width, class F>
+  /// `begin_of(patch)`: the first of the numbers of its nodes that are summed, so many halves.
+  template <int halves, int width, class F>
   void sum_shared_nodes_of(const Patch<D>& patch, F&& begin_of);
-  template <int quads, int width, class F>
+  template <int halves, int width, class F>
   void sum_shared(Threads& threads, F&& begin_of);
   template <class F>
   void for_each_follower(Threads& threads, F&& f);

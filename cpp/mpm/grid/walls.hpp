@@ -1,6 +1,8 @@
 #pragma once
 // Walls on the faces of an optional box. Node indices count from the box's lower corner.
-#include "mpm/basis/tile.hpp"
+#include <optional>
+
+#include "mpm/layout/tile.hpp"
 
 namespace mpm {
 
@@ -8,11 +10,23 @@ namespace mpm {
 /// dashpots that let waves pass.
 enum class Wall { free, slip, fixed, absorbing };
 
+/// The node before the walls whose image a node beyond them is: what is given to one is the
+/// other's, and they move together, vectors with the components `turned`, a bit each.
+template <int D>
+struct WallImage {
+  Index<D> node;
+  unsigned turned;
+
+  /// A component of a vector, as the image has it.
+  double component(double value, int axis) const { return turned >> axis & 1u ? -value : value; }
+};
+
 template <int D>
 struct Walls {
-  bool exist = false;    // is there a box at all
-  Index<D> cells{};      // cells of the box along each axis
-  Wall face[D][2] = {};  // [axis][lower, upper]
+  bool exist = false;         // is there a box at all
+  Index<D> cells{};           // cells of the box along each axis
+  Wall face[D][2] = {};       // [axis][lower, upper]
+  bool odd_at_fixed = false;  // (BasisModel)
 
   bool absorb() const {
     bool any = false;
@@ -22,7 +36,7 @@ struct Walls {
   }
 
   /// Bit a is set if a node may not move along axis a. Nodes beyond a fixed face are held like
-  /// those on it; those beyond a slip face are images of nodes before it.
+  /// those on it, or have images.
   unsigned held(const Index<D>& node) const {
     unsigned axes = 0;
     if (!exist) return axes;
@@ -30,29 +44,34 @@ struct Walls {
       for (int side = 0; side < 2; ++side) {
         const int depth = depth_beyond(node, a, side);
         if (depth == 0 && face[a][side] == Wall::slip) axes |= 1u << a;
-        if (depth >= 0 && face[a][side] == Wall::fixed) axes |= (1u << D) - 1u;
+        if (face[a][side] == Wall::fixed && (depth == 0 || (depth > 0 && !odd_at_fixed)))
+          axes |= all_axes;
       }
     }
     return axes;
   }
 
-  /// Bit a is set if a node lies beyond a slip face of axis a, which is a plane of symmetry;
-  /// `image` is then where it is mirrored to.
-  unsigned mirrored(const Index<D>& node, Index<D>& image) const {
-    unsigned axes = 0;
-    image = node;
-    if (!exist) return axes;
+  /// Of a node beyond a slip face, which is a plane of symmetry, or beyond a fixed one if that is
+  /// odd: where it is mirrored to.
+  std::optional<WallImage<D>> image(const Index<D>& node) const {
+    if (!exist) return {};
+    WallImage<D> image{node, 0};
+    bool beyond = false;
     for (int a = 0; a < D; ++a)
       for (int side = 0; side < 2; ++side) {
         const int depth = depth_beyond(node, a, side);
-        if (depth <= 0 || face[a][side] != Wall::slip) continue;
-        axes |= 1u << a;
-        image[a] += (side == 0 ? 2 : -2) * depth;
+        const bool slip = face[a][side] == Wall::slip;
+        if (depth <= 0 || !(slip || (odd_at_fixed && face[a][side] == Wall::fixed))) continue;
+        beyond = true;
+        image.turned ^= slip ? 1u << a : all_axes;
+        image.node[static_cast<std::size_t>(a)] += (side == 0 ? 2 : -2) * depth;
       }
-    return axes;
+    if (!beyond) return {};
+    return image;
   }
 
  private:
+  static constexpr unsigned all_axes = (1u << D) - 1u;
   int depth_beyond(const Index<D>& node, int axis, int side) const {
     return side == 0 ? -node[axis] : node[axis] - cells[axis];
   }

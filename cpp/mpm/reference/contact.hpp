@@ -23,9 +23,8 @@ void Step<D>::find_contacts() {
     }
   }
   for (auto& [i, r] : bodies[0].nodes) {
-    Index<D> image;
     const auto s = bodies[1].nodes.find(i);
-    if (s == bodies[1].nodes.end() || walls.mirrored(i, image)) continue;
+    if (s == bodies[1].nodes.end() || walls.image(i)) continue;
     contacts.push_back({i, &r, &s->second, normalised(normal[0][i] - normal[1][i], 1e-6)});
   }
 }

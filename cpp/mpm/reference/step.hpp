@@ -222,11 +222,10 @@ struct Step {
   }
   template <class F>
   void for_image(Body<D>& b, const Index<D>& i, F&& f) {
-    Index<D> image;
-    const unsigned axes = walls.mirrored(i, image);
-    if (axes == 0) return;
-    f(b.nodes[image], [axes](Vec<double, D> v) {
-      for (int a = 0; a < D; ++a) v[a] = axes >> a & 1u ? -v[a] : v[a];
+    const auto image = walls.image(i);
+    if (!image) return;
+    f(b.nodes[image->node], [image](Vec<double, D> v) {
+      for (int a = 0; a < D; ++a) v[a] = image->component(v[a], a);
       return v;
     });
   }

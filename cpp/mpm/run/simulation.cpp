@@ -90,6 +90,7 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
   grid.basis = settings.basis;
   grid.bonded = settings.bonded;
   grid.walls.exist = settings.box_cells[0] > 0;
+  grid.walls.odd_at_fixed = odd_at_fixed_walls(settings.basis);
   grid.keep.exist = settings.keep;
   for (std::size_t a = 0; a < D; ++a) {
     const int axis = static_cast<int>(a);

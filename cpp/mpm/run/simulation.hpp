@@ -32,7 +32,7 @@ struct Settings {
   std::array<double, 3> keep_lower{}, keep_upper{};  // corners of the region that is kept [m] ...
   bool keep = false;                                 // ... if particles that leave it are taken out
   std::array<Wall, 6> walls{};                       // of the box's faces: x-, x+, y-, y+, z-, z+
-  Basis basis = Basis::linear;
+  BasisId basis = basis_id<Linear>;
   Scheme scheme = Scheme::musl;
   double time_step_factor = 0.0;          // of the critical time step h / (c + |v|)
   std::array<TimeFunction, 3> gravity{};  // [m/s^2]

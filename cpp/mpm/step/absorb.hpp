@@ -2,6 +2,7 @@
 // Absorbing walls: dashpots on the nodes of a face let the waves of the bodies before it pass, with
 // the traction -rho c_p v along the normal and -rho c_s v along the face (Lysmer & Kuhlemeyer 1969,
 // eqs. 1-2 with a = b = 1).
+#include "mpm/step/node_loops.hpp"
 #include "mpm/step/nodes_around.hpp"
 #include "mpm/step/work.hpp"
 
@@ -23,7 +24,7 @@ void scatter_dashpots(const TileGrid<D>& grid, const Body<D>& body, const Patch<
     bool any = false;
     for (int normal = 0; normal < D; ++normal)
       for (int side = 0; side < 2; ++side)
-        for (int before = 0; before <= grid.margin(); ++before)
+        for (int before = 0; before <= grid.reach().before; ++before)
           any = any || along_face(cell[static_cast<std::size_t>(normal)] - before, normal, side);
     return any;
   };

@@ -35,10 +35,10 @@ void advance_nodes(Domain<D>& domain) {
     });
     double own[BlockShape<D>::nodes_max];
     ownership(patch, block.count, own);
-    for_each_mirrored_node(grid, patch, [&](int node, int, unsigned) { own[node] = 0.0; });
+    for_each_ghost_node(grid, patch, [&](int node, int, const WallImage<D>&) { own[node] = 0.0; });
     double work = 0.0, gravity_first = 0.0, gravity_second = 0.0;
     for (int n = 0; n < block.count; ++n) {
-      double* const numbers = block.lines[n];
+      double* const numbers = block.records[n];
       const double m = numbers[mass_at], impulse = m > 0.0 ? dt / m : 0.0;
       for (int a = 0; a < D; ++a) {
         double &v = numbers[velocity_at + a], &f = numbers[force_at + a];
@@ -54,7 +54,7 @@ void advance_nodes(Domain<D>& domain) {
     if (absorb && patch.at_wall) dashpots = work_of_dashpots(block, own, dt);
     // The mirrored weight went into the force; it is work of gravity.
     double weight_first = 0.0, weight_second = 0.0;
-    for_each_mirrored_weight(domain, patch, block, [&](int image, int a, double weight) {
+    for_each_ghost_weight(domain, patch, block, [&](int image, int a, double weight) {
       const double dv = block.force(a)[image];
       weight_first += weight * (block.velocity(a)[image] - dv);
       weight_second += weight * dv;

@@ -1,5 +1,6 @@
+#include "mpm/schedule/scatter.hpp"
 #include "mpm/step/move.hpp"
-#include "mpm/step/scatter.hpp"
+#include "mpm/step/node_loops.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -11,9 +12,9 @@ enum class Also { nothing, remap, move };
 /// Velocities of a patch's particles, eq. (17). `damped`: a share of the velocity of the grid takes
 /// the place of theirs, PIC in place of FLIP (Harlow 1964; Brackbill & Ruppel 1986), so that what
 /// the grid does not see dies away.
-template <int W, Also also, bool damped, int D, class Functions>
+template <int W, Also also, bool damped, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p,
-                                                   const Functions& basis) {
+                                                   const B& basis) {
   using T = Batch<W>;
   auto& grid = domain.grid;
   Patch<D>& patch = grid.patches[p];
@@ -29,15 +30,17 @@ template <int W, Also also, bool damped, int D, class Functions>
   Rounded* velocities[D];
   for (int a = 0; a < D; ++a) velocities[a] = body.v(a);
   // The increments are still read where the new momenta are scattered.
-  alignas(cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * quad : 1];
-  if constexpr (also == Also::remap) std::fill_n(remapped, block.count * quad, 0.0);
-  CellByCell<gives_momentum, D, Functions, quad> cells(basis, {remapped});
+  alignas(
+      cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * half_record : 1];
+  if constexpr (also == Also::remap) std::fill_n(remapped, block.count * half_record, 0.0);
+  const NodeStrides<D> stride(patch.shape);
+  DoubleBuffer<gives_momentum, D, B, half_record> cells(stride, {remapped});
 
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-    const auto nodes = basis.field(block.lines.from(cell.first_node));
+    const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
     if constexpr (also == Also::remap) cells.begin(cell);
     for_each_group<W>(cell, [&](const auto& rows) {
-      const auto w = basis.weights(local_position(cell, rows));
+      const auto w = weights_at(basis, local_position(cell, rows));
       const T all = load(mass, rows), m = of_valid(rows, all);
       T speed2(0.0), change2(0.0);
       const Vec<T, D> increment = nodes.vector(force_at, w);
@@ -68,7 +71,8 @@ template <int W, Also also, bool damped, int D, class Functions>
     if constexpr (also == Also::remap) cells.end();
   });
   if constexpr (also == Also::remap) cells.finish();
-  if constexpr (also == Also::remap) copy_quads(block.lines.at(force_at), {remapped}, block.count);
+  if constexpr (also == Also::remap)
+    copy_halves(block.records.at(force_at), {remapped}, block.count);
   if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
   PatchSums<D>& sums = domain.sums[p];
   sums.kinetic = 0.5 * sum(kinetic);

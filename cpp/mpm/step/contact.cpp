@@ -6,11 +6,11 @@ namespace mpm {
 namespace {
 
 /// Nodes beyond slip walls follow their images; contact has changed the vector at number `at` of
-/// the lines.
+/// the records.
 template <int D>
 void reflect(Domain<D>& domain, int at) {
   TileGrid<D>& grid = domain.grid;
-  if (!grid.walls.exist || grid.margin() == 0) return;
+  if (!grid.has_ghosts()) return;
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     reflect_at_walls(grid, grid.patches[p], grid.block(p), at);
   });

@@ -16,7 +16,7 @@ void for_each_loaded_piece(const Domain<D>& domain, std::size_t p, const Surface
   const Patch<D>& patch = grid.patches[p];
   if (load.body != patch.body) return;
   const Body<D>& body = domain.bodies[static_cast<std::size_t>(patch.body)];
-  const double reach = grid.basis == Basis::gimp ? gimp_half(body.mean_edge / grid.cell_size) : 0.0;
+  const double reach = half_width(grid.basis, body.mean_edge / grid.cell_size);
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
     for_each_piece(load, body, cell, [&](std::uint32_t row, std::size_t piece) {
       const NodesAround<D> around(grid, body, patch, cell, row);

@@ -1,7 +1,9 @@
 #pragma once
 // Loads on surfaces: from the pieces that particles carry to the nodes, and the pieces along with
 // the particles.
-#include "mpm/step/cell_loop.hpp"
+#include "mpm/domain.hpp"
+#include "mpm/schedule/cell_loop.hpp"
+#include "mpm/schedule/choose.hpp"
 #include "mpm/step/work.hpp"
 
 namespace mpm {
@@ -12,8 +14,8 @@ void start_loads(Domain<D>& domain);
 
 /// f_i += sum over the pieces of N_i(x) f, x the middle of the piece: the surface term of the
 /// equation of motion (Sulsky, Chen & Schreyer 1994). N_i are the linear functions. x is
-/// held between the nodes around the particle, with GIMP within the particle's box too, so that
-/// only nodes with mass are loaded.
+/// held between the nodes around the particle, or within the box over which its function is a mean,
+/// so that only nodes with mass are loaded.
 template <int D>
 void scatter_loads(Domain<D>& domain, std::size_t patch);
 
@@ -35,26 +37,27 @@ void for_each_piece(const SurfaceLoad<D>& load, const Body<D>& body, const CellR
 }
 
 /// Take the pieces of a patch's particles along; the nodal velocity that strains the material is
-/// the vector at number `at` of the lines.
+/// the vector at number `at` of the records.
 template <int D>
-void carry_loads(Domain<D>& domain, std::size_t p, int at) {
+[[gnu::noinline]] void carry_loads(Domain<D>& domain, std::size_t p, int at) {
   const auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   const Body<D>& body = domain.body_of(patch);
   const double scale = domain.time_step / grid.cell_size;
   for (SurfaceLoad<D>& load : domain.loads) {
     if (load.body != patch.body) continue;
-    with_basis(grid, body, patch, [&](const auto& basis) {
+    with_basis(grid, body, [&]<BasisModel B>(const B& basis) {
+      const NodeStrides<D> stride(patch.shape);
       for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
         bool loaded = false;
         for_each_piece(load, body, cell, [&](std::uint32_t, std::size_t) { loaded = true; });
         if (!loaded) return;
-        const auto nodes = basis.field(domain.grid.block(p).lines.from(cell.first_node));
+        const auto nodes = field_of<B>(domain.grid.block(p).records.from(cell.first_node), stride);
         for_each_piece(load, body, cell, [&](std::uint32_t row, std::size_t piece) {
           Vec<double, D> xi;
           for (int a = 0; a < D; ++a)
             xi[a] = local_coordinate(grid.in_cells(body.x(a)[row], a), cell.cell[a]);
-          const auto w = basis.weights(xi);
+          const auto w = weights_at(basis, xi);
           const auto gradients = nodes.gradients(at, w);
           Mat<double, D> L;
           for (int i = 0; i < D; ++i)

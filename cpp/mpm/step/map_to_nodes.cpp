@@ -1,8 +1,8 @@
+#include "mpm/schedule/scatter.hpp"
 #include "mpm/step/absorb.hpp"
 #include "mpm/step/loads.hpp"
 #include "mpm/step/mirror.hpp"
 #include "mpm/step/prescribed_bodies.hpp"
-#include "mpm/step/scatter.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -16,15 +16,15 @@ void map_patch(Domain<D>& domain, std::size_t p) {
   const Patch<D>& patch = grid.patches[p];
   const NodeBlock<D> block = grid.block(p);
   if constexpr (momentum) {
-    // All of all lines: until now the memory may have been lent (TileGrid::idle_memory).
-    clear(block.lines, block.count, line);
-    if (grid.has_dashpots) clear(block.dashpots(), block.count, quad);
+    // All of all records: until now the memory may have been lent (TileGrid::idle_memory).
+    clear(block.records, block.count, record);
+    if (grid.has_dashpots) clear(block.dashpots(), block.count, half_record);
   }
   const Body<D>& body = domain.body_of(patch);
   if (body.prescribed && !patch.in_contact) return;  // Nobody asks for its nodes.
   // The weights that "map momentum" leaves in the forces are added last, as where both are mapped
   // at once: to the same bits.
-  const bool weighed = !momentum && patch.at_wall && grid.margin() > 0;
+  const bool weighed = !momentum && patch.at_wall && grid.has_ghosts();
   double weights[BlockShape<D>::nodes_max][D];
   const auto for_each_weight = [&](auto&& f) {
     for (int n = 0; n < (weighed ? block.count : 0); ++n)
@@ -32,12 +32,12 @@ void map_patch(Domain<D>& domain, std::size_t p) {
   };
   for_each_weight([](double& weight, double& force) { weight = std::exchange(force, 0.0); });
   if (!body.rigid)
-    scatter<what>(grid, body, patch, block.lines);
+    scatter<what>(grid, body, patch, block.records);
   else if constexpr (momentum)  // It has no stress.
-    scatter<what & ~gives_forces>(grid, body, patch, block.lines);
+    scatter<what & ~gives_forces>(grid, body, patch, block.records);
   for_each_weight([](double weight, double& force) { force += weight; });
   if constexpr (momentum) {
-    if (!body.prescribed) subtract_mirrored_weight(domain, patch, block);
+    if (!body.prescribed) subtract_ghost_weight(domain, patch, block);
     fold_at_walls(grid, patch, block, velocity_at);
   }
   if (!forces || body.rigid) return;
@@ -67,7 +67,7 @@ void map_to_nodes(Domain<D>& domain) {
   const bool loaded = forces && domain.has_loads();
   if (loaded) start_loads(domain);
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) { map_patch<what>(domain, p); });
-  grid.sum_shared_nodes(domain.threads, momentum ? 0 : force_at, forces ? line : force_at);
+  grid.sum_shared_nodes(domain.threads, momentum ? 0 : force_at, forces ? record : force_at);
   if (forces && grid.has_dashpots) grid.sum_shared_dashpots(domain.threads);
   if (momentum)
     domain.threads.for_each(grid.patches.size(),

@@ -1,5 +1,7 @@
 #pragma once
-#include "mpm/step/cell_loop.hpp"
+#include "mpm/domain.hpp"
+#include "mpm/schedule/cell_loop.hpp"
+#include "mpm/schedule/choose.hpp"
 
 namespace mpm {
 

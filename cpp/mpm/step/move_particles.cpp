@@ -13,11 +13,12 @@ void move_particles(Domain<D>& domain) {
     const NodeBlock<D> block = grid.block(p);
     const LocalPosition<D> local_position(grid, body);
     Moving<D> moving(grid, body, domain.time_step);
-    with_basis_and_lanes(grid, body, patch, [&](const auto& basis, auto lanes) {
+    with_basis_and_lanes(grid, body, patch, [&]<BasisModel B>(const B& basis, auto lanes) {
+      const NodeStrides<D> stride(patch.shape);
       for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-        const auto nodes = basis.field(block.lines.from(cell.first_node));
+        const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
         for_each_group<lanes>(cell, [&](const auto& rows) {
-          moving.move(cell, rows, nodes, basis.weights(local_position(cell, rows)));
+          moving.move(cell, rows, nodes, weights_at(basis, local_position(cell, rows)));
         });
       });
     });

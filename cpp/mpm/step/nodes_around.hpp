@@ -1,12 +1,13 @@
 #pragma once
 // The nodes between which a particle lies, for what has linear functions with every basis: loads on
 // surfaces, walls that absorb.
-#include "mpm/step/cell_loop.hpp"
+#include "mpm/domain.hpp"
+#include "mpm/schedule/cell_loop.hpp"
 
 namespace mpm {
 
-/// The nodes at the corners of the square or cube of the grid that a particle is in, which with
-/// GIMP is not its cell.
+/// The nodes at the corners of the square or cube of the grid that a particle is in, which is
+/// not its cell where that is centred at a node.
 template <int D>
 struct NodesAround {
   double place[D];  // position among the nodes
@@ -19,7 +20,7 @@ struct NodesAround {
     for (int a = 0; a < D; ++a) {
       const auto k = static_cast<std::size_t>(a);
       place[a] = grid.among_nodes(body.x(a)[row], a);
-      const bool before = node_in_cell(grid.basis) > 0.0 && place[a] < cell.cell[k];
+      const bool before = grid.reach().own_node > 0.0 && place[a] < cell.cell[k];
       lower[k] = cell.cell[k] - (before ? 1 : 0);
       from_cell[k] = lower[k] - cell.cell[k];
     }

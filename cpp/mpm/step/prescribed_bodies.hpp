@@ -2,7 +2,8 @@
 // Bodies whose motion is prescribed: their nodes and particles have the velocity of that motion,
 // whatever acts on them. They have no stress, and map nothing but their mass, where others are
 // near.
-#include "mpm/step/cell_loop.hpp"
+#include "mpm/domain.hpp"
+#include "mpm/schedule/cell_loop.hpp"
 
 namespace mpm {
 

@@ -1,5 +1,5 @@
+#include "mpm/schedule/scatter.hpp"
 #include "mpm/step/mirror.hpp"
-#include "mpm/step/scatter.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -14,13 +14,13 @@ void remap(Domain<D>& domain, bool scattered) {
     const NodeBlock<D> block = grid.block(p);
     const Body<D>& body = domain.body_of(patch);
     if (!scattered || body.rigid) {
-      clear(block.lines.at(force_at), block.count, quad);
+      clear(block.records.at(force_at), block.count, half_record);
       if (body.prescribed) return;
-      scatter<gives_momentum>(grid, body, patch, block.lines.at(force_at));
+      scatter<gives_momentum>(grid, body, patch, block.records.at(force_at));
     }
     fold_at_walls(grid, patch, block, force_at);
   });
-  grid.sum_shared_nodes(domain.threads, force_at, force_at + quad);
+  grid.sum_shared_nodes(domain.threads, force_at, force_at + half_record);
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const NodeBlock<D> block = grid.block(p);
     if (domain.body_of(grid.patches[p]).prescribed) {

@@ -6,11 +6,11 @@ namespace mpm {
 namespace {
 
 /// Velocity gradients, eqs. (18)-(20), of a patch's particles, handed to the material block by
-/// block. The nodal velocity that strains is the vector at number `straining_at` of the lines; with
-/// `moves` the particles move as well, eq. (16).
-template <int W, bool moves, int straining_at, int D, class Functions>
-[[gnu::noinline, gnu::flatten]] void update_patch(Domain<D>& domain, std::size_t p,
-                                                  const Functions& basis, bool forces_follow) {
+/// block. The nodal velocity that strains is the vector at number `straining_at` of the records;
+/// with `moves` the particles move as well, eq. (16).
+template <int W, bool moves, int straining_at, int D, BasisModel B>
+[[gnu::noinline, gnu::flatten]] void update_patch(Domain<D>& domain, std::size_t p, const B& basis,
+                                                  bool forces_follow) {
   using T = Batch<W>;
   const auto& grid = domain.grid;
   Patch<D>& patch = domain.grid.patches[p];
@@ -20,7 +20,8 @@ template <int W, bool moves, int straining_at, int D, class Functions>
   const Material& material = domain.materials[static_cast<std::size_t>(body.material)];
   const StressSettings settings{domain.time_step, domain.time + domain.time_step, grid.cell_size,
                                 material.viscosity, forces_follow};
-  const NodeLines lines = domain.grid.block(p).lines;
+  const NodeRecords records = domain.grid.block(p).records;
+  const NodeStrides<D> stride(patch.shape);
   const T scale(domain.time_step / grid.cell_size);
   const LocalPosition<D> local_position(grid, body);
   Moving<D> moving(grid, body, domain.time_step);
@@ -31,10 +32,10 @@ template <int W, bool moves, int straining_at, int D, class Functions>
     block.count = 0;
   };
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-    const auto nodes = basis.field(lines.from(cell.first_node));
+    const auto nodes = field_of<B>(records.from(cell.first_node), stride);
     for_each_group<W>(cell, [&](const auto& rows) {
       if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
-      const auto w = basis.weights(local_position(cell, rows));
+      const auto w = weights_at(basis, local_position(cell, rows));
       const auto gradients = nodes.gradients(straining_at, w);
       unrolled<D>([&](auto i) {
         unrolled<D>(

@@ -10,6 +10,7 @@ Not counted are nodes, the one-axis factors themselves, lists, and what lanes th
 
 from __future__ import annotations
 
+from .. import _core
 from .traffic import moves_particles
 
 # Of a material for a particle and step (3D, plane strain), by hand from `cpp/mpm/materials`: strain
@@ -26,14 +27,14 @@ def operations_per_particle_step(
     Args:
         stages: names of the stages of a scheme.
         dimension: 2 or 3.
-        basis: "linear" or "gimp".
+        basis: a word of `grid.basis`.
         law: of the material, a key of `LAWS`.
 
     Raises:
         KeyError: a stage is not in `traffic.STAGES`, or moves particles and is not counted here.
     """
     d = dimension
-    nodes = (3 if basis == "gimp" else 2) ** d
+    nodes = _core.bases[basis]["nodes"] ** d
     function, gradient = nodes * (d - 1), nodes * d * (d - 1)
     weighted, mass = nodes, nodes  # m N_ip, and its sum
     vector, tensor = 2 * nodes * d, 2 * nodes * d * d

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "check.hpp"
-#include "mpm/basis/basis.hpp"
+#include "mpm/grid/tile_grid.hpp"
+#include "mpm/schedule/choose.hpp"
 
 namespace {
 
@@ -23,21 +24,21 @@ double sum_over_nodes(const std::vector<double>& weight, const std::vector<doubl
 }
 
 /// Fields read by particles in W lanes are those that each would read alone.
-template <int W, int D, class B, class Nodes>
+template <int W, int D, BasisModel B, class Nodes>
 void check_lanes(mpm::testing::Report& report, const B& basis, const Nodes& nodes,
                  const Vec<double, D>& start) {
   Vec<Batch<W>, D> lanes;
   for (int k = 0; k < W; ++k)
     for (int a = 0; a < D; ++a) lanes[a].v[k] = std::fmod(start[a] + 0.37 * k, 1.0);
-  const auto w = basis.weights(lanes);
-  const auto v = nodes.vector(quad, w);
-  const auto g = nodes.gradients(quad, w);
+  const auto w = weights_at(basis, lanes);
+  const auto v = nodes.vector(force_at, w);
+  const auto g = nodes.gradients(force_at, w);
   for (int k = 0; k < W; ++k) {
     Vec<double, D> xi;
     for (int a = 0; a < D; ++a) xi[a] = lanes[a].v[k];
-    const auto alone = basis.weights(xi);
-    const auto v_alone = nodes.vector(quad, alone);
-    const auto g_alone = nodes.gradients(quad, alone);
+    const auto alone = weights_at(basis, xi);
+    const auto v_alone = nodes.vector(force_at, alone);
+    const auto g_alone = nodes.gradients(force_at, alone);
     for (std::size_t i = 0; i < D; ++i) {
       const int c = static_cast<int>(i);
       CHECK_CLOSE(v[c].v[k], v_alone[c], tolerance);
@@ -46,9 +47,10 @@ void check_lanes(mpm::testing::Report& report, const B& basis, const Nodes& node
   }
 }
 
-template <int D, class B>
-void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, double own_node,
-                 const B& basis) {
+template <int D, BasisModel B>
+void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const B& basis) {
+  const Scatter<B, D> scatter{NodeStrides<D>(shape)};
+  const int to_first = NodeStrides<D>(shape).to_first(B::before);
   using T = Batch<4>;
   const auto count = static_cast<std::size_t>(shape.node_count);
   const Index<D> cell =
@@ -56,24 +58,24 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, doubl
   const int first = shape.node(cell);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> inside(1e-12, 1.0 - 1e-12), any(-1.0, 1.0);
-  std::vector<double> ones(count, 0.0), field(count, 0.0), lines(line * count, 0.0);
+  std::vector<double> ones(count, 0.0), field(count, 0.0), records(record * count, 0.0);
   std::array<std::vector<double>, D> position;
   position.fill(ones);
   for (int n = 0; n < shape.node_count; ++n) {
     const auto i = static_cast<std::size_t>(n);
     ones[i] = 1.0;
-    field[i] = lines[line * i + quad + 1] = any(random);
-    for (std::size_t a = 0; a < D; ++a) position[a][i] = shape.index(n)[a] - cell[a] + own_node;
+    field[i] = records[record * i + force_at + 1] = any(random);
+    for (std::size_t a = 0; a < D; ++a) position[a][i] = shape.index(n)[a] - cell[a] + B::own_node;
   }
   constexpr int room = 16;
   constexpr unsigned everything = gives_mass | gives_momentum | gives_forces;
   double mass = 0.0;  // of one particle, with its velocity and traction; the others have none
   Vec<double, D> velocity = Vec<double, D>::zero();
   auto traction = Sym<double, D>::zero();
-  typename B::template Particles<room> places{};
+  typename Scatter<B, D>::template Places<room> places{};
   // What particle p gives, others at its side.
-  const auto gifts_of = [&]<unsigned what>(int p, std::integral_constant<unsigned, what>) {
-    typename B::template Gifts<room> gifts{};
+  const auto payload_of = [&]<unsigned what>(int p, std::integral_constant<unsigned, what>) {
+    typename Scatter<B, D>::template Payload<room> payload{};
     const auto in_lane = [&](int at, double value) {
       T lanes(0.0);
       if (p >= at && p < at + 4) lanes.v[p - at] = value;
@@ -84,27 +86,27 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, doubl
       Sym<T, D> t;
       for (int a = 0; a < D; ++a) v[a] = in_lane(at, velocity[a]);
       for (int c = 0; c < Sym<double, D>::size; ++c) t.c[c] = in_lane(at, traction.c[c]);
-      gifts.template add<what>(at, in_lane(at, mass), v);
-      gifts.add_tractions(at, t);
+      payload.template add<what>(at, in_lane(at, mass), v);
+      payload.add_tractions(at, t);
     }
-    return gifts;
+    return payload;
   };
-  // The quads that particle p alone gives to the nodes, mass and momentum, and forces.
+  // The records that particle p alone gives to the nodes, mass and momentum, and forces.
   const auto given = [&](int p) {
-    std::vector<double> to(line * count, 0.0);
-    const NodeLines nodes = NodeLines{to.data()}.from(first);
-    const auto gifts = gifts_of(p, std::integral_constant<unsigned, everything>{});
-    basis.template give<everything>(nodes, places, gifts, room);
+    std::vector<double> to(record * count, 0.0);
+    const NodeRecords nodes = NodeRecords{to.data()}.from(first + to_first);
+    const auto payload = payload_of(p, std::integral_constant<unsigned, everything>{});
+    scatter.template give<everything>(nodes, places, payload, room);
     return to;
   };
   const auto number = [&](const std::vector<double>& of, int at) {
     std::vector<double> r(count);
-    for (std::size_t i = 0; i < count; ++i) r[i] = of[line * i + static_cast<std::size_t>(at)];
+    for (std::size_t i = 0; i < count; ++i) r[i] = of[record * i + static_cast<std::size_t>(at)];
     return r;
   };
-  const auto nodes = basis.field(NodeLines{lines.data()}.from(first));
+  const auto nodes = field_of<B>(NodeRecords{records.data()}.from(first), NodeStrides<D>(shape));
   const auto value = [&](const Vec<double, D>& xi) {
-    return nodes.vector(quad, basis.weights(xi))[1];
+    return nodes.vector(force_at, weights_at(basis, xi))[1];
   };
 
   for (int sample = 0; sample < 200; ++sample) {
@@ -115,7 +117,7 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, doubl
     for (int a = 0; a < D; ++a)
       for (int k = 0; k < 4; ++k) lanes[a].v[k] = k == p ? xi[a] : inside(random);
     for (int at = 0; at < room; at += 4)
-      basis.template put<everything>(places, at, basis.weights(lanes));
+      scatter.template put<everything>(places, at, weights_at(basis, lanes));
     // A mass of one, so that the nodes' are N; tractions that give dN_ip / d xi_b as component c.
     mass = 1.0;
     for (int a = 0; a < D; ++a) velocity[a] = 10.0 + a;
@@ -129,7 +131,7 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, doubl
       CHECK_CLOSE(sum_over_nodes(number(given(p), velocity_at + a), ones), 10.0 + a,
                   11 * tolerance);
 
-    const auto gradients = nodes.gradients(quad, basis.weights(xi));
+    const auto gradients = nodes.gradients(force_at, weights_at(basis, xi));
     for (int a = 0; a < D; ++a) {
       traction = Sym<double, D>::zero();
       traction(a, a) = 1.0;
@@ -161,29 +163,29 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, doubl
 
     // Stages that give less give the same bits.
     const auto all = given(p);
-    std::vector<double> parts(line * count, 0.0), momentum(quad * count, 0.0);
-    const NodeLines to = NodeLines{parts.data()}.from(first);
-    const auto gifts = gifts_of(p, std::integral_constant<unsigned, everything>{});
-    basis.template give<gives_mass | gives_momentum>(to, places, gifts, room);
-    basis.template give<gives_forces>(to, places, gifts, room);
+    std::vector<double> parts(record * count, 0.0), momentum(half_record * count, 0.0);
+    const NodeRecords to = NodeRecords{parts.data()}.from(first + to_first);
+    const auto payload = payload_of(p, std::integral_constant<unsigned, everything>{});
+    scatter.template give<gives_mass | gives_momentum>(to, places, payload, room);
+    scatter.template give<gives_forces>(to, places, payload, room);
     for (std::size_t i = 0; i < all.size(); ++i) CHECK_EQUAL(parts[i], all[i]);
     constexpr std::integral_constant<unsigned, gives_momentum> alone;
-    basis.template give<gives_momentum>(NodeQuads{momentum.data()}.from(first), places,
-                                        gifts_of(p, alone), room);
+    scatter.template give<gives_momentum>(HalfRecords{momentum.data()}.from(first + to_first),
+                                          places, payload_of(p, alone), room);
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t a = 0; a < D; ++a)
-        CHECK_EQUAL(momentum[quad * i + a], all[line * i + velocity_at + a]);
+        CHECK_EQUAL(momentum[half_record * i + a], all[record * i + velocity_at + a]);
   }
 }
 
-/// Four registers with a node in each lane become a quad for each node.
+/// Four registers with a node in each lane become half a record for each node.
 template <int W>
-void check_quads(mpm::testing::Report& report) {
+void check_transpose(mpm::testing::Report& report) {
   Batch<W> from[4];
   for (int f = 0; f < 4; ++f)
     for (int n = 0; n < W; ++n) from[f].v[n] = 10.0 * n + f;
   int calls = 0;
-  for_each_quad(from[0], from[1], from[2], from[3], [&](int n, Batch<4> q) {
+  transpose_to_nodes(from[0], from[1], from[2], from[3], [&](int n, Batch<4> q) {
     ++calls;
     for (int f = 0; f < 4; ++f) CHECK_EQUAL(q.v[f], 10.0 * n + f);
   });
@@ -193,17 +195,18 @@ void check_quads(mpm::testing::Report& report) {
 }  // namespace
 
 void test_basis(mpm::testing::Report& report) {
-  for (const Basis basis : {Basis::linear, Basis::gimp})
-    for (const double edge : {0.25, 0.5, 1.0}) {
-      const auto flat = BlockShape<2>::around(~std::uint64_t{0}, margin_of(basis));
-      const auto space = BlockShape<3>::around(~std::uint64_t{0}, margin_of(basis));
-      const double own = node_in_cell(basis);
-      with_basis<2>(basis, flat, edge, [&](const auto& b) { check_basis(report, flat, own, b); });
-      with_basis<3>(basis, space, edge, [&](const auto& b) { check_basis(report, space, own, b); });
-    }
-  check_quads<2>(report);
-  check_quads<4>(report);
-  check_quads<8>(report);
+  Bases::for_each([&](BasisId id, const auto&) {
+    for (const double edge : {0.25, 0.5, 1.0})
+      Bases::with(id, edge, [&](const auto& basis) {
+        const auto flat = BlockShape<2>::around(~std::uint64_t{0}, reach_of(id));
+        const auto space = BlockShape<3>::around(~std::uint64_t{0}, reach_of(id));
+        check_basis(report, flat, basis);
+        check_basis(report, space, basis);
+      });
+  });
+  check_transpose<2>(report);
+  check_transpose<4>(report);
+  check_transpose<8>(report);
   // A particle on a face, or a rounding beyond it, is held just inside the cell.
   CHECK_EQUAL(local_coordinate(3.0, 3.0), 1e-12);
   CHECK_EQUAL(local_coordinate(3.0 - 1e-15, 3.0), 1e-12);

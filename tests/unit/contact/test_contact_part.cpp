@@ -1,4 +1,5 @@
-// Nodes that are left out: the others keep their sides, their pairs and the places of their lines.
+// Nodes that are left out: the others keep their sides, their pairs and the places of their
+// records.
 #include <random>
 #include <vector>
 

@@ -1,4 +1,4 @@
-// Which of a tile's nodes are in a holder's block and have mass, where their lines are, and from
+// Which of a tile's nodes are in a holder's block and have mass, where their records are, and from
 // which cells they are in reach.
 #include <random>
 
@@ -12,7 +12,7 @@ using namespace mpm;
 
 /// All neighbours of a patch, node by node, with masses at random.
 template <int D>
-void check_nodes(mpm::testing::Report& report, Basis basis) {
+void check_nodes(mpm::testing::Report& report, BasisId basis) {
   std::mt19937_64 random(3);
   std::bernoulli_distribution has_mass(0.4);
   TileGrid<D> grid;
@@ -35,7 +35,8 @@ void check_nodes(mpm::testing::Report& report, Basis basis) {
     for (int k = 0; k < Tile<D>::neighbours; ++k) {
       const TileHolder holder(patch, static_cast<std::size_t>(patch), k);
       bool reached = true;
-      for (const int o : Tile<D>::offset(k)) reached = reached && (o >= 0 || grid.margin() > 0);
+      for (const int o : Tile<D>::offset(k))
+        reached = reached && (o >= 0 || grid.reach().before > 0);
       if (!reached) continue;
       const std::uint64_t found = masses.in_tile(grid, holder);
       HeldNodes<D> held{found};
@@ -48,15 +49,15 @@ void check_nodes(mpm::testing::Report& report, Basis basis) {
         CHECK((found >> cell & 1u) == (expected ? 1u : 0u), patch, k, cell);
         if (!expected) continue;
         const NodeBlock<D> block = grid.block(static_cast<std::size_t>(patch));
-        const double* const line = block.lines[node_in_holder<D>(grid, holder, node)];
-        CHECK(grid.line_at(held.place(node)) == line, patch, k, cell);
+        const double* const numbers = block.records[node_in_holder<D>(grid, holder, node)];
+        CHECK(grid.record_at(held.place(node)) == numbers, patch, k, cell);
       }
     }
 }
 
 /// All neighbours of a tile, cell by cell, for nodes at random.
 template <int D>
-void check_reach(mpm::testing::Report& report, int margin) {
+void check_reach(mpm::testing::Report& report, const Reach& reach) {
   std::mt19937_64 random(5);
   for (int turn = 0; turn < 20; ++turn) {
     // Many nodes, few, one.
@@ -65,7 +66,7 @@ void check_reach(mpm::testing::Report& report, int margin) {
     if (turn % 3 > 1) nodes = std::uint64_t{1} << random() % 64;
     for (int k = 0; k < Tile<D>::neighbours; ++k) {
       const Index<D> offset = Tile<D>::offset(k);
-      const std::uint64_t found = cells_in_reach<D>(nodes, offset, margin);
+      const std::uint64_t found = cells_in_reach<D>(nodes, offset, reach);
       for (int c = 0; c < Tile<D>::cell_count; ++c) {
         bool expected = false;
         for (int n = 0; n < Tile<D>::cell_count; ++n) {
@@ -73,7 +74,7 @@ void check_reach(mpm::testing::Report& report, int margin) {
           for (std::size_t a = 0; a < D; ++a) {
             const int cell = Tile<D>::cell_index(c)[a] + Tile<D>::cells * offset[a];
             const int from_node = cell - Tile<D>::cell_index(n)[a];
-            reached = reached && from_node >= -1 && from_node <= margin;
+            reached = reached && from_node >= -reach.after && from_node <= reach.before;
           }
           expected = expected || reached;
         }
@@ -86,12 +87,12 @@ void check_reach(mpm::testing::Report& report, int margin) {
 }  // namespace
 
 void test_tile_holder(mpm::testing::Report& report) {
-  check_nodes<2>(report, Basis::linear);
-  check_nodes<2>(report, Basis::gimp);
-  check_nodes<3>(report, Basis::linear);
-  check_nodes<3>(report, Basis::gimp);
-  for (const int margin : {0, 1}) {
-    check_reach<2>(report, margin);
-    check_reach<3>(report, margin);
+  check_nodes<2>(report, basis_id<Linear>);
+  check_nodes<2>(report, basis_id<Gimp>);
+  check_nodes<3>(report, basis_id<Linear>);
+  check_nodes<3>(report, basis_id<Gimp>);
+  for (const Reach& reach : {Reach{0, 1, 0.0}, Reach{1, 1, 0.5}, Reach{1, 2, 0.0}}) {
+    check_reach<2>(report, reach);
+    check_reach<3>(report, reach);
   }
 }

@@ -37,9 +37,9 @@ void check_sums(mpm::testing::Report& report, TileGrid<D>& grid, Threads& thread
     given[key].push_back(mass);
     owners[key] += grid.patches[p].owned[n];
   });
-  // Quad by quad, so that no other may change with one.
-  grid.sum_shared_nodes(threads, 0, quad);
-  grid.sum_shared_nodes(threads, force_at, line);
+  // Half by half, so that no other may change with one.
+  grid.sum_shared_nodes(threads, 0, half_record);
+  grid.sum_shared_nodes(threads, force_at, record);
   grid.sum_shared_dashpots(threads);
   constexpr double rounding = 1e-14;  // of up to 2 x 2^3 numbers below 1, added in another order
   for_each_node([&](std::size_t p, int n, const Key& key) {
@@ -64,8 +64,8 @@ void check_shapes(mpm::testing::Report& report, const TileGrid<D>& grid) {
     last.fill(-99);
     for (int c = 0; c < Tile<D>::cell_count; ++c)
       for (std::size_t a = 0; a < D && (patch.occupied >> c & 1u); ++a) {
-        first[a] = std::min(first[a], Tile<D>::cell_index(c)[a] - grid.margin());
-        last[a] = std::max(last[a], Tile<D>::cell_index(c)[a] + 1);
+        first[a] = std::min(first[a], Tile<D>::cell_index(c)[a] - grid.reach().before);
+        last[a] = std::max(last[a], Tile<D>::cell_index(c)[a] + grid.reach().after);
       }
     if (patch.occupied == 0) {
       CHECK_EQUAL(patch.shape.node_count, 0);
@@ -77,7 +77,7 @@ void check_shapes(mpm::testing::Report& report, const TileGrid<D>& grid) {
 
 /// Two bodies in 3^D tiles, some cells occupied at random, and then others.
 template <int D>
-void check_blocks(mpm::testing::Report& report, Basis basis, bool bonded) {
+void check_blocks(mpm::testing::Report& report, BasisId basis, bool bonded) {
   std::mt19937_64 random(7);
   Threads threads(2);
   TileGrid<D> grid;
@@ -127,7 +127,7 @@ void check_blocks(mpm::testing::Report& report, Basis basis, bool bonded) {
 }  // namespace
 
 void test_blocks(mpm::testing::Report& report) {
-  for (const Basis basis : {Basis::linear, Basis::gimp})
+  for (const BasisId basis : {basis_id<Linear>, basis_id<Gimp>})
     for (const bool bonded : {false, true}) {
       check_blocks<2>(report, basis, bonded);
       check_blocks<3>(report, basis, bonded);

@@ -68,7 +68,7 @@ std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& m
   settings.dimension = dimension;
   settings.cell_size = 1.0;
   settings.scheme = scheme;
-  settings.basis = scheme == Scheme::usf ? Basis::linear : Basis::gimp;
+  settings.basis = scheme == Scheme::usf ? basis_id<Linear> : basis_id<Gimp>;
   settings.time_step_factor = 0.3;
   for (std::size_t a = 0; a < 3; ++a) settings.gravity[a] = motion.gravity[a];
   if (motion.gravity[1] != 0.0) {

@@ -74,8 +74,7 @@ class Comparison {
         for (std::size_t a = 0; a < D; ++a) i[a] += domain.grid.first_cell(patch.tile)[a];
         const auto at = known.find(i);
         const reference::Node<D> node = at == known.end() ? reference::Node<D>{} : at->second;
-        Index<D> image;
-        const bool beyond = domain.grid.walls.mirrored(i, image) != 0;
+        const bool beyond = domain.grid.walls.image(i).has_value();
         const unsigned held = domain.grid.walls.held(i);
         if (mapped) CHECK_CLOSE(block.mass()[n], node.m, 1e-12 * mass_scale);
         for (int a = 0; a < D; ++a) {
@@ -139,7 +138,7 @@ void check_schemes(Report& report, const Choice<D>& choice) {
 
 template <int D>
 void check_all(Report& report) {
-  for (const Basis basis : {Basis::linear, Basis::gimp}) {
+  Bases::for_each([&](BasisId basis, const auto&) {
     Choice<D> choice;
     choice.basis = basis;
     check_schemes(report, choice);
@@ -153,7 +152,7 @@ void check_all(Report& report) {
     choice.walls[1] = Wall::absorbing;
     choice.walls[3] = Wall::free;
     check_schemes(report, choice);
-  }
+  });
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ inline constexpr double edge = 0.7;       // of the particles at the start [cell
 /// What a test chooses; all else is at random.
 template <int D>
 struct Choice {
-  Basis basis = Basis::linear;
+  BasisId basis = basis_id<Linear>;
   bool contact = false;
   bool rigid = false;        // the first body
   double pic_damping = 0.0;  // [1/s]
@@ -39,6 +39,7 @@ struct Twin {
       for (std::size_t side = 0; side < 2; ++side)
         grid.walls.face[a][side] = choice.walls[2 * a + side];
     }
+    grid.walls.odd_at_fixed = odd_at_fixed_walls(choice.basis);
     reference.walls = grid.walls;
     grid.has_dashpots = grid.walls.absorb();
     reference.S = shape(choice.basis);
@@ -60,8 +61,9 @@ struct Twin {
     domain.sums.resize(grid.patches.size());
   }
 
-  static std::function<reference::ShapeValue(double)> shape(Basis basis) {
-    if (basis == Basis::linear) return reference::linear;
+  static std::function<reference::ShapeValue(double)> shape(BasisId basis) {
+    if (basis == basis_id<Linear>) return reference::linear;
+    if (basis == basis_id<QuadraticBSpline>) return reference::quadratic;
     return [](double d) { return reference::gimp(d, 0.5 * edge); };
   }
 

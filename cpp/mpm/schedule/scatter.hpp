@@ -1,63 +1,65 @@
 #pragma once
 // From particles to nodes, cell by cell; what the particles give is first laid out in the first
 // cache.
-#include "mpm/step/cell_loop.hpp"
+#include "mpm/schedule/cell_loop.hpp"
+#include "mpm/schedule/choose.hpp"
 
 namespace mpm {
 
 /// Particles of a cell, one after another, as many as there is room for, and what they give.
-template <unsigned what, int D, class Functions>
-class CellParticles {
+template <unsigned what, int D, BasisModel B>
+class CellBuffer {
  public:
-  explicit CellParticles(const Functions& basis) : basis_(basis) {}
+  explicit CellBuffer(const NodeStrides<D>& stride)
+      : scatter_(stride), to_first_(stride.to_first(B::before)) {}
 
-  void begin(const CellRange<D>& cell) { first_node_ = cell.first_node; }
+  void begin(const CellRange<D>& cell) { first_node_ = cell.first_node + to_first_; }
   bool full() const { return count_ == room; }
   /// The first `added` lanes by their weights; what they give is added before `place`.
-  template <class Weights>
-  void place(const Weights& w, int added) {
-    basis_.template put<what>(places_, count_, w);
+  template <class T>
+  void place(const Weights<T, D, B::nodes>& w, int added) {
+    Scatter<B, D>::template put<what>(places_, count_, w);
     count_ += added;
   }
   template <class T>
   void add(T m, const Vec<T, D>& v) {
-    gifts_.template add<what>(count_, m, v);
+    payload_.template add<what>(count_, m, v);
   }
   /// -V_p (sigma_p - q_p 1) / h [N].
   template <class T>
   void add_tractions(const Sym<T, D>& t) {
-    gifts_.add_tractions(count_, t);
+    payload_.add_tractions(count_, t);
   }
 
   /// To the nodes of a patch, from its first on.
   template <int width>
   void give(const Nodes<width>& patch) {
     if (count_ == 0) return;
-    basis_.template give<what>(patch.from(first_node_), places_, gifts_, count_);
+    scatter_.template give<what>(patch.from(first_node_), places_, payload_, count_);
     count_ = 0;
   }
 
  private:
   static constexpr int room = 16;
-  const Functions& basis_;
+  Scatter<B, D> scatter_;
+  int to_first_;  // from a cell's own node to the first in reach
   int first_node_ = 0, count_ = 0;
-  typename Functions::template Particles<room> places_;
-  typename Functions::template Gifts<room> gifts_;
+  typename Scatter<B, D>::template Places<room> places_;
+  typename Scatter<B, D>::template Payload<room> payload_;
 };
 
 /// The particles of a cell and of the one before, which give once those of this cell are laid out:
 /// what has just been written would have to be waited for.
-template <unsigned what, int D, class Functions, int width>
-class CellByCell {
+template <unsigned what, int D, BasisModel B, int width>
+class DoubleBuffer {
  public:
   /// `patch` are its nodes, from its first on.
-  CellByCell(const Functions& basis, const Nodes<width>& patch)
-      : cells_{CellParticles<what, D, Functions>(basis), CellParticles<what, D, Functions>(basis)},
-        patch_(patch) {}
+  DoubleBuffer(const NodeStrides<D>& stride, const Nodes<width>& patch)
+      : cells_{CellBuffer<what, D, B>(stride), CellBuffer<what, D, B>(stride)}, patch_(patch) {}
 
   void begin(const CellRange<D>& cell) { now().begin(cell); }
   /// Where the next particles of the cell are laid out.
-  CellParticles<what, D, Functions>& next() {
+  CellBuffer<what, D, B>& next() {
     if (now().full()) {
       last().give(patch_);
       now().give(patch_);
@@ -73,19 +75,19 @@ class CellByCell {
   void finish() { last().give(patch_); }
 
  private:
-  CellParticles<what, D, Functions>& now() { return cells_[now_]; }
-  CellParticles<what, D, Functions>& last() { return cells_[1 - now_]; }
+  CellBuffer<what, D, B>& now() { return cells_[now_]; }
+  CellBuffer<what, D, B>& last() { return cells_[1 - now_]; }
 
-  CellParticles<what, D, Functions> cells_[2];
+  CellBuffer<what, D, B> cells_[2];
   int now_ = 0;
   Nodes<width> patch_;
 };
 
 /// Takes what particles give out of the columns of a body.
 template <unsigned what, int D>
-class Givers {
+class ParticleReader {
  public:
-  Givers(const TileGrid<D>& grid, const Body<D>& body)
+  ParticleReader(const TileGrid<D>& grid, const Body<D>& body)
       : local_position_(grid, body), minus_per_cell_size_(-1.0 / grid.cell_size) {
     mass_ = body.mass();
     volume_ = body.volume();
@@ -94,9 +96,9 @@ class Givers {
     for (int c = 0; c < Sym<double, D>::size; ++c) stress_[c] = body.stress(c);
   }
 
-  template <class Functions, class Rows>
-  void add(CellParticles<what, D, Functions>& to, const CellRange<D>& cell, const Rows& rows,
-           const Functions& basis) const {
+  template <BasisModel B, class Rows>
+  void add(CellBuffer<what, D, B>& to, const CellRange<D>& cell, const Rows& rows,
+           const B& basis) const {
     using T = Batch<Rows::lanes>;
     if constexpr ((what & gives_forces) != 0) {
       const T scale = T(minus_per_cell_size_) * load(volume_, rows);
@@ -113,7 +115,7 @@ class Givers {
       unrolled<D>([&](auto a) { v[a] = load(velocity_[a], rows); });
       to.add(load(mass_, rows), v);
     }
-    to.place(basis.weights(local_position_(cell, rows)), rows.count);
+    to.place(weights_at(basis, local_position_(cell, rows)), rows.count);
   }
 
  private:
@@ -123,17 +125,17 @@ class Givers {
   const Rounded *velocity_[D], *stress_[Sym<double, D>::size];
 };
 
-/// Scatter from all particles of a patch to its nodes (CellParticles::give).
-template <unsigned what, int lanes, int D, class Functions>
-[[gnu::noinline, gnu::flatten]] void scatter_by(const Functions& basis, const TileGrid<D>& grid,
+/// Scatter from all particles of a patch to its nodes (CellBuffer::give).
+template <unsigned what, int lanes, int D, BasisModel B>
+[[gnu::noinline, gnu::flatten]] void scatter_by(const B& basis, const TileGrid<D>& grid,
                                                 const Body<D>& body, const Patch<D>& patch,
-                                                const NodeLines& nodes) {
-  const Givers<what, D> givers(grid, body);
-  CellByCell<what, D, Functions, line> cells(basis, nodes);
+                                                const NodeRecords& nodes) {
+  const ParticleReader<what, D> reader(grid, body);
+  DoubleBuffer<what, D, B, record> cells(NodeStrides<D>(patch.shape), nodes);
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
     cells.begin(cell);
     for_each_group<lanes>(cell,
-                          [&](const auto& rows) { givers.add(cells.next(), cell, rows, basis); });
+                          [&](const auto& rows) { reader.add(cells.next(), cell, rows, basis); });
     cells.end();
   });
   cells.finish();
@@ -141,7 +143,7 @@ template <unsigned what, int lanes, int D, class Functions>
 
 template <unsigned what, int D>
 void scatter(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
-             const NodeLines& nodes) {
+             const NodeRecords& nodes) {
   with_basis_and_lanes(grid, body, patch, [&](const auto& basis, auto lanes) {
     scatter_by<what, lanes>(basis, grid, body, patch, nodes);
   });

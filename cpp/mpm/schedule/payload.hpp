@@ -1,7 +1,7 @@
 #pragma once
-// What particles give to the nodes around them, laid out as a basis sums it.
-#include "mpm/basis/node_lanes.hpp"
-#include "mpm/basis/node_lines.hpp"
+// What particles give to the nodes around them, laid out as a schedule sums it.
+#include "mpm/layout/node_batch.hpp"
+#include "mpm/layout/node_records.hpp"
 #include "mpm/math/tensor.hpp"
 
 namespace mpm {
@@ -12,7 +12,7 @@ enum Gives : unsigned { gives_mass = 1, gives_momentum = 2, gives_forces = 4 };
 /// Of some particles of a cell, one after another, as far as it is scattered: where nodes are the
 /// lanes.
 template <int D, int room>
-struct GiftColumns {
+struct PayloadColumns {
   double mass[room];                            // [kg]
   double velocity[D][room];                     // [m/s]
   double traction[Sym<double, D>::size][room];  // components of -V_p (sigma_p - q_p 1) / h [N]
@@ -29,13 +29,13 @@ struct GiftColumns {
   }
 };
 
-/// The same where the numbers of a quad of a node's line are the lanes.
+/// The same where the numbers of half a node's record are the lanes.
 template <int D, int room>
-struct GiftQuads {
-  double mass[room];                                           // [kg]
-  alignas(quad * sizeof(double)) double velocity[room][quad];  // behind a one, if mass is given
-  // A column of the tensor each.
-  alignas(quad * sizeof(double)) double traction[D][room][quad];
+struct PayloadRecords {
+  static constexpr std::size_t alignment = half_record * sizeof(double);
+  double mass[room];                                         // [kg]
+  alignas(alignment) double velocity[room][half_record];     // behind a one, if mass is given
+  alignas(alignment) double traction[D][room][half_record];  // a column of the tensor each
 
   template <unsigned what, class T>
   void add(int at, T m, const Vec<T, D>& v) {
@@ -56,8 +56,8 @@ struct GiftQuads {
 
  private:
   template <class T>
-  static void lay_out(double (*to)[quad], T a, T b, T c, T d) {
-    for_each_quad(a, b, c, d, [&](int k, Batch<quad> q) MPM_INLINE { q.store(to[k]); });
+  static void lay_out(double (*to)[half_record], T a, T b, T c, T d) {
+    transpose_to_nodes(a, b, c, d, [&](int k, Batch<half_record> q) MPM_INLINE { q.store(to[k]); });
   }
 };
 

@@ -6,32 +6,32 @@
 namespace mpm {
 
 template <int Count>
-struct NodeLanes {
+struct NodeBatch {
   static constexpr int width = Count < native_lanes ? Count : native_lanes;
   static constexpr int parts = Count / width;
   using Part = Batch<width>;
   Part part[parts];
 
-  static NodeLanes zero() {
-    NodeLanes r;
+  static NodeBatch zero() {
+    NodeBatch r;
     for (auto& p : r.part) p = Part(0.0);
     return r;
   }
-  NodeLanes times(double s) const {
-    NodeLanes r;
+  NodeBatch times(double s) const {
+    NodeBatch r;
     for (int k = 0; k < parts; ++k) r.part[k] = Part(s) * part[k];
     return r;
   }
   /// this += s * w
-  void add(double s, const NodeLanes& w) {
+  void add(double s, const NodeBatch& w) {
     for (int k = 0; k < parts; ++k) part[k] = fma(Part(s), w.part[k], part[k]);
   }
 };
 
-/// f(k, quad): of four values for each of W nodes, in a register each, the four of node k.
+/// f(k, half): of four values for each of W nodes, in a register each; `half`: the four of node k.
 template <int W, class F>
-[[gnu::always_inline]] inline void for_each_quad(Batch<W> a, Batch<W> b, Batch<W> c, Batch<W> d,
-                                                 F&& f) {
+[[gnu::always_inline]] inline void transpose_to_nodes(Batch<W> a, Batch<W> b, Batch<W> c,
+                                                      Batch<W> d, F&& f) {
   const auto pairs = [](Batch<W> x, Batch<W> y, auto first) {
     return [&]<int... k>(std::integer_sequence<int, k...>) {
       return __builtin_shufflevector(x.v, y.v, ((k & ~1) + first + (k & 1 ? W : 0))...);

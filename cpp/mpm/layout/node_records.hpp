@@ -1,15 +1,15 @@
 #pragma once
-// The fields of a node lie side by side in a line, so that whoever wants a node touches one cache
+// The fields of a node lie side by side in a record, so that whoever wants a node touches one cache
 // line and moves all its fields at once.
 #include <cstddef>
 
 namespace mpm {
 
-/// A line is made of two quads of numbers: mass and velocity, then the force and a number that is
+/// A record is two halves of four numbers: mass and velocity, then the force and a number that is
 /// not used. In 2D the last of a vector's three places stays empty.
-inline constexpr int quad = 4;
-inline constexpr int line = 2 * quad;
-inline constexpr int mass_at = 0, velocity_at = 1, force_at = quad;
+inline constexpr int half_record = 4;
+inline constexpr int record = 2 * half_record;
+inline constexpr int mass_at = 0, velocity_at = 1, force_at = half_record;
 
 /// Nodes whose numbers begin `width` apart.
 template <int width>
@@ -20,8 +20,8 @@ struct Nodes {
   Nodes from(int node) const { return {(*this)[node]}; }
   Nodes at(int number) const { return {data + number}; }
 };
-using NodeLines = Nodes<line>;
-using NodeQuads = Nodes<quad>;
+using NodeRecords = Nodes<record>;
+using HalfRecords = Nodes<half_record>;
 
 /// One number of each node.
 template <int width>

@@ -51,6 +51,13 @@ struct Tile {
                : std::array<std::uint64_t, 3>{0x0101010101010101, 0xFF};
     return first[axis] << i * power(cells, static_cast<int>(axis));
   }
+  /// Cells, a bit each, moved by so many along an axis; those that leave the tile are dropped.
+  static constexpr std::uint64_t moved(std::uint64_t set, std::size_t axis, int by) {
+    if (by <= -cells || by >= cells) return 0;
+    const int bits = by * power(cells, static_cast<int>(axis));
+    set &= stay[axis][static_cast<std::size_t>(by + cells)];
+    return bits < 0 ? set >> -bits : set << bits;
+  }
   /// Offset -1, 0, 1 along each axis of neighbour k, and back. Neighbours are numbered in the order
   /// of the tiles.
   static constexpr Index<D> offset(int k) {
@@ -69,6 +76,18 @@ struct Tile {
     for (int a = 0; a < D; ++a, k /= 2) o[a] = k % 2;
     return o;
   }
+
+ private:
+  /// The cells that stay in the tile when they move by -cells to cells along an axis.
+  static constexpr auto stay = [] {
+    std::array<std::array<std::uint64_t, 2 * cells + 1>, D> kept{};
+    for (std::size_t a = 0; a < D; ++a)
+      for (int by = -cells; by <= cells; ++by)
+        for (int i = 0; i < cells; ++i)
+          if (i + by >= 0 && i + by < cells)
+            kept[a][static_cast<std::size_t>(by + cells)] |= slice(a, i);
+    return kept;
+  }();
 };
 
 /// The order of tiles: the last axis counts most. Sums over tiles are taken in it.

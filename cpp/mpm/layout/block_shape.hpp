@@ -1,11 +1,12 @@
 #pragma once
 // The nodes of a patch's block: a box about the cells that hold the body's particles, with a margin
-// before it for a basis that reaches further. Nodes are counted from the tile's first.
+// before and behind them as the basis reaches. Nodes are counted from the tile's first.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
-#include "mpm/basis/tile.hpp"
+#include "mpm/basis/basis.hpp"
+#include "mpm/layout/tile.hpp"
 
 namespace mpm {
 
@@ -16,9 +17,10 @@ struct BlockShape {
   int node_count = 0;                                 // 0 without particles
   std::array<int, Tile<D>::corners> corner_offset{};  // from a node to a cube's corners
 
-  static constexpr int margin_max = 1;
-  static constexpr int count_max(int margin) { return power(Tile<D>::cells + 1 + margin, D); }
-  static constexpr int nodes_max = count_max(margin_max);
+  static constexpr int count_max(int before, int after) {
+    return power(Tile<D>::cells + before + after, D);
+  }
+  static constexpr int nodes_max = count_max(Bases::before_max, Bases::after_max);
 
   BlockShape() = default;
   /// Of the nodes from `first` to `last`.
@@ -28,15 +30,15 @@ struct BlockShape {
       corner_offset[static_cast<std::size_t>(k)] = distance(Tile<D>::corner(k));
   }
   /// Of the cells that hold particles, a bit each by Tile<D>::cell.
-  static BlockShape around(std::uint64_t occupied, int margin) {
+  static BlockShape around(std::uint64_t occupied, const Reach& reach) {
     if (occupied == 0) return {};
     Index<D> first, last;
     for (std::size_t a = 0; a < D; ++a) {
       int i = 0, j = Tile<D>::cells - 1;
       while (!(occupied & Tile<D>::slice(a, i))) ++i;
       while (!(occupied & Tile<D>::slice(a, j))) --j;
-      first[a] = i - margin;
-      last[a] = j + 1;
+      first[a] = i - reach.before;
+      last[a] = j + reach.after;
     }
     return {first, last};
   }

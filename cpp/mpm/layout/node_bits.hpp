@@ -1,6 +1,6 @@
 #pragma once
 // One bit for each node of a block.
-#include "mpm/basis/block_shape.hpp"
+#include "mpm/layout/block_shape.hpp"
 
 namespace mpm {
 

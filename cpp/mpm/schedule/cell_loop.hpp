@@ -3,8 +3,9 @@
 // particles in lanes.
 #include <bit>
 
-#include "mpm/basis/basis.hpp"
-#include "mpm/domain.hpp"
+#include "mpm/fields/lanes.hpp"
+#include "mpm/grid/tile_grid.hpp"
+#include "mpm/particles/body.hpp"
 
 namespace mpm {
 
@@ -57,17 +58,17 @@ class LocalPosition {
   const double* x_[D];
 };
 
-/// f(basis object) for the basis of the grid, a patch's block and the size of a body's particles.
+/// f(basis) for the basis of the grid and the size of a body's particles.
 template <int D, class F>
-void with_basis(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch, F&& f) {
-  with_basis(grid.basis, patch.shape, body.mean_edge / grid.cell_size, std::forward<F>(f));
+void with_basis(const TileGrid<D>& grid, const Body<D>& body, F&& f) {
+  Bases::with(grid.basis, body.mean_edge / grid.cell_size, std::forward<F>(f));
 }
 
-/// f(basis object, lanes): the same, and how many of the patch's particles are taken at a time.
+/// f(basis, lanes): the same, and how many of a patch's particles are taken at a time.
 template <int D, class F>
 void with_basis_and_lanes(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
                           F&& f) {
-  with_basis(grid, body, patch, [&](const auto& basis) {
+  with_basis(grid, body, [&](const auto& basis) {
     constexpr int all = cell_lanes<D>, few = few_lanes<D>;
     if constexpr (few < all) {
       const auto occupied = static_cast<std::uint32_t>(std::popcount(patch.occupied));
@@ -77,46 +78,6 @@ void with_basis_and_lanes(const TileGrid<D>& grid, const Body<D>& body, const Pa
       }
     }
     f(basis, std::integral_constant<int, all>{});
-  });
-}
-
-/// Set the first numbers, whole quads, of `count` nodes to zero.
-template <int width>
-void clear(const Nodes<width>& nodes, int count, int numbers) {
-  for (int n = 0; n < count; ++n)
-    for (int k = 0; k < numbers; k += quad) Batch<quad>(0.0).store(nodes[n] + k);
-}
-
-/// Copy a quad of `count` nodes.
-inline void copy_quads(const NodeLines& to, const NodeQuads& from, int count) {
-  for (int n = 0; n < count; ++n) Batch<quad>::load(from[n]).store(to[n]);
-}
-
-/// f(node, held axes) for the nodes of a patch that walls hold.
-template <int D, class F>
-void for_each_held_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
-  if (!patch.at_wall) return;
-  const Index<D> first = grid.first_cell(patch.tile);
-  for (int n = 0; n < patch.shape.node_count; ++n) {
-    Index<D> node = patch.shape.index(n);
-    for (int a = 0; a < D; ++a) node[a] += first[a];
-    if (const unsigned held = grid.walls.held(node)) f(n, held);
-  }
-}
-
-/// Turn momenta [kg m/s], the vector at number `at` of the lines, into velocities [m/s]: zero
-/// without mass, and along axes held by walls.
-template <int D>
-void momentum_to_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block,
-                          int at) {
-  for (int n = 0; n < block.count; ++n) {
-    double* const numbers = block.lines[n];
-    const double inverse = numbers[mass_at] > 0.0 ? 1.0 / numbers[mass_at] : 0.0;
-    for (int a = 0; a < D; ++a) numbers[at + a] *= inverse;
-  }
-  for_each_held_node(grid, patch, [&](int node, unsigned held) {
-    for (int a = 0; a < D; ++a)
-      if (held >> a & 1u) block.lines[node][at + a] = 0.0;
   });
 }
 

@@ -1,0 +1,30 @@
+#pragma once
+#include "mpm/basis/axis_weights.hpp"
+
+namespace mpm {
+
+/// The quadratic B-spline with knots midway between the nodes, where cells are centred at the
+/// nodes: with u = xi - 1/2 the distance from the cell's own node, (1/2 -+ u)^2 / 2 at its
+/// neighbours and 3/4 - u^2 between them. Its derivative is continuous.
+struct QuadraticBSpline {
+  static constexpr std::string_view name = "quadratic_bspline";
+  static constexpr std::string_view doc =
+      "quadratic B-spline: its gradient is continuous where particles cross cells";
+  static constexpr std::string_view source = "Steffen, Kirby & Berzins 2008, eq. 15";
+
+  static constexpr int nodes = 3, before = 1;
+  static constexpr double own_node = 0.5;
+  static constexpr bool odd_at_fixed_walls = true;
+
+  explicit QuadraticBSpline(double /*edge*/) {}
+  double half_width() const { return 0.5; }  // it is the hat averaged over a cell
+
+  template <class T>
+  AxisWeights<T, nodes> along(T xi) const {
+    const T rest = T(1.0) - xi, u = xi - T(0.5);
+    return {{T(0.5) * rest * rest, fma(-u, u, T(0.75)), T(0.5) * xi * xi},
+            {-rest, T(-2.0) * u, xi}};
+  }
+};
+
+}  // namespace mpm

@@ -1,0 +1,74 @@
+#pragma once
+// Gather by particles in lanes, for any basis: sums over the nodes.
+#include <array>
+
+#include "mpm/layout/node_records.hpp"
+#include "mpm/schedule/weights.hpp"
+
+namespace mpm {
+
+/// The nodal fields around one cell, whose particles reach `count` nodes along an axis.
+template <int D, int count>
+class NodalField {
+ public:
+  /// `first`: the records from the first node in reach on.
+  NodalField(const NodeRecords& first, const NodeStrides<D>& stride)
+      : first_(first), stride_(stride) {}
+
+  /// The vector at number `at` of the records.
+  template <class T>
+  Vec<T, D> vector(int at, const Weights<T, D, count>& w) const {
+    Vec<T, D> total = Vec<T, D>::zero();
+    for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
+      T share = w.axis[1].N[y];
+      if constexpr (D == 3) share *= w.axis[D - 1].N[z];
+      unrolled<D>([&](auto i) MPM_INLINE {
+        total[i] = fma(share, along(row.at(at + i), w.axis[0].N), total[i]);
+      });
+    });
+    return total;
+  }
+
+  /// Derivatives of that vector with respect to xi: [i][j] of component i along axis j.
+  template <class T>
+  std::array<Vec<T, D>, D> gradients(int at, const Weights<T, D, count>& w) const {
+    std::array<Vec<T, D>, D> g;
+    g.fill(Vec<T, D>::zero());
+    for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
+      T N = w.axis[1].N[y], dy = w.axis[1].dN[y], dz(0.0);
+      if constexpr (D == 3) {
+        dz = N * w.axis[D - 1].dN[z];
+        N *= w.axis[D - 1].N[z];
+        dy *= w.axis[D - 1].N[z];
+      }
+      unrolled<D>([&](auto i) MPM_INLINE {
+        const T value = along(row.at(at + i), w.axis[0].N);
+        g[i][0] = fma(N, along(row.at(at + i), w.axis[0].dN), g[i][0]);
+        g[i][1] = fma(dy, value, g[i][1]);
+        if constexpr (D == 3) g[i][2] = fma(dz, value, g[i][2]);
+      });
+    });
+    return g;
+  }
+
+ private:
+  /// f(y, z, records) for the rows of nodes along x; one layer in 2D.
+  template <class F>
+  [[gnu::always_inline]] void for_each_row(F&& f) const {
+    unrolled<D == 3 ? count : 1>([&](auto z) MPM_INLINE {
+      unrolled<count>([&](auto y) MPM_INLINE { f(y, z, first_.from(stride_.to(0, y, z))); });
+    });
+  }
+  /// Of a row, whose records begin at the number that is wanted: the sum with factors along x.
+  template <class T>
+  [[gnu::always_inline]] static T along(const NodeRecords& row, const T* x) {
+    T sum = x[0] * T(*row[0]);
+    unrolled<count - 1>([&](auto k) MPM_INLINE { sum = fma(x[k + 1], T(*row[k + 1]), sum); });
+    return sum;
+  }
+
+  NodeRecords first_;
+  NodeStrides<D> stride_;
+};
+
+}  // namespace mpm

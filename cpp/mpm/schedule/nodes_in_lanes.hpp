@@ -1,0 +1,158 @@
+#pragma once
+// Scatter with the nodes of a cell in the lanes, for a basis of two nodes along an axis: the sums
+// of all particles of a cell stay in registers.
+#include "mpm/schedule/payload.hpp"
+#include "mpm/schedule/weights.hpp"
+
+namespace mpm {
+
+namespace nodes_in_lanes {
+/// Places of the nodes along an axis, 0 or 1, over the lanes; and 1 - 2 of them: N along the axis
+/// is 1 - place - (1 - 2 place) xi.
+template <int D>
+constexpr auto pattern(bool slope) {
+  std::array<std::array<double, 1 << D>, D> r{};
+  for (std::size_t a = 0; a < D; ++a)
+    for (std::size_t k = 0; k < 1 << D; ++k) {
+      const double place = static_cast<double>((k >> a) & 1);
+      r[a][k] = slope ? 2.0 * place - 1.0 : 1.0 - place;
+    }
+  return r;
+}
+template <int D>
+inline constexpr auto base = pattern<D>(false);
+template <int D>
+inline constexpr auto slope = pattern<D>(true);
+}  // namespace nodes_in_lanes
+
+template <int D>
+class NodesInLanes {
+ public:
+  template <int room>
+  using Payload = PayloadColumns<D, room>;
+  /// What is to be known of a cell's particles: their position in the cell.
+  template <int room>
+  struct Places {
+    double xi[D][room];
+  };
+  template <unsigned /*what*/, int room, class T>
+  static void put(Places<room>& places, int at, const Weights<T, D, 2>& w) {
+    unrolled<D>([&](auto a) { store_lanes(places.xi[a] + at, w.xi[a]); });
+  }
+
+  explicit NodesInLanes(const NodeStrides<D>& stride) : stride_(stride) {}
+
+  /// What the first `count` of these particles give to the nodes, whose records begin at the first
+  /// in reach: mass and momentum to the first half, forces to the second; momentum alone to the
+  /// first.
+  template <unsigned what, int width, int room>
+  void give(const Nodes<width>& nodes, const Places<room>& places, const Payload<room>& payload,
+            int count) const {
+    constexpr bool forces = (what & gives_forces) != 0, momentum = what != gives_forces;
+    static_assert(!(forces && momentum) || (what & gives_mass), "mass comes before the momentum");
+    // All sums at once where the machine's registers hold them and a quarter is left for the rest.
+    constexpr int all = native_lanes == 8 ? 32 : 16;
+    if constexpr (!forces || !momentum || Sums::parts * (1 + 2 * D) <= all - all / 4) {
+      give_sums<what>(nodes, places, payload, count);
+    } else {
+      give_sums<what & ~gives_forces>(nodes, places, payload, count);
+      give_sums<gives_forces>(nodes, places, payload, count);
+    }
+  }
+
+ private:
+  using Sums = NodeBatch<(1 << D)>;
+  using Part = typename Sums::Part;
+
+  /// m_i += m_p N_ip, eq. (2); p_i += m_p N_ip v_p, eq. (3); f_i -= V_p (sigma_p - q_p 1) . grad
+  /// N_ip, eq. (9), with the artificial viscosity's pressure q.
+  template <unsigned what, int width, int room>
+  void give_sums(const Nodes<width>& nodes, const Places<room>& places,
+                 const Payload<room>& payload, int count) const {
+    Sums m = Sums::zero(), p[3] = {m, m, m}, f[3] = {m, m, m};
+    for (int k = 0; k < count; ++k) {
+      if constexpr (what != gives_forces) {
+        const Sums m_ip = functions(places, k, payload.mass[k]);
+        if constexpr ((what & gives_mass) != 0) m.add(1.0, m_ip);
+        unrolled<D>([&](auto a) { p[a].add(payload.velocity[a][k], m_ip); });
+      }
+      if constexpr ((what & gives_forces) != 0) {
+        Sums G[D];
+        gradients(places, k, G);
+        unrolled<D>([&](auto a) {
+          unrolled<D>(
+              [&](auto b) { f[a].add(payload.traction[Sym<double, D>::index(a, b)][k], G[b]); });
+        });
+      }
+    }
+    if constexpr ((what & gives_mass) != 0)
+      add_to_nodes(nodes, m, p[0], p[1], p[2]);
+    else if constexpr (what != gives_forces)
+      add_to_nodes(nodes, p[0], p[1], p[2], m);
+    if constexpr ((what & gives_forces) != 0)
+      add_to_nodes(nodes.at(force_at), f[0], f[1], f[2], Sums::zero());
+  }
+
+  /// scale N_ip over the cell's nodes, for particle p of those.
+  template <int room>
+  static Sums functions(const Places<room>& places, int p, double scale) {
+    Part inner = lanes(0, places.xi[0][p]);
+    for (int a = 1; a < inner_axes; ++a) inner = inner * lanes(a, places.xi[a][p]);
+    // The axes in their order and the scale last: the same bits for every width.
+    Sums N;
+    for (int k = 0; k < Sums::parts; ++k) {
+      N.part[k] = inner;
+      for (int a = inner_axes; a < D; ++a) N.part[k] = N.part[k] * along(a, k, places.xi[a][p]);
+    }
+    return N.times(scale);
+  }
+  /// dN_ip / d xi over the cell's nodes, along each axis.
+  template <int room>
+  static void gradients(const Places<room>& places, int p, Sums* G) {
+    Part N[D];
+    for (int a = 0; a < inner_axes; ++a) N[a] = lanes(a, places.xi[a][p]);
+    for (int a = 0; a < D; ++a)
+      for (int k = 0; k < Sums::parts; ++k) {
+        Part g = a < inner_axes ? Part::load(slopes(a)) : Part(place(a, k) ? 1.0 : -1.0);
+        for (int b = 0; b < inner_axes; ++b)
+          if (b != a) g = g * N[b];
+        for (int b = inner_axes; b < D; ++b)
+          if (b != a) g = g * along(b, k, places.xi[b][p]);
+        G[a].part[k] = g;
+      }
+  }
+  /// To half the nodes' records: the values of four fields.
+  template <int width>
+  void add_to_nodes(const Nodes<width>& nodes, const Sums& a, const Sums& b, const Sums& c,
+                    const Sums& d) const {
+    unrolled<Sums::parts>([&](auto part) {
+      transpose_to_nodes(a.part[part], b.part[part], c.part[part], d.part[part],
+                         [&](int k, Batch<4> q) {
+                           k += part * Sums::width;
+                           double* to = nodes[stride_.to(k & 1, k >> 1 & 1, k >> 2)];
+                           (Batch<4>::load(to) + q).store(to);
+                         });
+    });
+  }
+
+  // The nodes of one register differ in the place along these axes; along the others they share it.
+  static constexpr int inner_axes = Sums::width == 8 ? 3 : Sums::width == 4 ? 2 : 1;
+
+  static const double* slopes(int a) {
+    return nodes_in_lanes::slope<D>[static_cast<std::size_t>(a)].data();
+  }
+  /// Place along an outer axis of the nodes in register k.
+  static constexpr int place(int a, int k) { return k * Sums::width >> a & 1; }
+  /// One-axis factor of an inner axis, and of an outer one in register k.
+  static Part lanes(int a, double xi) {
+    return fma(Part(xi), Part::load(slopes(a)),
+               Part::load(nodes_in_lanes::base<D>[static_cast<std::size_t>(a)].data()));
+  }
+  static Part along(int a, int k, double xi) {
+    return place(a, k) ? Part(xi) : Part(1.0) - Part(xi);
+  }
+
+  NodeStrides<D> stride_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,45 @@
+#pragma once
+// The weights of particles at the nodes around their cell.
+#include "mpm/basis/basis.hpp"
+#include "mpm/layout/block_shape.hpp"
+#include "mpm/math/vec.hpp"
+
+namespace mpm {
+
+/// Along each axis those of the nodes in reach; one of the space is a product over the axes.
+template <class T, int D, int count>
+struct Weights {
+  AxisWeights<T, count> axis[D];
+};
+/// Two functions that sum to one and carry the position are 1 - xi and xi.
+template <class T, int D>
+struct Weights<T, D, 2> {
+  Vec<T, D> xi;
+};
+
+/// Of particles in the lanes, from their position in the cell.
+template <BasisModel B, class T, int D>
+[[gnu::always_inline]] inline Weights<T, D, B::nodes> weights_at(const B& basis,
+                                                                 const Vec<T, D>& xi) {
+  if constexpr (B::nodes == 2)
+    return {xi};
+  else
+    return [&]<int... a>(std::integer_sequence<int, a...>) MPM_INLINE {
+      return Weights<T, D, B::nodes>{{basis.along(xi[a])...}};
+    }(std::make_integer_sequence<int, D>{});
+}
+
+/// From a node of a block to the next along y, and along z.
+template <int D>
+struct NodeStrides {
+  int row, layer;
+
+  explicit NodeStrides(const BlockShape<D>& shape)
+      : row(shape.nodes[0]), layer(D == 3 ? shape.nodes[0] * shape.nodes[1] : 0) {}
+  /// To the node so many steps further along each axis.
+  int to(int x, int y, int z) const { return x + y * row + z * layer; }
+  /// From a cell's own node to the first that its particles reach.
+  int to_first(int before) const { return -before * (1 + row + layer); }
+};
+
+}  // namespace mpm
