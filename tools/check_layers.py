@@ -12,7 +12,7 @@ LAYERS = {
     "fields": 1,
     "basis": 1,
     "layout": 2,
-    "materials": 2,
+    "materials": 3,
     "grid": 3,
     "particles": 4,
     "schedule": 5,

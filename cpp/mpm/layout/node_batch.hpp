@@ -17,12 +17,16 @@ struct NodeBatch {
     for (auto& p : r.part) p = Part(0.0);
     return r;
   }
-  NodeBatch times(double s) const {
+  friend NodeBatch operator*(double s, const NodeBatch& w) {
     NodeBatch r;
-    for (int k = 0; k < parts; ++k) r.part[k] = Part(s) * part[k];
+    for (int k = 0; k < parts; ++k) r.part[k] = Part(s) * w.part[k];
     return r;
   }
-  /// this += s * w
+  NodeBatch& operator+=(const NodeBatch& w) {
+    for (int k = 0; k < parts; ++k) part[k] += w.part[k];
+    return *this;
+  }
+  /// this += s w
   void add(double s, const NodeBatch& w) {
     for (int k = 0; k < parts; ++k) part[k] = fma(Part(s), w.part[k], part[k]);
   }

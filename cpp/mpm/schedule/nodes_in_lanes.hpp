@@ -25,6 +25,75 @@ template <int D>
 inline constexpr auto slope = pattern<D>(true);
 }  // namespace nodes_in_lanes
 
+/// Arithmetic of a mapping's formulas: p.m, p.v and p.traction are a particle's numbers, N_ip and
+/// its gradient have a lane for each node.
+namespace nodes_in_lanes {
+template <int D>
+using Sums = NodeBatch<(1 << D)>;
+
+template <int D>
+struct Gradient {
+  Sums<D> along[D];
+};
+template <int D>
+struct Velocity {
+  double c[D];
+};
+template <int D>
+struct Traction {
+  Sym<double, D> t;
+};
+template <int D>
+struct Momentum {
+  const Velocity<D>& v;
+  const Sums<D>& m;
+};
+template <int D>
+struct Force {
+  const Traction<D>& traction;
+  const Gradient<D>& gradient;
+};
+template <int D>
+Momentum<D> operator*(const Sums<D>& m, const Velocity<D>& v) {
+  return {v, m};
+}
+template <int D>
+Force<D> operator*(const Traction<D>& traction, const Gradient<D>& gradient) {
+  return {traction, gradient};
+}
+/// A sum over particles of vectors.
+template <int D>
+struct VectorSums {
+  Sums<D> c[3] = {Sums<D>::zero(), Sums<D>::zero(), Sums<D>::zero()};
+
+  MPM_INLINE void operator+=(const Momentum<D>& p) {
+    unrolled<D>([&](auto a) { c[a].add(p.v.c[a], p.m); });
+  }
+  MPM_INLINE void operator+=(const Force<D>& p) {
+    unrolled<D>([&](auto a) {
+      unrolled<D>([&](auto b) { c[a].add(p.traction.t(a, b), p.gradient.along[b]); });
+    });
+  }
+};
+/// What is not asked for.
+struct Nothing {
+  template <class T>
+  void operator+=(const T&) {}
+};
+
+template <unsigned what, int D>
+struct NodeSums {
+  std::conditional_t<(what & gives_mass) != 0, Sums<D>, Nothing> m{};
+  VectorSums<D> p, f;
+};
+template <int D>
+struct Particle {
+  double m;
+  Velocity<D> v;
+  Traction<D> traction;
+};
+}  // namespace nodes_in_lanes
+
 template <int D>
 class NodesInLanes {
  public:
@@ -45,7 +114,7 @@ class NodesInLanes {
   /// What the first `count` of these particles give to the nodes, whose records begin at the first
   /// in reach: mass and momentum to the first half, forces to the second; momentum alone to the
   /// first.
-  template <unsigned what, int width, int room>
+  template <class Mapping, unsigned what, int width, int room>
   void give(const Nodes<width>& nodes, const Places<room>& places, const Payload<room>& payload,
             int count) const {
     constexpr bool forces = (what & gives_forces) != 0, momentum = what != gives_forces;
@@ -53,62 +122,64 @@ class NodesInLanes {
     // All sums at once where the machine's registers hold them and a quarter is left for the rest.
     constexpr int all = native_lanes == 8 ? 32 : 16;
     if constexpr (!forces || !momentum || Sums::parts * (1 + 2 * D) <= all - all / 4) {
-      give_sums<what>(nodes, places, payload, count);
+      give_sums<Mapping, what>(nodes, places, payload, count);
     } else {
-      give_sums<what & ~gives_forces>(nodes, places, payload, count);
-      give_sums<gives_forces>(nodes, places, payload, count);
+      give_sums<Mapping, what & ~gives_forces>(nodes, places, payload, count);
+      give_sums<Mapping, gives_forces>(nodes, places, payload, count);
     }
   }
 
  private:
-  using Sums = NodeBatch<(1 << D)>;
+  using Sums = nodes_in_lanes::Sums<D>;
   using Part = typename Sums::Part;
 
-  /// m_i += m_p N_ip, eq. (2); p_i += m_p N_ip v_p, eq. (3); f_i -= V_p (sigma_p - q_p 1) . grad
-  /// N_ip, eq. (9), with the artificial viscosity's pressure q.
-  template <unsigned what, int width, int room>
+  template <class Mapping, unsigned what, int width, int room>
   void give_sums(const Nodes<width>& nodes, const Places<room>& places,
                  const Payload<room>& payload, int count) const {
-    Sums m = Sums::zero(), p[3] = {m, m, m}, f[3] = {m, m, m};
+    nodes_in_lanes::NodeSums<what, D> sums;
     for (int k = 0; k < count; ++k) {
-      if constexpr (what != gives_forces) {
-        const Sums m_ip = functions(places, k, payload.mass[k]);
-        if constexpr ((what & gives_mass) != 0) m.add(1.0, m_ip);
-        unrolled<D>([&](auto a) { p[a].add(payload.velocity[a][k], m_ip); });
-      }
-      if constexpr ((what & gives_forces) != 0) {
-        Sums G[D];
-        gradients(places, k, G);
-        unrolled<D>([&](auto a) {
-          unrolled<D>(
-              [&](auto b) { f[a].add(payload.traction[Sym<double, D>::index(a, b)][k], G[b]); });
-        });
-      }
+      const nodes_in_lanes::Particle<D> p = particle<what>(payload, k);
+      if constexpr (what != gives_forces) Mapping::give_momentum(p, functions(places, k), sums);
+      if constexpr ((what & gives_forces) != 0) Mapping::give_force(p, gradients(places, k), sums);
     }
+    const auto& p = sums.p.c;
+    const auto& f = sums.f.c;
     if constexpr ((what & gives_mass) != 0)
-      add_to_nodes(nodes, m, p[0], p[1], p[2]);
+      add_to_nodes(nodes, sums.m, p[0], p[1], p[2]);
     else if constexpr (what != gives_forces)
-      add_to_nodes(nodes, p[0], p[1], p[2], m);
+      add_to_nodes(nodes, p[0], p[1], p[2], Sums::zero());
     if constexpr ((what & gives_forces) != 0)
       add_to_nodes(nodes.at(force_at), f[0], f[1], f[2], Sums::zero());
   }
+  template <unsigned what, int room>
+  static nodes_in_lanes::Particle<D> particle(const Payload<room>& payload, int k) {
+    nodes_in_lanes::Particle<D> p;
+    if constexpr (what != gives_forces) {
+      p.m = payload.mass[k];
+      unrolled<D>([&](auto a) { p.v.c[a] = payload.velocity[a][k]; });
+    }
+    if constexpr ((what & gives_forces) != 0)
+      unrolled<Sym<double, D>::size>([&](auto c) { p.traction.t.c[c] = payload.traction[c][k]; });
+    return p;
+  }
 
-  /// scale N_ip over the cell's nodes, for particle p of those.
+  /// N_ip over the cell's nodes, for particle p of those.
   template <int room>
-  static Sums functions(const Places<room>& places, int p, double scale) {
+  static Sums functions(const Places<room>& places, int p) {
     Part inner = lanes(0, places.xi[0][p]);
     for (int a = 1; a < inner_axes; ++a) inner = inner * lanes(a, places.xi[a][p]);
-    // The axes in their order and the scale last: the same bits for every width.
+    // The axes in their order: the same bits for every width.
     Sums N;
     for (int k = 0; k < Sums::parts; ++k) {
       N.part[k] = inner;
       for (int a = inner_axes; a < D; ++a) N.part[k] = N.part[k] * along(a, k, places.xi[a][p]);
     }
-    return N.times(scale);
+    return N;
   }
   /// dN_ip / d xi over the cell's nodes, along each axis.
   template <int room>
-  static void gradients(const Places<room>& places, int p, Sums* G) {
+  static nodes_in_lanes::Gradient<D> gradients(const Places<room>& places, int p) {
+    nodes_in_lanes::Gradient<D> G;
     Part N[D];
     for (int a = 0; a < inner_axes; ++a) N[a] = lanes(a, places.xi[a][p]);
     for (int a = 0; a < D; ++a)
@@ -118,8 +189,9 @@ class NodesInLanes {
           if (b != a) g = g * N[b];
         for (int b = inner_axes; b < D; ++b)
           if (b != a) g = g * along(b, k, places.xi[b][p]);
-        G[a].part[k] = g;
+        G.along[a].part[k] = g;
       }
+    return G;
   }
   /// To half the nodes' records: the values of four fields.
   template <int width>

@@ -6,6 +6,80 @@
 
 namespace mpm {
 
+/// Arithmetic of a mapping's formulas: p.v and the columns of p.traction are halves of records,
+/// N_ip and its gradient are factors along the axes. What does not change along a row of nodes, or
+/// in a layer of them, is one expression there, which the compiler evaluates once.
+namespace records_in_lanes {
+using Half = Batch<half_record>;
+
+template <int D>
+struct Function {
+  double z, y, x;  // in 2D z is what it is scaled with
+};
+template <int D>
+struct Gradient {
+  double z, y, x, dz, dy, dx;
+};
+template <int D>
+struct Traction {
+  Half column[D];
+};
+/// Of one node: part x.
+struct Scaled {
+  Half part;
+  double x;
+};
+/// along dx + across x.
+struct Force {
+  Half along, across;
+  double x, dx;
+};
+template <int D>
+MPM_INLINE inline Function<D> operator*(double m, const Function<D>& N) {
+  return {D == 3 ? m * N.z : m, N.y, N.x};
+}
+template <int D>
+MPM_INLINE inline Scaled operator*(const Function<D>& scale, const Half& v) {
+  return {(scale.z * v) * scale.y, scale.x};
+}
+template <int D>
+MPM_INLINE inline Force operator*(const Traction<D>& t, const Gradient<D>& N) {
+  const auto in_layer = [&](int b) MPM_INLINE {
+    return D == 3 ? t.column[b] * Half(b == 2 ? N.dz : N.z) : t.column[b];
+  };
+  const Half y(N.y);
+  Half across = in_layer(1) * Half(N.dy);
+  if constexpr (D == 3) across = fma(in_layer(2), y, across);
+  return {in_layer(0) * y, across, N.x, N.dx};
+}
+/// The half record of a node, while particles are summed.
+struct HalfSum {
+  Half& sum;
+  MPM_INLINE void operator+=(const Scaled& p) { sum = fma(p.part, Half(p.x), sum); }
+  MPM_INLINE void operator+=(const Force& p) {
+    sum = fma(p.along, Half(p.dx), sum);
+    sum = fma(p.across, Half(p.x), sum);
+  }
+};
+/// The mass is a number of the half record beside the momentum.
+struct WithMomentum {
+  template <class T>
+  void operator+=(const T&) {}
+};
+struct NodeSum {
+  WithMomentum m;
+  HalfSum p, f;
+};
+struct Momentum {
+  double m;
+  Half v;
+};
+template <int D>
+struct Stress {
+  Traction<D> traction;
+};
+}  // namespace records_in_lanes
+
 template <int D, int count>
 class RecordsInLanes {
  public:
@@ -31,68 +105,46 @@ class RecordsInLanes {
 
   /// What the first `n` of these particles give to the nodes, whose records begin at the first in
   /// reach: mass and momentum to the first half, forces to the second; momentum alone to the first.
-  template <unsigned what, int width, int room>
+  template <class Mapping, unsigned what, int width, int room>
   void give(const Nodes<width>& nodes, const Places<room>& places, const Payload<room>& payload,
             int n) const {
     if constexpr (what != gives_forces)
-      give_sums(nodes, n, [&](int p, auto z, auto&& to) MPM_INLINE {
-        give_momentum(places, payload, p, z, to);
+      give_sums(nodes, n, [&](int k, auto x, auto y, auto z, Half& sum) MPM_INLINE {
+        const records_in_lanes::Momentum p{payload.mass[k], Half::load(payload.velocity[k])};
+        const records_in_lanes::Function<D> N{D == 3 ? places.N[D - 1][z][k] : 1.0,
+                                              places.N[1][y][k], places.N[0][x][k]};
+        records_in_lanes::NodeSum node{{}, {sum}, {sum}};
+        Mapping::give_momentum(p, N, node);
       });
     if constexpr ((what & gives_forces) != 0)
-      give_sums(nodes.at(force_at), n, [&](int p, auto z, auto&& to) MPM_INLINE {
-        give_forces(places, payload, p, z, to);
+      give_sums(nodes.at(force_at), n, [&](int k, auto x, auto y, auto z, Half& sum) MPM_INLINE {
+        records_in_lanes::Stress<D> p;
+        unrolled<D>([&](auto b)
+                        MPM_INLINE { p.traction.column[b] = Half::load(payload.traction[b][k]); });
+        const records_in_lanes::Gradient<D> N{
+            D == 3 ? places.N[D - 1][z][k] : 1.0,  places.N[1][y][k],  places.N[0][x][k],
+            D == 3 ? places.dN[D - 1][z][k] : 0.0, places.dN[1][y][k], places.dN[0][x][k]};
+        records_in_lanes::NodeSum node{{}, {sum}, {sum}};
+        Mapping::give_force(p, N, node);
       });
   }
 
  private:
-  using Half = Batch<half_record>;
+  using Half = records_in_lanes::Half;
 
-  /// Layer by layer: give(p, z, to) calls to(y, f(sum, x)), which adds to the sum of node x of row
-  /// y what particle p gives.
+  /// Layer by layer: give(k, x, y, z, sum) adds to the sum of a node what particle k gives.
   template <int width, class F>
   [[gnu::always_inline]] void give_sums(const Nodes<width>& nodes, int n, F&& give) const {
     unrolled<D == 3 ? count : 1>([&](auto z) MPM_INLINE {
       Half sums[count][count];
       for (auto& row_sums : sums)
         for (auto& sum : row_sums) sum = Half(0.0);
-      for (int p = 0; p < n; ++p)
-        give(p, z, [&](auto y, auto&& add_part) MPM_INLINE {
-          unrolled<count>([&](auto x) MPM_INLINE { add_part(sums[y][x], x); });
+      for (int k = 0; k < n; ++k)
+        unrolled<count>([&](auto y) MPM_INLINE {
+          unrolled<count>([&](auto x) MPM_INLINE { give(k, x, y, z, sums[y][x]); });
         });
       unrolled<count>([&](auto y) MPM_INLINE {
         unrolled<count>([&](auto x) MPM_INLINE { add(nodes[stride_.to(x, y, z)], sums[y][x]); });
-      });
-    });
-  }
-  /// m_i += m_p N_ip, eq. (2); p_i += m_p N_ip v_p, eq. (3).
-  template <int room, class F>
-  [[gnu::always_inline]] static void give_momentum(const Places<room>& of,
-                                                   const Payload<room>& payload, int p, auto z,
-                                                   F&& to) {
-    const double m = D == 3 ? payload.mass[p] * of.N[D - 1][z][p] : payload.mass[p];
-    const Half given = m * Half::load(payload.velocity[p]);
-    unrolled<count>([&](auto y) MPM_INLINE {
-      const Half part = given * of.N[1][y][p];
-      to(y, [&](Half& sum, auto x) MPM_INLINE { sum = fma(part, Half(of.N[0][x][p]), sum); });
-    });
-  }
-  /// f_i -= V_p (sigma_p - q_p 1) . grad N_ip, eq. (9), with the artificial viscosity's pressure q.
-  template <int room, class F>
-  [[gnu::always_inline]] static void give_forces(const Places<room>& of,
-                                                 const Payload<room>& payload, int p, auto z,
-                                                 F&& to) {
-    Half traction[D];
-    unrolled<D>([&](auto b) MPM_INLINE {
-      traction[b] = Half::load(payload.traction[b][p]);
-      if constexpr (D == 3) traction[b] *= b == 2 ? of.dN[2][z][p] : of.N[2][z][p];
-    });
-    unrolled<count>([&](auto y) MPM_INLINE {
-      const Half N(of.N[1][y][p]), along_x = traction[0] * N;
-      Half across = traction[1] * of.dN[1][y][p];
-      if constexpr (D == 3) across = fma(traction[2], N, across);
-      to(y, [&](Half& sum, auto x) MPM_INLINE {
-        sum = fma(along_x, Half(of.dN[0][x][p]), sum);
-        sum = fma(across, Half(of.N[0][x][p]), sum);
       });
     });
   }

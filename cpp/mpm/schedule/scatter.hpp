@@ -31,11 +31,11 @@ class CellBuffer {
     payload_.add_tractions(count_, t);
   }
 
-  /// To the nodes of a patch, from its first on.
-  template <int width>
+  /// To the nodes of a patch, from its first on, as a mapping's formulas say.
+  template <class Mapping, int width>
   void give(const Nodes<width>& patch) {
     if (count_ == 0) return;
-    scatter_.template give<what>(patch.from(first_node_), places_, payload_, count_);
+    scatter_.template give<Mapping, what>(patch.from(first_node_), places_, payload_, count_);
     count_ = 0;
   }
 
@@ -50,7 +50,7 @@ class CellBuffer {
 
 /// The particles of a cell and of the one before, which give once those of this cell are laid out:
 /// what has just been written would have to be waited for.
-template <unsigned what, int D, BasisModel B, int width>
+template <class Mapping, unsigned what, int D, BasisModel B, int width>
 class DoubleBuffer {
  public:
   /// `patch` are its nodes, from its first on.
@@ -61,18 +61,18 @@ class DoubleBuffer {
   /// Where the next particles of the cell are laid out.
   CellBuffer<what, D, B>& next() {
     if (now().full()) {
-      last().give(patch_);
-      now().give(patch_);
+      last().template give<Mapping>(patch_);
+      now().template give<Mapping>(patch_);
     }
     return now();
   }
   /// The cell has all its particles.
   void end() {
-    last().give(patch_);
+    last().template give<Mapping>(patch_);
     now_ = 1 - now_;
   }
   /// After the last cell.
-  void finish() { last().give(patch_); }
+  void finish() { last().template give<Mapping>(patch_); }
 
  private:
   CellBuffer<what, D, B>& now() { return cells_[now_]; }
@@ -126,12 +126,12 @@ class ParticleReader {
 };
 
 /// Scatter from all particles of a patch to its nodes (CellBuffer::give).
-template <unsigned what, int lanes, int D, BasisModel B>
+template <class Mapping, unsigned what, int lanes, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void scatter_by(const B& basis, const TileGrid<D>& grid,
                                                 const Body<D>& body, const Patch<D>& patch,
                                                 const NodeRecords& nodes) {
   const ParticleReader<what, D> reader(grid, body);
-  DoubleBuffer<what, D, B, record> cells(NodeStrides<D>(patch.shape), nodes);
+  DoubleBuffer<Mapping, what, D, B, record> cells(NodeStrides<D>(patch.shape), nodes);
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
     cells.begin(cell);
     for_each_group<lanes>(cell,
@@ -141,11 +141,11 @@ template <unsigned what, int lanes, int D, BasisModel B>
   cells.finish();
 }
 
-template <unsigned what, int D>
+template <class Mapping, unsigned what, int D>
 void scatter(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
              const NodeRecords& nodes) {
   with_basis_and_lanes(grid, body, patch, [&](const auto& basis, auto lanes) {
-    scatter_by<what, lanes>(basis, grid, body, patch, nodes);
+    scatter_by<Mapping, what, lanes>(basis, grid, body, patch, nodes);
   });
 }
 

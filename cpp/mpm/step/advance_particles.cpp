@@ -2,6 +2,7 @@
 #include "mpm/step/move.hpp"
 #include "mpm/step/node_loops.hpp"
 #include "mpm/step/stages.hpp"
+#include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm {
 namespace {
@@ -9,12 +10,10 @@ namespace {
 /// What is done beside eq. (17) while the particles are at hand.
 enum class Also { nothing, remap, move };
 
-/// Velocities of a patch's particles, eq. (17). `damped`: a share of the velocity of the grid takes
-/// the place of theirs, PIC in place of FLIP (Harlow 1964; Brackbill & Ruppel 1986), so that what
-/// the grid does not see dies away.
-template <int W, Also also, bool damped, int D, BasisModel B>
-[[gnu::noinline, gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p,
-                                                   const B& basis) {
+/// Velocities of a patch's particles, eq. (17), as the transfer says.
+template <int W, Also also, class Transfer, int D, BasisModel B>
+[[gnu::noinline, gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p, const B& basis,
+                                                   const Transfer transfer) {
   using T = Batch<W>;
   auto& grid = domain.grid;
   Patch<D>& patch = grid.patches[p];
@@ -22,7 +21,6 @@ template <int W, Also also, bool damped, int D, BasisModel B>
   if (body.prescribed) return;
   const NodeBlock<D> block = grid.block(p);
   T kinetic(0.0), second_order(0.0), lost(0.0);
-  const T pic(std::min(domain.pic_damping * domain.time_step, 1.0));
   Vec<T, D> momentum = Vec<T, D>::zero();
   const LocalPosition<D> local_position(grid, body);
   Moving<D> moving(grid, body, domain.time_step);
@@ -34,7 +32,8 @@ template <int W, Also also, bool damped, int D, BasisModel B>
       cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * half_record : 1];
   if constexpr (also == Also::remap) std::fill_n(remapped, block.count * half_record, 0.0);
   const NodeStrides<D> stride(patch.shape);
-  DoubleBuffer<gives_momentum, D, B, half_record> cells(stride, {remapped});
+  DoubleBuffer<Mapping<typename Transfer::Gives>, gives_momentum, D, B, half_record> cells(
+      stride, {remapped});
 
   for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
     const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
@@ -43,21 +42,21 @@ template <int W, Also also, bool damped, int D, BasisModel B>
       const auto w = weights_at(basis, local_position(cell, rows));
       const T all = load(mass, rows), m = of_valid(rows, all);
       T speed2(0.0), change2(0.0);
-      const Vec<T, D> increment = nodes.vector(force_at, w);
+      const Vec<T, D> dv = nodes.vector(force_at, w);
       Vec<T, D> of_grid, v;
-      if constexpr (damped) of_grid = nodes.vector(velocity_at, w);
+      if constexpr (Transfer::takes_grid_velocity) of_grid = nodes.vector(velocity_at, w);
       unrolled<D>([&](auto a) {
-        const T dv = increment[a];
-        v[a] = load(velocities[a], rows) + dv;
-        if constexpr (damped) {
-          lost += m * v[a] * v[a];
-          v[a] = fma(pic, of_grid[a] - v[a], v[a]);
+        const T before = load(velocities[a], rows);
+        v[a] = transfer.take(before, dv[a], of_grid[a]);
+        if constexpr (Transfer::takes_energy) {
+          const T kept = before + dv[a];  // with all of the change, as FLIP does
+          lost += m * kept * kept;
           lost -= m * v[a] * v[a];
         }
         store(velocities[a], rows, v[a]);
         momentum[a] = fma(m, v[a], momentum[a]);
         speed2 = fma(v[a], v[a], speed2);
-        change2 = fma(dv, dv, change2);
+        change2 = fma(dv[a], dv[a], change2);
       });
       kinetic = fma(m, speed2, kinetic);
       second_order = fma(m, change2, second_order);
@@ -89,11 +88,11 @@ void advance(Domain<D>& domain) {
     const Body<D>& body = domain.body_of(patch);
     with_basis_and_lanes(domain.grid, body, patch, [&](const auto& basis, auto lanes) {
       if (body.rigid)
-        advance_patch<lanes, Also::nothing, false>(domain, p, basis);
-      else if (domain.pic_damping > 0.0)
-        advance_patch<lanes, also, true>(domain, p, basis);
+        advance_patch<lanes, Also::nothing>(domain, p, basis, Flip());
       else
-        advance_patch<lanes, also, false>(domain, p, basis);
+        with_transfer(domain, [&](const auto& transfer) {
+          advance_patch<lanes, also>(domain, p, basis, transfer);
+        });
     });
   });
 }

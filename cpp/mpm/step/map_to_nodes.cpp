@@ -4,6 +4,7 @@
 #include "mpm/step/mirror.hpp"
 #include "mpm/step/prescribed_bodies.hpp"
 #include "mpm/step/stages.hpp"
+#include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm {
 namespace {
@@ -31,10 +32,13 @@ void map_patch(Domain<D>& domain, std::size_t p) {
       for (int a = 0; a < D; ++a) f(weights[n][a], block.force(a)[n]);
   };
   for_each_weight([](double& weight, double& force) { weight = std::exchange(force, 0.0); });
-  if (!body.rigid)
-    scatter<what>(grid, body, patch, block.records);
-  else if constexpr (momentum)  // It has no stress.
-    scatter<what & ~gives_forces>(grid, body, patch, block.records);
+  with_transfer(domain, [&]<class Transfer>(const Transfer&) {
+    using Gives = Mapping<typename Transfer::Gives>;
+    if (!body.rigid)
+      scatter<Gives, what>(grid, body, patch, block.records);
+    else if constexpr (momentum)  // It has no stress.
+      scatter<Gives, what & ~gives_forces>(grid, body, patch, block.records);
+  });
   for_each_weight([](double weight, double& force) { force += weight; });
   if constexpr (momentum) {
     if (!body.prescribed) subtract_ghost_weight(domain, patch, block);

@@ -1,6 +1,7 @@
 #include "mpm/schedule/scatter.hpp"
 #include "mpm/step/mirror.hpp"
 #include "mpm/step/stages.hpp"
+#include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm {
 namespace {
@@ -16,7 +17,10 @@ void remap(Domain<D>& domain, bool scattered) {
     if (!scattered || body.rigid) {
       clear(block.records.at(force_at), block.count, half_record);
       if (body.prescribed) return;
-      scatter<gives_momentum>(grid, body, patch, block.records.at(force_at));
+      with_transfer(domain, [&]<class Transfer>(const Transfer&) {
+        scatter<Mapping<typename Transfer::Gives>, gives_momentum>(grid, body, patch,
+                                                                   block.records.at(force_at));
+      });
     }
     fold_at_walls(grid, patch, block, force_at);
   });

@@ -7,6 +7,7 @@
 #include "check.hpp"
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/schedule/choose.hpp"
+#include "mpm/step/transfer/transfer.hpp"
 
 namespace {
 
@@ -96,7 +97,7 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const
     std::vector<double> to(record * count, 0.0);
     const NodeRecords nodes = NodeRecords{to.data()}.from(first + to_first);
     const auto payload = payload_of(p, std::integral_constant<unsigned, everything>{});
-    scatter.template give<everything>(nodes, places, payload, room);
+    scatter.template give<Mapping<Flip>, everything>(nodes, places, payload, room);
     return to;
   };
   const auto number = [&](const std::vector<double>& of, int at) {
@@ -166,12 +167,12 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const
     std::vector<double> parts(record * count, 0.0), momentum(half_record * count, 0.0);
     const NodeRecords to = NodeRecords{parts.data()}.from(first + to_first);
     const auto payload = payload_of(p, std::integral_constant<unsigned, everything>{});
-    scatter.template give<gives_mass | gives_momentum>(to, places, payload, room);
-    scatter.template give<gives_forces>(to, places, payload, room);
+    scatter.template give<Mapping<Flip>, gives_mass | gives_momentum>(to, places, payload, room);
+    scatter.template give<Mapping<Flip>, gives_forces>(to, places, payload, room);
     for (std::size_t i = 0; i < all.size(); ++i) CHECK_EQUAL(parts[i], all[i]);
     constexpr std::integral_constant<unsigned, gives_momentum> alone;
-    scatter.template give<gives_momentum>(HalfRecords{momentum.data()}.from(first + to_first),
-                                          places, payload_of(p, alone), room);
+    scatter.template give<Mapping<Flip>, gives_momentum>(
+        HalfRecords{momentum.data()}.from(first + to_first), places, payload_of(p, alone), room);
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t a = 0; a < D; ++a)
         CHECK_EQUAL(momentum[half_record * i + a], all[record * i + velocity_at + a]);

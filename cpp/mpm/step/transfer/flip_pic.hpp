@@ -1,0 +1,25 @@
+#pragma once
+#include "mpm/step/transfer/flip.hpp"
+
+namespace mpm {
+
+/// FLIP of which a share `pic` is PIC: so much of the grid's velocity itself takes the place of the
+/// particle's (Harlow 1964), and what the grid does not see dies away.
+struct FlipPic : Flip {
+  static constexpr std::string_view name = "flip_pic";
+  static constexpr bool takes_grid_velocity = true, takes_energy = true;
+
+  double pic;
+
+  explicit FlipPic(double share) : pic(share) {}
+
+  /// v_p += sum dv_i N_ip, eq. (17), then v_p += pic (sum v_i N_ip - v_p), the latter sum
+  /// `of_grid`.
+  template <class T>
+  MPM_INLINE T take(T v, T dv, T of_grid) const {
+    const T flip = v + dv;
+    return fma(T(pic), of_grid - flip, flip);
+  }
+};
+
+}  // namespace mpm
