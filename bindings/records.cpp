@@ -25,6 +25,24 @@ void add_records(nb::module_& m) {
     bases[name] = known;
   });
   m.attr("bases") = bases;
+  m.def(
+      "stages",
+      [](Scheme scheme, bool fused) {
+        const auto names = [](std::uint32_t data) {
+          nb::list said;
+          for (std::size_t k = 0; k < data_names.size(); ++k)
+            if (data >> k & 1u) said.append(nb::str(data_names[k].data(), data_names[k].size()));
+          return said;
+        };
+        nb::list rows;
+        for (const Stage<3>& stage : stages_of<3>(scheme, fused))
+          rows.append(nb::make_tuple(nb::str(stage.name.data(), stage.name.size()),
+                                     names(stage.reads), names(stage.writes), stage.all_particles));
+        return rows;
+      },
+      nb::arg("scheme"), nb::arg("fused"),
+      "Of each stage: its name, what it reads and writes, and whether it goes through all "
+      "particles");
   nb::enum_<Wall>(m, "Wall")
       .value("free", Wall::free)
       .value("slip", Wall::slip)

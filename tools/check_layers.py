@@ -18,9 +18,10 @@ LAYERS = {
     "schedule": 5,
     "contact": 5,
     "reference": 5,
-    "domain.hpp": 6,
-    "step": 7,
-    "run": 8,
+    "ledger": 6,
+    "domain.hpp": 7,
+    "step": 8,
+    "run": 9,
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"][^>"]+)[>"]')
 PYTHON = re.compile(r'^[<"](nanobind/|pybind11/|Python\.h|numpy/)')

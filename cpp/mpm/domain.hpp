@@ -7,6 +7,7 @@
 
 #include "mpm/contact/contact_grid.hpp"
 #include "mpm/grid/tile_grid.hpp"
+#include "mpm/ledger/ledger.hpp"
 #include "mpm/materials/material_block.hpp"
 #include "mpm/parallel/threads.hpp"
 #include "mpm/particles/lists.hpp"
@@ -14,35 +15,6 @@
 #include "mpm/particles/surface_load.hpp"
 
 namespace mpm {
-
-/// Of a patch whose body's motion is prescribed.
-template <int D>
-struct PrescribedSums {
-  double kinetic = 0.0;     // after the step [J]
-  double momentum[D] = {};  // after the step [kg m/s]
-  double work = 0.0;        // of the contact forces on it, at the mean velocity of the step [J]
-  double impulse[D] = {};   // of the contact forces on it [N s]
-};
-
-/// What the ledger needs from one patch in one step. Every patch has its own, and they are added in
-/// the order of the patches, so that no sum depends on the number of threads.
-template <int D>
-struct PatchSums {
-  StressSums stress;
-  double kinetic = 0.0;       // of the particles after the step [J]
-  double second_order = 0.0;  // half sum of m_p (change of v_p)^2 [J]
-  double damped = 0.0;        // kinetic energy that PIC damping has taken [J]
-  double momentum[D] = {};    // of the particles after the step [kg m/s]
-  double force_work =
-      0.0;  // time step x sum over nodes of internal and contact force . velocity [J]
-  double made_rigid =
-      0.0;  // kinetic energy that rigid bodies' increments had beyond a rigid motion [J]
-  double gravity_first = 0.0;   // time step x sum over nodes of gravity . velocity [J]
-  double gravity_second = 0.0;  // the part of second_order that is the work of gravity [J]
-  PrescribedSums<D> prescribed;
-  double load_first = 0.0, load_second = 0.0;        // the same of loads on surfaces [J]
-  double dashpot_first = 0.0, dashpot_second = 0.0;  // the same of walls that absorb [J]
-};
 
 template <int D>
 struct Domain {
@@ -58,11 +30,14 @@ struct Domain {
   double disorder = disorder_that_pays;  // share of a body's particles at which it is sorted
   double pic_damping = 0.0;  // rate at which particles take over the velocity of the grid [1/s]
 
-  double time = 0.0;       // [s]
-  double time_step = 0.0;  // of the step being made [s]
-  std::int64_t step = 0;   // steps made
+  double time = 0.0;        // [s]
+  double time_after = 0.0;  // of the step being made [s]
+  double time_step = 0.0;   // of the step being made [s]
+  std::int64_t step = 0;    // steps made
 
   std::vector<PatchSums<D>> sums;  // one per patch
+  ContactSums contact_sums;        // of the step
+  Ledger ledger;
   ListScratch<D> list_scratch;
   Gone<D> eroded, left;  // by failure; out of the region that is kept
   std::vector<SurfaceLoad<D>> loads;

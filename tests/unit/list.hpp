@@ -29,6 +29,7 @@
   X(surface_load) \
   X(blocks) \
   X(mend_lists) \
+  X(fuse) \
   X(stages) \
   X(two_bodies) \
   X(many_bodies) \

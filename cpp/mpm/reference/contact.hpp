@@ -46,16 +46,16 @@ void Step<D>::contact_momentum(Vec<double, D> Node<D>::* velocity) {
 /// the slip, and of that no more than mu f_nor.
 template <int D>
 void Step<D>::contact_forces() {
-  for (const Contact<D>& c : contacts) {
+  for (Contact<D>& c : contacts) {
     if (!c.touching) continue;
     const Vec<double, D> P_r = c.r->m * c.r->v + dt * c.r->f, P_s = c.s->m * c.s->v + dt * c.s->f;
     const Vec<double, D> all = (1.0 / ((c.r->m + c.s->m) * dt)) * (c.s->m * P_r - c.r->m * P_s);
     const double f_nor = std::max(dot(all, c.n), 0.0);
     const Vec<double, D> tangential = all - dot(all, c.n) * c.n;
     const double f_fric = std::min(mu * f_nor, norm(tangential));
-    const Vec<double, D> f = f_nor * c.n + f_fric * normalised(tangential);
-    c.r->f -= f;
-    c.s->f += f;
+    c.f = f_nor * c.n + f_fric * normalised(tangential);
+    c.r->f -= c.f;
+    c.s->f += c.f;
   }
 }
 

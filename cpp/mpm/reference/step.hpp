@@ -44,8 +44,9 @@ template <int D>
 struct Contact {
   Index<D> node;
   Node<D>*r, *s;
-  Vec<double, D> n;       // unit normal from r to s
-  bool touching = false;  // the bodies approach, or rest against each other
+  Vec<double, D> n;                           // unit normal from r to s
+  bool touching = false;                      // the bodies approach, or rest against each other
+  Vec<double, D> f = Vec<double, D>::zero();  // contact force on s [N]
 };
 
 template <int D>

@@ -129,10 +129,10 @@ void SimulationOf<D>::set_velocity(int number, std::span<const double> velocitie
       b.v(static_cast<int>(a))[k] = static_cast<Rounded>(velocities[b.id[k] * D + a]);
   if (!prepared_) return;
   hold_rigid_bodies(domain_);
-  ledger_.external += kinetic_energy() - before;
-  ledger_.kinetic = kinetic_energy();
-  ledger_.momentum = momentum();
-  watch_.start_from(ledger_.made(), ledger_.load_work);
+  domain_.ledger.external += kinetic_energy() - before;
+  domain_.ledger.kinetic = kinetic_energy();
+  domain_.ledger.momentum = momentum();
+  watch_.start_from(domain_.ledger.made(), domain_.ledger.load_work);
   probe_speeds();
   domain_.contact.forget();  // gaps change with the velocities that particles had
 }

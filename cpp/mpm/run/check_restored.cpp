@@ -148,7 +148,8 @@ void SimulationOf<D>::check_rest(double cell_size, const Index<D>& walls) const 
   const std::size_t columns = history_columns().size();
   check(history_.size() % columns == 0 && history_.size() <= (history_capacity + 1) * columns,
         "its history is damaged");
-  check(finite(ledger_.kinetic) && finite(ledger_.residual()), "its energies are damaged");
+  check(finite(domain_.ledger.kinetic) && finite(domain_.ledger.residual()),
+        "its energies are damaged");
   check(watch_.plausible() && looked_ <= domain_.step, "its warnings are damaged");
   const auto number_of = [&](int n) { return n >= 0 && n < body_count(); };
   for (const Note& note : notes_)

@@ -10,12 +10,13 @@ template <int D>
 void SimulationOf<D>::find_failure() {
   bool negative = false;
   for (const PatchSums<D>& s : domain_.sums) negative = negative || s.stress.negative_volume;
-  if (!negative && std::isfinite(ledger_.kinetic) && std::isfinite(ledger_.residual())) {
-    if (ledger_.growth() <= settings_.energy_growth_limit) return;
+  if (!negative && std::isfinite(domain_.ledger.kinetic) &&
+      std::isfinite(domain_.ledger.residual())) {
+    if (domain_.ledger.growth() <= settings_.energy_growth_limit) return;
     const Limiter fastest = limiter();
     const std::size_t row = row_of(body(fastest.body), fastest.particle);
     std::ostringstream text;
-    text << "the numerical terms have made " << ledger_.growth()
+    text << "the numerical terms have made " << domain_.ledger.growth()
          << " of the largest energy brought in";
     failure_ = failure_at("energy growth", static_cast<std::size_t>(fastest.body), row, text.str());
     return;

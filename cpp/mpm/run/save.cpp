@@ -60,7 +60,7 @@ void SimulationOf<D>::exchange(StateStream& stream) {
   stream.vector(domain_.sums);
   stream.same(domain_.rigid.size(), other_case);
   stream.array(std::span(domain_.rigid));
-  stream(settings_.cell_size, doublings_, next_time_step_, ledger_);
+  stream(settings_.cell_size, doublings_, next_time_step_, domain_.ledger);
   stream.vector(history_);
   stream(watch_, looked_);
   stream.vector(notes_);

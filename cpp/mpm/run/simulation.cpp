@@ -82,9 +82,7 @@ std::unique_ptr<Simulation> make_simulation(const Settings& settings) {
 
 template <int D>
 SimulationOf<D>::SimulationOf(const Settings& settings)
-    : settings_(settings),
-      stages_(settings.fused ? fused_stages_of<D>(settings.scheme)
-                             : stages_of<D>(settings.scheme)) {
+    : settings_(settings), stages_(stages_of<D>(settings.scheme, settings.fused)) {
   TileGrid<D>& grid = domain_.grid;
   grid.cell_size = settings.cell_size;
   grid.basis = settings.basis;
@@ -136,12 +134,12 @@ void SimulationOf<D>::prepare() {
     hold_rigid_bodies(domain_);
   }
   probe_speeds();
-  ledger_.kinetic = kinetic_energy();
-  ledger_.internal = initial_internal_energy();
-  ledger_.start = ledger_.kinetic + ledger_.internal;
-  ledger_.momentum = momentum();
+  domain_.ledger.kinetic = kinetic_energy();
+  domain_.ledger.internal = initial_internal_energy();
+  domain_.ledger.start = domain_.ledger.kinetic + domain_.ledger.internal;
+  domain_.ledger.momentum = momentum();
   for (const Body<D>& b : bodies)
-    if (b.prescribed) ledger_.add_prescribed(b);
+    if (b.prescribed) domain_.ledger.add_prescribed(b);
   sights_.resize(bodies.size());
   notes_.reserve(2 * note_names.size());
   domain_.time_step = 0.0;
@@ -175,16 +173,11 @@ void SimulationOf<D>::make_step(double time_after) {
         domain_.gravity_of_time[a].mean(domain_.time, time_after);
   for (Body<D>& b : domain_.bodies)
     if (b.prescribed) b.motion->begin_step(domain_.time, time_after);
+  domain_.time_after = time_after;
   for (std::size_t k = 0; k < stages_.size(); ++k)
     timers_.time(k, [&] { stages_[k].run(domain_); });
   domain_.time = time_after;
   ++domain_.step;
-  ContactSums contacts;
-  if (domain_.has_contact())
-    contacts = domain_.contact.record(domain_.grid, domain_.bodies, domain_.time, domain_.time_step,
-                                      domain_.step);
-  ledger_.add(domain_.sums, contacts, domain_.eroded, domain_.left,
-              settings_.scheme == Scheme::usf);
   write_history_row();
   find_failure();
   if (failure_) return;
@@ -214,7 +207,7 @@ void SimulationOf<D>::write_history_row() {
   // Room for the row of the start and history_capacity steps; a caller who never takes them loses
   // the oldest.
   if (history_.size() > history_capacity * history_columns().size()) history_.clear();
-  const Ledger& l = ledger_;
+  const Ledger& l = domain_.ledger;
   for (const double value : {static_cast<double>(domain_.step),
                              domain_.time,
                              domain_.time_step,

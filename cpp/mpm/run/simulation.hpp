@@ -15,7 +15,7 @@
 #include "mpm/fields/state_stream.hpp"
 #include "mpm/materials/material.hpp"
 #include "mpm/math/time_function.hpp"
-#include "mpm/step/fused.hpp"
+#include "mpm/step/scheme.hpp"
 
 namespace mpm {
 

@@ -1,6 +1,5 @@
 #pragma once
 // The simulation in D dimensions.
-#include "mpm/run/ledger.hpp"
 #include "mpm/run/simulation.hpp"
 #include "mpm/run/timers.hpp"
 #include "mpm/run/watch.hpp"
@@ -106,7 +105,6 @@ class SimulationOf final : public Simulation {
   Domain<D> domain_;
   std::span<const Stage<D>> stages_;
   StageTimers timers_;
-  Ledger ledger_;
   double next_time_step_ = 0.0;
   int doublings_ = 0;  // of the cells so far
   bool prepared_ = false;

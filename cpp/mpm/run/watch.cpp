@@ -65,9 +65,10 @@ template <int D>
 void SimulationOf<D>::watch_step() {
   watch_crowd();
   const double median = watch_.median_fallen_below(next_time_step_);
-  const double made = watch_.energy_made(ledger_.made(), ledger_.largest);
-  const double work =
-      domain_.has_loads() ? watch_.load_energy(ledger_.load_work, ledger_.largest) : 0.0;
+  const double made = watch_.energy_made(domain_.ledger.made(), domain_.ledger.largest);
+  const double work = domain_.has_loads()
+                          ? watch_.load_energy(domain_.ledger.load_work, domain_.ledger.largest)
+                          : 0.0;
   if (median == 0.0 && made == 0.0 && work == 0.0) return;
   const Limiter fastest = limiter();  // an unstable particle is the fastest, or soon will be
   if (fastest.body < 0) return;
@@ -77,11 +78,11 @@ void SimulationOf<D>::watch_step() {
     note_at({.kind = NoteKind::time_step, .value = next_time_step_, .against = median},
             fastest.body, row);
   if (made > 0.0)
-    note_at({.kind = NoteKind::energy_made, .value = made, .against = ledger_.largest},
+    note_at({.kind = NoteKind::energy_made, .value = made, .against = domain_.ledger.largest},
             fastest.body, row);
   // A load may be meant to be sudden; but what it moves faster than waves run is torn off.
   if (work > 0.0 && fastest.speed > fastest.sound_speed)
-    note_at({.kind = NoteKind::load_energy, .value = work, .against = ledger_.largest},
+    note_at({.kind = NoteKind::load_energy, .value = work, .against = domain_.ledger.largest},
             fastest.body, row);
 }
 

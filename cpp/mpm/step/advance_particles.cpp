@@ -47,7 +47,10 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       if constexpr (Transfer::takes_grid_velocity) of_grid = nodes.vector(velocity_at, w);
       unrolled<D>([&](auto a) {
         const T before = load(velocities[a], rows);
-        v[a] = transfer.take(before, dv[a], of_grid[a]);
+        if constexpr (Transfer::takes_grid_velocity)
+          v[a] = transfer.take(before, dv[a], of_grid[a]);
+        else
+          v[a] = transfer.take(before, dv[a]);
         if constexpr (Transfer::takes_energy) {
           const T kept = before + dv[a];  // with all of the change, as FLIP does
           lost += m * kept * kept;

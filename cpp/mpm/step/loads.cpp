@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "mpm/step/nodes_around.hpp"
+#include "mpm/step/stages.hpp"
 
 namespace mpm {
 namespace {
@@ -46,8 +47,7 @@ void for_each_loaded_piece(const Domain<D>& domain, std::size_t p, const Surface
   });
 }
 
-}  // namespace
-
+/// The loads of a step: their means over it, and room for the patches' sums.
 template <int D>
 void start_loads(Domain<D>& domain) {
   const double now = domain.time, next = domain.time + domain.time_step;
@@ -58,6 +58,10 @@ void start_loads(Domain<D>& domain) {
                            Vec<double, D>::zero());
 }
 
+/// f_i += sum over the pieces of N_i(x) f, x the middle of the piece: the surface term of the
+/// equation of motion (Sulsky, Chen & Schreyer 1994). N_i are the linear functions. x is held
+/// between the nodes around the particle, or within the box over which its function is a mean, so
+/// that only nodes with mass are loaded.
 template <int D>
 void scatter_loads(Domain<D>& domain, std::size_t p) {
   const NodeBlock<D> block = domain.grid.block(p);
@@ -72,6 +76,8 @@ void scatter_loads(Domain<D>& domain, std::size_t p) {
                           });
   }
 }
+
+}  // namespace
 
 template <int D>
 Work work_of_loads(Domain<D>& domain, std::size_t p) {
@@ -91,7 +97,11 @@ Work work_of_loads(Domain<D>& domain, std::size_t p) {
 }
 
 template <int D>
-void sum_loads(Domain<D>& domain) {
+void load_surfaces(Domain<D>& domain) {
+  if (!domain.has_loads()) return;
+  start_loads(domain);
+  domain.threads.for_each(domain.grid.patches.size(),
+                          [&](std::size_t p) { scatter_loads(domain, p); });
   const std::size_t count = domain.loads.size();
   for (SurfaceLoad<D>& load : domain.loads) load.force = Vec<double, D>::zero();
   for (std::size_t k = 0; k < domain.load_parts.size(); ++k)
@@ -99,13 +109,9 @@ void sum_loads(Domain<D>& domain) {
   for (SurfaceLoad<D>& load : domain.loads) load.impulse += domain.time_step * load.force;
 }
 
-template void start_loads<2>(Domain<2>&);
-template void start_loads<3>(Domain<3>&);
-template void scatter_loads<2>(Domain<2>&, std::size_t);
-template void scatter_loads<3>(Domain<3>&, std::size_t);
+template void load_surfaces<2>(Domain<2>&);
+template void load_surfaces<3>(Domain<3>&);
 template Work work_of_loads<2>(Domain<2>&, std::size_t);
 template Work work_of_loads<3>(Domain<3>&, std::size_t);
-template void sum_loads<2>(Domain<2>&);
-template void sum_loads<3>(Domain<3>&);
 
 }  // namespace mpm

@@ -8,24 +8,9 @@
 
 namespace mpm {
 
-/// The loads of a step: their means over it, and room for the patches' sums.
-template <int D>
-void start_loads(Domain<D>& domain);
-
-/// f_i += sum over the pieces of N_i(x) f, x the middle of the piece: the surface term of the
-/// equation of motion (Sulsky, Chen & Schreyer 1994). N_i are the linear functions. x is
-/// held between the nodes around the particle, or within the box over which its function is a mean,
-/// so that only nodes with mass are loaded.
-template <int D>
-void scatter_loads(Domain<D>& domain, std::size_t patch);
-
 /// Their work on a patch, with the velocities and increments of the nodes at the pieces.
 template <int D>
 Work work_of_loads(Domain<D>& domain, std::size_t patch);
-
-/// Force and impulse of each load, added in the order of the patches.
-template <int D>
-void sum_loads(Domain<D>& domain);
 
 /// f(row, piece) for the particles of a cell that carry a piece of a load.
 template <int D, class F>

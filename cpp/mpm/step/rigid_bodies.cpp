@@ -1,11 +1,10 @@
 // Bodies that move as one: after eq. (17) their velocities are replaced by the rigid motion of the
 // same momentum and angular momentum, and they take the place of eq. (16) that this motion gives.
-#include "mpm/step/rigid_bodies.hpp"
-
 #include <limits>
 #include <span>
 
 #include "mpm/step/prescribed_bodies.hpp"
+#include "mpm/step/stages.hpp"
 
 namespace mpm {
 namespace {

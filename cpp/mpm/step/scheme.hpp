@@ -1,11 +1,9 @@
 #pragma once
 // READ THIS FIRST. A step is a list of stages: usf, usl, musl, in the order of section 3.6 of Ma,
 // Zhang & Huang (2010). The lists are data: the time loop runs them, timers and tests name them.
-#include <array>
+// What runs is the same lists with some neighbours fused, so that particles are read fewer times.
 #include <span>
-#include <string_view>
 
-#include "mpm/step/rigid_bodies.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -13,75 +11,82 @@ namespace mpm {
 enum class Scheme { usf, usl, musl };
 
 template <int D>
-struct Stage {
-  std::string_view name;
-  void (*run)(Domain<D>&);
-};
+struct Schemes {
+  using S = Stages<D>;
 
-/// Update stress first (Bardenhagen 2002).
-template <int D>
-inline constexpr auto usf = std::array{
-    Stage<D>{"activate tiles", activate_tiles<D>},
-    Stage<D>{"map momentum", map_momentum<D>},
-    Stage<D>{"contact momentum", contact_momentum<D>},
-    Stage<D>{"update stress", update_stress_first<D>},
-    Stage<D>{"map forces", map_forces<D>},
-    Stage<D>{"absorb at walls", absorb_at_walls<D>},
-    Stage<D>{"contact forces", contact_forces<D>},
-    Stage<D>{"advance nodes", advance_nodes<D>},
-    Stage<D>{"advance particles", advance_particles<D>},
-    Stage<D>{"hold rigid bodies", hold_rigid_bodies<D>},
-    Stage<D>{"move particles", move_particles<D>},
-    Stage<D>{"move rigid bodies", move_rigid_bodies<D>},
-};
+  /// Update stress first (Bardenhagen 2002).
+  static constexpr StageList<D> usf = std::array{
+      S::activate,
+      S::map_momentum,
+      S::fold_momentum,
+      S::exchange_momentum,
+      S::find_velocities,
+      S::contact_momentum,
+      S::update_first,
+      S::map_forces,
+      S::load_surfaces,
+      S::place_dashpots,
+      S::fold_forces,
+      S::exchange_forces,
+      S::absorb,
+      S::contact_forces,
+      S::advance_nodes,
+      S::advance_particles,
+      S::hold_rigid,
+      S::move_particles,
+      S::move_rigid,
+      S::record_contacts,
+      S::template sum_energies<true>,
+  };
 
-/// Update stress last (Sulsky, Chen & Schreyer 1994).
-template <int D>
-inline constexpr auto usl = std::array{
-    Stage<D>{"activate tiles", activate_tiles<D>},
-    Stage<D>{"map momentum", map_momentum<D>},
-    Stage<D>{"contact momentum", contact_momentum<D>},
-    Stage<D>{"map forces", map_forces<D>},
-    Stage<D>{"absorb at walls", absorb_at_walls<D>},
-    Stage<D>{"contact forces", contact_forces<D>},
-    Stage<D>{"advance nodes", advance_nodes<D>},
-    Stage<D>{"advance particles", advance_particles<D>},
-    Stage<D>{"hold rigid bodies", hold_rigid_bodies<D>},
-    Stage<D>{"update stress", update_stress_last<D>},
-    Stage<D>{"move particles", move_particles<D>},
-    Stage<D>{"move rigid bodies", move_rigid_bodies<D>},
-};
+  /// Update stress last (Sulsky, Chen & Schreyer 1994).
+  static constexpr StageList<D> usl = std::array{
+      S::activate,          S::map_momentum,    S::fold_momentum,
+      S::exchange_momentum, S::find_velocities, S::contact_momentum,
+      S::map_forces,        S::load_surfaces,   S::place_dashpots,
+      S::fold_forces,       S::exchange_forces, S::absorb,
+      S::contact_forces,    S::advance_nodes,   S::advance_particles,
+      S::hold_rigid,        S::update_last,     S::move_particles,
+      S::move_rigid,        S::record_contacts, S::template sum_energies<false>,
+  };
 
-/// Modified update stress last (Sulsky, Zhou & Schreyer 1995).
-template <int D>
-inline constexpr auto musl = std::array{
-    Stage<D>{"activate tiles", activate_tiles<D>},
-    Stage<D>{"map momentum", map_momentum<D>},
-    Stage<D>{"contact momentum", contact_momentum<D>},
-    Stage<D>{"map forces", map_forces<D>},
-    Stage<D>{"absorb at walls", absorb_at_walls<D>},
-    Stage<D>{"contact forces", contact_forces<D>},
-    Stage<D>{"advance nodes", advance_nodes<D>},
-    Stage<D>{"advance particles", advance_particles<D>},
-    Stage<D>{"hold rigid bodies", hold_rigid_bodies<D>},
-    Stage<D>{"remap momentum", remap_momentum<D>},
-    Stage<D>{"contact remapped", contact_remapped<D>},
-    Stage<D>{"update stress", update_stress_remapped<D>},
-    Stage<D>{"move particles", move_particles<D>},
-    Stage<D>{"move rigid bodies", move_rigid_bodies<D>},
-};
+  /// Modified update stress last (Sulsky, Zhou & Schreyer 1995).
+  static constexpr StageList<D> musl = std::array{
+      S::activate,          S::map_momentum,      S::fold_momentum,
+      S::exchange_momentum, S::find_velocities,   S::contact_momentum,
+      S::map_forces,        S::load_surfaces,     S::place_dashpots,
+      S::fold_forces,       S::exchange_forces,   S::absorb,
+      S::contact_forces,    S::advance_nodes,     S::advance_particles,
+      S::hold_rigid,        S::remap_momentum,    S::remap_rigid,
+      S::fold_remapped,     S::exchange_remapped, S::find_remapped,
+      S::contact_remapped,  S::update_remapped,   S::move_particles,
+      S::move_rigid,        S::record_contacts,   S::template sum_energies<false>,
+  };
 
-template <int D>
-std::span<const Stage<D>> stages_of(Scheme scheme) {
-  switch (scheme) {
-    case Scheme::usf:
-      return usf<D>;
-    case Scheme::usl:
-      return usl<D>;
-    case Scheme::musl:
-      break;
+  static constexpr StageList<D> usf_fused = fuse(usf, S::advance_and_move);
+  static constexpr StageList<D> usl_fused =
+      fuse(usl, S::map_both, S::exchange_both, S::update_last_and_move);
+  static constexpr StageList<D> musl_fused =
+      fuse(musl, S::map_both, S::exchange_both, S::advance_and_remap, S::update_remapped_and_move);
+
+  static constexpr const StageList<D>& of(Scheme scheme, bool fused) {
+    switch (scheme) {
+      case Scheme::usf:
+        return fused ? usf_fused : usf;
+      case Scheme::usl:
+        return fused ? usl_fused : usl;
+      case Scheme::musl:
+        break;
+    }
+    return fused ? musl_fused : musl;
   }
-  return musl<D>;
+};
+
+/// The stages of a step, as a scheme lists them or with neighbours fused, to the same bits.
+template <int D>
+std::span<const Stage<D>> stages_of(Scheme scheme, bool fused) {
+  const StageList<D>& list = Schemes<D>::of(scheme, fused);
+  return {list.stages.data(), list.count};
 }
 
 }  // namespace mpm

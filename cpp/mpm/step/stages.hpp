@@ -1,6 +1,7 @@
 #pragma once
-// The stages of a step, one file each. Every stage is a loop over patches.
-#include "mpm/domain.hpp"
+// The stages of a step: what each does, one file each, and a row that names it and says what it
+// reads and writes. Every stage is a loop over patches.
+#include "mpm/step/stage.hpp"
 
 namespace mpm {
 
@@ -9,25 +10,50 @@ namespace mpm {
 template <int D>
 void activate_tiles(Domain<D>& domain);
 
-/// Nodal mass and velocity from the particles, eqs. (2)-(3), with the walls. Clears all fields of
-/// the nodes, and leaves in the forces what slip walls mirror of the weight; nothing may write
-/// there until the forces are mapped.
+/// Nodal mass and momentum from the particles, eqs. (2)-(3). Clears all fields of the nodes, and
+/// leaves in the forces what walls with images mirror of the weight.
 template <int D>
 void map_momentum(Domain<D>& domain);
+/// Internal nodal forces, eq. (9). (Gravity, eq. (10), is added where the nodes are advanced.)
+template <int D>
+void map_forces(Domain<D>& domain);
+template <int D>
+void map_momentum_and_forces(Domain<D>& domain);
+
+/// What particles have given to nodes beyond walls belongs to their images.
+template <int D>
+void fold_momentum(Domain<D>& domain);
+template <int D>
+void fold_forces(Domain<D>& domain);
+template <int D>
+void fold_remapped(Domain<D>& domain);
+
+/// Nodes that several patches hold get the sum of what each has there.
+template <int D>
+void exchange_momentum(Domain<D>& domain);
+template <int D>
+void exchange_forces(Domain<D>& domain);
+template <int D>
+void exchange_momentum_and_forces(Domain<D>& domain);
+template <int D>
+void exchange_remapped(Domain<D>& domain);
+
+/// v_i = p_i / m_i, eq. (3), with the walls; prescribed bodies have their own.
+template <int D>
+void find_velocities(Domain<D>& domain);
+template <int D>
+void find_remapped(Domain<D>& domain);
 
 /// Contact of bodies: overlapped nodes, normals, gaps, eq. (5); approaching momentum removed, eqs.
 /// (4), (6)-(7).
 template <int D>
 void contact_momentum(Domain<D>& domain);
 
-/// Internal nodal forces, eq. (9). (Gravity, eq. (10), is added where the nodes are advanced.)
+/// Loads on surfaces, and the factors of walls that absorb.
 template <int D>
-void map_forces(Domain<D>& domain);
-
-/// Both at once, where no stage between them changes what the forces are made of.
+void load_surfaces(Domain<D>& domain);
 template <int D>
-void map_momentum_and_forces(Domain<D>& domain);
-
+void place_dashpots(Domain<D>& domain);
 /// Forces of walls that absorb.
 template <int D>
 void absorb_at_walls(Domain<D>& domain);
@@ -44,16 +70,17 @@ void advance_nodes(Domain<D>& domain);
 template <int D>
 void advance_particles(Domain<D>& domain);
 
-/// MUSL: nodal velocities anew from the particles (3.6, step 10).
+/// Particles of rigid bodies take the rigid motion of the same momentum and angular momentum.
+template <int D>
+void hold_rigid_bodies(Domain<D>& domain);
+
+/// MUSL: nodal momenta anew from the particles (3.6, step 10), of bodies that deform and of others.
 template <int D>
 void remap_momentum(Domain<D>& domain);
-
-/// Both in two other stages: particles of bodies that deform give their new momentum at once; then
-/// rigid bodies' do, and the nodes get their velocities.
+template <int D>
+void remap_rigid_bodies(Domain<D>& domain);
 template <int D>
 void advance_and_remap_particles(Domain<D>& domain);
-template <int D>
-void remap_nodes(Domain<D>& domain);
 
 /// MUSL: contact of the remapped velocities (3.6, step 10).
 template <int D>
@@ -71,13 +98,131 @@ void update_stress_remapped(Domain<D>& domain);
 /// Particle positions, eq. (16).
 template <int D>
 void move_particles(Domain<D>& domain);
-
-/// The same together with what else the particles are read for.
 template <int D>
 void advance_and_move_particles(Domain<D>& domain);
 template <int D>
 void update_stress_last_and_move(Domain<D>& domain);
 template <int D>
 void update_stress_remapped_and_move(Domain<D>& domain);
+
+/// Rigid bodies, prescribed ones too, and their particles at the end of the step.
+template <int D>
+void move_rigid_bodies(Domain<D>& domain);
+
+/// What has passed between bodies, pair by pair.
+template <int D>
+void record_contacts(Domain<D>& domain);
+
+/// Energies and momentum after the step; `forces_follow` if the stress was updated before the
+/// forces.
+template <int D, bool forces_follow>
+void sum_energies(Domain<D>& domain);
+
+template <int D>
+constexpr Stage<D> update_stress_row(void (*run)(Domain<D>&), std::uint32_t straining) {
+  return {"update stress", run,
+          Data::lists | Data::position | Data::velocity | Data::mass | Data::volume | Data::stress |
+              Data::load_pieces | Data::patch_sums | straining,
+          Data::volume | Data::stress | Data::load_pieces | Data::patch_sums, true};
+}
+
+/// The rows. What a stage adds to it also reads.
+template <int D>
+struct Stages : Data {
+  using Row = Stage<D>;
+  static constexpr std::uint32_t of_particles = position | velocity | mass,
+                                 of_rigid = rigid_position | rigid_velocity;
+
+  static constexpr Row activate{
+      "activate tiles", mpm::activate_tiles<D>,
+      of_particles | of_rigid | stress | lists | patch_sums,
+      velocity | stress | lists | patch_sums | node_mass | node_velocity | node_force};
+  static constexpr Row map_momentum{"map momentum", mpm::map_momentum<D>,
+                                    lists | of_particles | of_rigid,
+                                    node_mass | node_velocity | node_force | node_dashpots, true};
+  static constexpr Row fold_momentum{"fold momentum", mpm::fold_momentum<D>,
+                                     node_mass | node_velocity, node_mass | node_velocity};
+  static constexpr Row exchange_momentum{"exchange momentum", mpm::exchange_momentum<D>,
+                                         node_mass | node_velocity, node_mass | node_velocity};
+  static constexpr Row find_velocities{"find velocities", mpm::find_velocities<D>,
+                                       node_mass | node_velocity, node_velocity};
+  static constexpr Row contact_momentum{
+      "contact momentum", mpm::contact_momentum<D>,
+      lists | position | rigid_position | mass | volume | node_mass | node_velocity | contacts,
+      node_velocity | contacts};
+  static constexpr Row map_forces{"map forces", mpm::map_forces<D>,
+                                  lists | position | volume | stress | node_force, node_force,
+                                  true};
+  static constexpr Row load_surfaces{"load surfaces", mpm::load_surfaces<D>,
+                                     lists | position | load_pieces | node_force,
+                                     load_pieces | node_force};
+  static constexpr Row place_dashpots{"place dashpots", mpm::place_dashpots<D>,
+                                      lists | position | mass | node_dashpots, node_dashpots};
+  static constexpr Row fold_forces{"fold forces", mpm::fold_forces<D>, node_force, node_force};
+  static constexpr Row exchange_forces{"exchange forces", mpm::exchange_forces<D>,
+                                       node_force | node_dashpots, node_force | node_dashpots};
+  static constexpr Row absorb{"absorb at walls", mpm::absorb_at_walls<D>,
+                              node_mass | node_velocity | node_force | node_dashpots,
+                              node_force | node_dashpots};
+  static constexpr Row contact_forces{"contact forces", mpm::contact_forces<D>,
+                                      node_mass | node_velocity | node_force | contacts,
+                                      node_force | contacts};
+  static constexpr Row advance_nodes{
+      "advance nodes", mpm::advance_nodes<D>,
+      lists | load_pieces | node_mass | node_velocity | node_force | node_dashpots | patch_sums,
+      node_velocity | node_force | patch_sums};
+  static constexpr Row advance_particles{
+      "advance particles", mpm::advance_particles<D>,
+      lists | of_particles | of_rigid | node_velocity | node_force | patch_sums,
+      velocity | rigid_velocity | patch_sums, true};
+  static constexpr Row hold_rigid{"hold rigid bodies", mpm::hold_rigid_bodies<D>,
+                                  of_rigid | patch_sums, rigid_velocity | patch_sums};
+  static constexpr Row remap_momentum{"remap momentum", mpm::remap_momentum<D>,
+                                      lists | of_particles, node_force, true};
+  static constexpr Row remap_rigid{"remap rigid bodies", mpm::remap_rigid_bodies<D>, of_rigid,
+                                   node_force};
+  static constexpr Row fold_remapped{"fold remapped", mpm::fold_remapped<D>, node_force,
+                                     node_force};
+  static constexpr Row exchange_remapped{"exchange remapped", mpm::exchange_remapped<D>, node_force,
+                                         node_force};
+  static constexpr Row find_remapped{"find remapped velocities", mpm::find_remapped<D>,
+                                     node_mass | node_velocity | node_force, node_force};
+  static constexpr Row contact_remapped{"contact remapped", mpm::contact_remapped<D>,
+                                        node_force | contacts, node_force | contacts};
+  static constexpr Row move_particles{"move particles", mpm::move_particles<D>,
+                                      lists | position | node_velocity, position | lists, true};
+  static constexpr Row move_rigid{"move rigid bodies", mpm::move_rigid_bodies<D>,
+                                  lists | of_rigid | patch_sums, of_rigid | lists | patch_sums};
+  static constexpr Row record_contacts{"record contacts", mpm::record_contacts<D>,
+                                       contacts | records, records};
+  template <bool forces_follow>
+  static constexpr Row sum_energies{"sum energies", mpm::sum_energies<D, forces_follow>,
+                                    patch_sums | records | energies, energies};
+
+  static constexpr Row update_first =
+      update_stress_row<D>(mpm::update_stress_first<D>, node_velocity);
+  static constexpr Row update_last =
+      update_stress_row<D>(mpm::update_stress_last<D>, node_velocity);
+  static constexpr Row update_remapped =
+      update_stress_row<D>(mpm::update_stress_remapped<D>, node_force);
+
+  static constexpr Fusion<D> map_both{map_momentum, map_forces, "map momentum and forces",
+                                      mpm::map_momentum_and_forces<D>};
+  static constexpr Fusion<D> exchange_both{exchange_momentum, exchange_forces,
+                                           "exchange momentum and forces",
+                                           mpm::exchange_momentum_and_forces<D>};
+  static constexpr Fusion<D> advance_and_remap{advance_particles, remap_momentum,
+                                               "advance and remap particles",
+                                               mpm::advance_and_remap_particles<D>};
+  static constexpr Fusion<D> advance_and_move{advance_particles, move_particles,
+                                              "advance and move particles",
+                                              mpm::advance_and_move_particles<D>};
+  static constexpr Fusion<D> update_last_and_move{update_last, move_particles,
+                                                  "update stress, move particles",
+                                                  mpm::update_stress_last_and_move<D>};
+  static constexpr Fusion<D> update_remapped_and_move{update_remapped, move_particles,
+                                                      "update stress, move particles",
+                                                      mpm::update_stress_remapped_and_move<D>};
+};
 
 }  // namespace mpm

@@ -19,38 +19,32 @@ _LIST = 4  # Bytes of an entry of the list of particles by cell.
 _ROUNDED = {"float64": 8, "float32": 4}[_core.build_info()["velocity_and_stress"]]
 _BYTES = {"velocity": _ROUNDED, "stress": _ROUNDED}  # Of a number; of all others 8.
 
-_MOMENTUM = ("position", "velocity", "mass")
-_STRESS = ("volume", "stress")
-_NODES: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
+_COLUMNS = ("position", "velocity", "mass", "volume", "stress")
 
-# Stage -> columns read, columns written. Stages that touch nodes only move no particles, nor do
-# those of rigid bodies, which benchmarks do not have.
-STAGES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "activate tiles": _NODES,
-    "map momentum": (_MOMENTUM, ()),
-    "contact momentum": _NODES,
-    "map forces": (("position", *_STRESS), ()),
-    "map momentum and forces": ((*_MOMENTUM, *_STRESS), ()),
-    "absorb at walls": _NODES,
-    "contact forces": _NODES,
-    "advance nodes": _NODES,
-    "advance particles": (_MOMENTUM, ("velocity",)),
-    "advance and remap particles": (_MOMENTUM, ("velocity",)),
-    "advance and move particles": (_MOMENTUM, ("position", "velocity")),
-    "hold rigid bodies": _NODES,
-    "remap momentum": (_MOMENTUM, ()),
-    "remap nodes": _NODES,
-    "contact remapped": _NODES,
-    "update stress": ((*_MOMENTUM, *_STRESS), _STRESS),
-    "update stress, move particles": ((*_MOMENTUM, *_STRESS), ("position", *_STRESS)),
-    "move particles": (("position",), ("position",)),
-    "move rigid bodies": _NODES,
-}
+
+def _touched() -> dict[str, tuple[tuple[str, ...], tuple[str, ...]]]:
+    """Return of each stage the columns that it reads and writes, as the core's lists say.
+
+    Stages that touch nodes only move no particles, nor do those of rigid bodies, which benchmarks
+    do not have, nor those that look at a few.
+    """
+    touched = {}
+    for scheme in _core.Scheme:
+        for name, *data, all_particles in (
+            *_core.stages(scheme, True),
+            *_core.stages(scheme, False),
+        ):
+            read, written = (tuple(c for c in _COLUMNS if c in words) for words in data)
+            touched[name] = (read, written) if all_particles else ((), ())
+    return touched
+
+
+STAGES = _touched()
 
 
 def moves_particles(stage: str) -> bool:
     """Return whether a stage reads particles; raise KeyError if there is no such stage."""
-    return STAGES[stage] != _NODES
+    return STAGES[stage] != ((), ())
 
 
 def numbers(column: str, dimension: int) -> int:
@@ -69,7 +63,7 @@ def bytes_per_particle_step(stages: list[str], dimension: int, state: int = 0) -
         state: numbers of the material's state, which the stress stage reads and writes.
 
     Raises:
-        KeyError: a stage is not in the table above.
+        KeyError: there is no such stage.
     """
     moved = {}
     for stage in stages:

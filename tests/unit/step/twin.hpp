@@ -6,7 +6,7 @@
 #include "mpm/reference/absorb.hpp"
 #include "mpm/reference/contact.hpp"
 #include "mpm/reference/rigid.hpp"
-#include "mpm/step/fused.hpp"
+#include "mpm/step/scheme.hpp"
 
 namespace mpm::testing {
 

@@ -22,7 +22,7 @@ struct Flip {
 
   /// A component of v_p after the step: v_p += sum dv_i N_ip, eq. (17), of which `dv` is the sum.
   template <class T>
-  MPM_INLINE T take(T v, T dv, T /*of_grid*/) const {
+  MPM_INLINE T take(T v, T dv) const {
     return v + dv;
   }
 };

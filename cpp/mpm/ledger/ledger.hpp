@@ -39,7 +39,9 @@
 #include <array>
 #include <cmath>
 
-#include "mpm/domain.hpp"
+#include "mpm/contact/contact_grid.hpp"
+#include "mpm/ledger/patch_sums.hpp"
+#include "mpm/particles/lists.hpp"
 
 namespace mpm {
 

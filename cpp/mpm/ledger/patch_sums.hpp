@@ -1,0 +1,36 @@
+#pragma once
+// What the ledger needs from one patch in one step.
+#include "mpm/materials/material_block.hpp"
+
+namespace mpm {
+
+/// Of a patch whose body's motion is prescribed.
+template <int D>
+struct PrescribedSums {
+  double kinetic = 0.0;     // after the step [J]
+  double momentum[D] = {};  // after the step [kg m/s]
+  double work = 0.0;        // of the contact forces on it, at the mean velocity of the step [J]
+  double impulse[D] = {};   // of the contact forces on it [N s]
+};
+
+/// What the ledger needs from one patch in one step. Every patch has its own, and they are added in
+/// the order of the patches, so that no sum depends on the number of threads.
+template <int D>
+struct PatchSums {
+  StressSums stress;
+  double kinetic = 0.0;       // of the particles after the step [J]
+  double second_order = 0.0;  // half sum of m_p (change of v_p)^2 [J]
+  double damped = 0.0;        // kinetic energy that PIC damping has taken [J]
+  double momentum[D] = {};    // of the particles after the step [kg m/s]
+  double force_work =
+      0.0;  // time step x sum over nodes of internal and contact force . velocity [J]
+  double made_rigid =
+      0.0;  // kinetic energy that rigid bodies' increments had beyond a rigid motion [J]
+  double gravity_first = 0.0;   // time step x sum over nodes of gravity . velocity [J]
+  double gravity_second = 0.0;  // the part of second_order that is the work of gravity [J]
+  PrescribedSums<D> prescribed;
+  double load_first = 0.0, load_second = 0.0;        // the same of loads on surfaces [J]
+  double dashpot_first = 0.0, dashpot_second = 0.0;  // the same of walls that absorb [J]
+};
+
+}  // namespace mpm

@@ -1,0 +1,31 @@
+#include "mpm/step/absorb.hpp"
+
+#include "mpm/step/stages.hpp"
+
+namespace mpm {
+
+template <int D>
+void place_dashpots(Domain<D>& domain) {
+  auto& grid = domain.grid;
+  if (!grid.walls.absorb()) return;
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const Patch<D>& patch = grid.patches[p];
+    scatter_dashpots(grid, domain.body_of(patch), patch, grid.block(p));
+  });
+}
+
+template <int D>
+void absorb_at_walls(Domain<D>& domain) {
+  auto& grid = domain.grid;
+  if (!grid.walls.absorb()) return;
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    add_dashpot_forces(grid.patches[p], grid.block(p), domain.gravity, domain.time_step);
+  });
+}
+
+template void place_dashpots<2>(Domain<2>&);
+template void place_dashpots<3>(Domain<3>&);
+template void absorb_at_walls<2>(Domain<2>&);
+template void absorb_at_walls<3>(Domain<3>&);
+
+}  // namespace mpm

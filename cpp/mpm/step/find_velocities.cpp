@@ -1,0 +1,50 @@
+// From the momenta that have been summed to velocities: v_i = p_i / m_i.
+#include "mpm/step/mirror.hpp"
+#include "mpm/step/prescribed_bodies.hpp"
+#include "mpm/step/stages.hpp"
+
+namespace mpm {
+namespace {
+
+/// The vector at number `at` of the records; `prescribed(body, patch, block)` for bodies that have
+/// another.
+template <int D, class F>
+void find(Domain<D>& domain, int at, F&& prescribed) {
+  auto& grid = domain.grid;
+  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const Patch<D>& patch = grid.patches[p];
+    const NodeBlock<D> block = grid.block(p);
+    const Body<D>& body = domain.body_of(patch);
+    if (body.prescribed) {
+      prescribed(body, patch, block);
+      return;
+    }
+    momentum_to_velocity(grid, patch, block, at);
+    reflect_at_walls(grid, patch, block, at);
+  });
+}
+
+}  // namespace
+
+template <int D>
+void find_velocities(Domain<D>& domain) {
+  find(domain, velocity_at,
+       [&](const Body<D>& body, const Patch<D>& patch, const NodeBlock<D>& block) {
+         set_rigid_velocity(domain.grid, patch, block, body.motion->before);
+       });
+}
+
+template <int D>
+void find_remapped(Domain<D>& domain) {
+  find(domain, force_at, [](const Body<D>&, const Patch<D>&, const NodeBlock<D>& block) {
+    for (int n = 0; n < block.count; ++n)
+      for (int a = 0; a < D; ++a) block.force(a)[n] = block.velocity(a)[n];
+  });
+}
+
+template void find_velocities<2>(Domain<2>&);
+template void find_velocities<3>(Domain<3>&);
+template void find_remapped<2>(Domain<2>&);
+template void find_remapped<3>(Domain<3>&);
+
+}  // namespace mpm

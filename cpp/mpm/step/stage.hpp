@@ -1,0 +1,117 @@
+#pragma once
+// A stage of a step: its name, what it does, and what it reads and writes.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string_view>
+
+#include "mpm/domain.hpp"
+
+namespace mpm {
+
+/// What stages work on, a bit each. Of particles of bodies that deform the columns; of rigid bodies
+/// all particles' columns are two. Of the nodes the halves of their records.
+struct Data {
+  enum Bits : std::uint32_t {
+    position = 1u << 0,
+    velocity = 1u << 1,
+    mass = 1u << 2,
+    volume = 1u << 3,
+    stress = 1u << 4,          // and all state of the material
+    rigid_position = 1u << 5,  // of the particles and of the centre
+    rigid_velocity = 1u << 6,
+    lists = 1u << 7,  // of particles by cell; the patches and their blocks
+    load_pieces = 1u << 8,
+    node_mass = 1u << 9,
+    node_velocity = 1u << 10,
+    node_force = 1u << 11,  // and the increment of the velocity, and the remapped velocity
+    node_dashpots = 1u << 12,
+    contacts = 1u << 13,
+    patch_sums = 1u << 14,
+    records = 1u << 15,
+    energies = 1u << 16,
+  };
+};
+/// Their names, in the order of the bits.
+inline constexpr auto data_names = std::to_array<std::string_view>(
+    {"position", "velocity", "mass", "volume", "stress", "rigid position", "rigid velocity",
+     "lists", "load pieces", "node mass", "node velocity", "node force", "node dashpots",
+     "contacts", "patch sums", "records", "energies"});
+
+template <int D>
+struct Stage {
+  std::string_view name;
+  void (*run)(Domain<D>&) = nullptr;
+  std::uint32_t reads = 0, writes = 0;  // of Data
+  bool all_particles = false;           // it goes through all of them, and not only some
+};
+
+/// May two stages change places?
+template <int D>
+constexpr bool independent(const Stage<D>& a, const Stage<D>& b) {
+  return !(a.writes & b.reads) && !(a.reads & b.writes) && !(a.writes & b.writes);
+}
+
+template <int D>
+struct StageList {
+  std::array<Stage<D>, 32> stages{};
+  std::size_t count = 0;
+
+  constexpr StageList() = default;
+  template <std::size_t n>
+  constexpr StageList(const std::array<Stage<D>, n>& list) {
+    for (const Stage<D>& stage : list) add(stage);
+  }
+  constexpr void add(const Stage<D>& stage) { stages[count++] = stage; }
+  constexpr std::size_t find(const Stage<D>& stage) const {
+    std::size_t k = 0;
+    while (k < count && stages[k].run != stage.run) ++k;
+    return k;
+  }
+};
+
+/// Two stages that can be done at once, by one that is faster.
+template <int D>
+struct Fusion {
+  Stage<D> first, second;
+  std::string_view name;
+  void (*run)(Domain<D>&);
+};
+
+/// The list with two stages fused. The second comes forward to the first, and with it, ahead of the
+/// first, what it needs of the stages between. A list in which it must not, because what it needs
+/// needs the first, is no constant expression: it does not compile.
+template <int D>
+constexpr StageList<D> fuse(const StageList<D>& list, const Fusion<D>& fusion) {
+  const std::size_t i = list.find(fusion.first), j = list.find(fusion.second);
+  if (!(i < j && j < list.count))
+    throw std::logic_error("the two stages are not in this order in the list");
+  std::array<bool, 32> ahead{};
+  ahead[j] = true;
+  for (std::size_t k = j; k-- > i + 1;)
+    for (std::size_t m = k + 1; m <= j; ++m)
+      ahead[k] = ahead[k] || (ahead[m] && !independent(list.stages[k], list.stages[m]));
+  StageList<D> fused;
+  for (std::size_t k = 0; k < i; ++k) fused.add(list.stages[k]);
+  for (std::size_t k = i + 1; k < j; ++k)
+    if (ahead[k]) {
+      if (!independent(list.stages[k], list.stages[i]))
+        throw std::logic_error("a stage between needs the first");
+      fused.add(list.stages[k]);
+    }
+  fused.add({fusion.name, fusion.run, fusion.first.reads | fusion.second.reads,
+             fusion.first.writes | fusion.second.writes,
+             fusion.first.all_particles || fusion.second.all_particles});
+  for (std::size_t k = i + 1; k < j; ++k)
+    if (!ahead[k]) fused.add(list.stages[k]);
+  for (std::size_t k = j + 1; k < list.count; ++k) fused.add(list.stages[k]);
+  return fused;
+}
+template <int D, class... More>
+constexpr StageList<D> fuse(const StageList<D>& list, const Fusion<D>& fusion,
+                            const More&... more) {
+  return fuse(fuse(list, fusion), more...);
+}
+
+}  // namespace mpm

@@ -1,0 +1,25 @@
+#include "mpm/step/stages.hpp"
+
+namespace mpm {
+
+template <int D>
+void record_contacts(Domain<D>& domain) {
+  domain.contact_sums = {};
+  if (domain.has_contact())
+    domain.contact_sums = domain.contact.record(domain.grid, domain.bodies, domain.time_after,
+                                                domain.time_step, domain.step + 1);
+}
+
+template <int D, bool forces_follow>
+void sum_energies(Domain<D>& domain) {
+  domain.ledger.add(domain.sums, domain.contact_sums, domain.eroded, domain.left, forces_follow);
+}
+
+template void record_contacts<2>(Domain<2>&);
+template void record_contacts<3>(Domain<3>&);
+template void sum_energies<2, false>(Domain<2>&);
+template void sum_energies<2, true>(Domain<2>&);
+template void sum_energies<3, false>(Domain<3>&);
+template void sum_energies<3, true>(Domain<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,45 @@
+// Fused lists follow from what stages read and write; a fusion that would change a step is refused.
+#include <algorithm>
+
+#include "check.hpp"
+#include "mpm/step/scheme.hpp"
+
+namespace {
+
+using namespace mpm;
+
+template <int D>
+std::size_t place(Scheme scheme, bool fused, std::string_view name) {
+  const auto list = stages_of<D>(scheme, fused);
+  return static_cast<std::size_t>(std::ranges::find(list, name, &Stage<D>::name) - list.begin());
+}
+
+template <int D>
+void check_lists(mpm::testing::Report& report) {
+  using S = Stages<D>;
+  // The stress is updated between the mappings, from the first and for the second.
+  CHECK_THROWS(fuse(Schemes<D>::usf, S::map_both), "needs the first");
+  CHECK_THROWS(fuse(Schemes<D>::usf, S::exchange_both), "needs the first");
+  // The second of two must be there.
+  CHECK_THROWS(fuse(Schemes<D>::usf, S::advance_and_remap), "not in this order");
+  // Positions may not change while the stress is still to be updated at the old ones.
+  CHECK_THROWS(fuse(Schemes<D>::usl, S::advance_and_move), "needs the first");
+  // Loads act before nodes are exchanged, also where that comes early.
+  for (const Scheme scheme : {Scheme::usl, Scheme::musl}) {
+    const std::size_t exchange = place<D>(scheme, true, "exchange momentum and forces");
+    CHECK_EQUAL(place<D>(scheme, true, "fold forces") + 1, exchange);
+    CHECK(place<D>(scheme, true, "load surfaces") < place<D>(scheme, true, "fold forces"));
+    CHECK(exchange < place<D>(scheme, true, "contact momentum"));
+  }
+  CHECK_EQUAL(stages_of<D>(Scheme::musl, false).size(),
+              stages_of<D>(Scheme::musl, true).size() + 4);
+}
+
+}  // namespace
+
+void test_fuse(mpm::testing::Report& report) {
+  check_lists<2>(report);
+  check_lists<3>(report);
+  for (std::size_t k = 0; k < data_names.size(); ++k) CHECK(!data_names[k].empty(), k);
+  CHECK_EQUAL(std::size_t{1} << (data_names.size() - 1), std::size_t{Data::energies});
+}
