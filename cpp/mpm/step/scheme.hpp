@@ -14,6 +14,7 @@ template <int D>
 struct Schemes {
   using S = Stages<D>;
 
+  // clang-format off
   /// Update stress first (Bardenhagen 2002).
   static constexpr StageList<D> usf = std::array{
       S::activate,
@@ -41,28 +42,61 @@ struct Schemes {
 
   /// Update stress last (Sulsky, Chen & Schreyer 1994).
   static constexpr StageList<D> usl = std::array{
-      S::activate,          S::map_momentum,    S::fold_momentum,
-      S::exchange_momentum, S::find_velocities, S::contact_momentum,
-      S::map_forces,        S::load_surfaces,   S::place_dashpots,
-      S::fold_forces,       S::exchange_forces, S::absorb,
-      S::contact_forces,    S::advance_nodes,   S::advance_particles,
-      S::hold_rigid,        S::update_last,     S::move_particles,
-      S::move_rigid,        S::record_contacts, S::template sum_energies<false>,
+      S::activate,
+      S::map_momentum,
+      S::fold_momentum,
+      S::exchange_momentum,
+      S::find_velocities,
+      S::contact_momentum,
+      S::map_forces,
+      S::load_surfaces,
+      S::place_dashpots,
+      S::fold_forces,
+      S::exchange_forces,
+      S::absorb,
+      S::contact_forces,
+      S::advance_nodes,
+      S::advance_particles,
+      S::hold_rigid,
+      S::update_last,
+      S::move_particles,
+      S::move_rigid,
+      S::record_contacts,
+      S::template sum_energies<false>,
   };
 
   /// Modified update stress last (Sulsky, Zhou & Schreyer 1995).
   static constexpr StageList<D> musl = std::array{
-      S::activate,          S::map_momentum,      S::fold_momentum,
-      S::exchange_momentum, S::find_velocities,   S::contact_momentum,
-      S::map_forces,        S::load_surfaces,     S::place_dashpots,
-      S::fold_forces,       S::exchange_forces,   S::absorb,
-      S::contact_forces,    S::advance_nodes,     S::advance_particles,
-      S::hold_rigid,        S::remap_momentum,    S::remap_rigid,
-      S::fold_remapped,     S::exchange_remapped, S::find_remapped,
-      S::contact_remapped,  S::update_remapped,   S::move_particles,
-      S::move_rigid,        S::record_contacts,   S::template sum_energies<false>,
+      S::activate,
+      S::map_momentum,
+      S::fold_momentum,
+      S::exchange_momentum,
+      S::find_velocities,
+      S::contact_momentum,
+      S::map_forces,
+      S::load_surfaces,
+      S::place_dashpots,
+      S::fold_forces,
+      S::exchange_forces,
+      S::absorb,
+      S::contact_forces,
+      S::advance_nodes,
+      S::advance_particles,
+      S::hold_rigid,
+      S::remap_momentum,
+      S::remap_rigid,
+      S::fold_remapped,
+      S::exchange_remapped,
+      S::find_remapped,
+      S::contact_remapped,
+      S::update_remapped,
+      S::move_particles,
+      S::move_rigid,
+      S::record_contacts,
+      S::template sum_energies<false>,
   };
 
+  // clang-format on
   static constexpr StageList<D> usf_fused = fuse(usf, S::advance_and_move);
   static constexpr StageList<D> usl_fused =
       fuse(usl, S::map_both, S::exchange_both, S::update_last_and_move);
