@@ -1,7 +1,7 @@
 #pragma once
 // A whole step as the paper writes it (Ma, Zhang & Huang 2010, section 3.6): one particle and one
 // node at a time, in doubles, without tiles, vectors or threads. Read it first. It is slow; what
-// runs is in step/, and tests hold every stage there to it (tests/unit/step).
+// runs is in step/, and tests hold the stages there to it (tests/unit/step).
 #include <functional>
 #include <map>
 #include <vector>

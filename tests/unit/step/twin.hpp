@@ -68,7 +68,7 @@ struct Twin {
   }
 
  private:
-  static constexpr int box_cells = 7;  // along an axis: more than one tile in 3D
+  static constexpr int box_cells = D == 2 ? 11 : 7;  // along an axis: more than one tile
   static constexpr std::size_t particles = 150;
   static constexpr double density = 1000.0, E = 1e9, nu = 0.3;
 
@@ -79,7 +79,7 @@ struct Twin {
     choice.strength = {"elastic", {{"E", E}, {"nu", nu}}};
     domain.materials.push_back(make_material(choice));
   }
-  /// Two bodies that overlap: the second begins at a third of the box along x.
+  /// Two bodies that overlap: the second begins at two fifths of the box along x.
   void add_body(int k, bool rigid) {
     std::vector<double> x, v;
     for (std::size_t i = 0; i < particles; ++i)
