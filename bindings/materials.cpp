@@ -1,13 +1,13 @@
 // The catalogue of material models, and one point of a material by itself.
+#include "catalogue.hpp"
 #include "mpm/run/drive_material.hpp"
-#include "translate.hpp"
 
 namespace mpm::bindings {
 namespace {
 
 struct CatalogueParameter {
-  std::string name, unit, meaning, rule;  // the rule in words
-  Bounds bounds;
+  std::string name, unit, meaning;
+  Rule rule;
   std::optional<double> start;
 };
 struct CatalogueColumn {
@@ -26,7 +26,7 @@ CatalogueModel described(const char* kind, const M& model) {
       kind, std::string(model.name), std::string(model.doc), std::string(model.source), {}, {}, ""};
   for (const auto& p : model.params)
     m.parameters.push_back({std::string(p.name), std::string(p.unit), std::string(p.meaning),
-                            rule_text(p.rule), bounds(p.rule),
+                            p.rule,
                             std::isnan(p.start) ? std::nullopt : std::optional<double>(p.start)});
   if constexpr (requires { model.state_columns; })
     for (const auto& s : model.state_columns)
@@ -50,17 +50,12 @@ std::vector<CatalogueModel> catalogue() {
 }  // namespace
 
 void add_materials(nb::module_& m) {
-  nb::class_<Bounds>(m, "Bounds")
-      .def_ro("lower", &Bounds::lower)
-      .def_ro("upper", &Bounds::upper)
-      .def_ro("lower_open", &Bounds::lower_open)
-      .def_ro("upper_open", &Bounds::upper_open);
   nb::class_<CatalogueParameter>(m, "Parameter")
       .def_ro("name", &CatalogueParameter::name)
       .def_ro("unit", &CatalogueParameter::unit)
       .def_ro("meaning", &CatalogueParameter::meaning)
-      .def_ro("rule", &CatalogueParameter::rule)
-      .def_ro("bounds", &CatalogueParameter::bounds)
+      .def_prop_ro("rule", [](const CatalogueParameter& p) { return p.rule.text(); })
+      .def_prop_ro("bounds", [](const CatalogueParameter& p) { return bounds_of(p.rule); })
       .def_ro("default", &CatalogueParameter::start);
   nb::class_<CatalogueColumn>(m, "StateColumn")
       .def_ro("name", &CatalogueColumn::name)

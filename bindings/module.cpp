@@ -3,6 +3,7 @@
 #include <nanobind/stl/unique_ptr.h>
 
 #include "interrupt.hpp"
+#include "mpm/ledger/history.hpp"
 #include "mpm/run/allocator.hpp"
 #include "mpm/run/machine_limits.hpp"
 #include "mpm/run/simulation.hpp"
@@ -33,19 +34,13 @@ std::size_t particle_count(const Simulation& s) {
   return n;
 }
 
-template <void (Simulation::*round)(std::span<float>) const>
-Floats rounded(const Simulation& s) {
-  Floats values = floats(particle_count(s), 1, 0.0F);
-  (s.*round)({values.data(), values.size()});
-  return values;
-}
-
 }  // namespace
 
 NB_MODULE(_core, m) {
   m.doc() =
       "The compiled core of MPM3Dpp. SI units throughout; see mpm3dpp.Case for defaults and units.";
 
+  add_settings(m);
   add_records(m);
   SimulationClass simulation(m, "Simulation");
   simulation.nb::class_<Simulation>::def(
@@ -160,9 +155,14 @@ NB_MODULE(_core, m) {
             return values;
           },
           nb::arg("name"), nb::arg("places"), nb::arg("width"), nb::arg("elsewhere"))
-      .def("rounded_pressure", rounded<&Simulation::round_pressure>)
-      .def("rounded_von_mises", rounded<&Simulation::round_von_mises>)
-      .def("rounded_size", rounded<&Simulation::round_size>)
+      .def(
+          "rounded_derived",
+          [](const Simulation& s, const std::string& name) {
+            Floats values = floats(particle_count(s), 1, 0.0F);
+            s.round_derived(name, {values.data(), values.size()});
+            return values;
+          },
+          nb::arg("name"))
       .def(
           "set_velocity",
           [](Simulation& s, int body, const Input& velocities) {
@@ -171,9 +171,7 @@ NB_MODULE(_core, m) {
           nb::arg("body"), nb::arg("velocities"))
       .def("set_gravity", &Simulation::set_gravity, nb::arg("gravity"))
       .def("history",
-           [](Simulation& s) {
-             return to_numpy(s.take_history(), Simulation::history_columns().size());
-           })
+           [](Simulation& s) { return to_numpy(s.take_history(), history_terms.size()); })
       .def("contact_pairs", &Simulation::pairs)
       .def("contact_groups", &Simulation::group_pairs)
       .def("contact_summary",
@@ -206,7 +204,11 @@ NB_MODULE(_core, m) {
 
   simulation
       .def_prop_ro_static("history_columns",
-                          [](nb::handle) { return Simulation::history_columns(); })
+                          [](nb::handle) {
+                            std::vector<std::string> names;
+                            for (const HistoryTerm& t : history_terms) names.emplace_back(t.name);
+                            return names;
+                          })
       .def_ro_static("history_capacity", &Simulation::history_capacity);
 
   add_materials(m);

@@ -68,7 +68,8 @@ inline StateStream::Transfer transfer_by(const nb::callable& f) {
   };
 }
 
-/// The catalogue of material models and the single material point.
+/// Settings, records, and the catalogue of material models with the single material point.
+void add_settings(nb::module_& m);
 void add_records(nb::module_& m);
 void add_materials(nb::module_& m);
 

@@ -99,17 +99,11 @@ class FakeSimulation:
             end += count
         return rounded
 
-    def rounded_pressure(self) -> np.ndarray:
-        return self._rounded(pressure)
-
-    def rounded_von_mises(self) -> np.ndarray:
-        return self._rounded(von_mises)
-
-    def rounded_size(self) -> np.ndarray:
-        return np.full((self.particle_count, 1), SIZE, dtype=np.float32)
-
-    def _rounded(self, of_stress: Any) -> np.ndarray:
+    def rounded_derived(self, name: str) -> np.ndarray:
+        if name == "size":
+            return np.full((self.particle_count, 1), SIZE, dtype=np.float32)
         stress = np.concatenate([self.column(b, "stress") for b in range(self.body_count)])
+        of_stress = {"pressure": pressure, "von_mises": von_mises}[name]
         return of_stress(stress).astype(np.float32)[:, None]
 
     def contact_pairs(self) -> list[Any]:

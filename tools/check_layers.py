@@ -7,6 +7,7 @@ from pathlib import Path
 
 # Folder (or file) directly under cpp/mpm -> layer; DESIGN and ARCHITECTURE.md explain the order.
 LAYERS = {
+    "catalogue": 0,
     "math": 0,
     "parallel": 0,
     "fields": 1,

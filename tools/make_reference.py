@@ -14,8 +14,7 @@ from typing import Any
 from mpm3dpp import case, case_body, case_grid, case_parts
 from mpm3dpp.detonation import Detonation
 from mpm3dpp.grains import GrainLattice, GrainPacking, Grains
-from mpm3dpp.io import history_columns
-from mpm3dpp.io.history import PAIR_LIMIT, PAIRS
+from mpm3dpp.io.history import PAIR_LIMIT, PAIR_MEANINGS, PAIRS, TERMS
 from mpm3dpp.loads import Load
 from mpm3dpp.materials import catalogue
 from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
@@ -115,8 +114,9 @@ def keys_table(model: type) -> list[str]:
     schema = model.model_json_schema()  # type: ignore[attr-defined]
     _, meanings = docstring(model)
     rows = ["| key | value | default | meaning |", "| --- | --- | --- | --- |"]
-    for name, entry in schema["properties"].items():
-        needed = name in schema.get("required", [])
+    required = schema.get("required", [])
+    for name, entry in sorted(schema["properties"].items(), key=lambda p: p[0] not in required):
+        needed = name in required
         parts = (f"`{name}`", kind(entry), default(name, entry, needed), meanings.get(name, ""))
         rows.append("| " + " | ".join(cell(part) for part in parts) + " |")
     return rows
@@ -265,14 +265,14 @@ def history_page() -> str:
         "ledger](../theory/step.md#the-energy-ledger). In Python `mpm3dpp.io.read_history` reads",
         "the file.",
         "",
-        *table(history_columns.MEANINGS),
+        *table({name: (term["unit"], term["meaning"]) for name, term in TERMS.items()}),
         "",
         "A run with contact has these too, for each pair of bodies; all grains of an entry count",
         "as one body. At the start they are empty.",
         f"With more than {PAIR_LIMIT} pairs they are in `{PAIRS}`, one row for each pair",
         "that touches, with the columns `step`, `time`, `body_a`, `body_b`, `contact_force_x`, ...",
         "",
-        *table(history_columns.PAIR_MEANINGS),
+        *table(PAIR_MEANINGS),
     ]
     return "\n".join(lines) + "\n"
 

@@ -53,7 +53,9 @@ struct Domain {
     return std::any_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.prescribed; });
   }
   bool has_loads() const { return !loads.empty(); }
-  bool has_contact() const { return contact_settings.enabled && bodies.size() > 1; }
+  bool has_contact() const {
+    return contact_settings.enabled && !contact_settings.bonded && bodies.size() > 1;
+  }
 };
 
 }  // namespace mpm

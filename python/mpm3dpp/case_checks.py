@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from pydantic_core import PydanticCustomError
 
-from .case_parts import STANDARD_FIELDS
 from .detonation import check_detonations
 from .errors import Path, nearest, report, violation
 from .loads import check_loads
 from .materials import state_columns
 from .motion import check_motion
+from .outputs import COLUMNS, STANDARD
 
 if TYPE_CHECKING:
     from .case import Case
@@ -199,7 +199,7 @@ def _output(case: Case) -> Found:
         extra.append("viscosity_pressure")
     extra = list(dict.fromkeys(extra))
     for index, word in enumerate(case.output.fields):
-        if word not in (*STANDARD_FIELDS, *extra):
+        if word not in (*STANDARD, *extra):
             rule = "is not a column that this case stores"
             remedy = nearest(word, extra)
             yield violation(rule, remedy, value=word, path=("output", "fields", index))
@@ -223,6 +223,6 @@ def picture_names(case: Case) -> list[str]:
     """Return what `output.picture` may be: stored columns, speed, and components of vectors."""
     axes = ("x", "y", "z")[: case.grid.dimension]
     stress = ("xx", "yy", "zz", "yz", "xz", "xy") if len(axes) == 3 else ("xx", "yy", "zz", "xy")
-    names = [name for name in STANDARD_FIELDS if name not in ("position", "velocity", "stress")]
+    names = [name for name in STANDARD if name not in COLUMNS]
     names += ["speed", *(f"velocity_{a}" for a in axes), *(f"stress_{s}" for s in stress)]
     return list(dict.fromkeys([*names, "velocity", "stress", *case.output.fields]))

@@ -12,8 +12,9 @@ from pydantic_core import PydanticCustomError
 
 from . import _core
 from .errors import Path, report, violation
-from .model import CaseModel, Choice, Count, Exactly
-from .units import Point, PositiveLength
+from .model import CaseModel
+from .settings import choice, core_table
+from .units import Point
 
 FACES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 MOST_CELLS = 2**30
@@ -21,10 +22,9 @@ MOST_CELLS = 2**30
 FARTHEST = 2**19
 """Cells from the grid's origin to the farthest particle along an axis, at the start: the core lists
 particles by keys in which tiles have so many bits."""
-_MOST_DOUBLINGS = 30  # Cells are a billion times as large then.
 _WHOLE = 1e-6  # A box that misses a whole number of cells by less, per cell, is taken as whole.
 
-_WALL = Choice(("free", "slip", "fixed", "absorbing"), (("symmetry", "slip"),))
+_WALL = choice(_core.walls)
 Wall = Annotated[str, _WALL]
 
 
@@ -65,22 +65,16 @@ class GridBox(CaseModel):
     walls: Walls = Field(default_factory=Walls)
 
 
-class GridDoubling(CaseModel):
+_Doubling: Any = core_table("grid.doubling")
+_Grid: Any = core_table("grid")
+
+
+class GridDoubling(_Doubling):
     """When the cells double, as the moving grid of Ma, Zhang & Huang 2010, section 3.5, ends.
 
     Mass, momentum and energy of the particles stay as they are. A box must have an even number of
     cells along each axis each time.
-
-    Attributes:
-        tiles: the cells double when particles lie in more tiles than this; a tile is a block of
-            4 x 4 x 4 cells (8 x 8 in 2D), counted once for each body in it.
-        bytes: the cells double when the grid's nodes need more memory than this [bytes].
-        times: how often at most.
     """
-
-    tiles: Count | None = None
-    bytes: Count | None = None
-    times: Annotated[int, Exactly(int, 1, _MOST_DOUBLINGS)] = 4
 
     @model_validator(mode="after")
     def _one_of_two(self) -> GridDoubling:
@@ -109,28 +103,20 @@ class GridKeep(CaseModel):
         return self
 
 
-class Grid(CaseModel):
+class Grid(_Grid):
     """The background grid.
 
     Attributes:
-        dimension: 2 (plane strain) or 3.
-        cell_size: edge of the square or cubic cells [m].
         origin: a corner of a cell [m], D numbers; by default the box's lower corner, else zero.
         box: bounds and walls; None for an unbounded grid.
         keep: region outside which particles are taken out of the run; None for none.
         doubling: when the cells double; None for never.
-        basis: shape functions. "gimp" (uniform GIMP, Bardenhagen & Kober 2004) and
-            "quadratic_bspline" (Steffen, Kirby & Berzins 2008) stay accurate where stressed
-            particles cross cells; "linear" is the paper's, the fastest.
     """
 
-    dimension: Annotated[int, Exactly(int, 2, 3)]
-    cell_size: PositiveLength
     origin: Point = ()
     box: GridBox | None = None
     keep: GridKeep | None = None
     doubling: GridDoubling | None = None
-    basis: Annotated[str, Choice(tuple(_core.bases))] = "gimp"
 
     @model_validator(mode="after")
     def _consistent(self) -> Grid:

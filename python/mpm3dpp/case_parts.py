@@ -3,16 +3,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
 from .errors import violation
-from .model import CaseModel, Choice, Count, Exactly, Flag, Text
-from .time_functions import TimedAcceleration
+from .model import CaseModel, Count, Exactly, Flag, Text
+from .settings import core_table
 from .units import NonNegative, Quantity, Time
-
-STANDARD_FIELDS = ("position", "velocity", "stress", "pressure", "von_mises", "body", "material")
 
 
 class Viscosity(CaseModel):
@@ -22,35 +20,20 @@ class Viscosity(CaseModel):
     linear: NonNegative = 0.06
 
 
-class Run(CaseModel):
+_Run: Any = core_table("run")
+_Contact: Any = core_table("contact")
+
+
+class Run(_Run):
     """How time advances.
 
     Attributes:
         end_time: [s].
-        scheme: when the stress is updated: "usf", "usl" or "musl".
-        time_step_factor: share f of the largest stable step, 0 < f <= 1.
-        gravity: acceleration [m/s^2], D numbers or functions of time; default zero.
         viscosity: artificial bulk viscosity; None for none.
-        pic_damping: rate at which particles take over the velocity of the grid [1/s], PIC in place
-            of FLIP; takes away noise that the grid does not see, over very long runs.
-        energy_growth_limit: the run stops when the numerical error has created this share of
-            the largest energy seen.
-        outside_limit: the run stops when more than this share of the particles of a body, or of
-            all grains of an entry, lies beyond slip or fixed walls of the box; 1 for never.
-        volume_limit: the run stops when more than this share of them has less than 0.01 or more
-            than 100 times the volume that it began with; gases, products of detonation and
-            particles that have failed do not count; 1 for never.
     """
 
     end_time: Time
-    scheme: Annotated[str, Choice(("usf", "usl", "musl"))] = "musl"
-    time_step_factor: Annotated[float, Quantity("", "0 < f <= 1")] = 0.25
-    gravity: TimedAcceleration = ()
     viscosity: Viscosity | None = None
-    pic_damping: Annotated[float, Quantity("1/s", ">= 0")] = 0.0
-    energy_growth_limit: Annotated[float, Quantity("", "> 0")] = 1.0
-    outside_limit: Annotated[float, Quantity("", "0 < f <= 1")] = 0.05
-    volume_limit: Annotated[float, Quantity("", "0 < f <= 1")] = 0.2
 
 
 class Output(CaseModel):
@@ -111,30 +94,12 @@ class ContactPair(CaseModel):
         return self
 
 
-class Contact(CaseModel):
+class Contact(_Contact):
     """Contact between bodies.
 
     Attributes:
-        enabled: without contact the bodies do not see each other.
-        bonded: all bodies have one velocity field, so that they stick together wherever they
-            meet, as one body of several materials; nothing else of this table then matters.
-        detection: "gap" (touching and approaching) or "velocity" (approaching only).
-        normal: direction of contact: "plane" (separates the two bodies' points), or from gradients
-            of mass, of both ("pair") or one ("first", "second", "stiffer").
-        friction: Coulomb coefficient of all pairs not listed in `pair`.
-        gap_distance: bodies closer than this touch [m].
-        normal_travel: the direction and gap of a contact are found anew when its two bodies
-            together have moved this far [cells]; 0: in every step. 0.1 saves half of the time of
-            contact where grains move little, and costs one or two per cent of accuracy.
         pair: coefficients of single pairs; a pair of bodies wins over a pair of materials, and
             a later entry over an earlier one.
     """
 
-    enabled: Flag = True
-    bonded: Flag = False
-    detection: Annotated[str, Choice(("gap", "velocity"))] = "gap"
-    normal: Annotated[str, Choice(("plane", "pair", "first", "second", "stiffer"))] = "plane"
-    friction: NonNegative = 0.0
-    gap_distance: Annotated[float, Quantity("m", ">= 0")] = 0.0
-    normal_travel: Annotated[float, Quantity("", "0 <= f <= 0.25")] = 0.0
     pair: list[ContactPair] = Field(default_factory=list)

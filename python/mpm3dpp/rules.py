@@ -10,7 +10,7 @@ import operator
 import re
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Protocol
+from typing import NamedTuple
 
 _COMPARE: dict[str, Callable[[float, float], bool]] = {
     "<": operator.lt,
@@ -25,7 +25,7 @@ _PART = re.compile(
 )
 
 
-class Bounds(Protocol):
+class Bounds(NamedTuple):
     """The numbers from `lower` to `upper`; an open bound is not one of them."""
 
     lower: float

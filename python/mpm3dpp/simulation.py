@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,7 @@ from .loads import add_load, pieces
 from .machine import thread_count
 from .motion import Motion
 from .point_warnings import point_warnings
-from .time_functions import TimeFunction
+from .settings import fill_core_table, functions
 
 
 class Simulation:
@@ -68,9 +67,9 @@ class Simulation:
         self.warnings = [*warnings(filled), *point_warnings(case, filled)]
         self.notes = notes(case, filled)
         settings = _settings(case, self.threads)
-        settings.fused = fused
+        settings.execution.fused = fused
         if disorder is not None:
-            settings.disorder = disorder
+            settings.execution.disorder = disorder
         self.core = _core.Simulation(settings)
         numbers = {name: self._add_material(name) for name in dict.fromkeys(self.materials)}
         firsts = case.first_bodies()
@@ -109,7 +108,7 @@ class Simulation:
         spin = motion.angular_velocity
         spin = (0.0, 0.0, *spin) if len(spin) == 1 else spin
         place = [*centre.tolist(), 0.0][:3]
-        self.core.set_motion(number, _functions(motion.velocity), _functions(spin), place)
+        self.core.set_motion(number, functions(motion.velocity), functions(spin), place)
 
     def _add_material(self, name: str) -> int:
         material = self.case.material[name]
@@ -252,52 +251,23 @@ class Simulation:
         return [self.bodies.index(body)]
 
 
-def _functions(values: Sequence[float | TimeFunction]) -> list[_core.TimeFunction]:
-    """Return three functions of time for the core; those missing are zero."""
-    given = [
-        _core.TimeFunction(**v.for_core())
-        if isinstance(v, TimeFunction)
-        else _core.TimeFunction(float(v))
-        for v in values
-    ]
-    return [*given, *(_core.TimeFunction(0.0) for _ in range(3))][:3]
-
-
 def _settings(case: Case, threads: int) -> _core.Settings:
     """Return a case's numbers as the core wants them."""
-    grid, run = case.grid, case.run
 
     def three(values: Any, fill: Any) -> list[Any]:
         return [*values, fill, fill, fill][:3]
 
     settings = _core.Settings()
-    settings.dimension = grid.dimension
-    settings.cell_size = grid.cell_size
-    settings.origin = three(grid.lower, 0.0)
-    settings.box_cells = three(grid.box_cells, 0) if grid.box_cells else [0, 0, 0]
-    names = ["slip" if wall == "symmetry" else wall for wall in grid.walls]
-    settings.walls = [_core.Wall[name] for name in [*names, *["free"] * 6][:6]]
-    if grid.doubling is not None:
-        settings.doubling_tiles = grid.doubling.tiles or 0
-        settings.doubling_bytes = grid.doubling.bytes or 0
-        settings.doubling_times = grid.doubling.times
-    settings.keep = grid.keep is not None
-    settings.keep_lower = three(grid.kept[0], -math.inf)
-    settings.keep_upper = three(grid.kept[1], math.inf)
-    settings.basis = _core.Basis[grid.basis]
-    settings.scheme = _core.Scheme[run.scheme]
-    settings.time_step_factor = run.time_step_factor
-    settings.pic_damping = run.pic_damping
-    settings.gravity = _functions(run.gravity)
-    settings.contact = case.contact_enabled
-    settings.bonded = case.contact.bonded
-    settings.detection = _core.Detection[case.contact.detection]
-    settings.normal_rule = _core.NormalRule[case.contact.normal]
-    settings.gap_distance = case.contact.gap_distance
-    settings.normal_travel = case.contact.normal_travel
-    settings.friction = case.contact.friction
-    settings.threads = threads
-    settings.energy_growth_limit = run.energy_growth_limit
-    settings.outside_limit = run.outside_limit
-    settings.volume_limit = run.volume_limit
+    for name in ("grid", "run", "contact"):
+        fill_core_table(getattr(settings, name), getattr(case, name))
+    given, grid = case.grid, settings.grid
+    grid.origin = three(given.lower, 0.0)
+    grid.box_cells = three(given.box_cells, 0) if given.box_cells else [0, 0, 0]
+    grid.walls = given.walls
+    grid.keep = given.keep is not None
+    grid.keep_lower = three(given.kept[0], -math.inf)
+    grid.keep_upper = three(given.kept[1], math.inf)
+    if given.doubling is not None:
+        grid.doubling = fill_core_table(_core.DoublingSettings(), given.doubling)
+    settings.execution.threads = threads
     return settings

@@ -131,10 +131,10 @@ def test_a_frame_that_cannot_be_copied_takes_no_room(tmp_path: Path) -> None:
 class Breaking(FakeSimulation):
     """Has no memory left for a column in the middle of its second frame."""
 
-    def rounded_pressure(self) -> np.ndarray:
+    def rounded_derived(self, name: str) -> np.ndarray:
         if self.step:
             raise MemoryError("no room")
-        return super().rounded_pressure()
+        return super().rounded_derived(name)
 
 
 def test_nothing_is_written_after_the_end(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from pydantic import TypeAdapter
 
 from mpm3dpp import _core, units
 from mpm3dpp.errors import CaseError
-from mpm3dpp.rules import holds, requirement, within
+from mpm3dpp.rules import Bounds, holds, requirement, within
 
 
 @pytest.mark.parametrize("name", units.COMMON)
@@ -106,7 +106,7 @@ def test_a_rule_that_nobody_understands_is_no_rule() -> None:
 def test_bounds_of_the_catalogue_say_what_its_rules_say() -> None:
     """The core gives each rule in words and as bounds; a value on a bound is in it if closed."""
     every = [p for model in _core.catalogue() for p in model.parameters]
-    words = {p.rule: p.bounds for p in every}
+    words = {p.rule: Bounds(*p.bounds) for p in every}
     assert {"must be > 0", "must be >= 0", "must lie between -1 and 0.5, both excluded"} <= set(
         words
     )

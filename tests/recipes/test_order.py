@@ -48,7 +48,7 @@ def test_benchmarks(name: str, size: int, scheme: str, monkeypatch: pytest.Monke
         def settings(*words: Any, share: float | None = share) -> Any:
             made = plain(*words)
             if share is not None:
-                made.disorder = share
+                made.execution.disorder = share
             return made
 
         monkeypatch.setattr(bench, "_settings", settings)

@@ -48,15 +48,12 @@ def rings(
     detection: str = "gap", points: int = 3, model: str = "neo_hookean",
 ) -> list[Figure]:  # fmt: skip
     """E6: two rings of radii 30 and 40 mm meet at 60 m/s."""
-    from mpm3dpp import _core
 
     h, K, G = cell_mm * 1e-3, 121.7e6, 26.1e6
     parameters = {"K": K, "G": G}
     if model == "elastic":
         parameters = {"E": 9 * K * G / (3 * K + G), "nu": (3 * K - 2 * G) / (6 * K + 2 * G)}
-    scene = Scene(
-        scheme, dimension, basis, h, factor=factor, detection=_core.Detection[detection], threads=2
-    )
+    scene = Scene(scheme, dimension, basis, h, factor=factor, detection=detection, threads=2)
     material = scene.material(1010.0, model, **parameters)
     for centre, speed in ((0.05, 30.0), (0.15, -30.0)):
         x, volume = annulus([centre, 0.05], 0.03, 0.04, h / points)
@@ -86,16 +83,13 @@ def first_touch(
     angles: Sequence[float] = ANGLES, offsets: Sequence[float] = OFFSETS,
 ) -> list[Figure]:  # fmt: skip
     """E7: true gap, from the centres, when two discs (spheres) of `cells` radii first touch."""
-    from mpm3dpp import _core
 
     h, radius, speed = 1.0 / cells, 1.0, 0.05
     gaps = []
     for angle in np.radians(angles):
         direction = np.array([math.cos(angle), math.sin(angle), 0.0])[:dimension]
         for offset in offsets:
-            scene = Scene(
-                scheme, dimension, basis, h, factor=0.5, detection=_core.Detection[detection]
-            )
+            scene = Scene(scheme, dimension, basis, h, factor=0.5, detection=detection)
             material = scene.material(1.0, "elastic", E=1.0, nu=0.3)
             apart = (1.0 + 1.5 * h) * direction
             for side in (-1.0, 1.0):

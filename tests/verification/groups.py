@@ -152,12 +152,11 @@ def oblique_impact(
     cells: int = 8, factor: float = 0.25, normal: str = "plane",
 ) -> list[Figure]:  # fmt: skip
     """A block falls obliquely on a wider one with Coulomb friction; sliding throughout or not."""
-    from mpm3dpp import _core
 
     h, speed = 1.0 / cells, 0.5
     scene = Scene(
         scheme, dimension, basis, h, factor=factor, friction=mu,
-        normal_rule=_core.NormalRule[normal],
+        normal=normal,
     )  # fmt: skip
     material = scene.material(1000.0, "elastic", E=1e6, nu=0.0)
     across = [0.0] * (dimension - 2), [1.0] * (dimension - 2)

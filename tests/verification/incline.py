@@ -17,7 +17,6 @@ def _floor(
     mu: float, factor: float, normal: str, modulus: float, thick: int = 2,
 ) -> tuple[Scene, int, list[float], list[float]]:  # fmt: skip
     """A floor `thick` cells deep, its top at 0, fixed below and at its ends."""
-    from mpm3dpp import _core
 
     up = dimension - 1
     lower = [0.0, *[-width / 2] * (dimension - 2), -thick * h]
@@ -28,7 +27,7 @@ def _floor(
     full = [G * math.sin(angle), *pull[1:]]
     scene = Scene(
         scheme, dimension, basis, h, factor=factor, friction=mu, walls=walls,
-        normal_rule=_core.NormalRule[normal], gravity=full,
+        normal=normal, gravity=full,
         box=(lower, [*upper[:-1], upper[-1] + length]),
     )  # fmt: skip
     material = scene.material(RHO, "elastic", E=modulus, nu=NU)

@@ -8,8 +8,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from mpm3dpp import _core
-
 from . import (
     bars,
     chain,
@@ -29,7 +27,7 @@ from . import (
 from .figure import Figure
 from .scene import Failed
 
-BASES = ("linear", "gimp") if hasattr(_core, "Basis") else ("linear",)
+BASES = ("linear", "gimp")
 
 
 @dataclass(frozen=True)

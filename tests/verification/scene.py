@@ -33,7 +33,7 @@ class Scene:
         gravity: [m/s^2].
         friction: coefficient of every pair.
         contact: are there contacts between bodies?
-        settings: any other attribute of the core's settings.
+        settings: any other setting of the core's settings.
     """
 
     def __init__(
@@ -52,23 +52,19 @@ class Scene:
         **settings: Any,
     ) -> None:
         s = _core.Settings()
-        s.dimension, s.cell_size, s.time_step_factor = dimension, cell_size, factor
-        s.scheme = _core.Scheme[scheme]
-        if hasattr(s, "basis"):
-            s.basis = _core.Basis[basis]
-        elif basis != "linear":
-            raise ValueError(f"this core has no basis {basis!r}")
+        s.grid.dimension, s.grid.cell_size, s.grid.basis = dimension, cell_size, basis
+        s.run.scheme, s.run.time_step_factor = scheme, factor
         if box is not None:
             lower, upper = box
             cells = [round((u - o) / cell_size) for o, u in zip(lower, upper, strict=True)]
-            s.origin, s.box_cells = _three(lower), [int(c) for c in _three(cells)]
-        s.walls = [_core.Wall[wall] for wall in [*walls, *["free"] * 6][:6]]
-        s.gravity = _three(gravity)
-        s.contact, s.friction = contact, friction
-        s.detection, s.normal_rule = _core.Detection.gap, _core.NormalRule.plane
-        s.threads, s.energy_growth_limit = 1, 5.0
+            s.grid.origin, s.grid.box_cells = _three(lower), [int(c) for c in _three(cells)]
+        s.grid.walls = [*walls, *["free"] * 6][:6]
+        s.run.gravity = _three(gravity)
+        s.contact.enabled, s.contact.friction = contact, friction
+        s.run.energy_growth_limit, s.run.outside_limit, s.run.volume_limit = 5.0, 1.0, 1.0
         for name, value in settings.items():
-            setattr(s, name, value)
+            table = next(t for t in (s.grid, s.run, s.contact, s.execution) if hasattr(t, name))
+            setattr(table, name, value)
         self.scheme, self.dimension, self.cell_size = scheme, dimension, cell_size
         self.core = _core.Simulation(s)
         self.rows: list[Array] = []

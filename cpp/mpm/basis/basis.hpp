@@ -7,6 +7,7 @@
 #include "mpm/basis/gimp.hpp"
 #include "mpm/basis/linear.hpp"
 #include "mpm/basis/quadratic_bspline.hpp"
+#include "mpm/catalogue/words.hpp"
 
 namespace mpm {
 
@@ -40,6 +41,9 @@ struct BasisList {
     int k = 0;
     (f(static_cast<BasisId>(k++), B(0.5)), ...);
   }
+  static constexpr std::array<Word<BasisId>, sizeof...(B)> words_of() {
+    return {Word<BasisId>{B::name, id_of<B>(), B::doc}...};
+  }
   template <class One>
   static constexpr BasisId id_of() {
     int k = 0, found = -1;
@@ -52,6 +56,9 @@ using Bases = BasisList<Gimp, Linear, QuadraticBSpline>;
 
 template <BasisModel B>
 inline constexpr BasisId basis_id = Bases::id_of<B>();
+
+template <>
+inline constexpr auto words<BasisId> = Bases::words_of();
 
 constexpr Reach reach_of(BasisId id) { return Bases::reach[static_cast<std::size_t>(id)]; }
 

@@ -2,13 +2,19 @@
 // Walls on the faces of an optional box. Node indices count from the box's lower corner.
 #include <optional>
 
+#include "mpm/catalogue/words.hpp"
 #include "mpm/layout/tile.hpp"
 
 namespace mpm {
 
-/// free: no constraint; slip (symmetry): no motion across the face; fixed: no motion; absorbing:
-/// dashpots that let waves pass.
+/// What a face of the box does.
 enum class Wall { free, slip, fixed, absorbing };
+template <>
+inline constexpr auto words<Wall> =
+    std::to_array<Word<Wall>>({{"free", Wall::free, "nothing"},
+                               {"slip", Wall::slip, "no motion across the face", "symmetry"},
+                               {"fixed", Wall::fixed, "no motion"},
+                               {"absorbing", Wall::absorbing, "dashpots that let waves pass"}});
 
 /// The node before the walls whose image a node beyond them is: what is given to one is the
 /// other's, and they move together, vectors with the components `turned`, a bit each.

@@ -23,7 +23,7 @@ void set_parameters(Model& model, const std::map<std::string, double>& parameter
     if (given == parameters.end() && std::isnan(p.start))
       throw std::invalid_argument(key + " (" + std::string(p.meaning) + ") is missing");
     const double value = given == parameters.end() ? p.start : given->second;
-    if (!satisfies(p.rule, value)) refuse(key, value, rule_text(p.rule));
+    if (!p.rule.allows(value)) refuse(key, value, p.rule.text());
     model.*p.member = value;
     used += given != parameters.end();
   }
@@ -50,13 +50,6 @@ typename Models::Any made(const char* kind, const ModelChoice& choice, double de
   if (!found)
     throw std::invalid_argument("no " + std::string(kind) + " model is named " + choice.name);
   return *found;
-}
-
-FailureAction action_named(const std::string& name) {
-  if (name == "no_shear") return FailureAction::no_shear;
-  if (name == "no_tension") return FailureAction::no_tension;
-  if (name == "erode") return FailureAction::erode;
-  throw std::invalid_argument("failure.action must be no_shear, no_tension or erode, not " + name);
 }
 
 /// Has the strength model what the failure model judges by?
@@ -115,47 +108,9 @@ double shear_modulus(const Material& material) {
       material.strength);
 }
 
-Bounds bounds(Rule rule) {
-  constexpr double none = std::numeric_limits<double>::infinity();
-  switch (rule) {
-    case Rule::positive:
-      return {0.0, none, true, true};
-    case Rule::not_negative:
-      return {0.0, none, false, true};
-    case Rule::poisson_ratio:
-      return {-1.0, 0.5, true, true};
-    case Rule::any:
-      break;
-  }
-  return {-none, none, true, true};
-}
-
-bool satisfies(Rule rule, double value) {
-  const Bounds b = bounds(rule);
-  const bool above = b.lower_open ? value > b.lower : value >= b.lower;
-  const bool below = b.upper_open ? value < b.upper : value <= b.upper;
-  return std::isfinite(value) && above && below;
-}
-
-std::string rule_text(Rule rule) {
-  const Bounds b = bounds(rule);
-  std::ostringstream text;
-  if (std::isinf(b.lower))
-    text << "must be a finite number";
-  else if (std::isinf(b.upper))
-    text << "must be " << (b.lower_open ? "> " : ">= ") << b.lower;
-  else
-    text << "must lie between " << b.lower << " and " << b.upper << ", "
-         << (b.lower_open == b.upper_open ? "both"
-             : b.lower_open               ? "the first"
-                                          : "the second")
-         << (b.lower_open || b.upper_open ? " excluded" : " included");
-  return text.str();
-}
-
 Material make_material(const MaterialChoice& choice) {
-  if (!satisfies(Rule::positive, choice.density))
-    refuse("density", choice.density, rule_text(Rule::positive));
+  if (!Rule::positive.allows(choice.density))
+    refuse("density", choice.density, Rule::positive.text());
   Material material;
   material.density = choice.density;
   material.strength = made<StrengthModels>("strength", choice.strength, choice.density);
@@ -174,13 +129,13 @@ Material make_material(const MaterialChoice& choice) {
           const auto model = made<FailureModels>("failure", failure.model, choice.density);
           std::visit([&](const auto& m) { check_together(strength, m, material.eos.has_value()); },
                      model);
-          material.failures.push_back({model, action_named(failure.action)});
+          material.failures.push_back(
+              {model, choice_named<FailureAction>("failure.action", failure.action)});
         }
       },
       material.strength);
   for (const double factor : {choice.viscosity.quadratic, choice.viscosity.linear})
-    if (!satisfies(Rule::not_negative, factor))
-      refuse("viscosity", factor, rule_text(Rule::not_negative));
+    if (!Rule::not_negative.allows(factor)) refuse("viscosity", factor, Rule::not_negative.text());
   material.viscosity = choice.viscosity;
   material.bounds = bounds_of(material);
   return material;

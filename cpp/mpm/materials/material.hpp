@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mpm/catalogue/words.hpp"
 #include "mpm/materials/catalogue.hpp"
 
 namespace mpm {
@@ -18,6 +19,12 @@ enum class FailureAction {
   no_tension = 2,  // the deviator is dropped, the mean stress kept where it is compression
   erode = 3,       // all stress is dropped, and the particle takes no part from the next step on
 };
+template <>
+inline constexpr auto words<FailureAction> = std::to_array<Word<FailureAction>>(
+    {{"no_tension", FailureAction::no_tension, "the particle bears compression only (the default)"},
+     {"no_shear", FailureAction::no_shear, "it keeps its whole pressure, like a liquid"},
+     {"erode", FailureAction::erode,
+      "it takes no part any more; the ledger keeps its energy in `eroded`"}});
 
 /// A failure model and what it does.
 struct Failing {
@@ -112,15 +119,5 @@ struct MaterialChoice {
 /// Throws std::invalid_argument, in one sentence, for an unknown model or parameter, one that is
 /// missing, a value its rule forbids, or models that do not go together.
 Material make_material(const MaterialChoice& choice);
-
-/// The finite numbers that a rule allows; an open bound is not one of them.
-struct Bounds {
-  double lower, upper;
-  bool lower_open, upper_open;
-};
-Bounds bounds(Rule rule);
-bool satisfies(Rule rule, double value);
-/// What a rule demands, in words: "must be > 0".
-std::string rule_text(Rule rule);
 
 }  // namespace mpm

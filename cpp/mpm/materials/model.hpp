@@ -7,12 +7,10 @@
 #include <string>
 #include <string_view>
 
+#include "mpm/catalogue/rule.hpp"
 #include "mpm/math/tensor.hpp"
 
 namespace mpm {
-
-/// What values a parameter accepts.
-enum class Rule { positive, not_negative, poisson_ratio, any };
 
 inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
 

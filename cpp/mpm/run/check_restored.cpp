@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "mpm/ledger/history.hpp"
 #include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
@@ -119,11 +120,11 @@ void SimulationOf<D>::check_lists() const {
 template <int D>
 void SimulationOf<D>::check_rest(double cell_size, const Index<D>& walls) const {
   const TileGrid<D>& grid = domain_.grid;
-  check(doublings_ >= 0 && doublings_ <= settings_.doubling_times, "its grid is damaged");
-  bool same = settings_.cell_size == std::ldexp(cell_size, doublings_);
+  check(doublings_ >= 0 && doublings_ <= most_doublings(), "its grid is damaged");
+  bool same = settings_.grid.cell_size == std::ldexp(cell_size, doublings_);
   for (std::size_t a = 0; a < D; ++a)
     same = same && (grid.walls.cells[a] == walls[a] >> std::min(doublings_, 31));
-  check(same && grid.cell_size == settings_.cell_size, "its grid is damaged");
+  check(same && grid.cell_size == settings_.grid.cell_size, "its grid is damaged");
   check(domain_.step >= 0 && domain_.step < std::int64_t{1} << 62 && finite(domain_.time) &&
             domain_.time >= 0.0 && finite(domain_.time_step) && next_time_step_ > 0.0 &&
             finite(domain_.gravity),
@@ -145,7 +146,7 @@ void SimulationOf<D>::check_rest(double cell_size, const Index<D>& walls) const 
     for (std::size_t k = 0; k < load.area.size(); ++k)
       check(finite(load.area[k]) && finite(load.size[k]) && finite(load.arm[k]),
             "its loads are damaged");
-  const std::size_t columns = history_columns().size();
+  const std::size_t columns = history_terms.size();
   check(history_.size() % columns == 0 && history_.size() <= (history_capacity + 1) * columns,
         "its history is damaged");
   check(finite(domain_.ledger.kinetic) && finite(domain_.ledger.residual()),

@@ -1,5 +1,7 @@
 // The moving grid: where debris spreads, the cells double, as in the last step of Ma, Zhang & Huang
 // 2010, section 3.5. The rest of theirs an unbounded grid does not need; when to double is ours.
+#include <utility>
+
 #include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
@@ -9,10 +11,10 @@ namespace mpm {
 template <int D>
 bool SimulationOf<D>::must_double() const {
   const TileGrid<D>& grid = domain_.grid;
-  if (doublings_ >= settings_.doubling_times) return false;
-  const std::size_t tiles = grid.patches.size(), bytes = grid.needed_bytes();
-  const bool many = settings_.doubling_tiles > 0 && tiles > settings_.doubling_tiles;
-  const bool large = settings_.doubling_bytes > 0 && bytes > settings_.doubling_bytes;
+  const auto& doubling = settings_.grid.doubling;
+  if (doublings_ >= most_doublings()) return false;
+  const bool many = doubling->tiles && std::cmp_greater(grid.patches.size(), *doubling->tiles);
+  const bool large = doubling->bytes && std::cmp_greater(grid.needed_bytes(), *doubling->bytes);
   if (!many && !large) return false;
   for (int a = 0; a < D; ++a)
     if (grid.walls.exist && grid.walls.cells[static_cast<std::size_t>(a)] % 2 != 0) return false;
@@ -26,8 +28,8 @@ template <int D>
 void SimulationOf<D>::double_cells() {
   TileGrid<D>& grid = domain_.grid;
   ++doublings_;
-  settings_.cell_size *= 2.0;
-  grid.cell_size = settings_.cell_size;
+  settings_.grid.cell_size *= 2.0;
+  grid.cell_size = settings_.grid.cell_size;
   for (int& cells : grid.walls.cells) cells /= 2;
   grid.release_nodes();
   make_lists(grid, domain_.bodies, domain_.threads, domain_.list_scratch);

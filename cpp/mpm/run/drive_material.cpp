@@ -80,9 +80,9 @@ void set_state(Point& point, const std::map<std::string, double>& given) {
 }
 
 void check(const char* name, double value, Rule rule) {
-  if (!satisfies(rule, value))
+  if (!rule.allows(value))
     throw std::invalid_argument(std::string(name) + " = " + std::to_string(value) + ' ' +
-                                rule_text(rule));
+                                rule.text());
 }
 
 }  // namespace

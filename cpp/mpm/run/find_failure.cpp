@@ -12,7 +12,7 @@ void SimulationOf<D>::find_failure() {
   for (const PatchSums<D>& s : domain_.sums) negative = negative || s.stress.negative_volume;
   if (!negative && std::isfinite(domain_.ledger.kinetic) &&
       std::isfinite(domain_.ledger.residual())) {
-    if (domain_.ledger.growth() <= settings_.energy_growth_limit) return;
+    if (domain_.ledger.growth() <= settings_.run.energy_growth_limit) return;
     const Limiter fastest = limiter();
     const std::size_t row = row_of(body(fastest.body), fastest.particle);
     std::ostringstream text;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mpm/run/derived_fields.hpp"
 #include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
@@ -38,50 +39,20 @@ void SimulationOf<D>::round_column(const std::string& name, std::span<const int>
   }
 }
 
-/// f(xx, yy, zz, yz, xz, xy) of the stress of each particle.
 template <int D>
-template <class F>
-void SimulationOf<D>::round_stress(std::span<float> to, const F& f) const {
+void SimulationOf<D>::round_derived(const std::string& name, std::span<float> to) const {
+  const auto field = std::ranges::find(derived_fields, name, &DerivedField::name);
+  if (field == derived_fields.end())
+    throw std::invalid_argument("no derived field is named " + name);
   std::size_t first = 0;
   for (const Body<D>& b : domain_.bodies) {
     const std::size_t end = first + b.count();
-    if (to.size() < end) throw std::invalid_argument("round_stress: wrong size");
+    if (to.size() < end) throw std::invalid_argument("round_derived: wrong size");
     for (std::size_t k = 0; k < b.count(); ++k) {
-      const auto s = [&](int c) -> double { return b.stress(c)[k]; };
-      const double value =
-          D == 2 ? f(s(0), s(1), s(2), 0.0, 0.0, s(3)) : f(s(0), s(1), s(2), s(3), s(4), s(5));
-      to[first + b.id[k]] = static_cast<float>(value);
-    }
-    first = end;
-  }
-}
-
-template <int D>
-void SimulationOf<D>::round_pressure(std::span<float> to) const {
-  round_stress(to, [](double xx, double yy, double zz, double, double, double) {
-    return -(xx + yy + zz) / 3.0;
-  });
-}
-
-template <int D>
-void SimulationOf<D>::round_von_mises(std::span<float> to) const {
-  round_stress(to, [](double xx, double yy, double zz, double yz, double xz, double xy) {
-    const double a = xx - yy, b = yy - zz, c = zz - xx;
-    const double normal = a * a + b * b + c * c, shear = yz * yz + xz * xz + xy * xy;
-    return std::sqrt(0.5 * normal + 3.0 * shear);
-  });
-}
-
-/// The edge of the square or cube that a particle was at the start.
-template <int D>
-void SimulationOf<D>::round_size(std::span<float> to) const {
-  std::size_t first = 0;
-  for (const Body<D>& b : domain_.bodies) {
-    const std::size_t end = first + b.count();
-    if (to.size() < end) throw std::invalid_argument("round_size: wrong size");
-    for (std::size_t k = 0; k < b.count(); ++k) {
-      const double volume = b.mass()[k] / b.initial_density;
-      to[first + b.id[k]] = static_cast<float>(D == 2 ? std::sqrt(volume) : std::cbrt(volume));
+      ParticleState p{{}, b.mass()[k] / b.initial_density, D};
+      for (int c = 0; c < Sym<double, D>::size; ++c)
+        p.stress[D == 2 && c == 3 ? 5 : c] = b.stress(c)[k];
+      to[first + b.id[k]] = static_cast<float>(field->value(p));
     }
     first = end;
   }

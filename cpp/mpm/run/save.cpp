@@ -60,7 +60,7 @@ void SimulationOf<D>::exchange(StateStream& stream) {
   stream.vector(domain_.sums);
   stream.same(domain_.rigid.size(), other_case);
   stream.array(std::span(domain_.rigid));
-  stream(settings_.cell_size, doublings_, next_time_step_, domain_.ledger);
+  stream(settings_.grid.cell_size, doublings_, next_time_step_, domain_.ledger);
   stream.vector(history_);
   stream(watch_, looked_);
   stream.vector(notes_);
@@ -79,7 +79,7 @@ template <int D>
 void SimulationOf<D>::restore(const StateStream::Transfer& from, std::size_t size) {
   if (!prepared_ || domain_.step > 0)
     throw std::invalid_argument("call restore() after prepare() and before any step");
-  const double cell_size = settings_.cell_size;
+  const double cell_size = settings_.grid.cell_size;
   const auto walls = domain_.grid.walls.cells;
   StateStream stream(StateStream::Way::restore, from, size);
   prepared_ = false;  // what has been restored half must not step

@@ -14,44 +14,9 @@
 #include "mpm/fields/columns.hpp"
 #include "mpm/fields/state_stream.hpp"
 #include "mpm/materials/material.hpp"
-#include "mpm/math/time_function.hpp"
-#include "mpm/step/scheme.hpp"
+#include "mpm/run/settings.hpp"
 
 namespace mpm {
-
-/// What is fixed before the bodies are added. SI units. What is written here is only a
-/// start; the defaults of a case live in Python.
-struct Settings {
-  int dimension = 3;               // 2 (plane strain, 1 m thick) or 3
-  double cell_size = 0.0;          // [m]
-  std::array<double, 3> origin{};  // position of a node, and of the box's lower corner [m]
-  std::array<int, 3> box_cells{};  // cells of the box; 0, 0, 0 for no box
-  // With more tiles or bytes of nodes the cells double, so many times at most; 0 for no limit.
-  std::size_t doubling_tiles = 0, doubling_bytes = 0;
-  int doubling_times = 0;
-  std::array<double, 3> keep_lower{}, keep_upper{};  // corners of the region that is kept [m] ...
-  bool keep = false;                                 // ... if particles that leave it are taken out
-  std::array<Wall, 6> walls{};                       // of the box's faces: x-, x+, y-, y+, z-, z+
-  BasisId basis = basis_id<Linear>;
-  Scheme scheme = Scheme::musl;
-  double time_step_factor = 0.0;          // of the critical time step h / (c + |v|)
-  std::array<TimeFunction, 3> gravity{};  // [m/s^2]
-  double pic_damping = 0.0;  // rate at which particles take over the velocity of the grid [1/s]
-  bool contact = false;
-  bool bonded = false;  // all bodies move with one velocity field
-  Detection detection = Detection::gap;
-  NormalRule normal_rule = NormalRule::plane;
-  double gap_distance = 0.0;                               // [m]
-  double normal_travel = ContactSettings{}.normal_travel;  // [cells]
-  double friction = 0.0;
-  int threads = 1;
-  bool fused = true;  // neighbouring stages of a step are fused
-  // Share of a body's particles that changes cell before its columns are sorted; moves no bit.
-  double disorder = disorder_that_pays;
-  double energy_growth_limit = 0.0;  // fraction of the largest energy brought in
-  double outside_limit = 1.0;        // share of a body's particles beyond closed walls
-  double volume_limit = 1.0;         // share with less than 0.01 or more than 100 of their volume
-};
 
 /// Why a run had to stop.
 struct Failure {
@@ -179,18 +144,14 @@ class Simulation {
   /// stays as it is.
   virtual void round_column(const std::string& name, std::span<const int> places, std::size_t width,
                             std::span<float> to) const = 0;
-  /// Mean compressive stress -(xx + yy + zz)/3, and equivalent stress sqrt(3/2 s:s), s the deviator
-  /// (von Mises, 1913), of all particles [Pa], rounded to floats.
-  virtual void round_pressure(std::span<float> to) const = 0;
-  virtual void round_von_mises(std::span<float> to) const = 0;
-  virtual void round_size(std::span<float> to) const = 0;
+  /// A field of `derived_fields` of all particles, rounded to floats.
+  virtual void round_derived(const std::string& name, std::span<float> to) const = 0;
   virtual void set_gravity(
       const std::array<TimeFunction, 3>& gravity) = 0;  // [m/s^2], from the next step on
   virtual void set_velocity(int body, std::span<const double> velocities) = 0;
 
   static constexpr std::size_t history_capacity = 4096;
-  static const std::vector<std::string>& history_columns();
-  /// Rows of the steps since the last call, at most history_capacity.
+  /// Rows of the steps since the last call, at most history_capacity; columns as in history_terms.
   virtual std::vector<double> take_history() = 0;
 
   virtual const std::vector<PairRecord>& pairs() const = 0;

@@ -55,9 +55,7 @@ class SimulationOf final : public Simulation {
   void copy_column(int body, const std::string& name, std::span<double> to) const override;
   void round_column(const std::string& name, std::span<const int> places, std::size_t width,
                     std::span<float> to) const override;
-  void round_pressure(std::span<float> to) const override;
-  void round_von_mises(std::span<float> to) const override;
-  void round_size(std::span<float> to) const override;
+  void round_derived(const std::string& name, std::span<float> to) const override;
   void set_gravity(const std::array<TimeFunction, 3>& gravity) override;
   void set_velocity(int body, std::span<const double> velocities) override;
 
@@ -72,8 +70,6 @@ class SimulationOf final : public Simulation {
   std::size_t unconverged_nodes() const override { return domain_.contact.unconverged(); }
 
  private:
-  template <class F>
-  void round_stress(std::span<float> to, const F& f) const;
   const Body<D>& body(int b) const { return domain_.bodies.at(static_cast<std::size_t>(b)); }
   double kinetic_energy() const;
   std::array<double, 3> momentum() const;
@@ -84,6 +80,9 @@ class SimulationOf final : public Simulation {
   void make_step(double time_after);
   void choose_time_step();
   bool must_double() const;
+  int most_doublings() const {
+    return settings_.grid.doubling ? settings_.grid.doubling->times : 0;
+  }
   void double_cells();
   void write_history_row();
   void exchange(StateStream& stream);

@@ -172,8 +172,8 @@ void SimulationOf<D>::judge() {
       failure_ =
           failure_at(note_names[number(static_cast<int>(kind))], seen.body, seen.row, text.str());
     };
-    tell(NoteKind::outside, sight.outside, -1, settings_.outside_limit);
-    tell(NoteKind::volume, sight.odd, -1, settings_.volume_limit);
+    tell(NoteKind::outside, sight.outside, -1, settings_.run.outside_limit);
+    tell(NoteKind::volume, sight.odd, -1, settings_.run.volume_limit);
     for (int face = 0; face < 2 * D; ++face)
       tell(NoteKind::left_box, sight.left[number(face)], face, 1.0);
   }

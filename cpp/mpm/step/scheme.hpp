@@ -4,11 +4,18 @@
 // What runs is the same lists with some neighbours fused, so that particles are read fewer times.
 #include <span>
 
+#include "mpm/catalogue/words.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
 
+/// When the stress is updated.
 enum class Scheme { usf, usl, musl };
+template <>
+inline constexpr auto words<Scheme> = std::to_array<Word<Scheme>>(
+    {{"usf", Scheme::usf, "first (Bardenhagen 2002)"},
+     {"usl", Scheme::usl, "last (Sulsky, Chen & Schreyer 1994)"},
+     {"musl", Scheme::musl, "last, with remapped velocities (Sulsky, Zhou & Schreyer 1995)"}});
 
 template <int D>
 struct Schemes {

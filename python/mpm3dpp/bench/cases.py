@@ -245,20 +245,10 @@ def _add_grains(simulation: Any, material: int, count: int, volume: Array, speed
 
 def _settings(core: Any, bench: Bench, threads: int, scheme: str) -> Any:
     settings = core.Settings()
-    settings.dimension = bench.dimension
-    settings.cell_size = CELL
-    settings.origin = [0.0, 0.0, 0.0]
-    settings.box_cells = [0, 0, 0]
-    settings.walls = [core.Wall.free] * 6
-    settings.basis = core.Basis[bench.basis]
-    settings.scheme = core.Scheme[scheme]
-    settings.time_step_factor = TIME_STEP_FACTOR
-    settings.gravity = [0.0, 0.0, 0.0]
-    settings.contact = bench.contact
-    settings.detection = core.Detection.gap
-    settings.normal_rule = core.NormalRule.plane
-    settings.gap_distance = 0.0
-    settings.friction = FRICTION
-    settings.threads = threads
-    settings.energy_growth_limit = 1.0
+    grid, run, contact = settings.grid, settings.run, settings.contact
+    grid.dimension, grid.cell_size, grid.basis = bench.dimension, CELL, bench.basis
+    run.scheme, run.time_step_factor = scheme, TIME_STEP_FACTOR
+    run.outside_limit = run.volume_limit = 1.0
+    contact.enabled, contact.friction = bench.contact, FRICTION
+    settings.execution.threads = threads
     return settings

@@ -29,7 +29,7 @@ def _touched() -> dict[str, tuple[tuple[str, ...], tuple[str, ...]]]:
     do not have, nor those that look at a few.
     """
     touched = {}
-    for scheme in _core.Scheme:
+    for scheme in _core.schemes:
         for name, *data, all_particles in (
             *_core.stages(scheme, True),
             *_core.stages(scheme, False),

@@ -17,22 +17,7 @@ import numpy as np
 
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.rows import FROM_VTK
-
-STANDARD = ("position", "velocity", "stress", "pressure", "von_mises", "body", "material")
-"""Arrays that every frame has."""
-
-UNITS = {
-    "position": "m",
-    "velocity": "m/s",
-    "stress": "Pa",
-    "pressure": "Pa",
-    "von_mises": "Pa",
-    "size": "m",
-    "body": "",
-    "grain": "",
-    "material": "",
-}
-"""Unit of each standard array; the columns of the core bring their own."""
+from mpm3dpp.outputs import CHANGING, COLUMNS, DERIVED, STANDARD, UNITS
 
 _PLACES = {2: (0, 1), 4: (0, 1, 2, 3), 6: FROM_VTK}
 """Where VTK has our components: vectors have three there, tensors xx yy zz xy yz xz."""
@@ -102,7 +87,7 @@ def frame_of(
     Raises:
         CaseError: no body has a column of that name.
     """
-    stored = {name: _components(simulation, name) for name in ("position", "velocity", "stress")}
+    stored = {name: _components(simulation, name) for name in COLUMNS}
     stored |= {name: _components(simulation, name) for name in fields if name not in STANDARD}
     widths = {name: _width(name, components) for name, components in stored.items()}
     count = int(simulation.particle_count)
@@ -114,8 +99,7 @@ def frame_of(
         column(name, partial(_column, simulation, name, stored[name], width), width)
         for name, width in widths.items()
     ]
-    columns.append(column("pressure", lambda: simulation.rounded_pressure()[:, 0]))
-    columns.append(column("von_mises", lambda: simulation.rounded_von_mises()[:, 0]))
+    columns += [column(name, partial(_derived, simulation, name)) for name in CHANGING]
     if constants:
         fixed = _constants(simulation, names, materials)
         columns += [column(name, make) for name, make in fixed.items()]
@@ -175,5 +159,10 @@ def _constants(
     if len(different) < len(numbers):
         firsts = [numbers.index(k) for k in range(len(different))]
         made["grain"] = of_body([b - firsts[k] for b, k in enumerate(numbers)])
-    made["size"] = lambda: simulation.rounded_size()[:, 0]
-    return made
+    constant = [name for name in DERIVED if name not in CHANGING]
+    return made | {name: partial(_derived, simulation, name) for name in constant}
+
+
+def _derived(simulation: Any, name: str) -> np.ndarray:
+    values: np.ndarray = simulation.rounded_derived(name)
+    return values[:, 0]

@@ -12,33 +12,27 @@ from typing import Any
 
 import numpy as np
 
+from mpm3dpp import _core
 from mpm3dpp.errors import CaseError
 from mpm3dpp.io.disk import checksum, make_folder
 from mpm3dpp.io.fields import numbered
 from mpm3dpp.io.table import Table
 
-COLUMNS = (
-    *("step", "time", "dt", "kinetic", "internal", "plastic", "viscous", "friction", "contact"),
-    *("external", "absorbed", "eroded", "left", "bounded", "numerical", "residual"),
-    *("momentum_x", "momentum_y", "momentum_z"),
-)
-"""First columns of the table, in this order; 0 where a term does not exist."""
+TERMS: dict[str, dict[str, str]] = _core.history_terms
+"""The columns of the table, before those of pairs: `unit`, `meaning`, `role` in the balance of the
+ledger ("energy", "error", "supply", "residual", "other") and the column that it is `part_of`."""
 
-ENERGIES = COLUMNS[3 : COLUMNS.index("momentum_x")]
-"""Those of them that are energies [J]."""
+ENERGIES = tuple(name for name, term in TERMS.items() if term["role"] != "other")
+"""Those that the balance of the ledger has [J]."""
 
-NUMERICAL = ("numerical_mapping", "numerical_time")
-"""The named parts of `numerical`, which follow."""
+PAIR_MEANINGS: dict[str, tuple[str, str]] = {
+    "contact_force_A_B_x": ("N", "force of the step on body A from body B; `_y`, `_z` follow"),
+    "contact_impulse_A_B_x": ("N s", "its impulse so far; `_y`, `_z` follow"),
+}
+"""Unit and meaning of the columns that follow for each pair of bodies A and B with contact."""
 
-GRID = ("load_work", "cell_size", "tiles")
-"""Then the work of loads on surfaces, a part of `external` [J], and the grid: the edge of its cells
-[m] and the tiles in use, those of each body counted."""
-
-MOTION = ("motion_work", *(f"motion_impulse_{x}" for x in ("x", "y", "z")))
-"""Then the work of prescribed motions, which is part of `external` [J], and their impulse [N s]."""
-
-BOUNDS = ("energy_floor",)
-"""Then the part of `bounded` that energies below that of absolute zero were given [J]."""
+ERROR_PARTS = tuple(name for name, term in TERMS.items() if term["part_of"] == "numerical")
+"""The named parts of `numerical` [J]."""
 
 PAIR_LIMIT = 66
 """Most pairs that get columns of their own (12 names); more go to `contact_pairs.csv`."""
@@ -46,6 +40,8 @@ PAIR_LIMIT = 66
 PAIRS = "contact_pairs.csv"
 
 _AXES = ("x", "y", "z")
+_MOMENTUM = tuple(f"momentum_{x}" for x in _AXES)
+_NEEDED = ("time", "step", "dt", *ENERGIES, *_MOMENTUM, *ERROR_PARTS)  # By summaries and pictures.
 _LARGEST = ("residual", "numerical", "external")  # of which the largest size is kept
 
 
@@ -84,7 +80,7 @@ class HistoryWriter:
 
     Args:
         path: the file; its folder is made, an old file replaced.
-        columns: the core's `history_columns`.
+        columns: of the rows, the core's `history_columns`.
         bodies: name of each body. Bodies of one name, grains, are taken together, and what they
             do to each other has no columns.
         contact: whether the run has contact; without it there are no pairs' columns.
@@ -111,14 +107,11 @@ class HistoryWriter:
         self.path = Path(path)
         self._every = max(1, every)
         self._bodies = list(bodies)
-        own = [*COLUMNS, *NUMERICAL]
-        extra = [name for name in columns if name not in own]
-        self._where = [columns.index(n) if n in columns else -1 for n in (*own, *extra)]
         names, numbers = numbered(bodies)
         firsts = [numbers.index(k) for k in range(len(names))]
         pairs = list(itertools.combinations(firsts, 2)) if contact else []
         self._pairs = {pair: k for k, pair in enumerate(pairs)} if len(pairs) <= PAIR_LIMIT else {}
-        header = [*own, *extra]
+        header = list(columns)
         for a, b in self._pairs:
             for kind in ("force", "impulse"):
                 both = f"{self._bodies[a]}_{self._bodies[b]}"
@@ -131,7 +124,7 @@ class HistoryWriter:
             values = [f"contact_{kind}_{x}" for kind in ("force", "impulse") for x in _AXES]
             path = self.path.with_name(PAIRS)
             self._long = Table(path, ["step", "time", "body_a", "body_b", *values], known[1])
-        self._index = {name: k for k, name in enumerate(own)}
+        self._index = {name: k for k, name in enumerate(columns)}
         self._summary: dict[str, Any] = dict(state["summary"] or {}) if state else {}
         self._momentum = np.array(state["momentum"] if state else [])
 
@@ -144,7 +137,7 @@ class HistoryWriter:
         """
         if len(rows) == 0:
             return
-        table = self._reorder(np.asarray(rows, dtype=float))
+        table = np.asarray(rows, dtype=float)
         self._note(table)
         empty = [""] * (6 * len(self._pairs))
         lines = []
@@ -186,13 +179,6 @@ class HistoryWriter:
     def __exit__(self, *about: object) -> None:
         self.close()
 
-    def _reorder(self, rows: np.ndarray) -> np.ndarray:
-        table = np.zeros((len(rows), len(self._where)))
-        for k, source in enumerate(self._where):
-            if source >= 0:
-                table[:, k] = rows[:, source]
-        return table
-
     def _pair_cells(self, pairs: Sequence[Any]) -> list[str]:
         values = np.zeros((len(self._pairs), 6))
         for pair in pairs:
@@ -215,7 +201,7 @@ class HistoryWriter:
 
     def _note(self, table: np.ndarray) -> None:
         column = {name: table[:, k] for name, k in self._index.items()}
-        momentum = table[:, [self._index[f"momentum_{x}"] for x in _AXES]]
+        momentum = table[:, [self._index[name] for name in _MOMENTUM]]
         new = self._summary
         if not new:
             new["initial"] = {name: float(column[name][0]) for name in ENERGIES}
@@ -264,7 +250,7 @@ def read_history(path: str | Path) -> dict[str, np.ndarray]:
     except (OSError, ValueError, IndexError, csv.Error) as error:
         raise CaseError(f"'{path}' is not a history table of mpm3dpp: {error}") from error
     forces = [n[:-1] for n in header if n.startswith("contact_") and n.endswith("_x")]
-    for name in ("time", *COLUMNS, *NUMERICAL, *(n + x for n in forces for x in _AXES)):
+    for name in (*_NEEDED, *(n + x for n in forces for x in _AXES)):
         if name not in header:
             rule = (
                 f"'{path}' is not a history table of mpm3dpp, or damaged: it has no column {name}"

@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from mpm3dpp.errors import MISSING, below, nearest, report, violation
+from mpm3dpp.rules import Bounds
 from mpm3dpp.units import Quantity
 
 KINDS = {
@@ -64,7 +65,7 @@ def check_parameters(kind: str, model: str, given: Any) -> dict[str, float]:
     for name, parameter in known.items():
         if name in given:
             unit = "" if parameter.unit == "1" else parameter.unit
-            quantity = Quantity(unit, parameter.rule, parameter.bounds)
+            quantity = Quantity(unit, parameter.rule, Bounds(*parameter.bounds))
             try:
                 found[name] = quantity.parse(given[name])
             except ValueError as error:

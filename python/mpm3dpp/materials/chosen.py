@@ -7,17 +7,14 @@ from typing import Annotated, Any, ClassVar, cast
 
 from pydantic import BeforeValidator, SkipValidation, WithJsonSchema, model_validator
 
+from mpm3dpp import _core
 from mpm3dpp.errors import below, nearest, report, violation
 from mpm3dpp.model import CaseModel, Choice
 
 from .catalogue import KINDS, catalogue, check_parameters
 from .examples import example
 
-ACTIONS = {
-    "no_tension": "the particle bears compression only (the default)",
-    "no_shear": "it keeps its whole pressure, like a liquid",
-    "erode": "it takes no part any more; the ledger keeps its energy in `eroded`",
-}
+ACTIONS: dict[str, str] = _core.failure_actions[0]
 """What failure may do to a particle, `action` in a failure model's table."""
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mpm3dpp.io.history import ENERGIES, ERROR_PARTS, TERMS
 from mpm3dpp.plots.labels import prefix, short
 from mpm3dpp.plots.style import PALETTE, new_figure, save, styled
 
@@ -16,23 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_MAIN = {"kinetic": "kinetic", "internal": "internal"}
-_LOST = {
-    "plastic": "plastic work",
-    "viscous": "viscosity",
-    "friction": "friction",
-    "contact": "contact",
-    "absorbed": "absorbed",
-    "eroded": "eroded",
-    "left": "left",
-    "bounded": "bounded",
-    "external": "external work",
-}
-_NUMERICAL = {
-    "numerical": "numerical, sum",
-    "numerical_mapping": "numerical, mapping",
-    "numerical_time": "numerical, time",
-}
+_MAIN = ("kinetic", "internal")
+_OTHERS = [n for n in ENERGIES if n not in (*_MAIN, "numerical", "residual")]
 _MOST_PAIRS = 8
 _NAME = 15  # Letters of a body's name in the legend of pairs.
 
@@ -84,10 +70,10 @@ def save_energies(
 
 def _energies(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray], unit: str) -> None:
     scale = _scale(history)
-    curves = {label: history[name] for name, label in _MAIN.items()}
-    for name, label in _LOST.items():
+    curves = {name: history[name] for name in _MAIN}
+    for name in _OTHERS:
         if np.abs(history[name]).max(initial=0.0) > 1e-4 * scale:
-            curves[label] = history[name]
+            curves[name] = history[name]
     factor, unit = prefix(max(np.abs(c).max(initial=0.0) for c in curves.values()), unit)
     for colour, (label, curve) in zip(cycle(PALETTE), curves.items(), strict=False):
         axes.plot(time, factor * curve, color=colour, label=label)
@@ -100,8 +86,11 @@ def _energies(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray], unit
 
 def _total(history: dict[str, np.ndarray]) -> np.ndarray:
     """All energy, less the work from outside: constant but for what numerics made or lost."""
-    physical = [*_MAIN, *(name for name in _LOST if name not in ("contact", "external"))]
-    return np.sum([history[name] for name in physical], axis=0) - history["external"]
+    held, supplied = (
+        np.sum([history[n] for n, term in TERMS.items() if term["role"] == role], axis=0)
+        for role in ("energy", "supply")
+    )
+    return held - supplied
 
 
 def _ledger(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray]) -> None:
@@ -109,10 +98,11 @@ def _ledger(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray]) -> Non
     scale = _scale(history)
     least = 1e-18
     colours = cycle(PALETTE)
-    for name, label in {**_LOST, **_NUMERICAL}.items():
+    for name in (*_OTHERS, "numerical", *ERROR_PARTS):
         curve = np.abs(history[name]) / scale
         if curve.max(initial=0.0) > least:
-            style = "-" if name in _LOST or name == "numerical" else (0, (1, 1))
+            style = (0, (1, 1)) if name in ERROR_PARTS else "-"
+            label = name.replace("_", ", ")
             axes.plot(time, _positive(curve), color=next(colours), ls=style, label=label)
     residual = np.abs(history["residual"]) / scale
     if residual.max(initial=0.0) > least:

@@ -65,24 +65,23 @@ struct Motion3 {
 std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& motion,
                                   int threads) {
   Settings settings;
-  settings.dimension = dimension;
-  settings.cell_size = 1.0;
-  settings.scheme = scheme;
-  settings.basis = scheme == Scheme::usf ? basis_id<Linear> : basis_id<Gimp>;
-  settings.time_step_factor = 0.3;
-  for (std::size_t a = 0; a < 3; ++a) settings.gravity[a] = motion.gravity[a];
+  settings.grid.dimension = dimension;
+  settings.grid.cell_size = 1.0;
+  settings.run.scheme = scheme;
+  settings.grid.basis = scheme == Scheme::usf ? basis_id<Linear> : basis_id<Gimp>;
+  settings.run.time_step_factor = 0.3;
+  for (std::size_t a = 0; a < 3; ++a) settings.run.gravity[a] = motion.gravity[a];
   if (motion.gravity[1] != 0.0) {
-    settings.box_cells = {40, 40, dimension == 3 ? 40 : 0};
-    settings.walls[2] = Wall::fixed;
-    settings.walls[1] = Wall::absorbing;
-    settings.keep = true;
-    settings.keep_lower = {-100.0, -100.0, -100.0};
-    settings.keep_upper = {100.0, 100.0, 100.0};
+    settings.grid.box_cells = {40, 40, dimension == 3 ? 40 : 0};
+    settings.grid.walls[2] = Wall::fixed;
+    settings.grid.walls[1] = Wall::absorbing;
+    settings.grid.keep = true;
+    settings.grid.keep_lower = {-100.0, -100.0, -100.0};
+    settings.grid.keep_upper = {100.0, 100.0, 100.0};
   }
-  settings.contact = true;
-  settings.friction = 0.3;
-  settings.threads = threads;
-  settings.energy_growth_limit = 1e9;
+  settings.contact.friction = 0.3;
+  settings.execution.threads = threads;
+  settings.run.energy_growth_limit = 1e9;
   auto simulation = make_simulation(settings);
   const BulkViscosity viscosity{1.5, 0.06};
   const int rubber = simulation->add_material(

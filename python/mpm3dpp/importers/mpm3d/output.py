@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from mpm3dpp.case_parts import STANDARD_FIELDS
 from mpm3dpp.materials import state_columns
+from mpm3dpp.outputs import STANDARD
 
 from .deck import Deck
 from .materials import material_name
@@ -58,9 +58,9 @@ def fields_of(deck: Deck, materials: dict[str, dict[str, Any]]) -> list[str]:
         elif key not in _COLUMNS:
             remedy = f"the variables are {', '.join([*_COLUMNS, *_NONE])}"
             raise deck.error("outr", f'has the unknown variable "{name}"', remedy, line)
-        elif _COLUMNS[key] not in (*STANDARD_FIELDS, *stored):
+        elif _COLUMNS[key] not in (*STANDARD, *stored):
             deck.note(f"{key}: no material of this case stores {_COLUMNS[key]}")
-        elif _COLUMNS[key] not in STANDARD_FIELDS and _COLUMNS[key] not in fields:
+        elif _COLUMNS[key] not in STANDARD and _COLUMNS[key] not in fields:
             fields.append(_COLUMNS[key])
     return fields
 

@@ -1,0 +1,132 @@
+// The settings of a case, the columns of its history and the fields of its frames, by name.
+#include "mpm/run/settings.hpp"
+
+#include <nanobind/stl/array.h>
+
+#include "catalogue.hpp"
+#include "mpm/ledger/history.hpp"
+#include "mpm/run/derived_fields.hpp"
+
+namespace mpm::bindings {
+namespace {
+
+/// name -> what is to be known of it.
+nb::dict all_bases() {
+  nb::dict bases;
+  Bases::for_each([&]<BasisModel B>(BasisId, const B&) {
+    nb::dict known;
+    known["doc"] = text(B::doc);
+    known["source"] = text(B::source);
+    known["nodes"] = B::nodes;
+    known["before"] = B::before;
+    known["own_node"] = B::own_node;
+    bases[text(B::name)] = known;
+  });
+  return bases;
+}
+
+nb::dict all_history_terms() {
+  nb::dict terms;
+  for (const HistoryTerm& term : history_terms) {
+    nb::dict row;
+    row["unit"] = text(term.unit);
+    row["meaning"] = text(term.meaning);
+    row["role"] = text(word_of(term.role));
+    row["part_of"] = text(term.part_of);
+    terms[text(term.name)] = row;
+  }
+  return terms;
+}
+
+nb::dict all_derived_fields() {
+  nb::dict fields;
+  for (const DerivedField& field : derived_fields) {
+    nb::dict row;
+    row["unit"] = text(field.unit);
+    row["meaning"] = text(field.meaning);
+    row["constant"] = field.constant;
+    fields[text(field.name)] = row;
+  }
+  return fields;
+}
+
+/// Of each stage: its name, what it reads and writes, and whether it goes through all particles.
+nb::list stage_rows(const std::string& scheme, bool fused) {
+  const auto names = [](std::uint32_t data) {
+    nb::list said;
+    for (std::size_t k = 0; k < data_names.size(); ++k)
+      if (data >> k & 1u) said.append(text(data_names[k]));
+    return said;
+  };
+  nb::list rows;
+  for (const Stage<3>& stage : stages_of<3>(choice_named<Scheme>("scheme", scheme), fused))
+    rows.append(nb::make_tuple(text(stage.name), names(stage.reads), names(stage.writes),
+                               stage.all_particles));
+  return rows;
+}
+
+std::array<std::string, 6> wall_words(const GridSettings& grid) {
+  std::array<std::string, 6> found;
+  for (std::size_t k = 0; k < found.size(); ++k) found[k] = word_of(grid.walls[k]);
+  return found;
+}
+
+void set_walls(GridSettings& grid, const std::array<std::string, 6>& given) {
+  for (std::size_t k = 0; k < given.size(); ++k)
+    grid.walls[k] = choice_named<Wall>("a wall", given[k]);
+}
+
+}  // namespace
+
+void add_settings(nb::module_& m) {
+  nb::class_<TimeFunction>(m, "TimeFunction")
+      .def(nb::init_implicit<double>())
+      .def(
+          "__init__",
+          [](TimeFunction* self, double constant, double amplitude, double frequency, double phase,
+             const std::vector<double>& times, const std::vector<double>& values) {
+            new (self) TimeFunction(constant);
+            self->amplitude = amplitude;
+            self->frequency = frequency;
+            self->phase = phase;
+            self->times = times;
+            self->values = values;
+          },
+          nb::arg("constant"), nb::arg("amplitude"), nb::arg("frequency"), nb::arg("phase"),
+          nb::arg("times"), nb::arg("values"))
+      .def("at", &TimeFunction::at, nb::arg("time"))
+      .def("mean", &TimeFunction::mean, nb::arg("start"), nb::arg("end"));
+
+  nb::dict tables;
+  add_table<DoublingSettings>(m, "DoublingSettings", tables);
+  add_table<GridSettings>(m, "GridSettings", tables)
+      .def_rw("origin", &GridSettings::origin)
+      .def_rw("box_cells", &GridSettings::box_cells)
+      .def_prop_rw("walls", &wall_words, &set_walls)
+      .def_rw("keep", &GridSettings::keep)
+      .def_rw("keep_lower", &GridSettings::keep_lower)
+      .def_rw("keep_upper", &GridSettings::keep_upper)
+      .def_rw("doubling", &GridSettings::doubling, nb::arg("doubling").none());
+  add_table<RunSettings>(m, "RunSettings", tables);
+  add_table<ContactSettings>(m, "ContactSettings", tables);
+  add_table<ExecutionSettings>(m, "ExecutionSettings", tables);
+  nb::class_<Settings>(m, "Settings")
+      .def(nb::init<>())
+      .def_rw("grid", &Settings::grid)
+      .def_rw("run", &Settings::run)
+      .def_rw("contact", &Settings::contact)
+      .def_rw("execution", &Settings::execution);
+
+  m.attr("settings") = tables;
+  m.attr("walls") = words_of<Wall>();
+  m.attr("failure_actions") = words_of<FailureAction>();
+  m.attr("schemes") = words_of<Scheme>()[0];
+  m.attr("bases") = all_bases();
+  m.attr("history_terms") = all_history_terms();
+  m.attr("derived_fields") = all_derived_fields();
+  m.def("stages", &stage_rows, nb::arg("scheme"), nb::arg("fused"),
+        "Of each stage: its name, what it reads and writes, and whether it goes through all "
+        "particles");
+}
+
+}  // namespace mpm::bindings

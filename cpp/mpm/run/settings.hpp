@@ -1,0 +1,122 @@
+#pragma once
+// The settings of a case: its tables `grid`, `run` and `contact`, and how it is executed.
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "mpm/catalogue/setting.hpp"
+#include "mpm/contact/settings.hpp"
+#include "mpm/math/time_function.hpp"
+#include "mpm/particles/lists.hpp"
+#include "mpm/step/scheme.hpp"
+
+namespace mpm {
+
+struct DoublingSettings {
+  std::optional<std::int64_t> tiles, bytes;
+  int times = 4;
+
+  static constexpr std::string_view table = "grid.doubling";
+  using Self = DoublingSettings;
+  static constexpr Rule count{1.0, 1e15, false, false};
+  static constexpr auto settings = std::tuple{
+      Setting{"tiles", &Self::tiles,
+              "the cells double when particles lie in more tiles than this; a tile is a block of "
+              "4 x 4 x 4 cells (8 x 8 in 2D), counted once for each body in it",
+              count},
+      Setting{"bytes", &Self::bytes,
+              "the cells double when the grid's nodes need more memory than this [bytes]", count},
+      // Cells are a billion times as large then.
+      Setting{"times", &Self::times, "how often at most", Rule{1.0, 30.0, false, false}}};
+};
+
+struct GridSettings {
+  int dimension = 0;
+  double cell_size = std::numeric_limits<double>::quiet_NaN();
+  BasisId basis = basis_id<Gimp>;
+
+  static constexpr std::string_view table = "grid";
+  using Self = GridSettings;
+  static constexpr auto settings = std::tuple{
+      Setting{"dimension", &Self::dimension, "2 (plane strain) or 3", Rule{2.0, 3.0, false, false}},
+      Setting{"cell_size", &Self::cell_size, "edge of the square or cubic cells [m]",
+              Rule::positive, "m"},
+      Setting{"basis", &Self::basis,
+              "shape functions. \"gimp\" (uniform GIMP, Bardenhagen & Kober 2004) and "
+              "\"quadratic_bspline\" (Steffen, Kirby & Berzins 2008) stay accurate where stressed "
+              "particles cross cells; \"linear\" is the paper's, the fastest"}};
+
+  // What the case's corners come to. SI units.
+  std::array<double, 3> origin{};  // position of a node, and of the box's lower corner [m]
+  std::array<int, 3> box_cells{};  // cells of the box; 0, 0, 0 for no box
+  std::array<Wall, 6> walls{};     // of the box's faces: x-, x+, y-, y+, z-, z+
+  std::array<double, 3> keep_lower{}, keep_upper{};  // corners of the region that is kept [m] ...
+  bool keep = false;                                 // ... if particles that leave it are taken out
+  std::optional<DoublingSettings> doubling;
+};
+
+struct RunSettings {
+  Scheme scheme = Scheme::musl;
+  double time_step_factor = 0.25;
+  std::array<TimeFunction, 3> gravity{};
+  double pic_damping = 0.0;
+  double energy_growth_limit = 1.0;
+  double outside_limit = 0.05;
+  double volume_limit = 0.2;
+
+  static constexpr std::string_view table = "run";
+  using Self = RunSettings;
+  static constexpr auto settings = std::tuple{
+      Setting{"scheme", &Self::scheme, "when the stress is updated: \"usf\", \"usl\" or \"musl\""},
+      Setting{"time_step_factor", &Self::time_step_factor,
+              "share f of the largest stable step, 0 < f <= 1", Rule::fraction},
+      Setting{"gravity", &Self::gravity,
+              "acceleration [m/s^2], D numbers or functions of time; default zero", Rule::any,
+              "m/s^2"},
+      Setting{"pic_damping", &Self::pic_damping,
+              "rate at which particles take over the velocity of the grid [1/s], PIC in place of "
+              "FLIP; takes away noise that the grid does not see, over very long runs",
+              Rule::not_negative, "1/s"},
+      Setting{"energy_growth_limit", &Self::energy_growth_limit,
+              "the run stops when the numerical error has created this share of the largest energy "
+              "seen",
+              Rule::positive},
+      Setting{"outside_limit", &Self::outside_limit,
+              "the run stops when more than this share of the particles of a body, or of all "
+              "grains of an entry, lies beyond slip or fixed walls of the box; 1 for never",
+              Rule::fraction},
+      Setting{"volume_limit", &Self::volume_limit,
+              "the run stops when more than this share of them has less than 0.01 or more than 100 "
+              "times the volume that it began with; gases, products of detonation and particles "
+              "that have failed do not count; 1 for never",
+              Rule::fraction}};
+};
+
+/// What moves no bit of the results.
+struct ExecutionSettings {
+  int threads = 1;
+  bool fused = true;
+  double disorder = disorder_that_pays;
+
+  static constexpr std::string_view table = "execution";
+  using Self = ExecutionSettings;
+  static constexpr auto settings = std::tuple{
+      Setting{"threads", &Self::threads, "threads", Rule{1.0, 65536.0, false, false}},
+      Setting{"fused", &Self::fused, "whether neighbouring stages of a step are done at once"},
+      Setting{
+          "disorder", &Self::disorder,
+          "share of a body's particles that changes cell before its columns are sorted; infinite "
+          "for never",
+          Rule{.lower = 0.0, .lower_open = false, .finite = false}}};
+};
+
+/// What is fixed before the bodies are added. SI units.
+struct Settings {
+  GridSettings grid;
+  RunSettings run;
+  ContactSettings contact;
+  ExecutionSettings execution;
+};
+
+}  // namespace mpm
