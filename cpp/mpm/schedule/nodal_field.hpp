@@ -16,8 +16,8 @@ class NodalField {
       : first_(first), stride_(stride) {}
 
   /// The vector at number `at` of the records.
-  template <class T>
-  Vec<T, D> vector(int at, const Weights<T, D, count>& w) const {
+  template <int at, class T>
+  Vec<T, D> vector(const Weights<T, D, count>& w) const {
     Vec<T, D> total = Vec<T, D>::zero();
     for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
       T share = w.axis[1].N[y];
@@ -30,8 +30,8 @@ class NodalField {
   }
 
   /// Derivatives of that vector with respect to xi: [i][j] of component i along axis j.
-  template <class T>
-  std::array<Vec<T, D>, D> gradients(int at, const Weights<T, D, count>& w) const {
+  template <int at, class T>
+  std::array<Vec<T, D>, D> gradients(const Weights<T, D, count>& w) const {
     std::array<Vec<T, D>, D> g;
     g.fill(Vec<T, D>::zero());
     for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {

@@ -42,9 +42,9 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       const auto w = weights_at(basis, local_position(cell, rows));
       const T all = load(mass, rows), m = of_valid(rows, all);
       T speed2(0.0), change2(0.0);
-      const Vec<T, D> dv = nodes.vector(force_at, w);
+      const Vec<T, D> dv = nodes.template vector<force_at>(w);
       Vec<T, D> of_grid, v;
-      if constexpr (Transfer::takes_grid_velocity) of_grid = nodes.vector(velocity_at, w);
+      if constexpr (Transfer::takes_grid_velocity) of_grid = nodes.template vector<velocity_at>(w);
       unrolled<D>([&](auto a) {
         const T before = load(velocities[a], rows);
         if constexpr (Transfer::takes_grid_velocity)

@@ -23,8 +23,8 @@ void for_each_piece(const SurfaceLoad<D>& load, const Body<D>& body, const CellR
 
 /// Take the pieces of a patch's particles along; the nodal velocity that strains the material is
 /// the vector at number `at` of the records.
-template <int D>
-[[gnu::noinline]] void carry_loads(Domain<D>& domain, std::size_t p, int at) {
+template <int at, int D>
+[[gnu::noinline]] void carry_loads(Domain<D>& domain, std::size_t p) {
   const auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   const Body<D>& body = domain.body_of(patch);
@@ -43,7 +43,7 @@ template <int D>
           for (int a = 0; a < D; ++a)
             xi[a] = local_coordinate(grid.in_cells(body.x(a)[row], a), cell.cell[a]);
           const auto w = weights_at(basis, xi);
-          const auto gradients = nodes.gradients(at, w);
+          const auto gradients = nodes.template gradients<at>(w);
           Mat<double, D> L;
           for (int i = 0; i < D; ++i)
             for (int j = 0; j < D; ++j) L[i][j] = scale * gradients[static_cast<std::size_t>(i)][j];

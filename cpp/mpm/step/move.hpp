@@ -18,7 +18,7 @@ class Moving {
   template <class Rows, class Field, class Weights>
   void move(const CellRange<D>& cell, const Rows& rows, const Field& nodes, const Weights& w) {
     using T = Batch<Rows::lanes>;
-    const Vec<T, D> velocity = nodes.vector(velocity_at, w);
+    const Vec<T, D> velocity = nodes.template vector<velocity_at>(w);
     unrolled<D>([&](auto a) {
       const T x = fma(T(time_step_), velocity[a], load(x_[a], rows));
       store(x_[a], rows, x);

@@ -16,7 +16,7 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   Patch<D>& patch = domain.grid.patches[p];
   Body<D>& body = domain.body_of(patch);
   if (body.rigid) return;
-  if (domain.has_loads()) carry_loads(domain, p, straining_at);
+  if (domain.has_loads()) carry_loads<straining_at>(domain, p);
   const Material& material = domain.materials[static_cast<std::size_t>(body.material)];
   const StressSettings settings{domain.time_step, domain.time + domain.time_step, grid.cell_size,
                                 material.viscosity, forces_follow};
@@ -36,7 +36,7 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
     for_each_group<W>(cell, [&](const auto& rows) {
       if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
       const auto w = weights_at(basis, local_position(cell, rows));
-      const auto gradients = nodes.gradients(straining_at, w);
+      const auto gradients = nodes.template gradients<straining_at>(w);
       unrolled<D>([&](auto i) {
         unrolled<D>(
             [&](auto j) { (scale * gradients[i][j]).store(block.gradient[i][j] + block.count); });

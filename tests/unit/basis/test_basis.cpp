@@ -32,14 +32,14 @@ void check_lanes(mpm::testing::Report& report, const B& basis, const Nodes& node
   for (int k = 0; k < W; ++k)
     for (int a = 0; a < D; ++a) lanes[a].v[k] = std::fmod(start[a] + 0.37 * k, 1.0);
   const auto w = weights_at(basis, lanes);
-  const auto v = nodes.vector(force_at, w);
-  const auto g = nodes.gradients(force_at, w);
+  const auto v = nodes.template vector<force_at>(w);
+  const auto g = nodes.template gradients<force_at>(w);
   for (int k = 0; k < W; ++k) {
     Vec<double, D> xi;
     for (int a = 0; a < D; ++a) xi[a] = lanes[a].v[k];
     const auto alone = weights_at(basis, xi);
-    const auto v_alone = nodes.vector(force_at, alone);
-    const auto g_alone = nodes.gradients(force_at, alone);
+    const auto v_alone = nodes.template vector<force_at>(alone);
+    const auto g_alone = nodes.template gradients<force_at>(alone);
     for (std::size_t i = 0; i < D; ++i) {
       const int c = static_cast<int>(i);
       CHECK_CLOSE(v[c].v[k], v_alone[c], tolerance);
@@ -107,7 +107,7 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const
   };
   const auto nodes = field_of<B>(NodeRecords{records.data()}.from(first), NodeStrides<D>(shape));
   const auto value = [&](const Vec<double, D>& xi) {
-    return nodes.vector(force_at, weights_at(basis, xi))[1];
+    return nodes.template vector<force_at>(weights_at(basis, xi))[1];
   };
 
   for (int sample = 0; sample < 200; ++sample) {
@@ -132,7 +132,7 @@ void check_basis(mpm::testing::Report& report, const BlockShape<D>& shape, const
       CHECK_CLOSE(sum_over_nodes(number(given(p), velocity_at + a), ones), 10.0 + a,
                   11 * tolerance);
 
-    const auto gradients = nodes.gradients(force_at, weights_at(basis, xi));
+    const auto gradients = nodes.template gradients<force_at>(weights_at(basis, xi));
     for (int a = 0; a < D; ++a) {
       traction = Sym<double, D>::zero();
       traction(a, a) = 1.0;
