@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mpm/contact/contact_grid.hpp"
+#include "mpm/contact/contact.hpp"
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/ledger/ledger.hpp"
 #include "mpm/materials/material_block.hpp"
@@ -22,7 +22,7 @@ struct Domain {
   std::vector<Body<D>> bodies;
   std::vector<Material> materials;
   ContactSettings contact_settings;
-  ContactGrid<D> contact;
+  Contact<D> contact;
   std::array<TimeFunction, 3> gravity_of_time{};    // [m/s^2]
   Vec<double, D> gravity = Vec<double, D>::zero();  // mean over the step being made [m/s^2]
   Threads threads;

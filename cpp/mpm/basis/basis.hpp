@@ -7,7 +7,7 @@
 #include "mpm/basis/gimp.hpp"
 #include "mpm/basis/linear.hpp"
 #include "mpm/basis/quadratic_bspline.hpp"
-#include "mpm/catalogue/words.hpp"
+#include "mpm/catalogue/choice_list.hpp"
 
 namespace mpm {
 
@@ -21,8 +21,7 @@ struct Reach {
 };
 
 template <BasisModel... B>
-struct BasisList {
-  static constexpr int count = sizeof...(B);
+struct BasisList : ChoiceList<BasisId, B...> {
   static constexpr int before_max = std::max({B::before...});
   static constexpr int after_max = std::max({B::nodes - 1 - B::before...});
   static constexpr std::array<Reach, sizeof...(B)> reach = {
@@ -32,23 +31,13 @@ struct BasisList {
   /// f(basis of particles with that edge [cells]).
   template <class F>
   static void with(BasisId id, double edge, F&& f) {
-    int k = 0;
-    ((static_cast<int>(id) == k++ ? static_cast<void>(f(B(edge))) : void()), ...);
+    ChoiceList<BasisId, B...>::with(id, f, edge);
   }
   /// f(id, basis) for each, of particles of half a cell.
   template <class F>
   static void for_each(F&& f) {
     int k = 0;
     (f(static_cast<BasisId>(k++), B(0.5)), ...);
-  }
-  static constexpr std::array<Word<BasisId>, sizeof...(B)> words_of() {
-    return {Word<BasisId>{B::name, id_of<B>(), B::doc}...};
-  }
-  template <class One>
-  static constexpr BasisId id_of() {
-    int k = 0, found = -1;
-    ((std::is_same_v<One, B> ? found = k++ : k++), ...);
-    return static_cast<BasisId>(found);
   }
 };
 

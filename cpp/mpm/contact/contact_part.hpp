@@ -4,59 +4,59 @@
 #include <algorithm>
 #include <vector>
 
-#include "mpm/contact/node_contact.hpp"
+#include "mpm/contact/contact_node.hpp"
 
 namespace mpm {
 
 /// An overlapped node of the last step. Its pairs are used again until the bodies of one of them
 /// have moved by ContactSettings::normal_travel, or others are there.
-struct KnownNode {
-  std::uint64_t who;         // a number for the bodies and how many particles each has
-  std::uint32_t first_pair;  // of ContactPart::known
-  bool solved;               // its contacts were solved, and the gaps are those after the step
+struct CachedNode {
+  std::uint64_t membership_hash;  // a number for the bodies and how many particles each has
+  std::uint32_t first_pair;       // of ContactPart::cached
+  bool solved;                    // its contacts were solved, and the gaps are those after the step
 };
 
 /// The normal and the gap of a pair of bodies at a node.
 template <int D>
-struct KnownPair {
+struct CachedPair {
   Vec<double, D> normal;  // from the body with the lower number
   double gap;             // [m]
-  double travel;          // of both bodies (ContactGrid::travel_) when it was found [m]
+  double displacement;    // of both bodies (PairCache) when it was found [m]
 };
 
 /// Nodes where bodies may act on each other. Those at which all are apart are counted and left out,
-/// unless pairs are kept from step to step.
+/// unless pairs are cached from step to step.
 template <int D>
 struct ContactPart {
   std::vector<ContactNode> nodes;
-  std::vector<Side<D>> sides;
-  std::vector<SidePair<D>> pairs;
+  std::vector<BodyAtNode<D>> sides;
+  std::vector<ContactPair<D>> pairs;
   std::vector<std::uint32_t> further_places;  // of records of the sides, each node's in a row
   std::size_t overlapped = 0;                 // nodes, those left out too
   int bodies_max = 0;                         // at a node
-  // Where pairs are kept: of this step and the last, in the order of `nodes` and of `pairs`.
-  std::vector<KnownNode> known_nodes, last_known_nodes;
-  std::vector<KnownPair<D>> known, last_known;
+  // Where pairs are cached: of this step and the last, in the order of `nodes` and of `pairs`.
+  std::vector<CachedNode> cached_nodes, last_cached_nodes;
+  std::vector<CachedPair<D>> cached, last_cached;
 
-  std::span<Side<D>> sides_of(const ContactNode& node) {
+  std::span<BodyAtNode<D>> sides_of(const ContactNode& node) {
     return {&sides[node.first_side], node.sides};
   }
-  std::span<SidePair<D>> pairs_of(const ContactNode& node) {
+  std::span<ContactPair<D>> pairs_of(const ContactNode& node) {
     return {&pairs[node.first_pair], pair_count(node.sides)};
   }
   /// f(place) of a side's record in each patch that has it (TileGrid::record_at).
   template <class F>
-  void for_each_place(const Side<D>& side, F&& f) const {
+  void for_each_place(const BodyAtNode<D>& side, F&& f) const {
     f(side.place);
     for (std::uint32_t k = 0; k < side.further_count; ++k)
       f(further_places[side.first_further + k]);
   }
   /// May any pair at a node act? Other nodes stay as they are, to the last bit.
-  bool any_closed(const ContactNode& node) {
-    return std::ranges::any_of(pairs_of(node), &SidePair<D>::closed);
+  bool any_gap_closed(const ContactNode& node) {
+    return std::ranges::any_of(pairs_of(node), &ContactPair<D>::gap_closed);
   }
-  KnownNode& known_of(const ContactNode& node) {
-    return known_nodes[static_cast<std::size_t>(&node - nodes.data())];
+  CachedNode& cached_of(const ContactNode& node) {
+    return cached_nodes[static_cast<std::size_t>(&node - nodes.data())];
   }
 
   void start() {
@@ -66,10 +66,10 @@ struct ContactPart {
     further_places.clear();
     overlapped = 0;
     bodies_max = 0;
-    std::swap(known, last_known);
-    std::swap(known_nodes, last_known_nodes);
-    known.clear();
-    known_nodes.clear();
+    std::swap(cached, last_cached);
+    std::swap(cached_nodes, last_cached_nodes);
+    cached.clear();
+    cached_nodes.clear();
   }
   /// Room for nodes, sides, pairs and further places beyond those that are there, and some to
   /// spare, so that numbers which creep up seldom allocate.
@@ -99,7 +99,7 @@ struct ContactPart {
       if (!stays(node)) continue;
       const auto from = places_of(node);
       std::ptrdiff_t count = 0;
-      for (Side<D>& s : sides_of(node)) {
+      for (BodyAtNode<D>& s : sides_of(node)) {
         count += s.further_count;
         s.first_further -= static_cast<std::uint32_t>(from - place);
       }
@@ -121,13 +121,13 @@ struct ContactPart {
   std::size_t bytes() const {
     const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
     return sizeof(*this) + size(nodes) + size(sides) + size(pairs) + size(further_places) +
-           size(known_nodes) + size(last_known_nodes) + size(known) + size(last_known);
+           size(cached_nodes) + size(last_cached_nodes) + size(cached) + size(last_cached);
   }
 
  private:
   /// Where a node's further places begin: its sides have been sorted since they were noted.
   std::uint32_t first_further_of(const ContactNode& node) {
-    return std::ranges::min(sides_of(node), {}, &Side<D>::first_further).first_further;
+    return std::ranges::min(sides_of(node), {}, &BodyAtNode<D>::first_further).first_further;
   }
 };
 

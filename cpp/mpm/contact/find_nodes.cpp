@@ -1,9 +1,12 @@
 // The overlapped nodes of a step: who has mass there.
+#include "mpm/contact/find_nodes.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <utility>
 
-#include "mpm/contact/contact_grid.hpp"
+#include "mpm/contact/find_pairs.hpp"
+#include "mpm/contact/rigid_masses.hpp"
 
 namespace mpm {
 namespace {
@@ -20,11 +23,10 @@ TileBodies<D>& bodies_around() {
   return around;
 }
 
-}  // namespace
-
+/// The bodies around a tile and the nodes at which they overlap.
 template <int D>
-void ContactGrid<D>::look_around(const TileGrid<D>& grid, const ContactTile<D>& tile,
-                                 TileBodies<D>& found) const {
+void look_around(const Contact<D>& contact, const TileGrid<D>& grid, const ContactTile<D>& tile,
+                 TileBodies<D>& found) {
   found.count = 0;
   found.held.clear();
   std::uint64_t once = 0;
@@ -33,11 +35,11 @@ void ContactGrid<D>::look_around(const TileGrid<D>& grid, const ContactTile<D>& 
   for (std::uint32_t h = tile.first_holder; h < end;) {
     if (found.count == found.bodies.size()) found.bodies.emplace_back();
     TileBody<D>& at = found.bodies[found.count++];
-    at.body = holders_[h].body;
+    at.body = contact.holders[h].body;
     at.first_holder = h;
     at.nodes = 0;
-    for (; h < end && holders_[h].body == at.body; ++h) {
-      const std::uint64_t nodes = masses_.in_tile(grid, holders_[h]);
+    for (; h < end && contact.holders[h].body == at.body; ++h) {
+      const std::uint64_t nodes = contact.masses.in_tile(grid, contact.holders[h]);
       found.held.push_back({nodes});
       at.nodes |= nodes;
     }
@@ -55,23 +57,26 @@ void ContactGrid<D>::look_around(const TileGrid<D>& grid, const ContactTile<D>& 
   }
 }
 
+/// Have the memory bring the particles around nodes of a tile, a bit each by Tile<D>::cell.
 template <int D>
-void ContactGrid<D>::fetch_particles(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                                     const TileBodies<D>& around, std::uint64_t nodes) const {
+void fetch_particles(const Contact<D>& contact, const TileGrid<D>& grid,
+                     const std::vector<Body<D>>& bodies, const TileBodies<D>& around,
+                     std::uint64_t nodes) {
   for (const TileBody<D>& at : around.all())
-    TileParticles<D>::fetch(grid, bodies[static_cast<std::size_t>(at.body)], holders_of(at),
+    TileParticles<D>::fetch(grid, bodies[static_cast<std::size_t>(at.body)], at.of(contact.holders),
                             at.nodes & nodes);
 }
 
+/// Where the sides of a node are, their masses and velocities left to be read.
 template <int D>
-void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around, Part& part,
-                                 ContactNode& node) {
+void place_sides(TileGrid<D>& grid, const TileBodies<D>& around, ContactPart<D>& part,
+                 ContactNode& node) {
   const Index<D> index = Tile<D>::cell_index(node.cell);
   node.sides = 0;
   for (const TileBody<D>& at : around.all()) {
     if (!(at.nodes >> node.cell & 1u)) continue;
     ++node.sides;
-    Side<D>& side = part.sides.emplace_back();
+    BodyAtNode<D>& side = part.sides.emplace_back();
     side.body = at.body;
     side.first_further = static_cast<std::uint32_t>(part.further_places.size());
     bool first = true;
@@ -89,27 +94,28 @@ void ContactGrid<D>::place_sides(TileGrid<D>& grid, const TileBodies<D>& around,
 }
 
 template <int D>
-void ContactGrid<D>::read_sides(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, Part& part,
-                                ContactNode& node) {
-  node.held = static_cast<std::uint8_t>(grid.walls.held(place_of(grid, node)));
+void read_sides(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                ContactPart<D>& part, ContactNode& node) {
+  node.held = static_cast<std::uint8_t>(grid.walls.held(place_of(contact, grid, node)));
   node.energy = node.force_work = 0.0;
-  std::uint64_t who = 0;
-  for (Side<D>& side : part.sides_of(node)) {
+  std::uint64_t hash = 0;
+  for (BodyAtNode<D>& side : part.sides_of(node)) {
     const auto b = static_cast<std::size_t>(side.body);
-    who = mix(mix(who, b), bodies[b].active());
+    hash = mix(mix(hash, b), bodies[b].active());
     side.prescribed = bodies[b].prescribed;
     side.mass = grid.record_at(side.place)[mass_at];
     side.mapped = read(grid, side, velocity_at);
   }
-  if (keeps_) part.known_of(node).who = who;
+  if (contact.cache.on) part.cached_of(node).membership_hash = hash;
   sort_sides(part.sides_of(node));
 }
 
+/// The overlapped nodes of a tile, their sides read and their pairs empty.
 template <int D>
-void ContactGrid<D>::add_nodes(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                               std::size_t tile, TileBodies<D>& around, Part& part) {
-  for (std::uint32_t h = 0; h < tiles_[tile].holders; ++h)
-    around.held[h].locate(grid, holders_[tiles_[tile].first_holder + h]);
+void add_nodes(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+               std::size_t tile, TileBodies<D>& around, ContactPart<D>& part) {
+  for (std::uint32_t h = 0; h < contact.tiles[tile].holders; ++h)
+    around.held[h].locate(grid, contact.holders[contact.tiles[tile].first_holder + h]);
   const std::size_t first = part.nodes.size();
   std::size_t sides = 0, pairs = 0, places = 0;
   for (const HeldNodes<D>& held : around.held)
@@ -125,7 +131,7 @@ void ContactGrid<D>::add_nodes(TileGrid<D>& grid, const std::vector<Body<D>>& bo
   const auto nodes = static_cast<std::size_t>(std::popcount(around.overlapped));
   part.overlapped += nodes;
   part.reserve(nodes, sides, pairs, places - sides);
-  if (keeps_) part.known_nodes.resize(first + nodes);
+  if (contact.cache.on) part.cached_nodes.resize(first + nodes);
   for (std::uint64_t left = around.overlapped; left != 0; left &= left - 1) {
     ContactNode& node = part.nodes.emplace_back();
     node.cell = static_cast<std::uint8_t>(std::countr_zero(left));
@@ -135,101 +141,111 @@ void ContactGrid<D>::add_nodes(TileGrid<D>& grid, const std::vector<Body<D>>& bo
     place_sides(grid, around, part, node);
     part.pairs.resize(part.pairs.size() + pair_count(node.sides));
   }
-  if (keeps_) part.known.resize(part.pairs.size());
+  if (contact.cache.on) part.cached.resize(part.pairs.size());
   for (std::size_t n = first; n < part.nodes.size(); ++n)
-    read_sides(grid, bodies, part, part.nodes[n]);
+    read_sides(contact, grid, bodies, part, part.nodes[n]);
 }
 
+/// Normals, gaps and frictions of the pairs at the nodes of a tile, those of a part from the
+/// first-th on: cached ones that still hold, else found.
 template <int D>
-void ContactGrid<D>::add_travel(std::size_t bodies) {
-  travel_.resize(bodies, 0.0);
-  fastest_.resize(bodies, 0.0);
-  for (std::size_t b = 0; b < bodies; ++b)
-    travel_[b] += last_time_step_ * std::sqrt(std::exchange(fastest_[b], 0.0));
-}
-
-template <int D>
-void ContactGrid<D>::fill_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                                const ContactSettings& settings, std::size_t t,
-                                TileBodies<D>& around, std::size_t p, std::size_t first) {
-  ContactTile<D>& tile = tiles_[t];
-  Part& part = parts_[p];
+void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                const ContactSettings& settings, std::size_t t, TileBodies<D>& around,
+                std::size_t p, std::size_t first) {
+  ContactTile<D>& tile = contact.tiles[t];
+  ContactPart<D>& part = contact.parts[p];
   const std::span<ContactNode> nodes(part.nodes.begin() + static_cast<std::ptrdiff_t>(first),
                                      part.nodes.end());
-  std::uint64_t unknown = around.overlapped;
-  if (keeps_)
+  std::uint64_t missing = around.overlapped;
+  if (contact.cache.on)
     for (const ContactNode& node : nodes)
-      if (recall(bodies, settings, grid.cell_size, tile, part, node))
-        unknown &= ~(std::uint64_t{1} << node.cell);
-  if (keeps_) fetch_particles(grid, bodies, around, unknown);
-  if (unknown != 0)
+      if (reuse_pairs(contact, bodies, settings, grid.cell_size, tile, part, node))
+        missing &= ~(std::uint64_t{1} << node.cell);
+  if (contact.cache.on) fetch_particles(contact, grid, bodies, around, missing);
+  if (missing != 0)
     for (TileBody<D>& at : around.all())
       at.particles.gather(grid, bodies[static_cast<std::size_t>(at.body)], tile.tile,
-                          holders_of(at), at.nodes & unknown);
+                          at.of(contact.holders), at.nodes & missing);
   for (const ContactNode& node : nodes)
-    if (unknown >> node.cell & 1u) {
+    if (missing >> node.cell & 1u) {
       find_pairs(grid, bodies, settings, around, part, node);
-      if (keeps_) remember_pairs(part, node);
+      if (contact.cache.on) store_pairs(contact.cache, part, node);
     }
-  tile.known = keeps_ ? around.overlapped : 0;
-  tile.known_part = static_cast<std::uint32_t>(p);
-  tile.first_known = static_cast<std::uint32_t>(first);
+  tile.cached = contact.cache.on ? around.overlapped : 0;
+  tile.cached_part = static_cast<std::uint32_t>(p);
+  tile.first_cached = static_cast<std::uint32_t>(first);
 }
 
+}  // namespace
+
 template <int D>
-void ContactGrid<D>::find(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                          const ContactSettings& settings, double time_step, Threads& threads) {
-  keeps_ = settings.normal_travel > 0.0;
-  masses_.find(grid, threads);
-  if (keeps_) add_travel(bodies.size());
+void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                const ContactSettings& settings, double time_step, Threads& threads) {
+  contact.cache.on = settings.normal_travel > 0.0;
+  contact.masses.find(grid, threads);
+  if (contact.cache.on) add_displacements(contact.cache, bodies.size());
   // Few parts, so that their sizes hardly change; enough to share them out evenly.
   constexpr std::size_t least_tiles = 32, per_thread = 8;
-  const std::size_t parts = std::clamp(tiles_.size() / least_tiles, std::size_t{1},
+  const std::size_t parts = std::clamp(contact.tiles.size() / least_tiles, std::size_t{1},
                                        per_thread * static_cast<std::size_t>(threads.count()));
-  const auto first_tile = [&](std::size_t p) { return p * tiles_.size() / parts; };
-  if (parts > parts_.size()) parts_.resize(parts);  // no part goes: it may know of another's tiles
-  for (Part& part : parts_) part.start();
+  const auto first_tile = [&](std::size_t p) { return p * contact.tiles.size() / parts; };
+  if (parts > contact.parts.size())
+    contact.parts.resize(parts);  // no part goes: it may know of another's tiles
+  for (ContactPart<D>& part : contact.parts) part.start();
   threads.for_each(parts, [&](std::size_t p) {
-    Part& part = parts_[p];
+    ContactPart<D>& part = contact.parts[p];
     for (std::size_t t = first_tile(p); t < first_tile(p + 1); ++t) {
       TileBodies<D>& around = bodies_around<D>();
-      look_around(grid, tiles_[t], around);
+      look_around(contact, grid, contact.tiles[t], around);
       if (around.overlapped == 0) {
-        tiles_[t].known = 0;
+        contact.tiles[t].cached = 0;
         continue;
       }
       const std::size_t first = part.nodes.size();
-      if (!keeps_) fetch_particles(grid, bodies, around, around.overlapped);
-      add_nodes(grid, bodies, t, around, part);
-      fill_pairs(grid, bodies, settings, t, around, p, first);
+      if (!contact.cache.on) fetch_particles(contact, grid, bodies, around, around.overlapped);
+      add_nodes(contact, grid, bodies, t, around, part);
+      fill_pairs(contact, grid, bodies, settings, t, around, p, first);
       // A rigid body's mass is spread over all its nodes, so they stay.
-      if (!keeps_)
+      if (!contact.cache.on)
         part.leave_out(first, [&](const ContactNode& node) {
-          return part.any_closed(node) ||
-                 std::ranges::any_of(part.sides_of(node), [&](const Side<D>& side) {
+          return part.any_gap_closed(node) ||
+                 std::ranges::any_of(part.sides_of(node), [&](const BodyAtNode<D>& side) {
                    return bodies[static_cast<std::size_t>(side.body)].rigid && !side.prescribed;
                  });
         });
     }
   });
-  last_time_step_ = time_step;
-  overlapped_ = 0;
-  for (const Part& part : parts_) {
-    overlapped_ += part.overlapped;
-    bodies_max_ = std::max(bodies_max_, part.bodies_max);
-    if (keeps_)
-      for (const Side<D>& side : part.sides) {
-        double& fastest = fastest_[static_cast<std::size_t>(side.body)];
-        fastest = std::max(fastest, dot(side.mapped, side.mapped));
-      }
+  contact.counts.overlapped = 0;
+  for (const ContactPart<D>& part : contact.parts) {
+    contact.counts.overlapped += part.overlapped;
+    contact.counts.bodies_max = std::max(contact.counts.bodies_max, part.bodies_max);
   }
-  nodes_max_ = std::max(nodes_max_, overlapped_);
-  share_rigid_masses(bodies);
+  contact.counts.overlapped_max =
+      std::max(contact.counts.overlapped_max, contact.counts.overlapped);
+  note_speeds(contact, time_step);
+  share_rigid_masses(contact, bodies);
 }
 
-template void ContactGrid<2>::find(TileGrid<2>&, const std::vector<Body<2>>&,
-                                   const ContactSettings&, double, Threads&);
-template void ContactGrid<3>::find(TileGrid<3>&, const std::vector<Body<3>>&,
-                                   const ContactSettings&, double, Threads&);
+template <int D>
+Crowd largest_crowd(const Contact<D>& contact, const TileGrid<D>& grid) {
+  Crowd most;
+  for (const ContactPart<D>& part : contact.parts)
+    for (const ContactNode& node : part.nodes) {
+      if (static_cast<int>(node.sides) <= most.bodies) continue;
+      most.bodies = node.sides;
+      most.body = part.sides[node.first_side].body;
+      const Vec<double, D> x = grid.position_of(place_of(contact, grid, node));
+      for (int a = 0; a < D; ++a) most.position[a] = x[a];
+    }
+  return most;
+}
+
+#define MPM_INSTANTIATE(D)                                                            \
+  template void find_nodes<D>(Contact<D>&, TileGrid<D>&, const std::vector<Body<D>>&, \
+                              const ContactSettings&, double, Threads&);              \
+  template Crowd largest_crowd<D>(const Contact<D>&, const TileGrid<D>&);
+MPM_INSTANTIATE(2)
+MPM_INSTANTIATE(3)
+#undef MPM_INSTANTIATE
 
 }  // namespace mpm

@@ -1,9 +1,9 @@
 #pragma once
-// The normal of a pair of bodies at a node.
+// The normal of a pair of bodies at a node: every rule, one line in `NormalRules`.
 #include <algorithm>
 
+#include "mpm/catalogue/choice_list.hpp"
 #include "mpm/contact/separation.hpp"
-#include "mpm/contact/settings.hpp"
 
 namespace mpm {
 
@@ -51,29 +51,87 @@ struct NormalSource {
   Vec<double, D> normal;  // from the gradient of mass (weighted_normal); zero for `plane`
 };
 
-/// The unit normal from body r to body s by the chosen rule; zero if there is none.
-template <int D>
-Vec<double, D> pair_normal(const NormalSource<D>& r, const NormalSource<D>& s, NormalRule rule,
-                           unsigned held) {
-  constexpr double parallel = 1e-6;  // normals that differ by less give no direction
-  const bool r_is_first = r.body < s.body;
-  const bool r_is_stiffer = r.stiffness != s.stiffness ? r.stiffness > s.stiffness : r_is_first;
-  const auto of_one = [&](bool takes_r) {
-    return normalised(takes_r ? r.normal : -1.0 * s.normal);
-  };
-  switch (rule) {
-    case NormalRule::plane:
-      return separating_normal(r.particles, s.particles, held);
-    case NormalRule::pair:
-      return normalised(r.normal - s.normal, parallel);
-    case NormalRule::first:
-      return of_one(r_is_first);
-    case NormalRule::second:
-      return of_one(!r_is_first);
-    case NormalRule::stiffer:
-      break;
+/// A rule for the unit normal from body r to body s, zero if there is none; `held` are axes that
+/// walls hold. One that uses gradients of mass finds them in NormalSource::normal.
+template <class T>
+concept NormalModel = requires(const NormalSource<3>& source, unsigned held) {
+  { T::name } -> std::convertible_to<std::string_view>;
+  { T::doc } -> std::convertible_to<std::string_view>;
+  { T::uses_gradients } -> std::convertible_to<bool>;
+  { T::normal(source, source, held) } -> std::same_as<Vec<double, 3>>;
+};
+
+/// Decisions 0008 and 0032.
+struct PlaneNormal {
+  static constexpr std::string_view name = "plane";
+  static constexpr std::string_view doc = "of the plane which separates the two bodies' points";
+  static constexpr bool uses_gradients = false;
+
+  template <int D>
+  static Vec<double, D> normal(const NormalSource<D>& r, const NormalSource<D>& s, unsigned held) {
+    return separating_normal(r.particles, s.particles, held);
   }
-  return of_one(r_is_stiffer);
+};
+
+/// n_r - n_s, the paper's.
+struct PairNormal {
+  static constexpr std::string_view name = "pair";
+  static constexpr std::string_view doc = "from the gradients of mass of both, n_r - n_s";
+  static constexpr bool uses_gradients = true;
+
+  template <int D>
+  static Vec<double, D> normal(const NormalSource<D>& r, const NormalSource<D>& s, unsigned) {
+    constexpr double parallel = 1e-6;  // normals that differ by less give no direction
+    return normalised(r.normal - s.normal, parallel);
+  }
+};
+
+/// From the gradient of mass of one of the two: r's if `takes_r`.
+template <int D>
+Vec<double, D> normal_of_one(const NormalSource<D>& r, const NormalSource<D>& s, bool takes_r) {
+  return normalised(takes_r ? r.normal : -1.0 * s.normal);
 }
+
+struct FirstNormal {
+  static constexpr std::string_view name = "first";
+  static constexpr std::string_view doc = "from that of the first";
+  static constexpr bool uses_gradients = true;
+
+  template <int D>
+  static Vec<double, D> normal(const NormalSource<D>& r, const NormalSource<D>& s, unsigned) {
+    return normal_of_one(r, s, r.body < s.body);
+  }
+};
+
+struct SecondNormal {
+  static constexpr std::string_view name = "second";
+  static constexpr std::string_view doc = "from that of the second";
+  static constexpr bool uses_gradients = true;
+
+  template <int D>
+  static Vec<double, D> normal(const NormalSource<D>& r, const NormalSource<D>& s, unsigned) {
+    return normal_of_one(r, s, r.body > s.body);
+  }
+};
+
+/// Of two that are alike the first.
+struct StifferNormal {
+  static constexpr std::string_view name = "stiffer";
+  static constexpr std::string_view doc = "from that of the stiffer";
+  static constexpr bool uses_gradients = true;
+
+  template <int D>
+  static Vec<double, D> normal(const NormalSource<D>& r, const NormalSource<D>& s, unsigned) {
+    const bool alike = r.stiffness == s.stiffness;
+    return normal_of_one(r, s, alike ? r.body < s.body : r.stiffness > s.stiffness);
+  }
+};
+
+enum class NormalRule : std::uint8_t {};
+template <NormalModel... T>
+using NormalList = ChoiceList<NormalRule, T...>;
+using NormalRules = NormalList<PlaneNormal, PairNormal, FirstNormal, SecondNormal, StifferNormal>;
+template <>
+inline constexpr auto words<NormalRule> = NormalRules::words_of();
 
 }  // namespace mpm

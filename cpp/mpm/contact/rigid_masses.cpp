@@ -1,7 +1,8 @@
 // The masses with which bodies that do not deform meet others at a node.
-#include <algorithm>
+#include "mpm/contact/rigid_masses.hpp"
 
-#include "mpm/contact/contact_grid.hpp"
+#include <algorithm>
+#include <limits>
 
 namespace mpm {
 namespace {
@@ -11,18 +12,18 @@ namespace {
 /// than a tenth of the others' volume at the node, in proportion, so that a node which it has only
 /// just reached, inside the others, is not held.
 template <int D>
-void harden(const std::vector<Body<D>>& bodies, std::span<Side<D>> sides) {
+void harden(const std::vector<Body<D>>& bodies, std::span<BodyAtNode<D>> sides) {
   constexpr double full = 0.1;
-  const auto density = [&](const Side<D>& side) {
+  const auto density = [&](const BodyAtNode<D>& side) {
     return bodies[static_cast<std::size_t>(side.body)].initial_density;
   };
   double mass = 0.0, volume = 0.0;
-  for (const Side<D>& side : sides)
+  for (const BodyAtNode<D>& side : sides)
     if (!side.prescribed) {
       mass += side.mass;
       volume += side.mass / density(side);
     }
-  for (Side<D>& side : sides) {
+  for (BodyAtNode<D>& side : sides) {
     if (!side.prescribed) continue;
     const double share = side.mass / density(side) / (full * volume);
     side.mass =
@@ -33,22 +34,23 @@ void harden(const std::vector<Body<D>>& bodies, std::span<Side<D>> sides) {
 }  // namespace
 
 template <int D>
-void ContactGrid<D>::share_rigid_masses(const std::vector<Body<D>>& bodies) {
+void share_rigid_masses(Contact<D>& contact, const std::vector<Body<D>>& bodies) {
   if (std::none_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.rigid; })) return;
-  rigid_share_.assign(bodies.size(), 0.0);
-  for (Part& part : parts_) {
+  contact.rigid_share.assign(bodies.size(), 0.0);
+  for (ContactPart<D>& part : contact.parts) {
     for (const ContactNode& node : part.nodes) harden(bodies, part.sides_of(node));
-    for (const Side<D>& side : part.sides)
-      rigid_share_[static_cast<std::size_t>(side.body)] += side.mass;
+    for (const BodyAtNode<D>& side : part.sides)
+      contact.rigid_share[static_cast<std::size_t>(side.body)] += side.mass;
   }
-  for (Part& part : parts_)
-    for (Side<D>& side : part.sides) {
+  for (ContactPart<D>& part : contact.parts)
+    for (BodyAtNode<D>& side : part.sides) {
       const auto b = static_cast<std::size_t>(side.body);
-      if (bodies[b].rigid && !side.prescribed) side.mass /= rigid_share_[b] / bodies[b].total_mass;
+      if (bodies[b].rigid && !side.prescribed)
+        side.mass /= contact.rigid_share[b] / bodies[b].total_mass;
     }
 }
 
-template void ContactGrid<2>::share_rigid_masses(const std::vector<Body<2>>&);
-template void ContactGrid<3>::share_rigid_masses(const std::vector<Body<3>>&);
+template void share_rigid_masses<2>(Contact<2>&, const std::vector<Body<2>>&);
+template void share_rigid_masses<3>(Contact<3>&, const std::vector<Body<3>>&);
 
 }  // namespace mpm

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "mpm/contact/contact_grid.hpp"
+#include "mpm/contact/contact.hpp"
 
 namespace mpm {
 namespace {
@@ -21,67 +21,56 @@ bool is_pair_count(std::uint32_t pairs) {
 
 /// The pairs of one node follow those of another.
 template <int D>
-void check_known(const ContactPart<D>& part) {
-  const auto& nodes = part.known_nodes;
-  StateStream::check(nodes.empty() == part.known.empty(), damaged);
+void check_cached(const ContactPart<D>& part) {
+  const auto& nodes = part.cached_nodes;
+  StateStream::check(nodes.empty() == part.cached.empty(), damaged);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const std::size_t begin = nodes[n].first_pair;
-    const std::size_t end = n + 1 < nodes.size() ? nodes[n + 1].first_pair : part.known.size();
-    StateStream::check((n > 0 || begin == 0) && begin < end && end <= part.known.size() &&
+    const std::size_t end = n + 1 < nodes.size() ? nodes[n + 1].first_pair : part.cached.size();
+    StateStream::check((n > 0 || begin == 0) && begin < end && end <= part.cached.size() &&
                            is_pair_count(static_cast<std::uint32_t>(end - begin)),
                        damaged);
     StateStream::check_flag(nodes[n].solved);
   }
 }
 
-void check_records(const std::vector<PairRecord>& records, std::size_t places, std::size_t bodies) {
-  const auto is_body = [&](int b) { return b >= 0 && static_cast<std::size_t>(b) < bodies; };
-  for (std::size_t k = 0; k < records.size(); ++k) {
-    const PairRecord& r = records[k];
-    const bool later =
-        k == 0 || std::pair(records[k - 1].a, records[k - 1].b) < std::pair(r.a, r.b);
-    StateStream::check(is_body(r.a) && is_body(r.b) && r.a < r.b && later, damaged);
-  }
-  StateStream::check((places == 0 && records.empty()) ||
-                         (std::has_single_bit(places) && 2 * records.size() <= places),
-                     damaged);
-}
-
 }  // namespace
 
 template <int D>
-void ContactGrid<D>::exchange(StateStream& stream, std::size_t bodies) {
-  stream.same(tiles_.size(), "its patches and its contacts do not agree");
-  for (ContactTile<D>& tile : tiles_) stream(tile.known, tile.known_part, tile.first_known);
-  stream.length(parts_, 2 * sizeof(std::size_t));
-  for (Part& part : parts_) {
-    stream.vector(part.known_nodes);
-    stream.vector(part.known);
+void exchange_contact(Contact<D>& contact, StateStream& stream, std::size_t bodies) {
+  stream.same(contact.tiles.size(), "its patches and its contacts do not agree");
+  for (ContactTile<D>& tile : contact.tiles)
+    stream(tile.cached, tile.cached_part, tile.first_cached);
+  stream.length(contact.parts, 2 * sizeof(std::size_t));
+  for (ContactPart<D>& part : contact.parts) {
+    stream.vector(part.cached_nodes);
+    stream.vector(part.cached);
   }
-  stream.vector(travel_);
-  stream.vector(fastest_);
-  stream.vector(records_);
-  stream.vector(places_);
-  std::size_t unconverged = unconverged_.load();
-  stream(last_time_step_, overlapped_, nodes_max_, bodies_max_, unconverged);
-  unconverged_.store(unconverged);
+  stream.vector(contact.cache.displacement);
+  stream.vector(contact.cache.fastest);
+  contact.records.exchange(stream);
+  std::size_t unconverged = contact.unconverged.load();
+  stream(contact.cache.last_time_step, contact.counts.overlapped, contact.counts.overlapped_max,
+         contact.counts.bodies_max, unconverged);
+  contact.unconverged.store(unconverged);
   if (!stream.restores()) return;
-  for (const Part& part : parts_) check_known(part);
-  for (const ContactTile<D>& tile : tiles_) {
-    if (tile.known == 0) continue;
-    StateStream::check(tile.known_part < parts_.size(), damaged);
-    const auto nodes = static_cast<std::size_t>(std::popcount(tile.known));
-    StateStream::check(tile.first_known + nodes <= parts_[tile.known_part].known_nodes.size(),
-                       damaged);
+  for (const ContactPart<D>& part : contact.parts) check_cached(part);
+  for (const ContactTile<D>& tile : contact.tiles) {
+    if (tile.cached == 0) continue;
+    StateStream::check(tile.cached_part < contact.parts.size(), damaged);
+    const auto nodes = static_cast<std::size_t>(std::popcount(tile.cached));
+    StateStream::check(
+        tile.first_cached + nodes <= contact.parts[tile.cached_part].cached_nodes.size(), damaged);
   }
-  for (const std::size_t size : {travel_.size(), fastest_.size()})
+  for (const std::size_t size : {contact.cache.displacement.size(), contact.cache.fastest.size()})
     StateStream::check(size == 0 || size == bodies, damaged);
-  StateStream::check(bodies_max_ >= 0 && static_cast<std::size_t>(bodies_max_) <= bodies, damaged);
-  check_records(records_, places_.size(), bodies);
-  sort_records();
+  StateStream::check(contact.counts.bodies_max >= 0 &&
+                         static_cast<std::size_t>(contact.counts.bodies_max) <= bodies,
+                     damaged);
+  contact.records.check_restored(bodies);
 }
 
-template void ContactGrid<2>::exchange(StateStream&, std::size_t);
-template void ContactGrid<3>::exchange(StateStream&, std::size_t);
+template void exchange_contact<2>(Contact<2>&, StateStream&, std::size_t);
+template void exchange_contact<3>(Contact<3>&, StateStream&, std::size_t);
 
 }  // namespace mpm

@@ -13,7 +13,7 @@
 namespace mpm {
 
 /// A plane a . x + b = 0, x in cells from the node; none if a is zero. a points from one body to
-/// another and has the inverse of the half width of the corridor between them as its length.
+/// another and has the inverse of the half width of the margin between them as its length.
 template <int D>
 struct Plane {
   Vec<double, D> a = Vec<double, D>::zero();  // [1/cell]
@@ -22,12 +22,12 @@ struct Plane {
 
 /// The fit of a plane a . x + b = 0, x in cells from the node, to the particles of two bodies: the
 /// least of
-///   softness |a|^2 / 2 + sum_p w_p max(0, 1 - c_p (a . x_p + b))^2 / 2,
+///   regularisation |a|^2 / 2 + sum_p w_p max(0, 1 - c_p (a . x_p + b))^2 / 2,
 /// c = -1 and +1 for the particles of r and s, w each body's masses over their sum. It is the
-/// widest corridor between the two, of half width 1/|a|, that few particles enter.
+/// widest margin between the two, of half width 1/|a|, that few particles enter.
 ///
 /// The function is convex with one least point. Between the places where a particle enters or
-/// leaves the corridor it is a quadratic, of those that are inside; Newton's method goes to the
+/// leaves the margin it is a quadratic, of those that are inside; Newton's method goes to the
 /// least of the quadratic, until the same particles are inside there. What it ends with depends on
 /// them alone, and not on the way there; and it begins at the centres of mass, never at a plane
 /// found before: else the order in which nodes are visited would be seen in the last bits.
@@ -57,8 +57,8 @@ class PlaneFit {
   // Chosen by tests, not by theory (decision 0008): a third of it lets single particles turn the
   // normal, and two finely divided rings lose their symmetry; more keeps part of the slope of a
   // corner, and friction on a sliding block is one to two per cent off.
-  static constexpr double softness = 4e-3;
-  // Keeps the system regular where no particle is inside the corridor.
+  static constexpr double regularisation = 4e-3;
+  // Keeps the system regular where no particle is inside the margin.
   static constexpr double damping = 1e-12;
 
   /// The function as it is where the same particles are inside:
@@ -94,7 +94,7 @@ class PlaneFit {
     }
   };
 
-  /// Start with the plane midway between the bodies' centres of mass, both on the corridor's edges.
+  /// Start with the plane midway between the bodies' centres of mass, both on the margin's edges.
   void start_between_centres() {
     const Vec<double, D> r = r_.centre(), s = s_.centre();
     double apart[D], square = 0.0, middle = 0.0;
@@ -147,7 +147,7 @@ class PlaneFit {
     }
   }
 
-  /// Sums over the particles of a body that are inside a plane's corridor or beyond.
+  /// Sums over the particles of a body that are inside a plane's margin or beyond.
   struct Moments {
     T second[D][D], first[n];  // of weight x x^T and of weight (x, 1)
   };
@@ -175,7 +175,7 @@ class PlaneFit {
     return m;
   }
 
-  /// The quadratic of those that are inside the corridor of a plane or beyond.
+  /// The quadratic of those that are inside the margin of a plane or beyond.
   Quadratic at(const double (&z)[n]) const {
     const Moments r = moments_of(r_, -1.0, z), s = moments_of(s_, 1.0, z);
     const T of_r(1.0 / r_.mass()), of_s(1.0 / s_.mass());  // shares of a body's mass
@@ -190,7 +190,7 @@ class PlaneFit {
     }
     q.constant = q.A[D][D];
     for (int i = 0; i < n; ++i)
-      q.A[i][i] = fixed(i) ? 1.0 : q.A[i][i] + (i < D ? softness : damping);
+      q.A[i][i] = fixed(i) ? 1.0 : q.A[i][i] + (i < D ? regularisation : damping);
     return q;
   }
 
@@ -207,7 +207,7 @@ Plane<D> separating_plane(const NearParticles<D>& r, const NearParticles<D>& s, 
 }
 
 /// The unit normal from r to s of the plane that separates their particles; zero if none does. All
-/// particles lie within 1.5 cells of the node along each axis, so the corridor of two separate
+/// particles lie within 1.5 cells of the node along each axis, so the margin of two separate
 /// bodies has a half width below 1.5 sqrt(3) = 2.6 cells; a much wider one means that the bodies
 /// fill the same place.
 template <int D>

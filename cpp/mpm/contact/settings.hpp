@@ -6,31 +6,16 @@
 #include <vector>
 
 #include "mpm/catalogue/setting.hpp"
+#include "mpm/contact/detection.hpp"
+#include "mpm/contact/normal.hpp"
 
 namespace mpm {
-
-/// When bodies touch.
-enum class Detection { gap, velocity };
-template <>
-inline constexpr auto words<Detection> = std::to_array<Word<Detection>>(
-    {{"gap", Detection::gap, "their distance, eq. (5), is small and they approach"},
-     {"velocity", Detection::velocity, "they approach"}});
-
-/// The normal of a pair.
-enum class NormalRule { plane, pair, first, second, stiffer };
-template <>
-inline constexpr auto words<NormalRule> = std::to_array<Word<NormalRule>>(
-    {{"plane", NormalRule::plane, "of the plane which separates the two bodies' points"},
-     {"pair", NormalRule::pair, "from the gradients of mass of both, n_r - n_s"},
-     {"first", NormalRule::first, "from that of the first"},
-     {"second", NormalRule::second, "from that of the second"},
-     {"stiffer", NormalRule::stiffer, "from that of the stiffer"}});
 
 struct ContactSettings {
   bool enabled = true;
   bool bonded = false;
-  Detection detection = Detection::gap;
-  NormalRule normal = NormalRule::plane;
+  Detection detection = Detections::id_of<GapDetection>();
+  NormalRule normal = NormalRules::id_of<PlaneNormal>();
   double friction = 0.0;
   double gap_distance = 0.0;  // D of eq. (5)
   double normal_travel =

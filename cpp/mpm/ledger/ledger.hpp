@@ -39,7 +39,7 @@
 #include <array>
 #include <cmath>
 
-#include "mpm/contact/contact_grid.hpp"
+#include "mpm/contact/contact.hpp"
 #include "mpm/ledger/patch_sums.hpp"
 #include "mpm/particles/lists.hpp"
 

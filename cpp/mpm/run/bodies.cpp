@@ -134,7 +134,7 @@ void SimulationOf<D>::set_velocity(int number, std::span<const double> velocitie
   domain_.ledger.momentum = momentum();
   watch_.start_from(domain_.ledger.made(), domain_.ledger.load_work);
   probe_speeds();
-  domain_.contact.forget();  // gaps change with the velocities that particles had
+  invalidate_pairs(domain_.contact);  // gaps change with the velocities that particles had
 }
 
 template <int D>

@@ -2,6 +2,7 @@
 // 2010, section 3.5. The rest of theirs an unbounded grid does not need; when to double is ours.
 #include <utility>
 
+#include "mpm/contact/candidates.hpp"
 #include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
@@ -34,8 +35,8 @@ void SimulationOf<D>::double_cells() {
   grid.release_nodes();
   make_lists(grid, domain_.bodies, domain_.threads, domain_.list_scratch);
   for (Patch<D>& patch : grid.patches) patch.left_cell = true;  // what has just failed still leaves
-  domain_.contact.forget();
-  if (domain_.has_contact()) domain_.contact.connect(grid, domain_.bodies);
+  invalidate_pairs(domain_.contact);
+  if (domain_.has_contact()) connect_tiles(domain_.contact, grid, domain_.bodies);
   probe_speeds();
 }
 

@@ -1,5 +1,6 @@
 // The state of a run between two steps: what a step reads that neither the case nor the rest of the
 // state tells. It is restored into a simulation of the same case that has made no step.
+#include "mpm/contact/candidates.hpp"
 #include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
@@ -38,8 +39,8 @@ void SimulationOf<D>::exchange(StateStream& stream) {
   stream.same(format, other_version);
   for (const std::size_t size :
        {sizeof(Rounded), sizeof(Ledger), sizeof(PatchSums<D>), sizeof(Gone<D>), sizeof(RigidMotion),
-        sizeof(StepWatch), sizeof(Note), sizeof(PairRecord), sizeof(KnownNode),
-        sizeof(KnownPair<D>)})
+        sizeof(StepWatch), sizeof(Note), sizeof(PairRecord), sizeof(CachedNode),
+        sizeof(CachedPair<D>)})
     stream.same(size, other_version);
   stream.same(D, other_case);
   stream.same(domain_.bodies.size(), other_case);
@@ -52,9 +53,9 @@ void SimulationOf<D>::exchange(StateStream& stream) {
     domain_.grid.release_nodes();
     domain_.grid.connect();
     domain_.grid.cut_blocks(domain_.threads);
-    if (domain_.has_contact()) domain_.contact.connect(domain_.grid, domain_.bodies);
+    if (domain_.has_contact()) connect_tiles(domain_.contact, domain_.grid, domain_.bodies);
   }
-  if (domain_.has_contact()) domain_.contact.exchange(stream, domain_.bodies.size());
+  if (domain_.has_contact()) exchange_contact(domain_.contact, stream, domain_.bodies.size());
   stream(domain_.time, domain_.time_step, domain_.step, domain_.gravity);
   stream(domain_.eroded, domain_.left);
   stream.vector(domain_.sums);

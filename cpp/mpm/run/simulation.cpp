@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mpm/contact/candidates.hpp"
 #include "mpm/ledger/history.hpp"
 #include "mpm/run/simulation_of.hpp"
 
@@ -70,7 +71,7 @@ void SimulationOf<D>::prepare() {
   check(!prepared_, "prepare() has been called already");
   check(!domain_.bodies.empty(), "there is no body");
   make_lists(domain_.grid, domain_.bodies, domain_.threads, domain_.list_scratch);
-  if (domain_.has_contact()) domain_.contact.connect(domain_.grid, domain_.bodies);
+  if (domain_.has_contact()) connect_tiles(domain_.contact, domain_.grid, domain_.bodies);
   domain_.sums.resize(domain_.grid.patches.size());
   const auto& bodies = domain_.bodies;
   const auto is_rigid = [](const Body<D>& b) { return b.rigid; };

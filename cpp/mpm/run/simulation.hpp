@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "mpm/contact/contact_grid.hpp"
+#include "mpm/contact/pair_records.hpp"
 #include "mpm/fields/columns.hpp"
 #include "mpm/fields/state_stream.hpp"
 #include "mpm/materials/material.hpp"

@@ -60,14 +60,14 @@ class SimulationOf final : public Simulation {
   void set_velocity(int body, std::span<const double> velocities) override;
 
   std::vector<double> take_history() override;
-  const std::vector<PairRecord>& pairs() const override { return domain_.contact.pairs(); }
+  const std::vector<PairRecord>& pairs() const override { return domain_.contact.records.all(); }
   std::vector<PairRecord> group_pairs() const override;
-  std::size_t overlapped_nodes() const override { return domain_.contact.overlapped_nodes(); }
+  std::size_t overlapped_nodes() const override { return domain_.contact.counts.overlapped; }
   std::size_t overlapped_nodes_max() const override {
-    return domain_.contact.overlapped_nodes_max();
+    return domain_.contact.counts.overlapped_max;
   }
-  int bodies_per_node_max() const override { return domain_.contact.bodies_per_node_max(); }
-  std::size_t unconverged_nodes() const override { return domain_.contact.unconverged(); }
+  int bodies_per_node_max() const override { return domain_.contact.counts.bodies_max; }
+  std::size_t unconverged_nodes() const override { return domain_.contact.unconverged.load(); }
 
  private:
   const Body<D>& body(int b) const { return domain_.bodies.at(static_cast<std::size_t>(b)); }

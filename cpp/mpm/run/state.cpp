@@ -129,7 +129,7 @@ Bytes SimulationOf<D>::bytes() const {
   for (const Body<D>& b : domain_.bodies) r.particles += b.bytes();
   r.particles += domain_.list_scratch.bytes();
   r.grid = domain_.grid.node_bytes();
-  if (domain_.has_contact()) r.contact = domain_.contact.bytes();
+  if (domain_.has_contact()) r.contact = bytes_of(domain_.contact);
   r.other = domain_.sums.capacity() * sizeof(PatchSums<D>) + history_.capacity() * sizeof(double);
   return r;
 }

@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "mpm/contact/find_nodes.hpp"
 #include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
@@ -47,8 +48,8 @@ void SimulationOf<D>::note_at(Note found, int b, std::size_t row) {
 /// Note the first node at which so many bodies meet that steps take long, and count such steps.
 template <int D>
 void SimulationOf<D>::watch_crowd() {
-  if (domain_.contact.bodies_per_node_max() <= many_bodies) return;
-  const Crowd most = domain_.contact.crowd(domain_.grid);
+  if (domain_.contact.counts.bodies_max <= many_bodies) return;
+  const Crowd most = largest_crowd(domain_.contact, domain_.grid);
   if (most.bodies <= many_bodies) return;
   for (Note& known : notes_)
     if (known.kind == NoteKind::crowd) {

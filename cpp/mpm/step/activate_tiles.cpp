@@ -1,3 +1,4 @@
+#include "mpm/contact/candidates.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -59,7 +60,7 @@ void activate_tiles(Domain<D>& domain) {
                                   domain.eroded, domain.left);
   sort_disordered(domain.grid, domain.bodies, domain.threads, domain.disorder, domain.list_scratch);
   domain.sums.assign(domain.grid.patches.size(), {});
-  if (changed && domain.has_contact()) domain.contact.connect(domain.grid, domain.bodies);
+  if (changed && domain.has_contact()) connect_tiles(domain.contact, domain.grid, domain.bodies);
   balance(domain);
 }
 

@@ -1,3 +1,5 @@
+#include "mpm/contact/find_nodes.hpp"
+#include "mpm/contact/respond.hpp"
 #include "mpm/step/mirror.hpp"
 #include "mpm/step/stages.hpp"
 
@@ -21,23 +23,23 @@ void reflect(Domain<D>& domain, int at) {
 template <int D>
 void contact_momentum(Domain<D>& domain) {
   if (!domain.has_contact()) return;
-  domain.contact.find(domain.grid, domain.bodies, domain.contact_settings, domain.time_step,
-                      domain.threads);
-  domain.contact.adjust_momentum(domain.grid, domain.threads);
+  find_nodes(domain.contact, domain.grid, domain.bodies, domain.contact_settings, domain.time_step,
+             domain.threads);
+  remove_approach(domain.contact, domain.grid, domain.threads);
   reflect(domain, velocity_at);
 }
 
 template <int D>
 void contact_forces(Domain<D>& domain) {
   if (domain.has_contact())
-    domain.contact.add_forces(domain.grid, domain.bodies, domain.gravity, domain.time_step,
-                              domain.threads);
+    add_contact_forces(domain.contact, domain.grid, domain.bodies, domain.gravity, domain.time_step,
+                       domain.threads);
 }
 
 template <int D>
 void contact_remapped(Domain<D>& domain) {
   if (!domain.has_contact()) return;
-  domain.contact.adjust_remapped(domain.grid, domain.threads);
+  remove_remapped_approach(domain.contact, domain.grid, domain.threads);
   reflect(domain, force_at);
 }
 

@@ -18,7 +18,7 @@ void add_node(ContactPart<3>& part, std::uint32_t sides, std::mt19937_64& random
   node.first_side = static_cast<std::uint32_t>(part.sides.size());
   node.first_pair = static_cast<std::uint32_t>(part.pairs.size());
   for (std::uint32_t k = 0; k < sides; ++k) {
-    Side<3>& side = part.sides.emplace_back();
+    BodyAtNode<3>& side = part.sides.emplace_back();
     side.body = static_cast<std::int32_t>(k);
     side.mass = std::uniform_real_distribution<double>(0.1, 1.0)(random);
     side.mapped = Vec<double, 3>::zero();
@@ -36,11 +36,11 @@ void add_node(ContactPart<3>& part, std::uint32_t sides, std::mt19937_64& random
 /// All that a node has.
 std::vector<double> contents(ContactPart<3>& part, const ContactNode& node) {
   std::vector<double> all{static_cast<double>(node.tile)};
-  for (const Side<3>& side : part.sides_of(node)) {
+  for (const BodyAtNode<3>& side : part.sides_of(node)) {
     all.push_back(side.body);
     part.for_each_place(side, [&](std::uint32_t place) { all.push_back(place); });
   }
-  for (const SidePair<3>& pair : part.pairs_of(node)) all.push_back(pair.gap);
+  for (const ContactPair<3>& pair : part.pairs_of(node)) all.push_back(pair.gap);
   return all;
 }
 

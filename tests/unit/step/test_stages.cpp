@@ -124,7 +124,7 @@ class Comparison {
     if (!twin_.domain.has_contact()) return;
     Vec<double, D> force = Vec<double, D>::zero();
     for (const auto& contact : twin_.reference.contacts) force -= contact.f;
-    const auto& pairs = twin_.domain.contact.pairs();
+    const auto& pairs = twin_.domain.contact.records.all();
     CHECK_EQUAL(pairs.size(), std::size_t{1});
     for (int a = 0; a < D; ++a) CHECK_CLOSE(pairs[0].force[a], force[a], 1e-10 * force_scale);
   }

@@ -2,6 +2,7 @@
 // The same bodies twice: in a domain, for the stages, and in the reference step.
 #include <random>
 
+#include "mpm/contact/candidates.hpp"
 #include "mpm/particles/make_body.hpp"
 #include "mpm/reference/absorb.hpp"
 #include "mpm/reference/contact.hpp"
@@ -48,8 +49,8 @@ struct Twin {
     reference.pic = choice.pic_damping * domain.time_step;
     for (int a = 0; a < D; ++a) domain.gravity[a] = reference.g[a] = 1e4 * any();
     domain.contact_settings.enabled = choice.contact;
-    domain.contact_settings.detection = Detection::velocity;
-    domain.contact_settings.normal = NormalRule::pair;
+    domain.contact_settings.detection = Detections::id_of<VelocityDetection>();
+    domain.contact_settings.normal = NormalRules::id_of<PairNormal>();
     domain.contact_settings.friction = 0.3;
     reference.mu = 0.3;
     domain.threads.resize(1);
@@ -57,7 +58,7 @@ struct Twin {
     for (int k = 0; k < 2; ++k) add_body(k, choice.rigid && k == 0);
     if (choice.rigid) domain.rigid.resize(2);
     make_lists(grid, domain.bodies, domain.threads, domain.list_scratch);
-    if (domain.has_contact()) domain.contact.connect(grid, domain.bodies);
+    if (domain.has_contact()) connect_tiles(domain.contact, grid, domain.bodies);
     domain.sums.resize(grid.patches.size());
   }
 

@@ -1,7 +1,9 @@
 // What contact does at the nodes: velocities, forces, remapped velocities.
+#include "mpm/contact/respond.hpp"
+
 #include <algorithm>
 
-#include "mpm/contact/contact_grid.hpp"
+#include "mpm/particles/prescribed_motion.hpp"
 
 namespace mpm {
 namespace {
@@ -9,8 +11,8 @@ namespace {
 /// Scratch of one thread for the solution at a node with these sides and pairs;
 /// `takes_part(pair)` chooses the pairs that act.
 template <int D, class Choose>
-NodeSolution<D>& solution_of(std::span<const Side<D>> sides, std::span<const SidePair<D>> pairs,
-                             Choose&& takes_part) {
+NodeSolution<D>& solution_of(std::span<const BodyAtNode<D>> sides,
+                             std::span<const ContactPair<D>> pairs, Choose&& takes_part) {
   thread_local NodeSolution<D> solution;
   solution.sides.resize(sides.size());
   for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -18,7 +20,7 @@ NodeSolution<D>& solution_of(std::span<const Side<D>> sides, std::span<const Sid
     solution.sides[k].prescribed = sides[k].prescribed;
   }
   solution.pairs.clear();
-  for (const SidePair<D>& pair : pairs)
+  for (const ContactPair<D>& pair : pairs)
     solution.pairs.push_back({pair.r, pair.s, takes_part(pair), pair.friction, pair.normal});
   return solution;
 }
@@ -31,69 +33,89 @@ Vec<double, D> free_gravity(const ContactNode& node, Vec<double, D> gravity) {
   return gravity;
 }
 
-}  // namespace
-
-template <int D>
-template <bool with_friction>
-void ContactGrid<D>::solve(NodeSolution<D>& solution) {
-  if (!solve_node<with_friction>(solution)) unconverged_.fetch_add(1, std::memory_order_relaxed);
+template <bool with_friction, int D>
+void solve(Contact<D>& contact, NodeSolution<D>& solution) {
+  if (!solve_node<with_friction>(solution))
+    contact.unconverged.fetch_add(1, std::memory_order_relaxed);
 }
 
-template <int D>
-template <class F>
-void ContactGrid<D>::for_each_closed(TileGrid<D>& grid, Threads& threads, F&& f) {
+/// f(part, node) for the nodes where any pair may act. The memory is told of them in time.
+template <int D, class F>
+void for_each_gap_closed(Contact<D>& contact, TileGrid<D>& grid, Threads& threads, F&& f) {
   constexpr std::size_t ahead = 6;
-  const auto fetch = [&](Part& part, const ContactNode& node) {
-    if (!part.any_closed(node)) return;
-    for (const Side<D>& side : part.sides_of(node))
+  const auto fetch = [&](ContactPart<D>& part, const ContactNode& node) {
+    if (!part.any_gap_closed(node)) return;
+    for (const BodyAtNode<D>& side : part.sides_of(node))
       part.for_each_place(
           side, [&](std::uint32_t place) { __builtin_prefetch(grid.record_at(place), 1); });
   };
-  threads.for_each(parts_.size(), [&](std::size_t p) {
-    Part& part = parts_[p];
+  threads.for_each(contact.parts.size(), [&](std::size_t p) {
+    ContactPart<D>& part = contact.parts[p];
     const std::size_t count = part.nodes.size();
     for (std::size_t n = 0; n < std::min(ahead, count); ++n) fetch(part, part.nodes[n]);
     for (std::size_t n = 0; n < count; ++n) {
       if (n + ahead < count) fetch(part, part.nodes[n + ahead]);
-      if (part.any_closed(part.nodes[n])) f(part, part.nodes[n]);
+      if (part.any_gap_closed(part.nodes[n])) f(part, part.nodes[n]);
     }
   });
 }
 
+/// Write a vector at number `at` to all copies of the record of a side's node.
 template <int D>
-void ContactGrid<D>::adjust_momentum(TileGrid<D>& grid, Threads& threads) {
-  for_each_closed(grid, threads, [&](Part& part, const ContactNode& node) {
+void write(TileGrid<D>& grid, const ContactPart<D>& part, const BodyAtNode<D>& side,
+           const Vec<double, D>& value, int at) {
+  part.for_each_place(side, [&](std::uint32_t place) {
+    double* const numbers = grid.record_at(place);
+    for (int a = 0; a < D; ++a) numbers[at + a] = value[a];
+  });
+}
+
+/// What the velocity of a prescribed body at a node changes by in this step [m/s].
+template <int D>
+Vec<double, D> prescribed_increment(const Contact<D>& contact, const TileGrid<D>& grid,
+                                    const std::vector<Body<D>>& bodies, const ContactNode& node,
+                                    const BodyAtNode<D>& side) {
+  const Vec<double, D> x = grid.position_of(place_of(contact, grid, node));
+  const Body<D>& body = bodies[static_cast<std::size_t>(side.body)];
+  return from_space<D>(body.motion->increment_at(in_space<D>(x)));
+}
+
+}  // namespace
+
+template <int D>
+void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
+  for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, const ContactNode& node) {
     const auto sides = part.sides_of(node);
     const auto pairs = part.pairs_of(node);
     auto& solution =
-        solution_of<D>(sides, pairs, [](const SidePair<D>& pair) { return pair.closed; });
+        solution_of<D>(sides, pairs, [](const ContactPair<D>& pair) { return pair.gap_closed; });
     for (std::size_t k = 0; k < sides.size(); ++k)
       solution.sides[k].start(sides[k].mapped, Vec<double, D>::zero());
-    solve<false>(solution);
+    solve<false>(contact, solution);
     for (std::size_t k = 0; k < sides.size(); ++k)
       write(grid, part, sides[k], solution.sides[k].end_velocity(), velocity_at);
     for (std::size_t k = 0; k < pairs.size(); ++k) {
-      SidePair<D>& pair = pairs[k];
+      ContactPair<D>& pair = pairs[k];
       const bool pushed = solution.pairs[k].normal_impulse > 0.0;
       const Vec<double, D> relative =
           solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
       // Bodies at rest against each other touch too, whatever the rounding of their velocities.
       const double rounding = 1e-13 * (norm(sides[pair.r].mapped) + norm(sides[pair.s].mapped));
-      pair.touching = pair.closed && (pushed || dot(relative, pair.normal) >= -rounding);
-      pair.acted = pushed;
+      pair.active = pair.gap_closed && (pushed || dot(relative, pair.normal) >= -rounding);
+      pair.loaded = pushed;
     }
   });
 }
 
 template <int D>
-void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                                const Vec<double, D>& gravity, double time_step, Threads& threads) {
-  for_each_closed(grid, threads, [&](Part& part, ContactNode& node) {
+void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                        const Vec<double, D>& gravity, double time_step, Threads& threads) {
+  for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, ContactNode& node) {
     const auto sides = part.sides_of(node);
     const auto pairs = part.pairs_of(node);
     auto& solution =
-        solution_of<D>(sides, pairs, [](const SidePair<D>& pair) { return pair.touching; });
-    const auto force_of = [&](const Side<D>& side) {
+        solution_of<D>(sides, pairs, [](const ContactPair<D>& pair) { return pair.active; });
+    const auto force_of = [&](const BodyAtNode<D>& side) {
       Vec<double, D> f = read(grid, side, force_at) + side.mass * gravity;
       for (int a = 0; a < D; ++a)
         if (node.held >> a & 1u) f[a] = 0.0;
@@ -102,24 +124,25 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const Vec<double, D> velocity = read(grid, sides[k], velocity_at);
       if (sides[k].prescribed)
-        solution.sides[k].start(velocity + prescribed_increment(grid, bodies, node, sides[k]),
-                                Vec<double, D>::zero());
+        solution.sides[k].start(
+            velocity + prescribed_increment(contact, grid, bodies, node, sides[k]),
+            Vec<double, D>::zero());
       else
         solution.sides[k].start(velocity, time_step * force_of(sides[k]));
     }
-    solve<true>(solution);
-    move_gaps(part, node, solution, time_step);
+    solve<true>(contact, solution);
+    if (contact.cache.on) move_gaps(part, node, solution, time_step);
 
     double friction_first = 0.0;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
-      SidePair<D>& pair = pairs[k];
+      ContactPair<D>& pair = pairs[k];
       const SolvedPair<D>& solved = solution.pairs[k];
       const Vec<double, D> begin =
           read(grid, sides[pair.r], velocity_at) - read(grid, sides[pair.s], velocity_at);
       const Vec<double, D> end =
           solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
       pair.friction_first = dot(solved.friction_impulse, begin);
-      pair.acted = pair.acted || solved.normal_impulse > 0.0;
+      pair.loaded = pair.loaded || solved.normal_impulse > 0.0;
       pair.normal_impulse = solved.normal_impulse;
       pair.friction_impulse = solved.friction_impulse;
       pair.friction_work = 0.5 * (pair.friction_first + dot(solved.friction_impulse, end));
@@ -127,22 +150,22 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
     }
     double force_work = 0.0, correction = 0.0;
     for (std::size_t k = 0; k < sides.size(); ++k) {
-      const Side<D>& side = sides[k];
+      const BodyAtNode<D>& side = sides[k];
       const Vec<double, D> velocity = read(grid, side, velocity_at);
-      Vec<double, D> contact = solution.sides[k].momentum;  // impulse of the others
+      Vec<double, D> impulse = solution.sides[k].momentum;  // of the others
       if (!side.prescribed) {
-        const Vec<double, D> change = contact - side.mass * velocity;  // of all forces
-        contact = change - time_step * force_of(side);
+        const Vec<double, D> change = impulse - side.mass * velocity;  // of all forces
+        impulse = change - time_step * force_of(side);
         // The node itself has its own mass only.
         const double own_mass = grid.record_at(side.place)[mass_at];
         const Vec<double, D> own =
             change - (time_step * (side.mass - own_mass)) * free_gravity(node, gravity);
         correction -= dot(own, velocity - side.mapped);
       }
-      force_work += dot(contact, velocity);
+      force_work += dot(impulse, velocity);
       part.for_each_place(side, [&](std::uint32_t place) {
         double* const numbers = grid.record_at(place);
-        for (int a = 0; a < D; ++a) numbers[force_at + a] += (1.0 / time_step) * contact[a];
+        for (int a = 0; a < D; ++a) numbers[force_at + a] += (1.0 / time_step) * impulse[a];
       });
     }
     node.force_work = force_work;
@@ -150,25 +173,14 @@ void ContactGrid<D>::add_forces(TileGrid<D>& grid, const std::vector<Body<D>>& b
   });
 }
 
-/// What the velocity of a prescribed body at a node changes by in this step [m/s].
 template <int D>
-Vec<double, D> ContactGrid<D>::prescribed_increment(const TileGrid<D>& grid,
-                                                    const std::vector<Body<D>>& bodies,
-                                                    const ContactNode& node,
-                                                    const Side<D>& side) const {
-  const Vec<double, D> x = grid.position_of(place_of(grid, node));
-  const Body<D>& body = bodies[static_cast<std::size_t>(side.body)];
-  return from_space<D>(body.motion->increment_at(in_space<D>(x)));
-}
-
-template <int D>
-void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
+void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
   constexpr int remapped_at = force_at;
-  for_each_closed(grid, threads, [&](Part& part, const ContactNode& node) {
+  for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, const ContactNode& node) {
     const auto sides = part.sides_of(node);
     // The slip at the end of the step is that of the particles. The nodes' own increments, forces
     // over masses that may be next to nothing, reach the particles only in part.
-    for (SidePair<D>& pair : part.pairs_of(node)) {
+    for (ContactPair<D>& pair : part.pairs_of(node)) {
       const Vec<double, D> slip =
           read(grid, sides[pair.r], remapped_at) - read(grid, sides[pair.s], remapped_at);
       pair.friction_work = 0.5 * (pair.friction_first + dot(pair.friction_impulse, slip));
@@ -176,22 +188,22 @@ void ContactGrid<D>::adjust_remapped(TileGrid<D>& grid, Threads& threads) {
     // The impulses of this solution act on the velocities that strain the material only; they are
     // not contact forces.
     auto& solution = solution_of<D>(sides, part.pairs_of(node),
-                                    [](const SidePair<D>& pair) { return pair.closed; });
+                                    [](const ContactPair<D>& pair) { return pair.gap_closed; });
     for (std::size_t k = 0; k < sides.size(); ++k)
       solution.sides[k].start(read(grid, sides[k], remapped_at), Vec<double, D>::zero());
-    solve<false>(solution);
+    solve<false>(contact, solution);
     for (std::size_t k = 0; k < sides.size(); ++k)
       write(grid, part, sides[k], solution.sides[k].end_velocity(), remapped_at);
   });
 }
 
-template void ContactGrid<2>::adjust_momentum(TileGrid<2>&, Threads&);
-template void ContactGrid<3>::adjust_momentum(TileGrid<3>&, Threads&);
-template void ContactGrid<2>::add_forces(TileGrid<2>&, const std::vector<Body<2>>&,
-                                         const Vec<double, 2>&, double, Threads&);
-template void ContactGrid<3>::add_forces(TileGrid<3>&, const std::vector<Body<3>>&,
-                                         const Vec<double, 3>&, double, Threads&);
-template void ContactGrid<2>::adjust_remapped(TileGrid<2>&, Threads&);
-template void ContactGrid<3>::adjust_remapped(TileGrid<3>&, Threads&);
+#define MPM_INSTANTIATE(D)                                                                    \
+  template void remove_approach<D>(Contact<D>&, TileGrid<D>&, Threads&);                      \
+  template void add_contact_forces<D>(Contact<D>&, TileGrid<D>&, const std::vector<Body<D>>&, \
+                                      const Vec<double, D>&, double, Threads&);               \
+  template void remove_remapped_approach<D>(Contact<D>&, TileGrid<D>&, Threads&);
+MPM_INSTANTIATE(2)
+MPM_INSTANTIATE(3)
+#undef MPM_INSTANTIATE
 
 }  // namespace mpm

@@ -11,7 +11,7 @@ namespace mpm {
 
 /// One body at an overlapped node.
 template <int D>
-struct Side {
+struct BodyAtNode {
   std::int32_t body;
   std::uint32_t place;  // of its record in the first patch that has it (TileGrid::record_at)
   std::uint32_t first_further;  // of ContactPart::further_places: its records in further patches
@@ -24,11 +24,11 @@ struct Side {
 
 /// Two bodies at an overlapped node.
 template <int D>
-struct SidePair {
+struct ContactPair {
   std::uint16_t r, s;     // sides of the node, by number
-  bool closed;            // the gap test, eq. (5), has passed
-  bool touching;          // closed, and approaching or at rest: forces may act
-  bool acted;             // an impulse of eqs. (6)-(7) or (11)-(15) has acted in this step
+  bool gap_closed;        // the gap test, eq. (5), has passed
+  bool active;            // closed, and approaching or at rest: forces may act
+  bool loaded;            // an impulse of eqs. (6)-(7) or (11)-(15) has acted in this step
   double friction;        // coefficient of friction
   double gap;             // distance of the two surfaces along the normal [m]
   Vec<double, D> normal;  // from r to s
@@ -46,7 +46,7 @@ struct ContactNode {
   std::uint8_t cell;  // the node's place in its tile, as the cell whose own node it is
   std::uint8_t held;  // axes held by walls, a bit each
   std::uint16_t sides;
-  std::uint32_t tile;  // of ContactGrid::tiles_
+  std::uint32_t tile;  // of Contact::tiles
   std::uint32_t first_side, first_pair;
   double energy;      // work of the contact beyond friction, over this step [J]
   double force_work;  // work of the contact forces at the velocities of the force mapping [J]
@@ -58,8 +58,8 @@ constexpr std::uint32_t pair_count(std::uint32_t sides) { return sides * (sides 
 /// as masses and velocities tell them apart: the solution for several bodies with friction is not
 /// unique, and the order of its steps chooses.
 template <int D>
-void sort_sides(std::span<Side<D>> sides) {
-  std::sort(sides.begin(), sides.end(), [](const Side<D>& x, const Side<D>& y) {
+void sort_sides(std::span<BodyAtNode<D>> sides) {
+  std::sort(sides.begin(), sides.end(), [](const BodyAtNode<D>& x, const BodyAtNode<D>& y) {
     if (x.mass != y.mass) return x.mass > y.mass;
     for (int a = 0; a < D; ++a)
       if (x.mapped[a] != y.mapped[a]) return x.mapped[a] > y.mapped[a];

@@ -1,0 +1,95 @@
+#include "mpm/contact/candidates.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace mpm {
+namespace {
+
+/// May a block reach any node that belongs to neighbour k?
+template <int D>
+bool reaches(const Reach& reach, int k) {
+  bool any = true;
+  const Index<D> o = Tile<D>::offset(k);
+  for (int a = 0; a < D; ++a)
+    any = any && (o[a] == 0 || (o[a] < 0 ? reach.before : reach.after) > 0);
+  return any;
+}
+
+/// Take over what was cached of the tiles before; both lists are in the order of the tiles then.
+template <int D>
+void reuse_tiles(std::vector<ContactTile<D>>& last_tiles, std::vector<ContactTile<D>>& tiles) {
+  const auto less = [](const ContactTile<D>& x, const ContactTile<D>& y) {
+    return tile_less<D>(x.tile, y.tile);
+  };
+  std::sort(last_tiles.begin(), last_tiles.end(), less);
+  auto last = last_tiles.begin();
+  for (ContactTile<D>& tile : tiles) {
+    while (last != last_tiles.end() && less(*last, tile)) ++last;
+    if (last == last_tiles.end()) return;
+    if (last->tile != tile.tile) continue;
+    tile.cached = last->cached;
+    tile.cached_part = last->cached_part;
+    tile.first_cached = last->first_cached;
+  }
+}
+
+}  // namespace
+
+template <int D>
+void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies) {
+  auto& holders = contact.holders;
+  auto& tiles = contact.tiles;
+  if (grid.patches.size() > TileHolder::patches_max)
+    throw std::length_error("bodies lie in more than 134 million tiles; give larger cells");
+  holders.clear();
+  std::swap(contact.last_tiles, tiles);
+  tiles.clear();
+  for (Patch<D>& patch : grid.patches) patch.in_contact = false;
+  auto tile_of = [&](const TileHolder& h) {
+    Index<D> t = grid.patches[static_cast<std::size_t>(h.patch)].tile;
+    const Index<D> o = Tile<D>::offset(h.neighbour);
+    for (int a = 0; a < D; ++a) t[a] += o[a];
+    return t;
+  };
+  for (std::size_t p = 0; p < grid.patches.size(); ++p)
+    for (int k = 0; k < Tile<D>::neighbours; ++k)
+      if (reaches<D>(grid.reach(), k)) holders.emplace_back(grid.patches[p].body, p, k);
+  std::sort(holders.begin(), holders.end(), [&](const TileHolder& x, const TileHolder& y) {
+    const Index<D> tx = tile_of(x), ty = tile_of(y);
+    if (tx != ty) return tile_less<D>(tx, ty);
+    return x.patch < y.patch;  // by body, then in the order of the tiles
+  });
+  std::uint32_t kept = 0;
+  for (std::size_t begin = 0, end = 0; begin < holders.size(); begin = end) {
+    const Index<D> tile = tile_of(holders[begin]);
+    bool several = false, deforms = false;
+    for (end = begin; end < holders.size() && tile_of(holders[end]) == tile; ++end) {
+      several = several || holders[end].body != holders[begin].body;
+      deforms = deforms || !bodies[static_cast<std::size_t>(holders[end].body)].rigid;
+    }
+    if (!several || !deforms) continue;
+    ContactTile<D>& made = tiles.emplace_back();
+    made.tile = tile;
+    made.first_holder = kept;
+    made.holders = static_cast<std::uint32_t>(end - begin);
+    for (std::size_t k = begin; k < end; ++k) {
+      grid.patches[static_cast<std::size_t>(holders[k].patch)].in_contact = true;
+      holders[kept++] = holders[k];
+    }
+  }
+  holders.erase(holders.begin() + kept, holders.end());
+  reuse_tiles(contact.last_tiles, tiles);
+  // One body's tiles follow one another, so that its nodes and particles are at hand; of the bodies
+  // around a tile the last, for a container that comes first meets all others.
+  std::sort(tiles.begin(), tiles.end(), [&](const ContactTile<D>& x, const ContactTile<D>& y) {
+    const std::uint32_t px = holders[x.first_holder + x.holders - 1].patch;
+    const std::uint32_t py = holders[y.first_holder + y.holders - 1].patch;
+    return px != py ? px < py : x.first_holder < y.first_holder;
+  });
+}
+
+template void connect_tiles<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&);
+template void connect_tiles<3>(Contact<3>&, TileGrid<3>&, const std::vector<Body<3>>&);
+
+}  // namespace mpm

@@ -1,0 +1,97 @@
+#pragma once
+// What contact works on: plain data. A step goes through it in this order:
+//   candidates.hpp    the tiles whose nodes two or more bodies touch, when patches come or go;
+//   find_nodes.hpp    the overlapped nodes, and who is there;
+//   find_pairs.hpp    normals and gaps of the pairs at a node, eq. (5), by the rules of normal.hpp
+//   and
+//                     detection.hpp; pair_cache.hpp where they are kept from step to step;
+//   rigid_masses.hpp  the masses with which bodies that do not deform meet others;
+//   respond.hpp       velocities and forces, eqs. (6)-(7), (11)-(15), by the solver of
+//   node_solver.hpp; record.hpp        what has passed between the bodies, pair by pair.
+#include <atomic>
+#include <cstdint>
+
+#include "mpm/contact/contact_part.hpp"
+#include "mpm/contact/pair_cache.hpp"
+#include "mpm/contact/pair_records.hpp"
+#include "mpm/contact/settings.hpp"
+#include "mpm/contact/tile_holder.hpp"
+
+namespace mpm {
+
+/// A tile whose nodes two or more bodies touch.
+template <int D>
+struct ContactTile {
+  Index<D> tile;
+  std::uint32_t first_holder, holders;
+  std::uint64_t cached = 0;  // the nodes that were overlapped in the last step, by Tile<D>::cell
+  std::uint32_t cached_part = 0;   // where they are cached: a number of Contact::parts
+  std::uint32_t first_cached = 0;  // the first of them, of ContactPart::cached_nodes
+};
+
+/// Sums over all contacts of one step, for the ledger [J].
+struct ContactSums {
+  double friction = 0.0;        // lost to friction
+  double friction_first = 0.0;  // the same with the slip at the start of the step
+  double energy = 0.0;          // lost in normal contact
+  double force_work =
+      0.0;  // work of contact forces at the velocities that the nodal forces work on
+};
+
+/// Numbers of nodes and bodies.
+struct ContactCounts {
+  std::size_t overlapped = 0;      // nodes in this step
+  std::size_t overlapped_max = 0;  // since the start
+  int bodies_max = 0;              // at a node, since the start
+};
+
+template <int D>
+struct Contact {
+  std::vector<TileHolder> holders;  // those of each tile follow one another
+  std::vector<ContactTile<D>> tiles;
+  NodesWithMass<D> masses;  // of the step
+  std::vector<ContactPart<D>> parts;
+  PairCache cache;
+  PairRecords records;
+  ContactCounts counts;
+  /// Solutions at nodes with several bodies that stopped short of the tolerance, since the start.
+  std::atomic<std::size_t> unconverged{0};
+  std::vector<ContactTile<D>> last_tiles;  // scratch
+  std::vector<double> rigid_share;         // scratch
+};
+
+/// Memory that it holds [bytes].
+template <int D>
+std::size_t bytes_of(const Contact<D>& contact) {
+  const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  std::size_t parts = 0;
+  for (const ContactPart<D>& part : contact.parts) parts += part.bytes();
+  return contact.masses.bytes() + parts + contact.cache.bytes() + contact.records.bytes() +
+         size(contact.holders) + size(contact.tiles) + size(contact.last_tiles) +
+         size(contact.rigid_share);
+}
+
+/// Grid coordinates of a node.
+template <int D>
+Index<D> place_of(const Contact<D>& contact, const TileGrid<D>& grid, const ContactNode& node) {
+  const Index<D> index = Tile<D>::cell_index(node.cell);
+  Index<D> place = grid.first_cell(contact.tiles[node.tile].tile);
+  for (std::size_t a = 0; a < D; ++a) place[a] += index[a];
+  return place;
+}
+
+/// The vector at number `at` of the record of a side's node.
+template <int D>
+Vec<double, D> read(TileGrid<D>& grid, const BodyAtNode<D>& side, int at) {
+  const double* const numbers = grid.record_at(side.place) + at;
+  Vec<double, D> value;
+  for (int a = 0; a < D; ++a) value[a] = numbers[a];
+  return value;
+}
+
+/// The records and what is cached, saved or restored; the tiles must have been connected. Throws
+/// std::invalid_argument if what is restored is of no such contact.
+template <int D>
+void exchange_contact(Contact<D>& contact, StateStream& stream, std::size_t bodies);
+
+}  // namespace mpm

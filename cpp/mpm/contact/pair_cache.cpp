@@ -1,0 +1,126 @@
+#include "mpm/contact/pair_cache.hpp"
+
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "mpm/contact/contact.hpp"
+#include "mpm/contact/find_pairs.hpp"
+
+namespace mpm {
+namespace {
+
+/// f(pair, cached, sign) for the pairs at a node and their entries among those of the node, which
+/// come by the numbers of the bodies: `sign` is that of the normal.
+template <int D, class Cached, class F>
+void for_each_cached(ContactPart<D>& part, const ContactNode& node, Cached* cached, F&& f) {
+  const auto sides = part.sides_of(node);
+  const auto rank = [&](std::uint16_t k) {
+    return std::ranges::count_if(sides,
+                                 [&](const BodyAtNode<D>& x) { return x.body < sides[k].body; });
+  };
+  for (ContactPair<D>& pair : part.pairs_of(node)) {
+    const auto r = rank(pair.r), s = rank(pair.s);
+    const auto low = std::min(r, s), high = std::max(r, s);
+    f(pair, cached[low * (2 * node.sides - low - 1) / 2 + high - low - 1], r < s ? 1.0 : -1.0);
+  }
+}
+
+}  // namespace
+
+template <int D>
+void invalidate_pairs(Contact<D>& contact) {
+  for (ContactTile<D>& tile : contact.tiles) tile.cached = 0;
+}
+
+void add_displacements(PairCache& cache, std::size_t bodies) {
+  cache.displacement.resize(bodies, 0.0);
+  cache.fastest.resize(bodies, 0.0);
+  for (std::size_t b = 0; b < bodies; ++b)
+    cache.displacement[b] += cache.last_time_step * std::sqrt(std::exchange(cache.fastest[b], 0.0));
+}
+
+template <int D>
+void note_speeds(Contact<D>& contact, double time_step) {
+  contact.cache.last_time_step = time_step;
+  if (!contact.cache.on) return;
+  for (const ContactPart<D>& part : contact.parts)
+    for (const BodyAtNode<D>& side : part.sides) {
+      double& fastest = contact.cache.fastest[static_cast<std::size_t>(side.body)];
+      fastest = std::max(fastest, dot(side.mapped, side.mapped));
+    }
+}
+
+template <int D>
+void store_pairs(const PairCache& cache, ContactPart<D>& part, const ContactNode& node) {
+  for_each_cached(part, node, &part.cached[node.first_pair],
+                  [&](const ContactPair<D>& pair, CachedPair<D>& cached, double sign) {
+                    const double moved = cache.displacement_of<D>(part.sides_of(node), pair);
+                    cached = {sign * pair.normal, pair.gap, moved};
+                  });
+}
+
+template <int D>
+bool reuse_pairs(Contact<D>& contact, const std::vector<Body<D>>& bodies,
+                 const ContactSettings& settings, double cell_size, const ContactTile<D>& tile,
+                 ContactPart<D>& part, const ContactNode& node) {
+  CachedNode& now = part.cached_of(node);
+  now.first_pair = node.first_pair;
+  now.solved = false;
+  const std::uint64_t bit = std::uint64_t{1} << node.cell;
+  if (!(tile.cached & bit)) return false;
+  const ContactPart<D>& before = contact.parts[tile.cached_part];
+  const auto place = static_cast<std::uint32_t>(std::popcount(tile.cached & (bit - 1)));
+  const CachedNode& last = before.last_cached_nodes[tile.first_cached + place];
+  const std::size_t end = last.first_pair + std::size_t{pair_count(node.sides)};
+  if (last.membership_hash != now.membership_hash || end > before.last_cached.size()) return false;
+  const auto sides = part.sides_of(node);
+  ContactPair<D>* next = &part.pairs[node.first_pair];
+  for (std::uint16_t r = 0; r < node.sides; ++r)
+    for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s)
+      *next++ = new_pair<D>(bodies, settings, sides, r, s);
+  std::copy_n(&before.last_cached[last.first_pair], pair_count(node.sides),
+              &part.cached[node.first_pair]);
+  bool holds = true;
+  for_each_cached(part, node, &part.cached[node.first_pair],
+                  [&](ContactPair<D>& pair, CachedPair<D>& cached, double sign) {
+                    pair.normal = sign * cached.normal;
+                    // Without contact the velocities of now are those with which the last step
+                    // ended.
+                    const Vec<double, D> parting = sides[pair.s].mapped - sides[pair.r].mapped;
+                    if (!last.solved)
+                      cached.gap += contact.cache.last_time_step * dot(parting, pair.normal);
+                    pair.gap = cached.gap;
+                    pair.gap_closed = passes_gap_test(pair, settings, cell_size);
+                    holds = holds && contact.cache.template displacement_of<D>(sides, pair) -
+                                             cached.displacement <=
+                                         settings.normal_travel * cell_size;
+                  });
+  return holds;
+}
+
+template <int D>
+void move_gaps(ContactPart<D>& part, const ContactNode& node, const NodeSolution<D>& solution,
+               double time_step) {
+  part.cached_of(node).solved = true;
+  for_each_cached(part, node, &part.cached[node.first_pair],
+                  [&](const ContactPair<D>& pair, CachedPair<D>& cached, double) {
+                    const Vec<double, D> parting = solution.sides[pair.s].end_velocity() -
+                                                   solution.sides[pair.r].end_velocity();
+                    cached.gap += time_step * dot(parting, pair.normal);
+                  });
+}
+
+#define MPM_INSTANTIATE(D)                                                                       \
+  template void invalidate_pairs<D>(Contact<D>&);                                                \
+  template void note_speeds<D>(Contact<D>&, double);                                             \
+  template bool reuse_pairs<D>(Contact<D>&, const std::vector<Body<D>>&, const ContactSettings&, \
+                               double, const ContactTile<D>&, ContactPart<D>&,                   \
+                               const ContactNode&);                                              \
+  template void store_pairs<D>(const PairCache&, ContactPart<D>&, const ContactNode&);           \
+  template void move_gaps<D>(ContactPart<D>&, const ContactNode&, const NodeSolution<D>&, double);
+MPM_INSTANTIATE(2)
+MPM_INSTANTIATE(3)
+#undef MPM_INSTANTIATE
+
+}  // namespace mpm

@@ -1,0 +1,20 @@
+#pragma once
+#include "mpm/contact/contact.hpp"
+
+namespace mpm {
+
+/// Remove approaching momentum, eqs. (6)-(7), from the nodal velocities.
+template <int D>
+void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
+
+/// Add the contact forces, eqs. (11)-(15), to the nodal forces; `gravity` is the body force per
+/// mass.
+template <int D>
+void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                        const Vec<double, D>& gravity, double time_step, Threads& threads);
+
+/// Remove the approach from the remapped velocities (3.6, step 10).
+template <int D>
+void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
+
+}  // namespace mpm
