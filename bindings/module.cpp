@@ -76,14 +76,14 @@ NB_MODULE(_core, m) {
            nb::arg("spin"), nb::arg("centre"))
       .def(
           "add_load",
-          [](Simulation& s, const std::string& name, int body, bool follows,
+          [](Simulation& s, const std::string& name, int body, const std::string& kind,
              const std::array<TimeFunction, 3>& value, const std::vector<std::uint32_t>& particles,
              const Input& areas, const Input& sizes, const Input& arms) {
-            s.add_load(name, body, follows, value,
+            s.add_load(name, body, kind, value,
                        {particles, span_of(areas), span_of(sizes), span_of(arms)});
           },
-          nb::arg("name"), nb::arg("body"), nb::arg("follows"), nb::arg("value"),
-          nb::arg("particles"), nb::arg("areas"), nb::arg("sizes"), nb::arg("arms"))
+          nb::arg("name"), nb::arg("body"), nb::arg("kind"), nb::arg("value"), nb::arg("particles"),
+          nb::arg("areas"), nb::arg("sizes"), nb::arg("arms"))
       .def("set_group", &Simulation::set_group, nb::arg("body"), nb::arg("first"))
       .def("set_friction", &Simulation::set_pair_friction, nb::arg("body_a"), nb::arg("body_b"),
            nb::arg("mu"))

@@ -50,6 +50,17 @@ nb::dict all_derived_fields() {
   return fields;
 }
 
+nb::dict all_load_kinds() {
+  nb::dict kinds;
+  LoadKinds::for_each([&]<class Kind>(LoadKind, const Kind&) {
+    nb::dict row;
+    row["meaning"] = text(Kind::doc);
+    row["vector"] = Kind::is_vector;
+    kinds[text(Kind::name)] = row;
+  });
+  return kinds;
+}
+
 /// Of each stage: its name, what it reads and writes, and whether it goes through all particles.
 nb::list stage_rows(const std::string& scheme, bool fused) {
   const auto names = [](std::uint32_t data) {
@@ -123,6 +134,7 @@ void add_settings(nb::module_& m) {
   m.attr("schemes") = words_of<Scheme>()[0];
   m.attr("bases") = all_bases();
   m.attr("history_terms") = all_history_terms();
+  m.attr("load_kinds") = all_load_kinds();
   m.attr("derived_fields") = all_derived_fields();
   m.def("stages", &stage_rows, nb::arg("scheme"), nb::arg("fused"),
         "Of each stage: its name, what it reads and writes, and whether it goes through all "

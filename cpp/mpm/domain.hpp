@@ -8,11 +8,11 @@
 #include "mpm/contact/contact.hpp"
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/ledger/ledger.hpp"
+#include "mpm/loads/surface_load.hpp"
 #include "mpm/materials/material_block.hpp"
 #include "mpm/parallel/threads.hpp"
 #include "mpm/particles/lists.hpp"
-#include "mpm/particles/rigid_motion.hpp"
-#include "mpm/particles/surface_load.hpp"
+#include "mpm/rigid/rigid_motion.hpp"
 
 namespace mpm {
 
@@ -49,9 +49,7 @@ struct Domain {
 
   Body<D>& body_of(const Patch<D>& patch) { return bodies[static_cast<std::size_t>(patch.body)]; }
   bool has_rigid() const { return !rigid.empty(); }
-  bool has_prescribed() const {
-    return std::any_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.prescribed; });
-  }
+  bool has_prescribed() const { return std::ranges::any_of(bodies, &Body<D>::is_prescribed); }
   bool has_loads() const { return !loads.empty(); }
   bool has_contact() const {
     return contact_settings.enabled && !contact_settings.bonded && bodies.size() > 1;

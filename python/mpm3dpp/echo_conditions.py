@@ -61,11 +61,11 @@ def motion_in_words(case: Case, body: str) -> str:
 
 
 def load_in_words(case: Case, name: str) -> str:
-    """Return the pressure or the traction of a load."""
-    load = case.load[name]
-    if load.pressure is not None:
-        return f"pressure {in_words(load.pressure, 'Pa')}"
-    return f"traction {vector_in_words(load.traction, 'Pa')}"
+    """Return the kind of a load and its value."""
+    kind, value = case.load[name].value()
+    if len(value) == 1:
+        return f"{kind} {in_words(value[0], 'Pa')}"
+    return f"{kind} {vector_in_words(value, 'Pa')}"
 
 
 def doublings(cells: Sequence[int] | None, doubling: GridDoubling) -> int:

@@ -15,7 +15,8 @@ from pydantic_core import PydanticCustomError
 
 from . import _core
 from .errors import nearest, violation
-from .model import CaseModel, Text
+from .model import Text
+from .settings import functions, table_of_rows
 from .shapes.surfaces import Surface, sides, surface
 from .time_functions import Timed, TimedVector, TimeFunction
 
@@ -27,32 +28,52 @@ Array = NDArray[np.float64]
 _FINER = {2: 8, 3: 4}  # Points of a surface for each spacing of the particles.
 
 
-class Load(CaseModel):
+def _kind_field(row: dict[str, Any]) -> tuple[Any, Any]:
+    """Return type and default of the key of a kind of loads, a row of the core."""
+    if row["vector"]:
+        return Annotated[tuple[float | TimeFunction, ...], TimedVector("Pa")], ()
+    return Annotated[float | TimeFunction | None, Timed("Pa")], None
+
+
+_KINDS: dict[str, dict[str, Any]] = _core.load_kinds
+_LoadValues: Any = table_of_rows("load", _KINDS, _kind_field)
+
+
+class Load(_LoadValues):
     """A load on a side of a body that deforms; it follows the body's motion.
+
+    One of the kinds of loads must be given.
 
     Attributes:
         body: its name.
         side: of the body's shape: `x_min` to `z_max` of a box; `outer` of what is round, `inner`
             of a ring or tube, `lower` and `upper` of a cylinder or tube; `all`.
-        pressure: against the surface, whose normals turn and whose area changes with the body
-            [Pa]; a number or a function of time.
-        traction: in place of `pressure`: force per present area in a fixed direction [Pa], D
-            numbers or functions of time.
     """
 
     body: Text
     side: Text
-    pressure: Annotated[float | TimeFunction | None, Timed("Pa")] = None
-    traction: Annotated[tuple[float | TimeFunction, ...], TimedVector("Pa")] = ()
 
     @model_validator(mode="after")
-    def _one_of_two(self) -> Load:
-        if self.pressure is not None and self.traction:
-            rule = "must not be given together with pressure"
-            raise violation(rule, "keep one of the two", path=("traction",))
-        if self.pressure is None and not self.traction:
-            raise violation("is missing", "add this key, or traction", path=("pressure",))
+    def _one_kind(self) -> Load:
+        first, *others = _KINDS
+        given = self.given()
+        if len(given) > 1:
+            rule = f"must not be given together with {given[0]}"
+            raise violation(rule, "keep one of the two", path=(given[1],))
+        if not given:
+            remedy = f"add this key, or {' or '.join(others)}"
+            raise violation("is missing", remedy, path=(first,))
         return self
+
+    def given(self) -> list[str]:
+        """Return the kinds of loads that have a value."""
+        return [kind for kind in _KINDS if getattr(self, kind) not in (None, ())]
+
+    def value(self) -> tuple[str, tuple[float | TimeFunction, ...]]:
+        """Return the kind and its value, one number or D."""
+        [kind] = self.given()
+        found = getattr(self, kind)
+        return kind, found if _KINDS[kind]["vector"] else (found,)
 
 
 @dataclass(frozen=True)
@@ -102,10 +123,11 @@ def check_loads(case: Case) -> Iterator[PydanticCustomError]:
         elif load.side not in known:
             rule = f"is not a side of the {_kind(body)} body.{load.body}"
             yield violation(rule, nearest(load.side, known), value=load.side, path=(*path, "side"))
-        if load.traction and len(load.traction) != dimension:
+        kind, value = load.value()
+        if _KINDS[kind]["vector"] and len(value) != dimension:
             rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
-            remedy = f"it has {len(load.traction)}, give {dimension}"
-            yield violation(rule, remedy, path=(*path, "traction"))
+            remedy = f"it has {len(value)}, give {dimension}"
+            yield violation(rule, remedy, path=(*path, kind))
 
 
 def _kind(body: Body) -> str:
@@ -202,14 +224,10 @@ def add_load(core: Any, case: Case, name: str, body: int, found: Pieces) -> None
         CaseError: the core refuses it.
     """
     load = case.load[name]
-    value = load.traction if load.pressure is None else (load.pressure,)
-    functions = [
-        _core.TimeFunction(**v.for_core()) if isinstance(v, TimeFunction) else _core.TimeFunction(v)
-        for v in (*value, 0.0, 0.0)[:3]
-    ]
-    follows, areas = load.pressure is not None, np.ascontiguousarray(found.areas)
+    kind, value = load.value()
+    areas = np.ascontiguousarray(found.areas)
     arms, particles = np.ascontiguousarray(found.arms), found.particles.tolist()
     try:
-        core.add_load(name, body, follows, functions, particles, areas, found.sizes, arms)
+        core.add_load(name, body, kind, functions(value), particles, areas, found.sizes, arms)
     except ValueError as error:
         raise case.error(("load", name), f"is refused: {error}") from None

@@ -8,6 +8,7 @@ Name, unit, rule, default, words and text of a setting stand in one row of the c
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Callable
 from typing import Annotated, Any
 
 from pydantic import create_model
@@ -53,8 +54,20 @@ def core_table(name: str) -> Any:
     Args:
         name: such as "contact".
     """
-    rows = _core.settings[name]
-    fields: Any = {key: _field(row) for key, row in rows.items()}
+    return table_of_rows(name, _core.settings[name], _field)
+
+
+def table_of_rows(
+    name: str, rows: dict[str, dict[str, Any]], field: Callable[[dict[str, Any]], tuple[Any, Any]]
+) -> Any:
+    """Return a model with a field for each row.
+
+    Args:
+        name: of the table.
+        rows: of the core, by the fields' names; each has a `meaning`.
+        field: gives type and default of the field for a row.
+    """
+    fields: Any = {key: field(row) for key, row in rows.items()}
     base: Any = create_model(f"Core_{name.replace('.', '_')}", __base__=_CoreTable, **fields)
     base.rows = rows
     return base

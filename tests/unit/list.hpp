@@ -9,6 +9,8 @@
 // clang-format off
 #define MPM_UNIT_TESTS(X) \
   X(check) \
+  X(catalogue) \
+  X(exact_sum) \
   X(batch) \
   X(log) \
   X(exp_and_pow) \

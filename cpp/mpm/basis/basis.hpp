@@ -36,8 +36,7 @@ struct BasisList : ChoiceList<BasisId, B...> {
   /// f(id, basis) for each, of particles of half a cell.
   template <class F>
   static void for_each(F&& f) {
-    int k = 0;
-    (f(static_cast<BasisId>(k++), B(0.5)), ...);
+    ChoiceList<BasisId, B...>::for_each(f, 0.5);
   }
 };
 

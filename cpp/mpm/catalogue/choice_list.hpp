@@ -22,6 +22,12 @@ struct ChoiceList {
   static constexpr std::array<Word<Id>, sizeof...(T)> words_of() {
     return {Word<Id>{T::name, id_of<T>(), T::doc}...};
   }
+  /// f(id, T(given...)) for each.
+  template <class F, class... Given>
+  static void for_each(F&& f, Given... given) {
+    int k = 0;
+    (f(static_cast<Id>(k++), T(given...)), ...);
+  }
   /// f(T(given...)) for the one that was chosen.
   template <class F, class... Given>
   [[gnu::always_inline]] static void with(Id id, F&& f, Given... given) {

@@ -66,7 +66,7 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
     bool several = false, deforms = false;
     for (end = begin; end < holders.size() && tile_of(holders[end]) == tile; ++end) {
       several = several || holders[end].body != holders[begin].body;
-      deforms = deforms || !bodies[static_cast<std::size_t>(holders[end].body)].rigid;
+      deforms = deforms || bodies[static_cast<std::size_t>(holders[end].body)].deforms();
     }
     if (!several || !deforms) continue;
     ContactTile<D>& made = tiles.emplace_back();

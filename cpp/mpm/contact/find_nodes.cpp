@@ -102,7 +102,7 @@ void read_sides(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<
   for (BodyAtNode<D>& side : part.sides_of(node)) {
     const auto b = static_cast<std::size_t>(side.body);
     hash = mix(mix(hash, b), bodies[b].active());
-    side.prescribed = bodies[b].prescribed;
+    side.prescribed = bodies[b].is_prescribed();
     side.mass = grid.record_at(side.place)[mass_at];
     side.mapped = read(grid, side, velocity_at);
   }
@@ -210,7 +210,7 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
         part.leave_out(first, [&](const ContactNode& node) {
           return part.any_gap_closed(node) ||
                  std::ranges::any_of(part.sides_of(node), [&](const BodyAtNode<D>& side) {
-                   return bodies[static_cast<std::size_t>(side.body)].rigid && !side.prescribed;
+                   return bodies[static_cast<std::size_t>(side.body)].is_free_rigid();
                  });
         });
     }

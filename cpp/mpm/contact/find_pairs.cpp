@@ -102,7 +102,7 @@ void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                 const ContactNode& node) {
   const auto sides = part.sides_of(node);
   const auto rigid = [&](std::uint32_t k) {
-    return bodies[static_cast<std::size_t>(sides[k].body)].rigid;
+    return !bodies[static_cast<std::size_t>(sides[k].body)].deforms();
   };
   const bool by_gradients = uses_gradients(settings.normal);
   const std::span<const NormalSource<D>> sources =

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <numeric>
 
 #include "mpm/contact/settings.hpp"
 
@@ -18,25 +20,26 @@ std::size_t hash(int a, int b) {
 
 }  // namespace
 
-PairRecord& PairRecords::of(int a, int b) {
+std::size_t PairRecords::of(int a, int b) {
   const std::size_t mask = places_.size() - 1;
   if (!places_.empty())
     for (std::size_t at = hash(a, b) & mask; places_[at] != 0; at = (at + 1) & mask) {
-      PairRecord& record = records_[places_[at] - 1];
-      if (record.a == a && record.b == b) return record;
+      const PairRecord& record = records_[places_[at] - 1];
+      if (record.a == a && record.b == b) return places_[at] - 1;
     }
   PairRecord record;
   record.a = a;
   record.b = b;
   record.pairs = 1;
   records_.push_back(record);
+  sums_.emplace_back();
   if (2 * records_.size() > places_.size()) {
     places_.assign(std::max<std::size_t>(64, 4 * places_.size()), 0);
     for (std::size_t k = 0; k < records_.size(); ++k) enter(k);
   } else {
     enter(records_.size() - 1);
   }
-  return records_.back();
+  return records_.size() - 1;
 }
 
 /// Note where a record is.
@@ -48,19 +51,57 @@ void PairRecords::enter(std::size_t record) {
 }
 
 void PairRecords::sort() {
-  std::sort(records_.begin(), records_.end(), [](const PairRecord& x, const PairRecord& y) {
-    return std::pair(x.a, x.b) < std::pair(y.a, y.b);
-  });
+  std::vector<std::size_t> order(records_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {},
+                    [&](std::size_t k) { return std::pair(records_[k].a, records_[k].b); });
+  const auto reorder = [&](auto& values) {
+    auto sorted = values;
+    for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
+    std::ranges::copy(sorted, values.begin());
+  };
+  reorder(records_);
+  reorder(sums_);
   std::fill(places_.begin(), places_.end(), 0u);
   for (std::size_t k = 0; k < records_.size(); ++k) enter(k);
+  sorted_ = records_.size();
 }
 
-void PairRecords::clear_forces() {
-  for (PairRecord& r : records_) std::fill(std::begin(r.force), std::end(r.force), 0.0);
+void PairRecords::set_scale(double mass, double speed) {
+  constexpr int digits = 96;
+  impulse_unit_ = std::ilogb(mass * speed) - digits;
+  energy_unit_ = std::ilogb(mass * speed * speed) - digits;
+}
+
+void PairRecords::begin_step() {
+  for (PairSums& sums : sums_)
+    for (FixedSum& impulse : sums.step_impulse) impulse.clear();
+}
+
+void PairRecords::add(std::size_t record, const double (&impulse)[3], double friction_work) {
+  PairSums& sums = sums_[record];
+  for (std::size_t a = 0; a < 3; ++a) {
+    sums.step_impulse[a].add(impulse[a], impulse_unit_);
+    sums.impulse[a].add(impulse[a], impulse_unit_);
+  }
+  sums.friction_work.add(friction_work, energy_unit_);
+}
+
+void PairRecords::end_step(double time_step) {
+  for (std::size_t k = 0; k < records_.size(); ++k) {
+    PairRecord& r = records_[k];
+    for (std::size_t a = 0; a < 3; ++a) {
+      r.force[a] = sums_[k].step_impulse[a].value(impulse_unit_) / time_step;
+      r.impulse[a] = sums_[k].impulse[a].value(impulse_unit_);
+    }
+    r.friction_work = sums_[k].friction_work.value(energy_unit_);
+  }
+  if (records_.size() > sorted_) sort();
 }
 
 void PairRecords::exchange(StateStream& stream) {
   stream.vector(records_);
+  stream.vector(sums_);
   stream.vector(places_);
 }
 
@@ -72,6 +113,7 @@ void PairRecords::check_restored(std::size_t bodies) {
         k == 0 || std::pair(records_[k - 1].a, records_[k - 1].b) < std::pair(r.a, r.b);
     StateStream::check(is_body(r.a) && is_body(r.b) && r.a < r.b && later, damaged);
   }
+  StateStream::check(sums_.size() == records_.size(), damaged);
   StateStream::check(
       (places_.empty() && records_.empty()) ||
           (std::has_single_bit(places_.size()) && 2 * records_.size() <= places_.size()),
@@ -80,7 +122,8 @@ void PairRecords::check_restored(std::size_t bodies) {
 }
 
 std::size_t PairRecords::bytes() const {
-  return records_.capacity() * sizeof(PairRecord) + places_.capacity() * sizeof(places_[0]);
+  return records_.capacity() * sizeof(PairRecord) + sums_.capacity() * sizeof(PairSums) +
+         places_.capacity() * sizeof(places_[0]);
 }
 
 }  // namespace mpm

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mpm/fields/state_stream.hpp"
+#include "mpm/math/exact_sum.hpp"
 
 namespace mpm {
 
@@ -23,18 +24,29 @@ struct PairRecord {
   double friction_work = 0.0;  // [J]
 };
 
+/// The sums from which a record has its numbers: they depend on no order of the nodes.
+struct PairSums {
+  FixedSum step_impulse[3], impulse[3], friction_work;
+};
+
 /// The records of all pairs that have met, found by the numbers of the bodies.
 class PairRecords {
  public:
   /// Sorted by (a, b) between steps.
   const std::vector<PairRecord>& all() const { return records_; }
   std::size_t size() const { return records_.size(); }
+  /// Before the first step: about the largest mass [kg] and speed [m/s] that there are. Sums are
+  /// good to 2^-96 of their product, and hold up to 2^31 of it.
+  void set_scale(double mass, double speed);
   /// Forces are those of one step.
-  void clear_forces();
-  /// The record of a pair, a < b; a new one stands at the end until sort().
-  PairRecord& of(int a, int b);
-  /// Put new records in their order among the old ones.
-  void sort();
+  void begin_step();
+  /// The number of the record of a pair, a < b; a new one stands at the end until end_step().
+  std::size_t of(int a, int b);
+  PairRecord& operator[](std::size_t record) { return records_[record]; }
+  /// Add an impulse on a [N s], zeros behind the dimension, and the work of friction [J].
+  void add(std::size_t record, const double (&impulse)[3], double friction_work);
+  /// Write the sums into the records, and put new ones in their order among the old ones.
+  void end_step(double time_step);
 
   /// Save or restore them. Throws std::invalid_argument for records of other bodies.
   void exchange(StateStream& stream);
@@ -43,8 +55,12 @@ class PairRecords {
 
  private:
   void enter(std::size_t record);
+  void sort();
 
   std::vector<PairRecord> records_;
+  std::vector<PairSums> sums_;  // of each record
+  std::size_t sorted_ = 0;      // records
+  int impulse_unit_ = -96, energy_unit_ = -96;  // exponents of powers of two
   // Where a pair's record is: open addressing by pair_key, at most half full; 0 is empty, else the
   // record's number + 1.
   std::vector<std::uint32_t> places_;

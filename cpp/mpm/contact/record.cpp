@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mpm/math/exact_sum.hpp"
+
 namespace mpm {
 namespace {
 
@@ -13,23 +15,24 @@ constexpr double least_share = 1e-6;
 template <int D>
 ContactSums record_pairs(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                          const StepEnd& end) {
-  ContactSums sums;
   // Mass of a side's node over that of a particle.
   const auto share = [&](const BodyAtNode<D>& side) {
     return grid.record_at(side.place)[mass_at] /
            bodies[static_cast<std::size_t>(side.body)].mean_mass;
   };
-  const std::size_t before = contact.records.size();
-  contact.records.clear_forces();
+  PairRecords& records = contact.records;
+  records.begin_step();
+  ExactSum energy, force_work, friction, friction_first;
   const auto add = [&](ContactPart<D>& part, const ContactNode& node) {
-    sums.energy += node.energy;
-    sums.force_work += node.force_work;
+    energy.add(node.energy);
+    force_work.add(node.force_work);
     for (const ContactPair<D>& pair : part.pairs_of(node)) {
       if (!pair.loaded) continue;
       const BodyAtNode<D>& side_r = part.sides_of(node)[pair.r];
       const BodyAtNode<D>& side_s = part.sides_of(node)[pair.s];
-      PairRecord& r = contact.records.of(std::min(side_r.body, side_s.body),
-                                         std::max(side_r.body, side_s.body));
+      const std::size_t record =
+          records.of(std::min(side_r.body, side_s.body), std::max(side_r.body, side_s.body));
+      PairRecord& r = records[record];
       const double sign =
           side_r.body < side_s.body ? 1.0 : -1.0;  // records hold what acts on the first
       // A node that a body has only just reached tells nothing about when and where they met.
@@ -48,19 +51,17 @@ ContactSums record_pairs(Contact<D>& contact, TileGrid<D>& grid, const std::vect
         }
       }
       const Vec<double, D> impulse = pair.impulse();
-      for (int a = 0; a < D; ++a) {
-        r.impulse[a] += sign * impulse[a];
-        r.force[a] += sign * impulse[a] / end.time_step;
-      }
-      r.friction_work += pair.friction_work;
-      sums.friction += pair.friction_work;
-      sums.friction_first += pair.friction_first;
+      double on_first[3] = {};
+      for (int a = 0; a < D; ++a) on_first[a] = sign * impulse[a];
+      records.add(record, on_first, pair.friction_work);
+      friction.add(pair.friction_work);
+      friction_first.add(pair.friction_first);
     }
   };
   for (ContactPart<D>& part : contact.parts)
     for (const ContactNode& node : part.nodes) add(part, node);
-  if (contact.records.size() > before) contact.records.sort();
-  return sums;
+  records.end_step(end.time_step);
+  return {friction.value(), friction_first.value(), energy.value(), force_work.value()};
 }
 
 template ContactSums record_pairs<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&,

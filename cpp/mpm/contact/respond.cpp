@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "mpm/particles/prescribed_motion.hpp"
+#include "mpm/rigid/prescribed_motion.hpp"
 
 namespace mpm {
 namespace {

@@ -35,7 +35,7 @@ void harden(const std::vector<Body<D>>& bodies, std::span<BodyAtNode<D>> sides) 
 
 template <int D>
 void share_rigid_masses(Contact<D>& contact, const std::vector<Body<D>>& bodies) {
-  if (std::none_of(bodies.begin(), bodies.end(), [](const Body<D>& b) { return b.rigid; })) return;
+  if (std::ranges::all_of(bodies, &Body<D>::deforms)) return;
   contact.rigid_share.assign(bodies.size(), 0.0);
   for (ContactPart<D>& part : contact.parts) {
     for (const ContactNode& node : part.nodes) harden(bodies, part.sides_of(node));
@@ -45,8 +45,7 @@ void share_rigid_masses(Contact<D>& contact, const std::vector<Body<D>>& bodies)
   for (ContactPart<D>& part : contact.parts)
     for (BodyAtNode<D>& side : part.sides) {
       const auto b = static_cast<std::size_t>(side.body);
-      if (bodies[b].rigid && !side.prescribed)
-        side.mass /= contact.rigid_share[b] / bodies[b].total_mass;
+      if (bodies[b].is_free_rigid()) side.mass /= contact.rigid_share[b] / bodies[b].total_mass;
     }
 }
 

@@ -10,9 +10,9 @@
 #include "mpm/fields/state_stream.hpp"
 #include "mpm/grid/keep.hpp"
 #include "mpm/grid/patch.hpp"
-#include "mpm/grid/walls.hpp"
 #include "mpm/math/vec.hpp"
 #include "mpm/parallel/threads.hpp"
+#include "mpm/walls/walls.hpp"
 
 namespace mpm {
 

@@ -89,33 +89,7 @@ struct Ledger {
   template <int D>
   void add(const std::vector<PatchSums<D>>& patches, const ContactSums& contacts,
            const Gone<D>& by_erosion, const Gone<D>& out_of_region, bool forces_follow) {
-    PatchSums<D> s;
-    for (const PatchSums<D>& p : patches) {
-      s.stress.internal += p.stress.internal;
-      s.stress.plastic += p.stress.plastic;
-      s.stress.viscous += p.stress.viscous;
-      s.stress.bounded += p.stress.bounded;
-      s.stress.energy_floor += p.stress.energy_floor;
-      s.stress.force_power += p.stress.force_power;
-      s.kinetic += p.kinetic;
-      s.second_order += p.second_order;
-      s.damped += p.damped;
-      s.made_rigid += p.made_rigid;
-      for (int a = 0; a < D; ++a) s.momentum[a] += p.momentum[a];
-      s.force_work += p.force_work;
-      s.gravity_first += p.gravity_first;
-      s.gravity_second += p.gravity_second;
-      s.load_first += p.load_first;
-      s.load_second += p.load_second;
-      s.dashpot_first += p.dashpot_first;
-      s.dashpot_second += p.dashpot_second;
-      s.prescribed.kinetic += p.prescribed.kinetic;
-      s.prescribed.work += p.prescribed.work;
-      for (int a = 0; a < D; ++a) {
-        s.prescribed.momentum[a] += p.prescribed.momentum[a];
-        s.prescribed.impulse[a] += p.prescribed.impulse[a];
-      }
-    }
+    const PatchSums<D> s = total_of(patches);
     const double motion = s.prescribed.kinetic - prescribed_kinetic - s.prescribed.work;
     prescribed_kinetic = s.prescribed.kinetic;
     motion_work += motion;

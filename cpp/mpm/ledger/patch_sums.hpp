@@ -1,6 +1,10 @@
 #pragma once
 // What the ledger needs from one patch in one step.
+#include <array>
+#include <vector>
+
 #include "mpm/materials/material_block.hpp"
+#include "mpm/math/exact_sum.hpp"
 
 namespace mpm {
 
@@ -13,8 +17,8 @@ struct PrescribedSums {
   double impulse[D] = {};   // of the contact forces on it [N s]
 };
 
-/// What the ledger needs from one patch in one step. Every patch has its own, and they are added in
-/// the order of the patches, so that no sum depends on the number of threads.
+/// What the ledger needs from one patch in one step. Every patch has its own, so that no sum
+/// depends on the number of threads.
 template <int D>
 struct PatchSums {
   StressSums stress;
@@ -31,6 +35,37 @@ struct PatchSums {
   PrescribedSums<D> prescribed;
   double load_first = 0.0, load_second = 0.0;        // the same of loads on surfaces [J]
   double dashpot_first = 0.0, dashpot_second = 0.0;  // the same of walls that absorb [J]
+
+  /// f(number) for all that are summed over the patches, in one order.
+  template <class F>
+  void for_each(F&& f) {
+    for (double* const x :
+         {&stress.internal, &stress.plastic, &stress.viscous, &stress.bounded, &stress.energy_floor,
+          &stress.force_power, &kinetic, &second_order, &damped, &force_work, &made_rigid,
+          &gravity_first, &gravity_second, &prescribed.kinetic, &prescribed.work, &load_first,
+          &load_second, &dashpot_first, &dashpot_second})
+      f(*x);
+    for (int a = 0; a < D; ++a) {
+      f(momentum[a]);
+      f(prescribed.momentum[a]);
+      f(prescribed.impulse[a]);
+    }
+  }
+  static constexpr std::size_t numbers = 19 + 3 * D;  // of for_each
 };
+
+/// The sums over all patches, which depend on no order.
+template <int D>
+PatchSums<D> total_of(const std::vector<PatchSums<D>>& patches) {
+  std::array<ExactSum, PatchSums<D>::numbers> sums;
+  for (PatchSums<D> patch : patches) {
+    std::size_t k = 0;
+    patch.for_each([&](double x) { sums[k++].add(x); });
+  }
+  PatchSums<D> total;
+  std::size_t k = 0;
+  total.for_each([&](double& x) { x = sums[k++].value(); });
+  return total;
+}
 
 }  // namespace mpm

@@ -7,9 +7,16 @@
 
 #include "mpm/fields/columns.hpp"
 #include "mpm/materials/material_block.hpp"
-#include "mpm/particles/prescribed_motion.hpp"
+#include "mpm/rigid/prescribed_motion.hpp"
 
 namespace mpm {
+
+/// What moves the particles of a body.
+enum class BodyKind : std::uint8_t {
+  deformable,  // each its own forces
+  rigid,       // as one, those of all (Newton, Euler)
+  prescribed,  // as one, Body::motion, whatever acts on them
+};
 
 template <int D>
 struct Body {
@@ -27,8 +34,7 @@ struct Body {
   double mean_mass = 0.0;            // of a particle at the start [kg]
   double mean_edge = 0.0;   // edge of a square or cube of the mean initial particle volume [m]
   double total_mass = 0.0;  // [kg]
-  bool rigid = false;       // its particles move as one
-  bool prescribed = false;  // and by `motion`, whatever acts on them; it is rigid then
+  BodyKind kind = BodyKind::deformable;
   std::unique_ptr<PrescribedMotion> motion;  // none for the thousands of bodies that are free
   double pressure_impedance = 0.0, shear_impedance = 0.0;  // rho c of the start [kg/(m^2 s)]
   std::size_t moved = 0;  // changes of cell since the columns were last sorted
@@ -37,6 +43,9 @@ struct Body {
 
   std::size_t count() const { return columns.rows(); }
   std::size_t active() const { return count() - gone; }
+  bool deforms() const { return kind == BodyKind::deformable; }
+  bool is_prescribed() const { return kind == BodyKind::prescribed; }
+  bool is_free_rigid() const { return kind == BodyKind::rigid; }
   double* x(int a) { return columns.component(position + a); }
   Rounded* v(int a) { return columns.rounded(at.velocity + a); }
   const double* x(int a) const { return columns.component(position + a); }

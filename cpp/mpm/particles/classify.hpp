@@ -62,7 +62,7 @@ std::size_t note_gone(const TileGrid<D>& grid, const Body<D>& body, const Patch<
   const double* failed = body.at.failed >= 0 ? body.columns.component(body.at.failed) : nullptr;
   if (!failed && !grid.keep.exist) return 0;
   const auto stays = [&](std::uint32_t row) {
-    if (body.rigid) return !body.leaves;
+    if (!body.deforms()) return !body.leaves;
     if (!grid.keep.exist) return true;
     Vec<double, D> x;
     for (int a = 0; a < D; ++a) x[a] = body.x(a)[row];

@@ -71,10 +71,10 @@ Body<D> make_body(const std::string& name, const Material& material,
   }
   start_material_columns<D>(material, body.columns, body.at);
   const double speed = sound_speed<D>(material, body.columns, body.at, 0, grid.cell_size);
-  body.rigid = material.moves_as_one();
+  if (material.moves_as_one()) body.kind = BodyKind::rigid;
   body.total_mass = material.density * total;
   body.stiffness =
-      body.rigid ? std::numeric_limits<double>::infinity() : material.density * speed * speed;
+      !body.deforms() ? std::numeric_limits<double>::infinity() : material.density * speed * speed;
   body.initial_density = material.density;
   body.pressure_impedance = material.density * speed;
   body.shear_impedance = std::sqrt(material.density * shear_modulus(material));

@@ -6,10 +6,10 @@
 #include <map>
 #include <vector>
 
-#include "mpm/grid/walls.hpp"
 #include "mpm/materials/strength/elastic.hpp"
-#include "mpm/particles/prescribed_motion.hpp"
 #include "mpm/reference/shape.hpp"
+#include "mpm/rigid/prescribed_motion.hpp"
+#include "mpm/walls/walls.hpp"
 
 namespace mpm::reference {
 

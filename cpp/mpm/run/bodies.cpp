@@ -62,7 +62,7 @@ void SimulationOf<D>::set_motion(int number, const std::array<TimeFunction, 3>& 
   check_functions(velocity, b.name + ": velocity");
   check_functions(spin, b.name + ": spin");
   check_finite(centre, b.name + ": centre");
-  b.rigid = b.prescribed = true;
+  b.kind = BodyKind::prescribed;
   b.motion = std::make_unique<PrescribedMotion>();
   b.motion->velocity = velocity;
   b.motion->spin = spin;
@@ -74,7 +74,7 @@ void SimulationOf<D>::set_motion(int number, const std::array<TimeFunction, 3>& 
 template <int D>
 void SimulationOf<D>::start_motions() {
   for (Body<D>& b : domain_.bodies) {
-    if (!b.prescribed) continue;
+    if (!b.is_prescribed()) continue;
     b.motion->radius = 0.0;
     for (std::size_t i = 0; i < b.count(); ++i) {
       Vec<double, D> x;
@@ -120,7 +120,7 @@ void SimulationOf<D>::set_pair_friction(int a, int b, double mu) {
 template <int D>
 void SimulationOf<D>::set_velocity(int number, std::span<const double> velocities) {
   Body<D>& b = domain_.bodies.at(static_cast<std::size_t>(number));
-  if (b.prescribed) throw std::invalid_argument("the motion of " + b.name + " is prescribed");
+  if (b.is_prescribed()) throw std::invalid_argument("the motion of " + b.name + " is prescribed");
   if (velocities.size() != b.count() * D) throw std::invalid_argument("velocities must be (n, D)");
   check_finite(velocities, "velocities");
   const double before = prepared_ ? kinetic_energy() : 0.0;  // the lists are made by prepare()

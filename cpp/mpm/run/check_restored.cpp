@@ -89,7 +89,7 @@ void SimulationOf<D>::check_lists() const {
   for (const Body<D>& body : domain_.bodies) {
     check(counts_all(body.id) && counts_all(body.order) && body.gone <= body.count(),
           "its lists are damaged");
-    if (body.prescribed)
+    if (body.is_prescribed())
       check(finite(body.motion->before) && finite(body.motion->now), "its motions are damaged");
   }
   std::vector<std::size_t> listed(domain_.bodies.size(), 0);

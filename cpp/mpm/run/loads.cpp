@@ -7,14 +7,14 @@
 namespace mpm {
 
 template <int D>
-void SimulationOf<D>::add_load(const std::string& name, int number, bool follows,
+void SimulationOf<D>::add_load(const std::string& name, int number, const std::string& kind,
                                const std::array<TimeFunction, 3>& value, const Pieces& pieces) {
   const auto check = [&](bool condition, const std::string& rule) {
     if (!condition) throw std::invalid_argument("load " + name + ": " + rule);
   };
   check(!prepared_, "must be added before prepare()");
   const Body<D>& body = domain_.bodies.at(static_cast<std::size_t>(number));
-  check(!body.rigid, "its body is rigid, and a load acts on bodies that deform");
+  check(body.deforms(), "its body is rigid, and a load acts on bodies that deform");
   const std::size_t n = pieces.particles.size();
   check(n > 0, "no particle carries a piece of the surface");
   check(pieces.areas.size() == n * D && pieces.arms.size() == n * D && pieces.sizes.size() == n,
@@ -22,7 +22,7 @@ void SimulationOf<D>::add_load(const std::string& name, int number, bool follows
   SurfaceLoad<D> load;
   load.name = name;
   load.body = number;
-  load.follows = follows;
+  load.kind = choice_named<LoadKind>("a load", kind);
   for (std::size_t a = 0; a < D; ++a) {
     load.value[a] = value[a];
     check(value[a].problem().empty(), "its function of time " + value[a].problem());

@@ -20,7 +20,7 @@ void exchange_body(StateStream& stream, Body<D>& body) {
   stream.array(std::span(body.id));
   stream.array(std::span(body.order));
   stream(body.moved, body.leaves, body.gone);
-  if (body.prescribed) stream(body.motion->before, body.motion->now);
+  if (body.is_prescribed()) stream(body.motion->before, body.motion->now);
 }
 
 template <int D>

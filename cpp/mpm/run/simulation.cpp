@@ -74,24 +74,27 @@ void SimulationOf<D>::prepare() {
   if (domain_.has_contact()) connect_tiles(domain_.contact, domain_.grid, domain_.bodies);
   domain_.sums.resize(domain_.grid.patches.size());
   const auto& bodies = domain_.bodies;
-  const auto is_rigid = [](const Body<D>& b) { return b.rigid; };
+  const auto is_rigid = [](const Body<D>& b) { return !b.deforms(); };
   check(!std::all_of(bodies.begin(), bodies.end(), is_rigid),
         "all bodies are rigid, so no wave limits the time step: one must deform");
   check(!settings_.contact.bonded || std::none_of(bodies.begin(), bodies.end(), is_rigid),
         "bodies are bonded, so none can be rigid");
   start_motions();
   if (std::any_of(bodies.begin(), bodies.end(),
-                  [](const Body<D>& b) { return b.rigid && !b.prescribed; })) {
+                  [](const Body<D>& b) { return b.is_free_rigid(); })) {
     domain_.rigid.resize(bodies.size());
     hold_rigid_bodies(domain_);
   }
   probe_speeds();
+  const double fastest =
+      settings_.run.time_step_factor * settings_.grid.cell_size / next_time_step_;
+  domain_.contact.records.set_scale(total_mass(), fastest);
   domain_.ledger.kinetic = kinetic_energy();
   domain_.ledger.internal = initial_internal_energy();
   domain_.ledger.start = domain_.ledger.kinetic + domain_.ledger.internal;
   domain_.ledger.momentum = momentum();
   for (const Body<D>& b : bodies)
-    if (b.prescribed) domain_.ledger.add_prescribed(b);
+    if (b.is_prescribed()) domain_.ledger.add_prescribed(b);
   sights_.resize(bodies.size());
   notes_.reserve(2 * note_names.size());
   domain_.time_step = 0.0;
@@ -124,7 +127,7 @@ void SimulationOf<D>::make_step(double time_after) {
     domain_.gravity[static_cast<int>(a)] =
         domain_.gravity_of_time[a].mean(domain_.time, time_after);
   for (Body<D>& b : domain_.bodies)
-    if (b.prescribed) b.motion->begin_step(domain_.time, time_after);
+    if (b.is_prescribed()) b.motion->begin_step(domain_.time, time_after);
   domain_.time_after = time_after;
   for (std::size_t k = 0; k < stages_.size(); ++k)
     timers_.time(k, [&] { stages_[k].run(domain_); });
@@ -148,7 +151,7 @@ void SimulationOf<D>::choose_time_step() {
   next_time_step_ = way / fastest;
   // Prescribed motions may have jumps.
   for (const Body<D>& b : domain_.bodies)
-    if (b.prescribed && b.motion->moves) {
+    if (b.is_prescribed() && b.motion->moves) {
       const double speed = b.motion->speed(domain_.time, domain_.time + next_time_step_);
       next_time_step_ = std::min(next_time_step_, way / speed);
     }

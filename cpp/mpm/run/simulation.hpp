@@ -93,10 +93,9 @@ class Simulation {
   virtual void set_motion(int body, const std::array<TimeFunction, 3>& velocity,
                           const std::array<TimeFunction, 3>& spin,
                           const std::array<double, 3>& centre) = 0;
-  /// Load a part of the surface of a body that deforms: with a pressure (the first of the values)
-  /// or, if it does not follow the surface, with a traction; functions of time [Pa]; before
-  /// prepare().
-  virtual void add_load(const std::string& name, int body, bool follows,
+  /// Load a part of the surface of a body that deforms with a kind of LoadKinds; its value is a
+  /// function of time [Pa], a number the first of the three; before prepare().
+  virtual void add_load(const std::string& name, int body, const std::string& kind,
                         const std::array<TimeFunction, 3>& value, const Pieces& pieces) = 0;
   /// Put a body into the group of an earlier one, by that one's number: they have the same
   /// frictions, and group_pairs() sums over them. Every other body is a group by itself.

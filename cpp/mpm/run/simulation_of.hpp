@@ -18,7 +18,7 @@ class SimulationOf final : public Simulation {
   void set_motion(int body, const std::array<TimeFunction, 3>& velocity,
                   const std::array<TimeFunction, 3>& spin,
                   const std::array<double, 3>& centre) override;
-  void add_load(const std::string& name, int body, bool follows,
+  void add_load(const std::string& name, int body, const std::string& kind,
                 const std::array<TimeFunction, 3>& value, const Pieces& pieces) override;
   void set_group(int body, int first) override;
   void set_pair_friction(int a, int b, double mu) override;

@@ -21,7 +21,7 @@ double speed_of(const Body<D>& body, std::size_t row) {
 /// Of the fastest wave in a particle [m/s]; 0 in a rigid body, which limits no time step.
 template <int D>
 double SimulationOf<D>::wave_speed(const Body<D>& b, std::size_t row) const {
-  if (b.rigid) return 0.0;
+  if (!b.deforms()) return 0.0;
   const Material& material = domain_.materials[static_cast<std::size_t>(b.material)];
   return sound_speed<D>(material, b.columns, b.at, row, domain_.grid.cell_size);
 }

@@ -119,9 +119,9 @@ void SimulationOf<D>::look() {
     const Body<D>& b = domain_.bodies[number_of];
     Sight& sight = seen[number(b.group)];
     sight.particles += b.active();
-    const bool solid = !b.rigid && !domain_.materials[number(b.material)].is_gas();
+    const bool solid = b.deforms() && !domain_.materials[number(b.material)].is_gas();
     const double* failed = b.at.failed >= 0 ? b.columns.component(b.at.failed) : nullptr;
-    const bool placed = grid.walls.exist && !b.prescribed;
+    const bool placed = grid.walls.exist && !b.is_prescribed();
     if (!solid && !placed) continue;
     for (std::size_t k = 0; k < b.active(); ++k) {
       const std::size_t i = b.order[k];

@@ -11,7 +11,7 @@ template <int D>
 void mark_leaving(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
   for (std::size_t b = 0; b < domain.bodies.size(); ++b) {
-    if (!domain.bodies[b].rigid || domain.bodies[b].prescribed) continue;
+    if (!domain.bodies[b].is_free_rigid()) continue;
     Vec<double, D> centre;
     for (int a = 0; a < D; ++a) centre[a] = domain.rigid[b].centre[a];
     domain.bodies[b].leaves = !grid.keep.holds(centre);
@@ -20,7 +20,7 @@ void mark_leaving(Domain<D>& domain) {
     Patch<D>& patch = grid.patches[p];
     const Body<D>& body = domain.body_of(patch);
     if (patch.left_cell) return;  // its particles are looked at anyway
-    if (body.rigid) {
+    if (!body.deforms()) {
       patch.left_cell = body.leaves;
       return;
     }
@@ -44,7 +44,7 @@ template <int D>
 void balance(Domain<D>& domain) {
   const auto& patches = domain.grid.patches;
   domain.threads.balance(patches.size(), [&](std::size_t p) {
-    const double particles = domain.body_of(patches[p]).prescribed ? 0.0 : patches[p].count;
+    const double particles = domain.body_of(patches[p]).is_prescribed() ? 0.0 : patches[p].count;
     return 4.0 * particles + patches[p].shape.node_count;
   });
 }

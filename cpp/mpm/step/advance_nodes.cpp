@@ -1,8 +1,9 @@
-#include "mpm/step/absorb.hpp"
-#include "mpm/step/loads.hpp"
-#include "mpm/step/mirror.hpp"
-#include "mpm/step/prescribed_bodies.hpp"
+#include "mpm/loads/carry_loads.hpp"
+#include "mpm/rigid/prescribed_bodies.hpp"
+#include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
+#include "mpm/walls/absorb.hpp"
+#include "mpm/walls/mirror.hpp"
 
 namespace mpm {
 namespace {
@@ -20,13 +21,10 @@ void advance_nodes(Domain<D>& domain) {
   auto& grid = domain.grid;
   const double dt = domain.time_step;
   const bool absorb = grid.walls.absorb(), loaded = domain.has_loads();
-  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+  for_each_patch(domain, prescribed, [&](std::size_t p) { advance_prescribed_nodes(domain, p); });
+  for_each_patch(domain, deformable | free_rigid, [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
-    if (domain.body_of(patch).prescribed) {
-      advance_prescribed_nodes(domain, p);
-      return;
-    }
     // Walls take up the force along the axes they hold; gravity there is cancelled below with the
     // increment.
     for_each_held_node(grid, patch, [&](int node, unsigned held) {

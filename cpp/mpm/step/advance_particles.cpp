@@ -1,6 +1,7 @@
 #include "mpm/schedule/scatter.hpp"
 #include "mpm/step/move.hpp"
 #include "mpm/step/node_loops.hpp"
+#include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
 #include "mpm/step/transfer/transfer.hpp"
 
@@ -18,7 +19,6 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   auto& grid = domain.grid;
   Patch<D>& patch = grid.patches[p];
   Body<D>& body = domain.body_of(patch);
-  if (body.prescribed) return;
   const NodeBlock<D> block = grid.block(p);
   T kinetic(0.0), second_order(0.0), lost(0.0);
   Vec<T, D> momentum = Vec<T, D>::zero();
@@ -86,11 +86,11 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
 /// Rigid bodies are only advanced: their velocities are not final yet.
 template <Also also, int D>
 void advance(Domain<D>& domain) {
-  domain.threads.for_each(domain.grid.patches.size(), [&](std::size_t p) {
+  for_each_patch(domain, deformable | free_rigid, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     const Body<D>& body = domain.body_of(patch);
     with_basis_and_lanes(domain.grid, body, patch, [&](const auto& basis, auto lanes) {
-      if (body.rigid)
+      if (!body.deforms())
         advance_patch<lanes, Also::nothing>(domain, p, basis, Flip());
       else
         with_transfer(domain, [&](const auto& transfer) {

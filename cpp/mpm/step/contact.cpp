@@ -1,7 +1,7 @@
 #include "mpm/contact/find_nodes.hpp"
 #include "mpm/contact/respond.hpp"
-#include "mpm/step/mirror.hpp"
 #include "mpm/step/stages.hpp"
+#include "mpm/walls/mirror.hpp"
 
 namespace mpm {
 

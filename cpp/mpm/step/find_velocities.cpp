@@ -1,7 +1,7 @@
 // From the momenta that have been summed to velocities: v_i = p_i / m_i.
-#include "mpm/step/mirror.hpp"
-#include "mpm/step/prescribed_bodies.hpp"
+#include "mpm/rigid/prescribed_bodies.hpp"
 #include "mpm/step/stages.hpp"
+#include "mpm/walls/mirror.hpp"
 
 namespace mpm {
 namespace {
@@ -15,7 +15,7 @@ void find(Domain<D>& domain, int at, F&& prescribed) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
     const Body<D>& body = domain.body_of(patch);
-    if (body.prescribed) {
+    if (body.is_prescribed()) {
       prescribed(body, patch, block);
       return;
     }

@@ -1,7 +1,7 @@
 #include "mpm/schedule/scatter.hpp"
-#include "mpm/step/mirror.hpp"
 #include "mpm/step/stages.hpp"
 #include "mpm/step/transfer/transfer.hpp"
+#include "mpm/walls/mirror.hpp"
 
 namespace mpm {
 namespace {
@@ -19,7 +19,7 @@ void map_patch(Domain<D>& domain, std::size_t p) {
     if (grid.has_dashpots) clear(block.dashpots(), block.count, half_record);
   }
   const Body<D>& body = domain.body_of(patch);
-  if (body.prescribed && !patch.in_contact) return;  // Nobody asks for its nodes.
+  if (body.is_prescribed() && !patch.in_contact) return;  // Nobody asks for its nodes.
   // The weights that "map momentum" leaves in the forces are added last, as where both are mapped
   // at once: to the same bits.
   const bool weighed = !momentum && patch.at_wall && grid.has_ghosts();
@@ -31,13 +31,13 @@ void map_patch(Domain<D>& domain, std::size_t p) {
   for_each_weight([](double& weight, double& force) { weight = std::exchange(force, 0.0); });
   with_transfer(domain, [&]<class Transfer>(const Transfer&) {
     using Gives = Mapping<typename Transfer::Gives>;
-    if (!body.rigid)
+    if (body.deforms())
       scatter<Gives, what>(grid, body, patch, block.records);
     else if constexpr (momentum)  // It has no stress.
       scatter<Gives, what & ~gives_forces>(grid, body, patch, block.records);
   });
   for_each_weight([](double weight, double& force) { force += weight; });
-  if (momentum && !body.prescribed) subtract_ghost_weight(domain, patch, block);
+  if (momentum && !body.is_prescribed()) subtract_ghost_weight(domain, patch, block);
 }
 
 template <unsigned what, int D>

@@ -1,4 +1,5 @@
 #include "mpm/step/move.hpp"
+#include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -6,10 +7,9 @@ namespace mpm {
 template <int D>
 void move_particles(Domain<D>& domain) {
   auto& grid = domain.grid;
-  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+  for_each_patch(domain, deformable, [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
     Body<D>& body = domain.body_of(patch);
-    if (body.rigid) return;
     const NodeBlock<D> block = grid.block(p);
     const LocalPosition<D> local_position(grid, body);
     Moving<D> moving(grid, body, domain.time_step);

@@ -1,22 +1,22 @@
 #include "mpm/schedule/scatter.hpp"
 #include "mpm/step/node_loops.hpp"
+#include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
 #include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm {
 namespace {
 
-/// The momenta of rigid bodies, or of the others.
+/// The momenta of bodies of these kinds.
 template <int D>
-void remap(Domain<D>& domain, bool rigid) {
+void remap(Domain<D>& domain, Kinds kinds) {
   auto& grid = domain.grid;
-  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+  for_each_patch(domain, kinds, [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
     const Body<D>& body = domain.body_of(patch);
-    if (body.rigid != rigid) return;
     clear(block.records.at(force_at), block.count, half_record);
-    if (body.prescribed) return;
+    if (body.is_prescribed()) return;
     with_transfer(domain, [&]<class Transfer>(const Transfer&) {
       scatter<Mapping<typename Transfer::Gives>, gives_momentum>(grid, body, patch,
                                                                  block.records.at(force_at));
@@ -28,12 +28,12 @@ void remap(Domain<D>& domain, bool rigid) {
 
 template <int D>
 void remap_momentum(Domain<D>& domain) {
-  remap(domain, false);
+  remap(domain, deformable);
 }
 
 template <int D>
 void remap_rigid_bodies(Domain<D>& domain) {
-  if (domain.has_rigid() || domain.has_prescribed()) remap(domain, true);
+  if (domain.has_rigid() || domain.has_prescribed()) remap(domain, free_rigid | prescribed);
 }
 
 template void remap_momentum<2>(Domain<2>&);

@@ -1,5 +1,6 @@
-#include "mpm/step/loads.hpp"
+#include "mpm/loads/carry_loads.hpp"
 #include "mpm/step/move.hpp"
+#include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -15,7 +16,6 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   const auto& grid = domain.grid;
   Patch<D>& patch = domain.grid.patches[p];
   Body<D>& body = domain.body_of(patch);
-  if (body.rigid) return;
   if (domain.has_loads()) carry_loads<straining_at>(domain, p);
   const Material& material = domain.materials[static_cast<std::size_t>(body.material)];
   const StressSettings settings{domain.time_step, domain.time + domain.time_step, grid.cell_size,
@@ -53,7 +53,7 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
 
 template <bool moves, int straining_at, int D>
 void update(Domain<D>& domain, bool forces_follow) {
-  domain.threads.for_each(domain.grid.patches.size(), [&](std::size_t p) {
+  for_each_patch(domain, deformable, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     with_basis_and_lanes(
         domain.grid, domain.body_of(patch), patch, [&](const auto& basis, auto lanes) {

@@ -13,6 +13,19 @@ namespace {
 using namespace mpm;
 using mpm::testing::Report;
 
+/// Defaults, and what has none at the least whole number that its rule allows.
+template <SettingsTable Table>
+Table with_required() {
+  Table table;
+  for_each_setting<Table>([&]<class Value>(const Setting<Table, Value>& setting) {
+    if constexpr (is_number<Value>)
+      if (is_required(setting))
+        table.*setting.member =
+            static_cast<Value>(setting.rule.lower + (setting.rule.lower_open ? 1.0 : 0.0));
+  });
+  return table;
+}
+
 template <SettingsTable Table>
 void check_table(Report& report) {
   std::set<std::string_view> names;
@@ -20,7 +33,7 @@ void check_table(Report& report) {
     CHECK(names.insert(setting.name).second, setting.name);
     CHECK(!setting.meaning.empty() && setting.meaning.back() != '.', setting.name);
     if constexpr (is_number<Value>) {
-      Table table;
+      Table table = with_required<Table>();
       const std::string key = std::string(Table::table) + "." + std::string(setting.name);
       for (const double bad : {setting.rule.lower - 1.0, setting.rule.upper + 1.0}) {
         if (!std::isfinite(bad)) continue;

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "check.hpp"
-#include "mpm/particles/surface_load.hpp"
+#include "mpm/loads/surface_load.hpp"
 
 namespace {
 

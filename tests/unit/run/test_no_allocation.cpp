@@ -108,7 +108,7 @@ std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& m
     const std::uint32_t particles[] = {0, 1, 2};
     const std::vector<double> vectors(3 * static_cast<std::size_t>(dimension), 0.25);
     const double sizes[] = {0.5, 0.5, 0.5};
-    simulation->add_load("load", 0, true, {TimeFunction(10.0)},
+    simulation->add_load("load", 0, "pressure", {TimeFunction(10.0)},
                          {particles, vectors, sizes, vectors});
   }
   simulation->prepare();

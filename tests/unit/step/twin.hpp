@@ -92,7 +92,8 @@ struct Twin {
     const double volume = std::pow(edge * cell_size, D);
     Body<D> body = make_body<D>("body", domain.materials[0], x, v, std::array{volume}, domain.grid);
     reference::Body<D> other;
-    body.rigid = other.rigid = rigid;
+    body.kind = rigid ? BodyKind::rigid : BodyKind::deformable;
+    other.rigid = rigid;
     other.material = Elastic::of(E, nu, density);
     for (std::size_t i = 0; i < particles; ++i) {
       body.volume()[i] *= 1.0 + 0.2 * any();

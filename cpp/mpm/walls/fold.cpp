@@ -1,6 +1,6 @@
 // Nodes beyond walls that belong to mirrored bodies.
-#include "mpm/step/mirror.hpp"
 #include "mpm/step/stages.hpp"
+#include "mpm/walls/mirror.hpp"
 
 namespace mpm {
 namespace {

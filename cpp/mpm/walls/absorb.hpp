@@ -14,7 +14,7 @@ namespace mpm {
 template <int D>
 void scatter_dashpots(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
                       const NodeBlock<D>& block) {
-  if (!patch.at_wall || body.rigid) return;
+  if (!patch.at_wall) return;
   // Do particles with this node at the lower corner around them lie along a face?
   const auto along_face = [&](int node, int normal, int side) {
     return grid.walls.face[normal][side] == Wall::absorbing &&

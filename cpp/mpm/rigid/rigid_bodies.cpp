@@ -1,9 +1,9 @@
 // Bodies that move as one: after eq. (17) their velocities are replaced by the rigid motion of the
 // same momentum and angular momentum, and they take the place of eq. (16) that this motion gives.
-#include <limits>
 #include <span>
 
-#include "mpm/step/prescribed_bodies.hpp"
+#include "mpm/rigid/prescribed_bodies.hpp"
+#include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -23,19 +23,18 @@ Vector3 velocity(const Body<D>& body, std::uint32_t row) {
   return in_space<D>(v);
 }
 
-/// Does a body move as one by the laws of Newton and Euler?
+/// Is there anything of it left to move?
 template <int D>
-bool free_rigid(const Body<D>& body) {
-  return body.rigid && !body.prescribed && body.active() > 0;
+bool moves(const Body<D>& body) {
+  return body.is_free_rigid() && body.active() > 0;
 }
 
-/// f(patch number, rows of its particles) for the patches of such bodies.
+/// f(patch number, rows of its particles) for the patches of rigid bodies.
 template <int D, class F>
 void for_each_rigid_patch(Domain<D>& domain, F&& f) {
-  domain.threads.for_each(domain.grid.patches.size(), [&](std::size_t p) {
+  for_each_patch(domain, free_rigid, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
-    const Body<D>& body = domain.body_of(patch);
-    if (free_rigid(body)) f(p, std::span(body.order).subspan(patch.begin, patch.count));
+    f(p, std::span(domain.body_of(patch).order).subspan(patch.begin, patch.count));
   });
 }
 
@@ -48,17 +47,30 @@ void gather(Domain<D>& domain) {
     const Patch<D>& patch = domain.grid.patches[p];
     const Body<D>& body = domain.body_of(patch);
     const Vector3 centre = domain.rigid[static_cast<std::size_t>(patch.body)].centre;
-    for (const std::uint32_t row : rows)
+    for (const std::uint32_t row : rows) {
       parts[p].add(body.mass()[row], position(body, row) - centre, velocity(body, row));
+      for (int a = 0; a < D; ++a)
+        parts[p].extent.add(a, domain.grid.among_nodes(body.x(a)[row], a));
+    }
   });
   domain.rigid_sums.assign(domain.bodies.size(), {});
-  for (std::size_t p = 0; p < parts.size(); ++p)
-    domain.rigid_sums[static_cast<std::size_t>(domain.grid.patches[p].body)].add(parts[p]);
+  // The patches of a body follow one another.
+  for (std::size_t p = 0; p < parts.size();) {
+    const int body = domain.grid.patches[p].body;
+    const std::size_t begin = p;
+    while (p < parts.size() && domain.grid.patches[p].body == body) ++p;
+    const auto b = static_cast<std::size_t>(body);
+    if (!moves(domain.bodies[b])) continue;
+    RigidTotal total;
+    for (std::size_t k = begin; k < p; ++k) total.add(parts[k]);
+    domain.rigid_sums[b] = total.value();
+  }
 }
 
-/// Axes along which walls hold a body: half a particle lies between its particles and the face.
+/// Axes along which walls hold a body of that extent: half a particle lies between its particles
+/// and the face.
 template <int D>
-unsigned held_axes(const Domain<D>& domain, const Body<D>& body) {
+unsigned held_axes(const Domain<D>& domain, const Body<D>& body, const Extent& extent) {
   const auto& grid = domain.grid;
   unsigned held = 0;
   if (!grid.walls.exist) return held;
@@ -67,12 +79,9 @@ unsigned held_axes(const Domain<D>& domain, const Body<D>& body) {
     for (int side = 0; side < 2; ++side) {
       const Wall wall = grid.walls.face[a][side];
       if (wall == Wall::free || wall == Wall::absorbing) continue;
-      const double face = side == 0 ? 0.0 : grid.walls.cells[a];
-      double nearest = std::numeric_limits<double>::max();
-      for (std::size_t i = 0; i < body.count(); ++i) {
-        const double depth = grid.among_nodes(body.x(a)[i], a) - face;
-        nearest = std::min(nearest, side == 0 ? depth : -depth);
-      }
+      const double nearest = side == 0
+                                 ? extent.lower[a]
+                                 : grid.walls.cells[static_cast<std::size_t>(a)] - extent.upper[a];
       // A thousandth of a cell for rounding.
       if (nearest <= reach + 1e-3) held |= wall == Wall::fixed ? (1u << D) - 1u : 1u << a;
     }
@@ -107,16 +116,16 @@ void find_rigid_motion(Domain<D>& domain) {
   // Twice: about a centre that is far off, inertia would be a difference of large numbers.
   gather(domain);
   for (std::size_t b = 0; b < domain.bodies.size(); ++b)
-    if (free_rigid(domain.bodies[b]))
+    if (moves(domain.bodies[b]))
       domain.rigid[b].centre += (1.0 / domain.rigid_sums[b].mass) * domain.rigid_sums[b].first;
   gather(domain);
   for (std::size_t b = 0; b < domain.bodies.size(); ++b) {
-    if (!free_rigid(domain.bodies[b])) continue;
+    if (!moves(domain.bodies[b])) continue;
     const RigidSums& sums = domain.rigid_sums[b];
     RigidMotion& motion = domain.rigid[b];
     motion.velocity = (1.0 / sums.mass) * sums.momentum;
     motion.inertia = sums.inertia;
-    const unsigned held = held_axes(domain, domain.bodies[b]);
+    const unsigned held = held_axes(domain, domain.bodies[b], sums.extent);
     motion.free_axes = D == 2 ? 4u : 7u;
     for (int a = 0; a < 3; ++a) {
       if (held >> a & 1u) motion.velocity[a] = 0.0;
@@ -149,7 +158,7 @@ void move_rigid_bodies(Domain<D>& domain) {
   before = domain.rigid;
   turns.resize(domain.bodies.size());
   for (std::size_t b = 0; b < domain.bodies.size(); ++b)
-    if (free_rigid(domain.bodies[b])) turns[b] = turn(domain.rigid[b], domain.time_step);
+    if (moves(domain.bodies[b])) turns[b] = turn(domain.rigid[b], domain.time_step);
   for_each_rigid_patch(domain, [&](std::size_t p, std::span<const std::uint32_t> rows) {
     Patch<D>& patch = domain.grid.patches[p];
     Body<D>& body = domain.body_of(patch);

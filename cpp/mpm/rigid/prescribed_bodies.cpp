@@ -1,7 +1,9 @@
-#include "mpm/step/prescribed_bodies.hpp"
+#include "mpm/rigid/prescribed_bodies.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+#include "mpm/step/patch_loops.hpp"
 
 namespace mpm {
 namespace {
@@ -76,15 +78,16 @@ void advance_prescribed_nodes(Domain<D>& domain, std::size_t p) {
 template <int D>
 void move_prescribed_bodies(Domain<D>& domain) {
   auto& grid = domain.grid;
-  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+  for_each_patch(domain, prescribed, [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
     Body<D>& body = domain.body_of(patch);
-    if (!body.prescribed || !body.motion->moves) return;
+    if (!body.motion->moves) return;
     const Matrix3 turned = rotation(domain.time_step * body.motion->now.spin);
     move_patch(grid, body, patch, turned, domain.time_step, domain.sums[p]);
   });
   for (Body<D>& body : domain.bodies)
-    if (body.prescribed) body.motion->now.centre += domain.time_step * body.motion->now.velocity;
+    if (body.is_prescribed())
+      body.motion->now.centre += domain.time_step * body.motion->now.velocity;
 }
 
 template void advance_prescribed_nodes<2>(Domain<2>&, std::size_t);

@@ -1,6 +1,11 @@
 #pragma once
 // The motion of a rigid body by the laws of Newton and Euler.
+#include <algorithm>
+#include <array>
+#include <limits>
+
 #include "mpm/math/cholesky.hpp"
+#include "mpm/math/exact_sum.hpp"
 #include "mpm/math/tensor.hpp"
 
 namespace mpm {
@@ -35,13 +40,31 @@ inline Matrix3 rotation(const Vector3& angle) {
             1.0 - c * (n[0] * n[0] + n[1] * n[1])}}};
 }
 
-/// Mass, momentum, angular momentum and inertia of particles, about a point.
+/// The box that particles lie in, in cells from the grid's origin.
+struct Extent {
+  static constexpr double far = std::numeric_limits<double>::max();
+  double lower[3] = {far, far, far}, upper[3] = {-far, -far, -far};
+
+  void add(int axis, double x) {
+    lower[axis] = std::min(lower[axis], x);
+    upper[axis] = std::max(upper[axis], x);
+  }
+  void add(const Extent& other) {
+    for (int a = 0; a < 3; ++a) {
+      lower[a] = std::min(lower[a], other.lower[a]);
+      upper[a] = std::max(upper[a], other.upper[a]);
+    }
+  }
+};
+
+/// Mass, momentum, angular momentum and inertia of particles, about a point; and where they lie.
 struct RigidSums {
   double mass = 0.0;                   // [kg]
   Vector3 first = Vector3::zero();     // sum of m r [kg m]
   Vector3 momentum = Vector3::zero();  // [kg m/s]
   Vector3 angular = Vector3::zero();   // [kg m^2/s]
   Matrix3 inertia{};                   // [kg m^2]
+  Extent extent;
 
   void add(double m, const Vector3& r, const Vector3& v) {
     mass += m;
@@ -52,14 +75,38 @@ struct RigidSums {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) inertia[i][j] += m * ((i == j ? square : 0.0) - r[i] * r[j]);
   }
-  void add(const RigidSums& s) {
-    mass += s.mass;
-    first += s.first;
-    momentum += s.momentum;
-    angular += s.angular;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) inertia[i][j] += s.inertia[i][j];
+  /// f(number) for all that are sums, in one order.
+  template <class F>
+  void for_each(F&& f) {
+    f(mass);
+    for (int i = 0; i < 3; ++i) {
+      f(first[i]);
+      f(momentum[i]);
+      f(angular[i]);
+      for (int j = 0; j < 3; ++j) f(inertia[i][j]);
+    }
   }
+};
+
+/// The sums over parts of a body, which depend on no order.
+class RigidTotal {
+ public:
+  void add(RigidSums part) {
+    std::size_t k = 0;
+    part.for_each([&](double x) { sums_[k++].add(x); });
+    extent_.add(part.extent);
+  }
+  RigidSums value() const {
+    RigidSums total;
+    std::size_t k = 0;
+    total.for_each([&](double& x) { x = sums_[k++].value(); });
+    total.extent = extent_;
+    return total;
+  }
+
+ private:
+  std::array<ExactSum, 19> sums_;
+  Extent extent_;
 };
 
 /// Spin [rad/s] about the axes that are free, of an angular momentum and an inertia about the mass

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "mpm/math/time_function.hpp"
-#include "mpm/particles/rigid_motion.hpp"
+#include "mpm/rigid/rigid_motion.hpp"
 
 namespace mpm {
 

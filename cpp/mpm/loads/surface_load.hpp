@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mpm/loads/load_kinds.hpp"
 #include "mpm/math/tensor.hpp"
 #include "mpm/math/time_function.hpp"
 
@@ -62,8 +63,8 @@ template <int D>
 struct SurfaceLoad {
   std::string name;
   int body = 0;
-  bool follows = true;                // a pressure, against the surface; else a traction
-  std::array<TimeFunction, D> value;  // the pressure, as the first, or the traction [Pa]
+  LoadKind kind{};
+  std::array<TimeFunction, D> value;  // a number as the first [Pa]
   std::vector<std::uint32_t> piece;   // 1 + number of a particle's piece, in the user's order; or 0
   std::vector<Vec<double, D>> area;   // outward area vectors [m^2]
   std::vector<double> size;           // areas [m^2]: at an edge of the body more than |area|
@@ -74,7 +75,10 @@ struct SurfaceLoad {
   Vec<double, D> impulse = Vec<double, D>::zero();  // so far [N s]
 
   Vec<double, D> force_on(std::size_t k) const {
-    return follows ? -stress[0] * area[k] : size[k] * stress;
+    Vec<double, D> force = Vec<double, D>::zero();
+    LoadKinds::with(
+        kind, [&]<class Kind>(const Kind&) { force = Kind::force(stress, area[k], size[k]); });
+    return force;
   }
   /// Take a piece along with its particle: da = cof(F) dA (Nanson), dx = F dX; L as above.
   void carry(std::size_t k, const Mat<double, D>& L) {

@@ -1,7 +1,7 @@
-#include "mpm/step/loads.hpp"
-
 #include <cassert>
 
+#include "mpm/loads/carry_loads.hpp"
+#include "mpm/math/exact_sum.hpp"
 #include "mpm/step/nodes_around.hpp"
 #include "mpm/step/stages.hpp"
 
@@ -103,10 +103,16 @@ void load_surfaces(Domain<D>& domain) {
   domain.threads.for_each(domain.grid.patches.size(),
                           [&](std::size_t p) { scatter_loads(domain, p); });
   const std::size_t count = domain.loads.size();
-  for (SurfaceLoad<D>& load : domain.loads) load.force = Vec<double, D>::zero();
-  for (std::size_t k = 0; k < domain.load_parts.size(); ++k)
-    domain.loads[k % count].force += domain.load_parts[k];
-  for (SurfaceLoad<D>& load : domain.loads) load.impulse += domain.time_step * load.force;
+  for (std::size_t l = 0; l < count; ++l) {
+    SurfaceLoad<D>& load = domain.loads[l];
+    for (int a = 0; a < D; ++a) {
+      ExactSum force;
+      for (std::size_t k = l; k < domain.load_parts.size(); k += count)
+        force.add(domain.load_parts[k][a]);
+      load.force[a] = force.value();
+    }
+    load.impulse += domain.time_step * load.force;
+  }
 }
 
 template void load_surfaces<2>(Domain<2>&);

@@ -1,5 +1,6 @@
-#include "mpm/step/absorb.hpp"
+#include "mpm/walls/absorb.hpp"
 
+#include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -8,7 +9,7 @@ template <int D>
 void place_dashpots(Domain<D>& domain) {
   auto& grid = domain.grid;
   if (!grid.walls.absorb()) return;
-  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
+  for_each_patch(domain, deformable, [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     scatter_dashpots(grid, domain.body_of(patch), patch, grid.block(p));
   });

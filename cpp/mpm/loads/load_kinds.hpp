@@ -1,0 +1,29 @@
+#pragma once
+// What loads on surfaces do: every kind, one file and one line in `LoadKinds`.
+#include <cstdint>
+
+#include "mpm/catalogue/choice_list.hpp"
+#include "mpm/loads/pressure.hpp"
+#include "mpm/loads/traction.hpp"
+
+namespace mpm {
+
+/// A load by a value [Pa] that is a function of time, a number or a vector: its force [N] on a
+/// piece of the surface with an outward area vector and an area [m^2], which at an edge of the body
+/// is more than the vector's length.
+template <class T>
+concept LoadModel = requires(Vec<double, 3> vector, double area) {
+  { T::name } -> std::convertible_to<std::string_view>;  // the key in a case
+  { T::doc } -> std::convertible_to<std::string_view>;
+  { T::is_vector } -> std::convertible_to<bool>;
+  { T::force(vector, vector, area) } -> std::same_as<Vec<double, 3>>;
+};
+
+enum class LoadKind : std::uint8_t {};
+template <LoadModel... T>
+using LoadList = ChoiceList<LoadKind, T...>;
+using LoadKinds = LoadList<Pressure, Traction>;
+template <>
+inline constexpr auto words<LoadKind> = LoadKinds::words_of();
+
+}  // namespace mpm

@@ -1,0 +1,21 @@
+#pragma once
+#include <string_view>
+
+#include "mpm/math/vec.hpp"
+
+namespace mpm {
+
+/// In a direction of its own: f = t |a|.
+struct Traction {
+  static constexpr std::string_view name = "traction";
+  static constexpr std::string_view doc =
+      "force per present area in a fixed direction [Pa], D numbers or functions of time";
+  static constexpr bool is_vector = true;
+
+  template <int D>
+  static Vec<double, D> force(const Vec<double, D>& value, const Vec<double, D>&, double size) {
+    return size * value;
+  }
+};
+
+}  // namespace mpm

@@ -1,0 +1,119 @@
+#pragma once
+// Sums that depend on no order: integers, rounded once at the end.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace mpm {
+
+/// The sum of any doubles, exact, in integers 32 bits apart (the small superaccumulator of Neal
+/// 2015, section 3). An addition takes some 10 ns.
+class ExactSum {
+ public:
+  void add(double x) {
+    if (!std::isfinite(x)) {
+      special_ += x;  // infinite or no number, and so is the sum
+      return;
+    }
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    const auto exponent = static_cast<int>(bits >> 52 & 0x7ff);
+    std::uint64_t mantissa = bits & 0xfffffffffffffu;
+    if (exponent != 0) mantissa |= std::uint64_t{1} << 52;
+    const int shift = exponent == 0 ? 0 : exponent - 1;  // of the lowest bit, from 2^-1074
+    const auto chunk = static_cast<std::size_t>(shift / 32);
+    const int within = shift % 32;
+    const std::uint64_t low = mantissa << within & 0xffffffffu;
+    const std::uint64_t high = mantissa >> (32 - within);  // up to 53 bits
+    const std::int64_t sign = std::signbit(x) ? -1 : 1;
+    first_ = std::min(first_, chunk);
+    top_ = std::max(top_, chunk + 3);
+    chunks_[chunk] += sign * static_cast<std::int64_t>(low);
+    chunks_[chunk + 1] += sign * static_cast<std::int64_t>(high & 0xffffffffu);
+    chunks_[chunk + 2] += sign * static_cast<std::int64_t>(high >> 32);
+    if (++additions_ == most_additions) carry();
+  }
+  void add(const ExactSum& other) {
+    special_ += other.special_;
+    ExactSum carried = other;
+    carried.carry();
+    carry();
+    first_ = std::min(first_, other.first_);
+    top_ = std::max(top_, other.top_);
+    for (std::size_t k = 0; k < count; ++k) chunks_[k] += carried.chunks_[k];
+  }
+
+  /// The double nearest to the sum; of two the even one.
+  double value() const {
+    if (special_ != 0.0) return special_;
+    ExactSum sum = *this;
+    sum.carry();
+    const bool negative = sum.chunks_[top_] < 0;
+    if (negative) {
+      for (std::size_t k = first_; k <= top_; ++k) sum.chunks_[k] = -sum.chunks_[k];
+      sum.carry();
+    }
+    std::size_t top = top_ + 1;
+    while (top > 0 && sum.chunks_[top - 1] == 0) --top;
+    if (top == 0) return 0.0;
+    // The highest 64 bits, the last of them set if any lower one is: enough to round rightly.
+    const auto at = [&](std::size_t k) { return static_cast<std::uint64_t>(sum.chunks_[k]); };
+    const int lead = std::countl_zero(static_cast<std::uint32_t>(at(top - 1)));
+    const std::uint64_t second = top >= 2 ? at(top - 2) : 0, third = top >= 3 ? at(top - 3) : 0;
+    std::uint64_t bits = at(top - 1) << 32 | second;
+    bool more = false;
+    if (lead > 0) {
+      bits = bits << lead | third >> (32 - lead);
+      more = (third << lead & 0xffffffffu) != 0;
+    } else {
+      more = third != 0;
+    }
+    for (std::size_t k = first_; k + 3 < top && !more; ++k) more = sum.chunks_[k] != 0;
+    if (more) bits |= 1;
+    const int exponent = 32 * (static_cast<int>(top) - 2) - lead - 1074;
+    const double size = std::ldexp(static_cast<double>(bits), exponent);
+    return negative ? -size : size;
+  }
+
+ private:
+  static constexpr std::size_t count = 68;
+  static constexpr int most_additions = 1 << 29;  // of 32 bits each to 63
+
+  /// Bring all but the highest, which has the sign, below 2^32, and to no less than 0.
+  void carry() {
+    for (std::size_t k = first_; k < top_; ++k) {
+      const std::int64_t over = chunks_[k] >> 32;  // rounded down
+      chunks_[k] -= over * (std::int64_t{1} << 32);
+      chunks_[k + 1] += over;
+    }
+    additions_ = 0;
+  }
+
+  std::array<std::int64_t, count> chunks_{};
+  std::size_t first_ = count, top_ = 0;  // those that are not 0 lie between
+  double special_ = 0.0;
+  int additions_ = 0;
+};
+
+/// The sum of values rounded to whole multiples of a unit, a power of two: 16 bytes, for sums of
+/// which there are many. The unit must be the same for all that are compared.
+class FixedSum {
+ public:
+  /// `unit`: exponent of the power of two; sums of up to 2^127 units fit.
+  void add(double x, int unit) {
+    const double units = std::ldexp(x, -unit);
+    // In two parts, as a double has 53 bits and the sum 127.
+    const double high = std::trunc(std::ldexp(units, -64));
+    const double low = std::nearbyint(units - std::ldexp(high, 64));
+    sum_ += static_cast<Integer>(high) * (Integer{1} << 64) + static_cast<Integer>(low);
+  }
+  double value(int unit) const { return std::ldexp(static_cast<double>(sum_), unit); }
+  void clear() { sum_ = 0; }
+
+ private:
+  __extension__ typedef __int128 Integer;
+  Integer sum_ = 0;
+};
+
+}  // namespace mpm
