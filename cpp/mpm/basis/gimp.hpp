@@ -21,11 +21,11 @@ struct Gimp {
 
   double l;  // half the particle's edge [cells], at most 1/2
 
-  explicit Gimp(double edge) : l(min(0.5 * edge, 0.5)) {}
-  double half_width() const { return l; }
+  MPM_HD explicit Gimp(double edge) : l(min(0.5 * edge, 0.5)) {}
+  MPM_HD double half_width() const { return l; }
 
   template <class T>
-  AxisWeights<T, nodes> along(T xi) const {
+  MPM_HD AxisWeights<T, nodes> along(T xi) const {
     const T u = xi - T(0.5);
     const auto is_above = u >= T(0.0);
     const T above = max(u, T(0.0)), below = max(-u, T(0.0));

@@ -14,11 +14,11 @@ struct Linear {
   static constexpr double own_node = 0.0;
   static constexpr bool odd_at_fixed_walls = false;
 
-  explicit Linear(double /*edge*/) {}
-  double half_width() const { return 0.0; }
+  MPM_HD explicit Linear(double /*edge*/) {}
+  MPM_HD double half_width() const { return 0.0; }
 
   template <class T>
-  AxisWeights<T, nodes> along(T xi) const {
+  MPM_HD AxisWeights<T, nodes> along(T xi) const {
     return {{T(1.0) - xi, xi}, {T(-1.0), T(1.0)}};
   }
 };

@@ -16,11 +16,11 @@ struct QuadraticBSpline {
   static constexpr double own_node = 0.5;
   static constexpr bool odd_at_fixed_walls = true;
 
-  explicit QuadraticBSpline(double /*edge*/) {}
-  double half_width() const { return 0.5; }  // it is the hat averaged over a cell
+  MPM_HD explicit QuadraticBSpline(double /*edge*/) {}
+  MPM_HD double half_width() const { return 0.5; }  // it is the hat averaged over a cell
 
   template <class T>
-  AxisWeights<T, nodes> along(T xi) const {
+  MPM_HD AxisWeights<T, nodes> along(T xi) const {
     const T rest = T(1.0) - xi, u = xi - T(0.5);
     return {{T(0.5) * rest * rest, fma(-u, u, T(0.75)), T(0.5) * xi * xi},
             {-rest, T(-2.0) * u, xi}};

@@ -26,7 +26,7 @@ struct ElasticPlastic {
   template <class T, int D>
   using State = PlasticState<T, D>;
   template <class T, int D>
-  PlasticState<T, D> start() const {
+  MPM_HD PlasticState<T, D> start() const {
     return {T(0.0)};
   }
 
@@ -37,11 +37,11 @@ struct ElasticPlastic {
   std::string problem() const { return {}; }
 
   template <Real T, int D>
-  T sound_speed(const Sym<T, D>&, const auto& /*state*/, T J) const {
+  MPM_HD T sound_speed(const Sym<T, D>&, const auto& /*state*/, T J) const {
     return elastic.sound_speed(J);
   }
   template <Real T>
-  T other_speed_squared(const auto& /*state*/, T J) const {
+  MPM_HD T other_speed_squared(const auto& /*state*/, T J) const {
     return elastic.other_speed_squared(J);
   }
 };
@@ -51,7 +51,7 @@ struct ElasticPlastic {
 template <class Model>
 struct MisesPlastic : ElasticPlastic<Model> {
   template <Real T, int D>
-  T update(const Motion<T, D>& motion, Sym<T, D>& stress, PlasticState<T, D>& state) const {
+  MPM_HD T update(const Motion<T, D>& motion, Sym<T, D>& stress, PlasticState<T, D>& state) const {
     this->elastic.update(motion, stress);
     const Model& model = static_cast<const Model&>(*this);
     const T before = state.plastic_strain, at_rest = model.yield(before).value;

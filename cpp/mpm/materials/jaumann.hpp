@@ -15,7 +15,7 @@ struct Corotated {
 
 /// Orthogonal matrix (1 - w/2)^-1 (1 + w/2) of a skew w, in 2D (Hughes & Winget 1980, eq. 14).
 template <class T>
-Mat<T, 2> cayley(const Mat<T, 2>& w) {
+MPM_HD Mat<T, 2> cayley(const Mat<T, 2>& w) {
   const T h = T(0.5) * w[0][1];
   const T s = T(1.0) / fma(h, h, T(1.0));
   const T cosine = fma(-h, h, T(1.0)) * s, sine = T(2.0) * h * s;
@@ -23,7 +23,7 @@ Mat<T, 2> cayley(const Mat<T, 2>& w) {
 }
 /// The same in 3D: 1 + (w + w^2 / 2) / (1 + |a|^2), where a is half the axial vector of w.
 template <class T>
-Mat<T, 3> cayley(const Mat<T, 3>& w) {
+MPM_HD Mat<T, 3> cayley(const Mat<T, 3>& w) {
   const T ax = T(0.5) * w[2][1], ay = T(0.5) * w[0][2], az = T(0.5) * w[1][0];
   const T s = T(2.0) / fma(az, az, fma(ay, ay, fma(ax, ax, T(1.0))));
   const T xx = s * ax * ax, yy = s * ay * ay, zz = s * az * az;
@@ -40,7 +40,7 @@ Mat<T, 3> cayley(const Mat<T, 3>& w) {
 /// (w D - D w)/2; that makes the update second-order in simple shear, where a strain applied at the
 /// end is first-order.
 template <class T, int D>
-Corotated<T, D> corotate(const Motion<T, D>& motion, const Sym<T, D>& stress) {
+MPM_HD Corotated<T, D> corotate(const Motion<T, D>& motion, const Sym<T, D>& stress) {
   const Mat<T, D> middle = mid_step(motion.gradient);
   Mat<T, D> spin;
   for (int i = 0; i < D; ++i)

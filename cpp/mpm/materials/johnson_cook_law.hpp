@@ -8,16 +8,18 @@ namespace mpm {
 template <class T>
 class Power {
  public:
-  Power(T x, const PowerNearOne& a)
+  MPM_HD Power(T x, const PowerNearOne& a)
       : series_(a), near_(x), inverse_(T(1.0) / x), near_value_(pow(x, T(a.exponent))) {}
 
   struct At {
     T value, slope, inverse;  // x^a, its derivative, 1/x
   };
   /// At the x that it began with.
-  At first() const { return {near_value_, T(series_.exponent) * near_value_ * inverse_, inverse_}; }
+  MPM_HD At first() const {
+    return {near_value_, T(series_.exponent) * near_value_ * inverse_, inverse_};
+  }
   /// By series; exactly where x is far off: the steps of a search are long only at its start.
-  T value(T x) {
+  MPM_HD T value(T x) {
     change_ = (x - near_) * inverse_;
     const auto far = absolute(change_) > T(PowerNearOne::reach);
     if (!series_.exact() || any(far)) {  // lane by lane: one does not ask what its neighbour holds
@@ -30,7 +32,7 @@ class Power {
     return near_value_ * series_(change_);
   }
   /// 1/x within the change's fourth power, 6e-6, which is enough for the slopes of a search.
-  At at(T x) {
+  MPM_HD At at(T x) {
     const T there = value(x);
     const T one_over = inverse_ * (T(1.0) - change_) * (T(1.0) + change_ * change_);
     return {there, T(series_.exponent) * there * one_over, one_over};
@@ -50,7 +52,7 @@ struct JohnsonCookLaw {
   double heating = 0.0;  // temperature per plastic work of the initial volume [K m^3/J]
 
   template <Real T>
-  T homologous(T temperature) const {
+  MPM_HD T homologous(T temperature) const {
     return min(max((temperature - T(T_room)) * T(1.0 / (T_melt - T_room)), T(0.0)), T(1.0));
   }
 
@@ -58,16 +60,16 @@ struct JohnsonCookLaw {
   /// work. Rate, hardening and heating are implicit: the rate is d / time step, and the temperature
   /// that of the end of the step, T + heating J (q - 3 G d) d.
   template <bool thermal, Real T, int D>
-  T update(const Motion<T, D>& motion, double G, const Sym<T, D>& stress_before, Sym<T, D>& stress,
-           T& plastic_strain, T& temperature) const;
+  MPM_HD T update(const Motion<T, D>& motion, double G, const Sym<T, D>& stress_before,
+                  Sym<T, D>& stress, T& plastic_strain, T& temperature) const;
 };
 
 /// The yield stress over one step as `return_with_rate` asks for it: x = ln(d / unit).
 template <bool thermal, class T>
 class JohnsonCookFlow {
  public:
-  JohnsonCookFlow(const JohnsonCookLaw& law, double G, double unit, T heat, T plastic_strain,
-                  T temperature)
+  MPM_HD JohnsonCookFlow(const JohnsonCookLaw& law, double G, double unit, T heat, T plastic_strain,
+                         T temperature)
       : law_(law),
         G_(G),
         unit_(unit),
@@ -83,16 +85,16 @@ class JohnsonCookFlow {
     gain_ = max(T(law.C) * at_rest_, T(tiny));
   }
 
-  T at_rest() const { return at_rest_; }
-  T hardens() const { return hardens_; }
+  MPM_HD T at_rest() const { return at_rest_; }
+  MPM_HD T hardens() const { return hardens_; }
 
-  T value(T q, T d, T x) {
+  MPM_HD T value(T q, T d, T x) {
     const T Y = (T(law_.A) + T(law_.B) * hardening_.value(strain(d))) * faster(x);
     if constexpr (!thermal) return Y;
     return Y * (T(1.0) - softening_.value(max(star(q, d), T(tiny))));
   }
 
-  RateYield<T> yield(T q, T d, T x) {
+  MPM_HD RateYield<T> yield(T q, T d, T x) {
     const auto hard = hardening_.at(strain(d));
     const T rest = T(law_.A) + T(law_.B) * hard.value;
     const T harder = T(law_.B) * hard.slope * d * faster(x);
@@ -114,16 +116,18 @@ class JohnsonCookFlow {
     return y;
   }
 
-  T start(T q_before) const { return min(max((q_before - at_rest_) / gain_, T(-50.0)), T(50.0)); }
-  T above(T q) const {
+  MPM_HD T start(T q_before) const {
+    return min(max((q_before - at_rest_) / gain_, T(-50.0)), T(50.0));
+  }
+  MPM_HD T above(T q) const {
     const T over = max(q - at_rest_, T(tiny));
     return min(max(over / gain_, T(0.0)), log(max(over * T(1.0 / (3.0 * G_ * unit_)), T(tiny))));
   }
 
  private:
-  T strain(T d) const { return max(strain_ + d, T(tiny)); }
-  T faster(T x) const { return T(1.0) + T(law_.C) * max(x, T(0.0)); }
-  T star(T q, T d) const {
+  MPM_HD T strain(T d) const { return max(strain_ + d, T(tiny)); }
+  MPM_HD T faster(T x) const { return T(1.0) + T(law_.C) * max(x, T(0.0)); }
+  MPM_HD T star(T q, T d) const {
     return law_.homologous(temperature_ + heat_ * (q - T(3.0 * G_) * d) * d);
   }
 
@@ -135,8 +139,9 @@ class JohnsonCookFlow {
 };
 
 template <bool thermal, Real T, int D>
-T JohnsonCookLaw::update(const Motion<T, D>& motion, double G, const Sym<T, D>& stress_before,
-                         Sym<T, D>& stress, T& plastic_strain, T& temperature) const {
+MPM_HD T JohnsonCookLaw::update(const Motion<T, D>& motion, double G,
+                                const Sym<T, D>& stress_before, Sym<T, D>& stress,
+                                T& plastic_strain, T& temperature) const {
   const T heat = T(heating) * motion.J;
   const double unit = motion.time_step * rate0;
   JohnsonCookFlow<thermal, T> flow(*this, G, unit, heat, plastic_strain, temperature);

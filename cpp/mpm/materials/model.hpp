@@ -33,7 +33,7 @@ struct StateColumn {
   std::string_view name;
   std::string_view unit;
   Shape shape = Shape::scalar;
-  constexpr int components(int dimension) const {
+  MPM_HD constexpr int components(int dimension) const {
     return shape == Shape::scalar ? 1 : (dimension == 3 ? 6 : 4);
   }
 };
@@ -58,7 +58,7 @@ struct Motion {
 
 /// The gradient referred to the middle of the step: L (1 + L/2)^-1 = L - L^2/2 + O(L^3).
 template <class T, int D>
-Mat<T, D> mid_step(const Mat<T, D>& gradient) {
+MPM_HD Mat<T, D> mid_step(const Mat<T, D>& gradient) {
   const Mat<T, D> square = gradient * gradient;
   Mat<T, D> middle;
   for (int i = 0; i < D; ++i)
@@ -119,7 +119,7 @@ struct LinearInEnergy {
   T A, B, dA, dB;
 
   /// The same of which a fraction has burnt: programmed burn multiplies the pressure.
-  LinearInEnergy burnt(T fraction) const {
+  MPM_HD LinearInEnergy burnt(T fraction) const {
     return {fraction * A, fraction * B, fraction * dA, fraction * dB};
   }
 };
@@ -171,14 +171,14 @@ inline constexpr int state_size =
     std::is_empty_v<State> ? 0 : static_cast<int>(sizeof(State) / sizeof(T));  // NOLINT: all Ts
 
 template <class State, class T>
-State unpack(const T* values) {
+MPM_HD State unpack(const T* values) {
   State state;
   if constexpr (!std::is_empty_v<State>)
     std::memcpy(static_cast<void*>(&state), static_cast<const void*>(values), sizeof(state));
   return state;
 }
 template <class State, class T>
-void pack(const State& state, T* values) {
+MPM_HD void pack(const State& state, T* values) {
   if constexpr (!std::is_empty_v<State>)
     std::memcpy(static_cast<void*>(values), static_cast<const void*>(&state), sizeof(state));
 }

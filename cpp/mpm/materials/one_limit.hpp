@@ -17,7 +17,7 @@ struct OneLimit {
   template <class T, int D>
   using State = NoState<T, D>;
   template <class T, int D>
-  NoState<T, D> start() const {
+  MPM_HD NoState<T, D> start() const {
     return {};
   }
 

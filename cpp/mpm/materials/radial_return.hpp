@@ -20,7 +20,7 @@ struct Returned {
 /// Shorten the deviator of a stress whose von Mises stress is q to that of q - stiff d; where d is
 /// zero the stress stays as it is, to the bit.
 template <class T, int D>
-Returned<T> shorten(Sym<T, D>& stress, T q, T stiff, T d) {
+MPM_HD Returned<T> shorten(Sym<T, D>& stress, T q, T stiff, T d) {
   const Sym<T, D> mean = Sym<T, D>::isotropic(T(1.0 / 3.0) * trace(stress));
   const T after = q - stiff * d;
   const Sym<T, D> shorter = mean + (after / q) * (stress - mean);
@@ -35,7 +35,7 @@ inline constexpr double return_tolerance = 1e-11;
 /// The return for hardening without rates: `yield(d)` gives Y and dY/dd; `at_rest` is Y(0), below
 /// which nothing happens. Newton's steps are kept between 0 and q / (3 G) by halving.
 template <Real T, int D, class F>
-Returned<T> return_radially(Sym<T, D>& stress, double G, T at_rest, F&& yield) {
+MPM_HD Returned<T> return_radially(Sym<T, D>& stress, double G, T at_rest, F&& yield) {
   const T q = von_mises(stress);
   const auto flows = q > at_rest;
   if (!any(flows)) return {T(0.0), q};

@@ -19,7 +19,8 @@ inline constexpr double slope_error = 1e-5, bend_error = 0.01;
 /// predicts, which asks for the yield stress alone. Gives the lanes that flow and are
 /// still to be found.
 template <Real T, class Flow>
-Truth<T> flow_on(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& flow, T& found) {
+MPM_HD Truth<T> flow_on(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& flow,
+                        T& found) {
   const T nothing(0.0), over = q - max(q_before, flow.at_rest());
   auto open = flows & (over > T(1e-6) * q);
   if (!any(open)) return flows;
@@ -59,7 +60,7 @@ Truth<T> flow_on(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& fl
 /// The same for any lane: Halley's steps, third order, kept between bounds by halving, from
 /// `flow.start(q_before)`, or, where that is far off, from `flow.above(q)`.
 template <Real T, class Flow>
-T search_flow(T q, T q_before, T stiff, double unit, Truth<T> open, Flow& flow) {
+MPM_HD T search_flow(T q, T q_before, T stiff, double unit, Truth<T> open, Flow& flow) {
   const T nothing(0.0);
   // The flow takes no more than the whole stress: 3 G d <= q.
   T low(-700.0), high = log(max(q / stiff * T(1.0 / unit), T(tiny)));
@@ -102,7 +103,8 @@ T search_flow(T q, T q_before, T stiff, double unit, Truth<T> open, Flow& flow) 
 /// `start` if von Mises' stress before the step lay on the yield surface; and an x `above` the
 /// solution for q. x = 0 may be a kink.
 template <Real T, int D, class Flow>
-Returned<T> return_with_rate(Sym<T, D>& stress, double G, double unit, T q_before, Flow& flow) {
+MPM_HD Returned<T> return_with_rate(Sym<T, D>& stress, double G, double unit, T q_before,
+                                    Flow& flow) {
   const T q = von_mises(stress), stiff(3.0 * G), nothing(0.0);
   const auto flows = q > flow.at_rest();
   if (!any(flows)) return {nothing, q};

@@ -5,7 +5,7 @@ namespace mpm {
 /// Solve A z = y, A symmetric and positive definite with its lower triangle given, by Cholesky's
 /// method without square roots (A = L D L^T) in place: y becomes z.
 template <int n>
-void solve_symmetric(double (&A)[n][n], double (&y)[n]) {
+MPM_HD void solve_symmetric(double (&A)[n][n], double (&y)[n]) {
   double inverse[n];  // of D
   for (int j = 0; j < n; ++j) {
     for (int k = 0; k < j; ++k) {

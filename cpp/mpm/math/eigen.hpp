@@ -12,7 +12,7 @@ struct Eigen {
   Vec<T, D> axis[D];
 
   /// The tensor with the same axes and other values.
-  Sym<T, D> with(const T (&values)[3]) const {
+  MPM_HD Sym<T, D> with(const T (&values)[3]) const {
     auto r = Sym<T, D>::zero();
     if constexpr (D == 2) r.c[2] = values[2];
     for (int k = 0; k < D; ++k)
@@ -26,7 +26,7 @@ struct Eigen {
 /// of the two angles (Golub & Van Loan 2013, sec. 8.5.2), and turns the axes along. The components
 /// must be of order one: `tiny` keeps the angle finite where nothing is to be turned.
 template <int p, int q, class T, int D>
-void rotate_jacobi(Sym<T, D>& a, Vec<T, D> (&axis)[D]) {
+MPM_HD void rotate_jacobi(Sym<T, D>& a, Vec<T, D> (&axis)[D]) {
   const T off = a(p, q), half = T(0.5) * (a(q, q) - a(p, p));
   const T size = absolute(half) + sqrt(half * half + off * off + T(tiny));
   const T t = select(half < T(0.0), -off, off) / size;
@@ -48,7 +48,7 @@ void rotate_jacobi(Sym<T, D>& a, Vec<T, D> (&axis)[D]) {
 /// Principal values and axes, to some ten roundings of the largest component. In the plane one
 /// rotation is exact; in space `sweeps` of three leave less than a rounding, as the tests show.
 template <class T, int D>
-Eigen<T, D> eigen(const Sym<T, D>& tensor) {
+MPM_HD Eigen<T, D> eigen(const Sym<T, D>& tensor) {
   constexpr int sweeps = 4;
   T size(tiny);
   for (int k = 0; k < Sym<T, D>::size; ++k) size = max(size, absolute(tensor.c[k]));
@@ -75,25 +75,25 @@ struct Sorted {
   T value[3];
   Truth<T> swapped[3];
 
-  explicit Sorted(const T (&values)[3]) : value{values[0], values[1], values[2]} {
+  MPM_HD explicit Sorted(const T (&values)[3]) : value{values[0], values[1], values[2]} {
     swapped[0] = put_in_order(value[0], value[1]);
     swapped[1] = put_in_order(value[1], value[2]);
     swapped[2] = put_in_order(value[0], value[1]);
   }
   /// Take values in falling order's places back to the places before.
-  void unsort(T (&values)[3]) const {
+  MPM_HD void unsort(T (&values)[3]) const {
     swap_where(swapped[2], values[0], values[1]);
     swap_where(swapped[1], values[1], values[2]);
     swap_where(swapped[0], values[0], values[1]);
   }
 
  private:
-  static void swap_where(Truth<T> condition, T& a, T& b) {
+  MPM_HD static void swap_where(Truth<T> condition, T& a, T& b) {
     const T before = a;
     a = select(condition, b, a);
     b = select(condition, before, b);
   }
-  static Truth<T> put_in_order(T& a, T& b) {
+  MPM_HD static Truth<T> put_in_order(T& a, T& b) {
     const Truth<T> wrong = a < b;
     swap_where(wrong, a, b);
     return wrong;

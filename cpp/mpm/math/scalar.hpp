@@ -5,28 +5,32 @@
 #include <cmath>
 #include <concepts>
 
+#include "mpm/math/host_device.hpp"
+// A device has no vector types.
+#if !defined(__CUDACC__)
 #include "mpm/math/batch.hpp"
 #include "mpm/math/batch_math.hpp"
+#endif
 
 namespace mpm {
 
-inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
-inline double fma(double a, double b, double c) {
+MPM_HD inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+MPM_HD inline double fma(double a, double b, double c) {
 #if defined(MPM_FUSES)
   return __builtin_fma(a, b, c);
 #else
   return a * b + c;
 #endif
 }
-inline double min(double a, double b) { return a < b ? a : b; }
-inline double max(double a, double b) { return a > b ? a : b; }
-inline double sqrt(double a) { return std::sqrt(a); }
-inline double log(double a) { return std::log(a); }
-inline double exp(double a) { return std::exp(a); }
-inline double pow(double a, double b) { return std::pow(a, b); }
-inline double sum(double a) { return a; }
-inline double largest(double a) { return a; }
-inline bool any(bool a) { return a; }
+MPM_HD inline double min(double a, double b) { return a < b ? a : b; }
+MPM_HD inline double max(double a, double b) { return a > b ? a : b; }
+MPM_HD inline double sqrt(double a) { return std::sqrt(a); }
+MPM_HD inline double log(double a) { return std::log(a); }
+MPM_HD inline double exp(double a) { return std::exp(a); }
+MPM_HD inline double pow(double a, double b) { return std::pow(a, b); }
+MPM_HD inline double sum(double a) { return a; }
+MPM_HD inline double largest(double a) { return a; }
+MPM_HD inline bool any(bool a) { return a; }
 
 /// Keeps a quotient, power or logarithm finite where its argument vanishes: below all that is
 /// measured, and a normal number, which logarithms of lanes need.
@@ -34,7 +38,7 @@ inline constexpr double tiny = 1e-300;
 
 /// Size of a number; below it, what a comparison of two numbers gives.
 template <class T>
-T absolute(T a) {
+MPM_HD T absolute(T a) {
   return max(a, -a);
 }
 template <class T>
@@ -48,18 +52,31 @@ struct PowerNearOne {
   double exponent = 0.0, factor[terms + 1] = {1.0};
 
   PowerNearOne() = default;
-  explicit PowerNearOne(double a) : exponent(a) {
+  MPM_HD explicit PowerNearOne(double a) : exponent(a) {
     for (int k = 1; k <= terms; ++k) factor[k] = factor[k - 1] * (a - (k - 1)) / k;
   }
-  bool exact() const { return exponent < 3.0; }
+  MPM_HD bool exact() const { return exponent < 3.0; }
   template <class T>
-  T operator()(T x) const {
+  MPM_HD T operator()(T x) const {
     T sum(factor[terms]);
     for (int k = terms - 1; k >= 0; --k) sum = fma(x, sum, T(factor[k]));
     return sum;
   }
 };
 
+/// A number: arithmetic, ordering, select.
+template <class T>
+concept Real = requires(T a, T b) {
+  { a + b } -> std::convertible_to<T>;
+  { a - b } -> std::convertible_to<T>;
+  { a * b } -> std::convertible_to<T>;
+  { a / b } -> std::convertible_to<T>;
+  { select(a < b, a, b) } -> std::convertible_to<T>;
+  { max(a, b) } -> std::convertible_to<T>;
+  T(1.0);
+};
+
+#if !defined(__CUDACC__)
 /// Lanes from and to memory in sequence, and those before `count`, for a number or a Batch.
 template <class T>
 T load_lanes(const double* from) {
@@ -87,16 +104,6 @@ inline constexpr int lanes_of = 1;
 template <int W>
 inline constexpr int lanes_of<Batch<W>> = W;
 
-/// A number: arithmetic, ordering, select.
-template <class T>
-concept Real = requires(T a, T b) {
-  { a + b } -> std::convertible_to<T>;
-  { a - b } -> std::convertible_to<T>;
-  { a * b } -> std::convertible_to<T>;
-  { a / b } -> std::convertible_to<T>;
-  { select(a < b, a, b) } -> std::convertible_to<T>;
-  { max(a, b) } -> std::convertible_to<T>;
-  T(1.0);
-};
+#endif
 
 }  // namespace mpm

@@ -25,12 +25,12 @@ struct IdealGas {
   std::string problem() const {
     return gamma > 1.0 ? std::string() : "ideal_gas.gamma must be > 1";
   }
-  double initial_energy() const { return E0; }
-  double energy_at_zero(double) const { return 0.0; }
-  bool is_gas() const { return true; }
+  MPM_HD double initial_energy() const { return E0; }
+  MPM_HD double energy_at_zero(double) const { return 0.0; }
+  MPM_HD bool is_gas() const { return true; }
 
   template <Real T>
-  LinearInEnergy<T> at(T V) const {
+  MPM_HD LinearInEnergy<T> at(T V) const {
     const T B = T(gamma - 1.0) / V;
     return {T(0.0), B, T(0.0), -B / V};
   }

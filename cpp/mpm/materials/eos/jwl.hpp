@@ -27,12 +27,12 @@ struct Jwl {
 
   void prepare(double) {}
   std::string problem() const { return {}; }
-  double initial_energy() const { return E0; }
-  double energy_at_zero(double) const { return 0.0; }
-  bool is_gas() const { return true; }
+  MPM_HD double initial_energy() const { return E0; }
+  MPM_HD double energy_at_zero(double) const { return 0.0; }
+  MPM_HD bool is_gas() const { return true; }
 
   template <Real T>
-  LinearInEnergy<T> at(T V) const {
+  MPM_HD LinearInEnergy<T> at(T V) const {
     const T density = T(1.0) / V, w(omega);
     const T one = T(A) * exp(T(-R1) * V), two = T(B) * exp(T(-R2) * V);
     const T f1 = T(1.0) - T(omega / R1) * density, f2 = T(1.0) - T(omega / R2) * density;

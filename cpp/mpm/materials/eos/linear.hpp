@@ -21,12 +21,12 @@ struct LinearBulk {
 
   void prepare(double) {}
   std::string problem() const { return {}; }
-  double initial_energy() const { return 0.0; }
-  double energy_at_zero(double) const { return -unbounded; }
-  bool is_gas() const { return false; }
+  MPM_HD double initial_energy() const { return 0.0; }
+  MPM_HD double energy_at_zero(double) const { return -unbounded; }
+  MPM_HD bool is_gas() const { return false; }
 
   template <Real T>
-  LinearInEnergy<T> at(T V) const {
+  MPM_HD LinearInEnergy<T> at(T V) const {
     const T density = T(1.0) / V;
     return {T(K) * (density - T(1.0)), T(0.0), T(-K) * density * density, T(0.0)};
   }

@@ -34,18 +34,18 @@ struct MieGruneisen {
 
   void prepare(double density) { stiffness = density * c0 * c0; }
   std::string problem() const { return {}; }
-  double initial_energy() const { return E0; }
+  MPM_HD double initial_energy() const { return E0; }
   /// Nothing lies below the energy that the heat of the start leaves when it is gone: every other
   /// state at absolute zero is one that this has been strained to. Where the heat is unknown it is
   /// less than what evaporates the solid: the isentrope of absolute zero, dE/dV = -p, ends for
   /// large V at rho0 c0^2 / gamma0, where the energy's pressure outweighs the tension rho0 c0^2.
-  double energy_at_zero(double heat) const {
+  MPM_HD double energy_at_zero(double heat) const {
     return E0 - min(heat, gamma0 > 0.0 ? stiffness / gamma0 : unbounded);
   }
-  bool is_gas() const { return false; }
+  MPM_HD bool is_gas() const { return false; }
 
   template <Real T>
-  LinearInEnergy<T> at(T V) const {
+  MPM_HD LinearInEnergy<T> at(T V) const {
     // The Hugoniot ends at eta = 1/s; a hundredth before it the denominator is held.
     const T eta = T(1.0) - V, free = T(1.0) - T(s) * eta, left = max(free, T(0.01));
     const T inverse = T(1.0) / left;

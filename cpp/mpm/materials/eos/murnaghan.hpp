@@ -7,7 +7,7 @@ namespace mpm {
 
 /// p = K0 / n ((rho / rho0)^n - 1).
 template <class T>
-LinearInEnergy<T> power_of_density(T V, double K0, double n) {
+MPM_HD LinearInEnergy<T> power_of_density(T V, double K0, double n) {
   const T power = pow(V, T(-n));
   return {T(K0 / n) * (power - T(1.0)), T(0.0), T(-K0) * power / V, T(0.0)};
 }
@@ -28,12 +28,12 @@ struct Murnaghan {
 
   void prepare(double) {}
   std::string problem() const { return {}; }
-  double initial_energy() const { return 0.0; }
-  double energy_at_zero(double) const { return -unbounded; }
-  bool is_gas() const { return false; }
+  MPM_HD double initial_energy() const { return 0.0; }
+  MPM_HD double energy_at_zero(double) const { return -unbounded; }
+  MPM_HD bool is_gas() const { return false; }
 
   template <Real T>
-  LinearInEnergy<T> at(T V) const {
+  MPM_HD LinearInEnergy<T> at(T V) const {
     return power_of_density(V, K0, n);
   }
 };

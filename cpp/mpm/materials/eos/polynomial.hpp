@@ -34,15 +34,15 @@ struct Polynomial {
     if (c1 > 0.0 || (c4 + c5 != 0.0 && E0 > 0.0)) return {};
     return "polynomial has no stiffness at the start: give c1 > 0, or c4 or c5 with E0 > 0";
   }
-  double initial_energy() const { return E0; }
+  MPM_HD double initial_energy() const { return E0; }
   /// As in MieGruneisen, with c4 for gamma0; without c1 it is a gas.
-  double energy_at_zero(double heat) const {
+  MPM_HD double energy_at_zero(double heat) const {
     return is_gas() ? 0.0 : E0 - min(heat, c4 > 0.0 ? c1 / c4 : unbounded);
   }
-  bool is_gas() const { return c1 == 0.0; }
+  MPM_HD bool is_gas() const { return c1 == 0.0; }
 
   template <Real T>
-  LinearInEnergy<T> at(T V) const {
+  MPM_HD LinearInEnergy<T> at(T V) const {
     const T density = T(1.0) / V, mu = density - T(1.0);
     const T d_mu = -density * density;
     const T two = select(mu > T(0.0), T(c2), T(0.0)), six = select(mu > T(0.0), T(c6), T(0.0));

@@ -24,12 +24,12 @@ struct Tait {
 
   void prepare(double density) { stiffness = density * c0 * c0; }
   std::string problem() const { return {}; }
-  double initial_energy() const { return 0.0; }
-  double energy_at_zero(double) const { return -unbounded; }
-  bool is_gas() const { return false; }
+  MPM_HD double initial_energy() const { return 0.0; }
+  MPM_HD double energy_at_zero(double) const { return -unbounded; }
+  MPM_HD bool is_gas() const { return false; }
 
   template <Real T>
-  LinearInEnergy<T> at(T V) const {
+  MPM_HD LinearInEnergy<T> at(T V) const {
     return power_of_density(V, stiffness, n);
   }
 };

@@ -14,7 +14,7 @@ struct EnergyLimit : OneLimit {
   static constexpr auto params = one_limit("J/m^3", "internal energy per initial volume");
 
   template <Real T, int D>
-  T damage(const Condition<T, D>& at, State<T, D>&) const {
+  MPM_HD T damage(const Condition<T, D>& at, State<T, D>&) const {
     return at.energy * T(1.0 / limit);
   }
 };

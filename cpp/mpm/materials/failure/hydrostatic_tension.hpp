@@ -13,7 +13,7 @@ struct HydrostaticTensionLimit : OneLimit {
   static constexpr auto params = one_limit("Pa", "mean stress in tension");
 
   template <Real T, int D>
-  T damage(const Condition<T, D>& at, State<T, D>&) const {
+  MPM_HD T damage(const Condition<T, D>& at, State<T, D>&) const {
     return trace(at.stress) * T(1.0 / (3.0 * limit));
   }
 };

@@ -37,7 +37,7 @@ struct JohnsonCookDamage {
     T damage;
   };
   template <class T, int D>
-  State<T, D> start() const {
+  MPM_HD State<T, D> start() const {
     return {T(0.0)};
   }
 
@@ -46,7 +46,7 @@ struct JohnsonCookDamage {
 
   /// May be negative, where the constants do not hold.
   template <Real T>
-  T fracture_strain(T triaxiality, T rate, T temperature) const {
+  MPM_HD T fracture_strain(T triaxiality, T rate, T temperature) const {
     // e^50 stands for infinity: without a deviator there is no flow either.
     const T held = min(triaxiality, T(largest_triaxiality));
     const T exponent = min(max(T(D3) * held, T(-50.0)), T(50.0));
@@ -56,7 +56,7 @@ struct JohnsonCookDamage {
   }
 
   template <Real T, int D>
-  T damage(const Condition<T, D>& at, State<T, D>& state) const {
+  MPM_HD T damage(const Condition<T, D>& at, State<T, D>& state) const {
     const T mean = T(1.0 / 3.0) * trace(at.stress);
     const T triaxiality = mean / max(von_mises(at.stress), T(tiny));
     const T rate = at.plastic_increment * T(1.0 / at.time_step);

@@ -15,7 +15,7 @@ struct MaximumShearLimit : OneLimit {
   static constexpr auto params = one_limit("Pa", "largest shear stress");
 
   template <Real T, int D>
-  T damage(const Condition<T, D>& at, State<T, D>&) const {
+  MPM_HD T damage(const Condition<T, D>& at, State<T, D>&) const {
     const Eigen<T, D> e = eigen(at.stress);
     const T largest = max(max(e.value[0], e.value[1]), e.value[2]);
     const T smallest = min(min(e.value[0], e.value[1]), e.value[2]);

@@ -13,7 +13,7 @@ struct PlasticStrainLimit : OneLimit {
   static constexpr auto params = one_limit("", "equivalent plastic strain");
 
   template <Real T, int D>
-  T damage(const Condition<T, D>& at, State<T, D>&) const {
+  MPM_HD T damage(const Condition<T, D>& at, State<T, D>&) const {
     return at.plastic_strain * T(1.0 / limit);
   }
 };

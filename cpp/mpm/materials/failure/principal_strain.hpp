@@ -24,12 +24,12 @@ struct PrincipalStrainLimit : OneLimit {
     Sym<T, D> strain;
   };
   template <class T, int D>
-  State<T, D> start() const {
+  MPM_HD State<T, D> start() const {
     return {Sym<T, D>::zero()};
   }
 
   template <Real T, int D>
-  T damage(const Condition<T, D>& at, State<T, D>& state) const {
+  MPM_HD T damage(const Condition<T, D>& at, State<T, D>& state) const {
     Motion<T, D> motion{};
     motion.gradient = at.gradient;
     const Corotated<T, D> turned = corotate(motion, state.strain);

@@ -14,7 +14,7 @@ struct PrincipalStressLimit : OneLimit {
   static constexpr auto params = one_limit("Pa", "principal stress in tension");
 
   template <Real T, int D>
-  T damage(const Condition<T, D>& at, State<T, D>&) const {
+  MPM_HD T damage(const Condition<T, D>& at, State<T, D>&) const {
     const Eigen<T, D> e = eigen(at.stress);
     return max(max(e.value[0], e.value[1]), e.value[2]) * T(1.0 / limit);
   }

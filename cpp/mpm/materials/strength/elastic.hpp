@@ -36,7 +36,7 @@ struct Elastic {
   template <class T, int D>
   using State = NoState<T, D>;
   template <class T, int D>
-  State<T, D> start() const {
+  MPM_HD State<T, D> start() const {
     return {};
   }
 
@@ -57,7 +57,7 @@ struct Elastic {
 
   // For plastic models, whose elastic part this is.
   template <Real T, int D>
-  void update(const Motion<T, D>& motion, Sym<T, D>& stress) const {
+  MPM_HD void update(const Motion<T, D>& motion, Sym<T, D>& stress) const {
     const Corotated<T, D> at_end = corotate(motion, stress);
     const Sym<T, D> with_volume =
         at_end.stress + Sym<T, D>::isotropic(T(lambda) * trace(at_end.strain));
@@ -65,25 +65,25 @@ struct Elastic {
       stress.c[c] = fma(T(2.0 * G), at_end.strain.c[c], with_volume.c[c]);
   }
   template <Real T>
-  T sound_speed(T J) const {
+  MPM_HD T sound_speed(T J) const {
     return sqrt(T((lambda + 2.0 * G) / density) * J);
   }
   template <Real T>
-  T other_speed_squared(T J) const {
+  MPM_HD T other_speed_squared(T J) const {
     return T(4.0 / 3.0 * G / density) * J;
   }
 
   template <Real T, int D>
-  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
+  MPM_HD T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
     update(motion, stress);
     return T(0.0);
   }
   template <Real T, int D>
-  T sound_speed(const Sym<T, D>&, const State<T, D>&, T J) const {
+  MPM_HD T sound_speed(const Sym<T, D>&, const State<T, D>&, T J) const {
     return sound_speed(J);
   }
   template <Real T, int D>
-  T other_speed_squared(const State<T, D>&, T J) const {
+  MPM_HD T other_speed_squared(const State<T, D>&, T J) const {
     return other_speed_squared(J);
   }
 };

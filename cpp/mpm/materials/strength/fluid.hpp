@@ -23,7 +23,7 @@ struct Fluid {
   template <class T, int D>
   using State = NoState<T, D>;
   template <class T, int D>
-  State<T, D> start() const {
+  MPM_HD State<T, D> start() const {
     return {};
   }
 
@@ -31,7 +31,7 @@ struct Fluid {
   std::string problem() const { return {}; }
 
   template <Real T, int D>
-  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
+  MPM_HD T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
     const Sym<T, D> strain = symmetric_part(mid_step(motion.gradient));
     const Sym<T, D> shear = strain - Sym<T, D>::isotropic(T(1.0 / 3.0) * trace(strain));
     stress = T(2.0 * viscosity / motion.time_step) * shear;
@@ -39,12 +39,12 @@ struct Fluid {
   }
 
   template <Real T, int D>
-  T other_speed_squared(const State<T, D>&, T) const {
+  MPM_HD T other_speed_squared(const State<T, D>&, T) const {
     return T(0.0);
   }
   /// Alone, that is a time step of h^2 / (2 nu 4/3), the limit of diffusion.
   template <Real T>
-  T damping_speed(T J, double cell_size) const {
+  MPM_HD T damping_speed(T J, double cell_size) const {
     return T(4.0 / 3.0 * viscosity / (density * cell_size)) * J;
   }
 };

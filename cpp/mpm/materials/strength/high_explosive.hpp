@@ -33,7 +33,7 @@ struct HighExplosive {
     T lighting_time, burn_fraction;
   };
   template <class T, int D>
-  State<T, D> start() const {
+  MPM_HD State<T, D> start() const {
     return {T(never), T(0.0)};
   }
 
@@ -41,7 +41,7 @@ struct HighExplosive {
   std::string problem() const { return {}; }
 
   template <Real T, int D>
-  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  MPM_HD T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
     const T gone = (T(motion.time) - state.lighting_time) * T(D_front / (width * motion.cell_size));
     state.burn_fraction = max(state.burn_fraction, min(gone, T(1.0)));
     stress = Sym<T, D>::zero();
@@ -50,7 +50,7 @@ struct HighExplosive {
 
   /// Until it burns, the front is what must not pass a cell within a step.
   template <Real T, int D>
-  T other_speed_squared(const State<T, D>& state, T) const {
+  MPM_HD T other_speed_squared(const State<T, D>& state, T) const {
     return (T(1.0) - state.burn_fraction) * T(D_front * D_front);
   }
 };

@@ -43,7 +43,7 @@ struct JohnsonCook : ElasticPlastic<JohnsonCook> {
     T plastic_strain, temperature;
   };
   template <class T, int D>
-  State<T, D> start() const {
+  MPM_HD State<T, D> start() const {
     return {T(0.0), T(T0)};
   }
 
@@ -67,14 +67,14 @@ struct JohnsonCook : ElasticPlastic<JohnsonCook> {
   }
 
   template <Real T, int D>
-  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  MPM_HD T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
     const Sym<T, D> before = stress;
     elastic.update(motion, stress);
     return law.update<true>(motion, elastic.G, before, stress, state.plastic_strain,
                             state.temperature);
   }
   template <Real T>
-  T homologous(T temperature) const {
+  MPM_HD T homologous(T temperature) const {
     return law.homologous(temperature);
   }
 };

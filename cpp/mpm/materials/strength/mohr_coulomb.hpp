@@ -65,7 +65,7 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
 
   /// The stress D^-1 backwards: plastic strain, times 2 G, that takes a trial to another stress.
   template <Real T>
-  void plastic(const T (&trial)[3], const T (&stress)[3], T (&e)[3]) const {
+  MPM_HD void plastic(const T (&trial)[3], const T (&stress)[3], T (&e)[3]) const {
     T sum(0.0);
     for (int i = 0; i < 3; ++i) sum = sum + (e[i] = trial[i] - stress[i]);
     for (int i = 0; i < 3; ++i) e[i] = e[i] - T(nu / (1.0 + nu)) * sum;
@@ -73,8 +73,8 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
 
   /// The trial less flow by `a` along the first vector and `b` along the second, times 2 G.
   template <Real T>
-  Candidate<T> moved(const T (&trial)[3], T a, const double (&first)[3], T b,
-                     const double (&second)[3]) const {
+  MPM_HD Candidate<T> moved(const T (&trial)[3], T a, const double (&first)[3], T b,
+                            const double (&second)[3]) const {
     const double ratio = nu / (1.0 - 2.0 * nu);  // lambda / 2 G
     const double sum_a = ratio * (first[0] + first[1] + first[2]);
     const double sum_b = ratio * (second[0] + second[1] + second[2]);
@@ -90,7 +90,7 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
   /// and needs no flow backwards (Koiter 1953). Just one does, but where two meet: there they give
   /// the same stress, so the least fault decides.
   template <Real T>
-  void return_to_surface(const T (&trial)[3], T (&stress)[3]) const {
+  MPM_HD void return_to_surface(const T (&trial)[3], T (&stress)[3]) const {
     const double ratio = nu / (1.0 - 2.0 * nu);
     const double flow13[3] = {m, 0.0, -1.0}, flow12[3] = {m, -1.0, 0.0}, flow23[3] = {0.0, m, -1.0};
     const double open1[3] = {1.0, 0.0, 0.0}, open2[3] = {0.0, 1.0, 0.0};
@@ -164,7 +164,7 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
 
   /// Stress and state after a step. The plastic strain grows by sqrt(2/3 e:e) of its increment e.
   template <Real T, int D>
-  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  MPM_HD T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
     elastic.update(motion, stress);
     // Principal stresses are needed only if some lane may yield: with tau = sqrt(s:s/2), s1 - s3 <=
     // 2 tau, and s1 and |s2| of the deviator are at most 2 tau / sqrt(3) and tau / sqrt(3).

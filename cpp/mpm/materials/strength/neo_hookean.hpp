@@ -2,7 +2,6 @@
 #include <array>
 
 #include "mpm/materials/model.hpp"
-#include "mpm/math/batch_math.hpp"
 
 namespace mpm {
 
@@ -32,7 +31,7 @@ struct NeoHookean {
     Sym<T, D> b;  // left Cauchy-Green tensor F F^T
   };
   template <class T, int D>
-  State<T, D> start() const {
+  MPM_HD State<T, D> start() const {
     return {Sym<T, D>::isotropic(T(1.0))};
   }
 
@@ -43,7 +42,7 @@ struct NeoHookean {
   std::string problem() const { return {}; }
 
   template <Real T, int D>
-  T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  MPM_HD T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
     Mat<T, D> f = motion.gradient;
     for (int i = 0; i < D; ++i) f[i][i] = f[i][i] + T(1.0);
     state.b = congruence(f, state.b);
@@ -55,7 +54,7 @@ struct NeoHookean {
   /// rho c^2 = (lambda (1 - ln J) + G (1 + b_nn)) / J along n, from the spatial tangent; b_nn by
   /// Gershgorin's bound.
   template <Real T, int D>
-  T sound_speed(const Sym<T, D>&, const State<T, D>& state, T J) const {
+  MPM_HD T sound_speed(const Sym<T, D>&, const State<T, D>& state, T J) const {
     T bound = state.b.c[2];
     for (int i = 0; i < D; ++i) {
       T row = state.b(i, i);

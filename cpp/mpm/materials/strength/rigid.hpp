@@ -22,7 +22,7 @@ struct Rigid {
   template <class T, int D>
   using State = NoState<T, D>;
   template <class T, int D>
-  State<T, D> start() const {
+  MPM_HD State<T, D> start() const {
     return {};
   }
 
@@ -30,12 +30,12 @@ struct Rigid {
   std::string problem() const { return {}; }
 
   template <Real T, int D>
-  T update(const Motion<T, D>&, Sym<T, D>&, State<T, D>&) const {
+  MPM_HD T update(const Motion<T, D>&, Sym<T, D>&, State<T, D>&) const {
     return T(0.0);
   }
   /// No wave limits the time step.
   template <Real T, int D>
-  T sound_speed(const Sym<T, D>&, const State<T, D>&, T) const {
+  MPM_HD T sound_speed(const Sym<T, D>&, const State<T, D>&, T) const {
     return T(0.0);
   }
 };

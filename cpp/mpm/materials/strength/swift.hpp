@@ -25,7 +25,7 @@ struct Swift : MisesPlastic<Swift> {
 
   /// Yield stress and its slope at a plastic strain.
   template <Real T>
-  Yield<T> yield(T plastic_strain) const {
+  MPM_HD Yield<T> yield(T plastic_strain) const {
     const T stretched = T(1.0) + T(1.0 / e0) * plastic_strain;
     const T value = T(Y0) * pow(stretched, T(n));
     return {value, T(n / e0) * value / stretched};

@@ -25,7 +25,7 @@ struct Voce : MisesPlastic<Voce> {
 
   /// Yield stress and its slope at a plastic strain.
   template <Real T>
-  Yield<T> yield(T plastic_strain) const {
+  MPM_HD Yield<T> yield(T plastic_strain) const {
     const T left = T(Q) * exp(T(-b) * plastic_strain);
     return {T(Y0 + Q) - left, T(b) * left};
   }
