@@ -34,18 +34,8 @@ std::size_t particle_count(const Simulation& s) {
   return n;
 }
 
-}  // namespace
-
-NB_MODULE(_core, m) {
-  m.doc() =
-      "The compiled core of MPM3Dpp. SI units throughout; see mpm3dpp.Case for defaults and units.";
-
-  add_settings(m);
-  add_records(m);
-  SimulationClass simulation(m, "Simulation");
-  simulation.nb::class_<Simulation>::def(
-      nb::new_([](const Settings& settings) { return make_simulation(settings); }),
-      nb::arg("settings"));
+/// What makes a simulation ready to step.
+void def_building(SimulationClass& simulation) {
   simulation
       .def(
           "add_material",
@@ -86,7 +76,12 @@ NB_MODULE(_core, m) {
           nb::arg("areas"), nb::arg("sizes"), nb::arg("arms"))
       .def("set_group", &Simulation::set_group, nb::arg("body"), nb::arg("first"))
       .def("set_friction", &Simulation::set_pair_friction, nb::arg("body_a"), nb::arg("body_b"),
-           nb::arg("mu"))
+           nb::arg("mu"));
+}
+
+/// Steps, and the state between two of them.
+void def_stepping(SimulationClass& simulation) {
+  simulation
       .def("prepare",
            [](Simulation& s) {
              const AtWork here(s);
@@ -121,8 +116,12 @@ NB_MODULE(_core, m) {
             const AtWork here(s);
             s.restore(transfer_by(readinto), size);
           },
-          nb::arg("readinto"), nb::arg("size"))
-      .def_prop_ro("time", &Simulation::time)
+          nb::arg("readinto"), nb::arg("size"));
+}
+
+/// What it tells of itself.
+void def_telling(SimulationClass& simulation) {
+  simulation.def_prop_ro("time", &Simulation::time)
       .def_prop_ro("dt", &Simulation::next_time_step)
       .def_prop_ro("step", &Simulation::step)
       .def_prop_ro("body_count", &Simulation::body_count)
@@ -135,8 +134,12 @@ NB_MODULE(_core, m) {
       .def_prop_ro("failure", &Simulation::failure)
       .def("limiter", &Simulation::limiter)
       .def("warnings", &Simulation::warnings)
-      .def("set_threads", &Simulation::set_threads, nb::arg("count"))
-      .def("columns", &Simulation::columns, nb::arg("body"))
+      .def("set_threads", &Simulation::set_threads, nb::arg("count"));
+}
+
+/// The particles' numbers.
+void def_columns(SimulationClass& simulation) {
+  simulation.def("columns", &Simulation::columns, nb::arg("body"))
       .def(
           "column",
           [](const Simulation& s, int body, const std::string& name) {
@@ -169,7 +172,12 @@ NB_MODULE(_core, m) {
             s.set_velocity(body, span_of(velocities));
           },
           nb::arg("body"), nb::arg("velocities"))
-      .def("set_gravity", &Simulation::set_gravity, nb::arg("gravity"))
+      .def("set_gravity", &Simulation::set_gravity, nb::arg("gravity"));
+}
+
+/// What has happened: history, contacts, times, memory.
+void def_records(SimulationClass& simulation) {
+  simulation
       .def("history",
            [](Simulation& s) { return to_numpy(s.take_history(), history_terms.size()); })
       .def("contact_pairs", &Simulation::pairs)
@@ -201,7 +209,6 @@ NB_MODULE(_core, m) {
         d["other"] = b.other;
         return d;
       });
-
   simulation
       .def_prop_ro_static("history_columns",
                           [](nb::handle) {
@@ -210,7 +217,25 @@ NB_MODULE(_core, m) {
                             return names;
                           })
       .def_ro_static("history_capacity", &Simulation::history_capacity);
+}
 
+}  // namespace
+
+NB_MODULE(_core, m) {
+  m.doc() =
+      "The compiled core of MPM3Dpp. SI units throughout; see mpm3dpp.Case for defaults and units.";
+
+  add_settings(m);
+  add_records(m);
+  SimulationClass simulation(m, "Simulation");
+  simulation.nb::class_<Simulation>::def(
+      nb::new_([](const Settings& settings) { return make_simulation(settings); }),
+      nb::arg("settings"));
+  def_building(simulation);
+  def_stepping(simulation);
+  def_telling(simulation);
+  def_columns(simulation);
+  def_records(simulation);
   add_materials(m);
   m.def("measure_bandwidth", &measure_bandwidth, nb::arg("threads"),
         nb::call_guard<nb::gil_scoped_release>());

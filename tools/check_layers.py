@@ -13,8 +13,7 @@ LAYERS = {
     "parallel": 0,
     "rigid/rigid_motion.hpp": 1,
     "rigid/prescribed_motion.hpp": 2,
-    "loads/pressure.hpp": 1,
-    "loads/traction.hpp": 1,
+    "loads/kinds": 1,
     "loads/load_kinds.hpp": 2,
     "loads/surface_load.hpp": 3,
     "fields": 1,
@@ -42,7 +41,8 @@ PYTHON = re.compile(r'^[<"](nanobind/|pybind11/|Python\.h|numpy/)')
 
 def place_in(core: Path, path: str) -> str:
     """The entry of LAYERS that holds a file, given below the core; else its folder."""
-    return path if path in LAYERS else Path(path).parts[0]
+    holders = (str(p) for p in (Path(path), *Path(path).parents))
+    return next((p for p in holders if p in LAYERS), Path(path).parts[0])
 
 
 def target(include: str, source: Path, core: Path) -> str | None:

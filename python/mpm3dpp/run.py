@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json as json_format
-import math
 import sys
 from pathlib import Path
 from typing import Any
@@ -25,9 +24,7 @@ from .report import contact_table, energy_line, gone_lines, load_lines, speed_li
 from .resume import go_on, has_checkpoint
 from .signals import Notice, as_exceptions
 from .simulation import Simulation
-
-_NO_STATE = ("non-finite", "negative volume")  # Failures after which particles have no values.
-_BLOCK = 64  # Steps between two looks at the clock, without contact.
+from .stepping import step_to_end, tell
 
 
 def run_case(
@@ -150,8 +147,6 @@ def _write_run(
     """Step to the end time, writing frames and history; return how it ended, and why."""
     case, core = simulation.case, simulation.core
     contact = case.contact_enabled
-    most = min(case.output.history_every if contact else _BLOCK, core.history_capacity // 2)
-    frames = [t for t in case.frame_times() if t > core.time]
     kept = None if before is None or before.results_are_gone else before.results
     history_anew = before is not None and before.history_is_gone
     file = _results_writer(simulation, folder, kept)
@@ -166,8 +161,6 @@ def _write_run(
     )
     unit = "J/m" if case.grid.dimension == 2 else "J"
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
-    status: Status = "completed"
-    reason: str | None = None
     room = FRAME_SHARE * sum(core.bytes().values())
     with BackgroundWriter(file, room) as results, history, progress:
         for sentence in simulation.warnings:
@@ -177,37 +170,10 @@ def _write_run(
         if kept is None:
             results.write(core)
         if before is not None and (kept is None or history_anew):  # Of the new files.
-            _tell(progress, checkpoints.write(core, results, history))
-        touched = _touched(core.contact_groups()) if contact else 0
-        told = len(core.warnings())  # Those of the parts of the run before.
-        while status == "completed" and core.time < case.run.end_time:
-            try:
-                simulation.advance(_steps(most, frames, core))
-            except RunError as error:
-                status, reason = "failed", str(error)
-            told = _tell_new(progress, core, told)
-            rows, pairs = core.history(), core.contact_groups() if contact else []
-            history.append(rows, pairs)
-            if status == "failed":
-                if core.failure.kind not in _NO_STATE:  # Else the last frame is the last good one.
-                    results.write(core)
-                break
-            due = bool(frames) and core.time >= frames[0]
-            while frames and core.time >= frames[0]:
-                frames.pop(0)
-            results.check()
-            if due or _touched(pairs) > touched:  # A frame too whenever two entries first touch.
-                results.write(core)
-                touched = _touched(pairs)
-            overlapped = core.contact_summary()["overlapped_nodes"] if contact else None
-            kinetic, internal = rows[-1, 3:5]
-            progress.update(core.time, core.step, core.dt, kinetic, internal, overlapped)
-            if notice.taken:
-                status, reason = "interrupted", f"stopped by the user at t = {core.time:.6g} s"
-            elif checkpoints.due:
-                _tell(progress, checkpoints.write(core, results, history))
+            tell(progress, checkpoints.write(core, results, history))
+        status, reason = step_to_end(simulation, checkpoints, results, history, progress, notice)
         if status != "failed":
-            _tell(progress, checkpoints.write_last(core, results, history))
+            tell(progress, checkpoints.write_last(core, results, history))
     simulation.summary = history.summary()
     return status, reason
 
@@ -232,20 +198,6 @@ def _results_writer(
     )
 
 
-def _tell_new(progress: Progress, core: Any, told: int) -> int:
-    """Tell what the core has to warn of since the first `told` times; return how often now."""
-    found = core.warnings()
-    for warning in found[told:]:
-        progress.note(f"{'warning' if warning.is_error else 'note'}: {warning.message}")
-    return len(found)
-
-
-def _tell(progress: Progress, problem: str) -> None:
-    """Tell that there is no new checkpoint, if so."""
-    if problem:
-        progress.note(f"warning: no checkpoint: {problem}")
-
-
 def _fields(case: Case) -> list[str]:
     """Return the columns to write: those asked for; `failed` where particles may erode or leave.
 
@@ -255,23 +207,6 @@ def _fields(case: Case) -> list[str]:
     goes = any(f.action == "erode" for name in used for f in case.material[name].failure)
     goes = goes or case.grid.keep is not None
     return list(dict.fromkeys([*case.output.fields, *(["failed"] if goes else [])]))
-
-
-def _touched(pairs: list[Any]) -> int:
-    """Return how many pairs have had their first contact; what comes before it, where a body has
-    only just reached a node, is not one."""
-    return sum(pair.first_step >= 0 for pair in pairs)
-
-
-def _steps(most: int, frames: list[float], core: Any) -> int:
-    """Return how many steps to make before the next look: not past the next frame's time.
-
-    Looks are at multiples of `most`, so that those at frames do not shift them.
-    """
-    most -= core.step % most
-    if not frames or core.dt <= 0.0:
-        return most
-    return max(1, min(most, math.ceil((frames[0] - core.time) / core.dt)))
 
 
 def _manifest(

@@ -80,6 +80,29 @@ Vec<double, D> prescribed_increment(const Contact<D>& contact, const TileGrid<D>
   return from_space<D>(body.motion->increment_at(in_space<D>(x)));
 }
 
+/// The impulses of a solution for the pairs, with the work of friction; returns that with the slip
+/// at the start of the step [J].
+template <int D>
+double take_impulses(TileGrid<D>& grid, std::span<const BodyAtNode<D>> sides,
+                     const NodeSolution<D>& solution, std::span<ContactPair<D>> pairs) {
+  double friction_first = 0.0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    ContactPair<D>& pair = pairs[k];
+    const SolvedPair<D>& solved = solution.pairs[k];
+    const Vec<double, D> begin =
+        read(grid, sides[pair.r], velocity_at) - read(grid, sides[pair.s], velocity_at);
+    const Vec<double, D> end =
+        solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
+    pair.friction_first = dot(solved.friction_impulse, begin);
+    pair.loaded = pair.loaded || solved.normal_impulse > 0.0;
+    pair.normal_impulse = solved.normal_impulse;
+    pair.friction_impulse = solved.friction_impulse;
+    pair.friction_work = 0.5 * (pair.friction_first + dot(solved.friction_impulse, end));
+    friction_first += pair.friction_first;
+  }
+  return friction_first;
+}
+
 }  // namespace
 
 template <int D>
@@ -133,21 +156,7 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vecto
     solve<true>(contact, solution);
     if (contact.cache.on) move_gaps(part, node, solution, time_step);
 
-    double friction_first = 0.0;
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      ContactPair<D>& pair = pairs[k];
-      const SolvedPair<D>& solved = solution.pairs[k];
-      const Vec<double, D> begin =
-          read(grid, sides[pair.r], velocity_at) - read(grid, sides[pair.s], velocity_at);
-      const Vec<double, D> end =
-          solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
-      pair.friction_first = dot(solved.friction_impulse, begin);
-      pair.loaded = pair.loaded || solved.normal_impulse > 0.0;
-      pair.normal_impulse = solved.normal_impulse;
-      pair.friction_impulse = solved.friction_impulse;
-      pair.friction_work = 0.5 * (pair.friction_first + dot(solved.friction_impulse, end));
-      friction_first += pair.friction_first;
-    }
+    const double friction_first = take_impulses<D>(grid, sides, solution, pairs);
     double force_work = 0.0, correction = 0.0;
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const BodyAtNode<D>& side = sides[k];

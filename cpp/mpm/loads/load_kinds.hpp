@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "mpm/catalogue/choice_list.hpp"
-#include "mpm/loads/pressure.hpp"
-#include "mpm/loads/traction.hpp"
+#include "mpm/loads/kinds/pressure.hpp"
+#include "mpm/loads/kinds/traction.hpp"
 
 namespace mpm {
 

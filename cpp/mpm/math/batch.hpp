@@ -10,9 +10,7 @@
 #include <arm_neon.h>
 #endif
 
-/// For lambdas in the innermost loops: g++ leaves some of them as calls, with what they capture in
-/// memory.
-#define MPM_INLINE __attribute__((always_inline))
+#include "mpm/math/unrolled.hpp"
 
 // Where the processor can, a b + c is rounded once; never where bits are to be the same on all.
 #if (defined(__FMA__) || defined(__aarch64__)) && !defined(MPM_SAME_BITS)
@@ -295,14 +293,6 @@ template <int W>
 double largest(Batch<W> a) {
   const Batch<2> pair = joined(a, [](auto x, auto y) { return max(x, y); });
   return pair[0] > pair[1] ? pair[0] : pair[1];
-}
-
-/// f(0), f(1) ... f(N - 1), written out; the numbers are constants.
-template <int N, class F>
-[[gnu::always_inline]] inline void unrolled(F&& f) {
-  [&]<int... k>(std::integer_sequence<int, k...>) MPM_INLINE {
-    (f(std::integral_constant<int, k>{}), ...);
-  }(std::make_integer_sequence<int, N>{});
 }
 
 }  // namespace mpm

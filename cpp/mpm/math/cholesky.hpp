@@ -1,5 +1,7 @@
 #pragma once
 // Small symmetric systems.
+#include "mpm/math/host_device.hpp"
+
 namespace mpm {
 
 /// Solve A z = y, A symmetric and positive definite with its lower triangle given, by Cholesky's

@@ -11,6 +11,20 @@ namespace {
 /// What is done beside eq. (17) while the particles are at hand.
 enum class Also { nothing, remap, move };
 
+/// Of the particles in the lanes, for the ledger.
+template <class T, int D>
+struct LaneSums {
+  T kinetic{0.0}, second_order{0.0}, lost{0.0};
+  Vec<T, D> momentum = Vec<T, D>::zero();
+
+  void write(PatchSums<D>& sums) const {
+    sums.kinetic = 0.5 * sum(kinetic);
+    sums.second_order = 0.5 * sum(second_order);
+    sums.damped = 0.5 * sum(lost);
+    for (int a = 0; a < D; ++a) sums.momentum[a] = sum(momentum[a]);
+  }
+};
+
 /// Velocities of a patch's particles, eq. (17), as the transfer says.
 template <int W, Also also, class Transfer, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p, const B& basis,
@@ -20,8 +34,7 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   Patch<D>& patch = grid.patches[p];
   Body<D>& body = domain.body_of(patch);
   const NodeBlock<D> block = grid.block(p);
-  T kinetic(0.0), second_order(0.0), lost(0.0);
-  Vec<T, D> momentum = Vec<T, D>::zero();
+  LaneSums<T, D> sums;
   const LocalPosition<D> local_position(grid, body);
   Moving<D> moving(grid, body, domain.time_step);
   const double* mass = body.mass();
@@ -53,16 +66,16 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
           v[a] = transfer.take(before, dv[a]);
         if constexpr (Transfer::takes_energy) {
           const T kept = before + dv[a];  // with all of the change, as FLIP does
-          lost += m * kept * kept;
-          lost -= m * v[a] * v[a];
+          sums.lost += m * kept * kept;
+          sums.lost -= m * v[a] * v[a];
         }
         store(velocities[a], rows, v[a]);
-        momentum[a] = fma(m, v[a], momentum[a]);
+        sums.momentum[a] = fma(m, v[a], sums.momentum[a]);
         speed2 = fma(v[a], v[a], speed2);
         change2 = fma(dv[a], dv[a], change2);
       });
-      kinetic = fma(m, speed2, kinetic);
-      second_order = fma(m, change2, second_order);
+      sums.kinetic = fma(m, speed2, sums.kinetic);
+      sums.second_order = fma(m, change2, sums.second_order);
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {
         auto& particles = cells.next();
@@ -72,15 +85,12 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
     });
     if constexpr (also == Also::remap) cells.end();
   });
-  if constexpr (also == Also::remap) cells.finish();
-  if constexpr (also == Also::remap)
+  if constexpr (also == Also::remap) {
+    cells.finish();
     copy_halves(block.records.at(force_at), {remapped}, block.count);
+  }
   if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
-  PatchSums<D>& sums = domain.sums[p];
-  sums.kinetic = 0.5 * sum(kinetic);
-  sums.second_order = 0.5 * sum(second_order);
-  sums.damped = 0.5 * sum(lost);
-  for (int a = 0; a < D; ++a) sums.momentum[a] = sum(momentum[a]);
+  sums.write(domain.sums[p]);
 }
 
 /// Rigid bodies are only advanced: their velocities are not final yet.

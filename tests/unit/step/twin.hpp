@@ -1,6 +1,7 @@
 #pragma once
 // The same bodies twice: in a domain, for the stages, and in the reference step.
 #include <random>
+#include <stdexcept>
 
 #include "mpm/contact/candidates.hpp"
 #include "mpm/particles/make_body.hpp"
@@ -65,7 +66,8 @@ struct Twin {
   static std::function<reference::ShapeValue(double)> shape(BasisId basis) {
     if (basis == basis_id<Linear>) return reference::linear;
     if (basis == basis_id<QuadraticBSpline>) return reference::quadratic;
-    return [](double d) { return reference::gimp(d, 0.5 * edge); };
+    if (basis == basis_id<Gimp>) return [](double d) { return reference::gimp(d, 0.5 * edge); };
+    throw std::logic_error("a basis without its function in reference/shape.hpp");
   }
 
  private:

@@ -91,30 +91,33 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
   /// the same stress, so the least fault decides.
   template <Real T>
   MPM_HD void return_to_surface(const T (&trial)[3], T (&stress)[3]) const {
-    const double ratio = nu / (1.0 - 2.0 * nu);
-    const double flow13[3] = {m, 0.0, -1.0}, flow12[3] = {m, -1.0, 0.0}, flow23[3] = {0.0, m, -1.0};
-    const double open1[3] = {1.0, 0.0, 0.0}, open2[3] = {0.0, 1.0, 0.0};
-    // What flow along a vector takes from a plane's yield function, times 1 / 2 G.
-    const double both = ratio * (m - 1.0) * (k - 1.0);
-    const double own = both + m * k + 1.0, right = both + 1.0, left = both + m * k;
-    const T t(limit), s(k * limit - strength);  // of the corner of shear and tension: s1, s3
-    const T f13 = T(k) * trial[0] - trial[2] - T(strength);
-    const T f12 = T(k) * trial[0] - trial[1] - T(strength);
-    const T f23 = T(k) * trial[1] - trial[2] - T(strength);
-    const T none(0.0);
-
     T least(std::numeric_limits<double>::max());
+    for (int i = 0; i < 3; ++i) stress[i] = trial[i];
     const auto try_one = [&](Candidate<T> c) {
       const T order = max(c.stress[1] - c.stress[0], c.stress[2] - c.stress[1]);
       const T shear = (T(k) * c.stress[0] - c.stress[2] - T(strength)) * T(1.0 / k);
-      c.fault = max(max(c.fault, order), max(shear, c.stress[0] - t));
+      c.fault = max(max(c.fault, order), max(shear, c.stress[0] - T(limit)));
       const auto better = c.fault < least;
       least = select(better, c.fault, least);
       for (int i = 0; i < 3; ++i) stress[i] = select(better, c.stress[i], stress[i]);
     };
+    by_shear(trial, try_one);
+    by_tension(trial, try_one);
+    by_both(trial, try_one);
+  }
 
-    // Shear: the face, the edge s1 = s2 (triaxial extension), the edge s2 = s3 (compression).
-    Candidate<T> c = moved(trial, f13 * T(1.0 / own), flow13, none, flow13);
+  /// Shear: the face, the edge s1 = s2 (triaxial extension), the edge s2 = s3 (compression).
+  template <Real T, class Try>
+  MPM_HD void by_shear(const T (&trial)[3], const Try& try_one) const {
+    const double ratio = nu / (1.0 - 2.0 * nu);
+    const double flow13[3] = {m, 0.0, -1.0}, flow12[3] = {m, -1.0, 0.0}, flow23[3] = {0.0, m, -1.0};
+    // What flow along a vector takes from a plane's yield function, times 1 / 2 G.
+    const double both = ratio * (m - 1.0) * (k - 1.0);
+    const double own = both + m * k + 1.0, right = both + 1.0, left = both + m * k;
+    const T f13 = T(k) * trial[0] - trial[2] - T(strength);
+    const T f12 = T(k) * trial[0] - trial[1] - T(strength);
+    const T f23 = T(k) * trial[1] - trial[2] - T(strength);
+    Candidate<T> c = moved(trial, f13 * T(1.0 / own), flow13, T(0.0), flow13);
     c.fault = -f13;
     try_one(c);
     const auto edge = [&](T other, double mixed, const double (&flow)[3]) {
@@ -127,10 +130,26 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
     };
     edge(f23, right, flow23);
     edge(f12, left, flow12);
+  }
 
-    // Tension: of one, two, three principal stresses.
-    const T over1 = trial[0] - t, over2 = trial[1] - t;
-    c = moved(trial, over1 * T(1.0 / (1.0 + ratio)), open1, none, open1);
+  /// A stress on an edge or a corner of tension, and the strain e that takes the trial there.
+  template <Real T>
+  MPM_HD Candidate<T> cut(const T (&trial)[3], T s1, T s2, T s3, T (&e)[3]) const {
+    Candidate<T> c;
+    c.stress[0] = s1;
+    c.stress[1] = s2;
+    c.stress[2] = s3;
+    plastic(trial, c.stress, e);
+    return c;
+  }
+
+  /// Tension: of one, two, three principal stresses.
+  template <Real T, class Try>
+  MPM_HD void by_tension(const T (&trial)[3], const Try& try_one) const {
+    const double ratio = nu / (1.0 - 2.0 * nu);
+    const double open1[3] = {1.0, 0.0, 0.0}, open2[3] = {0.0, 1.0, 0.0};
+    const T t(limit), over1 = trial[0] - t, over2 = trial[1] - t;
+    Candidate<T> c = moved(trial, over1 * T(1.0 / (1.0 + ratio)), open1, T(0.0), open1);
     c.fault = -over1;
     try_one(c);
     const T a = (T(1.0 + ratio) * over1 - T(ratio) * over2) * T(1.0 / (1.0 + 2.0 * ratio));
@@ -139,25 +158,25 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
     c.fault = max(-a, -b);
     try_one(c);
     T e[3];
-    const auto corner = [&](T s2, T s3) {
-      c.stress[0] = t;
-      c.stress[1] = s2;
-      c.stress[2] = s3;
-      plastic(trial, c.stress, e);
-    };
-    corner(t, t);
+    c = cut(trial, t, t, t, e);
     c.fault = -min(min(e[0], e[1]), e[2]);
     try_one(c);
+  }
 
-    // Both: the edge where s1 = tension and s3 = s, and its two ends.
+  /// Both: the edge where s1 = tension and s3 = s, of the corner of the two, and its two ends.
+  template <Real T, class Try>
+  MPM_HD void by_both(const T (&trial)[3], const Try& try_one) const {
+    const double ratio = nu / (1.0 - 2.0 * nu);
+    const T t(limit), s(k * limit - strength), over1 = trial[0] - t;
     const T sum = (over1 + trial[2] - s) * T(1.0 / (1.0 + 2.0 * ratio));
-    corner(trial[1] - T(ratio) * sum, s);
+    T e[3];
+    Candidate<T> c = cut(trial, t, trial[1] - T(ratio) * sum, s, e);
     c.fault = max(e[2], -(e[0] + T(m) * e[2]));
     try_one(c);
-    corner(t, s);
+    c = cut(trial, t, t, s, e);
     c.fault = max(max(e[2], -(e[0] + e[1] + T(m) * e[2])), -min(e[0], e[1]));
     try_one(c);
-    corner(s, s);
+    c = cut(trial, t, s, s, e);
     c.fault = max(max(e[1], e[2]), -(e[0] + T(m) * (e[1] + e[2])));
     try_one(c);
   }
@@ -183,7 +202,7 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
     const auto flows =
         (T(k) * trial[0] - trial[2] > T(strength) + rounding) | (trial[0] > T(limit) + rounding);
     if (!any(flows)) return T(0.0);
-    T after[3] = {trial[0], trial[1], trial[2]}, e[3], change[3];
+    T after[3], e[3], change[3];
     return_to_surface(trial, after);
     T squares(0.0), work(0.0);
     plastic(trial, after, e);
