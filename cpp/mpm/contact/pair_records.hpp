@@ -58,8 +58,8 @@ class PairRecords {
   void sort();
 
   std::vector<PairRecord> records_;
-  std::vector<PairSums> sums_;  // of each record
-  std::size_t sorted_ = 0;      // records
+  std::vector<PairSums> sums_;                  // of each record
+  std::size_t sorted_ = 0;                      // records
   int impulse_unit_ = -96, energy_unit_ = -96;  // exponents of powers of two
   // Where a pair's record is: open addressing by pair_key, at most half full; 0 is empty, else the
   // record's number + 1.
