@@ -28,8 +28,14 @@
   X(material) \
   X(plane_strain) \
   X(mohr_coulomb) \
+  X(walls) \
+  X(rigid_motion) \
+  X(load_kinds) \
   X(surface_load) \
+  X(tile_grid) \
   X(blocks) \
+  X(make_body) \
+  X(make_lists) \
   X(mend_lists) \
   X(fuse) \
   X(stages) \

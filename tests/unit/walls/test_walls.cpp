@@ -1,0 +1,48 @@
+// Which axes walls hold at a node, and where nodes beyond them are mirrored to.
+#include "check.hpp"
+#include "mpm/walls/walls.hpp"
+
+namespace {
+
+using namespace mpm;
+
+Walls<2> box(Wall x_min, Wall y_max, bool odd) {
+  Walls<2> walls;
+  walls.exist = true;
+  walls.cells = {10, 6};
+  walls.face[0][0] = x_min;
+  walls.face[1][1] = y_max;
+  walls.odd_at_fixed = odd;
+  return walls;
+}
+
+}  // namespace
+
+void test_walls(mpm::testing::Report& report) {
+  const Walls<2> slip = box(Wall::slip, Wall::fixed, false);
+  CHECK_EQUAL(slip.held({0, 3}), 1u);   // on the face: not across it
+  CHECK_EQUAL(slip.held({1, 3}), 0u);   // inside
+  CHECK_EQUAL(slip.held({-1, 3}), 0u);  // beyond: it has an image
+  CHECK_EQUAL(slip.held({4, 6}), 3u);   // on the fixed face
+  CHECK_EQUAL(slip.held({4, 7}), 3u);   // and beyond, as that has no images
+  CHECK_EQUAL(slip.held({10, 3}), 0u);  // a free face
+  CHECK(!slip.image({3, 3}) && !slip.image({0, 3}) && !slip.image({4, 7}));
+  const auto image = slip.image({-2, 3});
+  CHECK(image && image->node == (Index<2>{2, 3}) && image->turned == 1u);
+  CHECK_EQUAL(image->component(5.0, 0), -5.0);
+  CHECK_EQUAL(image->component(5.0, 1), 5.0);
+
+  // Odd at a fixed wall: both components turn there; at a slip wall too, the first turns back.
+  const Walls<2> odd = box(Wall::slip, Wall::fixed, true);
+  CHECK_EQUAL(odd.held({4, 7}), 0u);
+  CHECK_EQUAL(odd.held({4, 6}), 3u);
+  const auto above = odd.image({4, 7});
+  CHECK(above && above->node == (Index<2>{4, 5}) && above->turned == 3u);
+  const auto corner = odd.image({-1, 7});
+  CHECK(corner && corner->node == (Index<2>{1, 5}) && corner->turned == 2u);
+
+  Walls<2> none = odd;
+  none.exist = false;
+  CHECK(!none.image({-1, 7}) && none.held({0, 6}) == 0u && !none.absorb());
+  CHECK(!odd.absorb() && box(Wall::absorbing, Wall::free, false).absorb());
+}
