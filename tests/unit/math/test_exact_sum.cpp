@@ -41,10 +41,12 @@ void test_exact_sum(mpm::testing::Report& report) {
   std::uniform_int_distribution<int> exponent(-200, 200);
   for (int turn = 0; turn < 50; ++turn) {
     std::vector<double> values;
+    values.reserve(400);
     for (int k = 0; k < 400; ++k) values.push_back(std::ldexp(any(random), exponent(random)));
     const double expected = sum_of(values);
     // What is added and taken away again leaves the rest, exactly.
     std::vector<double> both = values;
+    both.reserve(3 * values.size());
     for (int k = 0; k < 400; ++k) {
       const double x = std::ldexp(any(random), exponent(random));
       both.push_back(x);

@@ -18,7 +18,7 @@ void test_make_body(mpm::testing::Report& report) {
   CHECK_CLOSE(body.mean_edge, std::sqrt(2.0), 1e-15);
   CHECK_CLOSE(body.stiffness, 2.0, 1e-14);  // rho c^2 = E for nu = 0
   CHECK_CLOSE(body.shear_impedance, std::sqrt(8.0 * 1.0), 1e-14);
-  for (std::uint32_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     CHECK(body.id[i] == i && body.x(0)[i] == x[2 * i] && body.x(1)[i] == x[2 * i + 1], i);
     CHECK(body.mass()[i] == 8.0 * each[i] && body.volume()[i] == each[i], i);
     CHECK(body.v(0)[i] == Rounded{7.0} && body.v(1)[i] == Rounded{-1.0}, i);

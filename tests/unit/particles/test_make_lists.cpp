@@ -33,7 +33,7 @@ void check_lists(mpm::testing::Report& report) {
   std::vector<Body<D>> bodies;
   const std::vector<double> at_rest(D, 0.0), volume{1.0};
   for (int b = 0; b < 2; ++b) {
-    std::vector<double> x(300 * D);
+    std::vector<double> x(std::size_t{300} * D);
     for (double& c : x) c = place(random);
     bodies.push_back(make_body<D>("b", material, x, at_rest, volume, grid));
   }

@@ -16,6 +16,11 @@ Walls<2> box(Wall x_min, Wall y_max, bool odd) {
   return walls;
 }
 
+/// Far away if there is none.
+WallImage<2> image_of(const Walls<2>& walls, const Index<2>& node) {
+  return walls.image(node).value_or(WallImage<2>{{99, 99}, 0});
+}
+
 }  // namespace
 
 void test_walls(mpm::testing::Report& report) {
@@ -27,19 +32,19 @@ void test_walls(mpm::testing::Report& report) {
   CHECK_EQUAL(slip.held({4, 7}), 3u);   // and beyond, as that has no images
   CHECK_EQUAL(slip.held({10, 3}), 0u);  // a free face
   CHECK(!slip.image({3, 3}) && !slip.image({0, 3}) && !slip.image({4, 7}));
-  const auto image = slip.image({-2, 3});
-  CHECK(image && image->node == (Index<2>{2, 3}) && image->turned == 1u);
-  CHECK_EQUAL(image->component(5.0, 0), -5.0);
-  CHECK_EQUAL(image->component(5.0, 1), 5.0);
+  const WallImage<2> image = image_of(slip, {-2, 3});
+  CHECK(image.node == (Index<2>{2, 3}) && image.turned == 1u);
+  CHECK_EQUAL(image.component(5.0, 0), -5.0);
+  CHECK_EQUAL(image.component(5.0, 1), 5.0);
 
   // Odd at a fixed wall: both components turn there; at a slip wall too, the first turns back.
   const Walls<2> odd = box(Wall::slip, Wall::fixed, true);
   CHECK_EQUAL(odd.held({4, 7}), 0u);
   CHECK_EQUAL(odd.held({4, 6}), 3u);
-  const auto above = odd.image({4, 7});
-  CHECK(above && above->node == (Index<2>{4, 5}) && above->turned == 3u);
-  const auto corner = odd.image({-1, 7});
-  CHECK(corner && corner->node == (Index<2>{1, 5}) && corner->turned == 2u);
+  const WallImage<2> above = image_of(odd, {4, 7});
+  CHECK(above.node == (Index<2>{4, 5}) && above.turned == 3u);
+  const WallImage<2> corner = image_of(odd, {-1, 7});
+  CHECK(corner.node == (Index<2>{1, 5}) && corner.turned == 2u);
 
   Walls<2> none = odd;
   none.exist = false;
