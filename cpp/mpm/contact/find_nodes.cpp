@@ -240,12 +240,11 @@ Crowd largest_crowd(const Contact<D>& contact, const TileGrid<D>& grid) {
   return most;
 }
 
-#define MPM_INSTANTIATE(D)                                                            \
-  template void find_nodes<D>(Contact<D>&, TileGrid<D>&, const std::vector<Body<D>>&, \
-                              const ContactSettings&, double, Threads&);              \
-  template Crowd largest_crowd<D>(const Contact<D>&, const TileGrid<D>&);
-MPM_INSTANTIATE(2)
-MPM_INSTANTIATE(3)
-#undef MPM_INSTANTIATE
+template void find_nodes<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&,
+                            const ContactSettings&, double, Threads&);
+template void find_nodes<3>(Contact<3>&, TileGrid<3>&, const std::vector<Body<3>>&,
+                            const ContactSettings&, double, Threads&);
+template Crowd largest_crowd<2>(const Contact<2>&, const TileGrid<2>&);
+template Crowd largest_crowd<3>(const Contact<3>&, const TileGrid<3>&);
 
 }  // namespace mpm

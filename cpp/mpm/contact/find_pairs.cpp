@@ -128,16 +128,15 @@ void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     }
 }
 
-#define MPM_INSTANTIATE(D)                                                                 \
-  template ContactPair<D> new_pair<D>(const std::vector<Body<D>>&, const ContactSettings&, \
-                                      std::span<const BodyAtNode<D>>, std::uint16_t,       \
-                                      std::uint16_t);                                      \
-  template bool passes_gap_test<D>(const ContactPair<D>&, const ContactSettings&, double); \
-  template void find_pairs<D>(const TileGrid<D>&, const std::vector<Body<D>>&,             \
-                              const ContactSettings&, TileBodies<D>&, ContactPart<D>&,     \
-                              const ContactNode&);
-MPM_INSTANTIATE(2)
-MPM_INSTANTIATE(3)
-#undef MPM_INSTANTIATE
+template ContactPair<2> new_pair<2>(const std::vector<Body<2>>&, const ContactSettings&,
+                                    std::span<const BodyAtNode<2>>, std::uint16_t, std::uint16_t);
+template ContactPair<3> new_pair<3>(const std::vector<Body<3>>&, const ContactSettings&,
+                                    std::span<const BodyAtNode<3>>, std::uint16_t, std::uint16_t);
+template bool passes_gap_test<2>(const ContactPair<2>&, const ContactSettings&, double);
+template bool passes_gap_test<3>(const ContactPair<3>&, const ContactSettings&, double);
+template void find_pairs<2>(const TileGrid<2>&, const std::vector<Body<2>>&, const ContactSettings&,
+                            TileBodies<2>&, ContactPart<2>&, const ContactNode&);
+template void find_pairs<3>(const TileGrid<3>&, const std::vector<Body<3>>&, const ContactSettings&,
+                            TileBodies<3>&, ContactPart<3>&, const ContactNode&);
 
 }  // namespace mpm

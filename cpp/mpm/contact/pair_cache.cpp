@@ -111,16 +111,17 @@ void move_gaps(ContactPart<D>& part, const ContactNode& node, const NodeSolution
                   });
 }
 
-#define MPM_INSTANTIATE(D)                                                                       \
-  template void invalidate_pairs<D>(Contact<D>&);                                                \
-  template void note_speeds<D>(Contact<D>&, double);                                             \
-  template bool reuse_pairs<D>(Contact<D>&, const std::vector<Body<D>>&, const ContactSettings&, \
-                               double, const ContactTile<D>&, ContactPart<D>&,                   \
-                               const ContactNode&);                                              \
-  template void store_pairs<D>(const PairCache&, ContactPart<D>&, const ContactNode&);           \
-  template void move_gaps<D>(ContactPart<D>&, const ContactNode&, const NodeSolution<D>&, double);
-MPM_INSTANTIATE(2)
-MPM_INSTANTIATE(3)
-#undef MPM_INSTANTIATE
+template void invalidate_pairs<2>(Contact<2>&);
+template void invalidate_pairs<3>(Contact<3>&);
+template void note_speeds<2>(Contact<2>&, double);
+template void note_speeds<3>(Contact<3>&, double);
+template bool reuse_pairs<2>(Contact<2>&, const std::vector<Body<2>>&, const ContactSettings&,
+                             double, const ContactTile<2>&, ContactPart<2>&, const ContactNode&);
+template bool reuse_pairs<3>(Contact<3>&, const std::vector<Body<3>>&, const ContactSettings&,
+                             double, const ContactTile<3>&, ContactPart<3>&, const ContactNode&);
+template void store_pairs<2>(const PairCache&, ContactPart<2>&, const ContactNode&);
+template void store_pairs<3>(const PairCache&, ContactPart<3>&, const ContactNode&);
+template void move_gaps<2>(ContactPart<2>&, const ContactNode&, const NodeSolution<2>&, double);
+template void move_gaps<3>(ContactPart<3>&, const ContactNode&, const NodeSolution<3>&, double);
 
 }  // namespace mpm

@@ -206,13 +206,13 @@ void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& t
   });
 }
 
-#define MPM_INSTANTIATE(D)                                                                    \
-  template void remove_approach<D>(Contact<D>&, TileGrid<D>&, Threads&);                      \
-  template void add_contact_forces<D>(Contact<D>&, TileGrid<D>&, const std::vector<Body<D>>&, \
-                                      const Vec<double, D>&, double, Threads&);               \
-  template void remove_remapped_approach<D>(Contact<D>&, TileGrid<D>&, Threads&);
-MPM_INSTANTIATE(2)
-MPM_INSTANTIATE(3)
-#undef MPM_INSTANTIATE
+template void remove_approach<2>(Contact<2>&, TileGrid<2>&, Threads&);
+template void remove_approach<3>(Contact<3>&, TileGrid<3>&, Threads&);
+template void add_contact_forces<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&,
+                                    const Vec<double, 2>&, double, Threads&);
+template void add_contact_forces<3>(Contact<3>&, TileGrid<3>&, const std::vector<Body<3>>&,
+                                    const Vec<double, 3>&, double, Threads&);
+template void remove_remapped_approach<2>(Contact<2>&, TileGrid<2>&, Threads&);
+template void remove_remapped_approach<3>(Contact<3>&, TileGrid<3>&, Threads&);
 
 }  // namespace mpm
