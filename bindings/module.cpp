@@ -213,6 +213,7 @@ void def_records(SimulationClass& simulation) {
       .def_prop_ro_static("history_columns",
                           [](nb::handle) {
                             std::vector<std::string> names;
+                            names.reserve(history_terms.size());
                             for (const HistoryTerm& t : history_terms) names.emplace_back(t.name);
                             return names;
                           })

@@ -1,5 +1,6 @@
 // The moving grid: where debris spreads, the cells double, as in the last step of Ma, Zhang & Huang
 // 2010, section 3.5. The rest of theirs an unbounded grid does not need; when to double is ours.
+#include <limits>
 #include <utility>
 
 #include "mpm/contact/candidates.hpp"
@@ -12,10 +13,11 @@ namespace mpm {
 template <int D>
 bool SimulationOf<D>::must_double() const {
   const TileGrid<D>& grid = domain_.grid;
-  const auto& doubling = settings_.grid.doubling;
-  if (doublings_ >= most_doublings()) return false;
-  const bool many = doubling->tiles && std::cmp_greater(grid.patches.size(), *doubling->tiles);
-  const bool large = doubling->bytes && std::cmp_greater(grid.needed_bytes(), *doubling->bytes);
+  if (!settings_.grid.doubling || doublings_ >= most_doublings()) return false;
+  const DoublingSettings& doubling = *settings_.grid.doubling;
+  constexpr auto no_limit = std::numeric_limits<std::int64_t>::max();
+  const bool many = std::cmp_greater(grid.patches.size(), doubling.tiles.value_or(no_limit));
+  const bool large = std::cmp_greater(grid.needed_bytes(), doubling.bytes.value_or(no_limit));
   if (!many && !large) return false;
   for (int a = 0; a < D; ++a)
     if (grid.walls.exist && grid.walls.cells[static_cast<std::size_t>(a)] % 2 != 0) return false;

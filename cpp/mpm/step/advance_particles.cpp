@@ -17,6 +17,17 @@ struct LaneSums {
   T kinetic{0.0}, second_order{0.0}, lost{0.0};
   Vec<T, D> momentum = Vec<T, D>::zero();
 
+  /// Masses m with velocities v after a change dv.
+  MPM_INLINE void add(const T& m, const Vec<T, D>& v, const Vec<T, D>& dv) {
+    T speed2(0.0), change2(0.0);
+    unrolled<D>([&](auto a) MPM_INLINE {
+      momentum[a] = fma(m, v[a], momentum[a]);
+      speed2 = fma(v[a], v[a], speed2);
+      change2 = fma(dv[a], dv[a], change2);
+    });
+    kinetic = fma(m, speed2, kinetic);
+    second_order = fma(m, change2, second_order);
+  }
   void write(PatchSums<D>& sums) const {
     sums.kinetic = 0.5 * sum(kinetic);
     sums.second_order = 0.5 * sum(second_order);
@@ -54,7 +65,6 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
     for_each_group<W>(cell, [&](const auto& rows) {
       const auto w = weights_at(basis, local_position(cell, rows));
       const T all = load(mass, rows), m = of_valid(rows, all);
-      T speed2(0.0), change2(0.0);
       const Vec<T, D> dv = nodes.template vector<force_at>(w);
       Vec<T, D> of_grid, v;
       if constexpr (Transfer::takes_grid_velocity) of_grid = nodes.template vector<velocity_at>(w);
@@ -70,12 +80,8 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
           sums.lost -= m * v[a] * v[a];
         }
         store(velocities[a], rows, v[a]);
-        sums.momentum[a] = fma(m, v[a], sums.momentum[a]);
-        speed2 = fma(v[a], v[a], speed2);
-        change2 = fma(dv[a], dv[a], change2);
       });
-      sums.kinetic = fma(m, speed2, sums.kinetic);
-      sums.second_order = fma(m, change2, sums.second_order);
+      sums.add(m, v, dv);
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {
         auto& particles = cells.next();
