@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import create_model
 
@@ -76,14 +76,16 @@ def table_of_rows(
 class _CoreTable(CaseModel):
     """Adds the texts of the core's settings to the docstring of a class that derives of it."""
 
+    rows: ClassVar[dict[str, dict[str, Any]]] = {}
+
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
-        rows = getattr(cls, "rows", None)
-        if rows is None:
+        if not cls.rows:
             return
         about, section, own = (cls.__doc__ or "").partition("    Attributes:\n")
         entries = [
-            textwrap.fill(f"{key}: {row['meaning']}.", 98, **_INDENTS) for key, row in rows.items()
+            textwrap.fill(f"{key}: {row['meaning']}.", 98, **_INDENTS)
+            for key, row in cls.rows.items()
         ]
         gap = "" if section else "\n\n"
         cls.__doc__ = f"{about.rstrip(' ')}{gap}    Attributes:\n" + "\n".join([*entries, own])
@@ -96,10 +98,9 @@ _INDENTS: dict[str, Any] = {
 }
 
 
-def fill_core_table(target: Any, table: CaseModel) -> Any:
+def fill_core_table(target: Any, table: _CoreTable) -> Any:
     """Set the attributes of a table of the core from that of a case, and return it."""
-    rows: dict[str, dict[str, Any]] = getattr(type(table), "rows")  # noqa: B009
-    for key, row in rows.items():
+    for key, row in table.rows.items():
         value = getattr(table, key)
         setattr(target, key, functions(value) if row["kind"] == "functions of time" else value)
     return target

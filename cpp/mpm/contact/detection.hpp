@@ -6,7 +6,8 @@
 
 namespace mpm {
 
-/// Whether bodies at a distance [m] from each other touch; `uses_gap`: or whatever it is.
+/// Whether bodies at a distance [m] from each other touch, given the setting `gap_distance` [m] and
+/// the cell size [m]; without `uses_gap` the distance does not matter.
 template <class T>
 concept DetectionRule = requires(double length) {
   { T::name } -> std::convertible_to<std::string_view>;

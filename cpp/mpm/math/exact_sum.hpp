@@ -9,7 +9,7 @@
 namespace mpm {
 
 /// The sum of any doubles, exact, in integers 32 bits apart (the small superaccumulator of Neal
-/// 2015, section 3). An addition takes some 10 ns.
+/// 2015, section 3). An addition takes some 5 ns.
 class ExactSum {
  public:
   void add(double x) {
