@@ -12,7 +12,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include "mpm/fields/aligned.hpp"
+#include "mpm/fields/memory_space.hpp"
 #include "mpm/fields/state_stream.hpp"
 #include "mpm/materials/material.hpp"
 

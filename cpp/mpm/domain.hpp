@@ -11,7 +11,7 @@
 #include "mpm/loads/surface_load.hpp"
 #include "mpm/materials/material_block.hpp"
 #include "mpm/parallel/threads.hpp"
-#include "mpm/particles/lists.hpp"
+#include "mpm/particles/cell_lists.hpp"
 #include "mpm/rigid/rigid_motion.hpp"
 
 namespace mpm {
@@ -21,6 +21,9 @@ struct Domain {
   TileGrid<D> grid;
   std::vector<Body<D>> bodies;
   std::vector<Material> materials;
+  std::vector<ParticlePool<D>> pools;     // one per material
+  std::vector<std::size_t> prescribed;    // numbers of the bodies of which the motion is
+  std::vector<std::size_t> rigid_bodies;  // of those that are rigid and free to move
   ContactSettings contact_settings;
   Contact<D> contact;
   std::array<TimeFunction, 3> gravity_of_time{};    // [m/s^2]
@@ -39,21 +42,44 @@ struct Domain {
   ContactSums contact_sums;        // of the step
   Ledger ledger;
   ListScratch<D> list_scratch;
-  Gone<D> eroded, left;  // by failure; out of the region that is kept
+  Removed<D> eroded, outflow;  // by failure; out of the region that is kept
   std::vector<SurfaceLoad<D>> loads;
+  std::vector<SurfacePiece<D>> pieces;     // of all loads
   std::vector<Vec<double, D>> load_parts;  // scratch: force by patch and load [N]
-  std::vector<RigidMotion> rigid;  // one per body if any rigid one is free to move, else none
+  std::vector<RigidMotion> rigid;          // one per entry of rigid_bodies
   std::vector<RigidMotion> rigid_before;
-  std::vector<RigidSums> rigid_parts, rigid_sums;  // scratch: per patch, per body
+  std::vector<RigidSums> rigid_parts, rigid_sums;  // scratch: per patch, per rigid body
   std::vector<Matrix3> rigid_turns;
 
   Body<D>& body_of(const Patch<D>& patch) { return bodies[static_cast<std::size_t>(patch.body)]; }
-  bool has_rigid() const { return !rigid.empty(); }
-  bool has_prescribed() const { return std::ranges::any_of(bodies, &Body<D>::is_prescribed); }
+  ParticlePool<D>& pool_of(const Patch<D>& patch) { return pools[material_number(patch)]; }
+  const Material& material_of(const Patch<D>& patch) const {
+    return materials[material_number(patch)];
+  }
+  bool has_rigid() const { return !rigid_bodies.empty(); }
+  bool has_prescribed() const { return !prescribed.empty(); }
   bool has_loads() const { return !loads.empty(); }
   bool has_contact() const {
     return contact_settings.enabled && !contact_settings.bonded && bodies.size() > 1;
   }
+
+ private:
+  std::size_t material_number(const Patch<D>& patch) const {
+    return static_cast<std::size_t>(bodies[static_cast<std::size_t>(patch.body)].material);
+  }
 };
+
+/// List the bodies that do not deform; their kinds stay as they are from here on.
+template <int D>
+void list_kinds(Domain<D>& domain) {
+  for (std::size_t b = 0; b < domain.bodies.size(); ++b) {
+    Body<D>& body = domain.bodies[b];
+    if (body.is_prescribed()) domain.prescribed.push_back(b);
+    if (!body.is_free_rigid()) continue;
+    body.rigid = static_cast<int>(domain.rigid_bodies.size());
+    domain.rigid_bodies.push_back(b);
+  }
+  domain.rigid.resize(domain.rigid_bodies.size());
+}
 
 }  // namespace mpm

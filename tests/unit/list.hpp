@@ -35,8 +35,8 @@
   X(tile_grid) \
   X(blocks) \
   X(make_body) \
-  X(make_lists) \
-  X(mend_lists) \
+  X(build_cell_lists) \
+  X(update_cell_lists) \
   X(fuse) \
   X(stages) \
   X(two_bodies) \

@@ -45,7 +45,11 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
   holders.clear();
   std::swap(contact.last_tiles, tiles);
   tiles.clear();
-  for (Patch<D>& patch : grid.patches) patch.in_contact = false;
+  contact.has_rigid = false;
+  for (Patch<D>& patch : grid.patches) {
+    patch.in_contact = false;
+    if (!bodies[static_cast<std::size_t>(patch.body)].deforms()) contact.has_rigid = true;
+  }
   auto tile_of = [&](const TileHolder& h) {
     Index<D> t = grid.patches[static_cast<std::size_t>(h.patch)].tile;
     const Index<D> o = Tile<D>::offset(h.neighbour);

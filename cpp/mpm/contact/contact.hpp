@@ -53,11 +53,12 @@ struct Contact {
   std::vector<ContactPart<D>> parts;
   PairCache cache;
   PairRecords records;
+  bool has_rigid = false;  // some body does not deform
   ContactCounts counts;
   /// Solutions at nodes with several bodies that stopped short of the tolerance, since the start.
   std::atomic<std::size_t> unconverged{0};
   std::vector<ContactTile<D>> last_tiles;  // scratch
-  std::vector<double> rigid_share;         // scratch
+  std::vector<double> rigid_share;         // scratch, by body: its mass at all overlapped nodes
 };
 
 /// Memory that it holds [bytes].

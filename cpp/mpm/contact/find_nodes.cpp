@@ -60,11 +60,13 @@ void look_around(const Contact<D>& contact, const TileGrid<D>& grid, const Conta
 /// Have the memory bring the particles around nodes of a tile, a bit each by Tile<D>::cell.
 template <int D>
 void fetch_particles(const Contact<D>& contact, const TileGrid<D>& grid,
-                     const std::vector<Body<D>>& bodies, const TileBodies<D>& around,
-                     std::uint64_t nodes) {
-  for (const TileBody<D>& at : around.all())
-    TileParticles<D>::fetch(grid, bodies[static_cast<std::size_t>(at.body)], at.of(contact.holders),
+                     const std::vector<Body<D>>& bodies, const std::vector<ParticlePool<D>>& pools,
+                     const TileBodies<D>& around, std::uint64_t nodes) {
+  for (const TileBody<D>& at : around.all()) {
+    const int material = bodies[static_cast<std::size_t>(at.body)].material;
+    TileParticles<D>::fetch(grid, pools[static_cast<std::size_t>(material)], at.of(contact.holders),
                             at.nodes & nodes);
+  }
 }
 
 /// Where the sides of a node are, their masses and velocities left to be read.
@@ -150,8 +152,8 @@ void add_nodes(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<B
 /// first-th on: cached ones that still hold, else found.
 template <int D>
 void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                const ContactSettings& settings, std::size_t t, TileBodies<D>& around,
-                std::size_t p, std::size_t first) {
+                const std::vector<ParticlePool<D>>& pools, const ContactSettings& settings,
+                std::size_t t, TileBodies<D>& around, std::size_t p, std::size_t first) {
   ContactTile<D>& tile = contact.tiles[t];
   ContactPart<D>& part = contact.parts[p];
   const std::span<ContactNode> nodes(part.nodes.begin() + static_cast<std::ptrdiff_t>(first),
@@ -161,11 +163,13 @@ void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<
     for (const ContactNode& node : nodes)
       if (reuse_pairs(contact, bodies, settings, grid.cell_size, tile, part, node))
         missing &= ~(std::uint64_t{1} << node.cell);
-  if (contact.cache.on) fetch_particles(contact, grid, bodies, around, missing);
+  if (contact.cache.on) fetch_particles(contact, grid, bodies, pools, around, missing);
   if (missing != 0)
-    for (TileBody<D>& at : around.all())
-      at.particles.gather(grid, bodies[static_cast<std::size_t>(at.body)], tile.tile,
+    for (TileBody<D>& at : around.all()) {
+      const Body<D>& body = bodies[static_cast<std::size_t>(at.body)];
+      at.particles.gather(grid, body, pools[static_cast<std::size_t>(body.material)], tile.tile,
                           at.of(contact.holders), at.nodes & missing);
+    }
   for (const ContactNode& node : nodes)
     if (missing >> node.cell & 1u) {
       find_pairs(grid, bodies, settings, around, part, node);
@@ -180,7 +184,8 @@ void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<
 
 template <int D>
 void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                const ContactSettings& settings, double time_step, Threads& threads) {
+                const std::vector<ParticlePool<D>>& pools, const ContactSettings& settings,
+                double time_step, Threads& threads) {
   contact.cache.on = settings.normal_travel > 0.0;
   contact.masses.find(grid, threads);
   if (contact.cache.on) add_displacements(contact.cache, bodies.size());
@@ -202,9 +207,10 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
         continue;
       }
       const std::size_t first = part.nodes.size();
-      if (!contact.cache.on) fetch_particles(contact, grid, bodies, around, around.overlapped);
+      if (!contact.cache.on)
+        fetch_particles(contact, grid, bodies, pools, around, around.overlapped);
       add_nodes(contact, grid, bodies, t, around, part);
-      fill_pairs(contact, grid, bodies, settings, t, around, p, first);
+      fill_pairs(contact, grid, bodies, pools, settings, t, around, p, first);
       // A rigid body's mass is spread over all its nodes, so they stay.
       if (!contact.cache.on)
         part.leave_out(first, [&](const ContactNode& node) {
@@ -241,9 +247,11 @@ Crowd largest_crowd(const Contact<D>& contact, const TileGrid<D>& grid) {
 }
 
 template void find_nodes<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&,
-                            const ContactSettings&, double, Threads&);
+                            const std::vector<ParticlePool<2>>&, const ContactSettings&, double,
+                            Threads&);
 template void find_nodes<3>(Contact<3>&, TileGrid<3>&, const std::vector<Body<3>>&,
-                            const ContactSettings&, double, Threads&);
+                            const std::vector<ParticlePool<3>>&, const ContactSettings&, double,
+                            Threads&);
 template Crowd largest_crowd<2>(const Contact<2>&, const TileGrid<2>&);
 template Crowd largest_crowd<3>(const Contact<3>&, const TileGrid<3>&);
 

@@ -7,7 +7,8 @@ namespace mpm {
 /// at the nodes, and the length of the step that begins.
 template <int D>
 void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                const ContactSettings& settings, double time_step, Threads& threads);
+                const std::vector<ParticlePool<D>>& pools, const ContactSettings& settings,
+                double time_step, Threads& threads);
 
 /// The node at which most bodies meet.
 struct Crowd {

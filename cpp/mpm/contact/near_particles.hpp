@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "mpm/contact/tile_particles.hpp"
-#include "mpm/fields/aligned.hpp"
+#include "mpm/fields/memory_space.hpp"
 #include "mpm/math/store_chosen.hpp"
 
 namespace mpm {

@@ -36,8 +36,11 @@ void invalidate_pairs(Contact<D>& contact) {
 void add_displacements(PairCache& cache, std::size_t bodies) {
   cache.displacement.resize(bodies, 0.0);
   cache.fastest.resize(bodies, 0.0);
-  for (std::size_t b = 0; b < bodies; ++b)
+  for (const int body : cache.moving) {
+    const auto b = static_cast<std::size_t>(body);
     cache.displacement[b] += cache.last_time_step * std::sqrt(std::exchange(cache.fastest[b], 0.0));
+  }
+  cache.moving.clear();
 }
 
 template <int D>
@@ -47,7 +50,9 @@ void note_speeds(Contact<D>& contact, double time_step) {
   for (const ContactPart<D>& part : contact.parts)
     for (const BodyAtNode<D>& side : part.sides) {
       double& fastest = contact.cache.fastest[static_cast<std::size_t>(side.body)];
-      fastest = std::max(fastest, dot(side.mapped, side.mapped));
+      const double square = dot(side.mapped, side.mapped);
+      if (fastest == 0.0 && square > 0.0) contact.cache.moving.push_back(side.body);
+      fastest = std::max(fastest, square);
     }
 }
 

@@ -14,6 +14,7 @@ namespace mpm {
 struct PairCache {
   bool on = false;                            // ContactSettings::normal_travel > 0
   std::vector<double> displacement, fastest;  // way of each body so far [m], square of its speed
+  std::vector<int> moving;                    // the bodies that have a speed
   double last_time_step = 0.0;                // [s]
 
   /// Of both bodies of a pair so far [m].
@@ -23,7 +24,8 @@ struct PairCache {
            displacement[static_cast<std::size_t>(sides[pair.s].body)];
   }
   std::size_t bytes() const {
-    return (displacement.capacity() + fastest.capacity()) * sizeof(double);
+    return (displacement.capacity() + fastest.capacity()) * sizeof(double) +
+           moving.capacity() * sizeof(int);
   }
 };
 

@@ -35,8 +35,11 @@ void harden(const std::vector<Body<D>>& bodies, std::span<BodyAtNode<D>> sides) 
 
 template <int D>
 void share_rigid_masses(Contact<D>& contact, const std::vector<Body<D>>& bodies) {
-  if (std::ranges::all_of(bodies, &Body<D>::deforms)) return;
-  contact.rigid_share.assign(bodies.size(), 0.0);
+  if (!contact.has_rigid) return;
+  contact.rigid_share.resize(bodies.size());
+  for (const ContactPart<D>& part : contact.parts)
+    for (const BodyAtNode<D>& side : part.sides)
+      contact.rigid_share[static_cast<std::size_t>(side.body)] = 0.0;
   for (ContactPart<D>& part : contact.parts) {
     for (const ContactNode& node : part.nodes) harden(bodies, part.sides_of(node));
     for (const BodyAtNode<D>& side : part.sides)

@@ -68,6 +68,8 @@ void exchange_contact(Contact<D>& contact, StateStream& stream, std::size_t bodi
                          static_cast<std::size_t>(contact.counts.bodies_max) <= bodies,
                      damaged);
   contact.records.check_restored(bodies);
+  for (std::size_t b = 0; b < contact.cache.fastest.size(); ++b)
+    if (contact.cache.fastest[b] > 0.0) contact.cache.moving.push_back(static_cast<int>(b));
 }
 
 template void exchange_contact<2>(Contact<2>&, StateStream&, std::size_t);

@@ -8,7 +8,7 @@
 
 #include "mpm/contact/tile_holder.hpp"
 #include "mpm/fields/lanes.hpp"
-#include "mpm/particles/body.hpp"
+#include "mpm/particles/pool.hpp"
 
 namespace mpm {
 
@@ -64,16 +64,16 @@ class TileParticles {
   std::size_t most_around() const { return lanes_.size() * T::lanes; }
 
   /// Have the memory bring what is around these nodes of a tile, a bit each by Tile<D>::cell.
-  static void fetch(const TileGrid<D>& grid, const Body<D>& body,
+  static void fetch(const TileGrid<D>& grid, const ParticlePool<D>& pool,
                     std::span<const TileHolder> holders, std::uint64_t nodes) {
     for_each_cell(grid, holders, nodes, [&](const Patch<D>& patch, const Index<D>&, int cell) {
-      fetch(body, patch, cell);
+      fetch(pool, patch, cell);
     });
   }
 
   /// Forget all and take what is around these nodes of another tile.
-  void gather(const TileGrid<D>& grid, const Body<D>& body, const Index<D>& tile,
-              std::span<const TileHolder> holders, std::uint64_t nodes) {
+  void gather(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
+              const Index<D>& tile, std::span<const TileHolder> holders, std::uint64_t nodes) {
     basis_ = grid.basis;
     lanes_.clear();
     filled_.fill(0);
@@ -81,7 +81,7 @@ class TileParticles {
                   [&](const Patch<D>& patch, const Index<D>& offset, int cell) {
                     Index<D> place = Tile<D>::cell_index(cell);
                     for (std::size_t a = 0; a < D; ++a) place[a] += Tile<D>::cells * offset[a];
-                    read(grid, body, grid.first_cell(tile), patch, cell, place);
+                    read(grid, body.mean_edge, pool, grid.first_cell(tile), patch, cell, place);
                   });
   }
 
@@ -154,23 +154,22 @@ class TileParticles {
   }
 
   /// Have the memory bring a cell's particles: they lie near their places in the sorted columns.
-  static void fetch(const Body<D>& body, const Patch<D>& patch, int cell) {
+  static void fetch(const ParticlePool<D>& pool, const Patch<D>& patch, int cell) {
     const auto c = static_cast<std::size_t>(cell);
-    const std::uint32_t first = patch.begin + patch.cell_begin[c];
-    const std::uint32_t last = patch.begin + patch.cell_begin[c + 1] - 1;
+    const std::uint32_t first = patch.cell_begin[c], last = patch.cell_begin[c + 1] - 1;
     const auto bring = [&](const auto* column) {
       __builtin_prefetch(column + first);
       __builtin_prefetch(column + last);
     };
-    bring(body.order.data());
-    for (int a = 0; a < D; ++a) bring(body.x(a));
-    bring(body.mass());
-    bring(body.volume());
+    bring(pool.order.data() + patch.begin);
+    for (int a = 0; a < D; ++a) bring(pool.x(a) + patch.first_row);
+    bring(pool.mass() + patch.first_row);
+    bring(pool.volume() + patch.first_row);
   }
 
   /// The particles of a patch's cell; `place` is that of the cell as counted from the tile's first.
-  void read(const TileGrid<D>& grid, const Body<D>& body, const Index<D>& first,
-            const Patch<D>& patch, int cell, const Index<D>& place) {
+  void read(const TileGrid<D>& grid, double mean_edge, const ParticlePool<D>& pool,
+            const Index<D>& first, const Patch<D>& patch, int cell, const Index<D>& place) {
     constexpr int W = contact_lanes;
     const CellCoordinates<D> coordinates = grid.coordinates();
     const auto n = static_cast<std::size_t>(number(place)), c = static_cast<std::size_t>(cell);
@@ -178,16 +177,15 @@ class TileParticles {
     cells_[n].begin = static_cast<std::uint32_t>(lanes_.size());
     const std::uint32_t end = patch.cell_begin[c + 1];
     for (std::uint32_t i = patch.cell_begin[c]; i < end; i += W) {
-      const LaneRows<W> rows(body.order.data() + patch.begin + i, end - i);
+      const LaneRows<W> rows(pool.order.data() + patch.begin + i, end - i);
       Lanes& p = lanes_.emplace_back();
       for (int a = 0; a < D; ++a) {
         const auto k = static_cast<std::size_t>(a);
         p.xi[a] =
-            local_coordinate(coordinates.in_cells(load(body.x(a), rows), a), first[k] + place[k]);
+            local_coordinate(coordinates.in_cells(load(pool.x(a), rows), a), first[k] + place[k]);
       }
-      p.mass = select(first_lanes<W>(rows.count), load(body.mass(), rows), T(0.0));
-      p.half =
-          T(0.5 / grid.cell_size) * particle_edge<D>(load(body.volume(), rows), body.mean_edge);
+      p.mass = select(first_lanes<W>(rows.count), load(pool.mass(), rows), T(0.0));
+      p.half = T(0.5 / grid.cell_size) * particle_edge<D>(load(pool.volume(), rows), mean_edge);
     }
     cells_[n].end = static_cast<std::uint32_t>(lanes_.size());
   }

@@ -1,6 +1,5 @@
 #pragma once
-// Memory on cache-line boundaries that grows by whole allocations and is never initialised behind
-// one's back.
+// The host's memory, on cache-line boundaries.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -70,34 +69,5 @@ class Memory {
   }
   std::unique_ptr<void, Release> memory_;
 };
-
-/// An owning array of T, aligned to a cache line. `release_and_allocate` discards the old content.
-template <class T>
-class AlignedArray {
- public:
-  T* data() { return static_cast<T*>(memory_.data()); }
-  const T* data() const { return static_cast<const T*>(memory_.data()); }
-  std::size_t size() const { return size_; }
-  std::size_t bytes() const { return size_ * sizeof(T); }
-
-  void release_and_allocate(std::size_t n) {
-    memory_ = Memory();
-    size_ = 0;
-    if (n == 0) return;
-    memory_ = Memory(n * sizeof(T));
-    size_ = n;
-  }
-
- private:
-  Memory memory_;
-  std::size_t size_ = 0;
-};
-
-/// Let an array of scratch hold n; its content is lost. It gets `room`, so that numbers which creep
-/// up seldom allocate.
-template <class T>
-void make_room(AlignedArray<T>& array, std::size_t n, std::size_t room) {
-  if (n > array.size()) array.release_and_allocate(room);
-}
 
 }  // namespace mpm

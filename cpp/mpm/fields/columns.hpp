@@ -2,6 +2,7 @@
 // Structure of arrays: named columns of numbers, each of one or more components; a column exists
 // only if it was asked for.
 #include <cassert>
+#include <concepts>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -9,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "mpm/fields/aligned.hpp"
+#include "mpm/fields/memory_space.hpp"
 
 namespace mpm {
 
@@ -35,9 +36,10 @@ struct ColumnInfo {
   }
 };
 
-/// All columns of one body, in one allocation: component c of row i is `component(c)[i]`, or
-/// `rounded(c)[i]` if the column is kept so.
-class Columns {
+/// Columns of so many rows each, in one allocation in a memory space: component c of row i is
+/// `component(c)[i]`, or `rounded(c)[i]` if the column is kept so.
+template <MemorySpace Space>
+class ColumnsIn {
  public:
   /// Declare a column before `allocate`; returns the index of its first component. Throws
   /// std::invalid_argument for a name that is taken.
@@ -60,6 +62,22 @@ class Columns {
         bytes += stride_ * info.number_bytes();
       }
     memory_.release_and_allocate(bytes);
+  }
+
+  /// Columns with the same names and rows in this space, of those in the host's memory.
+  void copy_from_host(const ColumnsIn<HostSpace>& host)
+    requires(!std::same_as<Space, HostSpace>)
+  {
+    infos_ = host.infos_;
+    allocate(host.rows_);
+    Space::from_host(memory_.data(), host.memory_.data(), memory_.bytes());
+  }
+  /// The rows back into the columns that they came from.
+  void copy_to_host(ColumnsIn<HostSpace>& host) const
+    requires(!std::same_as<Space, HostSpace>)
+  {
+    assert(host.rows_ == rows_ && host.begin_ == begin_);
+    Space::to_host(host.memory_.data(), memory_.data(), memory_.bytes());
   }
 
   std::size_t rows() const { return rows_; }
@@ -102,6 +120,9 @@ class Columns {
   }
 
  private:
+  template <MemorySpace>
+  friend class ColumnsIn;
+
   // At least eight rows more, so that whole vectors may be read at the end. Columns a multiple of
   // 4096 bytes apart would all fall into the same cache sets: stagger them by three lines. Whole
   // pages between them would double the memory of small bodies, which stay off such multiples
@@ -131,8 +152,10 @@ class Columns {
 
   std::vector<ColumnInfo> infos_;
   std::vector<std::size_t> begin_;  // of each component, in bytes
-  AlignedArray<std::byte> memory_;
+  AlignedArray<std::byte, Space> memory_;
   std::size_t rows_ = 0, stride_ = 0;
 };
+
+using Columns = ColumnsIn<HostSpace>;
 
 }  // namespace mpm

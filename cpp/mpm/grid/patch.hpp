@@ -29,11 +29,12 @@ struct NodeBlock {
 template <int D>
 struct Patch {
   int body = 0;
-  Index<D> tile{};  // coordinates of the tile
-  std::uint32_t begin =
-      0;  // its particles: positions begin .. begin + count of the body's order list
-  std::uint32_t count = 0;
-  std::uint64_t occupied = 0;  // bit c: cell c holds a particle
+  Index<D> tile{};              // coordinates of the tile
+  std::uint32_t begin = 0;      // its range of its pool's lists
+  std::uint32_t room = 0;       // entries of the range
+  std::uint32_t count = 0;      // of its particles, in the first of them
+  std::uint32_t first_row = 0;  // near which their rows lie, since the columns were last sorted
+  std::uint64_t occupied = 0;   // bit c: cell c holds a particle
   std::array<std::uint32_t, Tile<D>::cell_count + 1> cell_begin{};  // relative to `begin`
   std::array<std::int32_t, Tile<D>::neighbours>
       neighbour{};  // patches of the same body around it, -1 if none; of a leader if bonded
@@ -48,7 +49,7 @@ struct Patch {
   bool left_cell = false;  // a particle has left its cell since the lists were made
   bool in_contact = false;  // its block may have nodes where bodies meet
 
-  /// f(cell, first, last): every occupied cell with its range in the body's order list.
+  /// f(cell, first, last): every occupied cell with its range in the pool's lists.
   template <class F>
   void for_each_cell(F&& f) const {
     for (std::uint64_t left = occupied; left != 0; left &= left - 1) {

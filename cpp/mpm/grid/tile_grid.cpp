@@ -73,7 +73,8 @@ void TileGrid<D>::exchange(StateStream& stream) {
   stream(cell_size, anchor, walls.cells);
   stream.length(patches, sizeof(Patch<D>::body) + sizeof(Patch<D>::cell_begin));
   for (Patch<D>& p : patches)
-    stream(p.body, p.tile, p.begin, p.count, p.occupied, p.cell_begin, p.left_cell);
+    stream(p.body, p.tile, p.begin, p.room, p.count, p.first_row, p.occupied, p.cell_begin,
+           p.left_cell);
 }
 
 template void TileGrid<2>::connect();

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "mpm/fields/aligned.hpp"
+#include "mpm/fields/memory_space.hpp"
 #include "mpm/fields/state_stream.hpp"
 #include "mpm/grid/keep.hpp"
 #include "mpm/grid/patch.hpp"

@@ -41,7 +41,7 @@
 
 #include "mpm/contact/contact.hpp"
 #include "mpm/ledger/patch_sums.hpp"
-#include "mpm/particles/lists.hpp"
+#include "mpm/particles/cell_lists.hpp"
 
 namespace mpm {
 
@@ -73,12 +73,12 @@ struct Ledger {
   /// given is made as well [J].
   double made() const { return damped - numerical() - contact - energy_floor; }
 
-  /// Count a body with prescribed motion at the start.
+  /// Count a patch of a body with prescribed motion at the start.
   template <int D>
-  void add_prescribed(const Body<D>& body) {
-    for (std::size_t i = 0; i < body.count(); ++i)
+  void add_prescribed(const ParticlePool<D>& pool, const Patch<D>& patch) {
+    for (const std::uint32_t row : pool.rows(patch))
       for (std::size_t a = 0; a < D; ++a) {
-        const double v = body.v(static_cast<int>(a))[i], m = body.mass()[i];
+        const double v = pool.v(static_cast<int>(a))[row], m = pool.mass()[row];
         prescribed_kinetic += 0.5 * m * v * v;
         prescribed_momentum[a] += m * v;
       }
@@ -88,7 +88,7 @@ struct Ledger {
   /// (USF).
   template <int D>
   void add(const std::vector<PatchSums<D>>& patches, const ContactSums& contacts,
-           const Gone<D>& by_erosion, const Gone<D>& out_of_region, bool forces_follow) {
+           const Removed<D>& by_erosion, const Removed<D>& out_of_region, bool forces_follow) {
     const PatchSums<D> s = total_of(patches);
     const double motion = s.prescribed.kinetic - prescribed_kinetic - s.prescribed.work;
     prescribed_kinetic = s.prescribed.kinetic;

@@ -14,11 +14,12 @@ Work work_of_loads(Domain<D>& domain, std::size_t patch);
 
 /// f(row, piece) for the particles of a cell that carry a piece of a load.
 template <int D, class F>
-void for_each_piece(const SurfaceLoad<D>& load, const Body<D>& body, const CellRange<D>& cell,
-                    F&& f) {
-  for (std::uint32_t k = 0; k < cell.count; ++k)
-    if (const std::uint32_t piece = load.piece[body.id[cell.rows[k]]])
-      f(cell.rows[k], static_cast<std::size_t>(piece - 1));
+void for_each_piece(Domain<D>& domain, int load, const ParticlePool<D>& pool,
+                    const CellRange<D>& cell, F&& f) {
+  for (std::uint32_t k = 0; k < cell.count; ++k) {
+    const std::uint32_t row = cell.rows[k];
+    if (SurfacePiece<D>* piece = piece_of(domain.pieces, pool.piece[row], load)) f(row, *piece);
+  }
 }
 
 /// Take the pieces of a patch's particles along; the nodal velocity that strains the material is
@@ -28,26 +29,28 @@ template <int at, int D>
   const auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   const Body<D>& body = domain.body_of(patch);
+  const ParticlePool<D>& pool = domain.pool_of(patch);
   const double scale = domain.time_step / grid.cell_size;
-  for (SurfaceLoad<D>& load : domain.loads) {
-    if (load.body != patch.body) continue;
+  for (int l = 0; l < static_cast<int>(domain.loads.size()); ++l) {
+    if (domain.loads[static_cast<std::size_t>(l)].body != patch.body) continue;
     with_basis(grid, body, [&]<BasisModel B>(const B& basis) {
       const NodeStrides<D> stride(patch.shape);
-      for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+      for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
         bool loaded = false;
-        for_each_piece(load, body, cell, [&](std::uint32_t, std::size_t) { loaded = true; });
+        for_each_piece(domain, l, pool, cell,
+                       [&](std::uint32_t, const SurfacePiece<D>&) { loaded = true; });
         if (!loaded) return;
         const auto nodes = field_of<B>(domain.grid.block(p).records.from(cell.first_node), stride);
-        for_each_piece(load, body, cell, [&](std::uint32_t row, std::size_t piece) {
+        for_each_piece(domain, l, pool, cell, [&](std::uint32_t row, SurfacePiece<D>& piece) {
           Vec<double, D> xi;
           for (int a = 0; a < D; ++a)
-            xi[a] = local_coordinate(grid.in_cells(body.x(a)[row], a), cell.cell[a]);
+            xi[a] = local_coordinate(grid.in_cells(pool.x(a)[row], a), cell.cell[a]);
           const auto w = weights_at(basis, xi);
           const auto gradients = nodes.template gradients<at>(w);
           Mat<double, D> L;
           for (int i = 0; i < D; ++i)
             for (int j = 0; j < D; ++j) L[i][j] = scale * gradients[static_cast<std::size_t>(i)][j];
-          load.carry(piece, L);
+          piece.carry(L);
         });
       });
     });

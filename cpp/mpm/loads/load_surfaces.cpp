@@ -11,16 +11,17 @@ namespace {
 /// f(force [N], nodes) for the pieces of a load that a patch's particles carry; nodes(g) calls
 /// g(node, N) for the nodes around the middle of the piece with their linear functions there.
 template <int D, class F>
-void for_each_loaded_piece(const Domain<D>& domain, std::size_t p, const SurfaceLoad<D>& load,
-                           F&& f) {
+void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& f) {
   const TileGrid<D>& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
+  const SurfaceLoad<D>& load = domain.loads[l];
   if (load.body != patch.body) return;
-  const Body<D>& body = domain.bodies[static_cast<std::size_t>(patch.body)];
-  const double reach = half_width(grid.basis, body.mean_edge / grid.cell_size);
-  for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
-    for_each_piece(load, body, cell, [&](std::uint32_t row, std::size_t piece) {
-      const NodesAround<D> around(grid, body, patch, cell, row);
+  const ParticlePool<D>& pool = domain.pool_of(patch);
+  const double reach = half_width(grid.basis, domain.body_of(patch).mean_edge / grid.cell_size);
+  for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
+    const auto number = static_cast<int>(l);
+    for_each_piece(domain, number, pool, cell, [&](std::uint32_t row, SurfacePiece<D>& piece) {
+      const NodesAround<D> around(grid, pool, patch, cell, row);
       Index<D> shift{};  // to the nodes around the piece
       double xi[D];
       for (int a = 0; a < D; ++a) {
@@ -30,7 +31,7 @@ void for_each_loaded_piece(const Domain<D>& domain, std::size_t p, const Surface
         const int own = cell.cell[k] - around.lower[k];
         const double low = std::max(std::min(0.0, x - reach), own - 1.0);
         const double high = std::min(std::max(1.0, x + reach), own + 1.0);
-        xi[a] = std::clamp(x + load.arm[piece][a] / grid.cell_size, low, high);
+        xi[a] = std::clamp(x + piece.arm[a] / grid.cell_size, low, high);
         shift[k] = xi[a] < 0.0 ? -1 : xi[a] > 1.0 ? 1 : 0;
         xi[a] -= shift[k];
       }
@@ -67,13 +68,12 @@ void scatter_loads(Domain<D>& domain, std::size_t p) {
   const NodeBlock<D> block = domain.grid.block(p);
   for (std::size_t l = 0; l < domain.loads.size(); ++l) {
     Vec<double, D>& total = domain.load_parts[p * domain.loads.size() + l];
-    for_each_loaded_piece(domain, p, domain.loads[l],
-                          [&](const Vec<double, D>& force, auto&& nodes) {
-                            total += force;
-                            nodes([&](int node, double N) {
-                              for (int a = 0; a < D; ++a) block.force(a)[node] += N * force[a];
-                            });
-                          });
+    for_each_loaded_piece(domain, p, l, [&](const Vec<double, D>& force, auto&& nodes) {
+      total += force;
+      nodes([&](int node, double N) {
+        for (int a = 0; a < D; ++a) block.force(a)[node] += N * force[a];
+      });
+    });
   }
 }
 
@@ -83,8 +83,8 @@ template <int D>
 Work work_of_loads(Domain<D>& domain, std::size_t p) {
   const NodeBlock<D> block = domain.grid.block(p);
   Work work;
-  for (const SurfaceLoad<D>& load : domain.loads)
-    for_each_loaded_piece(domain, p, load, [&](const Vec<double, D>& force, auto&& nodes) {
+  for (std::size_t l = 0; l < domain.loads.size(); ++l)
+    for_each_loaded_piece(domain, p, l, [&](const Vec<double, D>& force, auto&& nodes) {
       nodes([&](int node, double N) {
         for (int a = 0; a < D; ++a) {
           const double f = N * force[a], dv = block.force(a)[node];

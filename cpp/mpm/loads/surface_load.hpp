@@ -59,35 +59,53 @@ Mat<double, D> deformation(const Mat<double, D>& L) {
   return r;
 }
 
+/// A piece of the surface, carried by a particle.
+template <int D>
+struct SurfacePiece {
+  int load = 0;                // that acts on it
+  std::uint32_t particle = 0;  // number in the body
+  std::uint32_t next = 0;      // 1 + number of the particle's next piece, of another load; or 0
+  double size = 0.0;           // area [m^2]: at an edge of the body more than |area|
+  Vec<double, D> area;         // outward area vector [m^2]
+  Vec<double, D> arm;          // from the particle to the middle of the piece [m]
+
+  /// Take it along with its particle: da = cof(F) dA (Nanson), dx = F dX; L as above.
+  void carry(const Mat<double, D>& L) {
+    const Mat<double, D> F = deformation(L);
+    const double before = norm(area);
+    area = product(cofactor(F), area);
+    if (before > 0.0) size *= norm(area) / before;
+    arm = product(F, arm);
+  }
+};
+
 template <int D>
 struct SurfaceLoad {
   std::string name;
   int body = 0;
   LoadKind kind{};
   std::array<TimeFunction, D> value;  // a number as the first [Pa]
-  std::vector<std::uint32_t> piece;   // 1 + number of a particle's piece, in the user's order; or 0
-  std::vector<Vec<double, D>> area;   // outward area vectors [m^2]
-  std::vector<double> size;           // areas [m^2]: at an edge of the body more than |area|
-  std::vector<Vec<double, D>> arm;    // from the particle to the middle of its piece [m]
 
   Vec<double, D> stress = Vec<double, D>::zero();   // mean of the value over the step [Pa]
   Vec<double, D> force = Vec<double, D>::zero();    // of the last step [N]
   Vec<double, D> impulse = Vec<double, D>::zero();  // so far [N s]
 
-  Vec<double, D> force_on(std::size_t k) const {
+  Vec<double, D> force_on(const SurfacePiece<D>& piece) const {
     Vec<double, D> force = Vec<double, D>::zero();
-    LoadKinds::with(
-        kind, [&]<class Kind>(const Kind&) { force = Kind::force(stress, area[k], size[k]); });
+    LoadKinds::with(kind, [&]<class Kind>(const Kind&) {
+      force = Kind::force(stress, piece.area, piece.size);
+    });
     return force;
   }
-  /// Take a piece along with its particle: da = cof(F) dA (Nanson), dx = F dX; L as above.
-  void carry(std::size_t k, const Mat<double, D>& L) {
-    const Mat<double, D> F = deformation(L);
-    const double before = norm(area[k]);
-    area[k] = product(cofactor(F), area[k]);
-    if (before > 0.0) size[k] *= norm(area[k]) / before;
-    arm[k] = product(F, arm[k]);
-  }
 };
+
+/// The piece on which a load acts of those that a particle carries, `first` being 1 + the number of
+/// its first one, or 0; null if there is none.
+template <int D>
+SurfacePiece<D>* piece_of(std::vector<SurfacePiece<D>>& pieces, std::uint32_t first, int load) {
+  for (std::uint32_t k = first; k != 0; k = pieces[k - 1].next)
+    if (pieces[k - 1].load == load) return &pieces[k - 1];
+  return nullptr;
+}
 
 }  // namespace mpm

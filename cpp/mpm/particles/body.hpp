@@ -1,12 +1,11 @@
 #pragma once
-// A body: its particles as columns, and the list that keeps the particles of one cell together.
+// A body: what is not of its particles, which lie in the pool of its material.
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "mpm/fields/columns.hpp"
-#include "mpm/materials/material_block.hpp"
 #include "mpm/rigid/prescribed_motion.hpp"
 
 namespace mpm {
@@ -18,47 +17,38 @@ enum class BodyKind : std::uint8_t {
   prescribed,  // as one, Body::motion, whatever acts on them
 };
 
+/// The particles of a body as the user gives them, until they are in a pool.
+struct GivenParticles {
+  std::vector<double> positions;                            // (n, D) [m]
+  std::vector<double> velocities;                           // (n, D) or (1, D) [m/s]
+  std::vector<double> volumes;                              // (n,) or (1,) [m^3]
+  std::vector<std::pair<int, std::vector<double>>> states;  // a component of the columns, (n,)
+};
+
 template <int D>
 struct Body {
   std::string name;
-  int material = 0;
-  int group = 0;  // number of the first of the bodies with which it shares frictions and reports
-  Columns columns;
-  int position = 0;               // first component of each column; position [m], D components
-  MaterialColumns at{};           // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
-  std::vector<std::uint32_t> id;  // place of each particle in the order in which the user gave them
-  std::vector<std::uint32_t> order;  // particles by patch, then by cell, then by id; behind them
-                                     // those that are gone, which no patch holds
-  double initial_density = 0.0;      // [kg/m^3]
-  double stiffness = 0.0;            // rho c^2 of the start [Pa]; infinite if it is rigid
-  double mean_mass = 0.0;            // of a particle at the start [kg]
-  double mean_edge = 0.0;   // edge of a square or cube of the mean initial particle volume [m]
-  double total_mass = 0.0;  // [kg]
+  int material = 0;  // number of the pool, too, that holds its particles
+  int group = 0;     // number of the first of the bodies with which it shares frictions and reports
+  std::size_t count = 0;         // of its particles
+  std::size_t removed = 0;       // those that take no part any more: eroded, or left the region
+  double initial_density = 0.0;  // [kg/m^3]
+  double stiffness = 0.0;        // rho c^2 of the start [Pa]; infinite if it is rigid
+  double mean_mass = 0.0;        // of a particle at the start [kg]
+  double mean_edge = 0.0;        // edge of a square or cube of the mean initial particle volume [m]
+  double total_mass = 0.0;       // [kg]
   BodyKind kind = BodyKind::deformable;
+  int rigid = -1;                            // place among Domain::rigid, if it is rigid and free
   std::unique_ptr<PrescribedMotion> motion;  // none for the thousands of bodies that are free
   double pressure_impedance = 0.0, shear_impedance = 0.0;  // rho c of the start [kg/(m^2 s)]
-  std::size_t moved = 0;  // changes of cell since the columns were last sorted
+  std::size_t moved = 0;  // changes of cell since its rows were last sorted
   bool leaves = false;    // a rigid body that leaves the region that is kept, as a whole
-  std::size_t gone = 0;   // particles that take no part any more: eroded, or left the region
+  std::unique_ptr<GivenParticles> given;  // none once they are in the pool
 
-  std::size_t count() const { return columns.rows(); }
-  std::size_t active() const { return count() - gone; }
+  std::size_t active() const { return count - removed; }
   bool deforms() const { return kind == BodyKind::deformable; }
   bool is_prescribed() const { return kind == BodyKind::prescribed; }
   bool is_free_rigid() const { return kind == BodyKind::rigid; }
-  double* x(int a) { return columns.component(position + a); }
-  Rounded* v(int a) { return columns.rounded(at.velocity + a); }
-  const double* x(int a) const { return columns.component(position + a); }
-  const Rounded* v(int a) const { return columns.rounded(at.velocity + a); }
-  double* mass() { return columns.component(at.mass); }
-  const double* mass() const { return columns.component(at.mass); }
-  double* volume() { return columns.component(at.volume); }
-  const double* volume() const { return columns.component(at.volume); }
-  const Rounded* stress(int k) const { return columns.rounded(at.stress + k); }
-
-  std::size_t bytes() const {
-    return columns.bytes() + (id.capacity() + order.capacity()) * sizeof(std::uint32_t);
-  }
 };
 
 }  // namespace mpm

@@ -4,7 +4,7 @@
 
 #include "mpm/fields/lanes.hpp"
 #include "mpm/grid/tile_grid.hpp"
-#include "mpm/particles/body.hpp"
+#include "mpm/particles/pool.hpp"
 
 namespace mpm {
 
@@ -31,20 +31,20 @@ Batch<W> cells_in_tile(const CellCoordinates<D>& cells, const Index<D>& first,
   return select(inside, number, T(CellMark::outside));
 }
 
-/// Note the cell of each particle of a patch, by its place in the body's list, or that it is
+/// Note the cell of each particle of a patch, by its place in the patch's list, or that it is
 /// outside; returns how many have changed cell.
 template <int D>
-std::size_t note_cells(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
-                       std::uint8_t* cells) {
+std::size_t note_cells(const TileGrid<D>& grid, const ParticlePool<D>& pool, const Patch<D>& patch,
+                       std::uint8_t* marks) {
   constexpr int W = native_lanes;
   const Index<D> first = grid.first_cell(patch.tile);
   const CellCoordinates<D> coordinates = grid.coordinates();
   std::size_t changed = 0;
   patch.for_each_cell([&](int old_cell, std::uint32_t begin, std::uint32_t end) {
-    std::uint8_t* to = cells + begin;
-    for_each_lanes<W>(body.order.data() + begin, end - begin, [&](const auto& rows) {
+    std::uint8_t* to = marks + (begin - patch.begin);
+    for_each_lanes<W>(pool.order.data() + begin, end - begin, [&](const auto& rows) {
       Vec<Batch<W>, D> x;
-      for (int a = 0; a < D; ++a) x[a] = load(body.x(a), rows);
+      for (int a = 0; a < D; ++a) x[a] = load(pool.x(a), rows);
       const Batch<W> now = cells_in_tile<D>(coordinates, first, x), old(old_cell);
       for (int k = 0; k < rows.count; ++k) *to++ = static_cast<std::uint8_t>(now[k]);
       const auto others = ((now < old) | (now > old)) & first_lanes<W>(rows.count);
@@ -57,25 +57,23 @@ std::size_t note_cells(const TileGrid<D>& grid, const Body<D>& body, const Patch
 /// Of those, which have failed for good or are out of the region that is kept; a rigid body leaves
 /// it as a whole. Returns how many of them had not changed cell.
 template <int D>
-std::size_t note_gone(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
-                      std::uint8_t* cells) {
-  const double* failed = body.at.failed >= 0 ? body.columns.component(body.at.failed) : nullptr;
+std::size_t note_removed(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
+                         const Patch<D>& patch, std::uint8_t* marks) {
+  const double* failed = pool.at.failed >= 0 ? pool.columns.component(pool.at.failed) : nullptr;
   if (!failed && !grid.keep.exist) return 0;
   const auto stays = [&](std::uint32_t row) {
     if (!body.deforms()) return !body.leaves;
-    if (!grid.keep.exist) return true;
-    Vec<double, D> x;
-    for (int a = 0; a < D; ++a) x[a] = body.x(a)[row];
-    return grid.keep.holds(x);
+    return !grid.keep.exist || grid.keep.holds(pool.position_of(row));
   };
   std::size_t more = 0;
   patch.for_each_cell([&](int old_cell, std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t k = begin; k < end; ++k) {
-      const std::uint32_t row = body.order[k];
+      const std::uint32_t row = pool.order[k];
       const bool erodes = failed && failed[row] >= static_cast<double>(FailureAction::erode);
       if (!erodes && stays(row)) continue;
-      more += cells[k] == old_cell;
-      cells[k] = erodes ? CellMark::eroded : CellMark::left;
+      std::uint8_t& mark = marks[k - patch.begin];
+      more += mark == old_cell;
+      mark = erodes ? CellMark::eroded : CellMark::left;
     }
   });
   return more;

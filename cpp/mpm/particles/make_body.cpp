@@ -26,17 +26,64 @@ void check_particles(const std::string& name, std::span<const double> positions,
 }
 
 template <int D>
-void add_columns(Body<D>& body, const Material& material, bool may_leave) {
-  Columns& c = body.columns;
-  body.position = c.add("position", "m", D);
-  body.at.velocity = c.add("velocity", "m/s", D, Kept::rounded);
-  body.at.mass = c.add("mass", "kg", 1);
-  body.at.volume = c.add("volume", "m^3", 1);
-  body.at.stress = c.add("stress", "Pa", Sym<double, D>::size, Kept::rounded);
-  add_material_columns<D>(material, c, body.at);
+void add_columns(ParticlePool<D>& pool, const Material& material, bool may_leave) {
+  Columns& c = pool.columns;
+  pool.position = c.add("position", "m", D);
+  pool.at.velocity = c.add("velocity", "m/s", D, Kept::rounded);
+  pool.at.mass = c.add("mass", "kg", 1);
+  pool.at.volume = c.add("volume", "m^3", 1);
+  pool.at.stress = c.add("stress", "Pa", Sym<double, D>::size, Kept::rounded);
+  add_material_columns<D>(material, c, pool.at);
   if (!may_leave) return;  // what particles that leave the region need
-  if (body.at.recoverable < 0) body.at.recoverable = c.add("recoverable_energy", "J/m^3", 1);
-  if (body.at.failed < 0) body.at.failed = c.add("failed", "1", 1);
+  if (pool.at.recoverable < 0) pool.at.recoverable = c.add("recoverable_energy", "J/m^3", 1);
+  if (pool.at.failed < 0) pool.at.failed = c.add("failed", "1", 1);
+}
+
+/// f(row, values) for the particles of a body in a pool, from row `first` on; of `width` given
+/// numbers each has its own, or all have the same.
+template <class F>
+void for_each_given(const std::vector<double>& given, std::size_t width, std::size_t first,
+                    std::size_t count, F&& f) {
+  const bool one = given.size() == width;
+  for (std::size_t i = 0; i < count; ++i) f(first + i, given.data() + (one ? 0 : i * width));
+}
+
+/// What all bodies give of one kind, from one member of GivenParticles, which is dropped when it
+/// has been taken, so that memory does not hold it twice.
+template <int D, class F>
+void take(std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches,
+          std::vector<double> GivenParticles::* member, std::size_t width, F&& f) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    std::vector<double>& given = bodies[b].given.get()->*member;
+    for_each_given(given, width, patches[b].begin, patches[b].count,
+                   [&](std::size_t row, const double* values) { f(bodies[b], row, values); });
+    given = std::vector<double>();  // not {}, which keeps the memory
+  }
+}
+
+/// Where the particles of each body go, a patch each, and room for them.
+template <int D>
+void make_rows(std::vector<ParticlePool<D>>& pools, const std::vector<Body<D>>& bodies,
+               std::vector<Patch<D>>& patches) {
+  constexpr std::size_t most =
+      3'000'000'000;  // 32 bits number the entries of the lists, which have some room
+  std::vector<std::size_t> rows(pools.size(), 0);
+  patches.resize(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    std::size_t& next = rows[static_cast<std::size_t>(bodies[b].material)];
+    if (bodies[b].count > most - next)
+      throw std::length_error("bodies of one material have more than 3 billion particles");
+    patches[b].body = static_cast<int>(b);
+    patches[b].begin = static_cast<std::uint32_t>(next);
+    patches[b].count = static_cast<std::uint32_t>(bodies[b].count);
+    next += bodies[b].count;
+  }
+  for (std::size_t m = 0; m < pools.size(); ++m) {
+    pools[m].columns.allocate(rows[m]);
+    pools[m].id.resize(rows[m]);
+    pools[m].order.resize(rows[m]);
+    std::iota(pools[m].order.begin(), pools[m].order.end(), 0u);
+  }
 }
 
 }  // namespace
@@ -47,31 +94,33 @@ void check_finite(std::span<const double> values, const std::string& what) {
 }
 
 template <int D>
-Body<D> make_body(const std::string& name, const Material& material,
+ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid) {
+  ParticlePool<D> pool;
+  add_columns(pool, material, grid.keep.exist);
+  // One particle, to ask for the speed of its waves.
+  pool.columns.allocate(1);
+  for (int a = 0; a < D; ++a) pool.v(a)[0] = Rounded{0.0};
+  pool.mass()[0] = material.density;
+  pool.volume()[0] = 1.0;
+  start_material_columns<D>(material, pool.columns, pool.at);
+  pool.sound_speed = sound_speed<D>(material, pool.columns, pool.at, 0, grid.cell_size);
+  pool.columns.allocate(0);
+  return pool;
+}
+
+template <int D>
+Body<D> make_body(const std::string& name, const Material& material, const ParticlePool<D>& pool,
                   std::span<const double> positions, std::span<const double> velocities,
-                  std::span<const double> volumes, const TileGrid<D>& grid) {
+                  std::span<const double> volumes) {
   check_particles<D>(name, positions, velocities, volumes);
   const std::size_t n = positions.size() / D;
   Body<D> body;
   body.name = name;
-  add_columns(body, material, grid.keep.exist);
-  body.columns.allocate(n);
-  const bool one_velocity = velocities.size() == D, one_volume = volumes.size() == 1;
+  body.count = n;
   double total = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t a = 0; a < D; ++a) {
-      body.x(static_cast<int>(a))[i] = positions[i * D + a];
-      body.v(static_cast<int>(a))[i] =
-          static_cast<Rounded>(velocities[one_velocity ? a : i * D + a]);
-    }
-    const double volume = volumes[one_volume ? 0 : i];
-    total += volume;
-    body.volume()[i] = volume;
-    body.mass()[i] = material.density * volume;
-  }
-  start_material_columns<D>(material, body.columns, body.at);
-  const double speed = sound_speed<D>(material, body.columns, body.at, 0, grid.cell_size);
+  for (std::size_t i = 0; i < n; ++i) total += volumes[volumes.size() == 1 ? 0 : i];
   if (material.moves_as_one()) body.kind = BodyKind::rigid;
+  const double speed = pool.sound_speed;
   body.total_mass = material.density * total;
   body.stiffness =
       !body.deforms() ? std::numeric_limits<double>::infinity() : material.density * speed * speed;
@@ -80,14 +129,60 @@ Body<D> make_body(const std::string& name, const Material& material,
   body.shear_impedance = std::sqrt(material.density * shear_modulus(material));
   body.mean_mass = material.density * total / static_cast<double>(n);
   body.mean_edge = std::pow(total / static_cast<double>(n), 1.0 / D);
-  body.id.resize(n);
-  std::iota(body.id.begin(), body.id.end(), 0u);
+  body.given = std::make_unique<GivenParticles>();
+  body.given->positions.assign(positions.begin(), positions.end());
+  body.given->velocities.assign(velocities.begin(), velocities.end());
+  body.given->volumes.assign(volumes.begin(), volumes.end());
   return body;
 }
 
-template Body<2> make_body<2>(const std::string&, const Material&, std::span<const double>,
-                              std::span<const double>, std::span<const double>, const TileGrid<2>&);
-template Body<3> make_body<3>(const std::string&, const Material&, std::span<const double>,
-                              std::span<const double>, std::span<const double>, const TileGrid<3>&);
+template <int D>
+void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>& materials,
+                std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches) {
+  const auto pool_of = [&](const Body<D>& body) -> ParticlePool<D>& {
+    return pools[static_cast<std::size_t>(body.material)];
+  };
+  make_rows(pools, bodies, patches);
+  take(bodies, patches, &GivenParticles::positions, D,
+       [&](const Body<D>& body, std::size_t row, const double* given) {
+         for (int a = 0; a < D; ++a) pool_of(body).x(a)[row] = given[a];
+       });
+  take(bodies, patches, &GivenParticles::velocities, D,
+       [&](const Body<D>& body, std::size_t row, const double* given) {
+         for (int a = 0; a < D; ++a) pool_of(body).v(a)[row] = static_cast<Rounded>(given[a]);
+       });
+  take(bodies, patches, &GivenParticles::volumes, 1,
+       [&](const Body<D>& body, std::size_t row, const double* given) {
+         pool_of(body).volume()[row] = *given;
+         pool_of(body).mass()[row] = body.initial_density * *given;
+       });
+  for (std::size_t m = 0; m < pools.size(); ++m)
+    if (pools[m].count() > 0)
+      start_material_columns<D>(materials[m], pools[m].columns, pools[m].at);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    ParticlePool<D>& pool = pool_of(bodies[b]);
+    const std::size_t first = patches[b].begin;
+    std::iota(&pool.id[first], &pool.id[first] + bodies[b].count, 0u);
+    for (const auto& [component, values] : bodies[b].given->states)
+      pool.columns.with_component(component, [&]<class Number>(Number* to) {
+        for (std::size_t i = 0; i < values.size(); ++i)
+          to[first + i] = static_cast<Number>(values[i]);
+      });
+    bodies[b].given.reset();
+  }
+}
+
+template ParticlePool<2> make_pool<2>(const Material&, const TileGrid<2>&);
+template ParticlePool<3> make_pool<3>(const Material&, const TileGrid<3>&);
+template Body<2> make_body<2>(const std::string&, const Material&, const ParticlePool<2>&,
+                              std::span<const double>, std::span<const double>,
+                              std::span<const double>);
+template Body<3> make_body<3>(const std::string&, const Material&, const ParticlePool<3>&,
+                              std::span<const double>, std::span<const double>,
+                              std::span<const double>);
+template void fill_pools<2>(std::vector<ParticlePool<2>>&, const std::vector<Material>&,
+                            std::vector<Body<2>>&, std::vector<Patch<2>>&);
+template void fill_pools<3>(std::vector<ParticlePool<3>>&, const std::vector<Material>&,
+                            std::vector<Body<3>>&, std::vector<Patch<3>>&);
 
 }  // namespace mpm

@@ -1,22 +1,35 @@
 #pragma once
-// A body from what the user gives of its particles.
+// Bodies and pools from what a user gives.
 #include <span>
 #include <string>
 
 #include "mpm/grid/tile_grid.hpp"
-#include "mpm/particles/body.hpp"
+#include "mpm/materials/material.hpp"
+#include "mpm/particles/pool.hpp"
 
 namespace mpm {
 
-/// Throws std::invalid_argument, naming `what`, if any of the numbers is not finite.
-void check_finite(std::span<const double> values, const std::string& what);
-
-/// Particles of a material at rest: positions [m] and velocities [m/s] are (n, D) row by row, or
-/// one row of velocities for all; volumes [m^3] n values, or one for all. Throws
-/// std::invalid_argument, in one sentence, for what is not so.
+/// The pool of a material, with its columns declared and no particles. A wave's speed depends on
+/// the size of the grid's cells where the material is viscous.
 template <int D>
-Body<D> make_body(const std::string& name, const Material& material,
+ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid);
+
+/// A body of particles at `positions` (n, D) [m] with `velocities` (n, D) or (1, D) [m/s] and
+/// `volumes` (n,) or (1,) [m^3], with the pool of its material, which it does not enter yet. Throws
+/// std::invalid_argument with the body's name if they do not fit each other.
+template <int D>
+Body<D> make_body(const std::string& name, const Material& material, const ParticlePool<D>& pool,
                   std::span<const double> positions, std::span<const double> velocities,
-                  std::span<const double> volumes, const TileGrid<D>& grid);
+                  std::span<const double> volumes);
+
+/// Put the given particles of all bodies into the pools of their materials; a patch for each body
+/// holds them, until lists are built. Throws std::length_error for more than 3e9 of one
+/// material.
+template <int D>
+void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>& materials,
+                std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches);
+
+/// Throws std::invalid_argument if any is not finite, with what they are.
+void check_finite(std::span<const double> values, const std::string& what);
 
 }  // namespace mpm

@@ -10,28 +10,27 @@ namespace {
 
 /// Move a patch's particles, give them their velocities and sum what the ledger needs.
 template <int D>
-void move_patch(const TileGrid<D>& grid, Body<D>& body, Patch<D>& patch, const Matrix3& turned,
-                double time_step, PatchSums<D>& sums) {
-  const RigidMotion& motion = body.motion->now;
+void move_patch(const TileGrid<D>& grid, const RigidMotion& motion, ParticlePool<D>& pool,
+                Patch<D>& patch, const Matrix3& turned, double time_step, PatchSums<D>& sums) {
   const bool turns = dot(motion.spin, motion.spin) > 0.0;
   const Vector3 centre = motion.centre + time_step * motion.velocity;
   double kinetic = 0.0, fastest = 0.0;
   patch.left_cell = false;
-  for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+  for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     for (std::uint32_t k = 0; k < cell.count; ++k) {
       const std::uint32_t row = cell.rows[k];
       Vector3 v = motion.velocity, x = Vector3::zero();
-      for (int a = 0; a < D; ++a) x[a] = body.x(a)[row];
+      for (int a = 0; a < D; ++a) x[a] = pool.x(a)[row];
       if (turns) {
         x = centre + turned * (x - motion.centre);
         v += cross(motion.spin, x - centre);
       } else {
         x += time_step * v;
       }
-      const double m = body.mass()[row], square = dot(v, v);
+      const double m = pool.mass()[row], square = dot(v, v);
       for (int a = 0; a < D; ++a) {
-        body.x(a)[row] = x[a];
-        body.v(a)[row] = static_cast<Rounded>(v[a]);
+        pool.x(a)[row] = x[a];
+        pool.v(a)[row] = static_cast<Rounded>(v[a]);
         sums.momentum[a] += m * v[a];
         const double local = grid.in_cells(x[a], a) - cell.cell[a];
         patch.left_cell = patch.left_cell || local < 0.0 || local >= 1.0;
@@ -80,14 +79,16 @@ void move_prescribed_bodies(Domain<D>& domain) {
   auto& grid = domain.grid;
   for_each_patch(domain, prescribed, [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
-    Body<D>& body = domain.body_of(patch);
-    if (!body.motion->moves) return;
-    const Matrix3 turned = rotation(domain.time_step * body.motion->now.spin);
-    move_patch(grid, body, patch, turned, domain.time_step, domain.sums[p]);
+    const PrescribedMotion& motion = *domain.body_of(patch).motion;
+    if (!motion.moves) return;
+    const Matrix3 turned = rotation(domain.time_step * motion.now.spin);
+    move_patch(grid, motion.now, domain.pool_of(patch), patch, turned, domain.time_step,
+               domain.sums[p]);
   });
-  for (Body<D>& body : domain.bodies)
-    if (body.is_prescribed())
-      body.motion->now.centre += domain.time_step * body.motion->now.velocity;
+  for (const std::size_t b : domain.prescribed) {
+    RigidMotion& motion = domain.bodies[b].motion->now;
+    motion.centre += domain.time_step * motion.velocity;
+  }
 }
 
 template void advance_prescribed_nodes<2>(Domain<2>&, std::size_t);

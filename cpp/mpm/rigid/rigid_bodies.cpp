@@ -1,7 +1,5 @@
 // Bodies that move as one: after eq. (17) their velocities are replaced by the rigid motion of the
 // same momentum and angular momentum, and they take the place of eq. (16) that this motion gives.
-#include <span>
-
 #include "mpm/rigid/prescribed_bodies.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
@@ -10,61 +8,54 @@ namespace mpm {
 namespace {
 
 template <int D>
-Vector3 position(const Body<D>& body, std::uint32_t row) {
-  Vec<double, D> x;
-  for (int a = 0; a < D; ++a) x[a] = body.x(a)[row];
-  return in_space<D>(x);
+Vector3 position(const ParticlePool<D>& pool, std::uint32_t row) {
+  return in_space<D>(pool.position_of(row));
 }
 
 template <int D>
-Vector3 velocity(const Body<D>& body, std::uint32_t row) {
+Vector3 velocity(const ParticlePool<D>& pool, std::uint32_t row) {
   Vec<double, D> v;
-  for (int a = 0; a < D; ++a) v[a] = body.v(a)[row];
+  for (int a = 0; a < D; ++a) v[a] = pool.v(a)[row];
   return in_space<D>(v);
 }
 
-/// Is there anything of it left to move?
-template <int D>
-bool moves(const Body<D>& body) {
-  return body.is_free_rigid() && body.active() > 0;
-}
-
-/// f(patch number, rows of its particles) for the patches of rigid bodies.
+/// f(body, k) for the rigid bodies of which there is anything left to move; k: place among them.
 template <int D, class F>
-void for_each_rigid_patch(Domain<D>& domain, F&& f) {
-  for_each_patch(domain, free_rigid, [&](std::size_t p) {
-    const Patch<D>& patch = domain.grid.patches[p];
-    f(p, std::span(domain.body_of(patch).order).subspan(patch.begin, patch.count));
-  });
+void for_each_moving(Domain<D>& domain, F&& f) {
+  for (std::size_t k = 0; k < domain.rigid.size(); ++k)
+    if (const Body<D>& body = domain.bodies[domain.rigid_bodies[k]]; body.active() > 0) f(body, k);
 }
 
-/// Sums of each rigid body about the centres in `domain.rigid`, in the order of the patches.
+/// The place of a patch's body among the rigid ones.
+template <int D>
+std::size_t rigid_of(Domain<D>& domain, const Patch<D>& patch) {
+  return static_cast<std::size_t>(domain.body_of(patch).rigid);
+}
+
+/// Sums of each rigid body about the centres in `domain.rigid`.
 template <int D>
 void gather(Domain<D>& domain) {
   auto& parts = domain.rigid_parts;
   parts.assign(domain.grid.patches.size(), {});
-  for_each_rigid_patch(domain, [&](std::size_t p, std::span<const std::uint32_t> rows) {
+  for_each_patch(domain, free_rigid, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
-    const Body<D>& body = domain.body_of(patch);
-    const Vector3 centre = domain.rigid[static_cast<std::size_t>(patch.body)].centre;
-    for (const std::uint32_t row : rows) {
-      parts[p].add(body.mass()[row], position(body, row) - centre, velocity(body, row));
+    const ParticlePool<D>& pool = domain.pool_of(patch);
+    const Vector3 centre = domain.rigid[rigid_of(domain, patch)].centre;
+    for (const std::uint32_t row : pool.rows(patch)) {
+      parts[p].add(pool.mass()[row], position(pool, row) - centre, velocity(pool, row));
       for (int a = 0; a < D; ++a)
-        parts[p].extent.add(a, domain.grid.among_nodes(body.x(a)[row], a));
+        parts[p].extent.add(a, domain.grid.among_nodes(pool.x(a)[row], a));
     }
   });
-  domain.rigid_sums.assign(domain.bodies.size(), {});
-  // The patches of a body follow one another.
-  for (std::size_t p = 0; p < parts.size();) {
-    const int body = domain.grid.patches[p].body;
-    const std::size_t begin = p;
-    while (p < parts.size() && domain.grid.patches[p].body == body) ++p;
-    const auto b = static_cast<std::size_t>(body);
-    if (!moves(domain.bodies[b])) continue;
+  domain.rigid_sums.assign(domain.rigid.size(), {});
+  for_each_moving(domain, [&](const Body<D>&, std::size_t k) {
+    const auto patches =
+        patches_of<D>(domain.grid.patches, static_cast<int>(domain.rigid_bodies[k]));
+    const RigidSums* part = &parts[static_cast<std::size_t>(&patches[0] - &domain.grid.patches[0])];
     RigidTotal total;
-    for (std::size_t k = begin; k < p; ++k) total.add(parts[k]);
-    domain.rigid_sums[b] = total.value();
-  }
+    for (std::size_t p = 0; p < patches.size(); ++p) total.add(part[p]);
+    domain.rigid_sums[k] = total.value();
+  });
 }
 
 /// Axes along which walls hold a body of that extent: half a particle lies between its particles
@@ -90,15 +81,15 @@ unsigned held_axes(const Domain<D>& domain, const Body<D>& body, const Extent& e
 
 /// Give a patch's particles the motion of their body.
 template <int D>
-void set_velocities(Body<D>& body, std::span<const std::uint32_t> rows, const RigidMotion& motion,
+void set_velocities(ParticlePool<D>& pool, const Patch<D>& patch, const RigidMotion& motion,
                     PatchSums<D>& sums) {
   double kinetic = 0.0, fastest = 0.0;
   for (int a = 0; a < D; ++a) sums.momentum[a] = 0.0;
-  for (const std::uint32_t row : rows) {
-    const Vector3 v = motion.velocity_at(position(body, row));
-    const double m = body.mass()[row], square = dot(v, v);
+  for (const std::uint32_t row : pool.rows(patch)) {
+    const Vector3 v = motion.velocity_at(position(pool, row));
+    const double m = pool.mass()[row], square = dot(v, v);
     for (int a = 0; a < D; ++a) {
-      body.v(a)[row] = static_cast<Rounded>(v[a]);
+      pool.v(a)[row] = static_cast<Rounded>(v[a]);
       sums.momentum[a] += m * v[a];
     }
     kinetic += 0.5 * m * square;
@@ -115,17 +106,16 @@ template <int D>
 void find_rigid_motion(Domain<D>& domain) {
   // Twice: about a centre that is far off, inertia would be a difference of large numbers.
   gather(domain);
-  for (std::size_t b = 0; b < domain.bodies.size(); ++b)
-    if (moves(domain.bodies[b]))
-      domain.rigid[b].centre += (1.0 / domain.rigid_sums[b].mass) * domain.rigid_sums[b].first;
+  for_each_moving(domain, [&](const Body<D>&, std::size_t k) {
+    domain.rigid[k].centre += (1.0 / domain.rigid_sums[k].mass) * domain.rigid_sums[k].first;
+  });
   gather(domain);
-  for (std::size_t b = 0; b < domain.bodies.size(); ++b) {
-    if (!moves(domain.bodies[b])) continue;
-    const RigidSums& sums = domain.rigid_sums[b];
-    RigidMotion& motion = domain.rigid[b];
+  for_each_moving(domain, [&](const Body<D>& body, std::size_t k) {
+    const RigidSums& sums = domain.rigid_sums[k];
+    RigidMotion& motion = domain.rigid[k];
     motion.velocity = (1.0 / sums.mass) * sums.momentum;
     motion.inertia = sums.inertia;
-    const unsigned held = held_axes(domain, domain.bodies[b], sums.extent);
+    const unsigned held = held_axes(domain, body, sums.extent);
     motion.free_axes = D == 2 ? 4u : 7u;
     for (int a = 0; a < 3; ++a) {
       if (held >> a & 1u) motion.velocity[a] = 0.0;
@@ -133,7 +123,7 @@ void find_rigid_motion(Domain<D>& domain) {
       if (held & ~(1u << a)) motion.free_axes &= ~(1u << a);
     }
     motion.spin = spin_of(motion.inertia, sums.angular, motion.free_axes);
-  }
+  });
 }
 
 }  // namespace
@@ -142,9 +132,9 @@ template <int D>
 void hold_rigid_bodies(Domain<D>& domain) {
   if (!domain.has_rigid()) return;
   find_rigid_motion(domain);
-  for_each_rigid_patch(domain, [&](std::size_t p, std::span<const std::uint32_t> rows) {
+  for_each_patch(domain, free_rigid, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
-    set_velocities(domain.body_of(patch), rows, domain.rigid[static_cast<std::size_t>(patch.body)],
+    set_velocities(domain.pool_of(patch), patch, domain.rigid[rigid_of(domain, patch)],
                    domain.sums[p]);
   });
 }
@@ -156,27 +146,28 @@ void move_rigid_bodies(Domain<D>& domain) {
   auto& before = domain.rigid_before;
   auto& turns = domain.rigid_turns;
   before = domain.rigid;
-  turns.resize(domain.bodies.size());
-  for (std::size_t b = 0; b < domain.bodies.size(); ++b)
-    if (moves(domain.bodies[b])) turns[b] = turn(domain.rigid[b], domain.time_step);
-  for_each_rigid_patch(domain, [&](std::size_t p, std::span<const std::uint32_t> rows) {
+  turns.resize(domain.rigid.size());
+  for_each_moving(domain, [&](const Body<D>&, std::size_t k) {
+    turns[k] = turn(domain.rigid[k], domain.time_step);
+  });
+  for_each_patch(domain, free_rigid, [&](std::size_t p) {
     Patch<D>& patch = domain.grid.patches[p];
-    Body<D>& body = domain.body_of(patch);
-    const auto b = static_cast<std::size_t>(patch.body);
+    ParticlePool<D>& pool = domain.pool_of(patch);
+    const std::size_t r = rigid_of(domain, patch);
     patch.left_cell = false;
-    for_each_cell(domain.grid, body, patch, [&](const CellRange<D>& cell) {
+    for_each_cell(domain.grid, pool, patch, [&](const CellRange<D>& cell) {
       for (std::uint32_t k = 0; k < cell.count; ++k) {
         const std::uint32_t row = cell.rows[k];
         const Vector3 x =
-            domain.rigid[b].centre + turns[b] * (position(body, row) - before[b].centre);
+            domain.rigid[r].centre + turns[r] * (position(pool, row) - before[r].centre);
         for (int a = 0; a < D; ++a) {
-          body.x(a)[row] = x[a];
+          pool.x(a)[row] = x[a];
           const double local = domain.grid.in_cells(x[a], a) - cell.cell[a];
           patch.left_cell = patch.left_cell || local < 0.0 || local >= 1.0;
         }
       }
     });
-    set_velocities(body, rows, domain.rigid[b], domain.sums[p]);
+    set_velocities(pool, patch, domain.rigid[r], domain.sums[p]);
   });
 }
 

@@ -20,6 +20,7 @@ void check_functions(const std::array<TimeFunction, 3>& functions, const std::st
 template <int D>
 int SimulationOf<D>::add_material(const MaterialChoice& choice) {
   domain_.materials.push_back(make_material(choice));
+  domain_.pools.push_back(make_pool(domain_.materials.back(), domain_.grid));
   return static_cast<int>(domain_.materials.size()) - 1;
 }
 
@@ -28,8 +29,9 @@ int SimulationOf<D>::add_body(const std::string& name, int material_number,
                               std::span<const double> positions, std::span<const double> velocities,
                               std::span<const double> volumes) {
   if (prepared_) throw std::invalid_argument("bodies must be added before prepare()");
-  const Material& material = domain_.materials.at(static_cast<std::size_t>(material_number));
-  Body<D> body = make_body(name, material, positions, velocities, volumes, domain_.grid);
+  const auto m = static_cast<std::size_t>(material_number);
+  Body<D> body =
+      make_body(name, domain_.materials.at(m), domain_.pools.at(m), positions, velocities, volumes);
   body.material = material_number;
   body.group = static_cast<int>(domain_.bodies.size());
   domain_.bodies.push_back(std::move(body));
@@ -41,13 +43,11 @@ void SimulationOf<D>::set_state(int number, const std::string& column,
                                 std::span<const double> values) {
   if (prepared_) throw std::invalid_argument("states must be set before prepare()");
   Body<D>& b = domain_.bodies.at(static_cast<std::size_t>(number));
-  const ColumnInfo& info = b.columns.info(column);
-  if (info.components != 1 || values.size() != b.count())
+  const ColumnInfo& info = pool(b).columns.info(column);
+  if (info.components != 1 || values.size() != b.count)
     throw std::invalid_argument(column + ": a state that is set must be (n,)");
   check_finite(values, column);
-  b.columns.with_component(info.first, [&]<class Number>(Number* to) {
-    std::ranges::transform(values, to, [](double v) { return static_cast<Number>(v); });
-  });
+  b.given->states.emplace_back(info.first, std::vector<double>(values.begin(), values.end()));
 }
 
 template <int D>
@@ -73,15 +73,17 @@ void SimulationOf<D>::set_motion(int number, const std::array<TimeFunction, 3>& 
 /// Give the particles of bodies with prescribed motion their velocities at the start.
 template <int D>
 void SimulationOf<D>::start_motions() {
-  for (Body<D>& b : domain_.bodies) {
-    if (!b.is_prescribed()) continue;
-    b.motion->radius = 0.0;
-    for (std::size_t i = 0; i < b.count(); ++i) {
-      Vec<double, D> x;
-      for (int a = 0; a < D; ++a) x[a] = b.x(a)[i];
-      b.motion->radius = std::max(b.motion->radius, norm(in_space<D>(x) - b.motion->now.centre));
-      const Vector3 v = b.motion->now.velocity_at(in_space<D>(x));
-      for (int a = 0; a < D; ++a) b.v(a)[i] = static_cast<Rounded>(v[a]);
+  for (const std::size_t b : domain_.prescribed) {
+    PrescribedMotion& motion = *domain_.bodies[b].motion;
+    motion.radius = 0.0;
+    for (const Patch<D>& patch : patches_of<D>(domain_.grid.patches, static_cast<int>(b))) {
+      ParticlePool<D>& pool = domain_.pool_of(patch);
+      for (const std::uint32_t row : pool.rows(patch)) {
+        const Vector3 x = in_space<D>(pool.position_of(row));
+        motion.radius = std::max(motion.radius, norm(x - motion.now.centre));
+        const Vector3 v = motion.now.velocity_at(x);
+        for (int a = 0; a < D; ++a) pool.v(a)[row] = static_cast<Rounded>(v[a]);
+      }
     }
   }
 }
@@ -89,10 +91,11 @@ void SimulationOf<D>::start_motions() {
 template <int D>
 double SimulationOf<D>::initial_internal_energy() const {
   double total = 0.0;
-  for (const Body<D>& b : domain_.bodies) {
-    if (b.at.energy < 0) continue;
-    for (std::size_t i = 0; i < b.count(); ++i)
-      total += b.columns.component(b.at.energy)[i] * b.volume()[i];
+  for (const Patch<D>& patch : domain_.grid.patches) {
+    const ParticlePool<D>& of = pool(body(patch.body));
+    if (of.at.energy < 0) continue;
+    for (const std::uint32_t row : of.rows(patch))
+      total += of.columns.component(of.at.energy)[row] * of.volume()[row];
   }
   return total;
 }
@@ -121,13 +124,18 @@ template <int D>
 void SimulationOf<D>::set_velocity(int number, std::span<const double> velocities) {
   Body<D>& b = domain_.bodies.at(static_cast<std::size_t>(number));
   if (b.is_prescribed()) throw std::invalid_argument("the motion of " + b.name + " is prescribed");
-  if (velocities.size() != b.count() * D) throw std::invalid_argument("velocities must be (n, D)");
+  if (velocities.size() != b.count * D) throw std::invalid_argument("velocities must be (n, D)");
   check_finite(velocities, "velocities");
-  const double before = prepared_ ? kinetic_energy() : 0.0;  // the lists are made by prepare()
-  for (std::size_t k = 0; k < b.count(); ++k)
+  if (!prepared_) {
+    b.given->velocities.assign(velocities.begin(), velocities.end());
+    return;
+  }
+  const double before = kinetic_energy();
+  ParticlePool<D>& pool = domain_.pools[static_cast<std::size_t>(b.material)];
+  for_each_row(domain_.grid.patches, pool, number, [&](std::uint32_t row) {
     for (std::size_t a = 0; a < D; ++a)
-      b.v(static_cast<int>(a))[k] = static_cast<Rounded>(velocities[b.id[k] * D + a]);
-  if (!prepared_) return;
+      pool.v(static_cast<int>(a))[row] = static_cast<Rounded>(velocities[pool.id[row] * D + a]);
+  });
   hold_rigid_bodies(domain_);
   domain_.ledger.external += kinetic_energy() - before;
   domain_.ledger.kinetic = kinetic_energy();

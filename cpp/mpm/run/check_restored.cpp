@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <utility>
 
 #include "mpm/ledger/history.hpp"
 #include "mpm/run/simulation_of.hpp"
@@ -31,16 +33,6 @@ bool finite(const RigidMotion& m) {
   return all;
 }
 
-/// Whether each number from 0 on is there once.
-bool counts_all(const std::vector<std::uint32_t>& numbers) {
-  std::vector<bool> seen(numbers.size());
-  for (const std::uint32_t n : numbers) {
-    if (n >= seen.size() || seen[n]) return false;
-    seen[n] = true;
-  }
-  return true;
-}
-
 /// The ranges of a patch's cells, and which of them hold particles.
 template <int D>
 void check_cells(const Patch<D>& patch) {
@@ -53,23 +45,21 @@ void check_cells(const Patch<D>& patch) {
   check(patch.occupied == occupied, "its lists are damaged");
 }
 
-/// Particles are in the cells of the lists, unless these are to be mended, and can be stepped.
+/// Particles are in the cells of the lists, unless these are to be updated, and can be stepped.
 template <int D>
-void check_particles(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch) {
+void check_particles(const TileGrid<D>& grid, const ParticlePool<D>& pool, const Patch<D>& patch) {
   const Index<D> first = grid.first_cell(patch.tile);
   patch.for_each_cell([&](int c, std::uint32_t begin, std::uint32_t end) {
     Index<D> cell = Tile<D>::cell_index(c);
     for (std::size_t a = 0; a < D; ++a) cell[a] += first[a];
     for (std::uint32_t k = begin; k < end; ++k) {
-      const std::uint32_t row = body.order[k];
-      Vec<double, D> x;
-      bool fine = body.mass()[row] > 0.0 && body.volume()[row] > 0.0 &&
-                  finite(body.mass()[row], body.volume()[row]);
-      for (int a = 0; a < D; ++a) {
-        x[a] = body.x(a)[row];
-        fine = fine && std::isfinite(double{body.v(a)[row]}) &&
+      const std::uint32_t row = pool.order[k];
+      const Vec<double, D> x = pool.position_of(row);
+      bool fine = pool.mass()[row] > 0.0 && pool.volume()[row] > 0.0 &&
+                  finite(pool.mass()[row], pool.volume()[row]);
+      for (int a = 0; a < D; ++a)
+        fine = fine && std::isfinite(double{pool.v(a)[row]}) &&
                std::abs(grid.in_cells(x[a], a)) < farthest;
-      }
       check(fine, "its particles are damaged");
       check(patch.left_cell || grid.cell_of(x) == cell, "its lists are damaged");
     }
@@ -77,6 +67,60 @@ void check_particles(const TileGrid<D>& grid, const Body<D>& body, const Patch<D
 }
 
 }  // namespace
+
+/// Each row of a pool, and each number of a body, is that of one particle, in a list or removed.
+template <int D>
+void SimulationOf<D>::check_rows() const {
+  std::vector<std::vector<bool>> rows, ids;
+  for (const ParticlePool<D>& pool : domain_.pools) rows.emplace_back(pool.count());
+  for (const Body<D>& body : domain_.bodies) ids.emplace_back(body.count);
+  const auto see = [&](std::uint32_t row, int number) {
+    const auto m = static_cast<std::size_t>(body(number).material);
+    check(row < rows[m].size() && !rows[m][row], "its lists are damaged");
+    rows[m][row] = true;
+    std::vector<bool>& seen = ids[static_cast<std::size_t>(number)];
+    const std::uint32_t id = domain_.pools[m].id[row];
+    check(id < seen.size() && !seen[id], "its lists are damaged");
+    seen[id] = true;
+  };
+  for (const Patch<D>& patch : domain_.grid.patches)
+    for (const std::uint32_t row : pool(body(patch.body)).rows(patch)) see(row, patch.body);
+  std::vector<std::size_t> removed(domain_.bodies.size(), 0);
+  for (std::size_t m = 0; m < rows.size(); ++m)
+    for (const RemovedRow& one : domain_.pools[m].removed) {
+      const auto b = static_cast<std::size_t>(one.body);
+      check(one.body >= 0 && b < removed.size() && std::cmp_equal(body(one.body).material, m),
+            "its lists are damaged");
+      ++removed[b];
+      see(one.row, one.body);
+    }
+  for (const std::vector<bool>& seen : rows)
+    check(std::ranges::all_of(seen, std::identity()), "its lists are damaged");
+  for (std::size_t b = 0; b < removed.size(); ++b)
+    check(removed[b] == domain_.bodies[b].removed, "its lists are damaged");
+}
+
+/// The ranges that patches own of their pools' lists: none of another's.
+template <int D>
+void SimulationOf<D>::check_ranges() const {
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> ranges(domain_.pools.size());
+  for (const Patch<D>& patch : domain_.grid.patches) {
+    check(patch.body >= 0 && patch.body < body_count() && patch.count <= patch.room,
+          "its lists are damaged");
+    const auto m = static_cast<std::size_t>(body(patch.body).material);
+    ranges[m].emplace_back(patch.begin, patch.begin + std::size_t{patch.room});
+  }
+  for (std::size_t m = 0; m < ranges.size(); ++m) {
+    std::size_t end = 0;
+    std::ranges::sort(ranges[m]);
+    for (const auto& [first, last] : ranges[m]) {
+      check(first >= end, "its lists are damaged");
+      end = last;
+    }
+    const ParticlePool<D>& pool = domain_.pools[m];
+    check(end <= pool.used && pool.used <= pool.order.size(), "its lists are damaged");
+  }
+}
 
 /// Bodies and patches: what numbers the particles and says where they are. Throws
 /// std::invalid_argument if no step can have left them so.
@@ -86,32 +130,40 @@ void SimulationOf<D>::check_lists() const {
   check(finite(grid.cell_size) && grid.cell_size > 0.0, "its grid is damaged");
   for (const std::int32_t cell : grid.anchor)
     check(std::abs(static_cast<double>(cell)) < farthest, "its grid is damaged");
-  for (const Body<D>& body : domain_.bodies) {
-    check(counts_all(body.id) && counts_all(body.order) && body.gone <= body.count(),
-          "its lists are damaged");
+  for (const Body<D>& body : domain_.bodies)
     if (body.is_prescribed())
       check(finite(body.motion->before) && finite(body.motion->now), "its motions are damaged");
-  }
-  std::vector<std::size_t> listed(domain_.bodies.size(), 0);
+  check_ranges();
+  check_rows();
   const Patch<D>* last = nullptr;
   for (const Patch<D>& patch : grid.patches) {
-    const auto b = static_cast<std::size_t>(patch.body);
-    check(patch.body >= 0 && b < listed.size(), "its lists are damaged");
-    const Body<D>& body = domain_.bodies[b];
     check(!last || patch_less<D>(last->body, last->tile, patch.body, patch.tile),
-          "its lists are damaged");
-    check(patch.begin == listed[b] && patch.count <= body.active() - listed[b],
           "its lists are damaged");
     for (const std::int32_t tile : patch.tile)
       check(std::abs(static_cast<double>(tile)) * Tile<D>::cells < farthest,
             "its lists are damaged");
-    listed[b] += patch.count;
     last = &patch;
     check_cells<D>(patch);
-    check_particles<D>(grid, body, patch);
+    check_particles<D>(grid, pool(body(patch.body)), patch);
   }
-  for (std::size_t b = 0; b < listed.size(); ++b)
-    check(listed[b] == domain_.bodies[b].active(), "its lists are damaged");
+  check_pieces();
+}
+
+/// The chains of pieces that particles carry: each piece once, by the particle that it is of.
+template <int D>
+void SimulationOf<D>::check_pieces() const {
+  const auto& pieces = domain_.pieces;
+  std::vector<bool> seen(pieces.size());
+  for (const ParticlePool<D>& pool : domain_.pools)
+    for (const std::uint32_t first : pool.piece)
+      for (std::uint32_t k = first; k != 0; k = pieces[k - 1].next) {
+        check(k <= seen.size() && !seen[k - 1], "its loads are damaged");
+        seen[k - 1] = true;
+      }
+  for (const SurfacePiece<D>& piece : pieces)
+    check(piece.load >= 0 && std::cmp_less(piece.load, domain_.loads.size()) &&
+              finite(piece.area) && finite(piece.size) && finite(piece.arm),
+          "its loads are damaged");
 }
 
 /// All else, when it has been restored. Throws std::invalid_argument likewise.
@@ -129,23 +181,19 @@ void SimulationOf<D>::check_rest(double cell_size, const Index<D>& walls) const 
             domain_.time >= 0.0 && finite(domain_.time_step) && next_time_step_ > 0.0 &&
             finite(domain_.gravity),
         "its time is damaged");
-  for (const Body<D>& body : domain_.bodies)
-    for (std::size_t k = 0; k < body.active(); ++k)
-      for (int a = 0; a < D; ++a) {
-        const double v = body.v(a)[body.order[k]];  // The next step is infinite where none moves.
-        check(v == 0.0 || std::abs(v) * next_time_step_ < farthest * grid.cell_size,
-              "its particles are damaged");
-      }
+  for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
+    for (int a = 0; a < D; ++a) {
+      const double v = of.v(a)[row];  // The next step is infinite where none moves.
+      check(v == 0.0 || std::abs(v) * next_time_step_ < farthest * grid.cell_size,
+            "its particles are damaged");
+    }
+  });
   check(domain_.sums.size() == grid.patches.size(), "its sums are damaged");
   for (const PatchSums<D>& s : domain_.sums) {
     StateStream::check_flag(s.stress.negative_volume);
     StateStream::check_flag(s.stress.eroded);
   }
   for (const RigidMotion& motion : domain_.rigid) check(finite(motion), "its motions are damaged");
-  for (const SurfaceLoad<D>& load : domain_.loads)
-    for (std::size_t k = 0; k < load.area.size(); ++k)
-      check(finite(load.area[k]) && finite(load.size[k]) && finite(load.arm[k]),
-            "its loads are damaged");
   const std::size_t columns = history_terms.size();
   check(history_.size() % columns == 0 && history_.size() <= (history_capacity + 1) * columns,
         "its history is damaged");
@@ -159,8 +207,14 @@ void SimulationOf<D>::check_rest(double cell_size, const Index<D>& walls) const 
           "its warnings are damaged");
 }
 
+template void SimulationOf<2>::check_rows() const;
+template void SimulationOf<3>::check_rows() const;
+template void SimulationOf<2>::check_ranges() const;
+template void SimulationOf<3>::check_ranges() const;
 template void SimulationOf<2>::check_lists() const;
 template void SimulationOf<3>::check_lists() const;
+template void SimulationOf<2>::check_pieces() const;
+template void SimulationOf<3>::check_pieces() const;
 template void SimulationOf<2>::check_rest(double, const Index<2>&) const;
 template void SimulationOf<3>::check_rest(double, const Index<3>&) const;
 

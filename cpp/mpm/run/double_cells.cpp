@@ -35,7 +35,7 @@ void SimulationOf<D>::double_cells() {
   grid.cell_size = settings_.grid.cell_size;
   for (int& cells : grid.walls.cells) cells /= 2;
   grid.release_nodes();
-  make_lists(grid, domain_.bodies, domain_.threads, domain_.list_scratch);
+  build_cell_lists(grid, domain_.bodies, domain_.pools, domain_.threads, domain_.list_scratch);
   for (Patch<D>& patch : grid.patches) patch.left_cell = true;  // what has just failed still leaves
   invalidate_pairs(domain_.contact);
   if (domain_.has_contact()) connect_tiles(domain_.contact, grid, domain_.bodies);

@@ -14,24 +14,25 @@ void SimulationOf<D>::find_failure() {
       std::isfinite(domain_.ledger.residual())) {
     if (domain_.ledger.growth() <= settings_.run.energy_growth_limit) return;
     const Limiter fastest = limiter();
-    const std::size_t row = row_of(body(fastest.body), fastest.particle);
+    const std::size_t row = row_of(fastest.body, fastest.particle);
     std::ostringstream text;
     text << "the numerical terms have made " << domain_.ledger.growth()
          << " of the largest energy brought in";
     failure_ = failure_at("energy growth", static_cast<std::size_t>(fastest.body), row, text.str());
     return;
   }
-  for (std::size_t b = 0; b < domain_.bodies.size(); ++b) {
-    const Body<D>& body = domain_.bodies[b];
-    for (std::size_t i = 0; i < body.count(); ++i) {
+  for (const Patch<D>& patch : domain_.grid.patches) {
+    const auto b = static_cast<std::size_t>(patch.body);
+    const ParticlePool<D>& of = domain_.pool_of(patch);
+    for (const std::uint32_t i : of.rows(patch)) {
       bool finite = true;
-      for (int c = 0; c < body.columns.component_count(); ++c)
-        finite = finite && std::isfinite(body.columns.value(c, i));
+      for (int c = 0; c < of.columns.component_count(); ++c)
+        finite = finite && std::isfinite(of.columns.value(c, i));
       if (!finite) {
         failure_ = failure_at("non-finite", b, i, "a value of the particle is not a finite number");
         return;
       }
-      if (!(body.volume()[i] > 0.0)) {
+      if (!(of.volume()[i] > 0.0)) {
         failure_ = failure_at("negative volume", b, i, "the particle has been turned inside out");
         return;
       }
@@ -47,14 +48,14 @@ Failure SimulationOf<D>::failure_at(const std::string& kind, std::size_t b, std:
   Failure f;
   f.kind = kind;
   f.body = static_cast<int>(b);
-  f.particle = body.id[row];
+  f.particle = pool(body).id[row];
   f.step = domain_.step;
   f.time = domain_.time;
-  for (int a = 0; a < D; ++a) f.position[static_cast<std::size_t>(a)] = body.x(a)[row];
+  for (int a = 0; a < D; ++a) f.position[static_cast<std::size_t>(a)] = pool(body).x(a)[row];
   std::ostringstream text;
   text << kind << " at step " << f.step << ", t = " << f.time << " s: " << what << " (body \""
        << body.name << "\", particle " << f.particle << ", at";
-  for (int a = 0; a < D; ++a) text << ' ' << body.x(a)[row];
+  for (int a = 0; a < D; ++a) text << ' ' << pool(body).x(a)[row];
   text << " m)";
   f.message = text.str();
   return f;

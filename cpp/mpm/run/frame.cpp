@@ -16,11 +16,13 @@ template <int D>
 void SimulationOf<D>::round_column(const std::string& name, std::span<const int> places,
                                    std::size_t width, std::span<float> to) const {
   std::size_t first = 0;  // of the body's particles
-  for (const Body<D>& b : domain_.bodies) {
-    const auto& infos = b.columns.infos();
+  for (std::size_t number = 0; number < domain_.bodies.size(); ++number) {
+    const Body<D>& b = domain_.bodies[number];
+    const ParticlePool<D>& of = pool(b);
+    const auto& infos = of.columns.infos();
     const auto info = std::find_if(infos.begin(), infos.end(),
                                    [&](const ColumnInfo& i) { return i.name == name; });
-    const std::size_t end = first + b.count();
+    const std::size_t end = first + b.count;
     if (to.size() < end * width) throw std::invalid_argument("round_column: wrong size");
     if (info != infos.end()) {
       if (places.size() != static_cast<std::size_t>(info->components) ||
@@ -29,9 +31,10 @@ void SimulationOf<D>::round_column(const std::string& name, std::span<const int>
       for (int c = 0; c < info->components; ++c) {
         const auto place = static_cast<std::size_t>(places[static_cast<std::size_t>(c)]);
         float* const begin = to.data() + first * width + place;
-        b.columns.with_component(info->first + c, [&](const auto* from) {
-          for (std::size_t k = 0; k < b.count(); ++k)
-            begin[b.id[k] * width] = static_cast<float>(from[k]);
+        of.columns.with_component(info->first + c, [&](const auto* from) {
+          for_each_row(domain_.grid.patches, of, static_cast<int>(number), [&](std::uint32_t row) {
+            begin[of.id[row] * width] = static_cast<float>(from[row]);
+          });
         });
       }
     }
@@ -45,15 +48,17 @@ void SimulationOf<D>::round_derived(const std::string& name, std::span<float> to
   if (field == derived_fields.end())
     throw std::invalid_argument("no derived field is named " + name);
   std::size_t first = 0;
-  for (const Body<D>& b : domain_.bodies) {
-    const std::size_t end = first + b.count();
+  for (std::size_t number = 0; number < domain_.bodies.size(); ++number) {
+    const Body<D>& b = domain_.bodies[number];
+    const ParticlePool<D>& of = pool(b);
+    const std::size_t end = first + b.count;
     if (to.size() < end) throw std::invalid_argument("round_derived: wrong size");
-    for (std::size_t k = 0; k < b.count(); ++k) {
-      ParticleState p{{}, b.mass()[k] / b.initial_density, D};
+    for_each_row(domain_.grid.patches, of, static_cast<int>(number), [&](std::uint32_t row) {
+      ParticleState p{{}, of.mass()[row] / b.initial_density, D};
       for (int c = 0; c < Sym<double, D>::size; ++c)
-        p.stress[D == 2 && c == 3 ? 5 : c] = b.stress(c)[k];
-      to[first + b.id[k]] = static_cast<float>(field->value(p));
-    }
+        p.stress[D == 2 && c == 3 ? 5 : c] = of.stress(c)[row];
+      to[first + of.id[row]] = static_cast<float>(field->value(p));
+    });
     first = end;
   }
 }

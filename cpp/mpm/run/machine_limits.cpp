@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "mpm/fields/aligned.hpp"
+#include "mpm/fields/memory_space.hpp"
 #include "mpm/math/batch.hpp"
 #include "mpm/parallel/threads.hpp"
 

@@ -8,28 +8,28 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 3;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 4;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
-  stream.same(body.count(), other_case);
-  stream.same(body.columns.component_count(), other_case);
-  for (int c = 0; c < body.columns.component_count(); ++c)
-    body.columns.with_component(
-        c, [&](auto* values) { stream.array(std::span(values, body.count())); });
-  stream.array(std::span(body.id));
-  stream.array(std::span(body.order));
-  stream(body.moved, body.leaves, body.gone);
+  stream.same(body.count, other_case);
+  stream(body.moved, body.leaves, body.removed);
   if (body.is_prescribed()) stream(body.motion->before, body.motion->now);
 }
 
 template <int D>
-void exchange_load(StateStream& stream, SurfaceLoad<D>& load) {
-  stream.same(load.area.size(), other_case);
-  stream.array(std::span(load.area));
-  stream.array(std::span(load.size));
-  stream.array(std::span(load.arm));
-  stream(load.stress, load.force, load.impulse);
+void exchange_pool(StateStream& stream, ParticlePool<D>& pool) {
+  stream.same(pool.count(), other_case);
+  stream.same(pool.columns.component_count(), other_case);
+  for (int c = 0; c < pool.columns.component_count(); ++c)
+    pool.columns.with_component(
+        c, [&](auto* values) { stream.array(std::span(values, pool.count())); });
+  stream.array(std::span(pool.id));
+  stream.same(pool.piece.size(), other_case);
+  stream.array(std::span(pool.piece));
+  stream.vector(pool.order);
+  stream(pool.used);
+  stream.vector(pool.removed);
 }
 
 }  // namespace
@@ -38,15 +38,19 @@ template <int D>
 void SimulationOf<D>::exchange(StateStream& stream) {
   stream.same(format, other_version);
   for (const std::size_t size :
-       {sizeof(Rounded), sizeof(Ledger), sizeof(PatchSums<D>), sizeof(Gone<D>), sizeof(RigidMotion),
-        sizeof(StepWatch), sizeof(Note), sizeof(PairRecord), sizeof(CachedNode),
-        sizeof(CachedPair<D>)})
+       {sizeof(Rounded), sizeof(Ledger), sizeof(PatchSums<D>), sizeof(Removed<D>),
+        sizeof(RigidMotion), sizeof(SurfacePiece<D>), sizeof(StepWatch), sizeof(Note),
+        sizeof(PairRecord), sizeof(CachedNode), sizeof(CachedPair<D>)})
     stream.same(size, other_version);
   stream.same(D, other_case);
   stream.same(domain_.bodies.size(), other_case);
   stream.same(domain_.loads.size(), other_case);
+  stream.same(domain_.pools.size(), other_case);
+  stream.same(domain_.pieces.size(), other_case);
   for (Body<D>& body : domain_.bodies) exchange_body(stream, body);
-  for (SurfaceLoad<D>& load : domain_.loads) exchange_load(stream, load);
+  for (ParticlePool<D>& pool : domain_.pools) exchange_pool(stream, pool);
+  for (SurfaceLoad<D>& load : domain_.loads) stream(load.stress, load.force, load.impulse);
+  stream.array(std::span(domain_.pieces));
   domain_.grid.exchange(stream);
   if (stream.restores()) {
     check_lists();
@@ -57,7 +61,7 @@ void SimulationOf<D>::exchange(StateStream& stream) {
   }
   if (domain_.has_contact()) exchange_contact(domain_.contact, stream, domain_.bodies.size());
   stream(domain_.time, domain_.time_step, domain_.step, domain_.gravity);
-  stream(domain_.eroded, domain_.left);
+  stream(domain_.eroded, domain_.outflow);
   stream.vector(domain_.sums);
   stream.same(domain_.rigid.size(), other_case);
   stream.array(std::span(domain_.rigid));

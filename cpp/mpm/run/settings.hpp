@@ -8,7 +8,7 @@
 #include "mpm/catalogue/setting.hpp"
 #include "mpm/contact/settings.hpp"
 #include "mpm/math/time_function.hpp"
-#include "mpm/particles/lists.hpp"
+#include "mpm/particles/cell_lists.hpp"
 #include "mpm/step/scheme.hpp"
 
 namespace mpm {

@@ -6,6 +6,7 @@
 
 #include "mpm/contact/candidates.hpp"
 #include "mpm/ledger/history.hpp"
+#include "mpm/particles/make_body.hpp"
 #include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
@@ -70,7 +71,10 @@ template <int D>
 void SimulationOf<D>::prepare() {
   check(!prepared_, "prepare() has been called already");
   check(!domain_.bodies.empty(), "there is no body");
-  make_lists(domain_.grid, domain_.bodies, domain_.threads, domain_.list_scratch);
+  fill_pools(domain_.pools, domain_.materials, domain_.bodies, domain_.grid.patches);
+  place_pieces();
+  build_cell_lists(domain_.grid, domain_.bodies, domain_.pools, domain_.threads,
+                   domain_.list_scratch);
   if (domain_.has_contact()) connect_tiles(domain_.contact, domain_.grid, domain_.bodies);
   domain_.sums.resize(domain_.grid.patches.size());
   const auto& bodies = domain_.bodies;
@@ -79,12 +83,9 @@ void SimulationOf<D>::prepare() {
         "all bodies are rigid, so no wave limits the time step: one must deform");
   check(!settings_.contact.bonded || std::none_of(bodies.begin(), bodies.end(), is_rigid),
         "bodies are bonded, so none can be rigid");
+  list_kinds(domain_);
   start_motions();
-  if (std::any_of(bodies.begin(), bodies.end(),
-                  [](const Body<D>& b) { return b.is_free_rigid(); })) {
-    domain_.rigid.resize(bodies.size());
-    hold_rigid_bodies(domain_);
-  }
+  hold_rigid_bodies(domain_);
   probe_speeds();
   const double fastest =
       settings_.run.time_step_factor * settings_.grid.cell_size / next_time_step_;
@@ -93,8 +94,9 @@ void SimulationOf<D>::prepare() {
   domain_.ledger.internal = initial_internal_energy();
   domain_.ledger.start = domain_.ledger.kinetic + domain_.ledger.internal;
   domain_.ledger.momentum = momentum();
-  for (const Body<D>& b : bodies)
-    if (b.is_prescribed()) domain_.ledger.add_prescribed(b);
+  for (const Patch<D>& patch : domain_.grid.patches)
+    if (body(patch.body).is_prescribed())
+      domain_.ledger.add_prescribed(domain_.pool_of(patch), patch);
   sights_.resize(bodies.size());
   notes_.reserve(2 * note_names.size());
   domain_.time_step = 0.0;
@@ -126,8 +128,8 @@ void SimulationOf<D>::make_step(double time_after) {
   for (std::size_t a = 0; a < D; ++a)
     domain_.gravity[static_cast<int>(a)] =
         domain_.gravity_of_time[a].mean(domain_.time, time_after);
-  for (Body<D>& b : domain_.bodies)
-    if (b.is_prescribed()) b.motion->begin_step(domain_.time, time_after);
+  for (const std::size_t b : domain_.prescribed)
+    domain_.bodies[b].motion->begin_step(domain_.time, time_after);
   domain_.time_after = time_after;
   for (std::size_t k = 0; k < stages_.size(); ++k)
     timers_.time(k, [&] { stages_[k].run(domain_); });
@@ -150,11 +152,12 @@ void SimulationOf<D>::choose_time_step() {
   const double way = settings_.run.time_step_factor * settings_.grid.cell_size;
   next_time_step_ = way / fastest;
   // Prescribed motions may have jumps.
-  for (const Body<D>& b : domain_.bodies)
-    if (b.is_prescribed() && b.motion->moves) {
-      const double speed = b.motion->speed(domain_.time, domain_.time + next_time_step_);
-      next_time_step_ = std::min(next_time_step_, way / speed);
-    }
+  for (const std::size_t b : domain_.prescribed) {
+    const PrescribedMotion& motion = *domain_.bodies[b].motion;
+    if (!motion.moves) continue;
+    const double speed = motion.speed(domain_.time, domain_.time + next_time_step_);
+    next_time_step_ = std::min(next_time_step_, way / speed);
+  }
 }
 
 template <int D>

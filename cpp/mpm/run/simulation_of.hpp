@@ -33,10 +33,10 @@ class SimulationOf final : public Simulation {
   double next_time_step() const override { return next_time_step_; }
   std::int64_t step() const override { return domain_.step; }
   int body_count() const override { return static_cast<int>(domain_.bodies.size()); }
-  std::size_t particle_count(int body) const override { return this->body(body).count(); }
+  std::size_t particle_count(int body) const override { return this->body(body).count; }
   double total_mass() const override;
   GoneSum eroded() const override { return {domain_.eroded.mass, domain_.eroded.count}; }
-  GoneSum left() const override { return {domain_.left.mass, domain_.left.count}; }
+  GoneSum left() const override { return {domain_.outflow.mass, domain_.outflow.count}; }
   std::vector<LoadRecord> loads() const override;
   const std::optional<Failure>& failure() const override { return failure_; }
   Limiter limiter() const override;
@@ -49,7 +49,7 @@ class SimulationOf final : public Simulation {
   void set_threads(int count) override { domain_.threads.resize(count); }
 
   const std::vector<ColumnInfo>& columns(int body) const override {
-    return this->body(body).columns.infos();
+    return pool(this->body(body)).columns.infos();
   }
   int column_components(int body, const std::string& name) const override;
   void copy_column(int body, const std::string& name, std::span<double> to) const override;
@@ -71,6 +71,10 @@ class SimulationOf final : public Simulation {
 
  private:
   const Body<D>& body(int b) const { return domain_.bodies.at(static_cast<std::size_t>(b)); }
+  const ParticlePool<D>& pool(const Body<D>& b) const {
+    return domain_.pools[static_cast<std::size_t>(b.material)];
+  }
+  void place_pieces();
   double kinetic_energy() const;
   std::array<double, 3> momentum() const;
   void start_motions();
@@ -86,7 +90,18 @@ class SimulationOf final : public Simulation {
   void double_cells();
   void write_history_row();
   void exchange(StateStream& stream);
+  /// f(pool, row) for the particles that take part, in the order of the lists.
+  template <class F>
+  void for_each_particle(F&& f) const {
+    for (const Patch<D>& patch : domain_.grid.patches) {
+      const ParticlePool<D>& of = pool(body(patch.body));
+      for (const std::uint32_t row : of.rows(patch)) f(of, row);
+    }
+  }
   void check_lists() const;
+  void check_ranges() const;
+  void check_rows() const;
+  void check_pieces() const;
   void check_rest(double cell_size, const Index<D>& walls) const;
   void find_failure();
   void watch_step();
@@ -96,7 +111,7 @@ class SimulationOf final : public Simulation {
   void note(Note found);
   std::string group_name(int first) const;
   void note_at(Note found, int b, std::size_t row);
-  std::size_t row_of(const Body<D>& b, std::int64_t particle) const;
+  std::size_t row_of(int b, std::int64_t particle) const;
   Failure failure_at(const std::string& kind, std::size_t body, std::size_t row,
                      const std::string& what) const;
 

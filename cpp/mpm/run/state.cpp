@@ -10,9 +10,9 @@ namespace mpm {
 namespace {
 
 template <int D>
-double speed_of(const Body<D>& body, std::size_t row) {
+double speed_of(const ParticlePool<D>& pool, std::size_t row) {
   double squared = 0.0;
-  for (int a = 0; a < D; ++a) squared += body.v(a)[row] * body.v(a)[row];
+  for (int a = 0; a < D; ++a) squared += pool.v(a)[row] * pool.v(a)[row];
   return std::sqrt(squared);
 }
 
@@ -23,7 +23,7 @@ template <int D>
 double SimulationOf<D>::wave_speed(const Body<D>& b, std::size_t row) const {
   if (!b.deforms()) return 0.0;
   const Material& material = domain_.materials[static_cast<std::size_t>(b.material)];
-  return sound_speed<D>(material, b.columns, b.at, row, domain_.grid.cell_size);
+  return sound_speed<D>(material, pool(b).columns, pool(b).at, row, domain_.grid.cell_size);
 }
 
 template <int D>
@@ -33,10 +33,9 @@ void SimulationOf<D>::probe_speeds() {
   for (std::size_t p = 0; p < domain_.grid.patches.size(); ++p) {
     const Patch<D>& patch = domain_.grid.patches[p];
     const Body<D>& b = domain_.body_of(patch);
-    for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
-      const std::size_t i = b.order[k];
+    for (const std::uint32_t row : pool(b).rows(patch)) {
       double& fastest = domain_.sums[p].stress.fastest;
-      fastest = std::max(fastest, wave_speed(b, i) + speed_of(b, i));
+      fastest = std::max(fastest, wave_speed(b, row) + speed_of(pool(b), row));
     }
   }
   choose_time_step();
@@ -78,30 +77,27 @@ std::vector<PairRecord> SimulationOf<D>::group_pairs() const {
 template <int D>
 double SimulationOf<D>::total_mass() const {
   double total = 0.0;
-  for (const Body<D>& b : domain_.bodies)
-    for (std::size_t i = 0; i < b.count(); ++i) total += b.mass()[i];
+  for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) { total += of.mass()[row]; });
+  for (const ParticlePool<D>& of : domain_.pools)
+    for (const RemovedRow& removed : of.removed) total += of.mass()[removed.row];
   return total;
 }
 
 template <int D>
 double SimulationOf<D>::kinetic_energy() const {
   double total = 0.0;
-  for (const Body<D>& b : domain_.bodies)
-    for (std::size_t k = 0; k < b.active(); ++k) {
-      const std::size_t i = b.order[k];
-      for (int a = 0; a < D; ++a) total += 0.5 * b.mass()[i] * b.v(a)[i] * b.v(a)[i];
-    }
+  for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
+    for (int a = 0; a < D; ++a) total += 0.5 * of.mass()[row] * of.v(a)[row] * of.v(a)[row];
+  });
   return total;
 }
 
 template <int D>
 std::array<double, 3> SimulationOf<D>::momentum() const {
   std::array<double, 3> total{};
-  for (const Body<D>& b : domain_.bodies)
-    for (std::size_t k = 0; k < b.active(); ++k) {
-      const std::size_t i = b.order[k];
-      for (std::size_t a = 0; a < D; ++a) total[a] += b.mass()[i] * b.v(static_cast<int>(a))[i];
-    }
+  for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
+    for (std::size_t a = 0; a < D; ++a) total[a] += of.mass()[row] * of.v(static_cast<int>(a))[row];
+  });
   return total;
 }
 
@@ -114,11 +110,10 @@ Limiter SimulationOf<D>::limiter() const {
     if (domain_.sums[p].stress.fastest > domain_.sums[fastest].stress.fastest) fastest = p;
   const Patch<D>& patch = domain_.grid.patches[fastest];
   const Body<D>& b = body(patch.body);
-  for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
-    const std::size_t i = b.order[k];
-    const double c = wave_speed(b, i), v = speed_of(b, i);
+  for (const std::uint32_t row : pool(b).rows(patch)) {
+    const double c = wave_speed(b, row), v = speed_of(pool(b), row);
     if (c + v > result.sound_speed + result.speed || result.body < 0)
-      result = {patch.body, static_cast<std::int64_t>(b.id[i]), c, v};
+      result = {patch.body, static_cast<std::int64_t>(pool(b).id[row]), c, v};
   }
   return result;
 }
@@ -126,7 +121,7 @@ Limiter SimulationOf<D>::limiter() const {
 template <int D>
 Bytes SimulationOf<D>::bytes() const {
   Bytes r;
-  for (const Body<D>& b : domain_.bodies) r.particles += b.bytes();
+  for (const ParticlePool<D>& of : domain_.pools) r.particles += of.bytes();
   r.particles += domain_.list_scratch.bytes();
   r.grid = domain_.grid.node_bytes();
   if (domain_.has_contact()) r.contact = bytes_of(domain_.contact);
@@ -136,21 +131,23 @@ Bytes SimulationOf<D>::bytes() const {
 
 template <int D>
 int SimulationOf<D>::column_components(int b, const std::string& name) const {
-  return name == "stress" ? 6 : body(b).columns.info(name).components;
+  return name == "stress" ? 6 : pool(body(b)).columns.info(name).components;
 }
 
 template <int D>
 void SimulationOf<D>::copy_column(int number, const std::string& name, std::span<double> to) const {
   const Body<D>& b = body(number);
-  const ColumnInfo& info = b.columns.info(name);
+  const ParticlePool<D>& of = pool(b);
+  const ColumnInfo& info = of.columns.info(name);
   const auto width = static_cast<std::size_t>(column_components(number, name));
-  if (to.size() != b.count() * width) throw std::invalid_argument("copy_column: wrong size");
+  if (to.size() != b.count * width) throw std::invalid_argument("copy_column: wrong size");
   std::fill(to.begin(), to.end(), 0.0);
   for (int c = 0; c < info.components; ++c) {
     // Plane strain keeps xx yy zz xy; the fourth becomes the sixth of xx yy zz yz xz xy.
     const auto place = static_cast<std::size_t>(name == "stress" && D == 2 && c == 3 ? 5 : c);
-    b.columns.with_component(info.first + c, [&](const auto* from) {
-      for (std::size_t k = 0; k < b.count(); ++k) to[b.id[k] * width + place] = from[k];
+    of.columns.with_component(info.first + c, [&](const auto* from) {
+      for_each_row(domain_.grid.patches, of, number,
+                   [&](std::uint32_t row) { to[of.id[row] * width + place] = from[row]; });
     });
   }
 }

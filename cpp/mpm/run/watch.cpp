@@ -40,8 +40,8 @@ template <int D>
 void SimulationOf<D>::note_at(Note found, int b, std::size_t row) {
   const Body<D>& at = body(b);
   found.body = b;
-  found.particle = at.id[row];
-  for (int a = 0; a < D; ++a) found.position[number(a)] = at.x(a)[row];
+  found.particle = pool(at).id[row];
+  for (int a = 0; a < D; ++a) found.position[number(a)] = pool(at).x(a)[row];
   note(found);
 }
 
@@ -73,8 +73,7 @@ void SimulationOf<D>::watch_step() {
   if (median == 0.0 && made == 0.0 && work == 0.0) return;
   const Limiter fastest = limiter();  // an unstable particle is the fastest, or soon will be
   if (fastest.body < 0) return;
-  const Body<D>& b = body(fastest.body);
-  const std::size_t row = row_of(b, fastest.particle);
+  const std::size_t row = row_of(fastest.body, fastest.particle);
   if (median > 0.0)
     note_at({.kind = NoteKind::time_step, .value = next_time_step_, .against = median},
             fastest.body, row);
@@ -88,10 +87,13 @@ void SimulationOf<D>::watch_step() {
 }
 
 template <int D>
-std::size_t SimulationOf<D>::row_of(const Body<D>& b, std::int64_t particle) const {
-  std::size_t row = 0;
-  while (static_cast<std::int64_t>(b.id[row]) != particle) ++row;
-  return row;
+std::size_t SimulationOf<D>::row_of(int b, std::int64_t particle) const {
+  const ParticlePool<D>& of = pool(body(b));
+  std::size_t found = 0;
+  for_each_row(domain_.grid.patches, of, b, [&](std::uint32_t row) {
+    if (static_cast<std::int64_t>(of.id[row]) == particle) found = row;
+  });
+  return found;
 }
 
 /// The body, and that it stands for all of its entry.
@@ -115,25 +117,26 @@ void SimulationOf<D>::look() {
   }
   std::vector<Sight>& seen = sights_;
   seen.assign(domain_.bodies.size(), {});
-  for (std::size_t number_of = 0; number_of < domain_.bodies.size(); ++number_of) {
+  for (const Patch<D>& patch : grid.patches) {
+    const std::size_t number_of = number(patch.body);
     const Body<D>& b = domain_.bodies[number_of];
+    const ParticlePool<D>& of = pool(b);
     Sight& sight = seen[number(b.group)];
-    sight.particles += b.active();
-    const bool solid = b.deforms() && !domain_.materials[number(b.material)].is_gas();
-    const double* failed = b.at.failed >= 0 ? b.columns.component(b.at.failed) : nullptr;
+    sight.particles += patch.count;
+    const bool solid = b.deforms() && !domain_.material_of(patch).is_gas();
+    const double* failed = of.at.failed >= 0 ? of.columns.component(of.at.failed) : nullptr;
     const bool placed = grid.walls.exist && !b.is_prescribed();
     if (!solid && !placed) continue;
-    for (std::size_t k = 0; k < b.active(); ++k) {
-      const std::size_t i = b.order[k];
+    for (const std::uint32_t i : of.rows(patch)) {
       if (solid && !(failed && failed[i] > 0.0)) {
-        const double J = b.volume()[i] * b.initial_density / b.mass()[i];
+        const double J = of.volume()[i] * b.initial_density / of.mass()[i];
         if (J < small_volume || J > large_volume)
           sight.odd.add(number_of, i, std::abs(std::log(J)), J);
       }
       if (!placed) continue;
       bool outside = false;
       for (int a = 0; a < D; ++a) {
-        const double x = b.x(a)[i];
+        const double x = of.x(a)[i];
         const double depth = std::max(lower[a] - x, x - upper[a]);
         if (!(depth > 0.0)) continue;
         const int side = x > upper[a] ? 1 : 0;

@@ -5,7 +5,7 @@
 
 #include "mpm/fields/lanes.hpp"
 #include "mpm/grid/tile_grid.hpp"
-#include "mpm/particles/body.hpp"
+#include "mpm/particles/pool.hpp"
 
 namespace mpm {
 
@@ -20,11 +20,12 @@ struct CellRange {
 
 /// f(CellRange) for every occupied cell of a patch.
 template <int D, class F>
-void for_each_cell(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch, F&& f) {
+void for_each_cell(const TileGrid<D>& grid, const ParticlePool<D>& pool, const Patch<D>& patch,
+                   F&& f) {
   const Index<D> first = grid.first_cell(patch.tile);
   patch.for_each_cell([&](int c, std::uint32_t begin, std::uint32_t end) {
     const Index<D> local = Tile<D>::cell_index(c);
-    CellRange<D> range{first, patch.shape.node(local), body.order.data() + begin, end - begin};
+    CellRange<D> range{first, patch.shape.node(local), pool.order.data() + begin, end - begin};
     for (std::size_t a = 0; a < D; ++a) range.cell[a] += local[a];
     f(range);
   });
@@ -41,8 +42,8 @@ template <int lanes, int D, class F>
 template <int D>
 class LocalPosition {
  public:
-  LocalPosition(const TileGrid<D>& grid, const Body<D>& body) : cells_(grid.coordinates()) {
-    for (int a = 0; a < D; ++a) x_[a] = body.x(a);
+  LocalPosition(const TileGrid<D>& grid, const ParticlePool<D>& pool) : cells_(grid.coordinates()) {
+    for (int a = 0; a < D; ++a) x_[a] = pool.x(a);
   }
   template <class Rows>
   auto operator()(const CellRange<D>& cell, const Rows& rows) const {

@@ -83,17 +83,17 @@ class DoubleBuffer {
   Nodes<width> patch_;
 };
 
-/// Takes what particles give out of the columns of a body.
+/// Takes what particles give out of the columns of a pool.
 template <unsigned what, int D>
 class ParticleReader {
  public:
-  ParticleReader(const TileGrid<D>& grid, const Body<D>& body)
-      : local_position_(grid, body), minus_per_cell_size_(-1.0 / grid.cell_size) {
-    mass_ = body.mass();
-    volume_ = body.volume();
-    if (const int q = body.at.viscosity_pressure; q >= 0) q_ = body.columns.component(q);
-    for (int a = 0; a < D; ++a) velocity_[a] = body.v(a);
-    for (int c = 0; c < Sym<double, D>::size; ++c) stress_[c] = body.stress(c);
+  ParticleReader(const TileGrid<D>& grid, const ParticlePool<D>& pool)
+      : local_position_(grid, pool), minus_per_cell_size_(-1.0 / grid.cell_size) {
+    mass_ = pool.mass();
+    volume_ = pool.volume();
+    if (const int q = pool.at.viscosity_pressure; q >= 0) q_ = pool.columns.component(q);
+    for (int a = 0; a < D; ++a) velocity_[a] = pool.v(a);
+    for (int c = 0; c < Sym<double, D>::size; ++c) stress_[c] = pool.stress(c);
   }
 
   template <BasisModel B, class Rows>
@@ -128,11 +128,11 @@ class ParticleReader {
 /// Scatter from all particles of a patch to its nodes (CellBuffer::give).
 template <class Mapping, unsigned what, int lanes, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void scatter_by(const B& basis, const TileGrid<D>& grid,
-                                                const Body<D>& body, const Patch<D>& patch,
+                                                const ParticlePool<D>& pool, const Patch<D>& patch,
                                                 const NodeRecords& nodes) {
-  const ParticleReader<what, D> reader(grid, body);
+  const ParticleReader<what, D> reader(grid, pool);
   DoubleBuffer<Mapping, what, D, B, record> cells(NodeStrides<D>(patch.shape), nodes);
-  for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+  for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     cells.begin(cell);
     for_each_group<lanes>(cell,
                           [&](const auto& rows) { reader.add(cells.next(), cell, rows, basis); });
@@ -142,10 +142,10 @@ template <class Mapping, unsigned what, int lanes, int D, BasisModel B>
 }
 
 template <class Mapping, unsigned what, int D>
-void scatter(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
-             const NodeRecords& nodes) {
+void scatter(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
+             const Patch<D>& patch, const NodeRecords& nodes) {
   with_basis_and_lanes(grid, body, patch, [&](const auto& basis, auto lanes) {
-    scatter_by<Mapping, what, lanes>(basis, grid, body, patch, nodes);
+    scatter_by<Mapping, what, lanes>(basis, grid, pool, patch, nodes);
   });
 }
 

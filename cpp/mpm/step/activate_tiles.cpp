@@ -10,11 +10,10 @@ namespace {
 template <int D>
 void mark_leaving(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
-  for (std::size_t b = 0; b < domain.bodies.size(); ++b) {
-    if (!domain.bodies[b].is_free_rigid()) continue;
+  for (std::size_t k = 0; k < domain.rigid.size(); ++k) {
     Vec<double, D> centre;
-    for (int a = 0; a < D; ++a) centre[a] = domain.rigid[b].centre[a];
-    domain.bodies[b].leaves = !grid.keep.holds(centre);
+    for (int a = 0; a < D; ++a) centre[a] = domain.rigid[k].centre[a];
+    domain.bodies[domain.rigid_bodies[k]].leaves = !grid.keep.holds(centre);
   }
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
@@ -25,16 +24,15 @@ void mark_leaving(Domain<D>& domain) {
       return;
     }
     const Index<D> first = grid.first_cell(patch.tile);
-    Vec<double, D> lower, upper, x;
+    Vec<double, D> lower, upper;
     for (int a = 0; a < D; ++a) {
       lower[a] = grid.coordinates().origin[a] + first[a] * grid.cell_size;
       upper[a] = lower[a] + Tile<D>::cells * grid.cell_size;
     }
     if (grid.keep.holds(lower, upper)) return;
-    for (std::uint32_t k = patch.begin; k < patch.begin + patch.count; ++k) {
-      for (int a = 0; a < D; ++a) x[a] = body.x(a)[body.order[k]];
-      if (!grid.keep.holds(x)) patch.left_cell = true;
-    }
+    const ParticlePool<D>& pool = domain.pool_of(patch);
+    for (const std::uint32_t row : pool.rows(patch))
+      if (!grid.keep.holds(pool.position_of(row))) patch.left_cell = true;
   });
 }
 
@@ -56,9 +54,10 @@ void activate_tiles(Domain<D>& domain) {
   for (std::size_t p = 0; p < domain.sums.size(); ++p)
     if (domain.sums[p].stress.eroded) domain.grid.patches[p].left_cell = true;
   if (domain.grid.keep.exist) mark_leaving(domain);
-  const bool changed = mend_lists(domain.grid, domain.bodies, domain.threads, domain.list_scratch,
-                                  domain.eroded, domain.left);
-  sort_disordered(domain.grid, domain.bodies, domain.threads, domain.disorder, domain.list_scratch);
+  const bool changed = update_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads,
+                                         domain.list_scratch, domain.eroded, domain.outflow);
+  sort_disordered(domain.grid, domain.bodies, domain.pools, domain.threads, domain.disorder,
+                  domain.list_scratch);
   domain.sums.assign(domain.grid.patches.size(), {});
   if (changed && domain.has_contact()) connect_tiles(domain.contact, domain.grid, domain.bodies);
   balance(domain);

@@ -43,14 +43,14 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   using T = Batch<W>;
   auto& grid = domain.grid;
   Patch<D>& patch = grid.patches[p];
-  Body<D>& body = domain.body_of(patch);
+  ParticlePool<D>& pool = domain.pool_of(patch);
   const NodeBlock<D> block = grid.block(p);
   LaneSums<T, D> sums;
-  const LocalPosition<D> local_position(grid, body);
-  Moving<D> moving(grid, body, domain.time_step);
-  const double* mass = body.mass();
+  const LocalPosition<D> local_position(grid, pool);
+  Moving<D> moving(grid, pool, domain.time_step);
+  const double* mass = pool.mass();
   Rounded* velocities[D];
-  for (int a = 0; a < D; ++a) velocities[a] = body.v(a);
+  for (int a = 0; a < D; ++a) velocities[a] = pool.v(a);
   // The increments are still read where the new momenta are scattered.
   alignas(
       cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * half_record : 1];
@@ -59,7 +59,7 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   DoubleBuffer<Mapping<typename Transfer::Gives>, gives_momentum, D, B, half_record> cells(
       stride, {remapped});
 
-  for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+  for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
     if constexpr (also == Also::remap) cells.begin(cell);
     for_each_group<W>(cell, [&](const auto& rows) {

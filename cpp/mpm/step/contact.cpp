@@ -23,8 +23,8 @@ void reflect(Domain<D>& domain, int at) {
 template <int D>
 void contact_momentum(Domain<D>& domain) {
   if (!domain.has_contact()) return;
-  find_nodes(domain.contact, domain.grid, domain.bodies, domain.contact_settings, domain.time_step,
-             domain.threads);
+  find_nodes(domain.contact, domain.grid, domain.bodies, domain.pools, domain.contact_settings,
+             domain.time_step, domain.threads);
   remove_approach(domain.contact, domain.grid, domain.threads);
   reflect(domain, velocity_at);
 }

@@ -32,9 +32,9 @@ void map_patch(Domain<D>& domain, std::size_t p) {
   with_transfer(domain, [&]<class Transfer>(const Transfer&) {
     using Gives = Mapping<typename Transfer::Gives>;
     if (body.deforms())
-      scatter<Gives, what>(grid, body, patch, block.records);
+      scatter<Gives, what>(grid, body, domain.pool_of(patch), patch, block.records);
     else if constexpr (momentum)  // It has no stress.
-      scatter<Gives, what & ~gives_forces>(grid, body, patch, block.records);
+      scatter<Gives, what & ~gives_forces>(grid, body, domain.pool_of(patch), patch, block.records);
   });
   for_each_weight([](double weight, double& force) { force += weight; });
   if (momentum && !body.is_prescribed()) subtract_ghost_weight(domain, patch, block);

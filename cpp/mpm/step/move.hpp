@@ -9,9 +9,9 @@ namespace mpm {
 template <int D>
 class Moving {
  public:
-  Moving(const TileGrid<D>& grid, Body<D>& body, double time_step)
+  Moving(const TileGrid<D>& grid, ParticlePool<D>& pool, double time_step)
       : cells_(grid.coordinates()), time_step_(time_step) {
-    for (int a = 0; a < D; ++a) x_[a] = body.x(a);
+    for (int a = 0; a < D; ++a) x_[a] = pool.x(a);
   }
 
   /// `nodes` are the nodal fields of the cell, `w` what they want to know of the positions before.

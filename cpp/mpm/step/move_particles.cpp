@@ -9,13 +9,14 @@ void move_particles(Domain<D>& domain) {
   auto& grid = domain.grid;
   for_each_patch(domain, deformable, [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
-    Body<D>& body = domain.body_of(patch);
+    const Body<D>& body = domain.body_of(patch);
+    ParticlePool<D>& pool = domain.pool_of(patch);
     const NodeBlock<D> block = grid.block(p);
-    const LocalPosition<D> local_position(grid, body);
-    Moving<D> moving(grid, body, domain.time_step);
+    const LocalPosition<D> local_position(grid, pool);
+    Moving<D> moving(grid, pool, domain.time_step);
     with_basis_and_lanes(grid, body, patch, [&]<BasisModel B>(const B& basis, auto lanes) {
       const NodeStrides<D> stride(patch.shape);
-      for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+      for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
         const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
         for_each_group<lanes>(cell, [&](const auto& rows) {
           moving.move(cell, rows, nodes, weights_at(basis, local_position(cell, rows)));

@@ -14,12 +14,12 @@ struct NodesAround {
   Index<D> lower;   // the node at the lower corner
   int first;        // its number in the patch's block
 
-  NodesAround(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
+  NodesAround(const TileGrid<D>& grid, const ParticlePool<D>& pool, const Patch<D>& patch,
               const CellRange<D>& cell, std::uint32_t row) {
     Index<D> from_cell;
     for (int a = 0; a < D; ++a) {
       const auto k = static_cast<std::size_t>(a);
-      place[a] = grid.among_nodes(body.x(a)[row], a);
+      place[a] = grid.among_nodes(pool.x(a)[row], a);
       const bool before = grid.reach().own_node > 0.0 && place[a] < cell.cell[k];
       lower[k] = cell.cell[k] - (before ? 1 : 0);
       from_cell[k] = lower[k] - cell.cell[k];

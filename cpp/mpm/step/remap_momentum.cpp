@@ -18,8 +18,8 @@ void remap(Domain<D>& domain, Kinds kinds) {
     clear(block.records.at(force_at), block.count, half_record);
     if (body.is_prescribed()) return;
     with_transfer(domain, [&]<class Transfer>(const Transfer&) {
-      scatter<Mapping<typename Transfer::Gives>, gives_momentum>(grid, body, patch,
-                                                                 block.records.at(force_at));
+      scatter<Mapping<typename Transfer::Gives>, gives_momentum>(grid, body, domain.pool_of(patch),
+                                                                 patch, block.records.at(force_at));
     });
   });
 }

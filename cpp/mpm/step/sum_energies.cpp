@@ -13,7 +13,7 @@ void record_contacts(Domain<D>& domain) {
 
 template <int D, bool forces_follow>
 void sum_energies(Domain<D>& domain) {
-  domain.ledger.add(domain.sums, domain.contact_sums, domain.eroded, domain.left, forces_follow);
+  domain.ledger.add(domain.sums, domain.contact_sums, domain.eroded, domain.outflow, forces_follow);
 }
 
 template void record_contacts<2>(Domain<2>&);

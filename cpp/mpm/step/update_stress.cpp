@@ -15,23 +15,23 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   using T = Batch<W>;
   const auto& grid = domain.grid;
   Patch<D>& patch = domain.grid.patches[p];
-  Body<D>& body = domain.body_of(patch);
+  ParticlePool<D>& pool = domain.pool_of(patch);
   if (domain.has_loads()) carry_loads<straining_at>(domain, p);
-  const Material& material = domain.materials[static_cast<std::size_t>(body.material)];
+  const Material& material = domain.material_of(patch);
   const StressSettings settings{domain.time_step, domain.time + domain.time_step, grid.cell_size,
                                 material.viscosity, forces_follow};
   const NodeRecords records = domain.grid.block(p).records;
   const NodeStrides<D> stride(patch.shape);
   const T scale(domain.time_step / grid.cell_size);
-  const LocalPosition<D> local_position(grid, body);
-  Moving<D> moving(grid, body, domain.time_step);
+  const LocalPosition<D> local_position(grid, pool);
+  Moving<D> moving(grid, pool, domain.time_step);
   MaterialBlock<D> block;
   auto flush = [&] {
-    update_block<Batch<native_lanes>>(material, body.columns, body.at, block, settings,
+    update_block<Batch<native_lanes>>(material, pool.columns, pool.at, block, settings,
                                       domain.sums[p].stress);
     block.count = 0;
   };
-  for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+  for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto nodes = field_of<B>(records.from(cell.first_node), stride);
     for_each_group<W>(cell, [&](const auto& rows) {
       if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();

@@ -11,7 +11,7 @@ void place_dashpots(Domain<D>& domain) {
   if (!grid.walls.absorb()) return;
   for_each_patch(domain, deformable, [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
-    scatter_dashpots(grid, domain.body_of(patch), patch, grid.block(p));
+    scatter_dashpots(grid, domain.body_of(patch), domain.pool_of(patch), patch, grid.block(p));
   });
 }
 

@@ -12,8 +12,8 @@ namespace mpm {
 /// a face stands for its initial volume over the cell size of the face, so that the area does not
 /// change while particles move about within these cells; N_i are the linear functions on the face.
 template <int D>
-void scatter_dashpots(const TileGrid<D>& grid, const Body<D>& body, const Patch<D>& patch,
-                      const NodeBlock<D>& block) {
+void scatter_dashpots(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
+                      const Patch<D>& patch, const NodeBlock<D>& block) {
   if (!patch.at_wall) return;
   // Do particles with this node at the lower corner around them lie along a face?
   const auto along_face = [&](int node, int normal, int side) {
@@ -28,12 +28,12 @@ void scatter_dashpots(const TileGrid<D>& grid, const Body<D>& body, const Patch<
           any = any || along_face(cell[static_cast<std::size_t>(normal)] - before, normal, side);
     return any;
   };
-  for_each_cell(grid, body, patch, [&](const CellRange<D>& cell) {
+  for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     if (!may_lie_along_face(cell.cell)) return;
     for (std::uint32_t k = 0; k < cell.count; ++k) {
       const std::uint32_t row = cell.rows[k];
-      const NodesAround<D> around(grid, body, patch, cell, row);
-      const double area = body.mass()[row] / (body.initial_density * grid.cell_size);
+      const NodesAround<D> around(grid, pool, patch, cell, row);
+      const double area = pool.mass()[row] / (body.initial_density * grid.cell_size);
       for (int normal = 0; normal < D; ++normal)
         for (int side = 0; side < 2; ++side) {
           if (!along_face(around.lower[static_cast<std::size_t>(normal)], normal, side)) continue;

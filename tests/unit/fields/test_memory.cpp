@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "check.hpp"
-#include "mpm/fields/aligned.hpp"
+#include "mpm/fields/memory_space.hpp"
 #include "mpm/fields/lanes.hpp"
 
 namespace {

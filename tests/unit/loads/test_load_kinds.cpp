@@ -5,12 +5,13 @@
 void test_load_kinds(mpm::testing::Report& report) {
   using namespace mpm;
   SurfaceLoad<2> load;
-  load.area = {{3.0, -4.0}};
-  load.size = {6.0};  // of two faces at an edge: more than |area|
+  SurfacePiece<2> piece;
+  piece.area = {3.0, -4.0};
+  piece.size = 6.0;  // of two faces at an edge: more than |area|
   load.stress = {2.0, 1.0};
   load.kind = LoadKinds::id_of<Pressure>();
-  CHECK(load.force_on(0)[0] == -6.0 && load.force_on(0)[1] == 8.0);
+  CHECK(load.force_on(piece)[0] == -6.0 && load.force_on(piece)[1] == 8.0);
   load.kind = LoadKinds::id_of<Traction>();
-  CHECK(load.force_on(0)[0] == 12.0 && load.force_on(0)[1] == 6.0);
+  CHECK(load.force_on(piece)[0] == 12.0 && load.force_on(piece)[1] == 6.0);
   CHECK_EQUAL(word_of(LoadKinds::id_of<Traction>()), std::string_view("traction"));
 }

@@ -28,25 +28,27 @@ void check_dimension(mpm::testing::Report& report) {
     }
     for (int i = 0; i < D; ++i)
       for (int j = 0; j < D; ++j) spin[i][j] = L[i][j] - L[j][i];
-    SurfaceLoad<D> load;
     const Vec<double, D> area = any_vector<D>(random), arm = any_vector<D>(random);
-    load.area = {area, area};
-    load.arm = {arm, arm};
-    load.size = {2.0 * norm(area), 2.0 * norm(area)};
+    SurfacePiece<D> piece, turned;
+    for (SurfacePiece<D>* each : {&piece, &turned}) {
+      each->area = area;
+      each->arm = arm;
+      each->size = 2.0 * norm(area);
+    }
     // The volume of a prism grows by det F.
-    load.carry(0, L);
+    piece.carry(L);
     const double J = determinant(deformation(L));
-    CHECK_CLOSE(dot(load.area[0], load.arm[0]), J * dot(area, arm), 1e-14);
+    CHECK_CLOSE(dot(piece.area, piece.arm), J * dot(area, arm), 1e-14);
     double trace = 0.0;
     for (int i = 0; i < D; ++i) trace += L[i][i];
     CHECK_CLOSE(J, std::exp(trace), 0.02);  // of second order in 0.1
-    CHECK_CLOSE(load.size[0], 2.0 * norm(load.area[0]), 1e-14);
+    CHECK_CLOSE(piece.size, 2.0 * norm(piece.area), 1e-14);
     // A rotation changes no length and no angle.
-    load.carry(1, spin);
-    CHECK_CLOSE(norm(load.area[1]), norm(area), 1e-14);
-    CHECK_CLOSE(load.size[1], 2.0 * norm(area), 1e-14);
-    CHECK_CLOSE(norm(load.arm[1]), norm(arm), 1e-14);
-    CHECK_CLOSE(dot(load.area[1], load.arm[1]), dot(area, arm), 1e-14);
+    turned.carry(spin);
+    CHECK_CLOSE(norm(turned.area), norm(area), 1e-14);
+    CHECK_CLOSE(turned.size, 2.0 * norm(area), 1e-14);
+    CHECK_CLOSE(norm(turned.arm), norm(arm), 1e-14);
+    CHECK_CLOSE(dot(turned.area, turned.arm), dot(area, arm), 1e-14);
   }
 }
 

@@ -106,17 +106,17 @@ class Comparison {
   }
   void particles(std::string_view stage) {
     for (std::size_t b = 0; b < twin_.domain.bodies.size(); ++b) {
-      const Body<D>& body = twin_.domain.bodies[b];
-      for (std::size_t k = 0; k < body.count(); ++k) {
-        const reference::Particle<D>& p = twin_.reference.bodies[b].particles[body.id[k]];
+      const ParticlePool<D>& pool = twin_.domain.pools[0];
+      for_each_row(twin_.domain.grid.patches, pool, static_cast<int>(b), [&](std::uint32_t k) {
+        const reference::Particle<D>& p = twin_.reference.bodies[b].particles[pool.id[k]];
         for (int a = 0; a < D; ++a) {
-          if (stage.find("move") != stage.npos) CHECK_CLOSE(body.x(a)[k], p.x[a], 1e-12);
-          CHECK_CLOSE(body.v(a)[k], p.v[a], 1e-10);
+          if (stage.find("move") != stage.npos) CHECK_CLOSE(pool.x(a)[k], p.x[a], 1e-12);
+          CHECK_CLOSE(pool.v(a)[k], p.v[a], 1e-10);
         }
-        CHECK_CLOSE(body.volume()[k], p.V, 1e-12 * p.V);
+        CHECK_CLOSE(pool.volume()[k], p.V, 1e-12 * p.V);
         for (int c = 0; c < Sym<double, D>::size; ++c)
-          CHECK_CLOSE(body.stress(c)[k], p.sigma.c[c], 1e-11 * 1e8);
-      }
+          CHECK_CLOSE(pool.stress(c)[k], p.sigma.c[c], 1e-11 * 1e8);
+      });
     }
   }
   /// The force on the first body, of all nodes.

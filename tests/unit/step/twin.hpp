@@ -57,8 +57,10 @@ struct Twin {
     domain.threads.resize(1);
     add_material();
     for (int k = 0; k < 2; ++k) add_body(k, choice.rigid && k == 0);
-    if (choice.rigid) domain.rigid.resize(2);
-    make_lists(grid, domain.bodies, domain.threads, domain.list_scratch);
+    fill_pools(domain.pools, domain.materials, domain.bodies, grid.patches);
+    for (Patch<D>& patch : grid.patches) disturb(patch);  // one a body, the rows as they were given
+    build_cell_lists(grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
+    list_kinds(domain);
     if (domain.has_contact()) connect_tiles(domain.contact, grid, domain.bodies);
     domain.sums.resize(grid.patches.size());
   }
@@ -81,6 +83,7 @@ struct Twin {
     choice.density = density;
     choice.strength = {"elastic", {{"E", E}, {"nu", nu}}};
     domain.materials.push_back(make_material(choice));
+    domain.pools.push_back(make_pool(domain.materials[0], domain.grid));
   }
   /// Two bodies that overlap: the second begins at two fifths of the box along x.
   void add_body(int k, bool rigid) {
@@ -92,27 +95,31 @@ struct Twin {
         v.push_back(100.0 * any());
       }
     const double volume = std::pow(edge * cell_size, D);
-    Body<D> body = make_body<D>("body", domain.materials[0], x, v, std::array{volume}, domain.grid);
-    reference::Body<D> other;
+    Body<D> body =
+        make_body<D>("body", domain.materials[0], domain.pools[0], x, v, std::array{volume});
     body.kind = rigid ? BodyKind::rigid : BodyKind::deformable;
-    other.rigid = rigid;
+    domain.bodies.push_back(std::move(body));
+  }
+  /// Volumes and stresses at random, and the same body for the reference.
+  void disturb(const Patch<D>& patch) {
+    ParticlePool<D>& pool = domain.pools[0];
+    reference::Body<D>& other = reference.bodies.emplace_back();
+    other.rigid = !domain.body_of(patch).deforms();
     other.material = Elastic::of(E, nu, density);
-    for (std::size_t i = 0; i < particles; ++i) {
-      body.volume()[i] *= 1.0 + 0.2 * any();
+    for (const std::uint32_t i : pool.rows(patch)) {
+      pool.volume()[i] *= 1.0 + 0.2 * any();
       reference::Particle<D> p;
       for (int a = 0; a < D; ++a) {
-        p.x[a] = body.x(a)[i];
-        p.v[a] = body.v(a)[i];
+        p.x[a] = pool.x(a)[i];
+        p.v[a] = pool.v(a)[i];
       }
-      p.m = body.mass()[i];
-      p.V = body.volume()[i];
+      p.m = pool.mass()[i];
+      p.V = pool.volume()[i];
       for (int c = 0; c < Sym<double, D>::size; ++c)
-        p.sigma.c[c] = body.columns.rounded(body.at.stress + c)[i] =
-            static_cast<Rounded>(rigid ? 0.0 : 1e8 * any());
+        p.sigma.c[c] = pool.columns.rounded(pool.at.stress + c)[i] =
+            static_cast<Rounded>(other.rigid ? 0.0 : 1e8 * any());
       other.particles.push_back(p);
     }
-    domain.bodies.push_back(std::move(body));
-    reference.bodies.push_back(std::move(other));
   }
 };
 

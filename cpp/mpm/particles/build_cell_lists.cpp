@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "mpm/particles/cell_lists.hpp"
+
+namespace mpm {
+namespace {
+
+struct Key {
+  std::uint64_t value;  // tile (last axis highest), then cell
+  std::uint32_t id, row;
+};
+
+template <int D>
+std::uint64_t key_of(const Index<D>& tile, int cell) {
+  constexpr int bits = 19;
+  constexpr std::int32_t half = 1 << (bits - 1);
+  std::uint64_t key = 0;
+  for (int a = D - 1; a >= 0; --a) {
+    if (tile[a] < -half || tile[a] >= half)
+      throw std::out_of_range("a particle lies too far away for the grid");
+    key = key << bits | static_cast<std::uint64_t>(tile[a] + half);
+  }
+  return key << 6 | static_cast<std::uint64_t>(cell);
+}
+
+/// The tile of a position and the number of its cell there.
+template <int D>
+std::pair<Index<D>, int> tile_and_cell(const TileGrid<D>& grid, const Vec<double, D>& x) {
+  const Index<D> cell = grid.cell_of(x);
+  const Index<D> tile = grid.tile_of(cell);
+  Index<D> local = grid.first_cell(tile);
+  for (std::size_t a = 0; a < D; ++a) local[a] = cell[a] - local[a];
+  return {tile, Tile<D>::cell(local)};
+}
+
+template <int D>
+void find_anchor(TileGrid<D>& grid, const std::vector<Patch<D>>& patches,
+                 const std::vector<Body<D>>& bodies, const std::vector<ParticlePool<D>>& pools) {
+  constexpr double furthest = 1 << 20;  // cells; within the 19 bits of a key's tile coordinates
+  grid.anchor.fill(std::numeric_limits<std::int32_t>::max());
+  for (const Patch<D>& patch : patches) {
+    const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
+    const ParticlePool<D>& pool = pools[static_cast<std::size_t>(body.material)];
+    for (const std::uint32_t row : pool.rows(patch)) {
+      const Vec<double, D> x = pool.position_of(row);
+      for (int a = 0; a < D; ++a)
+        if (!(std::abs(grid.in_cells(x[a], a)) < 0.5 * furthest))
+          throw std::invalid_argument("body \"" + body.name +
+                                      "\" lies more than 2^19 cells from the grid's origin");
+      const Index<D> cell = grid.cell_of(x);
+      for (std::size_t a = 0; a < D; ++a) grid.anchor[a] = std::min(grid.anchor[a], cell[a]);
+    }
+  }
+}
+
+/// Add the patches of a body, whose particles are given by key and number, with their lists.
+template <int D>
+void add_patches(TileGrid<D>& grid, int body, const ParticlePool<D>& pool,
+                 const std::vector<Key>& keys, std::vector<std::uint32_t>& order) {
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const auto [tile, cell] = tile_and_cell(grid, pool.position_of(keys[i].row));
+    if (i == 0 || grid.patches.back().tile != tile) {
+      Patch<D>& made = grid.patches.emplace_back();
+      made.body = body;
+      made.tile = tile;
+      made.begin = static_cast<std::uint32_t>(order.size());
+    }
+    Patch<D>& patch = grid.patches.back();
+    patch.occupied |= std::uint64_t{1} << cell;
+    ++patch.count;
+    for (int k = cell + 1; k <= Tile<D>::cell_count; ++k)
+      patch.cell_begin[static_cast<std::size_t>(k)] = patch.count;
+    order.push_back(keys[i].row);
+    const bool last = i + 1 == keys.size() || keys[i + 1].value >> 6 != keys[i].value >> 6;
+    if (!last) continue;
+    patch.room = room_for(patch.count);
+    order.resize(patch.begin + std::size_t{patch.room});
+  }
+}
+
+}  // namespace
+
+template <int D>
+void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
+                      std::vector<ParticlePool<D>>& pools, Threads& threads,
+                      ListScratch<D>& scratch) {
+  const std::vector<Patch<D>> before = std::exchange(grid.patches, {});
+  find_anchor(grid, before, bodies, pools);
+  std::vector<std::vector<std::uint32_t>> orders(pools.size());
+  for (std::size_t m = 0; m < pools.size(); ++m)
+    orders[m].reserve(pools[m].count() + pools[m].count() / 4);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto m = static_cast<std::size_t>(bodies[b].material);
+    std::vector<Key> keys;
+    keys.reserve(bodies[b].active());
+    for_each_active_row(before, pools[m], static_cast<int>(b), [&](std::uint32_t row) {
+      const auto [tile, cell] = tile_and_cell(grid, pools[m].position_of(row));
+      keys.push_back({key_of<D>(tile, cell), pools[m].id[row], row});
+    });
+    std::ranges::sort(keys, {}, [](const Key& k) { return std::pair(k.value, k.id); });
+    add_patches(grid, static_cast<int>(b), pools[m], keys, orders[m]);
+  }
+  for (std::size_t m = 0; m < pools.size(); ++m) {
+    pools[m].used = orders[m].size();
+    orders[m].resize(pools[m].used + spare_room(pools[m].used));
+    pools[m].order = std::move(orders[m]);
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    sort_columns(grid, bodies[b], patches_of<D>(grid.patches, static_cast<int>(b)),
+                 pools[static_cast<std::size_t>(bodies[b].material)], threads, scratch);
+  scratch.own.release_and_allocate(0);
+  grid.connect();
+  grid.cut_blocks(threads);
+}
+
+template void build_cell_lists<2>(TileGrid<2>&, std::vector<Body<2>>&,
+                                  std::vector<ParticlePool<2>>&, Threads&, ListScratch<2>&);
+template void build_cell_lists<3>(TileGrid<3>&, std::vector<Body<3>>&,
+                                  std::vector<ParticlePool<3>>&, Threads&, ListScratch<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,126 @@
+#pragma once
+// Which particles lie in which cell: lists built once, then updated where particles have moved.
+// Columns are put back in order only when that pays; correctness never depends on it.
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "mpm/grid/tile_grid.hpp"
+#include "mpm/particles/pool.hpp"
+
+namespace mpm {
+
+/// A particle that has left its tile.
+template <int D>
+struct Migrant {
+  int body;
+  Index<D> tile;       // that it has come to
+  std::int32_t patch;  // of its body there; -1 while there is none
+  std::uint32_t row;
+  std::uint8_t cell;
+};
+
+/// A particle that comes to a patch.
+struct Arrival {
+  std::uint32_t row;
+  std::uint8_t cell;
+};
+
+/// What particles that take no part any more have taken with them so far.
+template <int D>
+struct Removed {
+  std::size_t count = 0;
+  double mass = 0.0;                        // [kg]
+  double kinetic = 0.0, recoverable = 0.0;  // [J]
+  double momentum[D] = {};                  // [kg m/s]
+};
+
+/// Reused from step to step, so that a step allocates nothing, and shared by all bodies.
+template <int D>
+struct ListScratch {
+  struct Note {
+    std::size_t first_mark = 0;       // of `marks`
+    std::uint32_t kept = 0;           // particles that stay in the patch
+    std::uint32_t removed = 0;        // that take no part any more
+    std::uint32_t migrants = 0;       // that go to another patch
+    std::uint32_t first_migrant = 0;  // of `migrants`
+    std::uint32_t changes = 0;        // particles that have changed cell, or were removed
+  };
+  struct Change {
+    std::size_t first_mark = 0, first_entry = 0;  // of `marks`; of `lists`
+    std::uint32_t kept = 0, removed = 0;
+    std::uint32_t first_arrival = 0, arrivals_end = 0;  // of `arrivals`
+    std::uint32_t begin = 0, room = 0;                  // of the new list, in those of the pool
+    bool rewritten = false;
+
+    std::uint32_t count() const { return kept + arrivals_end - first_arrival; }
+  };
+  std::vector<Note> notes;                        // one per patch, before patches are added
+  std::vector<Migrant<D>> migrants;               // in the order of the patches that they leave
+  std::vector<std::pair<int, Index<D>>> entered;  // body and tile of each patch to be added
+  std::vector<std::int32_t> number;  // of each patch, after patches were added; -1 if it has gone
+  std::vector<Change> changes;       // one per patch, after patches were added
+  std::vector<Arrival> arrivals;     // in the order of the patches that they come to
+  std::vector<std::uint8_t> flags;   // of each pool
+  std::vector<std::uint32_t>
+      first;  // where the list of each patch of a body begins, one after another
+  std::uint32_t* lists = nullptr;  // the new lists of patches whose lists change
+  std::uint8_t* marks = nullptr;   // cell or CellMark of each particle of patches that some leave
+
+  /// Room for so many bytes, until the next call or until blocks are cut: in the memory of the
+  /// nodes, whose values are of no use before momentum is mapped, or where that is too small, our
+  /// own, which then gets `most`.
+  std::byte* room(TileGrid<D>& grid, std::size_t bytes, std::size_t most) {
+    const std::span<std::byte> idle = grid.idle_memory();
+    if (bytes <= idle.size()) return idle.data();
+    make_room(own, bytes, most);
+    return own.data();
+  }
+  /// Of what goes with the particles; migrants and what goes with the patches is not counted.
+  std::size_t bytes() const { return own.bytes(); }
+
+  AlignedArray<std::byte> own;
+};
+
+/// Sort every body's rows by tile and cell, and make patches and lists anew, at the start or after
+/// a change of the grid. Sets the grid's anchor. Throws std::invalid_argument if a particle lies
+/// more than 2^19 cells from the origin.
+template <int D>
+void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
+                      std::vector<ParticlePool<D>>& pools, Threads& threads,
+                      ListScratch<D>& scratch);
+
+/// In the column `failed`, beside the values of FailureAction: the particle has left the region
+/// that is kept.
+inline constexpr double left_region = 4.0;
+
+/// Find the particles that have left their tiles, where ListScratch::notes says how many, and what
+/// changes for each patch; true if patches were added or removed.
+template <int D>
+bool migrate_particles(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                       std::vector<ParticlePool<D>>& pools, Threads& threads,
+                       ListScratch<D>& scratch);
+
+/// Update the lists of patches that particles have left, and take out what has eroded or left the
+/// region that is kept; true if patches were added or removed.
+template <int D>
+bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
+                       std::vector<ParticlePool<D>>& pools, Threads& threads,
+                       ListScratch<D>& scratch, Removed<D>& eroded, Removed<D>& outflow);
+
+/// Put the rows of a body into the order of its lists.
+template <int D>
+void sort_columns(TileGrid<D>& grid, Body<D>& body, std::span<Patch<D>> patches,
+                  ParticlePool<D>& pool, Threads& threads, ListScratch<D>& scratch);
+
+/// Sorting moves every column once; reading particles out of order costs about that once this share
+/// of them is.
+inline constexpr double disorder_that_pays = 0.25;
+
+/// The same for the bodies of whose particles that `share` has changed cell since they were sorted.
+template <int D>
+void sort_disordered(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
+                     std::vector<ParticlePool<D>>& pools, Threads& threads, double share,
+                     ListScratch<D>& scratch);
+
+}  // namespace mpm

@@ -1,0 +1,198 @@
+// Particles that have left their tiles: from which patch to which.
+#include <algorithm>
+#include <cstdlib>
+#include <numeric>
+#include <utility>
+
+#include "mpm/particles/cell_lists.hpp"
+#include "mpm/particles/classify.hpp"
+
+namespace mpm {
+namespace {
+
+/// The patch of the same body in a tile, mostly one beside its own; -1 if there is none.
+template <int D>
+std::int32_t patch_beside(const TileGrid<D>& grid, const Patch<D>& patch, const Index<D>& tile) {
+  Index<D> offset;
+  bool beside = !grid.bonded;  // there neighbours are those of all bodies
+  for (std::size_t a = 0; a < D; ++a) {
+    offset[a] = tile[a] - patch.tile[a];
+    beside = beside && std::abs(offset[a]) <= 1;
+  }
+  if (!beside) return grid.find(patch.body, tile);
+  return patch.neighbour[static_cast<std::size_t>(Tile<D>::neighbour(offset))];
+}
+
+template <int D>
+void find_migrants(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                   const std::vector<ParticlePool<D>>& pools, Threads& threads,
+                   ListScratch<D>& scratch) {
+  std::uint32_t count = 0;
+  for (auto& note : scratch.notes) {
+    note.first_migrant = count;
+    count += note.migrants;
+  }
+  scratch.migrants.resize(count);
+  threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    if (scratch.notes[p].migrants == 0) return;
+    const Patch<D>& patch = grid.patches[p];
+    const auto m = static_cast<std::size_t>(bodies[static_cast<std::size_t>(patch.body)].material);
+    const std::uint8_t* mark = scratch.marks + scratch.notes[p].first_mark;
+    Migrant<D>* to = &scratch.migrants[scratch.notes[p].first_migrant];
+    for (const std::uint32_t row : pools[m].rows(patch)) {
+      if (*mark++ != CellMark::outside) continue;
+      const Index<D> cell = grid.cell_of(pools[m].position_of(row)), tile = grid.tile_of(cell);
+      const Index<D> first = grid.first_cell(tile);
+      Index<D> local;
+      for (int a = 0; a < D; ++a) local[a] = cell[a] - first[a];
+      *to++ = {patch.body, tile, patch_beside<D>(grid, patch, tile), row,
+               static_cast<std::uint8_t>(Tile<D>::cell(local))};
+    }
+  });
+}
+
+/// Put new patches, sorted, among the others.
+template <int D>
+void merge(std::vector<Patch<D>>& patches, const std::vector<std::pair<int, Index<D>>>& added) {
+  std::size_t from = patches.size(), to = from + added.size(), next = added.size();
+  patches.resize(to);
+  while (next > 0) {
+    const auto& [body, tile] = added[next - 1];
+    if (from > 0 && patch_less<D>(body, tile, patches[from - 1].body, patches[from - 1].tile)) {
+      patches[--to] = patches[--from];
+    } else {
+      Patch<D>& patch = patches[--to] = {};
+      patch.body = body;
+      patch.tile = tile;
+      --next;
+    }
+  }
+}
+
+/// Add patches for tiles that a body enters, and drop the empty ones; true if the set of patches
+/// has changed.
+template <int D>
+bool add_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
+  auto& patches = grid.patches;
+  auto& entered = scratch.entered;
+  auto& number = scratch.number;
+  number.resize(patches.size());
+  const auto no_patch = [](const Migrant<D>& l) { return l.patch < 0; };
+  if (std::none_of(scratch.migrants.begin(), scratch.migrants.end(), no_patch)) {
+    std::iota(number.begin(), number.end(), 0);
+    return false;
+  }
+  for (std::size_t p = 0; p < patches.size(); ++p) number[p] = patches[p].count == 0 ? -1 : 0;
+  entered.clear();
+  for (Migrant<D>& l : scratch.migrants) {
+    if (l.patch >= 0 && number[static_cast<std::size_t>(l.patch)] < 0) l.patch = -1;
+    if (l.patch < 0) entered.emplace_back(l.body, l.tile);
+  }
+  std::sort(entered.begin(), entered.end(), [](const auto& x, const auto& y) {
+    return patch_less<D>(x.first, x.second, y.first, y.second);
+  });
+  entered.erase(std::unique(entered.begin(), entered.end()), entered.end());
+  std::erase_if(patches, [](const Patch<D>& patch) { return patch.count == 0; });
+  merge<D>(patches, entered);
+  // The others have kept their order, and the new ones are still empty.
+  std::size_t next = 0;
+  for (std::int32_t& n : number) {
+    if (n < 0) continue;
+    while (patches[next].count == 0) ++next;
+    n = static_cast<std::int32_t>(next++);
+  }
+  grid.connect();
+  return true;
+}
+
+/// How many particles each patch keeps and gets, and which ones.
+template <int D>
+void find_changes(const TileGrid<D>& grid, ListScratch<D>& scratch) {
+  auto& changes = scratch.changes;
+  changes.assign(grid.patches.size(), {});
+  for (std::size_t p = 0; p < scratch.notes.size(); ++p) {
+    if (scratch.number[p] < 0) continue;
+    auto& change = changes[static_cast<std::size_t>(scratch.number[p])];
+    change.kept = scratch.notes[p].kept;
+    change.removed = scratch.notes[p].removed;
+    change.first_mark = scratch.notes[p].first_mark;
+  }
+  for (Migrant<D>& m : scratch.migrants) {
+    m.patch =
+        m.patch < 0 ? grid.find(m.body, m.tile) : scratch.number[static_cast<std::size_t>(m.patch)];
+    ++changes[static_cast<std::size_t>(m.patch)].arrivals_end;  // so far their number
+  }
+  std::uint32_t arrival = 0;
+  for (auto& c : changes) {
+    const std::uint32_t count = std::exchange(c.arrivals_end, arrival);  // the end moves on below
+    c.first_arrival = arrival;
+    arrival += count;
+  }
+  scratch.arrivals.resize(arrival);
+  for (const Migrant<D>& m : scratch.migrants)
+    scratch.arrivals[changes[static_cast<std::size_t>(m.patch)].arrivals_end++] = {m.row, m.cell};
+}
+
+/// Where the lists of the patches go: those that outgrow their ranges get others behind all, and if
+/// there is no room the lists of the pool are laid out anew.
+template <int D>
+void find_ranges(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                 std::vector<ParticlePool<D>>& pools, ListScratch<D>& scratch) {
+  const auto pool_of = [&](std::size_t p) {
+    return static_cast<std::size_t>(
+        bodies[static_cast<std::size_t>(grid.patches[p].body)].material);
+  };
+  const auto give = [&](std::size_t p) {
+    auto& change = scratch.changes[p];
+    std::size_t& used = pools[pool_of(p)].used;
+    change.begin = static_cast<std::uint32_t>(used);
+    change.room = room_for(change.count());
+    used += change.room;
+  };
+  scratch.flags.assign(pools.size(), false);
+  for (std::size_t p = 0; p < scratch.changes.size(); ++p) {
+    auto& change = scratch.changes[p];
+    const Patch<D>& patch = grid.patches[p];
+    change.begin = patch.begin;
+    change.room = patch.room;
+    change.rewritten = patch.left_cell || change.arrivals_end > change.first_arrival;
+    if (change.count() > patch.room) give(p);
+  }
+  bool any = false;
+  for (std::size_t m = 0; m < pools.size(); ++m) {
+    if (pools[m].used <= pools[m].order.size()) continue;
+    any = true;
+    scratch.flags[m] = true;
+    pools[m].used = 0;
+  }
+  if (!any) return;
+  for (std::size_t p = 0; p < scratch.changes.size(); ++p)
+    if (scratch.flags[pool_of(p)]) {
+      scratch.changes[p].rewritten = true;
+      give(p);
+    }
+  for (std::size_t m = 0; m < pools.size(); ++m)
+    if (scratch.flags[m])
+      pools[m].order.resize(
+          std::max(pools[m].order.size(), pools[m].used + spare_room(pools[m].used)));
+}
+
+}  // namespace
+
+template <int D>
+bool migrate_particles(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                       std::vector<ParticlePool<D>>& pools, Threads& threads,
+                       ListScratch<D>& scratch) {
+  find_migrants(grid, bodies, pools, threads, scratch);
+  const bool changed = add_patches(grid, scratch);
+  find_changes(grid, scratch);
+  find_ranges(grid, bodies, pools, scratch);
+  return changed;
+}
+
+template bool migrate_particles<2>(TileGrid<2>&, const std::vector<Body<2>>&,
+                                   std::vector<ParticlePool<2>>&, Threads&, ListScratch<2>&);
+template bool migrate_particles<3>(TileGrid<3>&, const std::vector<Body<3>>&,
+                                   std::vector<ParticlePool<3>>&, Threads&, ListScratch<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,90 @@
+#pragma once
+// The particles of all bodies of one material: a pool of rows, and the lists that keep those of one
+// cell together. A particle is known by the number of its body and its number in it; where its row
+// lies, and where its entry of a list, says nothing.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mpm/fields/columns.hpp"
+#include "mpm/grid/patch.hpp"
+#include "mpm/materials/material_block.hpp"
+#include "mpm/particles/body.hpp"
+
+namespace mpm {
+
+/// A particle that takes no part any more: no patch holds it.
+struct RemovedRow {
+  std::uint32_t row;
+  int body;
+};
+
+template <int D>
+struct ParticlePool {
+  Columns columns;
+  int position = 0;                  // first component of each column; position [m], D components
+  MaterialColumns at{};              // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
+  double sound_speed = 0.0;          // of its material at the start [m/s]
+  std::vector<std::uint32_t> id;     // number of each particle in its body, as the user gave them
+  std::vector<std::uint32_t> piece;  // 1 + number of its first SurfacePiece, or 0; empty: no loads
+  std::vector<std::uint32_t> order;  // rows by cell, then by id, in the range that each patch owns
+  std::size_t used = 0;  // of `order`, by the ranges of patches, now or before; behind it is room
+  std::vector<RemovedRow> removed;
+
+  std::size_t count() const { return columns.rows(); }
+  double* x(int a) { return columns.component(position + a); }
+  Rounded* v(int a) { return columns.rounded(at.velocity + a); }
+  const double* x(int a) const { return columns.component(position + a); }
+  const Rounded* v(int a) const { return columns.rounded(at.velocity + a); }
+  double* mass() { return columns.component(at.mass); }
+  const double* mass() const { return columns.component(at.mass); }
+  double* volume() { return columns.component(at.volume); }
+  const double* volume() const { return columns.component(at.volume); }
+  const Rounded* stress(int k) const { return columns.rounded(at.stress + k); }
+  Vec<double, D> position_of(std::size_t row) const {
+    Vec<double, D> place;
+    for (int a = 0; a < D; ++a) place[a] = x(a)[row];
+    return place;
+  }
+
+  /// The rows of a patch's particles.
+  std::span<const std::uint32_t> rows(const Patch<D>& patch) const {
+    return {order.data() + patch.begin, patch.count};
+  }
+  std::size_t bytes() const {
+    return columns.bytes() +
+           (id.capacity() + piece.capacity() + order.capacity()) * sizeof(std::uint32_t) +
+           removed.capacity() * sizeof(RemovedRow);
+  }
+};
+
+/// How many entries of its pool's lists a patch with so many particles gets: some come and go.
+constexpr std::uint32_t room_for(std::uint32_t count) { return count + count / 8 + 4; }
+/// How many entries there are behind the ranges of all patches, for those that outgrow theirs.
+constexpr std::size_t spare_room(std::size_t used) { return used / 16 + 64; }
+
+/// The patches of a body.
+template <int D, class Patches>
+auto patches_of(Patches& patches, int body) {
+  const auto found = std::ranges::equal_range(patches, body, {}, &Patch<D>::body);
+  return std::span(found.begin(), found.end());
+}
+
+/// f(row) for the particles of a body that take part, in the order of its lists.
+template <int D, class F>
+void for_each_active_row(const std::vector<Patch<D>>& patches, const ParticlePool<D>& pool,
+                         int body, F&& f) {
+  for (const Patch<D>& patch : patches_of<D>(patches, body))
+    for (const std::uint32_t row : pool.rows(patch)) f(row);
+}
+
+/// The same, and then for those that were removed.
+template <int D, class F>
+void for_each_row(const std::vector<Patch<D>>& patches, const ParticlePool<D>& pool, int body,
+                  F&& f) {
+  for_each_active_row(patches, pool, body, f);
+  for (const RemovedRow& removed : pool.removed)
+    if (removed.body == body) f(removed.row);
+}
+
+}  // namespace mpm

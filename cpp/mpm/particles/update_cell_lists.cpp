@@ -1,0 +1,204 @@
+#include <algorithm>
+#include <numeric>
+#include <span>
+
+#include "mpm/particles/cell_lists.hpp"
+#include "mpm/particles/classify.hpp"
+
+namespace mpm {
+namespace {
+
+/// Room for the marks of patches that particles have left, and for all lists of their pools; false
+/// if there are none.
+template <int D>
+bool make_scratch(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                  const std::vector<ParticlePool<D>>& pools, ListScratch<D>& scratch) {
+  auto& touched = scratch.flags;
+  touched.assign(pools.size(), false);
+  scratch.notes.resize(grid.patches.size());
+  std::size_t marks = 0, entries = 0, all = 0;
+  for (std::size_t p = 0; p < grid.patches.size(); ++p) {
+    const Patch<D>& patch = grid.patches[p];
+    scratch.notes[p] = {};
+    scratch.notes[p].kept = patch.count;
+    if (!patch.left_cell) continue;
+    scratch.notes[p].first_mark = marks;
+    marks += patch.count;
+    touched[static_cast<std::size_t>(bodies[static_cast<std::size_t>(patch.body)].material)] = true;
+  }
+  for (std::size_t m = 0; m < pools.size(); ++m) {
+    all += pools[m].count();
+    if (touched[m]) entries += pools[m].count();
+  }
+  constexpr std::size_t entry = sizeof(*scratch.lists), mark = sizeof(*scratch.marks);
+  std::byte* const room = scratch.room(grid, entry * entries + mark * marks, (entry + mark) * all);
+  scratch.lists = reinterpret_cast<std::uint32_t*>(room);
+  scratch.marks = reinterpret_cast<std::uint8_t*>(scratch.lists + entries);
+  return marks > 0;
+}
+
+/// Note the cells of a patch's particles, and how many go where.
+template <int D>
+void note_changes(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
+                  const Patch<D>& patch, ListScratch<D>& scratch,
+                  typename ListScratch<D>::Note& note) {
+  std::uint8_t* const marks = scratch.marks + note.first_mark;
+  note.changes = static_cast<std::uint32_t>(note_cells(grid, pool, patch, marks) +
+                                            note_removed(grid, body, pool, patch, marks));
+  const std::span<const std::uint8_t> now(marks, patch.count);
+  note.migrants = static_cast<std::uint32_t>(std::ranges::count(now, CellMark::outside));
+  const auto others = static_cast<std::uint32_t>(
+      std::ranges::count_if(now, [](std::uint8_t c) { return c >= CellMark::left; }));
+  note.removed = others - note.migrants;
+  note.kept = patch.count - others;
+}
+
+/// Take what a particle has out of the sums of those that take part.
+template <int D>
+void take_out(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row,
+              Removed<D>& sums) {
+  const double m = pool.mass()[row];
+  ++sums.count;
+  sums.mass += m;
+  for (int a = 0; a < D; ++a) {
+    const double v = pool.v(a)[row];
+    sums.kinetic += 0.5 * m * v * v;
+    sums.momentum[a] += m * v;
+  }
+  const double energy = pool.columns.component(pool.at.recoverable)[row];
+  sums.recoverable += energy * m / body.initial_density;
+}
+
+/// Those of a patch's particles that take no part any more.
+template <int D>
+void remove_particles(Body<D>& body, ParticlePool<D>& pool, const Patch<D>& patch,
+                      const std::uint8_t* mark, Removed<D>& eroded, Removed<D>& outflow) {
+  for (const std::uint32_t row : pool.rows(patch)) {
+    const std::uint8_t now = *mark++;
+    if (now != CellMark::eroded && now != CellMark::left) continue;
+    take_out(body, pool, row, now == CellMark::left ? outflow : eroded);
+    if (now == CellMark::left) pool.columns.component(pool.at.failed)[row] = left_region;
+    pool.removed.push_back({row, patch.body});
+    ++body.removed;
+  }
+}
+
+/// Write a patch's new list to scratch: the particles it keeps and those that come, by cell, then
+/// by id: sums over the particles of a cell must not depend on where their rows are.
+template <int D>
+void write_list(const ParticlePool<D>& pool, Patch<D>& patch,
+                const typename ListScratch<D>::Change& change, const ListScratch<D>& scratch) {
+  std::uint32_t* const to = scratch.lists + change.first_entry;
+  const std::span<const Arrival> arrivals(scratch.arrivals.data() + change.first_arrival,
+                                          scratch.arrivals.data() + change.arrivals_end);
+  if (!patch.left_cell && arrivals.empty()) {
+    std::ranges::copy(pool.rows(patch), to);
+    return;
+  }
+  const auto for_each_kept = [&](auto&& f) {
+    if (patch.left_cell) {
+      const std::uint8_t* mark = scratch.marks + change.first_mark;
+      for (const std::uint32_t row : pool.rows(patch))
+        if (const std::uint8_t cell = *mark++; cell < CellMark::left) f(std::size_t{cell}, row);
+    } else {
+      patch.for_each_cell([&](int cell, std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t k = begin; k < end; ++k)
+          f(static_cast<std::size_t>(cell), pool.order[k]);
+      });
+    }
+  };
+  constexpr int cells = Tile<D>::cell_count;
+  std::array<std::uint32_t, cells + 1> begin{};
+  for_each_kept([&](std::size_t cell, std::uint32_t) { ++begin[cell + 1]; });
+  for (const Arrival& arrival : arrivals) ++begin[arrival.cell + std::size_t{1}];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  auto next = begin;
+  const auto put = [&](std::size_t c, std::uint32_t row) {
+    std::uint32_t at = next[c]++;
+    for (; at > begin[c] && pool.id[to[at - 1]] > pool.id[row]; --at) to[at] = to[at - 1];
+    to[at] = row;
+  };
+  for_each_kept(put);
+  for (const Arrival& arrival : arrivals) put(arrival.cell, arrival.row);
+
+  patch.count = begin[cells];
+  patch.cell_begin = begin;
+  patch.occupied = 0;
+  for (int c = 0; c < cells; ++c)
+    if (begin[static_cast<std::size_t>(c) + 1] > begin[static_cast<std::size_t>(c)])
+      patch.occupied |= std::uint64_t{1} << c;
+  patch.left_cell = false;
+}
+
+/// The new lists of all patches that are rewritten, each in its range.
+template <int D>
+void write_lists(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                 std::vector<ParticlePool<D>>& pools, Threads& threads, ListScratch<D>& scratch) {
+  std::size_t entries = 0;
+  for (auto& change : scratch.changes) {
+    if (!change.rewritten) continue;
+    change.first_entry = entries;
+    entries += change.count();
+  }
+  const auto for_each_rewritten = [&](auto&& f) {
+    threads.for_each(grid.patches.size(), [&](std::size_t p) {
+      const auto b = static_cast<std::size_t>(grid.patches[p].body);
+      if (scratch.changes[p].rewritten)
+        f(pools[static_cast<std::size_t>(bodies[b].material)], grid.patches[p], scratch.changes[p]);
+    });
+  };
+  using Change = typename ListScratch<D>::Change;
+  for_each_rewritten([&](const ParticlePool<D>& pool, Patch<D>& patch, const Change& change) {
+    write_list(pool, patch, change, scratch);
+  });
+  // A list may go where others were.
+  for_each_rewritten([&](ParticlePool<D>& pool, Patch<D>& patch, const Change& change) {
+    patch.begin = change.begin;
+    patch.room = change.room;
+    std::copy_n(scratch.lists + change.first_entry, patch.count, pool.order.data() + patch.begin);
+  });
+}
+
+}  // namespace
+
+template <int D>
+bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
+                       std::vector<ParticlePool<D>>& pools, Threads& threads,
+                       ListScratch<D>& scratch, Removed<D>& eroded, Removed<D>& outflow) {
+  if (!make_scratch(grid, bodies, pools, scratch)) return false;
+  const auto body_of = [&](const Patch<D>& patch) -> Body<D>& {
+    return bodies[static_cast<std::size_t>(patch.body)];
+  };
+  const auto pool_of = [&](const Patch<D>& patch) -> ParticlePool<D>& {
+    return pools[static_cast<std::size_t>(body_of(patch).material)];
+  };
+  threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const Patch<D>& patch = grid.patches[p];
+    if (patch.left_cell)
+      note_changes(grid, body_of(patch), pool_of(patch), patch, scratch, scratch.notes[p]);
+  });
+  for (std::size_t p = 0; p < grid.patches.size(); ++p)
+    body_of(grid.patches[p]).moved += scratch.notes[p].changes;
+  const bool changed = migrate_particles(grid, bodies, pools, threads, scratch);
+  for (std::size_t p = 0; p < grid.patches.size(); ++p) {
+    const Patch<D>& patch = grid.patches[p];
+    const auto& change = scratch.changes[p];
+    if (change.removed > 0)
+      remove_particles(body_of(patch), pool_of(patch), patch, scratch.marks + change.first_mark,
+                       eroded, outflow);
+  }
+  write_lists(grid, bodies, pools, threads, scratch);
+  scratch.lists = nullptr;
+  scratch.marks = nullptr;
+  grid.cut_blocks(threads);
+  return changed;
+}
+
+template bool update_cell_lists<2>(TileGrid<2>&, std::vector<Body<2>>&,
+                                   std::vector<ParticlePool<2>>&, Threads&, ListScratch<2>&,
+                                   Removed<2>&, Removed<2>&);
+template bool update_cell_lists<3>(TileGrid<3>&, std::vector<Body<3>>&,
+                                   std::vector<ParticlePool<3>>&, Threads&, ListScratch<3>&,
+                                   Removed<3>&, Removed<3>&);
+
+}  // namespace mpm
