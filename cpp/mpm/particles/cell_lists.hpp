@@ -38,19 +38,25 @@ struct Removed {
 /// Reused from step to step, so that a step allocates nothing, and shared by all bodies.
 template <int D>
 struct ListScratch {
+  // What is noted of a patch, so that who goes through all of them need not read the patches, each
+  // of which is far from the next.
   struct Note {
-    std::size_t first_mark = 0;       // of `marks`
-    std::uint32_t kept = 0;           // particles that stay in the patch
-    std::uint32_t removed = 0;        // that take no part any more
-    std::uint32_t migrants = 0;       // that go to another patch
-    std::uint32_t first_migrant = 0;  // of `migrants`
-    std::uint32_t changes = 0;        // particles that have changed cell, or were removed
+    int body = 0;
+    std::uint32_t begin = 0, room = 0;  // Patch::begin, room
+    bool left_cell = false;             // Patch::left_cell
+    std::size_t first_mark = 0;         // of `marks`
+    std::uint32_t kept = 0;             // particles that stay in the patch
+    std::uint32_t removed = 0;          // that take no part any more
+    std::uint32_t migrants = 0;         // that go to another patch
+    std::uint32_t first_migrant = 0;    // of `migrants`
+    std::uint32_t changes = 0;          // particles that have changed cell, or were removed
   };
   struct Change {
     std::size_t first_mark = 0, first_entry = 0;  // of `marks`; of `lists`
     std::uint32_t kept = 0, removed = 0;
     std::uint32_t first_arrival = 0, arrivals_end = 0;  // of `arrivals`
     std::uint32_t begin = 0, room = 0;                  // of the new list, in those of the pool
+    int body = 0;
     bool rewritten = false;
 
     std::uint32_t count() const { return kept + arrivals_end - first_arrival; }
@@ -61,6 +67,7 @@ struct ListScratch {
   std::vector<std::int32_t> number;  // of each patch, after patches were added; -1 if it has gone
   std::vector<Change> changes;       // one per patch, after patches were added
   std::vector<Arrival> arrivals;     // in the order of the patches that they come to
+  std::vector<int> moved;            // the bodies of which particles have changed cell in this step
   std::vector<std::uint8_t> flags;   // of each pool
   std::vector<std::uint32_t>
       first;  // where the list of each patch of a body begins, one after another
@@ -117,7 +124,8 @@ void sort_columns(TileGrid<D>& grid, Body<D>& body, std::span<Patch<D>> patches,
 /// of them is.
 inline constexpr double disorder_that_pays = 0.25;
 
-/// The same for the bodies of whose particles that `share` has changed cell since they were sorted.
+/// The same for the bodies of which particles have moved in this step, if that share of them has
+/// changed cell since they were sorted.
 template <int D>
 void sort_disordered(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                      std::vector<ParticlePool<D>>& pools, Threads& threads, double share,

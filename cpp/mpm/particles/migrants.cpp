@@ -113,14 +113,22 @@ void find_changes(const TileGrid<D>& grid, ListScratch<D>& scratch) {
   for (std::size_t p = 0; p < scratch.notes.size(); ++p) {
     if (scratch.number[p] < 0) continue;
     auto& change = changes[static_cast<std::size_t>(scratch.number[p])];
-    change.kept = scratch.notes[p].kept;
-    change.removed = scratch.notes[p].removed;
-    change.first_mark = scratch.notes[p].first_mark;
+    const auto& note = scratch.notes[p];
+    change.first_mark = note.first_mark;
+    change.kept = note.kept;
+    change.removed = note.removed;
+    change.begin = note.begin;
+    change.room = note.room;
+    change.body = note.body;
+    change.rewritten = note.left_cell;
   }
   for (Migrant<D>& m : scratch.migrants) {
     m.patch =
         m.patch < 0 ? grid.find(m.body, m.tile) : scratch.number[static_cast<std::size_t>(m.patch)];
-    ++changes[static_cast<std::size_t>(m.patch)].arrivals_end;  // so far their number
+    auto& change = changes[static_cast<std::size_t>(m.patch)];
+    ++change.arrivals_end;  // so far their number
+    change.body = m.body;
+    change.rewritten = true;
   }
   std::uint32_t arrival = 0;
   for (auto& c : changes) {
@@ -136,29 +144,22 @@ void find_changes(const TileGrid<D>& grid, ListScratch<D>& scratch) {
 /// Where the lists of the patches go: those that outgrow their ranges get others behind all, and if
 /// there is no room the lists of the pool are laid out anew.
 template <int D>
-void find_ranges(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                 std::vector<ParticlePool<D>>& pools, ListScratch<D>& scratch) {
-  const auto pool_of = [&](std::size_t p) {
-    return static_cast<std::size_t>(
-        bodies[static_cast<std::size_t>(grid.patches[p].body)].material);
+void find_ranges(const std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>>& pools,
+                 ListScratch<D>& scratch) {
+  using Change = typename ListScratch<D>::Change;
+  const auto pool_of = [&](const Change& change) {
+    return static_cast<std::size_t>(bodies[static_cast<std::size_t>(change.body)].material);
   };
-  const auto give = [&](std::size_t p) {
-    auto& change = scratch.changes[p];
-    std::size_t& used = pools[pool_of(p)].used;
+  const auto give = [&](Change& change) {
+    std::size_t& used = pools[pool_of(change)].used;
     change.begin = static_cast<std::uint32_t>(used);
     change.room = room_for(change.count());
     used += change.room;
   };
-  scratch.flags.assign(pools.size(), false);
-  for (std::size_t p = 0; p < scratch.changes.size(); ++p) {
-    auto& change = scratch.changes[p];
-    const Patch<D>& patch = grid.patches[p];
-    change.begin = patch.begin;
-    change.room = patch.room;
-    change.rewritten = patch.left_cell || change.arrivals_end > change.first_arrival;
-    if (change.count() > patch.room) give(p);
-  }
+  for (Change& change : scratch.changes)
+    if (change.count() > change.room) give(change);
   bool any = false;
+  scratch.flags.assign(pools.size(), false);
   for (std::size_t m = 0; m < pools.size(); ++m) {
     if (pools[m].used <= pools[m].order.size()) continue;
     any = true;
@@ -166,10 +167,10 @@ void find_ranges(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     pools[m].used = 0;
   }
   if (!any) return;
-  for (std::size_t p = 0; p < scratch.changes.size(); ++p)
-    if (scratch.flags[pool_of(p)]) {
-      scratch.changes[p].rewritten = true;
-      give(p);
+  for (Change& change : scratch.changes)
+    if (scratch.flags[pool_of(change)]) {
+      change.rewritten = true;
+      give(change);
     }
   for (std::size_t m = 0; m < pools.size(); ++m)
     if (scratch.flags[m])
@@ -186,7 +187,7 @@ bool migrate_particles(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   find_migrants(grid, bodies, pools, threads, scratch);
   const bool changed = add_patches(grid, scratch);
   find_changes(grid, scratch);
-  find_ranges(grid, bodies, pools, scratch);
+  find_ranges(bodies, pools, scratch);
   return changed;
 }
 

@@ -59,12 +59,16 @@ void sort_columns(TileGrid<D>& grid, Body<D>& body, std::span<Patch<D>> patches,
   const auto sort = [&]<class Number>(Number* values) {
     auto* const sorted = reinterpret_cast<Number*>(room);
     threads.for_each(patches.size(), [&](std::size_t p) {
-      Number* to = sorted + first[p];
-      for (const std::uint32_t row : pool.rows(patches[p])) *to++ = values[row];
+      Number* const to = sorted + first[p];
+      const std::span<const std::uint32_t> list = pool.rows(patches[p]);
+      for (std::size_t k = 0; k < list.size(); ++k) to[k] = values[list[k]];
     });
     threads.for_each(patches.size(), [&](std::size_t p) {
-      for (std::size_t k = first[p]; k < first[p] + patches[p].count; ++k)
-        values[rows[k]] = sorted[k];
+      const std::size_t begin = first[p], end = begin + patches[p].count;
+      if (rows.in_sequence)
+        std::copy(sorted + begin, sorted + end, values + rows.first + begin);
+      else
+        for (std::size_t k = begin; k < end; ++k) values[rows.rows[k]] = sorted[k];
     });
   };
   for (int c = 0; c < pool.columns.component_count(); ++c) pool.columns.with_component(c, sort);
@@ -81,12 +85,10 @@ template <int D>
 void sort_disordered(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                      std::vector<ParticlePool<D>>& pools, Threads& threads, double share,
                      ListScratch<D>& scratch) {
-  const std::span<Patch<D>> patches = grid.patches;
-  for (std::size_t begin = 0, end = 0; begin < patches.size(); begin = end) {
-    while (end < patches.size() && patches[end].body == patches[begin].body) ++end;
-    Body<D>& body = bodies[static_cast<std::size_t>(patches[begin].body)];
+  for (const int number : scratch.moved) {
+    Body<D>& body = bodies[static_cast<std::size_t>(number)];
     if (static_cast<double>(body.moved) >= share * static_cast<double>(body.count))
-      sort_columns(grid, body, patches.subspan(begin, end - begin),
+      sort_columns(grid, body, patches_of<D>(grid.patches, number),
                    pools[static_cast<std::size_t>(body.material)], threads, scratch);
   }
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <span>
 
@@ -19,10 +20,14 @@ bool make_scratch(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   std::size_t marks = 0, entries = 0, all = 0;
   for (std::size_t p = 0; p < grid.patches.size(); ++p) {
     const Patch<D>& patch = grid.patches[p];
-    scratch.notes[p] = {};
-    scratch.notes[p].kept = patch.count;
+    auto& note = scratch.notes[p] = {};
+    note.body = patch.body;
+    note.begin = patch.begin;
+    note.room = patch.room;
+    note.kept = patch.count;
+    note.left_cell = patch.left_cell;
     if (!patch.left_cell) continue;
-    scratch.notes[p].first_mark = marks;
+    note.first_mark = marks;
     marks += patch.count;
     touched[static_cast<std::size_t>(bodies[static_cast<std::size_t>(patch.body)].material)] = true;
   }
@@ -51,6 +56,17 @@ void note_changes(const TileGrid<D>& grid, const Body<D>& body, const ParticlePo
       std::ranges::count_if(now, [](std::uint8_t c) { return c >= CellMark::left; }));
   note.removed = others - note.migrants;
   note.kept = patch.count - others;
+}
+
+/// Count the changes of each body, and list the bodies that have any.
+template <int D>
+void count_changes(std::vector<Body<D>>& bodies, ListScratch<D>& scratch) {
+  for (const auto& note : scratch.notes) {
+    if (note.changes == 0) continue;
+    bodies[static_cast<std::size_t>(note.body)].moved += note.changes;
+    if (scratch.moved.empty() || scratch.moved.back() != note.body)
+      scratch.moved.push_back(note.body);
+  }
 }
 
 /// Take what a particle has out of the sums of those that take part.
@@ -140,22 +156,28 @@ void write_lists(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     change.first_entry = entries;
     entries += change.count();
   }
-  const auto for_each_rewritten = [&](auto&& f) {
-    threads.for_each(grid.patches.size(), [&](std::size_t p) {
-      const auto b = static_cast<std::size_t>(grid.patches[p].body);
-      if (scratch.changes[p].rewritten)
-        f(pools[static_cast<std::size_t>(bodies[b].material)], grid.patches[p], scratch.changes[p]);
-    });
+  const auto material_of = [&](const auto& change) {
+    return static_cast<std::size_t>(bodies[static_cast<std::size_t>(change.body)].material);
   };
-  using Change = typename ListScratch<D>::Change;
-  for_each_rewritten([&](const ParticlePool<D>& pool, Patch<D>& patch, const Change& change) {
-    write_list(pool, patch, change, scratch);
-  });
-  // A list may go where others were.
-  for_each_rewritten([&](ParticlePool<D>& pool, Patch<D>& patch, const Change& change) {
+  const auto place = [&](std::size_t p) {
+    const auto& change = scratch.changes[p];
+    Patch<D>& patch = grid.patches[p];
     patch.begin = change.begin;
     patch.room = change.room;
-    std::copy_n(scratch.lists + change.first_entry, patch.count, pool.order.data() + patch.begin);
+    std::copy_n(scratch.lists + change.first_entry, patch.count,
+                pools[material_of(change)].order.data() + patch.begin);
+  };
+  threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const auto& change = scratch.changes[p];
+    if (!change.rewritten) return;
+    const std::size_t m = material_of(change);
+    write_list(pools[m], grid.patches[p], change, scratch);
+    if (!scratch.flags[m]) place(p);
+  });
+  // Where all lists are laid out anew, one goes where others were.
+  if (std::ranges::none_of(scratch.flags, std::identity())) return;
+  threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    if (scratch.flags[material_of(scratch.changes[p])]) place(p);
   });
 }
 
@@ -165,6 +187,7 @@ template <int D>
 bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                        std::vector<ParticlePool<D>>& pools, Threads& threads,
                        ListScratch<D>& scratch, Removed<D>& eroded, Removed<D>& outflow) {
+  scratch.moved.clear();
   if (!make_scratch(grid, bodies, pools, scratch)) return false;
   const auto body_of = [&](const Patch<D>& patch) -> Body<D>& {
     return bodies[static_cast<std::size_t>(patch.body)];
@@ -177,15 +200,14 @@ bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
     if (patch.left_cell)
       note_changes(grid, body_of(patch), pool_of(patch), patch, scratch, scratch.notes[p]);
   });
-  for (std::size_t p = 0; p < grid.patches.size(); ++p)
-    body_of(grid.patches[p]).moved += scratch.notes[p].changes;
+  count_changes(bodies, scratch);
   const bool changed = migrate_particles(grid, bodies, pools, threads, scratch);
   for (std::size_t p = 0; p < grid.patches.size(); ++p) {
-    const Patch<D>& patch = grid.patches[p];
     const auto& change = scratch.changes[p];
-    if (change.removed > 0)
-      remove_particles(body_of(patch), pool_of(patch), patch, scratch.marks + change.first_mark,
-                       eroded, outflow);
+    if (change.removed == 0) continue;
+    const Patch<D>& patch = grid.patches[p];
+    remove_particles(body_of(patch), pool_of(patch), patch, scratch.marks + change.first_mark,
+                     eroded, outflow);
   }
   write_lists(grid, bodies, pools, threads, scratch);
   scratch.lists = nullptr;
