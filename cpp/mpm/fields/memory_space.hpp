@@ -8,8 +8,8 @@
 
 namespace mpm {
 
-/// A space gives memory on cache-line boundaries, which its Block owns, and takes and gives what the
-/// host has. What lies in a space is read only by code that runs there.
+/// A space gives memory on cache-line boundaries, which its Block owns, and takes and gives what
+/// the host has. What lies in a space is read only by code that runs there.
 template <class Space>
 concept MemorySpace = requires(std::size_t bytes, void* there, const void* here) {
   requires std::movable<typename Space::Block> && std::default_initializable<typename Space::Block>;
