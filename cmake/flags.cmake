@@ -40,7 +40,7 @@ if(MPM_SANITIZE)
 endif()
 
 # Levels of instructions that the core is built for; with more than one the package chooses when it is
-# imported (python/mpm3dpp/processor.py).
+# imported (python/mpm3dpp/base/processor.py).
 if(MPM_NATIVE)
   set(MPM_LEVELS native)
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")

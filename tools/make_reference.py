@@ -11,18 +11,21 @@ import re
 from pathlib import Path
 from typing import Any
 
-from mpm3dpp import case, case_body, case_grid, case_parts
-from mpm3dpp.detonation import Detonation
+from mpm3dpp.base.rules import requirement
+from mpm3dpp.case import body as case_body
+from mpm3dpp.case import case
+from mpm3dpp.case import grid as case_grid
+from mpm3dpp.case import parts as case_parts
+from mpm3dpp.case.detonation import Detonation
+from mpm3dpp.case.loads import Load
+from mpm3dpp.case.motion import Motion
 from mpm3dpp.grains import GrainLattice, GrainPacking, Grains
 from mpm3dpp.io.history import PAIR_LIMIT, PAIR_MEANINGS, PAIRS, TERMS
-from mpm3dpp.loads import Load
 from mpm3dpp.materials import catalogue
 from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
 from mpm3dpp.materials.chosen import ACTIONS
 from mpm3dpp.materials.describe import lines_for_a_case, provenance, rows
 from mpm3dpp.materials.library import NamedMaterial, library
-from mpm3dpp.motion import Motion
-from mpm3dpp.rules import requirement
 from mpm3dpp.shapes.base import KINDS
 
 NOTE = "Made by `tools/make_reference.py` from the code: do not edit."

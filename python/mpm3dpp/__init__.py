@@ -18,22 +18,22 @@ TYPE_CHECKING = False  # That of `typing`, which takes a while to import.
 if TYPE_CHECKING:
     from typing import Any
 
-    from . import shapes
-    from .case import Case, Material, load_case
-    from .case_body import Body
-    from .case_grid import Grid, GridBox, GridDoubling, GridKeep, Walls
-    from .case_parts import Contact, ContactPair, Output, Run, Viscosity
-    from .detonation import Detonation
-    from .errors import CaseError, RunError
-    from .grains import GrainCentres, GrainLattice, GrainPacking, Grains
-    from .io import open_results
-    from .loads import Load
-    from .materials import Eos, Failure, Strength
-    from .motion import Motion
-    from .particles import Particles
-    from .run import run_case
-    from .simulation import Simulation
-    from .time_functions import TimeFunction
+    from mpm3dpp import shapes
+    from mpm3dpp.base.errors import CaseError, RunError
+    from mpm3dpp.base.time_functions import TimeFunction
+    from mpm3dpp.case.body import Body
+    from mpm3dpp.case.case import Case, Material, load_case
+    from mpm3dpp.case.detonation import Detonation
+    from mpm3dpp.case.grid import Grid, GridBox, GridDoubling, GridKeep, Walls
+    from mpm3dpp.case.loads import Load
+    from mpm3dpp.case.motion import Motion
+    from mpm3dpp.case.particles import Particles
+    from mpm3dpp.case.parts import Contact, ContactPair, Output, Run, Viscosity
+    from mpm3dpp.grains import GrainCentres, GrainLattice, GrainPacking, Grains
+    from mpm3dpp.io import open_results
+    from mpm3dpp.materials import Eos, Failure, Strength
+    from mpm3dpp.run.run import run_case
+    from mpm3dpp.run.simulation import Simulation
 
     __version__: str
 
@@ -45,7 +45,7 @@ class _CoreFinder:
     def find_spec(name: str, path: Any = None, target: Any = None) -> Any:
         if name != f"{__name__}._core":
             return None
-        from .processor import CoreFinder
+        from mpm3dpp.base.processor import CoreFinder
 
         return CoreFinder.find_spec(name, path, target)
 
@@ -53,21 +53,21 @@ class _CoreFinder:
 sys.meta_path.insert(0, _CoreFinder())
 
 _HOMES = {
+    "base.errors": ("CaseError", "RunError"),
+    "base.time_functions": ("TimeFunction",),
     "case": ("Case", "Material", "load_case"),
-    "case_body": ("Body",),
-    "case_grid": ("Grid", "GridBox", "GridDoubling", "GridKeep", "Walls"),
-    "case_parts": ("Contact", "ContactPair", "Output", "Run", "Viscosity"),
-    "detonation": ("Detonation",),
-    "errors": ("CaseError", "RunError"),
+    "case.body": ("Body",),
+    "case.detonation": ("Detonation",),
+    "case.grid": ("Grid", "GridBox", "GridDoubling", "GridKeep", "Walls"),
+    "case.loads": ("Load",),
+    "case.motion": ("Motion",),
+    "case.particles": ("Particles",),
+    "case.parts": ("Contact", "ContactPair", "Output", "Run", "Viscosity"),
     "grains": ("GrainCentres", "GrainLattice", "GrainPacking", "Grains"),
     "io": ("open_results",),
-    "loads": ("Load",),
     "materials": ("Eos", "Failure", "Strength"),
-    "motion": ("Motion",),
-    "particles": ("Particles",),
-    "run": ("run_case",),
-    "simulation": ("Simulation",),
-    "time_functions": ("TimeFunction",),
+    "run.run": ("run_case",),
+    "run.simulation": ("Simulation",),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 

@@ -22,7 +22,7 @@ import zipfile
 from pathlib import Path
 
 from mpm3dpp import Simulation, load_case
-from mpm3dpp.errors import CaseError, RunError
+from mpm3dpp.base.errors import CaseError, RunError
 from mpm3dpp.io.checkpoint import restore_checkpoint
 
 SEED, STEPS, LONGEST, MEMORY = 2026, 30, 60, 8 << 30

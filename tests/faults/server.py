@@ -27,12 +27,12 @@ from typing import Any
 import h5py
 import numpy as np
 
-import mpm3dpp.checkpoints
 import mpm3dpp.io.background
-import mpm3dpp.resume
-import mpm3dpp.run
+import mpm3dpp.run.checkpoints
+import mpm3dpp.run.resume
+import mpm3dpp.run.run
 from mpm3dpp import load_case, open_results, run_case
-from mpm3dpp.errors import CaseError, RunError
+from mpm3dpp.base.errors import CaseError, RunError
 from mpm3dpp.io import read_history, read_manifest
 
 SEED = 2026
@@ -109,7 +109,7 @@ class Server:
         if code == DONE:
             self.check_whole()
             return "completed"
-        can = mpm3dpp.resume.has_checkpoint(self.out)
+        can = mpm3dpp.run.resume.has_checkpoint(self.out)
         if not killed and code == STOPPED:
             assert ("--resume goes on" in said) == can, said
         code, said = self.fork(lambda: self.run(resume=can))
@@ -203,7 +203,7 @@ def by_steps() -> None:
         looks[0] += 1
         return looks[0] % 5 == 0
 
-    mpm3dpp.checkpoints.Checkpoints.due = property(due)  # type: ignore[assignment,method-assign]
+    mpm3dpp.run.checkpoints.Checkpoints.due = property(due)  # type: ignore[assignment,method-assign]
 
 
 def one_thread_at_a_time() -> None:
@@ -222,7 +222,7 @@ def one_thread_at_a_time() -> None:
 def stopped_after(case: Any, folder: Path, looks: int) -> None:
     """Run a case as if it had been killed after so many looks at it."""
     left = iter(range(looks))
-    due = mpm3dpp.checkpoints.Checkpoints.due.fget  # type: ignore[attr-defined]
+    due = mpm3dpp.run.checkpoints.Checkpoints.due.fget  # type: ignore[attr-defined]
 
     class Killed(BaseException):
         pass
@@ -232,7 +232,7 @@ def stopped_after(case: Any, folder: Path, looks: int) -> None:
             raise Killed
         return bool(due(self))
 
-    mpm3dpp.checkpoints.Checkpoints.due = property(end)  # type: ignore[assignment,method-assign]
+    mpm3dpp.run.checkpoints.Checkpoints.due = property(end)  # type: ignore[assignment,method-assign]
     try:
         run_case(case, folder, threads=1, pictures=False)
     except Killed:

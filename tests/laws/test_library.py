@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from mpm3dpp.case import Material
+from mpm3dpp.case.case import Material
 from mpm3dpp.material_test import Options, run_test
 from mpm3dpp.material_test.curves import moduli
 from mpm3dpp.materials import NamedMaterial, library

@@ -9,8 +9,8 @@ import pytest
 
 from commands import CASE, mpm3dpp, write
 from mpm3dpp import Case, CaseError, Grid, GridBox, shapes
-from mpm3dpp.build import build
-from mpm3dpp.case import load_case
+from mpm3dpp.case.case import load_case
+from mpm3dpp.fill.build import build
 
 # Ten mistakes: keys and values of tables that have nothing to do with each other.
 VALUES = """\

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fake_core import FakeSimulation
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io import BackgroundWriter, ResultsWriter, open_results
 
 LONG = 20.0  # [s] Until a test that hangs is given up.

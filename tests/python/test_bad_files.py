@@ -17,12 +17,12 @@ import pytest
 
 from commands import CASE, command, mpm3dpp, one_sentence, write
 from mpm3dpp import CaseError, Simulation, load_case, shapes
-from mpm3dpp.build import build
-from mpm3dpp.case_file import MOST_BYTES
+from mpm3dpp.base.machine import group_limits
+from mpm3dpp.base.reading import open_file
+from mpm3dpp.case.file import MOST_BYTES
+from mpm3dpp.fill.build import build
 from mpm3dpp.importers import load_any
-from mpm3dpp.machine import group_limits
 from mpm3dpp.plots import preview
-from mpm3dpp.reading import open_file
 
 POINTS = """\
 [grid]
@@ -128,7 +128,7 @@ def test_a_file_of_points_that_the_memory_does_not_hold(
     (tmp_path / "odd.csv").write_text(lines)
     path = write(tmp_path, POINTS)
     assert len(build(load_case(path))[0].positions) == 2000
-    monkeypatch.setattr("mpm3dpp.csv_points.MEMORY", 2000 * 150 * 0.9)
+    monkeypatch.setattr("mpm3dpp.base.csv_points.MEMORY", 2000 * 150 * 0.9)
     with pytest.raises(CaseError, match=r"has some 2.0e\+03 lines, a particle each, which need"):
         load_case(path)
 
@@ -294,7 +294,7 @@ def test_a_list_of_shapes_by_position() -> None:
 def test_a_limit_of_memory_counts(tmp_path: Path) -> None:
     code = (
         "import resource; resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30));"
-        "from mpm3dpp.machine import MEMORY; assert MEMORY <= 3 << 30"
+        "from mpm3dpp.base.machine import MEMORY; assert MEMORY <= 3 << 30"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
 
@@ -317,7 +317,7 @@ def test_a_file_that_becomes_another_kind_is_closed(
 
     (tmp_path / "case.toml").touch()
     looks = Mock(side_effect=[None, CaseError("is a folder")])
-    monkeypatch.setattr("mpm3dpp.reading._refuse_other_kinds", looks)
+    monkeypatch.setattr("mpm3dpp.base.reading._refuse_other_kinds", looks)
     before = opened()
     with pytest.raises(CaseError, match="is a folder"):
         open_file(tmp_path / "case.toml")

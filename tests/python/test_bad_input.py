@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from mpm3dpp.build import build
-from mpm3dpp.case import load_case
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.case import load_case
+from mpm3dpp.fill.build import build
 from mpm3dpp.importers import load_any
 
 GOOD = """\

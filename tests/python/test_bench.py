@@ -90,7 +90,7 @@ def test_table_names_every_stage(cubes, capsys):
 
 
 def test_help_names_the_benchmarks():
-    from mpm3dpp.cli import BENCH_NAMES
+    from mpm3dpp.cli.app import BENCH_NAMES
 
     named = BENCH_NAMES.rstrip(".").replace(" or ", ", ").split(", ")
     assert named == list(cases.BENCHES)

@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 
 import mpm3dpp
-from mpm3dpp.build import build, warnings
-from mpm3dpp.case import Case, Material, load_case
-from mpm3dpp.case_body import Body
-from mpm3dpp.case_file import locate_keys, parse
-from mpm3dpp.case_grid import Grid, GridBox
-from mpm3dpp.case_parts import Contact, ContactPair, Output, Run
-from mpm3dpp.echo import echo, occupied_cells, time_step
-from mpm3dpp.errors import CaseError
-from mpm3dpp.folders import default_folder
-from mpm3dpp.machine import thread_count
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.machine import thread_count
+from mpm3dpp.case.body import Body
+from mpm3dpp.case.case import Case, Material, load_case
+from mpm3dpp.case.file import locate_keys, parse
+from mpm3dpp.case.grid import Grid, GridBox
+from mpm3dpp.case.parts import Contact, ContactPair, Output, Run
+from mpm3dpp.fill.build import build, warnings
+from mpm3dpp.io.folders import default_folder
 from mpm3dpp.materials import Failure, Strength, catalogue, listing
+from mpm3dpp.run.summary import echo, occupied_cells, time_step
 from mpm3dpp.shapes import Box, Disc, Sphere
 
 RINGS = """\

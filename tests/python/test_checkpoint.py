@@ -24,10 +24,10 @@ import pytest
 
 from commands import CASE, command, mpm3dpp, one_sentence, write
 from mpm3dpp import Case, Simulation, load_case, open_results, run_case
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io import read_history, read_manifest
-from mpm3dpp.report import speed_line
-from mpm3dpp.resume import refuse_to_begin_anew
+from mpm3dpp.run.report import speed_line
+from mpm3dpp.run.resume import refuse_to_begin_anew
 
 OFTEN = CASE.replace("frames = 4", 'interval = "20 ms"\ncheckpoint_interval = "50 ms"')
 LONG = OFTEN.replace('"8 ms"', '"1000 s"')
@@ -100,7 +100,7 @@ def interrupted(case: Case, folder: Path, looks: int, monkeypatch: pytest.Monkey
             return self
 
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr("mpm3dpp.run.Notice", Pressed)
+        patch.setattr("mpm3dpp.run.run.Notice", Pressed)
         run_case(case, folder, threads=1, pictures=False)
 
 
@@ -432,7 +432,7 @@ def test_the_checkpoint_before_the_last(
     case = load_case(write(tmp_path))
     whole = run_case(case, tmp_path / "whole", threads=1, pictures=False)
     out = tmp_path / "out"
-    monkeypatch.setattr("mpm3dpp.checkpoints.Checkpoints.due", True)
+    monkeypatch.setattr("mpm3dpp.run.checkpoints.Checkpoints.due", True)
     interrupted(case, out, 3, monkeypatch)
     steps = []
     for name in ("checkpoint.zip", "checkpoint_previous.zip"):
@@ -491,7 +491,7 @@ def test_a_checkpoint_that_cannot_be_written_does_not_end_the_run(
     out = tmp_path / "out"
     case = load_case(write(tmp_path))
     with monkeypatch.context() as patch:
-        patch.setattr("mpm3dpp.io.disk.os.fsync", full)
+        patch.setattr("mpm3dpp.base.disk.os.fsync", full)
         done = run_case(case, out, threads=1, quiet=False, pictures=False)
     assert done.status == "completed" and read_manifest(out)["status"] == "completed"
     assert "warning: no checkpoint: cannot write" in capfd.readouterr().err
@@ -504,7 +504,7 @@ def test_control_c_leaves_out_the_pictures_of_a_finished_run(
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("mpm3dpp.run.draw_apart", stop)
+    monkeypatch.setattr("mpm3dpp.run.run.draw_apart", stop)
     done = run_case(load_case(write(tmp_path)), tmp_path / "out", threads=1, quiet=False)
     assert done.status == "completed"
     assert "no pictures: `mpm3dpp plot" in capfd.readouterr().err
@@ -556,7 +556,7 @@ def test_half_a_state_does_not_step(tmp_path: Path) -> None:
 SAVE = """
 import sys
 from mpm3dpp import Simulation, load_case
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
 simulation = Simulation(load_case("case.toml"), threads=1)
 simulation.advance(int(sys.argv[1]))
 try:

@@ -17,8 +17,8 @@ import pytest
 
 from commands import CASE, write
 from mpm3dpp import Simulation, load_case, run_case
-from mpm3dpp.errors import CaseError
-from mpm3dpp.resume import go_on, refuse_to_begin_anew
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.run.resume import go_on, refuse_to_begin_anew
 
 FAULTS = Path(__file__).parents[1] / "faults"
 

@@ -9,11 +9,11 @@ import pytest
 
 from cases import BASES
 from mpm3dpp import Body, Case, Grains, Grid, Material, Run, Simulation, load_case, shapes
-from mpm3dpp.build import build
-from mpm3dpp.case_grid import GridDoubling
-from mpm3dpp.echo import echo, memory_bytes
-from mpm3dpp.echo_conditions import doublings, in_words
-from mpm3dpp.time_functions import TimeFunction
+from mpm3dpp.base.time_functions import TimeFunction
+from mpm3dpp.case.grid import GridDoubling
+from mpm3dpp.fill.build import build
+from mpm3dpp.run.summary import echo, memory_bytes
+from mpm3dpp.run.summary_conditions import doublings, in_words
 
 CASE = """
 [grid]

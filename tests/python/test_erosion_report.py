@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from mpm3dpp import open_results
-from mpm3dpp.cli import app
+from mpm3dpp.cli.app import app
 from mpm3dpp.io import read_manifest
 from mpm3dpp.plots.frames import draw_frame, drawn, view_of
 

@@ -18,9 +18,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mpm3dpp import Case, CaseError
-from mpm3dpp.build import build
-from mpm3dpp.case import load_case
-from mpm3dpp.echo import echo
+from mpm3dpp.case.case import load_case
+from mpm3dpp.fill.build import build
+from mpm3dpp.run.summary import echo
 
 if sys.version_info >= (3, 11):
     import tomllib

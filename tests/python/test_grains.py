@@ -21,11 +21,11 @@ from mpm3dpp import (
     open_results,
     run_case,
 )
-from mpm3dpp.build import build
-from mpm3dpp.echo import echo
+from mpm3dpp.base.neighbours import overlapping_boxes
+from mpm3dpp.fill.build import build
 from mpm3dpp.io.history import read_history
-from mpm3dpp.neighbours import overlapping_boxes
 from mpm3dpp.plots import preview
+from mpm3dpp.run.summary import echo
 
 CASE = """\
 [grid]

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from mpm3dpp import Case, CaseError, Simulation, load_case, run_case
-from mpm3dpp.build import build
+from mpm3dpp.fill.build import build
 from mpm3dpp.importers import load_any
 from mpm3dpp.importers.mpm3d import import_mpm, write_case
 from mpm3dpp.importers.mpm3d.lexer import Reader, split

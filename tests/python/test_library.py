@@ -6,12 +6,12 @@ from __future__ import annotations
 import pytest
 from typer.testing import CliRunner
 
-from mpm3dpp.build import build
-from mpm3dpp.case import Case, Material
-from mpm3dpp.cli import app
-from mpm3dpp.echo import echo
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.case import Case, Material
+from mpm3dpp.cli.app import app
+from mpm3dpp.fill.build import build
 from mpm3dpp.materials import catalogue, library, listing, named
+from mpm3dpp.run.summary import echo
 
 CASE = """
 grid = { dimension = 3, cell_size = "100 mm" }

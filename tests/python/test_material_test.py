@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from mpm3dpp.case import Material
-from mpm3dpp.cli import app
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.case import Material
+from mpm3dpp.cli.app import app
 from mpm3dpp.material_test import Options, driver, hugoniot, main, run_test, subject
 from mpm3dpp.material_test.curves import heated_flow, known_curves
 

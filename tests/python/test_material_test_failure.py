@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mpm3dpp.case import Material
+from mpm3dpp.case.case import Material
 from mpm3dpp.material_test import Options, Result, driver, main, run_test
 
 E, Y = 100e9, 200e6

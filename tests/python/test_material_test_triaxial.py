@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
 from mpm3dpp.material_test import Options, main, run_test
 
 SOIL = {"E": "10 MPa", "nu": 0.3}

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from mpm3dpp import Case, CaseError, Simulation, TimeFunction, load_case
-from mpm3dpp.build import build
-from mpm3dpp.echo import echo
+from mpm3dpp.fill.build import build
+from mpm3dpp.run.summary import echo
 
 GOOD = """\
 [grid]

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from mpm3dpp import CaseError
-from mpm3dpp.build import build
+from mpm3dpp.fill.build import build
 from mpm3dpp.importers.mpm3d import import_mpm, write_case
 from mpm3dpp.importers.mpm3d.statements import REFUSED, STATEMENTS
 from mpm_text import GOOD, MATE, PART, TWO, edited, of, with_part

@@ -9,12 +9,12 @@ import pytest
 from typer.testing import CliRunner
 
 from mpm3dpp import Case, CaseError, Simulation, load_case
-from mpm3dpp.build import build
-from mpm3dpp.case_notes import notes
-from mpm3dpp.cli import app
-from mpm3dpp.echo import steps_in_words
+from mpm3dpp.cli.app import app
+from mpm3dpp.fill.advisories import notes
+from mpm3dpp.fill.build import build
 from mpm3dpp.importers.mpm3d.lexer import split
 from mpm3dpp.importers.mpm3d.to_case import import_source
+from mpm3dpp.run.summary import steps_in_words
 
 CASE = """\
 [grid]

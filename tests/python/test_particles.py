@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from mpm3dpp import Body, Case, CaseError, Particles, Simulation, load_case
-from mpm3dpp.build import build
-from mpm3dpp.echo import echo
-from mpm3dpp.particles import read_particles, write_particles
+from mpm3dpp.case.particles import read_particles, write_particles
+from mpm3dpp.fill.build import build
 from mpm3dpp.plots import preview
+from mpm3dpp.run.summary import echo
 
 CASE = """\
 [grid]

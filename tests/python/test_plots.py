@@ -12,7 +12,7 @@ import pytest
 
 from fake_core import COLUMNS, SIZE, FakeSimulation
 from mpm3dpp import open_results, plots
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io import HistoryWriter, ResultsWriter, build_manifest
 from mpm3dpp.plots import energies, flat, frames, labels, raster, space
 
@@ -268,7 +268,7 @@ def test_labels() -> None:
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_preview(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dimension: int) -> None:
     """The filling is the shapes' business; here a body is the positions it fills."""
-    import mpm3dpp.build
+    import mpm3dpp.fill.build
 
     names, blocks = ["left", "right"], FakeSimulation(dimension)._start
     size = np.full(len(blocks[0]), SIZE**dimension)
@@ -276,7 +276,7 @@ def test_preview(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dimension: int
         SimpleNamespace(part=name, positions=block, volumes=size)
         for name, block in zip(names, blocks, strict=True)
     ]
-    monkeypatch.setattr(mpm3dpp.build, "fill_all", lambda case: bodies)
+    monkeypatch.setattr(mpm3dpp.fill.build, "fill_all", lambda case: bodies)
     box = SimpleNamespace(lower=(0.0,) * dimension, upper=(0.03,) * dimension)
     grid = SimpleNamespace(
         dimension=dimension, cell_size=2 * SIZE, origin=(0.0,) * dimension, box=box

@@ -13,7 +13,7 @@ import pytest
 
 import mpm3dpp
 from mpm3dpp import CaseError, _core
-from mpm3dpp.processor import LEVELS, CoreFinder, choose, processor_flags
+from mpm3dpp.base.processor import LEVELS, CoreFinder, choose, processor_flags
 
 ALL = list(LEVELS)
 ZEN4 = LEVELS["x86-64-v4"] | {"sse4_2"}

@@ -40,7 +40,7 @@ def test_no_other_pages(tool):
 
 
 def test_every_table_of_a_case_is_described(tool):
-    from mpm3dpp.model import CaseModel
+    from mpm3dpp.base.model import CaseModel
 
     described = {model for _, model, _ in tool.TABLES}
     for module in (tool.case, tool.case_parts):

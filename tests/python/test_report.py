@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mpm3dpp.report import energy_line, warning_lines
+from mpm3dpp.run.report import energy_line, warning_lines
 
 
 def manifest(initial: dict[str, float], final: dict[str, float]) -> Any:

@@ -13,8 +13,8 @@ import pytest
 from typer.testing import CliRunner
 
 from mpm3dpp import Case, RunError, reproduce
-from mpm3dpp.cli import app
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.cli.app import app
 from mpm3dpp.plots import space
 from mpm3dpp.reproduce import examples, paper
 from mpm3dpp.reproduce.examples import EXAMPLES, change_lines, changed, fewer_spheres, load

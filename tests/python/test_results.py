@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from fake_core import COLUMNS, SIZE, FakeSimulation, pressure, von_mises
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io import (
     HistoryWriter,
     ResultsWriter,
@@ -29,7 +29,7 @@ from mpm3dpp.io import (
     result_hash,
 )
 from mpm3dpp.plots.energies import draw_energies
-from mpm3dpp.progress import Progress
+from mpm3dpp.run.progress import Progress
 
 TO_VTK = [0, 1, 2, 5, 3, 4]  # xx yy zz xy yz xz from xx yy zz yz xz xy
 

@@ -16,9 +16,9 @@ import pytest
 
 from commands import CASE, command, mpm3dpp, one_sentence, write
 from mpm3dpp import RunError, load_case, open_results, run_case
-from mpm3dpp.errors import CaseError
-from mpm3dpp.folders import forget_last_run
+from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io import read_history, read_manifest
+from mpm3dpp.io.folders import forget_last_run
 
 LONG = CASE.replace('"8 ms"', '"1000 s"').replace("frames = 4", 'interval = "20 ms"')
 # Update stress last with the linear basis makes energy in contact (Bardenhagen 2002).

@@ -8,10 +8,10 @@ import math
 import numpy as np
 import pytest
 
-from mpm3dpp.case_body import Body
-from mpm3dpp.case_grid import Grid
-from mpm3dpp.errors import CaseError
-from mpm3dpp.overlap import close_particles
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.body import Body
+from mpm3dpp.case.grid import Grid
+from mpm3dpp.fill.overlap import close_particles
 from mpm3dpp.shapes import (
     Box,
     Cylinder,

@@ -15,7 +15,8 @@ from pathlib import Path
 import pytest
 
 from commands import CASE, command, write
-from mpm3dpp import Case, Simulation, signals
+from mpm3dpp import Case, Simulation
+from mpm3dpp.base import signals
 
 LONG = CASE.replace("8 ms", "1000 s")
 KINDS = (signal.SIGINT, signal.SIGTERM)

@@ -21,7 +21,7 @@ from mpm3dpp import (
     Viscosity,
     shapes,
 )
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io.history import TERMS
 
 EPS = np.finfo(float).eps

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from mpm3dpp import Body, Case, CaseError, Grid, Material, Run, shapes
-from mpm3dpp.build import build
-from mpm3dpp.loads import Load, nearest_particles, pieces
+from mpm3dpp.case.loads import Load, nearest_particles, pieces
+from mpm3dpp.fill.build import build
 from mpm3dpp.shapes.surfaces import sides, surface
 
 BOX2 = shapes.Box(lower=(0.1, 0.2), upper=(0.5, 0.9))

@@ -8,9 +8,10 @@ import math
 import pytest
 from pydantic import TypeAdapter
 
-from mpm3dpp import _core, units
-from mpm3dpp.errors import CaseError
-from mpm3dpp.rules import Bounds, holds, requirement, within
+from mpm3dpp import _core
+from mpm3dpp.base import units
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.rules import Bounds, holds, requirement, within
 
 
 @pytest.mark.parametrize("name", units.COMMON)

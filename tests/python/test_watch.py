@@ -11,9 +11,9 @@ import pytest
 from typer.testing import CliRunner
 
 from mpm3dpp import Case, CaseError, Run, RunError, Simulation
-from mpm3dpp.cli import app
+from mpm3dpp.cli.app import app
 from mpm3dpp.io import read_history, read_manifest
-from mpm3dpp.run import run_case
+from mpm3dpp.run.run import run_case
 
 SOFT = {"density": 1000.0, "strength": {"elastic": {"E": 1e6, "nu": 0.3}}}
 BOX = {"lower": [0.0, 0.0], "upper": [80e-3, 80e-3]}

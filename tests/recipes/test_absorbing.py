@@ -10,8 +10,8 @@ import pytest
 
 from cases import BASES, CELL, DENSITY, SCHEMES, YOUNG, block, materials
 from mpm3dpp import Case, CaseError, Grid, GridBox, Run, Simulation, Walls
-from mpm3dpp.build import build
-from mpm3dpp.case_notes import notes
+from mpm3dpp.fill.advisories import notes
+from mpm3dpp.fill.build import build
 
 NU = 0.3
 PRESSURE_WAVE = np.sqrt(YOUNG * (1 - NU) / (1 + NU) / (1 - 2 * NU) / DENSITY)

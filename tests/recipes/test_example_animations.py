@@ -11,7 +11,7 @@ from PIL import Image
 
 from mpm3dpp import Case, load_case, plots
 from mpm3dpp.plots import space
-from mpm3dpp.run import run_case
+from mpm3dpp.run.run import run_case
 from recipes.test_paper_examples import penetration, spheres
 from recipes.test_shaking_grains import short
 

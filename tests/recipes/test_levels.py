@@ -17,7 +17,7 @@ import pytest
 import mpm3dpp
 from cases import BASES
 from mpm3dpp import _core
-from mpm3dpp.processor import LEVELS, processor_flags
+from mpm3dpp.base.processor import LEVELS, processor_flags
 
 HERE = Path(mpm3dpp.__file__).parent
 PRESENT = [level for level in LEVELS if list(HERE.glob(f"_core_{level.replace('-', '_')}.*"))]

@@ -10,7 +10,7 @@ import pytest
 
 from cases import BASES, CELL, DENSITY, YOUNG, block, box, materials
 from mpm3dpp import Body, Case, CaseError, Grid, Material, Run, Simulation, shapes
-from mpm3dpp.loads import Load
+from mpm3dpp.case.loads import Load
 
 NU = 0.3
 SMOOTH = {"quadratic": 0.0, "linear": 0.3}

@@ -7,18 +7,7 @@ import numpy as np
 import pytest
 
 import cases
-from mpm3dpp import (
-    Body,
-    Case,
-    Eos,
-    Grid,
-    Material,
-    Run,
-    Simulation,
-    Strength,
-    _core,
-    shapes,
-)
+from mpm3dpp import Body, Case, Eos, Grid, Material, Run, Simulation, Strength, _core, shapes
 
 # Largest error of a balance after some hundred steps, as a fraction of what is balanced: some
 # roundings of 1e-16 or 6e-8.

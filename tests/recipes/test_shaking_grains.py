@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from mpm3dpp import Case, Simulation, load_case
-from mpm3dpp.neighbours import near_pairs
+from mpm3dpp.base.neighbours import near_pairs
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "04_shaking_grains"
 SPACING = 0.5e-3

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mpm3dpp import _core
+from mpm3dpp.base.neighbours import near_pairs
 from mpm3dpp.grains.packing import pack
-from mpm3dpp.neighbours import near_pairs
 
 from .figure import Figure, judge, report
 from .points import ball, block

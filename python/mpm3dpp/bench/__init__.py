@@ -25,9 +25,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..errors import CaseError, nearest
-from ..folders import writable_folder
-from ..machine import MEMORY, PARTICLE_BYTES_WITH_GRID
+from mpm3dpp.base.errors import CaseError, nearest
+from mpm3dpp.base.machine import MEMORY, PARTICLE_BYTES_WITH_GRID
+from mpm3dpp.io.folders import writable_folder
+
 from .cases import BENCHES, Bench
 from .operations import operations_per_particle_step
 from .process import Process
@@ -187,7 +188,7 @@ def _result(
     last: dict[str, Any],
 ) -> dict[str, Any]:
     """Put the measurements together; see `measure`."""
-    from .. import __version__
+    from mpm3dpp import __version__
 
     count = bench.particles(size)
     median = statistics.median_low(block["ns"] for block in blocks[0])

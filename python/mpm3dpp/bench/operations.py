@@ -10,7 +10,8 @@ Not counted are nodes, the one-axis factors themselves, lists, and what lanes th
 
 from __future__ import annotations
 
-from .. import _core
+from mpm3dpp import _core
+
 from .traffic import moves_particles
 
 # Of a material for a particle and step (3D, plane strain), by hand from `cpp/mpm/materials`: strain

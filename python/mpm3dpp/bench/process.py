@@ -7,8 +7,8 @@ import json
 import subprocess
 from typing import Any
 
-from .. import child
-from ..errors import RunError
+from mpm3dpp.base import child
+from mpm3dpp.base.errors import RunError
 
 
 class Process:

@@ -17,7 +17,8 @@ import time as clock
 from pathlib import Path
 from typing import Any
 
-from .. import _core
+from mpm3dpp import _core
+
 from .cases import BENCHES, make
 
 _FOREVER = 1e9  # End time that no benchmark reaches [s].

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import SkipValidation
 
-from mpm3dpp.csv_points import FromFile, Layout, digest_of, file_entry, read_points, short
-from mpm3dpp.errors import CaseError
-from mpm3dpp.machine import BODY_BYTES
+from mpm3dpp.base.csv_points import FromFile, Layout, digest_of, file_entry, read_points, short
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.machine import BODY_BYTES
 
 Array = NDArray[np.float64]
 _LARGEST = 1e100

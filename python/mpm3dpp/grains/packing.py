@@ -9,8 +9,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm3dpp.errors import CaseError
-from mpm3dpp.neighbours import near_pairs
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.neighbours import near_pairs
 
 Array = NDArray[np.float64]
 

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
-from mpm3dpp.errors import CaseError, Path, violation
-from mpm3dpp.grains.centres import AnyCentres
-from mpm3dpp.grains.packing import MOST_GRAINS, draw_radii, pack
-from mpm3dpp.machine import BODY_BYTES, MEMORY, memory_text
-from mpm3dpp.model import MOST, CaseModel, Choice, Count, Exactly, Text
-from mpm3dpp.units import Point, PositiveLength, Quantity, Spin, Vector, VelocityVector
+from mpm3dpp.base.errors import CaseError, Path, violation
+from mpm3dpp.base.machine import BODY_BYTES, MEMORY, memory_text
+from mpm3dpp.base.model import MOST, CaseModel, Choice, Count, Exactly, Text
+from mpm3dpp.base.units import Point, PositiveLength, Quantity, Spin, Vector, VelocityVector
+
+from .centres import AnyCentres
+from .packing import MOST_GRAINS, draw_radii, pack
 
 Array = NDArray[np.float64]
 Wrong = tuple[Path, str, str]

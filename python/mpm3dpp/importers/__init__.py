@@ -6,10 +6,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
 
 if TYPE_CHECKING:
-    from mpm3dpp.case import Case
+    from mpm3dpp.case.case import Case
 
 MPM3D_SUFFIX = ".mpm"
 
@@ -35,6 +35,6 @@ def load_any(path: Path, units: str | None = None) -> tuple[Case, list[str]]:
     if units is not None:
         rule = "is for files of MPM3D-F90 (.mpm) only"
         raise CaseError(rule, "leave it out; a case file has its units in it", key="--units")
-    from mpm3dpp.case import load_case
+    from mpm3dpp.case.case import load_case
 
     return load_case(path), []

@@ -4,13 +4,13 @@
 Nothing heavy is imported here; h5py is loaded when a file is opened, vtk never.
 """
 
-from mpm3dpp.io.background import BackgroundWriter
-from mpm3dpp.io.fields import Frame, frame_of
-from mpm3dpp.io.history import HistoryWriter, read_history
-from mpm3dpp.io.manifest import Manifest, build_manifest, read_manifest
-from mpm3dpp.io.result_hash import result_hash
-from mpm3dpp.io.results import Results, open_results
-from mpm3dpp.io.vtkhdf import ResultsWriter
+from .background import BackgroundWriter
+from .fields import Frame, frame_of
+from .history import HistoryWriter, read_history
+from .manifest import Manifest, build_manifest, read_manifest
+from .result_hash import result_hash
+from .results import Results, open_results
+from .vtkhdf import ResultsWriter
 
 __all__ = [
     "BackgroundWriter",

@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from mpm3dpp.errors import CaseError
-from mpm3dpp.io.fields import Column
-from mpm3dpp.io.vtkhdf import ResultsWriter
+from mpm3dpp.base.errors import CaseError
+
+from .fields import Column
+from .vtkhdf import ResultsWriter
 
 FRAME_SHARE = 1 / 6
 """Of the core's memory, the room that a run has for columns that are not written yet."""

@@ -15,8 +15,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import replacing
+from mpm3dpp.base.disk import replacing
+from mpm3dpp.base.errors import CaseError
 
 CHECKPOINT = "checkpoint.zip"
 PREVIOUS = "checkpoint_previous.zip"

@@ -15,9 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mpm3dpp.errors import CaseError
-from mpm3dpp.io.rows import FROM_VTK
-from mpm3dpp.outputs import CHANGING, COLUMNS, DERIVED, STANDARD, UNITS
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.outputs import CHANGING, COLUMNS, DERIVED, STANDARD, UNITS
+
+from .rows import FROM_VTK
 
 _PLACES = {2: (0, 1), 4: (0, 1, 2, 3), 6: FROM_VTK}
 """Where VTK has our components: vectors have three there, tensors xx yy zz xy yz xz."""

@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
-from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import replacing, writing
+from mpm3dpp.base.disk import replacing, writing
+from mpm3dpp.base.errors import CaseError
 
 if TYPE_CHECKING:
     import h5py

@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp import _core
-from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import checksum, make_folder
-from mpm3dpp.io.fields import numbered
-from mpm3dpp.io.table import Table
+from mpm3dpp.base.disk import checksum, make_folder
+from mpm3dpp.base.errors import CaseError
+
+from .fields import numbered
+from .table import Table
 
 TERMS: dict[str, dict[str, str]] = _core.history_terms
 """The columns of the table, before those of pairs: `unit`, `meaning`, `role` in the balance of the

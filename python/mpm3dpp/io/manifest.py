@@ -14,10 +14,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import write_atomically
-from mpm3dpp.io.records import ContactRecord, LoadRecord, PairRecord, WarningRecord
-from mpm3dpp.io.result_hash import result_hash
+from mpm3dpp.base.disk import write_atomically
+from mpm3dpp.base.errors import CaseError
+
+from .records import ContactRecord, LoadRecord, PairRecord, WarningRecord
+from .result_hash import result_hash
 
 Status = Literal["completed", "interrupted", "failed"]
 

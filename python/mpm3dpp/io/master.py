@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.io.disk import replacing
-from mpm3dpp.io.frame_file import CELLS, LIBVER, FrameInfo, frame_path, frames_folder
+from mpm3dpp.base.disk import replacing
+
+from .frame_file import CELLS, LIBVER, FrameInfo, frame_path, frames_folder
 
 if TYPE_CHECKING:
     import h5py

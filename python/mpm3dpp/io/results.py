@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp import arguments
-from mpm3dpp.errors import CaseError
-from mpm3dpp.io.frame_file import frame_path, read_arrays, read_info
-from mpm3dpp.io.rows import FROM_VTK, TO_VTK
+from mpm3dpp.base import arguments
+from mpm3dpp.base.errors import CaseError
+
+from .frame_file import frame_path, read_arrays, read_info
+from .rows import FROM_VTK, TO_VTK
 
 if TYPE_CHECKING:
     import pyvista

@@ -11,8 +11,8 @@ import zlib
 from collections.abc import Mapping
 from pathlib import Path
 
-from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import bring_to_disk, writing
+from mpm3dpp.base.disk import bring_to_disk, writing
+from mpm3dpp.base.errors import CaseError
 
 
 class Table:

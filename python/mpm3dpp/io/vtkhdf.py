@@ -18,10 +18,11 @@ from typing import Any
 
 import numpy as np
 
-from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import bring_folder_to_disk, checksum, make_folder, unfinished, writing
-from mpm3dpp.io.fields import Column, Frame, column_units, frame_of, numbered
-from mpm3dpp.io.frame_file import (
+from mpm3dpp.base.disk import bring_folder_to_disk, checksum, make_folder, unfinished, writing
+from mpm3dpp.base.errors import CaseError
+
+from .fields import Column, Frame, column_units, frame_of, numbered
+from .frame_file import (
     CELLS,
     FrameInfo,
     frame_numbers,
@@ -32,8 +33,8 @@ from mpm3dpp.io.frame_file import (
     remove_frames,
     write_frame,
 )
-from mpm3dpp.io.master import write_master
-from mpm3dpp.io.rows import as_stored
+from .master import write_master
+from .rows import as_stored
 
 RESULTS = "results.vtkhdf"
 

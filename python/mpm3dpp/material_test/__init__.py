@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mpm3dpp.case import Material
+from mpm3dpp.case.case import Material
 from mpm3dpp.plots.labels import scaled
 
 from . import driver, hugoniot, triaxial
@@ -83,7 +83,7 @@ def main(
         units: as for `run_test`.
     """
     result = run_test(subject, options, units)
-    from mpm3dpp.folders import writable_folder
+    from mpm3dpp.io.folders import writable_folder
 
     from . import plot, report
 

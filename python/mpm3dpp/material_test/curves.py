@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from mpm3dpp.case import Material
+from mpm3dpp.case.case import Material
 
 from .options import Options
 from .triaxial import failure_deviator

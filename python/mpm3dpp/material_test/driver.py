@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mpm3dpp.case import Material
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.case import Material
 from mpm3dpp.materials.point import COUNTED, drive_point
 
 from . import sense

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mpm3dpp.case import Material
+from mpm3dpp.case.case import Material
 from mpm3dpp.materials.chosen import Failure
 from mpm3dpp.plots.labels import scaled
 

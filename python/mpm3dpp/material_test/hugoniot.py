@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mpm3dpp.case import Material
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.case import Material
 
 from .driver import drive
 from .options import Options

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from mpm3dpp.errors import CaseError, nearest
+from mpm3dpp.base.errors import CaseError, nearest
 
 from .triaxial import CELL_PRESSURE
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mpm3dpp.io.disk import writing
+from mpm3dpp.base.disk import writing
 from mpm3dpp.plots.labels import prefix
 
 from .curves import Curve

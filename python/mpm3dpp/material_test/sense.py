@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from mpm3dpp.case import Material
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.case import Material
 
 from .options import Options
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from mpm3dpp.case import Material
-from mpm3dpp.errors import CaseError, nearest
+from mpm3dpp.base.errors import CaseError, nearest
+from mpm3dpp.case.case import Material
 from mpm3dpp.importers import MPM3D_SUFFIX, load_any
 from mpm3dpp.materials import library
 

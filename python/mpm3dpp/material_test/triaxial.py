@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from mpm3dpp.case import Material
+from mpm3dpp.case.case import Material
 from mpm3dpp.plots.labels import scaled
 
 CELL_PRESSURE = 100e3  # [Pa], unless the user says

@@ -7,9 +7,9 @@ import importlib
 from functools import lru_cache
 from typing import Any
 
-from mpm3dpp.errors import MISSING, below, nearest, report, violation
-from mpm3dpp.rules import Bounds
-from mpm3dpp.units import Quantity
+from mpm3dpp.base.errors import MISSING, below, nearest, report, violation
+from mpm3dpp.base.rules import Bounds
+from mpm3dpp.base.units import Quantity
 
 KINDS = {
     "strength": "strength model",

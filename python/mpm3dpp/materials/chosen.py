@@ -8,8 +8,8 @@ from typing import Annotated, Any, ClassVar, cast
 from pydantic import BeforeValidator, SkipValidation, WithJsonSchema, model_validator
 
 from mpm3dpp import _core
-from mpm3dpp.errors import below, nearest, report, violation
-from mpm3dpp.model import CaseModel, Choice
+from mpm3dpp.base.errors import below, nearest, report, violation
+from mpm3dpp.base.model import CaseModel, Choice
 
 from .catalogue import KINDS, catalogue, check_parameters
 from .examples import example

@@ -8,8 +8,8 @@ import textwrap
 from collections.abc import Iterator
 from typing import Any
 
-from mpm3dpp.errors import CaseError, nearest
-from mpm3dpp.rules import requirement
+from mpm3dpp.base.errors import CaseError, nearest
+from mpm3dpp.base.rules import requirement
 
 from .catalogue import KINDS, catalogue
 from .chosen import ACTIONS

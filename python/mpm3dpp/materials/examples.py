@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from mpm3dpp.units import DIMENSIONS
+from mpm3dpp.base.units import DIMENSIONS
 
 from .catalogue import catalogue
 

@@ -13,7 +13,7 @@ from functools import lru_cache
 from importlib import resources
 from typing import Any
 
-from mpm3dpp.errors import CaseError, nearest, show, violation
+from mpm3dpp.base.errors import CaseError, nearest, show, violation
 
 if sys.version_info >= (3, 11):
     import tomllib

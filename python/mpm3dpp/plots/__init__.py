@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from mpm3dpp import arguments
+from mpm3dpp.base import arguments
 
 
 def plot_results(
@@ -40,7 +40,7 @@ def plot_results(
         CaseError: there are no results, no such frame or no such array; or a picture could not be
             drawn, after all others have been.
     """
-    from mpm3dpp.plots.run import draw_all
+    from .run import draw_all
 
     folder, frame = arguments.path("folder", folder), arguments.whole_number("frame", frame)
     colour = None if colour is None else arguments.text("colour", colour)
@@ -58,7 +58,7 @@ def first_contact(folder: str | Path, out: str | Path | None = None) -> Path | N
     Returns:
         path of the picture; None when no bodies touched.
     """
-    from mpm3dpp.plots.contact import first_contact as make
+    from .contact import first_contact as make
 
     out = None if out is None else arguments.path("out", out)
     return make(arguments.path("folder", folder), out)
@@ -71,7 +71,7 @@ def preview(case: Any, out: str | Path) -> Path:
         case: a checked `mpm3dpp.case.Case`.
         out: the picture, or a folder for `preview.png`.
     """
-    from mpm3dpp.plots.case_view import preview as make
+    from .case_view import preview as make
 
     return make(case, arguments.path("out", out))
 

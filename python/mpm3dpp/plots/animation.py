@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.io.disk import make_folder, replacing
-from mpm3dpp.plots.frames import draw_frame, view_of
-from mpm3dpp.plots.style import styled
+from mpm3dpp.base.disk import make_folder, replacing
+
+from .frames import draw_frame, view_of
+from .style import styled
 
 if TYPE_CHECKING:
     from mpm3dpp.io.results import Results

@@ -18,9 +18,9 @@ import sys
 import threading
 from pathlib import Path
 
-from mpm3dpp import child
-from mpm3dpp.errors import RunError
-from mpm3dpp.io.disk import unfinished
+from mpm3dpp.base import child
+from mpm3dpp.base.disk import unfinished
+from mpm3dpp.base.errors import RunError
 
 _PATIENCE = 2.0  # Seconds for a process that is told to end; some libraries do not listen.
 
@@ -84,7 +84,8 @@ def main(folder: str) -> None:
     threading.Thread(target=_end_with_parent, daemon=True).start()
     try:
         from mpm3dpp import _core
-        from mpm3dpp.plots.run import draw_all
+
+        from .run import draw_all
 
         _core.return_freed_memory()
         for _ in draw_all(Path(folder), -1, None, None, None):

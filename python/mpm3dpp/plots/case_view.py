@@ -9,17 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from mpm3dpp.plots.flat import draw_cells, draw_particles, set_view
-from mpm3dpp.plots.frames import paper
-from mpm3dpp.plots.labels import length_unit
-from mpm3dpp.plots.style import (
-    body_colours,
-    legend_of_bodies,
-    new_figure,
-    picture_path,
-    save,
-    styled,
-)
+from .flat import draw_cells, draw_particles, set_view
+from .frames import paper
+from .labels import length_unit
+from .style import body_colours, legend_of_bodies, new_figure, picture_path, save, styled
 
 
 def preview(case: Any, out: Path) -> Path:
@@ -49,7 +42,7 @@ def preview(case: Any, out: Path) -> Path:
 
 def filled(case: Any) -> tuple[list[str], np.ndarray, np.ndarray, np.ndarray]:
     """All particles of a case: names of bodies, positions (n, 3) [m], sizes (n,) [m], body (n,)."""
-    from mpm3dpp.build import fill_all
+    from mpm3dpp.fill.build import fill_all
 
     dimension = int(case.grid.dimension)
     names = list(case.parts())
@@ -87,7 +80,7 @@ def _flat(
 def _space(
     grid: Any, box: Any, view: Any, points: np.ndarray, sizes: np.ndarray, bodies: np.ndarray
 ) -> Any:
-    from mpm3dpp.plots.space import draw_box, draw_box_axes, render
+    from .space import draw_box, draw_box_axes, render
 
     image, camera = render(points, sizes, body_colours(bodies), view.lower, view.upper)
     figure = new_figure(*paper(image.shape[1] / image.shape[0]))

@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io.history import read_history
 from mpm3dpp.io.manifest import read_manifest
 from mpm3dpp.io.results import open_results
-from mpm3dpp.plots.flat import draw_cells, draw_particles, set_view
-from mpm3dpp.plots.frames import PLACED, drawn, sizes_of, view_of
-from mpm3dpp.plots.labels import at_time, length_unit, short
-from mpm3dpp.plots.style import body_colours, legend_of_bodies, new_figure, save, styled
+
+from .flat import draw_cells, draw_particles, set_view
+from .frames import PLACED, drawn, sizes_of, view_of
+from .labels import at_time, length_unit, short
+from .style import body_colours, legend_of_bodies, new_figure, save, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -166,7 +167,7 @@ def draw_contact(results: Results, frame: int, touch: Touch) -> Figure:
             high = np.minimum(plane.place + half, view.upper)[:2]
             whole.add_patch(_frame(factor * low, factor * (high - low)))
     else:
-        from mpm3dpp.plots.space import draw_box_axes, render
+        from .space import draw_box_axes, render
 
         image, camera = render(points, sizes, colours, view.lower, view.upper)
         draw_box_axes(whole, image, camera, view.lower, view.upper)

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mpm3dpp.io.history import ENERGIES, ERROR_PARTS, TERMS
-from mpm3dpp.plots.labels import prefix, short
-from mpm3dpp.plots.style import PALETTE, new_figure, save, styled
+
+from .labels import prefix, short
+from .style import PALETTE, new_figure, save, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.plots.raster import FINER, tile
+from .raster import FINER, tile
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

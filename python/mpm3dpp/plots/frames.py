@@ -9,18 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.plots.flat import draw_particles, set_view
-from mpm3dpp.plots.labels import at_time, choose, length_unit, prefix
-from mpm3dpp.plots.line import draw_line, line_axis
-from mpm3dpp.plots.style import (
-    DPI,
-    body_colours,
-    colour_scale,
-    legend_of_bodies,
-    new_figure,
-    save,
-    styled,
-)
+from .flat import draw_particles, set_view
+from .labels import at_time, choose, length_unit, prefix
+from .line import draw_line, line_axis
+from .style import DPI, body_colours, colour_scale, legend_of_bodies, new_figure, save, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -156,7 +148,7 @@ def _draw_flat(
 def _draw_space(
     results: Results, arrays: dict[str, np.ndarray], colour: str, view: View, dpi: float
 ) -> Figure:
-    from mpm3dpp.plots.space import PIXELS, draw_box_axes, render
+    from .space import PIXELS, draw_box_axes, render
 
     colours, mappable = paint(arrays, results, colour, view)
     image, camera = render(

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from mpm3dpp.errors import CaseError, nearest
+from mpm3dpp.base.errors import CaseError, nearest
 
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _PREFIXED = {"m", "s", "Pa", "J", "J/m", "N", "N/m", "N s", "N s/m", "J/kg", "W"}

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.plots.labels import choose, length_unit, prefix
-from mpm3dpp.plots.style import MOST_NAMES, PALETTE, new_figure
+from .labels import choose, length_unit, prefix
+from .style import MOST_NAMES, PALETTE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

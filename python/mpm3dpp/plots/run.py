@@ -7,18 +7,19 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from mpm3dpp.errors import CaseError, first_of
+from mpm3dpp.base.errors import CaseError, first_of
 from mpm3dpp.io.history import read_history
 from mpm3dpp.io.manifest import read_manifest
 from mpm3dpp.io.results import Results, open_results
-from mpm3dpp.plots.contact import first_contact
+
+from .contact import first_contact
 
 
 def draw_all(
     folder: Path, frame: int, animation: bool | None, colour: str | None, out: Path | None
 ) -> Iterator[Path]:
     """See `mpm3dpp.plots.plot_results`; gives each picture when it is there."""
-    from mpm3dpp.plots.frames import save_frame
+    from .frames import save_frame
 
     source = folder if folder.is_dir() else folder.parent
     out = out or source
@@ -56,7 +57,7 @@ def draw_all(
 def _energies(results: Results, source: Path, out: Path) -> Path | None:
     if not (source / "history.csv").is_file():
         return None
-    from mpm3dpp.plots.energies import save_energies
+    from .energies import save_energies
 
     history = read_history(source)
     if len(history["time"]) == 0:
@@ -65,7 +66,7 @@ def _energies(results: Results, source: Path, out: Path) -> Path | None:
 
 
 def _animation(results: Results, out: Path, colour: str) -> Path:
-    from mpm3dpp.plots.animation import save_animation
+    from .animation import save_animation
 
     return save_animation(results, out / "animation.gif", colour)
 

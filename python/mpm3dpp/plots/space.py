@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mpm3dpp.plots.labels import length_unit
-from mpm3dpp.plots.raster import FINER, balls, coarser
+from .labels import length_unit
+from .raster import FINER, balls, coarser
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

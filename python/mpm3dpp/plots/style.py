@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.errors import CaseError
-from mpm3dpp.io.disk import make_folder, replacing, writing
-from mpm3dpp.plots.labels import short
-from mpm3dpp.reading import refuse_nul
+from mpm3dpp.base.disk import make_folder, replacing, writing
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.reading import refuse_nul
+
+from .labels import short
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from mpm3dpp.plots.labels import prefix
-from mpm3dpp.plots.style import PALETTE, new_figure, save, styled
+from .labels import prefix
+from .style import PALETTE, new_figure, save, styled
 
 
 def save_used_cells(curves: dict[str, tuple[np.ndarray, np.ndarray]], path: Path) -> Path:

@@ -9,9 +9,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from ..errors import CaseError, RunError, nearest
-from ..folders import writable_folder
-from ..machine import thread_count
+from mpm3dpp.base.errors import CaseError, RunError, nearest
+from mpm3dpp.base.machine import thread_count
+from mpm3dpp.io.folders import writable_folder
+
 from .examples import EXAMPLES, SIZES, chosen, folder_of_cases
 
 STEPS = 100
@@ -55,8 +56,12 @@ def reproduce(
     there, missing = chosen(only, cases)
     folder, workers = writable_folder(Path(out)), thread_count(threads)
 
-    from .. import __version__, _core  # With what follows the slowest imports: after mistakes.
-    from ..bench import machine
+    from mpm3dpp import (
+        __version__,
+        _core,  # With what follows the slowest imports: after mistakes.
+    )
+    from mpm3dpp.bench import machine
+
     from . import page, pictures
     from .runs import run_example, say
 
@@ -82,7 +87,8 @@ def reproduce(
 
 
 def _write_numbers(measured: list[Any], size: str, build: dict[str, Any], path: Path) -> Path:
-    from ..io.disk import write_atomically
+    from mpm3dpp.base.disk import write_atomically
+
     from .pictures import first_gap
 
     examples = {

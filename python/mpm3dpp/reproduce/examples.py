@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .. import case_file
-from ..case import Case
-from ..errors import CaseError, key_text, nearest
+from mpm3dpp.base.errors import CaseError, key_text, nearest
+from mpm3dpp.case import file as case_file
+from mpm3dpp.case.case import Case
+
 from . import paper
 
 SIZES = ("quick", "paper")

@@ -165,7 +165,7 @@ def write(text: str, out: Path) -> list[Path]:
     Raises:
         CaseError: they cannot be written.
     """
-    from ..io.disk import write_atomically
+    from mpm3dpp.base.disk import write_atomically
 
     paths = [out / "reproduce.md", out / "reproduce.html"]
     for path, content in zip(paths, (text, as_html(text)), strict=True):

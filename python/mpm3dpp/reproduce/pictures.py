@@ -9,11 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..io.results import open_results
-from ..plots import first_contact
-from ..plots.frames import save_frame, view_of
-from ..plots.labels import scaled
-from ..plots.used_cells import save_used_cells
+from mpm3dpp.io.results import open_results
+from mpm3dpp.plots import first_contact
+from mpm3dpp.plots.frames import save_frame, view_of
+from mpm3dpp.plots.labels import scaled
+from mpm3dpp.plots.used_cells import save_used_cells
+
 from .runs import Done, Measured, held_cells, tile_cells
 
 

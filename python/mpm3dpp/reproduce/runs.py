@@ -12,16 +12,17 @@ from typing import Any
 
 import numpy as np
 
-from .. import case_file
-from ..bench.report import progress
-from ..bench.worker import forget_peak
-from ..case import Case
-from ..errors import CaseError, RunError
-from ..io.history import read_history
-from ..io.manifest import read_manifest
-from ..io.results import open_results
-from ..plots.frames import drawn
-from ..run import run_case
+from mpm3dpp.base.errors import CaseError, RunError
+from mpm3dpp.bench.report import progress
+from mpm3dpp.bench.worker import forget_peak
+from mpm3dpp.case import file as case_file
+from mpm3dpp.case.case import Case
+from mpm3dpp.io.history import read_history
+from mpm3dpp.io.manifest import read_manifest
+from mpm3dpp.io.results import open_results
+from mpm3dpp.plots.frames import drawn
+from mpm3dpp.run.run import run_case
+
 from .examples import Changes, Example, changed, load
 from .timing import TURNS, Timed, in_turns
 

@@ -11,11 +11,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..bench import WARM_UP, block_lengths
-from ..bench.worker import advance, timed_block
-from ..case import Case
-from ..errors import RunError
-from ..simulation import Simulation
+from mpm3dpp.base.errors import RunError
+from mpm3dpp.bench import WARM_UP, block_lengths
+from mpm3dpp.bench.worker import advance, timed_block
+from mpm3dpp.case.case import Case
+from mpm3dpp.run.simulation import Simulation
+
 from .examples import Changes
 
 TURNS: dict[str, Changes] = {

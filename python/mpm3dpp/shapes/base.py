@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, SkipValidation, ValidationError, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from ..errors import Path, nearest, report, show, violation, violations_of
-from ..model import CaseModel
+from mpm3dpp.base.errors import Path, nearest, report, show, violation, violations_of
+from mpm3dpp.base.model import CaseModel
 
 if TYPE_CHECKING:
     from .booleans import Difference, Intersection, Union

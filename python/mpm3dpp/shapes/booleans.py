@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 from pydantic import model_validator
 
-from ..errors import Path, violation
+from mpm3dpp.base.errors import Path, violation
+
 from .base import AnyShape, Bounds, Mask, Points, Shape, register
 
 

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import CaseError
-from ..machine import MOST_PARTICLES
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.machine import MOST_PARTICLES
+
 from .base import SURFACE_TOLERANCE, Points, Shape
 
 _CHUNK = 1 << 18  # Points looked at together: some 20 MB of temporary arrays.
@@ -116,7 +117,7 @@ def fill(body: Any, grid: Any) -> tuple[Points, Points]:
         return positions, volumes
     wrong = body.shape.wrong_dimension(grid.dimension, ("shape",))
     if wrong is not None:
-        from ..errors import key_text
+        from mpm3dpp.base.errors import key_text
 
         raise CaseError(wrong[1], wrong[2], key=key_text(wrong[0]))
     spacing = body.particle_spacing(grid)

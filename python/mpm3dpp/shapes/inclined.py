@@ -9,8 +9,9 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field, model_validator
 
-from ..errors import violation
-from ..units import Point, PositiveLength, Quantity
+from mpm3dpp.base.errors import violation
+from mpm3dpp.base.units import Point, PositiveLength, Quantity
+
 from .base import Bounds, Mask, Points, Shape, register
 from .primitives import AXES, AxisName
 

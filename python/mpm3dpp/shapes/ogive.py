@@ -9,9 +9,10 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import model_validator
 
-from ..errors import violation
-from ..model import Choice
-from ..units import Number, Point, PositiveLength
+from mpm3dpp.base.errors import violation
+from mpm3dpp.base.model import Choice
+from mpm3dpp.base.units import Number, Point, PositiveLength
+
 from .base import Bounds, Mask, Points, Shape, register
 
 Towards = Annotated[str, Choice(("x", "y", "z", "-x", "-y", "-z"))]

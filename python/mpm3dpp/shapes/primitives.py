@@ -10,9 +10,10 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import model_validator
 
-from ..errors import violation
-from ..model import Choice
-from ..units import Point, PositiveLength
+from mpm3dpp.base.errors import violation
+from mpm3dpp.base.model import Choice
+from mpm3dpp.base.units import Point, PositiveLength
+
 from .base import Bounds, Mask, Points, Shape, register
 
 AxisName = Annotated[str, Choice(("x", "y", "z"))]

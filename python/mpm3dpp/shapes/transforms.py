@@ -11,8 +11,9 @@ from typing import Any, ClassVar
 import numpy as np
 from pydantic import model_validator
 
-from ..errors import Path, violation
-from ..units import Angle, Direction, Point
+from mpm3dpp.base.errors import Path, violation
+from mpm3dpp.base.units import Angle, Direction, Point
+
 from .base import AnyShape, Bounds, Mask, Points, Shape, register
 
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from mpm3dpp.case_file import similar_file
-from mpm3dpp.errors import CaseError
-from mpm3dpp.reading import read_file
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.reading import read_file
+from mpm3dpp.case.file import similar_file
 
 from .problems import Problems
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from mpm3dpp.base.outputs import STANDARD
 from mpm3dpp.materials import state_columns
-from mpm3dpp.outputs import STANDARD
 
 from .deck import Deck
 from .materials import material_name

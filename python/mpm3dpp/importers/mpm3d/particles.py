@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.errors import CaseError
-from mpm3dpp.machine import MOST_PARTICLES
-from mpm3dpp.particles import Particles
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.machine import MOST_PARTICLES
+from mpm3dpp.case.particles import Particles
 
 from .deck import Array, Deck, Part
 from .units import UnitSystem

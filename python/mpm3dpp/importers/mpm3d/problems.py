@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
-from mpm3dpp.errors import CaseError, first_of
+from mpm3dpp.base.errors import CaseError, first_of
 
 P = ParamSpec("P")
 T = TypeVar("T")

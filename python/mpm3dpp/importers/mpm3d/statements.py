@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.errors import CaseError
 
 from . import blocks
 from .deck import Deck

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mpm3dpp.case import Case
+from mpm3dpp.case.case import Case
 
 from .box import Bounds, bounds_of, grid_table
 from .contact import contact_table, joined

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm3dpp.errors import CaseError, nearest
+from mpm3dpp.base.errors import CaseError, nearest
 
 Array = NDArray[np.float64]
 

@@ -8,10 +8,10 @@ import re
 from pathlib import Path
 from typing import Any
 
-from mpm3dpp.errors import CaseError
+from mpm3dpp.base.disk import make_folder, writing
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.particles import Particles, write_particles
 from mpm3dpp.importers import MPM3D_SUFFIX
-from mpm3dpp.io.disk import make_folder, writing
-from mpm3dpp.particles import Particles, write_particles
 
 from .to_case import Imported
 

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What all others stand on: errors, units, numbers of the core, reading, the machine."""

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A table `[body.NAME]` of a case."""
+
+from __future__ import annotations
+
+from pydantic import model_validator
+
+from mpm3dpp.base.errors import violation
+from mpm3dpp.base.model import CaseModel, Count, Text
+from mpm3dpp.base.units import PositiveLength, Spin, VelocityVector
+from mpm3dpp.shapes.base import MaybeShape
+
+from .grid import Grid
+from .motion import MaybeMotion
+from .particles import AnyParticles
+
+
+class Body(CaseModel):
+    """A body: a shape filled with particles of one material, or the particles one by one.
+
+    Attributes:
+        material: name of its material.
+        shape: any shape of `mpm3dpp.shapes`; in place of `particles`.
+        particles: a CSV file beside the case file with the columns x, y, z and, if it likes,
+            volume, in SI units, or `{ file = "points.csv", unit = "mm" }` (in Python:
+            `mpm3dpp.Particles`); in place of `shape`.
+        particles_per_cell: particles per cell along each direction; default 2.
+        spacing: distance of the particles [m], in place of `particles_per_cell`. Either way they
+            stand on a lattice that is aligned with the grid's origin.
+        velocity: initial velocity [m/s], D numbers; default zero.
+        angular_velocity: initial spin about the mass centre [rad/s]: one number in 2D, three in
+            3D; default zero. Stored as a tuple.
+        motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
+            then; None for a body that is free to move.
+    """
+
+    material: Text
+    shape: MaybeShape = None
+    particles: AnyParticles = None
+    particles_per_cell: Count | None = None
+    spacing: PositiveLength | None = None
+    velocity: VelocityVector = ()
+    angular_velocity: Spin = ()
+    motion: MaybeMotion = None
+
+    @model_validator(mode="after")
+    def _one_spacing(self) -> Body:
+        if self.particles_per_cell is not None and self.spacing is not None:
+            rule = "must not be given together with particles_per_cell"
+            raise violation(rule, "keep one of the two", path=("spacing",))
+        given = "spacing" if self.spacing is not None else "particles_per_cell"
+        if self.particles is not None and self.particles.volumes is not None:
+            if getattr(self, given) is not None:
+                rule = "must not be given together with particles that have volumes"
+                raise violation(rule, "remove it", path=(given,))
+        elif getattr(self, given) is None:
+            self.__dict__["particles_per_cell"] = 2
+        return self
+
+    @model_validator(mode="after")
+    def _shape_or_particles(self) -> Body:
+        if self.shape is not None and self.particles is not None:
+            rule = "must not be given together with shape"
+            raise violation(rule, "keep one of the two", path=("particles",))
+        if self.shape is None and self.particles is None:
+            remedy = "add this key, or particles, the name of a file"
+            raise violation("is missing", remedy, path=("shape",))
+        return self
+
+    @property
+    def filling(self) -> str:
+        """The key that gives its particles: "shape" or "particles"."""
+        return "shape" if self.shape is not None else "particles"
+
+    def particle_spacing(self, grid: Grid) -> float:
+        """Return the distance of neighbouring particles [m]."""
+        edge = self.particles.edge() if self.particles is not None else None
+        if edge is not None:
+            return edge
+        if self.spacing is not None:
+            return self.spacing
+        return grid.cell_size / (self.particles_per_cell or 2)

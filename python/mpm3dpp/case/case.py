@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The typed case: what a TOML file, the Python API and importers all become. SI units throughout.
+
+>>> case = load_case("case.toml")
+>>> case.grid.cell_size, case.body["left"].velocity
+(0.0008, (30.0, 0.0))
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from itertools import accumulate, combinations_with_replacement
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
+
+from mpm3dpp.base import arguments
+from mpm3dpp.base.errors import CaseError, from_validation, key_text
+from mpm3dpp.base.errors import Path as KeyPath
+from mpm3dpp.base.model import CaseModel, Text
+from mpm3dpp.grains import Grains
+from mpm3dpp.shapes.base import KINDS
+
+from . import file as case_file
+from .body import Body
+from .checks import check_case
+from .detonation import Detonation
+from .grid import Grid
+from .loads import Load
+from .material import Material as Material  # also for those who import it from here
+from .parts import Contact, Output, Run
+
+
+class Case(CaseModel):
+    """A whole problem, checked: `Grid`, `Run`, `Output`, `Contact`, `Material`, `Body`, `Grains`.
+
+    Attributes:
+        title: one line for pictures and results.
+        material, body, grains: by name, in the order of the file. The bodies of `grains` are
+            numbered after those of `body`.
+        load: pressures and tractions on surfaces, by name.
+        detonation: the points at which explosives are lit.
+        text: the file's text, empty for a case built in Python.
+        source: the file's path, None for a case built in Python.
+        file_path: the whole path of the file that was read, as text; empty where none was.
+    """
+
+    title: Text = ""
+    grid: Grid
+    run: Run
+    output: Output = Field(default_factory=Output)
+    contact: Contact = Field(default_factory=Contact)
+    material: Annotated[dict[str, Material], Field()]
+    body: Annotated[dict[str, Body], Field(default_factory=dict)]
+    grains: Annotated[dict[str, Grains], Field(default_factory=dict)]
+    load: Annotated[dict[str, Load], Field(default_factory=dict)]
+    detonation: list[Detonation] = Field(default_factory=list)
+
+    _text: str = PrivateAttr("")
+    _source: Path | None = PrivateAttr(None)
+    _file_path: str = PrivateAttr("")
+    _lines: dict[KeyPath, int] = PrivateAttr(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _whole(self) -> Case:
+        check_case(self)
+        return self
+
+    @property
+    def text(self) -> str:
+        """Text of the case file; empty for a case built in Python."""
+        return self._text
+
+    @property
+    def source(self) -> Path | None:
+        """Path of the case file; None for a case built in Python."""
+        return self._source
+
+    @property
+    def file_path(self) -> str:
+        """Whole path of the file that was read, as text; empty where none was."""
+        return self._file_path
+
+    def note_file(self, path: Path) -> None:
+        """Note the file that the case was just read from, before the current folder changes."""
+        self._file_path = str(path.resolve())
+
+    @classmethod
+    def from_file(cls, path: str | Path) -> Case:
+        """Read and check a case file.
+
+        Args:
+            path: a TOML file.
+
+        Returns:
+            The case, in SI units.
+
+        Raises:
+            CaseError: the file cannot be read or breaks a rule; the sentence says where.
+        """
+        path = arguments.path("path", path)
+        case = cls.from_text(case_file.read_text(path), str(path))
+        case.note_file(path)
+        return case
+
+    @classmethod
+    def from_text(cls, text: str, name: str = "case.toml") -> Case:
+        """Read and check a case from TOML text; `name` is that of its file, for messages.
+
+        Files that it names are looked for in the folder of `name`.
+        """
+        tables = case_file.parse(text, name)
+        case = cls.from_tables(tables, name, case_file.locate_keys(text, name))
+        case._text = text
+        return case
+
+    @classmethod
+    def from_tables(cls, tables: dict[str, Any], name: str, lines: dict[KeyPath, int]) -> Case:
+        """Check a case that a file gave as tables.
+
+        Args:
+            tables: of the case.
+            name: of the file, for messages and for the files that it names.
+            lines: line of each key; a key that is not there has the line of its table.
+        """
+        try:
+            case = cls.model_validate(tables, context={"folder": Path(name).parent})
+        except ValidationError as error:
+            raise from_validation(error, case_file.locator(lines, name)) from None
+        except RecursionError:
+            raise case_file.too_deep(name) from None
+        case._lines, case._source = lines, Path(name)
+        return case
+
+    @property
+    def case_hash(self) -> str:
+        """SHA-256 (hexadecimal) of the case in SI units, numbers to 12 digits, keys sorted.
+
+        It depends neither on formatting nor on units nor on the names of files of particles.
+        """
+        table = self.content()
+        if not self.grains:  # So that older cases keep their hash.
+            del table["grains"]
+        text = json.dumps(table, sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def content(self) -> dict[str, Any]:
+        """Return what a run writes, when it was asked for: the table, numbers to 12 digits.
+
+        Hashes stand in place of names of files, and when checkpoints are written is left out.
+        """
+        table = self.table()
+        for name, body in self.body.items():
+            if body.particles is not None:
+                table["body"][name]["particles"] = body.particles.digest
+        for name, grains in self.grains.items():
+            if grains.file is not None:
+                table["grains"][name]["file"] = grains.file.digest
+        del table["output"]["checkpoint_interval"]
+        return dict(_rounded(table))
+
+    def parts(self) -> dict[str, Body | Grains]:
+        """Return the entries of `body` and `grains` by name, in the order of their bodies."""
+        return {**self.body, **self.grains}
+
+    def part_path(self, name: str) -> KeyPath:
+        """Return the path of an entry of `body` or `grains`."""
+        return ("grains" if name in self.grains else "body", name)
+
+    @property
+    def materials_used(self) -> list[str]:
+        """Names of the materials that a body has, in the order of the bodies."""
+        return list(dict.fromkeys(part.material for part in self.parts().values()))
+
+    @property
+    def body_count(self) -> int:
+        """Number of bodies, each grain counted."""
+        return len(self.body) + sum(grains.count for grains in self.grains.values())
+
+    @property
+    def contact_enabled(self) -> bool:
+        """Whether contact is computed: not switched off, nor bonded, and at least two bodies."""
+        return self.contact.enabled and not self.contact.bonded and self.body_count > 1
+
+    def is_rigid(self, part: str) -> bool:
+        """Return whether a body does not deform: by its material, or by a prescribed motion.
+
+        Args:
+            part: name of the body, or of an entry of grains.
+        """
+        entry = self.parts()[part]
+        moves = isinstance(entry, Body) and entry.motion is not None
+        return moves or not self.material[entry.material].sound_speed()
+
+    def viscosity_of(self, material: str) -> tuple[float, float]:
+        """Return a material's quadratic and linear factors of artificial viscosity; 0, 0: none."""
+        own = self.material[material].artificial_viscosity
+        found = self.run.viscosity if own is None else own
+        return (0.0, 0.0) if found is None else (found.quadratic, found.linear)
+
+    def frictions(self) -> list[tuple[int, int, float]]:
+        """Return (body, body, coefficient) of the pairs listed in `contact.pair`, a <= b.
+
+        Bodies are numbered; an entry of `grains` is given by its first. a == b is for the pairs
+        among its own.
+        """
+        parts, firsts = self.parts(), self.first_bodies()
+        found = {}
+        for pair in sorted(self.contact.pair, key=lambda p: p.bodies is not None):
+            for (a, first), (b, second) in combinations_with_replacement(firsts.items(), 2):
+                ends = [a, b] if pair.bodies else [parts[a].material, parts[b].material]
+                among_itself = a != b or a in self.grains
+                if among_itself and sorted(ends) == sorted(pair.bodies or pair.materials or []):
+                    found[first, second] = pair.friction
+        return [(a, b, friction) for (a, b), friction in sorted(found.items())]
+
+    def first_bodies(self) -> dict[str, int]:
+        """Return the number of the first body of every entry of `body` and `grains`."""
+        counts = [1] * len(self.body) + [grains.count for grains in self.grains.values()]
+        return dict(zip(self.parts(), accumulate(counts, initial=0), strict=False))
+
+    def frame_times(self) -> list[float]:
+        """Return the times of the frames [s], the first 0 and the last the end time."""
+        end = self.run.end_time
+        if self.output.interval is None:
+            count = self.output.frames or 50
+            return [end * k / count for k in range(count)] + [end]
+        count = int(end / self.output.interval * (1 - 1e-9))
+        return [k * self.output.interval for k in range(count + 1)] + [end]
+
+    def error(self, path: KeyPath, rule: str, remedy: str = "", **value: Any) -> CaseError:
+        """Return a `CaseError` about a key of this case, with its line where it has one.
+
+        Args:
+            path: for example `("body", "left", "shape")`.
+            rule: what must hold.
+            remedy: what the user can do.
+            value: `value=...`, the value at fault.
+        """
+        place = ""
+        if self._lines:
+            place = case_file.locator(self._lines, str(self._source))(path)
+        return CaseError(rule, remedy, key=key_text(path), place=place, **value)
+
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """Return the JSON schema of case files, for editors that complete and check TOML."""
+        schema = cls.model_json_schema()
+        definitions = schema.setdefault("$defs", {})
+        definitions["shape"] = {
+            "type": "object",
+            "additionalProperties": False,
+            "minProperties": 1,
+            "maxProperties": 1,
+            "properties": {kind: shape.model_json_schema() for kind, shape in KINDS.items()},
+        }
+        definitions["Body"]["properties"]["shape"] = {"$ref": "#/$defs/shape"}
+        return schema
+
+
+def _rounded(value: Any) -> Any:
+    """Return plain data with every float rounded to 12 significant digits."""
+    if isinstance(value, float):
+        return float(f"{value:.12g}")
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    return [_rounded(item) for item in value] if isinstance(value, list) else value
+
+
+def load_case(path: str | Path) -> Case:
+    """Read and check a case file; the same as `Case.from_file`."""
+    return Case.from_file(path)

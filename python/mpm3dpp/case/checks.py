@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Checks of a case across its tables: names that must exist, numbers per vector, defaults by D."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from pydantic_core import PydanticCustomError
+
+from mpm3dpp.base.errors import Path, nearest, report, violation
+from mpm3dpp.base.outputs import COLUMNS, STANDARD
+from mpm3dpp.materials import state_columns
+
+from .detonation import check_detonations
+from .loads import check_loads
+from .motion import check_motion
+
+if TYPE_CHECKING:
+    from mpm3dpp.grains import Grains
+
+    from .body import Body
+    from .case import Case
+    from .material import Material
+
+
+Found = Iterator[PydanticCustomError]
+
+
+def check_case(case: Case) -> None:
+    """Check a whole case and fill in the defaults that depend on the dimension.
+
+    Raises:
+        PydanticCustomError, ValidationError: one violation or several, with their paths in the
+            case: all that can be told without what another of them spoils.
+    """
+    first = list(_entries(case))
+    report([*first, *_pairs(case), *_interval(case)] if first else [])
+    report([*_bodies_together(case), *_pairs(case), *_output(case), *_interval(case)])
+
+
+def _entries(case: Case) -> Found:
+    """What an entry by itself has wrong, or its material's name and its numbers of components."""
+    for name, what in (("material", case.material), ("body", case.body)):
+        if not what and not (name == "body" and case.grains):
+            yield violation("must not be empty", f"add a table [{name}.NAME]", path=(name,))
+        if "" in what:
+            yield violation("must have a name", "write [body.left]", path=(name, ""))
+    for table in ("material", "body", "grains", "load"):
+        for word in getattr(case, table):
+            if not word.isprintable():
+                rule = "has a character in its name that cannot be shown"
+                yield violation(rule, "leave it out", path=(table, word))
+    for name, material in case.material.items():
+        yield from _check_material(material, ("material", name))
+    dimension = case.grid.dimension
+    yield from _check_vector(case.run, "gravity", dimension, ("run",))
+    for name, body in case.body.items():
+        yield from _check_body(case, body, ("body", name))
+    for name, grains in case.grains.items():
+        yield from _check_grains(case, name, grains)
+
+
+def _bodies_together(case: Case) -> Found:
+    if all(case.is_rigid(name) for name in case.parts()):
+        rule = "holds rigid bodies only, so no wave limits the time step: one must deform"
+        path: Path = ("body",) if case.body else ("grains",)
+        yield violation(rule, "give one another strength", path=path)
+    yield from check_detonations(case)
+    yield from check_loads(case)
+
+
+def _pairs(case: Case) -> Found:
+    if not case.parts() or not case.material:
+        return  # Then no name is known, which is told already.
+    path: Path
+    for index, pair in enumerate(case.contact.pair):
+        key = "bodies" if pair.bodies is not None else "materials"
+        known = case.parts() if pair.bodies is not None else case.material
+        first, second = pair.bodies or ("", " ")
+        if first == second and first in case.body:
+            rule, remedy = "must be two different bodies", "a body has no contact with itself"
+            path = ("contact", "pair", index, key)
+            yield violation(rule, remedy, value=pair.bodies, path=path)
+        for position, word in enumerate(pair.bodies or pair.materials or []):
+            if word not in known:
+                rule = f"is not a {'body' if key == 'bodies' else 'material'} of this case"
+                path = ("contact", "pair", index, key, position)
+                yield violation(rule, nearest(word, known), value=word, path=path)
+
+
+def _check_material(material: Material, path: Path) -> Found:
+    """Yield what the core finds wrong, and if nothing would resist compression at the start."""
+    try:
+        material.sound_speed()
+        speed = material.eos_sound_speed()
+    except ValueError as error:
+        yield _refusal(material, str(error), path)
+        return
+    if material.eos is not None and not speed:
+        rule = "has no stiffness at the start: its pressure does not rise when it is compressed"
+        model = material.eos.model
+        remedy = f"correct its numbers; `mpm3dpp materials {model}` has an example"
+        yield violation(rule, remedy, path=(*path, "eos", model))
+
+
+def _refusal(material: Material, reason: str, path: Path) -> PydanticCustomError:
+    """Return the violation for what the core says, `johnson_cook.T_melt must be > T_room`.
+
+    The key is that of the parameter, and the others that are named have their values.
+    """
+    chosen = [("strength", material.strength), ("eos", material.eos)]
+    for kind, model in [*chosen, *(("failure", model) for model in material.failure)]:
+        found = re.match(r"(\w+)\.(\w+) (?=must)", reason)
+        if model is None or found is None or found[1] != model.model:
+            continue
+        name, rule, values = found[2], reason[found.end() :], model.parameters
+        others = [word for word in re.findall(r"\w+", rule) if word in values and word != name]
+        if name in values:
+            also = ", ".join(f"{word} = {values[word]:g}" for word in others)
+            where = (*path, kind, model.model, name)
+            remedy = "change one of the two" if others else "change it"
+            rule = f"{rule} ({also})" if also else rule
+            return violation(rule, remedy, value=values[name], path=where)
+    return violation(f"is refused: {reason}", "see `mpm3dpp materials`", path=path)
+
+
+def _check_vector(owner: object, name: str, dimension: int, path: Path) -> Found:
+    """Check the number of components of a vector and replace an absent one by zero."""
+    vector = getattr(owner, name)
+    if vector and len(vector) != dimension:
+        rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
+        remedy = f"it has {len(vector)}, give {dimension}"
+        yield violation(rule, remedy, value=list(vector), path=(*path, name))
+        return
+    owner.__dict__[name] = vector or (0.0,) * dimension
+
+
+def _check_grains(case: Case, name: str, grains: Grains) -> Found:
+    path: Path = ("grains", name)
+    if not name or name in case.body:
+        rule = "has the name of a body" if name else "must have a name"
+        yield violation(rule, "write another name, [grains.sand]", path=path)
+    others = {*case.body, *case.grains}
+    taken = next((one for one in grains.names(name) if one in others), None)
+    if taken is not None:
+        rule = f"has a grain {taken}, which is the name of another entry too"
+        yield violation(rule, "rename one of the two", path=path)
+    wrong = grains.wrong_dimension(case.grid.dimension)
+    if wrong is not None:
+        yield violation(wrong[1], wrong[2], path=(*path, *wrong[0]))
+    yield from _check_motion(case, grains, path)
+
+
+def _check_motion(case: Case, body: Body | Grains, path: Path) -> Found:
+    """Check the material and the velocities, and fill in those that are absent."""
+    dimension = case.grid.dimension
+    if body.material not in case.material:
+        rule, remedy = "is not a material of this case", nearest(body.material, case.material)
+        yield violation(rule, remedy, value=body.material, path=(*path, "material"))
+    yield from _check_vector(body, "velocity", dimension, path)
+    spin, wanted = body.angular_velocity, 1 if dimension == 2 else 3
+    if spin and len(spin) != wanted:
+        numbers = "one number" if wanted == 1 else "three numbers"
+        rule = f"must be {numbers}, as grid.dimension = {dimension}"
+        example = '"10 rad/s"' if wanted == 1 else '[0, 0, "10 rad/s"]'
+        remedy = f"for example {example}"
+        yield violation(rule, remedy, value=list(spin), path=(*path, "angular_velocity"))
+        return
+    body.__dict__["angular_velocity"] = spin or (0.0,) * wanted
+
+
+def _check_body(case: Case, body: Body, path: Path) -> Found:
+    dimension = case.grid.dimension
+    if body.shape is not None:
+        wrong = body.shape.wrong_dimension(dimension, (*path, "shape"))
+        if wrong is not None:
+            yield violation(wrong[1], wrong[2], path=wrong[0])
+    if body.particles is not None and body.particles.dimension != dimension:
+        rule = f"must have {dimension} coordinates, as grid.dimension = {dimension}"
+        remedy = f"it has {body.particles.dimension}"
+        value = body.particles.file or "an array"
+        yield violation(rule, remedy, value=value, path=(*path, "particles"))
+    yield from _check_motion(case, body, path)
+    if body.motion is not None:
+        yield from check_motion(case, body, path)
+
+
+def _output(case: Case) -> Found:
+    used = case.materials_used
+    materials = [case.material[name] for name in used]
+    extra = ["volume", "mass", *state_columns(set().union(*(m.models for m in materials)))]
+    extra += ["internal_energy"] if any(m.eos is not None for m in materials) else []
+    extra += ["failed"] if any(m.failure for m in materials) else []
+    if case.grid.keep is not None:
+        extra += ["failed", "recoverable_energy"]
+    if any(f.action == "erode" for m in materials for f in m.failure):
+        extra.append("recoverable_energy")
+    if any(sum(case.viscosity_of(name)) > 0 for name in used):
+        extra.append("viscosity_pressure")
+    extra = list(dict.fromkeys(extra))
+    for index, word in enumerate(case.output.fields):
+        if word not in (*STANDARD, *extra):
+            rule = "is not a column that this case stores"
+            remedy = nearest(word, extra)
+            yield violation(rule, remedy, value=word, path=("output", "fields", index))
+    colours = picture_names(case)
+    if case.output.picture not in colours:
+        remedy = nearest(case.output.picture, colours)
+        if case.output.picture in extra:
+            remedy = f'add it to output.fields: fields = ["{case.output.picture}"]'
+        rule = "is not a column that colours a picture of this case"
+        yield violation(rule, remedy, value=case.output.picture, path=("output", "picture"))
+
+
+def _interval(case: Case) -> Found:
+    interval = case.output.interval
+    if interval is not None and case.run.end_time / interval > 100_000:
+        rule = "gives more than 100000 frames"
+        yield violation(rule, "give a longer interval", value=interval, path=("output", "interval"))
+
+
+def picture_names(case: Case) -> list[str]:
+    """Return what `output.picture` may be: stored columns, speed, and components of vectors."""
+    axes = ("x", "y", "z")[: case.grid.dimension]
+    stress = ("xx", "yy", "zz", "yz", "xz", "xy") if len(axes) == 3 else ("xx", "yy", "zz", "xy")
+    names = [name for name in STANDARD if name not in COLUMNS]
+    names += ["speed", *(f"velocity_{a}" for a in axes), *(f"stress_{s}" for s in stress)]
+    return list(dict.fromkeys([*names, "velocity", "stress", *case.output.fields]))

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The table `[grid]` of a case: cells, box and walls, what is kept, when cells double."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from mpm3dpp import _core
+from mpm3dpp.base.errors import Path, report, violation
+from mpm3dpp.base.model import CaseModel
+from mpm3dpp.base.settings import choice, core_table
+from mpm3dpp.base.units import Point
+
+FACES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
+MOST_CELLS = 2**30
+"""Of a box along an axis: the core counts cells with 32 bits, and needs some beyond it."""
+FARTHEST = 2**19
+"""Cells from the grid's origin to the farthest particle along an axis, at the start: the core lists
+particles by keys in which tiles have so many bits."""
+_WHOLE = 1e-6  # A box that misses a whole number of cells by less, per cell, is taken as whole.
+
+_WALL = choice(_core.walls)
+Wall = Annotated[str, _WALL]
+
+
+class Walls(CaseModel):
+    """What the faces of the box do: `free` (nothing), `slip` (or `symmetry`), `fixed`, `absorbing`.
+
+    An `absorbing` face lets waves pass, as if the body went on behind it (dashpots, Lysmer &
+    Kuhlemeyer 1969); it holds no weight. One word in place of the table holds for all faces. In
+    2D there are no z faces.
+    """
+
+    x_min: Wall = "free"
+    x_max: Wall = "free"
+    y_min: Wall = "free"
+    y_max: Wall = "free"
+    z_min: Wall = "free"
+    z_max: Wall = "free"
+
+    @classmethod
+    def complete(cls, data: Any) -> Any:
+        """Return the table of one word that holds for all faces."""
+        if isinstance(data, str):
+            word = _WALL.parse(data)
+            return dict.fromkeys(FACES, word)
+        return data
+
+
+class GridBox(CaseModel):
+    """The region of the computation; without it the grid has no bounds.
+
+    Attributes:
+        lower, upper: opposite corners [m], D numbers, a whole number of cells apart.
+        walls: what the faces do, without friction: for that give a body with motion = "fixed".
+    """
+
+    lower: Point
+    upper: Point
+    walls: Walls = Field(default_factory=Walls)
+
+
+_Doubling: Any = core_table("grid.doubling")
+_Grid: Any = core_table("grid")
+
+
+class GridDoubling(_Doubling):
+    """When the cells double, as the moving grid of Ma, Zhang & Huang 2010, section 3.5, ends.
+
+    Mass, momentum and energy of the particles stay as they are. A box must have an even number of
+    cells along each axis each time.
+    """
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> GridDoubling:
+        if self.tiles is None and self.bytes is None:
+            raise violation("needs tiles or bytes", "give one of them, such as tiles = 20000")
+        return self
+
+
+class GridKeep(CaseModel):
+    """The region outside which particles take no part any more; the ledger counts them as `left`.
+
+    A rigid body leaves as a whole, with its mass centre.
+
+    Attributes:
+        lower, upper: opposite corners [m], D numbers; without one of them there is no limit on
+            that side.
+    """
+
+    lower: Point = ()
+    upper: Point = ()
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> GridKeep:
+        if not self.lower and not self.upper:
+            raise violation("has no limit", "give lower, upper or both")
+        return self
+
+
+class Grid(_Grid):
+    """The background grid.
+
+    Attributes:
+        origin: a corner of a cell [m], D numbers; by default the box's lower corner, else zero.
+        box: bounds and walls; None for an unbounded grid.
+        keep: region outside which particles are taken out of the run; None for none.
+        doubling: when the cells double; None for never.
+    """
+
+    origin: Point = ()
+    box: GridBox | None = None
+    keep: GridKeep | None = None
+    doubling: GridDoubling | None = None
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Grid:
+        report(self._numbers_per_vector())
+        lower = self.box.lower if self.box is not None else (0.0,) * self.dimension
+        self.__dict__["origin"] = self.origin or lower
+        report([*self._box_mistakes(), *self._keep_mistakes()])
+        return self
+
+    def _numbers_per_vector(self) -> Iterator[PydanticCustomError]:
+        names: dict[tuple[str, ...], tuple[float, ...]] = {("origin",): self.origin}
+        if self.box is not None:
+            names |= {("box", "lower"): self.box.lower, ("box", "upper"): self.box.upper}
+        if self.keep is not None:
+            names |= {("keep", "lower"): self.keep.lower, ("keep", "upper"): self.keep.upper}
+        for path, vector in names.items():
+            if vector and len(vector) != self.dimension:
+                rule = f"must have {self.dimension} numbers, as grid.dimension = {self.dimension}"
+                yield violation(rule, f"it has {len(vector)}", value=list(vector), path=path)
+
+    def _keep_mistakes(self) -> Iterator[PydanticCustomError]:
+        for d, (low, high) in enumerate(zip(*self.kept, strict=True)):
+            if low >= high:
+                rule, remedy = f"must be > lower = {low:g} m", "swap the two corners"
+                yield violation(rule, remedy, value=high, path=("keep", "upper", d))
+
+    def _box_mistakes(self) -> Iterator[PydanticCustomError]:
+        box = self.box
+        if box is None:
+            return
+        for d in range(self.dimension):
+            path: Path = ("box", "upper", d)
+            cells = (box.upper[d] - box.lower[d]) / self.cell_size
+            if cells <= 0:
+                rule, remedy = f"must be > lower = {box.lower[d]:g} m", "swap the two corners"
+                yield violation(rule, remedy, value=box.upper[d], path=path)
+            elif cells > MOST_CELLS:
+                rule = f"is {cells:.1e} cells from lower, and {MOST_CELLS:.1e} is the most"
+                remedy = (
+                    "give a smaller box, or larger cells, or no box: the grid has no bounds then"
+                )
+                yield violation(rule, remedy, value=box.upper[d], path=path)
+            elif cells < 1.0 - _WHOLE:
+                size = f"{self.cell_size:g} m"
+                rule = f"is less than one cell from lower: grid.cell_size = {size}"
+                yield violation(
+                    rule, 'a plain number is in m: "2 mm"', value=box.upper[d], path=path
+                )
+            elif abs(cells - round(cells)) > _WHOLE * max(1.0, cells):
+                near = box.lower[d] + max(1, round(cells)) * self.cell_size
+                rule = f"must be a whole number of cells from lower (it is {cells:.4f} cells away)"
+                yield violation(rule, f"for example {near:.6g} m", value=box.upper[d], path=path)
+            elif self.doubling is not None and round(cells) % 2 != 0:
+                rule = (
+                    f"is {round(cells)} cells from lower, an odd number, so that grid.doubling "
+                    "cannot work"
+                )
+                yield violation(rule, "make the box one cell larger along this axis", path=path)
+            off = (box.lower[d] - self.origin[d]) / self.cell_size
+            if abs(off - round(off)) > _WHOLE * max(1.0, abs(off)):
+                rule = "must be a whole number of cells from the box's lower corner"
+                remedy = "leave it out, then it is that corner"
+                yield violation(rule, remedy, value=self.origin[d], path=("origin", d))
+        if self.dimension == 2 and (box.walls.z_min, box.walls.z_max) != ("free", "free"):
+            uniform = len({getattr(box.walls, face) for face in FACES}) == 1
+            if not uniform:
+                rule = "has z faces but the grid is 2D"
+                yield violation(rule, "remove z_min and z_max", path=("box", "walls"))
+
+    @property
+    def kept(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Corners of the region that particles may be in [m], D numbers each; else infinite."""
+        keep, far = self.keep, (math.inf,) * self.dimension
+        lower = keep.lower if keep is not None else ()
+        upper = keep.upper if keep is not None else ()
+        return lower or tuple(-x for x in far), upper or far
+
+    @property
+    def lower(self) -> tuple[float, ...]:
+        """Corner from which the core counts cells [m], D numbers: the box's, else the origin."""
+        return self.box.lower if self.box is not None else self.origin
+
+    @property
+    def box_cells(self) -> tuple[int, ...] | None:
+        """Number of cells of the box along each axis, D numbers; None without a box."""
+        if self.box is None:
+            return None
+        pairs = zip(self.box.lower, self.box.upper, strict=True)
+        return tuple(round((upper - lower) / self.cell_size) for lower, upper in pairs)
+
+    @property
+    def walls(self) -> tuple[str, ...]:
+        """Words for the six faces x- x+ y- y+ z- z+; z is `free` in 2D, all are without a box."""
+        if self.box is None:
+            return ("free",) * 6
+        used = FACES[: 2 * self.dimension]
+        return tuple(getattr(self.box.walls, f) if f in used else "free" for f in FACES)

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pressures and tractions on the surfaces of bodies, which follow the particles."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+from pydantic_core import PydanticCustomError
+
+from mpm3dpp import _core
+from mpm3dpp.base.errors import nearest, violation
+from mpm3dpp.base.model import Text
+from mpm3dpp.base.settings import functions, table_of_rows
+from mpm3dpp.base.time_functions import Timed, TimedVector, TimeFunction
+from mpm3dpp.shapes.surfaces import Surface, sides, surface
+
+if TYPE_CHECKING:
+    from .body import Body
+    from .case import Case
+
+Array = NDArray[np.float64]
+_FINER = {2: 8, 3: 4}  # Points of a surface for each spacing of the particles.
+
+
+def _kind_field(row: dict[str, Any]) -> tuple[Any, Any]:
+    """Return type and default of the key of a kind of loads, a row of the core."""
+    if row["vector"]:
+        return Annotated[tuple[float | TimeFunction, ...], TimedVector("Pa")], ()
+    return Annotated[float | TimeFunction | None, Timed("Pa")], None
+
+
+_KINDS: dict[str, dict[str, Any]] = _core.load_kinds
+_LoadValues: Any = table_of_rows("load", _KINDS, _kind_field)
+
+
+class Load(_LoadValues):
+    """A load on a side of a body that deforms; it follows the body's motion.
+
+    One of the kinds of loads must be given.
+
+    Attributes:
+        body: its name.
+        side: of the body's shape: `x_min` to `z_max` of a box; `outer` of what is round, `inner`
+            of a ring or tube, `lower` and `upper` of a cylinder or tube; `all`.
+    """
+
+    body: Text
+    side: Text
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Load:
+        first, *others = _KINDS
+        given = self.given()
+        if len(given) > 1:
+            rule = f"must not be given together with {given[0]}"
+            raise violation(rule, "keep one of the two", path=(given[1],))
+        if not given:
+            remedy = f"add this key, or {' or '.join(others)}"
+            raise violation("is missing", remedy, path=(first,))
+        return self
+
+    def given(self) -> list[str]:
+        """Return the kinds of loads that have a value."""
+        return [kind for kind in _KINDS if getattr(self, kind) not in (None, ())]
+
+    def value(self) -> tuple[str, tuple[float | TimeFunction, ...]]:
+        """Return the kind and its value, one number or D."""
+        [kind] = self.given()
+        found = getattr(self, kind)
+        return kind, found if _KINDS[kind]["vector"] else (found,)
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """The pieces of a surface, each carried by the particle nearest to it.
+
+    Attributes:
+        particles: their numbers in the order of filling, shape (n,).
+        areas: outward area vectors [m^2; in 2D m times 1 m], shape (n, D).
+        sizes: areas [the same], shape (n,); more than the length of the vector where a particle
+            carries parts of the side that are not parallel.
+        arms: from the particle to the middle of its piece [m], shape (n, D).
+    """
+
+    particles: NDArray[np.uint32]
+    areas: Array
+    sizes: Array
+    arms: Array
+
+    @property
+    def area(self) -> float:
+        """Sum of the areas [m^2; in 2D m times 1 m]."""
+        return float(self.sizes.sum())
+
+
+def check_loads(case: Case) -> Iterator[PydanticCustomError]:
+    """Yield the violations of loads against the bodies of a case, with their paths in it."""
+    dimension = case.grid.dimension
+    for name, load in case.load.items():
+        path = ("load", name)
+        if load.body not in case.body:
+            rule, remedy = "is not a body of this case", nearest(load.body, case.body)
+            yield violation(rule, remedy, value=load.body, path=(*path, "body"))
+            continue
+        body = case.body[load.body]
+        if case.is_rigid(load.body):
+            rule = "does not deform, and a load acts on bodies that do"
+            remedy = "give its material another strength, remove its motion, or load another body"
+            yield violation(rule, remedy, value=load.body, path=(*path, "body"))
+        known = sides(body.shape, dimension) if body.shape is not None else []
+        if not known:
+            given = "given particle by particle"
+            what = f"a {body.shape.kind}" if body.shape is not None else given
+            rule = f"cannot be found: body.{load.body} is {what}, which has no named sides"
+            remedy = "give the body as one box, disc, ring, sphere, cylinder or tube"
+            yield violation(rule, remedy, value=load.side, path=(*path, "side"))
+        elif load.side not in known:
+            rule = f"is not a side of the {_kind(body)} body.{load.body}"
+            yield violation(rule, nearest(load.side, known), value=load.side, path=(*path, "side"))
+        kind, value = load.value()
+        if _KINDS[kind]["vector"] and len(value) != dimension:
+            rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
+            remedy = f"it has {len(value)}, give {dimension}"
+            yield violation(rule, remedy, path=(*path, kind))
+
+
+def _kind(body: Body) -> str:
+    shape: Any = body.shape
+    while hasattr(shape, "shape"):
+        shape = shape.shape
+    return str(shape.kind)
+
+
+def pieces(case: Case, name: str, positions: Array, spacing: float) -> Pieces:
+    """Share the side that a load acts on among the particles of its body.
+
+    Each point of the side belongs to the particle nearest to it, so that the particles' areas add
+    up to that of the side as it is drawn, and the pieces lie on it.
+
+    Args:
+        case: a checked case.
+        name: of the load.
+        positions: of the body's particles [m], shape (n, D).
+        spacing: distance of neighbouring particles [m].
+
+    Raises:
+        CaseError: a part of the side has no particle within two spacings.
+    """
+    load = case.load[name]
+    dimension = positions.shape[1]
+    shape = case.body[load.body].shape
+    assert shape is not None
+    side = surface(shape, load.side, spacing / _FINER[dimension])
+    owner = nearest_particles(positions, side.points, np.asarray(case.grid.origin), spacing)
+    lost = owner < 0
+    if lost.any():
+        share = np.linalg.norm(side.areas[lost], axis=1).sum()
+        share /= np.linalg.norm(side.areas, axis=1).sum()
+        rule = (
+            f"has no particles near {share:.0%} of it: the body is too thin there for its spacing"
+        )
+        remedy = "give a smaller grid.cell_size or more particles_per_cell"
+        raise case.error(("load", name, "side"), rule, remedy, value=load.side)
+    return _share(side, owner, positions)
+
+
+def _share(side: Surface, owner: NDArray[np.int64], positions: Array) -> Pieces:
+    particles, place = np.unique(owner, return_inverse=True)
+    size = np.linalg.norm(side.areas, axis=1)
+
+    def added(values: Array) -> Array:
+        columns = [np.bincount(place, v, len(particles)) for v in values.T]
+        return np.stack(columns, axis=1)
+
+    sizes = np.asarray(np.bincount(place, size), dtype=np.float64)
+    middle = added(size[:, None] * side.points) / sizes[:, None]
+    arms = middle - positions[particles]
+    return Pieces(particles.astype(np.uint32), added(side.areas), sizes, arms)
+
+
+def nearest_particles(
+    positions: Array, points: Array, origin: Array, spacing: float
+) -> NDArray[np.int64]:
+    """Return the number of the particle nearest to each point, or -1 if none is within reach.
+
+    Args:
+        positions: of particles, no two in one cell of a lattice [m], shape (n, D).
+        points: [m], shape (m, D).
+        origin, spacing: of the lattice [m].
+
+    Returns:
+        Numbers, shape (m,); the reach is two cells of the lattice around the point's.
+    """
+    low = np.floor((positions.min(axis=0) - origin) / spacing).astype(np.int64) - 4
+    cells = np.floor((positions - origin) / spacing).astype(np.int64) - low
+    here = np.floor((points - origin) / spacing).astype(np.int64) - low
+    extent = np.maximum(cells.max(axis=0), here.max(axis=0)) + 4
+    strides = np.cumprod([1, *extent[:-1]])
+    keys = cells @ strides
+    order = np.argsort(keys)
+    keys = keys[order]
+    best, distance = np.full(len(points), -1), np.full(len(points), np.inf)
+    for offset in itertools.product(range(-2, 3), repeat=positions.shape[1]):
+        wanted = (here + offset) @ strides
+        at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+        found = keys[at] == wanted
+        candidate = order[at]
+        far = np.linalg.norm(positions[candidate] - points, axis=1)
+        closer = found & (far < distance)
+        best[closer], distance[closer] = candidate[closer], far[closer]
+    return best
+
+
+def add_load(core: Any, case: Case, name: str, body: int, found: Pieces) -> None:
+    """Hand a load over to the core; `body` is the number of its body there.
+
+    Raises:
+        CaseError: the core refuses it.
+    """
+    load = case.load[name]
+    kind, value = load.value()
+    areas = np.ascontiguousarray(found.areas)
+    arms, particles = np.ascontiguousarray(found.arms), found.particles.tolist()
+    try:
+        core.add_load(name, body, kind, functions(value), particles, areas, found.sizes, arms)
+    except ValueError as error:
+        raise case.error(("load", name), f"is refused: {error}") from None

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The tables of a case about the computation: grid, run, output, contact."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from mpm3dpp.base.errors import violation
+from mpm3dpp.base.model import CaseModel, Count, Exactly, Flag, Text
+from mpm3dpp.base.settings import core_table
+from mpm3dpp.base.units import NonNegative, Quantity, Time
+
+
+class Viscosity(CaseModel):
+    """Artificial bulk viscosity (von Neumann & Richtmyer 1950, Landshoff 1955), dimensionless."""
+
+    quadratic: NonNegative = 1.5
+    linear: NonNegative = 0.06
+
+
+_Run: Any = core_table("run")
+_Contact: Any = core_table("contact")
+
+
+class Run(_Run):
+    """How time advances.
+
+    Attributes:
+        end_time: [s].
+        viscosity: artificial bulk viscosity; None for none.
+    """
+
+    end_time: Time
+    viscosity: Viscosity | None = None
+
+
+class Output(CaseModel):
+    """What is written.
+
+    Attributes:
+        frames: number of frames after the first one at t = 0; default 50.
+        interval: time between frames [s], in place of `frames`.
+        history_every: steps between two rows of the history table.
+        fields: columns to write beyond position, velocity, stress, pressure, von_mises, body and
+            material, for example "volume" or a state column of a material.
+        picture: the column that colours the picture and the animation.
+        animation: whether a run ends with an animation of its frames, `animation.gif`.
+        compression: of the frames: 0 for none, else the level of gzip, 1 to 9. Level 1 makes the
+            file a third to a half smaller; it is written at some 50 MB/s then.
+        checkpoint_interval: wall-clock time between two checkpoints [s], from which `--resume` goes
+            on; one more is written at the end, also by Ctrl-C. 0 for none at all.
+    """
+
+    frames: Annotated[int, Exactly(int, 1, 100_000)] | None = None
+    interval: Time | None = None
+    history_every: Count = 1
+    fields: list[Text] = Field(default_factory=list)
+    picture: Text = "von_mises"
+    animation: Flag = False
+    compression: Annotated[int, Exactly(int, 0, 9)] = 0
+    checkpoint_interval: Annotated[float, Quantity("s", ">= 0")] = 600.0
+
+    @model_validator(mode="after")
+    def _frames_or_interval(self) -> Output:
+        if self.frames is not None and self.interval is not None:
+            rule = "must not be given together with frames"
+            raise violation(rule, "keep one of the two", path=("interval",))
+        if self.frames is None and self.interval is None:
+            self.__dict__["frames"] = 50
+        return self
+
+
+class ContactPair(CaseModel):
+    """A friction coefficient for two bodies, or for all bodies of two materials.
+
+    The name of a `grains` entry stands for all its bodies; twice, for the pairs among them.
+    """
+
+    bodies: list[Text] | None = None
+    materials: list[Text] | None = None
+    friction: NonNegative
+
+    @model_validator(mode="after")
+    def _one_kind_of_two(self) -> ContactPair:
+        if (self.bodies is None) == (self.materials is None):
+            remedy = 'give one of them, for example bodies = ["left", "right"]'
+            raise violation("must have either bodies or materials", remedy)
+        name = "bodies" if self.bodies is not None else "materials"
+        names = getattr(self, name)
+        if len(names) != 2:
+            raise violation("must have two names", "give two", value=names, path=(name,))
+        return self
+
+
+class Contact(_Contact):
+    """Contact between bodies.
+
+    Attributes:
+        pair: coefficients of single pairs; a pair of bodies wins over a pair of materials, and
+            a later entry over an earlier one.
+    """
+
+    pair: list[ContactPair] = Field(default_factory=list)

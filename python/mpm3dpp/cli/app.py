@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command line: `mpm3dpp run | check | preview | import | plot | bench | materials | ...`.
+
+`command.main` is what runs it. Heavy modules are imported by the command that needs them, so that
+`--help` is fast.
+"""
+
+from __future__ import annotations
+
+import enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mpm3dpp.base.errors import CaseError
+
+from .materials import material_test, materials
+from .options import CaseFile, Json, Threads, Units
+
+if TYPE_CHECKING:
+    from mpm3dpp.case.case import Case
+
+app = typer.Typer(
+    name="mpm3dpp",
+    help="Material point method: impact and frictional contact of any number of bodies.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+def _load(path: Path, units: str | None, quiet: bool = False) -> Case:
+    """Return the case of a file; what to know about it goes to stderr."""
+    from mpm3dpp.importers import load_any
+
+    loaded, notes = load_any(path, units)
+    if not quiet:
+        _print_notes(notes)
+    return loaded
+
+
+def _print_notes(notes: list[str]) -> None:
+    for note in notes:
+        typer.echo(f"note: {note}", err=True)
+
+
+class Scheme(str, enum.Enum):
+    """When the stress is updated; see `Run.scheme`."""
+
+    usf = "usf"
+    usl = "usl"
+    musl = "musl"
+
+
+def _version(wanted: bool) -> None:
+    if not wanted:
+        return
+    from mpm3dpp import __version__
+
+    typer.echo(f"mpm3dpp {__version__}")
+    try:
+        from mpm3dpp import _core
+    except ImportError:
+        typer.echo("core: not built")
+    else:
+        for name, value in _core.build_info().items():
+            typer.echo(f"{name}: {value}")
+    raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Version and build."),
+    ] = False,
+) -> None:
+    """Options before the command."""
+
+
+@app.command()
+def run(
+    case: CaseFile,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder; default results/NAME, of the file or, for case.toml, its folder."
+        ),
+    ] = None,
+    threads: Threads = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    json: Json = False,
+    units: Units = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on from the checkpoint in the folder.")
+    ] = False,
+    anew: Annotated[
+        bool,
+        typer.Option(
+            "--anew",
+            help="Begin anew, though the folder holds an unfinished run or another case's.",
+        ),
+    ] = False,
+    no_pictures: Annotated[
+        bool, typer.Option("--no-pictures", help="Draw none; `mpm3dpp plot` draws them later.")
+    ] = False,
+) -> None:
+    """Run a case: frames, history, manifest and pictures in the output folder."""
+    from mpm3dpp.base.machine import thread_count
+    from mpm3dpp.io.folders import default_folder, writable_folder
+    from mpm3dpp.run.resume import refuse_to_begin_anew
+
+    loaded = _load(case, units, quiet)
+    folder = out if out is not None else default_folder(case)
+    if resume and anew:
+        raise CaseError("--resume and --anew cannot be given together", "give one of them")
+    if not resume:
+        writable_folder(folder)
+        if not anew:
+            refuse_to_begin_anew(folder, loaded)
+    from mpm3dpp.run.run import run_case  # The slowest import: after the mistakes.
+
+    workers, pictures = thread_count(threads), not no_pictures
+    run_case(loaded, folder, workers, quiet=quiet, json=json, pictures=pictures, resume=resume)
+
+
+@app.command()
+def check(case: CaseFile, units: Units = None) -> None:
+    """Check a case and say what it amounts to, without running it."""
+    from mpm3dpp.fill.build import build
+    from mpm3dpp.run.summary import echo
+
+    loaded = _load(case, units)
+    typer.echo(echo(loaded, build(loaded)))
+
+
+@app.command()
+def preview(
+    case: CaseFile,
+    out: Annotated[Path | None, typer.Option(help="Picture; default in results/NAME.")] = None,
+    units: Units = None,
+) -> None:
+    """Draw the particles of a case before it runs."""
+    from mpm3dpp.io.folders import default_folder, writable_folder
+    from mpm3dpp.plots import preview as draw
+
+    loaded = _load(case, units)
+    target = out if out is not None else writable_folder(default_folder(case)) / "preview.png"
+    typer.echo(draw(loaded, target))
+
+
+@app.command(name="import")
+def import_(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Input file of MPM3D-F90 (.mpm).")],
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="Case file; default NAME.toml here.")
+    ] = None,
+    units: Units = None,
+    force: Annotated[bool, typer.Option("--force", help="Write over files.")] = False,
+) -> None:
+    """Write an input file of MPM3D-F90 as a case file in SI units."""
+    from mpm3dpp.importers.mpm3d import import_mpm, write_case
+
+    if file.suffix.lower() == ".toml":
+        rule = "is a case file, but import wants an input file of MPM3D-F90 (.mpm)"
+        raise CaseError(rule, "run, check and preview take a case file as it is", key=str(file))
+    found = import_mpm(file, units)
+    target = out if out is not None else Path(f"{file.stem}.toml")
+    written = write_case(found, target, force)
+    _print_notes(found.notes)
+    for path in written:
+        typer.echo(path)
+
+
+@app.command()
+def plot(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of a run.")],
+    frame: Annotated[int, typer.Option(help="Frame; negative counts from the end.")] = -1,
+    animation: Annotated[
+        bool | None,
+        typer.Option("--animation/--no-animation", help="animation.gif; default as the case."),
+    ] = None,
+    colour: Annotated[str | None, typer.Option(help="Column that colours particles.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the pictures.")] = None,
+) -> None:
+    """Make the pictures of a run again."""
+    from mpm3dpp.plots.run import draw_all
+
+    if not folder.is_dir():
+        rule = "is not a folder" if folder.exists() else "there is no such folder"
+        raise CaseError(rule, "give the --out of a run", place=str(folder))
+    for picture in draw_all(folder, frame, animation, colour, out):
+        typer.echo(picture)
+
+
+BENCH_NAMES = (
+    "elastic2d, elastic3d, gimp2d, gimp3d, jc, debris, two_cubes, two_cubes_apart, spheres or "
+    "spheres_apart."
+)
+
+
+@app.command()
+def bench(
+    name: Annotated[str, typer.Argument(metavar="NAME", help=BENCH_NAMES)],
+    size: Annotated[
+        list[int] | None,
+        typer.Option(
+            min=1,
+            help="Cells along an edge of two particles; how many spheres. May be given again.",
+        ),
+    ] = None,
+    threads: Annotated[
+        list[int] | None, typer.Option(min=1, help="Threads; 1 if not given. May be given again.")
+    ] = None,
+    scheme: Annotated[Scheme, typer.Option(help="Scheme.")] = Scheme.musl,
+    steps: Annotated[int | None, typer.Option(min=1, help="Steps that are timed; 400.")] = None,
+    json: Json = False,
+    plot: Annotated[Path | None, typer.Option(help="Picture to write, a PNG.")] = None,
+) -> None:
+    """Measure the speed: time per particle-step and stage, memory, bandwidth.
+
+    With several sizes or numbers of threads: how these grow.
+    """
+    from mpm3dpp.bench import main as measure
+
+    measure(name, size or (), threads or (1,), scheme.value, steps, json, plot)
+
+
+class Size(str, enum.Enum):
+    """How large the paper's examples are run; see `reproduce`."""
+
+    quick = "quick"
+    paper = "paper"
+
+
+@app.command()
+def reproduce(
+    out: Annotated[Path, typer.Option(help="Folder of the page.")] = Path("results/reproduce"),
+    size: Annotated[
+        Size, typer.Option(help="quick: coarser, shorter, fewer bodies; paper: as they are.")
+    ] = Size.quick,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(help="penetration, spheres, grains or rings; may be given again."),
+    ] = None,
+    steps: Annotated[int, typer.Option(min=1, help="Steps that are timed.")] = 100,
+    threads: Threads = None,
+    examples: Annotated[
+        Path | None, typer.Option(help="Folder of the example cases, in place of our own.")
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+) -> None:
+    """Run the examples of Ma, Zhang & Huang (2010): a page with their tables and figures.
+
+    mpm3dpp reproduce --only rings --only spheres
+    """
+    from mpm3dpp.reproduce import reproduce as make
+
+    for path in make(out, size.value, only or (), steps, threads, examples, quiet):
+        if not quiet:
+            typer.echo(path)
+
+
+app.command()(materials)
+app.command("material-test")(material_test)

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command `mpm3dpp` from its first moment: signals and streams, then the command line.
+
+Exit codes: 0 done, 1 the run had to stop, 2 a mistake in the case or on the command line, 130
+stopped by the user.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import io
+import os
+import sys
+
+from mpm3dpp.base import signals
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mpm3dpp.base.errors import CaseError
+
+_MOST_TOLD = 50  # Mistakes that are listed.
+
+
+def main() -> None:
+    """Run the command line and exit; a mistake is a sentence, never a traceback."""
+    signals.end_at_once()
+    _mend_streams()
+    os.environ["MPLBACKEND"] = "agg"  # Pictures go into files, whatever the user's notebooks need.
+    from mpm3dpp.base.errors import CaseError, RunError
+
+    try:
+        from .app import app
+
+        app()
+    except CaseError as error:
+        _tell(error)
+        sys.exit(2)
+    except RunError as error:
+        _say(f"error: {error}")
+        sys.exit(1)
+    except KeyboardInterrupt:
+        _say(f"error: {signals.SENTENCE}")
+        sys.exit(signals.CODE)
+    except OSError as error:
+        _refused(error)
+        sys.exit(1)
+    except MemoryError:
+        _say("error: there is not enough memory; give a larger grid.cell_size")
+        sys.exit(1)
+
+
+class _OutputError(OSError):
+    """Standard output is full or gone."""
+
+
+class _Output(io.TextIOWrapper):
+    """Standard output, whose errors are known from those of files."""
+
+    def write(self, text: str) -> int:
+        try:
+            return super().write(text)
+        except OSError as error:
+            raise _OutputError(error.errno, error.strerror) from error
+
+    def flush(self) -> None:
+        try:
+            super().flush()
+        except OSError as error:
+            raise _OutputError(error.errno, error.strerror) from error
+
+
+class _Lenient(io.TextIOWrapper):
+    """Standard error that may be full or gone: what cannot be told there does not end a run."""
+
+    def write(self, text: str) -> int:
+        try:
+            return super().write(text)
+        except OSError:
+            return len(text)
+
+    def flush(self) -> None:
+        with contextlib.suppress(OSError):
+            super().flush()
+
+
+def _mend_streams() -> None:
+    """Make standard output and error such that writing to them is no mistake of its own."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:  # Closed: the next file would get this number, and what is printed.
+            os.open(os.devnull, os.O_RDWR)
+    if sys.stdout is None:
+        sys.stdout = os.fdopen(1, "w", encoding="utf-8", closefd=False)
+    if sys.stderr is None:
+        sys.stderr = os.fdopen(2, "w", encoding="utf-8", closefd=False)
+    # A name that the terminal's encoding does not have is shown by its numbers.
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        encoding, by_line = sys.stdout.encoding, sys.stdout.line_buffering
+        sys.stdout = _Output(
+            sys.stdout.detach(), encoding, errors="backslashreplace", line_buffering=by_line
+        )
+    if isinstance(sys.stderr, io.TextIOWrapper):
+        encoding = sys.stderr.encoding
+        sys.stderr = _Lenient(
+            sys.stderr.detach(), encoding, errors="backslashreplace", line_buffering=True
+        )
+
+
+def _say(sentence: str) -> None:
+    print(f"mpm3dpp: {sentence}", file=sys.stderr, flush=True)
+
+
+def _tell(error: CaseError) -> None:
+    """Print a mistake and those found with it."""
+    every = [error, *error.others]
+    for one in every[:_MOST_TOLD]:
+        _say(f"error: {one}")
+    if len(every) > 1:
+        rest = f", the first {_MOST_TOLD} of which are listed" if len(every) > _MOST_TOLD else ""
+        _say(f"{len(every)} mistakes{rest}")
+
+
+def _refused(error: OSError) -> None:
+    """Say what the system refused: standard output, or a file by its name."""
+    reason = (error.strerror or str(error) or "unknown reason").lower()
+    if isinstance(error, _OutputError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # What is left is not tried again at the end.
+        if error.errno != errno.EPIPE:  # Else nobody reads any more, `mpm3dpp ... | head`.
+            _say(f"error: cannot write to standard output: {reason}")
+    elif error.filename is not None:
+        _say(f"error: cannot use '{error.filename}': {reason}")
+    else:
+        _say(f"error: {reason}")

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is allowed in a case but perhaps not meant: the notes of `mpm3dpp check` and `run`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mpm3dpp.base.errors import key_text
+from mpm3dpp.base.time_functions import TimeFunction
+from mpm3dpp.case.case import Case
+from mpm3dpp.case.detonation import EXPLOSIVE
+from mpm3dpp.case.grid import FACES
+
+from .build import FilledBody, by_part
+
+_FASTEST = 10.0  # Times the speed of sound; the fastest impacts in laboratories are at 2 to 3.
+_STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
+
+
+def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
+    """Return one sentence for each thing that a user should look at again.
+
+    Args:
+        case: a checked case.
+        bodies: its bodies, filled.
+    """
+    found = [*_materials(case), *_rigid(case), *_detonations(case, bodies), *_walls(case)]
+    return found + _speeds(case, bodies)
+
+
+def _materials(case: Case) -> list[str]:
+    """Numbers that are allowed but mostly come from another convention."""
+    found = []
+    for name in case.materials_used:
+        material = case.material[name]
+        strength, key = material.strength, f"material.{name}"
+        for failure in material.failure:
+            third = failure.parameters.get("D3", 0.0)
+            if failure.model == "johnson_cook_damage" and third > 0.0:
+                found.append(
+                    f"{key}.failure.johnson_cook_damage.D3 = {third:g} is > 0, so that tension "
+                    "makes the metal tougher; here tension is positive, as Johnson and Cook write "
+                    "it: give codes' numbers for pressure with the other sign"
+                )
+        friction = strength.parameters.get("q_phi", 0.0)
+        if strength.model == "drucker_prager" and friction > _STEEPEST:
+            found.append(
+                f"{key}.strength.drucker_prager.q_phi = {friction:g} is more than any angle of "
+                f"friction gives ({_STEEPEST:.3g} at 90 deg); it is a slope, not an angle"
+            )
+        if material.eos is not None and material.eos.model == "jwl" and strength.model != EXPLOSIVE:
+            found.append(
+                f"{key}.eos.jwl is of the products of an explosive, but its strength "
+                f"{strength.model} does not detonate: the whole energy E0 presses from the start; "
+                f"give strength = {{ {EXPLOSIVE} = ... }} unless that is meant"
+            )
+    return found
+
+
+def _rigid(case: Case) -> list[str]:
+    """Bodies that move by the laws of Newton and pass through others."""
+    rigid = [name for name in case.body if case.is_rigid(name)]
+    free = [name for name in rigid if case.body[name].motion is None]
+    if not case.contact_enabled or not free or len(rigid) < 2:
+        return []
+    return [
+        f"body.{free[0]} is rigid and passes through the other rigid bodies "
+        f"({', '.join(name for name in rigid if name != free[0])}): bodies that do not deform do "
+        "not act on each other; give one of the two a strength that deforms if they meet"
+    ]
+
+
+def _walls(case: Case) -> list[str]:
+    """Walls that absorb waves where gravity presses on them."""
+    found = []
+    for d, g in enumerate(case.run.gravity):
+        if isinstance(g, TimeFunction):
+            continue
+        face = 2 * d + (g > 0.0)
+        if g != 0.0 and case.grid.walls[face] == "absorbing":
+            found.append(
+                f"grid.box.walls.{FACES[face]} absorbs waves but holds no weight, and run.gravity "
+                "presses on it: what stands there sinks; give slip or fixed unless that is meant"
+            )
+    return found
+
+
+def _speeds(case: Case, bodies: list[FilledBody]) -> list[str]:
+    """Bodies that are so fast at the start that their velocity is perhaps in another unit."""
+    parts = case.parts()
+    sound = {name: case.material[part.material].sound_speed() for name, part in parts.items()}
+    quickest = max(c for name, c in sound.items() if not case.is_rigid(name))
+    found = []
+    for name, members in by_part(bodies).items():
+        speed = max(float(np.linalg.norm(body.velocities, axis=1).max()) for body in members)
+        own = quickest if case.is_rigid(name) else sound[name]
+        if speed > _FASTEST * own:
+            whose = "the other materials" if case.is_rigid(name) else "its material"
+            found.append(
+                f"{key_text(case.part_path(name))} moves at {speed:.4g} m/s, {speed / own:.3g} "
+                f"times the speed of sound in {whose} ({own:.4g} m/s); look at the unit of its "
+                "velocity (a plain number is in m/s) and at the stiffness"
+            )
+    return found
+
+
+def _detonations(case: Case, bodies: list[FilledBody]) -> list[str]:
+    """Explosives that nothing lights, and points that light nothing before the end of the run."""
+    explosives = {
+        part: members
+        for part, members in by_part(bodies).items()
+        if case.material[members[0].material].strength.model == EXPLOSIVE
+    }
+    found = []
+    for name in explosives:
+        if not any(not d.bodies or name in d.bodies for d in case.detonation):
+            found.append(
+                f"{key_text(case.part_path(name))} is of an explosive that nothing lights, so that "
+                "it stays unburned; add [[detonation]] with a point"
+            )
+    for index, detonation in enumerate(case.detonation):
+        first = np.inf
+        for body in (b for name in detonation.bodies or explosives for b in explosives[name]):
+            distance = np.linalg.norm(body.positions - np.asarray(detonation.point), axis=1).min()
+            speed = case.material[body.material].strength.parameters["D"]
+            first = min(first, detonation.time + float(distance) / speed)
+        if first > case.run.end_time:
+            found.append(
+                f"detonation[{index}] lights nothing before the end of the run: it reaches an "
+                f"explosive at {first:.4g} s, and run.end_time = {case.run.end_time:.4g} s; "
+                "move the point, or give a later end"
+            )
+    return found

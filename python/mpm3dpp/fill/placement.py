@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whether filled bodies stand where they may: inside the box, and not in one another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.errors import Path as KeyPath
+from mpm3dpp.base.neighbours import overlapping_boxes
+from mpm3dpp.case.case import Case
+from mpm3dpp.case.grid import FARTHEST
+
+from .overlap import close_particles
+
+if TYPE_CHECKING:
+    from .build import FilledBody
+
+CLOSE = 0.25  # Particles of two bodies nearer than this share of their spacing overlap.
+_SLACK = 1e-9  # How far, in cells, a particle may stand outside the box by rounding.
+
+
+def box_mistakes(case: Case, body: FilledBody) -> Iterator[CaseError]:
+    """Yield where particles stand outside the box, or the region that is kept, or any grid."""
+    grid = case.grid
+    reach = np.abs(body.positions - np.asarray(grid.lower)).max() / grid.cell_size
+    if not reach < FARTHEST:
+        rule = f"is {reach:.2e} cells from the grid's origin, and {FARTHEST:,} is the most"
+        path, filling = _key(case, body)
+        yield case.error(path, rule, f"give larger cells, or move grid.origin to the {filling}")
+        return
+    if grid.box is not None:
+        yield from _outside(case, body, "box", (grid.box.lower, grid.box.upper))
+    yield from _outside(case, body, "keep", grid.kept)
+
+
+def _outside(
+    case: Case,
+    body: FilledBody,
+    region: str,
+    corners: tuple[tuple[float, ...], tuple[float, ...]],
+) -> Iterator[CaseError]:
+    slack = _SLACK * case.grid.cell_size
+    what = "box" if region == "box" else "region"
+    for d, axis in enumerate("xyz"[: case.grid.dimension]):
+        x = body.positions[:, d]
+        for limit, outside in ((corners[0][d], -x), (corners[1][d], x)):
+            sign = 1 if limit == corners[1][d] else -1
+            reach = float(outside.max())
+            if reach > sign * limit + slack:
+                count = int((outside > sign * limit + slack).sum())
+                side = f"{axis} {'>' if sign > 0 else '<'} {limit:g} m"
+                path, filling = _key(case, body)
+                who = "its particles" if body.name == body.part else f"the particles of {body.name}"
+                rule = f"reaches out of grid.{region}: {count} of {who} are at {side}"
+                yield case.error(path, rule, f"move the {filling}, or enlarge the {what}")
+
+
+def _key(case: Case, body: FilledBody) -> tuple[KeyPath, str]:
+    """Return the path of what gives a body its particles, and that key alone."""
+    filling = case.parts()[body.part].filling
+    return (*case.part_path(body.part), filling), filling
+
+
+def overlap_mistakes(case: Case, bodies: list[FilledBody]) -> Iterator[CaseError]:
+    """Yield which two bodies overlap by more than a quarter spacing; of grains the first only.
+
+    Grains are judged as balls: where those touch, particles may be as near as chance has it.
+    """
+    if len(bodies) < 2:
+        return
+    reach = CLOSE * np.array([body.spacing for body in bodies])
+    no_ball = (np.full(case.grid.dimension, np.nan), np.nan)
+    centres = np.array([(body.ball or no_ball)[0] for body in bodies])
+    radii = np.array([(body.ball or no_ball)[1] for body in bodies])
+    lowers = np.array([body.positions.min(axis=0) for body in bodies])
+    uppers = np.array([body.positions.max(axis=0) for body in bodies])
+    lowers = np.fmin(lowers, centres - radii[:, None]) - 0.5 * reach[:, None]
+    uppers = np.fmax(uppers, centres + radii[:, None]) + 0.5 * reach[:, None]
+    a, b = overlapping_boxes(lowers, uppers)
+    depths = radii[a] + radii[b] - np.sqrt(((centres[a] - centres[b]) ** 2).sum(axis=1))
+    near = ~(depths <= np.minimum(reach[a], reach[b]))  # With a body that is no ball: not a number.
+    rigid = {name: case.is_rigid(name) for name in case.parts()}
+    told: set[tuple[str, str]] = set()
+    for k in np.flatnonzero(near).tolist():
+        first, second = bodies[a[k]], bodies[b[k]]
+        if (first.part, second.part) in told or (rigid[first.part] and rigid[second.part]):
+            continue  # They do not act on each other.
+        how = f"by {depths[k]:.4g} m"
+        if np.isnan(depths[k]):
+            distance = CLOSE * min(first.spacing, second.spacing)
+            count = close_particles(first.positions, second.positions, distance)
+            if not count:
+                continue
+            how = (
+                f"{count} of the particles of {second.name} are closer than a quarter spacing to "
+                f"particles of {first.name}"
+            )
+        other = f"body.{first.name}" if first.name == first.part else first.name
+        if second.name == second.part:
+            rule = f"overlaps {other}: {how}"
+            remedy = "move one of the two, or cut one out of the other with difference"
+        else:
+            rule = f"has {second.name} overlap {other}: {how}"
+            remedy = "move the grains, or make them smaller"
+        told.add((first.part, second.part))
+        yield case.error(_key(case, second)[0], rule, remedy)

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where results go: folders that can be written, one run at a time in each."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from mpm3dpp.base.disk import cannot_write, make_folder, unfinished
+from mpm3dpp.base.errors import CaseError
+
+from .checkpoint import CHECKPOINT, PREVIOUS
+from .history import PAIRS
+
+
+def default_folder(case_file: Path) -> Path:
+    """Return `results/NAME` beside the current directory.
+
+    NAME is the folder of a file called `case.toml`, that folder and NAME for `case_NAME.toml`
+    (`01_two_rings_velocity`), else the file's name without its ending.
+    """
+    stem, folder = case_file.stem, case_file.resolve().parent.name
+    if folder and stem == "case":
+        return Path("results") / folder
+    if folder and stem.startswith("case_"):
+        return Path("results") / f"{folder}_{stem.removeprefix('case_')}"
+    return Path("results") / stem
+
+
+# What a run writes beside the frames and the history, which it begins anew.
+_OF_A_RUN = ("manifest.json", "frame.png", "energies.png", "first_contact.png", "animation.gif")
+
+
+def forget_last_run(folder: Path, checkpoint: bool = True) -> None:
+    """Remove what an earlier run has left in a folder, so that it is not taken for the new one's.
+
+    Args:
+        folder: of the runs.
+        checkpoint: remove its checkpoint and table of pairs too, for the new run does not go on
+            from them.
+
+    Raises:
+        CaseError: it cannot be removed.
+    """
+    half = unfinished(Path(CHECKPOINT)).name
+    anew = (PAIRS, half, PREVIOUS, CHECKPOINT)  # A run that begins anew may have no such table.
+    for name in (*_OF_A_RUN, *(anew if checkpoint else ())):
+        try:
+            (folder / name).unlink(missing_ok=True)
+        except OSError as error:
+            raise cannot_write(folder / name, error) from error
+
+
+@contextlib.contextmanager
+def only_run_in(folder: Path) -> Iterator[None]:
+    """Within it, no other run goes on in the folder; where the system has locks, not on Windows.
+
+    Raises:
+        CaseError: one does already.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        yield
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            rule = f"a run is going on in '{folder}'"
+            raise CaseError(rule, "wait for its end, or choose another --out") from None
+        except OSError:  # A disk without locks.
+            pass
+        yield
+    finally:
+        os.close(handle)
+
+
+def writable_folder(path: Path) -> Path:
+    """Make a folder, prove that files can be written in it, and return it.
+
+    Raises:
+        CaseError: it cannot be made or written.
+    """
+    make_folder(path)
+    try:
+        with tempfile.TemporaryFile(dir=path):
+            return path
+    except OSError as error:
+        raise cannot_write(path, error) from error

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a finished run prints: contact, speed, memory."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from mpm3dpp.io.manifest import Manifest
+
+_PAIRS_SHOWN = 10
+_OF_A_KIND = 3  # warnings shown
+_NUMERICAL_WARNING = 0.05
+
+
+def contact_table(manifest: Manifest) -> list[str]:
+    """Return the lines about contact: overlapped nodes, pairs, bytes, share of the step's time."""
+    contact = manifest.contact
+    if not contact.overlapped_nodes_max:
+        return []
+    total = sum(manifest.stages.values()) or 1.0
+    share = sum(ns for name, ns in manifest.stages.items() if name.startswith("contact")) / total
+    unit = "J/m" if manifest.case.get("grid", {}).get("dimension") == 2 else "J"
+    pairs = sum(p.pairs for p in contact.pairs)
+    lines = [
+        f"contact: {contact.bodies:,} bodies, {contact.overlapped_nodes:,} overlapped nodes at the "
+        f"end, {contact.overlapped_nodes_max:,} at most, {pairs:,} "
+        f"{'pair' if pairs == 1 else 'pairs'}, {contact.bodies_per_node_max} bodies at a node at "
+        f"most, {contact.peak_bytes / 2**20:.2f} MiB, {share:.1%} of the step's time"
+    ]
+    if contact.unconverged_nodes:
+        lines.append(
+            f"warning: {contact.unconverged_nodes:,} contact solutions at nodes with several "
+            "bodies stopped short of the tolerance; give smaller cells"
+        )
+    for pair in contact.pairs[:_PAIRS_SHOWN]:
+        if pair.first_time is None or pair.first_gap is None:
+            continue
+        many = f" ({pair.pairs:,} pairs)" if pair.pairs > 1 else ""
+        lines.append(
+            f"  {' - '.join(pair.bodies)}{many}: first contact at {pair.first_time:.6g} s, "
+            f"surfaces {round(pair.first_gap / manifest.cell_size, 2) + 0.0:.2f} cells apart, "
+            f"friction work {pair.friction_work:.4g} {unit}"
+        )
+    if len(contact.pairs) > _PAIRS_SHOWN:
+        lines.append(f"  ... and {len(contact.pairs) - _PAIRS_SHOWN} more, in manifest.json")
+    return lines
+
+
+def energy_line(manifest: Manifest) -> str:
+    """Return the line about the energy that numerics made or lost.
+
+    It is a share of what came in (kinetic energy at the start, or the most that work from outside
+    had brought), or of all energy at the start where most of that is internal, as in a compressed
+    gas or an explosive.
+    """
+    energies = manifest.energies
+    final, start = energies.get("final", {}), energies.get("initial", {})
+    kinetic, internal = start.get("kinetic", 0.0), start.get("internal", 0.0)
+    work = max(abs(final.get("external", 0.0)), energies.get("external_max", 0.0))
+    whole, of_what = max(abs(kinetic), work), "what came in"
+    if abs(internal) > whole:
+        whole, of_what = kinetic + abs(internal), "the energy at the start"
+    if not final or whole == 0.0:
+        return "energy: none came in"
+    numerical = (final["numerical"] + final["contact"]) / whole
+    word = "lost" if numerical >= 0.0 else "made"
+    line = f"energy: numerical terms and normal contact {word} {abs(numerical):.2%} of {of_what}"
+    if abs(numerical) > _NUMERICAL_WARNING:
+        line += "; a smaller run.time_step_factor or smaller cells may help"
+    return line
+
+
+def gone_lines(manifest: Manifest) -> list[str]:
+    """Return a line each about particles that have eroded or left, with mass and energy."""
+    lines = []
+    per = "/m" if manifest.case.get("grid", {}).get("dimension") == 2 else ""
+    words = {"eroded": manifest.eroded, "left": manifest.left}
+    for word, gone in words.items():
+        count, mass = int(gone["count"]), float(gone["mass"])
+        if not count:
+            continue
+        energy = manifest.energies.get("final", {}).get(word, 0.0)
+        lines.append(
+            f"{word}: {count:,} of {manifest.particles:,} particles, {mass:.4g} kg{per} "
+            f"({mass / manifest.mass:.2%} of the mass), {energy:.4g} J{per}"
+        )
+    return lines
+
+
+def warning_lines(manifest: Manifest) -> list[str]:
+    """Return a line for each thing that the run has warned of, with how often it was seen.
+
+    Of each kind the first three; the manifest has all, and the notes, which are no warnings.
+    """
+    lines, told = [], Counter[str]()
+    for w in manifest.warnings:
+        told[w.kind] += w.is_error
+        if w.is_error and told[w.kind] <= _OF_A_KIND:
+            lines.append(f"warning: {w.message}; seen {w.count:,} times")
+    for kind, count in told.items():
+        if count > _OF_A_KIND:
+            lines.append(f"warning: {count - _OF_A_KIND:,} more of {kind}, in manifest.json")
+    return lines
+
+
+def load_lines(manifest: Manifest) -> list[str]:
+    """Return a line for each load on a surface: its impulse and, at the end, its force and area."""
+    flat = manifest.case.get("grid", {}).get("dimension") == 2
+    per, square = ("/m", "m^2 per metre") if flat else ("", "m^2")
+    numbers = slice(0, 2 if flat else 3)
+    return [
+        f"load {name}: impulse [{_listed(load.impulse[numbers])}] N s{per}, at the end force "
+        f"[{_listed(load.force[numbers])}] N{per} on {load.area:.4g} {square}"
+        for name, load in manifest.loads.items()
+    ]
+
+
+def _listed(values: list[float]) -> str:
+    return ", ".join(f"{value:.4g}" for value in values)
+
+
+def speed_line(manifest: Manifest) -> str:
+    """Return the line about speed and memory; all parts of a run that went on count together."""
+    used = sum(manifest.bytes.values()) / max(1, manifest.particles)
+    threads = "1 thread" if manifest.threads == 1 else f"{manifest.threads} threads"
+    on = f"on {threads}"
+    if manifest.resumed_step:
+        on = f"in all parts of the run (from step {manifest.resumed_step:,} {on})"
+    return (
+        f"{manifest.status}: {manifest.steps:,} steps of {manifest.particles:,} particles in "
+        f"{manifest.wall_time:.1f} s, {manifest.ns_per_particle_step:.1f} ns per particle-step "
+        f"{on}, memory {manifest.peak_memory_bytes / 2**20:,.0f} MiB, of which the core "
+        f"{sum(manifest.bytes.values()) / 2**20:,.1f} MiB ({used:.0f} bytes per particle)"
+    )

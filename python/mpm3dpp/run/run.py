@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The whole run of a case: frames, history, manifest, pictures."""
+
+from __future__ import annotations
+
+import json as json_format
+import sys
+from pathlib import Path
+from typing import Any
+
+from mpm3dpp import _core
+from mpm3dpp.base import arguments
+from mpm3dpp.base.errors import CaseError, RunError
+from mpm3dpp.base.signals import Notice, as_exceptions
+from mpm3dpp.case.case import Case, load_case
+from mpm3dpp.io.background import FRAME_SHARE, BackgroundWriter
+from mpm3dpp.io.checkpoint import CHECKPOINT, no_checkpoint
+from mpm3dpp.io.folders import forget_last_run, only_run_in, writable_folder
+from mpm3dpp.io.history import HistoryWriter
+from mpm3dpp.io.manifest import Manifest, Status, build_manifest
+from mpm3dpp.io.vtkhdf import RESULTS, ResultsWriter
+from mpm3dpp.plots.apart import draw_apart
+
+from .checkpoints import Checkpoint, Checkpoints
+from .progress import Progress
+from .report import contact_table, energy_line, gone_lines, load_lines, speed_line, warning_lines
+from .resume import go_on, has_checkpoint
+from .simulation import Simulation
+from .stepping import step_to_end, tell
+
+
+def run_case(
+    case: Case | str | Path,
+    out: str | Path,
+    threads: int | None = None,
+    quiet: bool = True,
+    json: bool = False,
+    pictures: bool = True,
+    resume: bool = False,
+) -> Manifest:
+    """Run a case to its end: results.vtkhdf, history.csv, manifest.json and pictures in a folder.
+
+    Args:
+        case: what to run, or its file.
+        out: the output folder; it is made. Results in it are replaced, also those of another case:
+            only the command refuses that.
+        threads: how many; by default OMP_NUM_THREADS, else all cores.
+        quiet: no progress and no summary.
+        json: print the manifest at the end.
+        pictures: make them; `mpm3dpp.plots.plot_results` makes them later.
+        resume: go on from the checkpoint in the folder, in place of beginning anew, with the same
+            results as a run in one go. A run that has come to its end may get a later one; its last
+            two steps were fitted to the first.
+
+    Raises:
+        CaseError: a mistake in the case or the call, or a folder that cannot be written.
+        RunError: the run became unstable, or the disk is full; what was written before is kept.
+        KeyboardInterrupt: the user stopped it; what was computed is kept.
+    """
+    folder = arguments.path("out", out)
+    _core.return_freed_memory()
+    if not isinstance(case, Case):
+        case = load_case(arguments.path("case", case))
+    if resume and not has_checkpoint(folder):
+        raise no_checkpoint(folder / CHECKPOINT)
+    writable_folder(folder)
+    with only_run_in(folder):
+        manifest, late = _run(case, folder, threads, quiet or json, resume)
+    if json:
+        print(json_format.dumps(manifest.to_dict(), indent=2))
+    elif not quiet:
+        lines = [*contact_table(manifest), *load_lines(manifest), *gone_lines(manifest)]
+        lines += warning_lines(manifest)
+        lines += [energy_line(manifest)]
+        print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]), flush=True)
+    can_go_on = "; --resume goes on" if has_checkpoint(folder) else ""
+    if manifest.status == "interrupted" and not quiet:
+        text = f"mpm3dpp: {manifest.reason}; results are in {folder}{can_go_on}"
+        print(text, file=sys.stderr, flush=True)
+    if pictures and not late:
+        _draw(folder, quiet or json)
+    elif pictures and not quiet:
+        print(f"no pictures: `mpm3dpp plot {folder}` makes them later", file=sys.stderr)
+    if manifest.status == "failed":
+        raise RunError(f"{manifest.reason}; frames and history up to then are in {folder}")
+    if manifest.status == "interrupted":
+        raise KeyboardInterrupt
+    return manifest
+
+
+def _run(
+    case: Case, folder: Path, threads: int | None, quiet: bool, resume: bool
+) -> tuple[Manifest, bool]:
+    """Make the run, and write all but pictures; return also whether Ctrl-C came after its end."""
+    before: Checkpoint | None = None
+    notes: list[str] = []
+    if resume:
+        simulation, before, notes = go_on(folder, case, lambda: Simulation(case, threads))
+    else:
+        simulation = Simulation(case, threads)
+    checkpoints = Checkpoints(folder, case, before)
+    with Notice() as notice:
+        forget_last_run(folder, checkpoint=before is None)
+        begin = simulation.step
+        try:
+            status, reason = _write_run(
+                simulation, folder, quiet, checkpoints, before, notes, notice
+            )
+        except CaseError as error:  # The disk: it was no mistake when the run began.
+            if simulation.step == begin:
+                raise
+            can_go_on = ", and --resume goes on" if has_checkpoint(folder) else ""
+            raise RunError(f"{error}; what was written before is in {folder}{can_go_on}") from error
+        manifest = _manifest(simulation, status, reason, checkpoints.wall_time, begin)
+        manifest.energies = simulation.summary
+        manifest.write(folder)
+        return manifest, status == "completed" and notice.taken
+
+
+def _draw(folder: Path, quiet: bool) -> None:
+    """Draw the pictures of a run; it is not lost if they cannot be drawn, nor by Ctrl-C."""
+    later = f"`mpm3dpp plot {folder}` makes them later"
+    try:
+        if not quiet:
+            text = f"drawing pictures (Ctrl-C leaves them out, {later})"
+            print(text, file=sys.stderr, flush=True)
+        _core.return_freed_memory()  # It is the pictures' turn.
+        with as_exceptions():
+            said = draw_apart(folder)
+        if said and not quiet:
+            print(said, file=sys.stderr)
+    except KeyboardInterrupt:
+        if not quiet:
+            print(f"no pictures: {later}", file=sys.stderr)
+    except Exception as error:
+        if not quiet:
+            print(f"no picture: {error}", file=sys.stderr)
+
+
+def _write_run(
+    simulation: Simulation,
+    folder: Path,
+    quiet: bool,
+    checkpoints: Checkpoints,
+    before: Checkpoint | None,
+    notes: list[str],
+    notice: Notice,
+) -> tuple[Status, str | None]:
+    """Step to the end time, writing frames and history; return how it ended, and why."""
+    case, core = simulation.case, simulation.core
+    contact = case.contact_enabled
+    kept = None if before is None or before.results_are_gone else before.results
+    history_anew = before is not None and before.history_is_gone
+    file = _results_writer(simulation, folder, kept)
+    history = HistoryWriter(
+        folder / "history.csv",
+        columns=core.history_columns,
+        bodies=simulation.parts,
+        contact=contact,
+        every=case.output.history_every,
+        state=before.history if before else None,
+        anew=history_anew,
+    )
+    unit = "J/m" if case.grid.dimension == 2 else "J"
+    progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
+    room = FRAME_SHARE * sum(core.bytes().values())
+    with BackgroundWriter(file, room) as results, history, progress:
+        for sentence in simulation.warnings:
+            progress.note(f"warning: {sentence}")
+        for sentence in [*simulation.notes, *notes]:
+            progress.note(f"note: {sentence}")
+        if kept is None:
+            results.write(core)
+        if before is not None and (kept is None or history_anew):  # Of the new files.
+            tell(progress, checkpoints.write(core, results, history))
+        status, reason = step_to_end(simulation, checkpoints, results, history, progress, notice)
+        if status != "failed":
+            tell(progress, checkpoints.write_last(core, results, history))
+    simulation.summary = history.summary()
+    return status, reason
+
+
+def _results_writer(
+    simulation: Simulation, folder: Path, kept: dict[str, Any] | None
+) -> ResultsWriter:
+    """Return the writer of the frames; `kept`: those that are there, as `ResultsWriter.rows`."""
+    case = simulation.case
+    return ResultsWriter(
+        folder / RESULTS,
+        bodies=simulation.parts,
+        materials=simulation.materials,
+        dimension=case.grid.dimension,
+        cell_size=case.grid.cell_size,
+        origin=case.grid.lower,
+        fields=_fields(case),
+        compression=case.output.compression,
+        title=case.title,
+        case_hash=case.case_hash,
+        rows=kept,
+    )
+
+
+def _fields(case: Case) -> list[str]:
+    """Return the columns to write: those asked for; `failed` where particles may erode or leave.
+
+    Without it a reader could not tell which particles are gone.
+    """
+    used = case.materials_used
+    goes = any(f.action == "erode" for name in used for f in case.material[name].failure)
+    goes = goes or case.grid.keep is not None
+    return list(dict.fromkeys([*case.output.fields, *(["failed"] if goes else [])]))
+
+
+def _manifest(
+    simulation: Simulation, status: Status, reason: str | None, wall_time: float, begin: int
+) -> Manifest:
+    from mpm3dpp import __version__
+
+    case = simulation.case
+    return build_manifest(
+        simulation.core,
+        version=__version__,
+        case=case.table(),
+        case_text=case.text,
+        case_file=case.file_path,
+        bodies=simulation.bodies,
+        parts=simulation.parts,
+        cell_size=case.grid.cell_size,
+        threads=simulation.threads,
+        wall_time=wall_time,
+        status=status,
+        resumed_step=begin,
+        reason=reason,
+        case_hash=case.case_hash,
+        build=_core.build_info(),
+    )

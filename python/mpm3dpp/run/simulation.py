@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A case as a simulation that is ready to step."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mpm3dpp import _core
+from mpm3dpp.base import arguments
+from mpm3dpp.base.errors import CaseError, RunError, nearest
+from mpm3dpp.base.machine import thread_count
+from mpm3dpp.base.settings import fill_core_table, functions
+from mpm3dpp.case.case import Case
+from mpm3dpp.case.detonation import lighting_times
+from mpm3dpp.case.loads import add_load, pieces
+from mpm3dpp.case.motion import Motion
+from mpm3dpp.fill.advisories import notes
+from mpm3dpp.fill.build import build, warnings
+from mpm3dpp.fill.point_warnings import point_warnings
+from mpm3dpp.io.checkpoint import read_about, restore_checkpoint, write_checkpoint
+
+from .checkpoints import check_same
+
+
+class Simulation:
+    """A case filled with particles and ready to step.
+
+    Args:
+        case: what to simulate.
+        threads: how many; by default OMP_NUM_THREADS, else all cores.
+        fused: whether neighbouring stages of a step are done at once, which is faster and gives the
+            same bits; False makes them one by one, as the scheme lists them.
+        disorder: share of a body's particles that changes cell before its columns in memory are
+            put back in order, which costs or saves time and moves no bit; by default what pays.
+
+    Attributes:
+        case: as given.
+        bodies: the bodies' names, in the order of their numbers; those of grains come last.
+        parts: of each body, the name of its entry in the case: its own, or that of its grains.
+        warnings, notes: sentences about the case, for the user.
+        summary: energies of the whole run, once `run_case` has made it.
+        core: the compiled simulation (`mpm3dpp._core.Simulation`).
+
+    Raises:
+        CaseError: the case cannot be filled, or the core refuses a parameter, or an argument is
+            wrong.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        threads: int | None = None,
+        fused: bool = True,
+        disorder: float | None = None,
+    ) -> None:
+        if not isinstance(case, Case):
+            remedy = 'give what mpm3dpp.load_case("case.toml") returns, or make a Case'
+            raise CaseError("must be a Case", remedy, key="case", value=case)
+        filled = build(case)
+        self.case = case
+        self.threads = thread_count(threads)
+        self.bodies = [body.name for body in filled]
+        self.parts = [body.part for body in filled]
+        self.materials = [body.material for body in filled]
+        self.warnings = [*warnings(filled), *point_warnings(case, filled)]
+        self.notes = notes(case, filled)
+        settings = _settings(case, self.threads)
+        settings.execution.fused = fused
+        if disorder is not None:
+            settings.execution.disorder = disorder
+        self.core = _core.Simulation(settings)
+        numbers = {name: self._add_material(name) for name in dict.fromkeys(self.materials)}
+        firsts = case.first_bodies()
+        filled.reverse()
+        while filled:  # What the core has taken is dropped, so that memory holds it once.
+            body = filled.pop()
+            equal = bool(np.all(body.volumes == body.volumes[0]))
+            number = self.core.add_body(
+                body.name,
+                numbers[body.material],
+                body.positions,
+                np.ascontiguousarray(body.velocities),
+                body.volumes[:1].copy() if equal else np.ascontiguousarray(body.volumes),
+            )
+            motion = None if body.part in case.grains else case.body[body.part].motion
+            if motion is not None:
+                self._set_motion(number, motion, motion.middle(body.positions, body.volumes))
+            if number != firsts[body.part]:
+                self.core.set_group(number, firsts[body.part])
+            arrival = lighting_times(case, body.part, body.positions)
+            if arrival is not None:
+                self.core.set_state(number, "lighting_time", arrival)
+            for name, load in case.load.items():
+                if load.body == body.name:
+                    found = pieces(case, name, body.positions, body.spacing)
+                    add_load(self.core, case, name, number, found)
+        for a, b, friction in case.frictions():
+            self.core.set_friction(a, b, friction)
+        try:
+            self.core.prepare()
+        except ValueError as error:
+            raise CaseError(str(error), "bring the bodies together, or give larger cells") from None
+        self.summary: dict[str, Any] = {}
+
+    def _set_motion(self, number: int, motion: Motion, centre: np.ndarray) -> None:
+        spin = motion.angular_velocity
+        spin = (0.0, 0.0, *spin) if len(spin) == 1 else spin
+        place = [*centre.tolist(), 0.0][:3]
+        self.core.set_motion(number, functions(motion.velocity), functions(spin), place)
+
+    def _add_material(self, name: str) -> int:
+        material = self.case.material[name]
+        viscosity = self.case.viscosity_of(name)
+        return self.core.add_material(**material.for_core(), viscosity=viscosity)
+
+    @property
+    def time(self) -> float:
+        """Time reached [s]."""
+        return self.core.time
+
+    @property
+    def step(self) -> int:
+        """Steps made."""
+        return self.core.step
+
+    def advance(self, steps: int, end_time: float | None = None) -> int:
+        """Make up to `steps` steps, to `end_time` [s] at most (the case's by default).
+
+        Ctrl-C and SIGTERM act at the end of the step that is being made, as the program has them
+        act: by default Ctrl-C raises KeyboardInterrupt. If they raise nothing, the steps are not
+        made to the end either, so that the program can see what they have left.
+
+        Returns:
+            The number of steps made: fewer at the end time, and after a signal.
+
+        Raises:
+            CaseError: `steps` is no whole number >= 0, or `end_time` no time, which is finite.
+            RunError: the run has become unstable: who, where, when and why.
+            RuntimeError: another thread is at work in this simulation.
+        """
+        made = 0
+        steps = arguments.whole_number("steps", steps, 0)
+        end = self.case.run.end_time
+        if end_time is not None:
+            end = arguments.quantity("end_time", end_time, "s")
+        while made < steps:
+            wanted = min(steps - made, self.core.history_capacity)
+            done = self.core.advance(wanted, end)
+            made += done
+            if self.core.failure is not None:
+                raise RunError(self.core.failure.message)
+            if done < wanted:
+                break
+        return made
+
+    def column(self, body: str, name: str) -> np.ndarray:
+        """Return a column of a body, shape (n, components), particles in the order of filling.
+
+        Args:
+            body: its name; that of an entry of `grains` stands for all of them, one by one.
+            name: "position" [m], "velocity" [m/s], "stress" [Pa] (xx yy zz yz xz xy, tension
+                positive), "volume" [m^3], "mass" [kg], or a state column of its material.
+
+        Raises:
+            CaseError: there is no such body or column.
+        """
+        numbers = self._numbers(body)
+        known = [column.name for column in self.core.columns(numbers[0])]
+        if arguments.text("name", name) not in known:
+            raise CaseError(f"is not a column of {body}", nearest(name, known), value=name)
+        return np.concatenate([self.core.column(number, name) for number in numbers])
+
+    def eroded(self) -> dict[str, Any]:
+        """Return `mass` [kg] (per metre in 2D) and `count` of the particles that have eroded.
+
+        They stay in the columns as they were when they left, with `failed` = 3.
+        """
+        return dict(self.core.eroded())
+
+    def left(self) -> dict[str, Any]:
+        """Return `mass` [kg] (per metre in 2D) and `count` of the particles that left `grid.keep`.
+
+        They stay in the columns as they were when they left, with `failed` = 4.
+        """
+        return dict(self.core.left())
+
+    def set_velocity(self, body: str, velocities: np.ndarray) -> None:
+        """Give the particles of a body velocities [m/s], shape (n, D), in the order of filling.
+
+        Raises:
+            CaseError: there is no such body, its motion is prescribed, or `velocities` do not fit.
+        """
+        if (
+            arguments.text("body", body) in self.case.body
+            and self.case.body[body].motion is not None
+        ):
+            raise CaseError("has a prescribed motion", "remove motion from it", value=body)
+        if body not in self.bodies:
+            raise CaseError("is not a body of the case", nearest(body, self.bodies), value=body)
+        number = self.bodies.index(body)
+        shape = self.core.body_particle_count(number), self.case.grid.dimension
+        try:
+            values = np.asarray(velocities, dtype=float)
+        except (TypeError, ValueError):
+            values = np.array(math.nan)
+        if values.shape != shape or not np.isfinite(values).all():
+            remedy = f"give an array of the shape {shape}, a row for each particle"
+            raise CaseError("must be finite numbers, shape (n, D)", remedy, key="velocities")
+        self.core.set_velocity(number, np.ascontiguousarray(values))
+
+    def save(self, path: str | Path) -> None:
+        """Write the state to a file, in one step; `restore` goes on from it.
+
+        Raises:
+            CaseError: it cannot be written, or the run has become unstable.
+        """
+        if self.core.failure is not None:
+            raise CaseError("a run that had to stop cannot be saved", "save it while it goes on")
+        write_checkpoint(arguments.path("path", path), self.core, {"case": self.case.content()})
+
+    def restore(self, path: str | Path) -> None:
+        """Bring a simulation that has made no step to the state in a file, of `save` or of a run.
+
+        It goes on with the same bits, also with another number of threads. What `core.set_gravity`
+        has changed is not in the state.
+
+        Raises:
+            CaseError: there is no such file, or it is that of another case or version.
+        """
+        if self.step > 0:
+            raise CaseError("a simulation that has made steps cannot be restored", "make a new one")
+        path = arguments.path("path", path)
+        try:
+            before = read_about(path).get("case")
+            check_same(path, before if isinstance(before, dict) else {}, self.case)
+            restore_checkpoint(path, self.core)
+        except CaseError as error:
+            remedy = "give a state that was saved with this case"
+            raise CaseError(error.rule, remedy, key=error.key, value=error.value) from error
+
+    def _numbers(self, body: str) -> list[int]:
+        """Return the numbers of the bodies that a name stands for."""
+        if arguments.text("body", body) in self.case.grains:
+            first = self.case.first_bodies()[body]
+            return list(range(first, first + self.case.grains[body].count))
+        if body not in self.bodies:
+            known = [*self.bodies, *self.case.grains]
+            raise CaseError("is not a body of the case", nearest(body, known), value=body)
+        return [self.bodies.index(body)]
+
+
+def _settings(case: Case, threads: int) -> _core.Settings:
+    """Return a case's numbers as the core wants them."""
+
+    def three(values: Any, fill: Any) -> list[Any]:
+        return [*values, fill, fill, fill][:3]
+
+    settings = _core.Settings()
+    for name in ("grid", "run", "contact"):
+        fill_core_table(getattr(settings, name), getattr(case, name))
+    given, grid = case.grid, settings.grid
+    grid.origin = three(given.lower, 0.0)
+    grid.box_cells = three(given.box_cells, 0) if given.box_cells else [0, 0, 0]
+    grid.walls = given.walls
+    grid.keep = given.keep is not None
+    grid.keep_lower = three(given.kept[0], -math.inf)
+    grid.keep_upper = three(given.kept[1], math.inf)
+    if given.doubling is not None:
+        grid.doubling = fill_core_table(_core.DoublingSettings(), given.doubling)
+    settings.execution.threads = threads
+    return settings

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The steps of a run: frames, rows of the history, checkpoints and progress on the way."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from mpm3dpp.base.errors import RunError
+from mpm3dpp.base.signals import Notice
+from mpm3dpp.io.background import BackgroundWriter
+from mpm3dpp.io.history import HistoryWriter
+from mpm3dpp.io.manifest import Status
+
+from .checkpoints import Checkpoints
+from .progress import Progress
+from .simulation import Simulation
+
+_NO_STATE = ("non-finite", "negative volume")  # Failures after which particles have no values.
+_BLOCK = 64  # Steps between two looks at the clock, without contact.
+
+
+def step_to_end(
+    simulation: Simulation,
+    checkpoints: Checkpoints,
+    results: BackgroundWriter,
+    history: HistoryWriter,
+    progress: Progress,
+    notice: Notice,
+) -> tuple[Status, str | None]:
+    """Step to the end time; return how it ended, and why.
+
+    Args:
+        simulation: ready to step.
+        checkpoints: written when they are due.
+        results, history: of the run, open.
+        progress: where the user looks.
+        notice: of the user's wish to stop.
+    """
+    case, core = simulation.case, simulation.core
+    contact = case.contact_enabled
+    most = min(case.output.history_every if contact else _BLOCK, core.history_capacity // 2)
+    frames = [t for t in case.frame_times() if t > core.time]
+    touched = _touched(core.contact_groups()) if contact else 0
+    told = len(core.warnings())  # Those of the parts of the run before.
+    while core.time < case.run.end_time:
+        failed = None
+        try:
+            simulation.advance(_steps(most, frames, core))
+        except RunError as error:
+            failed = str(error)
+        told = _tell_new(progress, core, told)
+        rows, pairs = core.history(), core.contact_groups() if contact else []
+        history.append(rows, pairs)
+        if failed is not None:
+            if core.failure.kind not in _NO_STATE:  # Else the last frame is the last good one.
+                results.write(core)
+            return "failed", failed
+        due = bool(frames) and core.time >= frames[0]
+        while frames and core.time >= frames[0]:
+            frames.pop(0)
+        results.check()
+        if due or _touched(pairs) > touched:  # A frame too whenever two entries first touch.
+            results.write(core)
+            touched = _touched(pairs)
+        overlapped = core.contact_summary()["overlapped_nodes"] if contact else None
+        kinetic, internal = rows[-1, 3:5]
+        progress.update(core.time, core.step, core.dt, kinetic, internal, overlapped)
+        if notice.taken:
+            return "interrupted", f"stopped by the user at t = {core.time:.6g} s"
+        if checkpoints.due:
+            tell(progress, checkpoints.write(core, results, history))
+    return "completed", None
+
+
+def _tell_new(progress: Progress, core: Any, told: int) -> int:
+    """Tell what the core has to warn of since the first `told` times; return how often now."""
+    found = core.warnings()
+    for warning in found[told:]:
+        progress.note(f"{'warning' if warning.is_error else 'note'}: {warning.message}")
+    return len(found)
+
+
+def tell(progress: Progress, problem: str) -> None:
+    """Tell that there is no new checkpoint, if so."""
+    if problem:
+        progress.note(f"warning: no checkpoint: {problem}")
+
+
+def _touched(pairs: list[Any]) -> int:
+    """Return how many pairs have had their first contact; what comes before it, where a body has
+    only just reached a node, is not one."""
+    return sum(pair.first_step >= 0 for pair in pairs)
+
+
+def _steps(most: int, frames: list[float], core: Any) -> int:
+    """Return how many steps to make before the next look: not past the next frame's time.
+
+    Looks are at multiples of `most`, so that those at frames do not shift them.
+    """
+    most -= core.step % most
+    if not frames or core.dt <= 0.0:
+        return most
+    return max(1, min(most, math.ceil((frames[0] - core.time) / core.dt)))

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The short echo of a case before it runs: what `mpm3dpp check` prints."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+
+import numpy as np
+
+from mpm3dpp import _core
+from mpm3dpp.case.case import Case
+from mpm3dpp.case.loads import pieces
+from mpm3dpp.fill.advisories import notes
+from mpm3dpp.fill.build import FilledBody, by_part, warnings
+from mpm3dpp.fill.point_warnings import point_warnings
+from mpm3dpp.io.background import FRAME_SHARE
+from mpm3dpp.materials import Failure, catalogue, state_columns
+from mpm3dpp.plots.labels import scaled
+
+from .summary_conditions import condition_lines, load_in_words, motion_in_words
+
+_FRAME_BYTES = (
+    4 * 14
+)  # Of a particle, without further fields: position, velocity, stress, two more.
+# Estimates for the echo [bytes], in 2D and 3D: a particle with its lists but without the state of
+# its material, and a node that it reaches, with those that lie beside it in blocks and in contact.
+# (Before particles are made, PARTICLE_BYTES_WITH_GRID of machine.py stands for both together.)
+_PARTICLE_BYTES, _NODE_BYTES = {2: 96, 3: 128}, {2: 150, 3: 200}
+
+
+_PROGRAM_BYTES = 62 << 20
+"""Python and the libraries of a run, and what its start leaves [bytes]: measured with CPython 3.11,
+numpy 2.4 and h5py 3.16 on Linux."""
+
+
+def time_step(case: Case, bodies: list[FilledBody]) -> float:
+    """Return the expected first time step f h / max(c + |v|) [s]."""
+    sound = {
+        name: 0.0 if case.is_rigid(name) else case.material[part.material].sound_speed()
+        for name, part in case.parts().items()
+    }
+    fastest = 0.0
+    for name, members in by_part(bodies).items():
+        v = np.concatenate([body.velocities for body in members])
+        speed = float(np.sqrt(np.einsum("ij,ij->i", v, v).max()))
+        fastest = max(fastest, sound[name] + speed)
+    return case.run.time_step_factor * case.grid.cell_size / fastest
+
+
+def steps_in_words(case: Case, bodies: list[FilledBody]) -> str:
+    """Return the number of steps: `about` or, where the time step may fall, `at least` so many.
+
+    It falls where waves become faster in what is compressed or burns (an equation of state), or
+    bodies become faster (gravity).
+    """
+    compressible = any(case.material[body.material].eos is not None for body in bodies)
+    word = "at least" if compressible or any(case.run.gravity) else "about"
+    return f"{word} {math.ceil(case.run.end_time / time_step(case, bodies)):,} steps"
+
+
+def frames_in_words(case: Case, particles: int) -> str:
+    """Return the number of frames, and the room that they need on the disk if it is much."""
+    count = len(case.frame_times())
+    room = count * _FRAME_BYTES * particles
+    much = f" of {room / 2**30:,.0f} GiB together" if room > 2**30 else ""
+    return f"{count:,} frames{much}"
+
+
+def occupied_cells(case: Case, bodies: list[FilledBody]) -> int:
+    """Return the number of grid cells that hold particles, each body counted by itself."""
+    return sum(len(_cells(case, members, 0.0)[0]) for members in by_part(bodies).values())
+
+
+def _cells(case: Case, members: list[FilledBody], shift: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the numbers of the cells that hold particles, and the steps to the next on each axis.
+
+    Cells begin `shift` of a cell before the nodes; around a body there is room for what it reaches.
+    """
+    room = max(basis["nodes"] for basis in _core.bases.values()) - 1
+    positions = np.concatenate([body.positions for body in members])
+    owner = np.repeat(np.arange(len(members)), [len(body.positions) for body in members])
+    cells = np.floor((positions - np.asarray(case.grid.lower)) / case.grid.cell_size + shift)
+    cells -= cells.min(axis=0) - room
+    strides = np.cumprod([1.0, *(cells.max(axis=0) + room + 1)])
+    return np.unique(cells @ strides[:-1] + owner * strides[-1]), strides[:-1]
+
+
+def memory_bytes(case: Case, bodies: list[FilledBody]) -> int:
+    """Return about what the core will need, of particles and the nodes that each body reaches."""
+    basis, total = _core.bases[case.grid.basis], 0
+    reached = np.arange(basis["nodes"]) - basis["before"]  # From a cell's own node, along an axis.
+    for members in by_part(bodies).values():
+        state = state_columns(case.material[members[0].material].models)
+        each = _PARTICLE_BYTES[case.grid.dimension] + 8 * len(state)
+        total += each * sum(len(body.positions) for body in members)
+        nodes, strides = _cells(case, members, basis["own_node"])
+        for stride in strides:
+            nodes = np.unique(np.add.outer(stride * reached, nodes))
+        total += _NODE_BYTES[case.grid.dimension] * len(nodes)
+    return total
+
+
+def process_bytes(case: Case, bodies: list[FilledBody]) -> int:
+    """Return about the peak of the process of a run that writes frames; pictures have their own."""
+    return _PROGRAM_BYTES + round((1.0 + FRAME_SHARE) * memory_bytes(case, bodies))
+
+
+def material_lines(case: Case) -> list[str]:
+    """Return the numbers of each material that a body has, those of the library included."""
+    lines = []
+    for name in case.materials_used:
+        material = case.material[name]
+        parts = [f"density {material.density:.6g} kg/m^3"]
+        chosen = [("strength", material.strength), ("eos", material.eos)]
+        for kind, model in [*chosen, *(("failure", f) for f in material.failure)]:
+            if model is None:
+                continue
+            units = {p.name: p.unit for p in catalogue(kind)[model.model].parameters}
+            given = model.parameters.items()
+            numbers = [f"{key} {scaled(v, units[key], 6)}".strip() for key, v in given]
+            action = [f"action {model.action}"] if isinstance(model, Failure) else []
+            parts.append(
+                f"{kind} {' '.join([model.model, ', '.join([*numbers, *action])])}".strip()
+            )
+        text = f"material {name}: {'; '.join(parts)}"
+        lines += textwrap.wrap(text, 100, subsequent_indent="  ", break_on_hyphens=False)
+    return lines
+
+
+def _body_line(case: Case, body: FilledBody, per_metre: str) -> str:
+    against = "exact" if body.volume_is_exact else "measured on a fine lattice"
+    source = f"{body.mass_error:+.3%} of the shape's ({against})"
+    if body.shape_volume is None:
+        source = "given one by one"
+    return (
+        f"body {body.name}: {len(body.positions):,} particles {body.spacing:.4g} m apart, "
+        f"{body.material}, mass {body.mass:.6g} kg{per_metre}, {source}"
+        f"{motion_in_words(case, body.name)}"
+    )
+
+
+def _grains_line(name: str, grains: list[FilledBody], per_metre: str) -> str:
+    counts = sorted(len(grain.positions) for grain in grains)
+    each = f"{counts[0]:,} each"
+    if counts[0] != counts[-1]:
+        each = f"{counts[0]:,} to {counts[-1]:,} each"
+    mass = sum(grain.mass for grain in grains)
+    exact = sum(grain.mass / (1.0 + grain.mass_error) for grain in grains)
+    return (
+        f"grains {name}: {len(grains):,} bodies, {sum(counts):,} particles ({each}) "
+        f"{grains[0].spacing:.4g} m apart, {grains[0].material}, mass {mass:.6g} kg{per_metre}, "
+        f"{mass / exact - 1.0:+.3%} of the shapes' (exact)"
+    )
+
+
+def echo(case: Case, bodies: list[FilledBody]) -> str:
+    """Return what the case amounts to: bodies, materials, memory, cells, time step, steps."""
+    per_metre = " per metre" if case.grid.dimension == 2 else ""
+    lines = [case.title] if case.title else []
+    for name, members in by_part(bodies).items():
+        lines.append(
+            _grains_line(name, members, per_metre)
+            if name in case.grains
+            else _body_line(case, members[0], per_metre)
+        )
+    for name, load in case.load.items():
+        [body] = [body for body in bodies if body.name == load.body]
+        found = pieces(case, name, body.positions, body.spacing)
+        lines.append(
+            f"load {name}: {load_in_words(case, name)} on {load.side} of {load.body}, "
+            f"{found.area:.6g} m^2{per_metre}, carried by {len(found.particles):,} particles"
+        )
+    lines += material_lines(case)
+    particles = sum(len(body.positions) for body in bodies)
+    cells = occupied_cells(case, bodies)
+    box = case.grid.box_cells
+    bounds = " x ".join(str(n) for n in box) + " cells" if box else "no bounds"
+    contact = "none, the bodies are bonded" if case.contact.bonded else "none"
+    if case.contact_enabled:
+        contact = f"{case.contact.detection} detection, friction {case.contact.friction:g}"
+    lines += [
+        f"total: {particles:,} particles, mass {sum(b.mass for b in bodies):.6g} kg{per_metre}, "
+        f"memory about {process_bytes(case, bodies) / 2**20:,.0f} MiB, of which the core "
+        f"{memory_bytes(case, bodies) / 2**20:,.1f} MiB",
+        f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
+        f"{bounds}, {case.grid.basis} basis",
+        *condition_lines(case),
+        f"contact: {contact}",
+        f"time: {case.run.scheme}, end {case.run.end_time:.6g} s, "
+        f"step about {time_step(case, bodies):.3g} s, "
+        f"{steps_in_words(case, bodies)}, {frames_in_words(case, particles)}",
+    ]
+    sentences = [*warnings(bodies), *point_warnings(case, bodies)]
+    lines += [f"warning: {sentence}" for sentence in sentences]
+    return "\n".join([*lines, *(f"note: {sentence}" for sentence in notes(case, bodies))])

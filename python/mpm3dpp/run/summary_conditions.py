@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What acts on the bodies of a case, in words: the part of the echo that is not matter."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from mpm3dpp.base.time_functions import TimeFunction
+from mpm3dpp.case.case import Case
+from mpm3dpp.case.grid import FACES, GridDoubling
+from mpm3dpp.plots.labels import scaled
+
+Quantity = float | TimeFunction
+
+
+def in_words(value: Quantity, unit: str) -> str:
+    """Return a quantity that may depend on time: `2 mm/s`, `0 Pa to 5 MPa from 0 s to 1 ms`."""
+    if not isinstance(value, TimeFunction):
+        return _number(value, unit)
+    parts = []
+    if value.times:
+        first, last = (_number(v, unit) for v in (value.values[0], value.values[-1]))
+        span = " to ".join(_number(t, "s") for t in (value.times[0], value.times[-1]))
+        if len(value.values) == 2:
+            parts.append(f"{first} to {last} from {span}")
+        else:
+            least, most = (_number(f(value.values), unit) for f in (min, max))
+            parts.append(f"{len(value.values)} values of {least} to {most} from {span}")
+    if value.mean:
+        parts.append(_number(value.mean, unit))
+    if value.amplitude:
+        wave = f"{_number(value.amplitude, unit)} sin at {_number(value.frequency, 'Hz')}"
+        phase = f" and {math.degrees(value.phase):g} deg" if value.phase else ""
+        parts.append(wave + phase)
+    return " + ".join(parts) or _number(0.0, unit)
+
+
+def vector_in_words(values: Sequence[Quantity], unit: str) -> str:
+    """Return the components of a vector that may depend on time."""
+    return f"({', '.join(in_words(value, unit) for value in values)})"
+
+
+def _number(value: float, unit: str) -> str:
+    return scaled(value, unit, 6).strip() if value else f"0 {unit}"
+
+
+def motion_in_words(case: Case, body: str) -> str:
+    """Return `, fixed`, or with what velocity a body moves as prescribed; nothing if it is free."""
+    motion = case.body[body].motion
+    if motion is None:
+        return ""
+    if not motion.moves:
+        return ", fixed"
+    parts = []
+    if motion.velocity:
+        parts.append(f"velocity {vector_in_words(motion.velocity, 'm/s')}")
+    if motion.angular_velocity:
+        parts.append(f"spin {vector_in_words(motion.angular_velocity, 'rad/s')}")
+    return f", moves as prescribed: {', '.join(parts)}"
+
+
+def load_in_words(case: Case, name: str) -> str:
+    """Return the kind of a load and its value."""
+    kind, value = case.load[name].value()
+    if len(value) == 1:
+        return f"{kind} {in_words(value[0], 'Pa')}"
+    return f"{kind} {vector_in_words(value, 'Pa')}"
+
+
+def doublings(cells: Sequence[int] | None, doubling: GridDoubling) -> int:
+    """Return how often the cells can double: a box is cut into even numbers of cells each time."""
+    possible = doubling.times
+    for count in cells or ():
+        possible = min(possible, (count & -count).bit_length() - 1)
+    return possible
+
+
+def condition_lines(case: Case) -> list[str]:
+    """Return what holds, drives and removes the bodies: one line for each kind."""
+    grid, lines = case.grid, []
+    if grid.box is not None:
+        faces = FACES[: 2 * grid.dimension]
+        kinds = {face: getattr(grid.box.walls, face) for face in faces}
+        same = set(kinds.values())
+        each = ", ".join(f"{face} {kind}" for face, kind in kinds.items())
+        lines.append(f"walls: {f'all {same.pop()}' if len(same) == 1 else each}")
+    if grid.keep is not None:
+        limits = []
+        for axis, low, high in zip("xyz", *grid.kept, strict=False):
+            limits += [f"{axis} > {low:g} m"] if math.isfinite(low) else []
+            limits += [f"{axis} < {high:g} m"] if math.isfinite(high) else []
+        lines.append(f"keep: {', '.join(limits)}; particles outside are taken out")
+    if grid.doubling is not None:
+        limits = []
+        if grid.doubling.tiles is not None:
+            limits.append(f"{grid.doubling.tiles:,} tiles")
+        if grid.doubling.bytes is not None:
+            limits.append(f"{grid.doubling.bytes / 2**20:,.4g} MiB of nodes")
+        times = doublings(grid.box_cells, grid.doubling)
+        lines.append(
+            f"doubling: beyond {' or '.join(limits)}, {times} times at most, to cells of "
+            f"{grid.cell_size * 2**times:.4g} m"
+        )
+    if any(case.run.gravity):
+        lines.append(f"gravity: {vector_in_words(case.run.gravity, 'm/s^2')}")
+    for pair in case.contact.pair if case.contact_enabled else ():
+        names = pair.bodies or [f"all {name}" for name in pair.materials or ()]
+        lines.append(f"friction: {pair.friction:g} between {' and '.join(names)}")
+    return lines
