@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+from mpm3dpp.importers.imported import Imported
 from mpm3dpp.importers.mpm3d.lexer import split
-from mpm3dpp.importers.mpm3d.to_case import Imported, import_source
+from mpm3dpp.importers.mpm3d.to_case import import_source
 
 GOOD = """\
 mpm3d *** a test

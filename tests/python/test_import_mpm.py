@@ -13,13 +13,13 @@ import pytest
 
 from mpm3dpp import Case, CaseError, Simulation, load_case, run_case
 from mpm3dpp.fill.build import build
-from mpm3dpp.importers import load_any
-from mpm3dpp.importers.mpm3d import import_mpm, write_case
+from mpm3dpp.importers import import_file, load_any
 from mpm3dpp.importers.mpm3d.lexer import Reader, split
 from mpm3dpp.importers.mpm3d.particles import points_of
 from mpm3dpp.importers.mpm3d.statements import read_deck
 from mpm3dpp.importers.mpm3d.to_case import Imported
 from mpm3dpp.importers.mpm3d.units import SYSTEMS
+from mpm3dpp.importers.write import write_case
 from mpm3dpp.shapes import Box
 from mpm_text import GOOD, MATE, PART, SEOS, TWO, edited, of, with_part
 
@@ -71,7 +71,7 @@ def test_the_same_case(edits: list[tuple[str, str]]) -> None:
 def test_line_ends_and_encodings(tmp_path: Path) -> None:
     path = tmp_path / "x.mpm"
     path.write_bytes(GOOD.replace("\n", "\r\n").encode() + "! 平应变".encode("gbk"))
-    assert import_mpm(path).case.case_hash == of(GOOD).case.case_hash
+    assert import_file(path).case.case_hash == of(GOOD).case.case_hash
 
 
 @pytest.mark.parametrize(

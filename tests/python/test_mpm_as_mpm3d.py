@@ -14,8 +14,9 @@ import pytest
 
 from mpm3dpp import CaseError
 from mpm3dpp.fill.build import build
-from mpm3dpp.importers.mpm3d import import_mpm, write_case
+from mpm3dpp.importers import import_file
 from mpm3dpp.importers.mpm3d.statements import REFUSED, STATEMENTS
+from mpm3dpp.importers.write import write_case
 from mpm_text import GOOD, MATE, PART, TWO, edited, of, with_part
 
 
@@ -150,11 +151,11 @@ def test_force_does_not_destroy_the_source(tmp_path: Path) -> None:
         assert source.read_text() == GOOD
     for file in (tmp_path / "link.toml", tmp_path / "hard.toml"):
         with pytest.raises(CaseError, match="is the file that is imported"):
-            write_case(import_mpm(source), file, force=True)
+            write_case(import_file(source), file, force=True)
     text = edited((" 0.5 0 0 0", " 0.3 0 0 0"))  # Its points go to a CSV file beside the case.
     (tmp_path / "b_body_1.csv").write_text(text)
     with pytest.raises(CaseError, match=r"b_body_1.csv is the file that is imported"):
-        write_case(import_mpm(tmp_path / "b_body_1.csv"), tmp_path / "b.toml", force=True)
+        write_case(import_file(tmp_path / "b_body_1.csv"), tmp_path / "b.toml", force=True)
     assert (tmp_path / "b_body_1.csv").read_text() == text and not (tmp_path / "b.toml").exists()
 
 

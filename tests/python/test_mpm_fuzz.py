@@ -14,7 +14,7 @@ import pytest
 from mpm3dpp import CaseError
 from mpm3dpp.importers.mpm3d.lexer import split
 from mpm3dpp.importers.mpm3d.to_case import import_source
-from mpm3dpp.importers.mpm3d.write import case_text
+from mpm3dpp.importers.write import case_text
 from mpm_text import GOOD, TWO
 
 REAL = Path(__file__).parents[1] / "verification" / "mpm"

@@ -12,6 +12,7 @@ from typing import Any
 
 from mpm3dpp.base import errors
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.readers import SUFFIXES, reader_of
 from mpm3dpp.base.reading import read_file
 
 if sys.version_info >= (3, 11):
@@ -185,7 +186,7 @@ def similar_file(path: Path) -> str:
     """Return the remedy for a file that is missing: the case file with the nearest name."""
     folder = path.parent
     try:
-        files = sorted(p for p in folder.iterdir() if p.suffix.lower() in (".toml", ".mpm"))
+        files = sorted(p for p in folder.iterdir() if p.suffix.lower() in (".toml", *SUFFIXES))
     except OSError:
         files = []
     stems = [p.stem.lower() for p in files]
@@ -197,8 +198,8 @@ def similar_file(path: Path) -> str:
 
 
 def _is_case(path: Path) -> bool:
-    """Whether a file is a case file, by its table `grid`, or one of MPM3D-F90, by its ending."""
-    if path.suffix.lower() == ".mpm":
+    """Whether a file is a case file, by its table `grid`, or another program's, by its ending."""
+    if reader_of(path) is not None:
         return path.is_file()
     try:
         text = read_file(path, MOST_BYTES, "").decode("utf-8-sig")

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.readers import PROGRAMS
 
 from .materials import material_test, materials
 from .options import CaseFile, Json, Threads, Units
@@ -152,20 +153,18 @@ def preview(
 
 @app.command(name="import")
 def import_(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="Input file of MPM3D-F90 (.mpm).")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help=f"Input file of {PROGRAMS}.")],
     out: Annotated[
         Path | None, typer.Option("-o", "--out", help="Case file; default NAME.toml here.")
     ] = None,
     units: Units = None,
     force: Annotated[bool, typer.Option("--force", help="Write over files.")] = False,
 ) -> None:
-    """Write an input file of MPM3D-F90 as a case file in SI units."""
-    from mpm3dpp.importers.mpm3d import import_mpm, write_case
+    """Write an input file of another program as a case file in SI units."""
+    from mpm3dpp.importers import import_file
+    from mpm3dpp.importers.write import write_case
 
-    if file.suffix.lower() == ".toml":
-        rule = "is a case file, but import wants an input file of MPM3D-F90 (.mpm)"
-        raise CaseError(rule, "run, check and preview take a case file as it is", key=str(file))
-    found = import_mpm(file, units)
+    found = import_file(file, units)
     target = out if out is not None else Path(f"{file.stem}.toml")
     written = write_case(found, target, force)
     _print_notes(found.notes)

@@ -8,10 +8,15 @@ from typing import Annotated
 
 import typer
 
-CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML), or .mpm.")]
+from mpm3dpp.base.readers import READERS, SUFFIXES
+
+_FILES = " or ".join(("Case file (TOML),", *SUFFIXES))
+_UNITS = "; ".join(f"Units of an {reader.suffix} file: {reader.units}" for reader in READERS)
+
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help=f"{_FILES}.")]
 Units = Annotated[
     str | None,
-    typer.Option(help="Units of an .mpm file: mm-g-N-ms (default), SI, cm-g-us."),
+    typer.Option(help=f"{_UNITS}."),
 ]
 Threads = Annotated[
     int | None,

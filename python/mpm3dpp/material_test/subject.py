@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mpm3dpp.base.errors import CaseError, nearest
+from mpm3dpp.base.readers import PROGRAMS, SUFFIXES
 from mpm3dpp.case.case import Material
-from mpm3dpp.importers import MPM3D_SUFFIX, load_any
+from mpm3dpp.importers import load_any
 from mpm3dpp.materials import library
 
 from .options import Options
@@ -43,7 +44,7 @@ def find(text: str, units: str | None = None) -> Subject:
     """
     if text in library():
         if units is not None:
-            rule = "is for files of MPM3D-F90 (.mpm) only"
+            rule = f"is for files of {PROGRAMS} only"
             raise CaseError(rule, "leave it out", key="--units", value=units)
         return Subject(text, Material(library=text), [])
     path, _, name = text.rpartition(":")
@@ -64,7 +65,7 @@ def find(text: str, units: str | None = None) -> Subject:
 
 
 def _is_file_name(text: str) -> bool:
-    return text.lower().endswith((".toml", MPM3D_SUFFIX))
+    return text.lower().endswith((".toml", *SUFFIXES))
 
 
 def at_temperature(name: str, material: Material, options: Options) -> Material:

@@ -11,8 +11,9 @@ from mpm3dpp import _core
 from mpm3dpp.base.errors import below, nearest, report, violation
 from mpm3dpp.base.model import CaseModel, Choice
 
-from .catalogue import KINDS, catalogue, check_parameters
+from .catalogue import KINDS, catalogue
 from .examples import example
+from .parameters import check_parameters
 
 ACTIONS: dict[str, str] = _core.failure_actions[0]
 """What failure may do to a particle, `action` in a failure model's table."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,6 @@ from pydantic_core import PydanticCustomError
 
 from mpm3dpp.base.errors import Path, nearest, report, show, violation, violations_of
 from mpm3dpp.base.model import CaseModel
-
-if TYPE_CHECKING:
-    from .booleans import Difference, Intersection, Union
 
 Points = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -102,20 +99,15 @@ class Shape(CaseModel):
         """Return the shape as a table of a case file: `{"disc": {...}}`, in SI units."""
         return {self.kind: super().table()}
 
-    def __or__(self, other: Shape) -> Union:
-        from .booleans import Union
+    # What combines shapes stands in a file of its own, which has told KINDS of it.
+    def __or__(self, other: Shape) -> Shape:
+        return KINDS["union"](shapes=[self, other])
 
-        return Union(shapes=[self, other])
+    def __sub__(self, other: Shape) -> Shape:
+        return KINDS["difference"](shapes=[self, other])
 
-    def __sub__(self, other: Shape) -> Difference:
-        from .booleans import Difference
-
-        return Difference(shapes=[self, other])
-
-    def __and__(self, other: Shape) -> Intersection:
-        from .booleans import Intersection
-
-        return Intersection(shapes=[self, other])
+    def __and__(self, other: Shape) -> Shape:
+        return KINDS["intersection"](shapes=[self, other])
 
 
 KINDS: dict[str, type[Shape]] = {}

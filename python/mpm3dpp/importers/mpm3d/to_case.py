@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mpm3dpp.case.case import Case
+from mpm3dpp.case import Case
+from mpm3dpp.importers.imported import Imported, Lines
 
 from .box import Bounds, bounds_of, grid_table
 from .contact import contact_table, joined
@@ -19,31 +19,8 @@ from .particles import body_table, check_counts, one_part, particle_mass
 from .statements import read_deck
 from .units import UnitSystem, choose
 
-Lines = dict[tuple[str | int, ...], int]
 
-
-@dataclass(frozen=True)
-class Imported:
-    """A file of MPM3D-F90 as a case.
-
-    Attributes:
-        case: the case.
-        tables: it as tables in SI units; particles are `mpm3dpp.Particles`.
-        lines: line of the file by the key that came from it.
-        notes: sentences about what is not the same as in MPM3D-F90.
-        name: of the file.
-        units: the name of its unit system.
-    """
-
-    case: Case
-    tables: dict[str, Any]
-    lines: Lines
-    notes: list[str]
-    name: str
-    units: str
-
-
-def import_mpm(path: str | Path, units: str | None = None) -> Imported:
+def read(path: str | Path, units: str | None = None) -> Imported:
     """Read an input file of MPM3D-F90.
 
     Args:
@@ -76,7 +53,7 @@ def import_source(source: Source, units: str | None = None) -> Imported:
         case = problems.caught(Case.from_tables, made[0], source.name, made[1])
     problems.judge()
     assert made is not None and case is not None
-    return Imported(case, *made, [about, *source.notes], source.name, system.name)
+    return Imported(case, *made, [about, *source.notes], source.name, "MPM3D-F90", system.name)
 
 
 def _tables(deck: Deck, units: UnitSystem) -> tuple[dict[str, Any], Lines] | None:

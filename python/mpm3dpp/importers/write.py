@@ -10,10 +10,10 @@ from typing import Any
 
 from mpm3dpp.base.disk import make_folder, writing
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.readers import reader_of
 from mpm3dpp.case.particles import Particles, write_particles
-from mpm3dpp.importers import MPM3D_SUFFIX
 
-from .to_case import Imported
+from .imported import Imported
 
 _UNITS = {
     "cell_size": "m",
@@ -70,8 +70,8 @@ def write_case(found: Imported, target: Path, force: bool = False) -> list[Path]
 def _keep_source(source: Path, files: list[Path]) -> None:
     """Refuse to write over what was imported, by whatever name: a link, another path to it."""
     for file in files:
-        if file.suffix.lower() == MPM3D_SUFFIX:
-            rule = f"ends in {MPM3D_SUFFIX}, so that it would be read as a file of MPM3D-F90"
+        if (other := reader_of(file)) is not None:
+            rule = f"ends in {other.suffix}, so that it would be read as a file of {other.program}"
             raise CaseError(rule, "give a name that ends in .toml with -o", key=str(file))
         try:
             same = file.samefile(source)
@@ -86,7 +86,8 @@ def case_text(found: Imported, tables: dict[str, Any]) -> str:
     """Return the text of the case file; in `tables` particles are names of files."""
     origin = Path(found.name).name
     lines = [
-        f"# From {origin}, an input file of MPM3D-F90, with units {found.units}; here SI units."
+        f"# From {origin}, an input file of {found.program}, "
+        f"with units {found.units}; here SI units."
     ]
     lines += [f"# - {_comment(note)}" for note in found.notes]
     lines.append(f"title = {_value(tables['title'])}")
