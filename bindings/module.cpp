@@ -249,7 +249,7 @@ NB_MODULE(_core, m) {
     d["flags"] = MPM_BUILD_FLAGS;
     d["isa"] = native_lanes == 8 ? "AVX-512" : native_lanes == 4 ? "AVX" : "SSE2 or NEON";
     d["lanes"] = native_lanes;
-    d["velocity_and_stress"] = std::is_same_v<Rounded, float> ? "float32" : "float64";
+    d["velocity_and_stress"] = std::is_same_v<Storage, float> ? "float32" : "float64";
     return d;
   });
 }

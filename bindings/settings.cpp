@@ -109,15 +109,15 @@ void add_settings(nb::module_& m) {
       .def("mean", &TimeFunction::mean, nb::arg("start"), nb::arg("end"));
 
   nb::dict tables;
-  add_table<DoublingSettings>(m, "DoublingSettings", tables);
+  add_table<CoarseningSettings>(m, "CoarseningSettings", tables);
   add_table<GridSettings>(m, "GridSettings", tables)
       .def_rw("origin", &GridSettings::origin)
       .def_rw("box_cells", &GridSettings::box_cells)
       .def_prop_rw("walls", &wall_words, &set_walls)
-      .def_rw("keep", &GridSettings::keep)
-      .def_rw("keep_lower", &GridSettings::keep_lower)
-      .def_rw("keep_upper", &GridSettings::keep_upper)
-      .def_rw("doubling", &GridSettings::doubling, nb::arg("doubling").none());
+      .def_rw("outflow", &GridSettings::outflow)
+      .def_rw("outflow_lower", &GridSettings::outflow_lower)
+      .def_rw("outflow_upper", &GridSettings::outflow_upper)
+      .def_rw("coarsening", &GridSettings::coarsening, nb::arg("coarsening").none());
   add_table<RunSettings>(m, "RunSettings", tables);
   add_table<ContactSettings>(m, "ContactSettings", tables);
   add_table<ExecutionSettings>(m, "ExecutionSettings", tables);

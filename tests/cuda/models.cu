@@ -13,7 +13,7 @@ __global__ void weights(B basis, const double* xi, double* out) {
 }
 
 template <int D, class M>
-__global__ void stress(M model, const Motion<double, D>* motion, Sym<double, D>* stress,
+__global__ void stress(M model, const StrainIncrement<double, D>* motion, Sym<double, D>* stress,
                        typename M::template State<double, D>* state, double* work) {
   const unsigned i = threadIdx.x;
   work[i] = model.update(motion[i], stress[i], state[i]);

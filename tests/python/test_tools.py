@@ -16,7 +16,7 @@ def tool(monkeypatch):
     """Import a script of tools/ by name."""
     monkeypatch.syspath_prepend(TOOLS)
     yield importlib.import_module
-    for name in ("check_layers", "check_sizes", "check_words", "files"):
+    for name in ("check_imports", "check_layers", "check_sizes", "check_words", "files"):
         sys.modules.pop(name, None)
 
 
@@ -38,6 +38,34 @@ def test_layers(tool, tmp_path, file, include, why):
     source.parent.mkdir(parents=True)
     source.write_text(f"#include {include}\n")
     found = tool("check_layers").check(tmp_path)
+    assert [why in text for text in found] == [True] if why else found == []
+
+
+@pytest.mark.parametrize(
+    ("file", "line", "why"),
+    [
+        ("base/a.py", "from mpm3dpp.case import Case", "not lower"),
+        ("shapes/a.py", "from mpm3dpp.materials import catalogue", "not lower"),
+        ("io/a.py", "def f():\n    from ..run.stepping import f", "not lower"),
+        ("tools/a.py", "import os", "has no layer"),
+        ("run/a.py", "from mpm3dpp.case import Case\nfrom .b import c", None),
+        ("base/a.py", "from mpm3dpp import _core", None),
+        ("base/a.py", "from .b import f", "import each other: base.a -> base.b -> base.a"),
+        (
+            "base/a.py",
+            "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from .b import f",
+            None,
+        ),
+    ],
+)
+def test_imports(tool, tmp_path, file, line, why):
+    package = tmp_path / "python" / "mpm3dpp"
+    (package / "base").mkdir(parents=True)
+    (package / "base" / "b.py").write_text("from .a import f\n")
+    source = package / file
+    source.parent.mkdir(exist_ok=True)
+    source.write_text(f"{line}\n")
+    found = tool("check_imports").check(tmp_path)
     assert [why in text for text in found] == [True] if why else found == []
 
 

@@ -21,6 +21,7 @@ struct Setting {
   std::string_view meaning;
   Rule rule = Rule::any;       // of a number
   std::string_view unit = {};  // of a number; empty for none
+  std::string_view formerly = {};  // its name before, which cases may have for one release more
 };
 
 /// A table of a case: its name, and the rows.

@@ -9,7 +9,7 @@
 namespace mpm {
 
 /// An overlapped node of the last step. Its pairs are used again until the bodies of one of them
-/// have moved by ContactSettings::normal_travel, or others are there.
+/// have moved by ContactSettings::normal_refresh_distance, or others are there.
 struct CachedNode {
   std::uint64_t membership_hash;  // a number for the bodies and how many particles each has
   std::uint32_t first_pair;       // of ContactPart::cached

@@ -98,7 +98,7 @@ void place_sides(TileGrid<D>& grid, const TileBodies<D>& around, ContactPart<D>&
 template <int D>
 void read_sides(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                 ContactPart<D>& part, ContactNode& node) {
-  node.held = static_cast<std::uint8_t>(grid.walls.held(place_of(contact, grid, node)));
+  node.constrained_axes = static_cast<std::uint8_t>(grid.walls.constrained_axes(place_of(contact, grid, node)));
   node.energy = node.force_work = 0.0;
   std::uint64_t hash = 0;
   for (BodyAtNode<D>& side : part.sides_of(node)) {
@@ -186,7 +186,7 @@ template <int D>
 void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                 const std::vector<ParticlePool<D>>& pools, const ContactSettings& settings,
                 double time_step, Threads& threads) {
-  contact.cache.on = settings.normal_travel > 0.0;
+  contact.cache.on = settings.normal_refresh_distance > 0.0;
   contact.masses.find(grid, threads);
   if (contact.cache.on) add_displacements(contact.cache, bodies.size());
   // Few parts, so that their sizes hardly change; enough to share them out evenly.

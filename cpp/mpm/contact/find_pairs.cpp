@@ -25,10 +25,10 @@ double gap_along(const Vec<double, D>& normal, const NormalSource<D>& r, const N
 /// are one.
 template <int D>
 Vec<double, D> between_centres(const NearParticles<D>& r, const NearParticles<D>& s,
-                               unsigned held) {
+                               unsigned constrained) {
   Vec<double, D> n = s.centre() - r.centre();
   for (int a = 0; a < D; ++a)
-    if (held >> a & 1u) n[a] = 0.0;
+    if (constrained >> a & 1u) n[a] = 0.0;
   return normalised(n, 1e-9);
 }
 
@@ -67,7 +67,7 @@ std::span<const NormalSource<D>> sources_at(const TileGrid<D>& grid,
     if (by_gradients) gradient = mass_gradient<D>(at.particles, index, grid, edge);
     // A wall mirrors the body, so its surface is normal to the wall there.
     for (int a = 0; a < D; ++a)
-      if (node.held >> a & 1u) gradient[a] = 0.0;
+      if (node.constrained_axes >> a & 1u) gradient[a] = 0.0;
     source.normal = weighted_normal(gradient, sides[k].mass, grid.cell_size);
   }
   return {sources.data(), sides.size()};
@@ -116,12 +116,12 @@ void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       if (rigid(r) && rigid(s)) continue;  // they have no stress that could part them
       // Bodies that are well apart along the line between their centres need no better normal.
       if (uses_gap(settings.detection) && !by_gradients) {
-        pair.normal = between_centres(sources[r].particles, sources[s].particles, node.held);
+        pair.normal = between_centres(sources[r].particles, sources[s].particles, node.constrained_axes);
         pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
         if (pair.gap > settings.gap_distance + surely_open * grid.cell_size) continue;
       }
       NormalRules::with(settings.normal, [&]<class Rule>(const Rule&) {
-        pair.normal = Rule::normal(sources[r], sources[s], node.held);
+        pair.normal = Rule::normal(sources[r], sources[s], node.constrained_axes);
       });
       pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
       pair.gap_closed = passes_gap_test(pair, settings, grid.cell_size);

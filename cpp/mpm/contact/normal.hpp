@@ -51,14 +51,14 @@ struct NormalSource {
   Vec<double, D> normal;  // from the gradient of mass (weighted_normal); zero for `plane`
 };
 
-/// A rule for the unit normal from body r to body s, zero if there is none; `held` are axes that
+/// A rule for the unit normal from body r to body s, zero if there is none; `constrained` are axes that
 /// walls hold. One that uses gradients of mass finds them in NormalSource::normal.
 template <class T>
-concept NormalModel = requires(const NormalSource<3>& source, unsigned held) {
+concept NormalModel = requires(const NormalSource<3>& source, unsigned constrained) {
   { T::name } -> std::convertible_to<std::string_view>;
   { T::doc } -> std::convertible_to<std::string_view>;
   { T::uses_gradients } -> std::convertible_to<bool>;
-  { T::normal(source, source, held) } -> std::same_as<Vec<double, 3>>;
+  { T::normal(source, source, constrained) } -> std::same_as<Vec<double, 3>>;
 };
 
 /// Decisions 0008 and 0032.
@@ -68,8 +68,8 @@ struct PlaneNormal {
   static constexpr bool uses_gradients = false;
 
   template <int D>
-  static Vec<double, D> normal(const NormalSource<D>& r, const NormalSource<D>& s, unsigned held) {
-    return separating_normal(r.particles, s.particles, held);
+  static Vec<double, D> normal(const NormalSource<D>& r, const NormalSource<D>& s, unsigned constrained) {
+    return separating_normal(r.particles, s.particles, constrained);
   }
 };
 

@@ -99,7 +99,7 @@ bool reuse_pairs(Contact<D>& contact, const std::vector<Body<D>>& bodies,
                     pair.gap_closed = passes_gap_test(pair, settings, cell_size);
                     holds = holds && contact.cache.template displacement_of<D>(sides, pair) -
                                              cached.displacement <=
-                                         settings.normal_travel * cell_size;
+                                         settings.normal_refresh_distance * cell_size;
                   });
   return holds;
 }

@@ -1,6 +1,6 @@
 #pragma once
 // Normals and gaps that are kept from step to step (decision 0012), while the bodies of a pair have
-// moved by less than ContactSettings::normal_travel. They are state of the run.
+// moved by less than ContactSettings::normal_refresh_distance. They are state of the run.
 #include <cstdint>
 #include <vector>
 
@@ -12,7 +12,7 @@
 namespace mpm {
 
 struct PairCache {
-  bool on = false;                            // ContactSettings::normal_travel > 0
+  bool on = false;                            // ContactSettings::normal_refresh_distance > 0
   std::vector<double> displacement, fastest;  // way of each body so far [m], square of its speed
   std::vector<int> moving;                    // the bodies that have a speed
   double last_time_step = 0.0;                // [s]

@@ -29,7 +29,7 @@ NodeSolution<D>& solution_of(std::span<const BodyAtNode<D>> sides,
 template <int D>
 Vec<double, D> free_gravity(const ContactNode& node, Vec<double, D> gravity) {
   for (int a = 0; a < D; ++a)
-    if (node.held >> a & 1u) gravity[a] = 0.0;
+    if (node.constrained_axes >> a & 1u) gravity[a] = 0.0;
   return gravity;
 }
 
@@ -141,7 +141,7 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vecto
     const auto force_of = [&](const BodyAtNode<D>& side) {
       Vec<double, D> f = read(grid, side, force_at) + side.mass * gravity;
       for (int a = 0; a < D; ++a)
-        if (node.held >> a & 1u) f[a] = 0.0;
+        if (node.constrained_axes >> a & 1u) f[a] = 0.0;
       return f;
     };
     for (std::size_t k = 0; k < sides.size(); ++k) {

@@ -37,12 +37,12 @@ class PlaneFit {
   static constexpr int n = D + 1;
 
  public:
-  /// Axes in `held` get no component.
-  PlaneFit(const NearParticles<D>& r, const NearParticles<D>& s, unsigned held)
-      : r_(r), s_(s), held_(held) {
+  /// Axes in `constrained` get no component.
+  PlaneFit(const NearParticles<D>& r, const NearParticles<D>& s, unsigned constrained)
+      : r_(r), s_(s), constrained_(constrained) {
     if (r.count() == 0 || s.count() == 0) return;
     start_between_centres();
-    find_least();
+    minimise();
   }
 
   /// None where a body has no particles.
@@ -86,7 +86,7 @@ class PlaneFit {
       for (int i = 0; i < n; ++i) linear += b[i] * step[i];
       return along(z, step) - linear;
     }
-    void find_least(double (&z)[n]) const {
+    void minimise(double (&z)[n]) const {
       double factors[n][n];
       std::copy(&A[0][0], &A[0][0] + n * n, &factors[0][0]);
       std::copy(b, b + n, z);
@@ -99,7 +99,7 @@ class PlaneFit {
     const Vec<double, D> r = r_.centre(), s = s_.centre();
     double apart[D], square = 0.0, middle = 0.0;
     for (int a = 0; a < D; ++a) {
-      apart[a] = held_ >> a & 1u ? 0.0 : s[a] - r[a];
+      apart[a] = constrained_ >> a & 1u ? 0.0 : s[a] - r[a];
       square += apart[a] * apart[a];
       middle += apart[a] * 0.5 * (r[a] + s[a]);
     }
@@ -108,13 +108,13 @@ class PlaneFit {
     z_[D] = -2.0 * middle / square;
   }
 
-  void find_least() {
+  void minimise() {
     // Some four steps; the limit is against rounding that never settles.
     constexpr int most_steps = 50;
     Quadratic here = at(z_);
     for (int k = 0; k < most_steps; ++k) {
       double z[n], step[n], change = 0.0, size = 0.0;
-      here.find_least(z);
+      here.minimise(z);
       for (int i = 0; i < n; ++i) {
         step[i] = z[i] - z_[i];
         change = std::max(change, std::abs(step[i]));
@@ -122,7 +122,7 @@ class PlaneFit {
       }
       Quadratic there = at(z);
       const bool settled = there == here || !(change > 1e-13 * size);
-      if (!settled) shorten(here, step, z, there);
+      if (!settled) line_search(here, step, z, there);
       std::copy(z, z + n, z_);
       here = there;
       if (settled) return;
@@ -131,7 +131,7 @@ class PlaneFit {
 
   /// Shorten a step that ends at z, unless the function falls along it, until it does: its slope
   /// rises along the step, so the root of it lies between.
-  void shorten(const Quadratic& here, const double (&step)[n], double (&z)[n], Quadratic& there) {
+  void line_search(const Quadratic& here, const double (&step)[n], double (&z)[n], Quadratic& there) {
     constexpr int most_trials = 20;
     constexpr double enough = 0.3;  // of the first slope: the next step mends the rest
     const double first = here.slope(z_, step), start = here.value(z_);
@@ -179,7 +179,7 @@ class PlaneFit {
   Quadratic at(const double (&z)[n]) const {
     const Moments r = moments_of(r_, -1.0, z), s = moments_of(s_, 1.0, z);
     const T of_r(1.0 / r_.mass()), of_s(1.0 / s_.mass());  // shares of a body's mass
-    const auto fixed = [&](int i) { return i < D && (held_ >> i & 1u); };
+    const auto fixed = [&](int i) { return i < D && (constrained_ >> i & 1u); };
     Quadratic q;
     for (int i = 0; i < n; ++i) {
       const T first_r = of_r * r.first[i], first_s = of_s * s.first[i];
@@ -196,14 +196,14 @@ class PlaneFit {
 
   const NearParticles<D>& r_;
   const NearParticles<D>& s_;
-  unsigned held_;
+  unsigned constrained_;
   double z_[n] = {};
 };
 
 /// The plane that best separates the particles of two bodies; none where a body has no particles.
 template <int D>
-Plane<D> separating_plane(const NearParticles<D>& r, const NearParticles<D>& s, unsigned held) {
-  return PlaneFit<D>(r, s, held).plane();
+Plane<D> separating_plane(const NearParticles<D>& r, const NearParticles<D>& s, unsigned constrained) {
+  return PlaneFit<D>(r, s, constrained).plane();
 }
 
 /// The unit normal from r to s of the plane that separates their particles; zero if none does. All
@@ -212,9 +212,9 @@ Plane<D> separating_plane(const NearParticles<D>& r, const NearParticles<D>& s, 
 /// fill the same place.
 template <int D>
 Vec<double, D> separating_normal(const NearParticles<D>& r, const NearParticles<D>& s,
-                                 unsigned held) {
+                                 unsigned constrained) {
   constexpr double widest = 4.0;  // half width [cells]
-  return normalised(separating_plane(r, s, held).a, 1.0 / widest);
+  return normalised(separating_plane(r, s, constrained).a, 1.0 / widest);
 }
 
 }  // namespace mpm

@@ -18,7 +18,7 @@ struct ContactSettings {
   NormalRule normal = NormalRules::id_of<PlaneNormal>();
   double friction = 0.0;
   double gap_distance = 0.0;  // D of eq. (5)
-  double normal_travel =
+  double normal_refresh_distance =
       0.0;  // beyond a quarter a pair found apart could meet along another normal
   std::vector<std::pair<std::uint64_t, double>> pair_friction;  // by pair_key of groups, sorted
 
@@ -38,11 +38,13 @@ struct ContactSettings {
               Rule::not_negative},
       Setting{"gap_distance", &Self::gap_distance, "bodies closer than this touch [m]",
               Rule::not_negative, "m"},
-      Setting{"normal_travel", &Self::normal_travel,
+      Setting{"normal_refresh_distance", &Self::normal_refresh_distance,
               "the direction and gap of a contact are found anew when its two bodies together have "
               "moved this far [cells]; 0: in every step. 0.1 saves half of the time of contact "
               "where grains move little, and costs one or two per cent of accuracy",
-              Rule{0.0, 0.25, false, false}}};
+              Rule{0.0, 0.25, false, false},
+              {},
+              "normal_travel"}};
 };
 
 /// One number for an unordered pair of bodies or of groups of bodies.

@@ -17,22 +17,22 @@ namespace mpm {
 /// What velocities and stresses are rounded to where they are kept; a step changes other columns by
 /// small parts of themselves. All arithmetic is that of doubles.
 #if defined(MPM_FLOAT32)
-using Rounded = float;
+using Storage = float;
 #else
-using Rounded = double;
+using Storage = double;
 #endif
 
-enum class Kept { exact, rounded };
+enum class Precision { exact, rounded };
 
 struct ColumnInfo {
   std::string name;
   std::string unit;
   int components = 1;
   int first = 0;  // index of its first component among all components
-  Kept kept = Kept::exact;
+  Precision kept = Precision::exact;
 
   std::size_t number_bytes() const {
-    return kept == Kept::exact ? sizeof(double) : sizeof(Rounded);
+    return kept == Precision::exact ? sizeof(double) : sizeof(Storage);
   }
 };
 
@@ -43,7 +43,7 @@ class ColumnsIn {
  public:
   /// Declare a column before `allocate`; returns the index of its first component. Throws
   /// std::invalid_argument for a name that is taken.
-  int add(std::string name, std::string unit, int components, Kept kept = Kept::exact) {
+  int add(std::string name, std::string unit, int components, Precision kept = Precision::exact) {
     for (const auto& i : infos_)
       if (i.name == name) throw std::invalid_argument("two columns are named " + name);
     const int first = component_count();
@@ -84,25 +84,25 @@ class ColumnsIn {
   std::size_t stride() const { return stride_; }  // numbers from one component to the next
   std::size_t bytes() const { return memory_.bytes(); }
   const std::vector<ColumnInfo>& infos() const { return infos_; }
-  double* component(int c) { return reinterpret_cast<double*>(begin_of(c, Kept::exact)); }
+  double* component(int c) { return reinterpret_cast<double*>(begin_of(c, Precision::exact)); }
   const double* component(int c) const {
-    return reinterpret_cast<const double*>(begin_of(c, Kept::exact));
+    return reinterpret_cast<const double*>(begin_of(c, Precision::exact));
   }
-  Rounded* rounded(int c) { return reinterpret_cast<Rounded*>(begin_of(c, Kept::rounded)); }
-  const Rounded* rounded(int c) const {
-    return reinterpret_cast<const Rounded*>(begin_of(c, Kept::rounded));
+  Storage* rounded(int c) { return reinterpret_cast<Storage*>(begin_of(c, Precision::rounded)); }
+  const Storage* rounded(int c) const {
+    return reinterpret_cast<const Storage*>(begin_of(c, Precision::rounded));
   }
   /// f(component c), whichever way its column is kept.
   template <class F>
   void with_component(int c, F&& f) {
-    info_of(c).kept == Kept::exact ? f(component(c)) : f(rounded(c));
+    info_of(c).kept == Precision::exact ? f(component(c)) : f(rounded(c));
   }
   template <class F>
   void with_component(int c, F&& f) const {
-    info_of(c).kept == Kept::exact ? f(component(c)) : f(rounded(c));
+    info_of(c).kept == Precision::exact ? f(component(c)) : f(rounded(c));
   }
   double value(int c, std::size_t row) const {
-    return info_of(c).kept == Kept::exact ? component(c)[row] : double{rounded(c)[row]};
+    return info_of(c).kept == Precision::exact ? component(c)[row] : double{rounded(c)[row]};
   }
 
   /// The column's description; throws std::invalid_argument for an unknown name, with those that
@@ -128,7 +128,7 @@ class ColumnsIn {
   // pages between them would double the memory of small bodies, which stay off such multiples
   // instead.
   static std::size_t padded(std::size_t rows) {
-    constexpr std::size_t line = cache_line / sizeof(Rounded), page = 4096 / sizeof(double),
+    constexpr std::size_t line = cache_line / sizeof(Storage), page = 4096 / sizeof(double),
                           stagger = 3 * line;  // in numbers; pages of doubles, halves of floats'
     const std::size_t lines = (rows + 7 + line) / line * line, beyond = lines % page;
     if (lines < page) return lines;
@@ -142,11 +142,11 @@ class ColumnsIn {
     }
     return infos_[k];
   }
-  const std::byte* begin_of(int c, [[maybe_unused]] Kept kept) const {
+  const std::byte* begin_of(int c, [[maybe_unused]] Precision kept) const {
     assert(info_of(c).kept == kept);
     return memory_.data() + begin_[static_cast<std::size_t>(c)];
   }
-  std::byte* begin_of(int c, Kept kept) {
+  std::byte* begin_of(int c, Precision kept) {
     return const_cast<std::byte*>(std::as_const(*this).begin_of(c, kept));
   }
 

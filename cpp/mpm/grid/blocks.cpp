@@ -33,7 +33,7 @@ bool TileGrid<D>::find_shapes(Threads& threads) {
   });
   if (bonded)
     for (const std::uint32_t p : by_tile_) {
-      BlockShape<D>& all = patches[patches[p].leader].shape;
+      BlockShape<D>& all = patches[patches[p].primary].shape;
       all = all.joined_with(patches[p].shape);
     }
   return std::ranges::any_of(reshaped_, [](std::uint8_t yes) { return yes; });
@@ -53,7 +53,7 @@ void TileGrid<D>::cut_blocks(Threads& threads) {
   threads.for_each(patches.size(), [&](std::size_t p) {
     Patch<D>& patch = patches[p];
     patch.at_wall = box_touches_wall(*this, patch);
-    if (patch.leader != p) patch.owned.fill(0);
+    if (patch.primary != p) patch.owned.fill(0);
   });
   list_shared_nodes(threads);
 }

@@ -37,14 +37,14 @@ struct Patch {
   std::uint64_t occupied = 0;   // bit c: cell c holds a particle
   std::array<std::uint32_t, Tile<D>::cell_count + 1> cell_begin{};  // relative to `begin`
   std::array<std::int32_t, Tile<D>::neighbours>
-      neighbour{};  // patches of the same body around it, -1 if none; of a leader if bonded
-  std::uint32_t leader =
+      neighbour{};  // patches of the same body around it, -1 if none; of a primary if bonded
+  std::uint32_t primary =
       0;                   // where the bodies are bonded: the first patch of the tile; else itself
-  BlockShape<D> shape;     // of its block; a leader's holds those of all that it leads
+  BlockShape<D> shape;     // of its block; a primary's holds those of all that are secondary to it
   std::size_t memory = 0;  // where its block begins in the grid's memory [doubles]
-  NodeBits<D> owned;       // nodes that no earlier patch of the body holds; of a leader, no earlier
-                           // leader; none of one that is led
-  SharedNodes<D> shared;   // of a leader; of others it means nothing
+  NodeBits<D> owned;       // nodes that no earlier patch of the body holds; of a primary, no earlier
+                           // primary; none of a secondary one
+  SharedNodes<D> shared;   // of a primary; of others it means nothing
   bool at_wall = false;    // its block has nodes on a wall
   bool left_cell = false;  // a particle has left its cell since the lists were made
   bool in_contact = false;  // its block may have nodes where bodies meet

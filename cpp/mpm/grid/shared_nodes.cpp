@@ -56,8 +56,8 @@ void TileGrid<D>::for_each_shared(const Patch<D>& patch, F&& f) const {
 template <int D>
 void TileGrid<D>::find_outdated(Threads& threads) {
   outdated_.assign(patches.size(), false);
-  threads.for_each(leaders_.size(), [&](std::size_t leader) {
-    const std::uint32_t p = leaders_[leader];
+  threads.for_each(primaries_.size(), [&](std::size_t primary) {
+    const std::uint32_t p = primaries_[primary];
     std::uint32_t present = 0;
     bool reshaped = false;
     for (std::size_t k = 0; k < Tile<D>::neighbours; ++k)
@@ -83,8 +83,8 @@ void TileGrid<D>::find_owned(Patch<D>& patch) const {
 template <int D>
 void TileGrid<D>::list_shared_nodes(Threads& threads) {
   find_outdated(threads);
-  const auto each_leader = [&](auto&& f) {
-    threads.for_each(leaders_.size(), [&](std::size_t k) { f(leaders_[k], patches[leaders_[k]]); });
+  const auto each_primary = [&](auto&& f) {
+    threads.for_each(primaries_.size(), [&](std::size_t k) { f(primaries_[k], patches[primaries_[k]]); });
   };
   // Made once to be counted and once to be written: few patches need it, and kept it would need
   // more room than all lists.
@@ -93,7 +93,7 @@ void TileGrid<D>::list_shared_nodes(Threads& threads) {
     for_each_shared(patch, [&](int node, SharedEntry<D> other) { list.add(node, other); });
     return list;
   };
-  each_leader([&](std::uint32_t p, Patch<D>& patch) {
+  each_primary([&](std::uint32_t p, Patch<D>& patch) {
     if (!outdated_[p]) return;
     find_owned(patch);
     list_of(patch).count(patch.shape.node_count, patch.shared);
@@ -105,12 +105,12 @@ void TileGrid<D>::list_shared_nodes(Threads& threads) {
   std::copy_n(shared_.data(), listed_, before);
   listed_ = 0;
   listed_before_.resize(patches.size());
-  for (const std::uint32_t p : leaders_) {
+  for (const std::uint32_t p : primaries_) {
     listed_before_[p] = std::exchange(patches[p].shared.first, listed_);
     listed_ += patches[p].shared.entries();
   }
   make_room(shared_, listed_, listed_ + listed_ / 16);
-  each_leader([&](std::uint32_t p, const Patch<D>& patch) {
+  each_primary([&](std::uint32_t p, const Patch<D>& patch) {
     SharedEntry<D>* const to = shared_.data() + patch.shared.first;
     if (outdated_[p])
       list_of(patch).write(patch.shape.node_count, patch.shared, to);
@@ -119,19 +119,19 @@ void TileGrid<D>::list_shared_nodes(Threads& threads) {
   });
 }
 
-/// f(p, leader) for every patch that does not lead, those of one tile one after another.
+/// f(p, primary) for every secondary patch, those of one tile one after another.
 template <int D>
 template <class F>
-void TileGrid<D>::for_each_follower(Threads& threads, F&& f) {
+void TileGrid<D>::for_each_secondary(Threads& threads, F&& f) {
   if (!bonded) return;
-  threads.for_each(leaders_.size(), [&](std::size_t k) {
-    const std::uint32_t leader = leaders_[k];
-    const auto begin = std::lower_bound(by_tile_.begin(), by_tile_.end(), leader,
+  threads.for_each(primaries_.size(), [&](std::size_t k) {
+    const std::uint32_t primary = primaries_[k];
+    const auto begin = std::lower_bound(by_tile_.begin(), by_tile_.end(), primary,
                                         [&](std::uint32_t x, std::uint32_t y) {
                                           return tile_less<D>(patches[x].tile, patches[y].tile);
                                         });
-    for (auto p = begin; p != by_tile_.end() && patches[*p].leader == leader; ++p)
-      if (*p != leader) f(patches[*p], patches[leader]);
+    for (auto p = begin; p != by_tile_.end() && patches[*p].primary == primary; ++p)
+      if (*p != primary) f(patches[*p], patches[primary]);
   });
 }
 
@@ -171,17 +171,17 @@ void TileGrid<D>::sum_shared(Threads& threads, F&& begin_of) {
           f(of_p[here + i] + k, of_q[there + i] + k);
     });
   };
-  for_each_follower(threads, [&](const Patch<D>& patch, const Patch<D>& leader) {
-    each_quad(leader, patch, [](double* to, const double* from) {
+  for_each_secondary(threads, [&](const Patch<D>& patch, const Patch<D>& primary) {
+    each_quad(primary, patch, [](double* to, const double* from) {
       (Batch<half_record>::load(to) + Batch<half_record>::load(from)).store(to);
     });
   });
   // All entries of a node are read and written by the one patch that owns it.
-  threads.for_each(leaders_.size(), [&](std::size_t k) {
-    sum_shared_nodes_of<halves, width>(patches[leaders_[k]], begin_of);
+  threads.for_each(primaries_.size(), [&](std::size_t k) {
+    sum_shared_nodes_of<halves, width>(patches[primaries_[k]], begin_of);
   });
-  for_each_follower(threads, [&](const Patch<D>& patch, const Patch<D>& leader) {
-    each_quad(patch, leader,
+  for_each_secondary(threads, [&](const Patch<D>& patch, const Patch<D>& primary) {
+    each_quad(patch, primary,
               [](double* to, const double* from) { Batch<half_record>::load(from).store(to); });
   });
 }

@@ -5,34 +5,34 @@
 
 namespace mpm {
 
-/// In the order of the leaders: by body and tile, or by tile alone where bodies are bonded.
+/// In the order of the primaries: by body and tile, or by tile alone where bodies are bonded.
 template <int D>
 bool TileGrid<D>::before(const Patch<D>& p, int body, const Index<D>& tile) const {
   return bonded ? tile_less<D>(p.tile, tile) : patch_less<D>(p.body, p.tile, body, tile);
 }
 
 template <int D>
-void TileGrid<D>::choose_leaders() {
-  leaders_.resize(patches.size());
-  std::iota(leaders_.begin(), leaders_.end(), 0u);
-  for (std::uint32_t p = 0; p < patches.size(); ++p) patches[p].leader = p;
+void TileGrid<D>::choose_primaries() {
+  primaries_.resize(patches.size());
+  std::iota(primaries_.begin(), primaries_.end(), 0u);
+  for (std::uint32_t p = 0; p < patches.size(); ++p) patches[p].primary = p;
   if (!bonded) return;
-  std::sort(leaders_.begin(), leaders_.end(), [&](std::uint32_t x, std::uint32_t y) {
+  std::sort(primaries_.begin(), primaries_.end(), [&](std::uint32_t x, std::uint32_t y) {
     const Patch<D>&p = patches[x], &q = patches[y];
     return p.tile != q.tile ? tile_less<D>(p.tile, q.tile) : p.body < q.body;
   });
-  by_tile_ = leaders_;
-  leaders_.clear();
+  by_tile_ = primaries_;
+  primaries_.clear();
   for (const std::uint32_t p : by_tile_) {
-    if (leaders_.empty() || patches[leaders_.back()].tile != patches[p].tile) leaders_.push_back(p);
-    patches[p].leader = leaders_.back();
+    if (primaries_.empty() || patches[primaries_.back()].tile != patches[p].tile) primaries_.push_back(p);
+    patches[p].primary = primaries_.back();
   }
 }
 
 template <int D>
 void TileGrid<D>::connect() {
   using T = Tile<D>;
-  choose_leaders();
+  choose_primaries();
   blocks_known_ = false;
   for (auto& p : patches) {
     p.neighbour.fill(-1);
@@ -43,16 +43,16 @@ void TileGrid<D>::connect() {
   for (int k = T::self + 1; k < T::neighbours; ++k) {
     const Index<D> o = T::offset(k);
     std::size_t finger = 0;
-    for (const std::uint32_t p : leaders_) {
+    for (const std::uint32_t p : primaries_) {
       Patch<D>& patch = patches[p];
       Index<D> target = patch.tile;
       for (int a = 0; a < D; ++a) target[a] += o[a];
-      while (finger < leaders_.size() && before(patches[leaders_[finger]], patch.body, target))
+      while (finger < primaries_.size() && before(patches[primaries_[finger]], patch.body, target))
         ++finger;
-      if (finger == leaders_.size()) break;
-      Patch<D>& other = patches[leaders_[finger]];
+      if (finger == primaries_.size()) break;
+      Patch<D>& other = patches[primaries_[finger]];
       if (other.tile != target || (!bonded && other.body != patch.body)) continue;
-      patch.neighbour[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(leaders_[finger]);
+      patch.neighbour[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(primaries_[finger]);
       other.neighbour[static_cast<std::size_t>(T::neighbours - 1 - k)] =
           static_cast<std::int32_t>(p);
     }

@@ -8,7 +8,7 @@
 
 #include "mpm/fields/memory_space.hpp"
 #include "mpm/fields/state_stream.hpp"
-#include "mpm/grid/keep.hpp"
+#include "mpm/grid/outflow_box.hpp"
 #include "mpm/grid/patch.hpp"
 #include "mpm/math/vec.hpp"
 #include "mpm/parallel/threads.hpp"
@@ -47,7 +47,7 @@ class TileGrid {
   // shifted by whole cells is cut into the same tiles and gives the same bits.
   Index<D> anchor{};
   Walls<D> walls;
-  Keep<D> keep;
+  OutflowBox<D> outflow_box;
   bool has_dashpots = false;      // the blocks have room for those of absorbing walls
   bool bonded = false;            // all bodies have one velocity field: they share their nodes
   std::vector<Patch<D>> patches;  // by body, then by tile
@@ -147,7 +147,7 @@ class TileGrid {
     return {{node_memory_.data() + patch.memory}, patch.shape.node_count};
   }
   bool before(const Patch<D>& p, int body, const Index<D>& tile) const;
-  void choose_leaders();
+  void choose_primaries();
   bool find_shapes(Threads& threads);
   void find_outdated(Threads& threads);
   void find_owned(Patch<D>& patch) const;
@@ -158,7 +158,7 @@ class TileGrid {
   template <int halves, int width, class F>
   void sum_shared(Threads& threads, F&& begin_of);
   template <class F>
-  void for_each_follower(Threads& threads, F&& f);
+  void for_each_secondary(Threads& threads, F&& f);
   template <class F>
   void for_each_shared(const Patch<D>& patch, F&& f) const;
 
@@ -170,7 +170,7 @@ class TileGrid {
   std::vector<std::size_t> listed_before_;         // scratch: where each patch's list was
   bool blocks_known_ = false;                      // the blocks are those of the patches there are
   std::vector<std::uint32_t> by_tile_;             // if bonded: all patches, by tile, then by body
-  std::vector<std::uint32_t> leaders_;  // those whose nodes are summed with their neighbours'
+  std::vector<std::uint32_t> primaries_;  // those whose nodes are summed with their neighbours'
 };
 
 /// Order of patches: by body, then by tile.

@@ -1,6 +1,6 @@
 #pragma once
 // The second part: the mean stress by an equation of state, solved together with the energy.
-#include "mpm/materials/block_end.hpp"
+#include "mpm/materials/stress_writer.hpp"
 
 namespace mpm {
 
@@ -16,18 +16,18 @@ T sound_speed_squared(const LinearInEnergy<T>& at, T V, T energy, T pressure, do
 template <class T, int D, class Model>
 [[gnu::flatten]] void apply_eos(const Model model, const Material& material,
                                 const BlockColumns<D>& columns, const StressSettings& settings,
-                                MaterialBlock<D>& block, BlockEnd<T, D>& end) {
+                                MaterialBlock<D>& block, StressWriter<T, D>& writer) {
   const bool burns = material.burns(), damped = material.damps();
   const bool viscosity = settings.viscosity.active(), last = material.failures.empty();
   const EosBounds bounds = material.bounds;
   for_each_group<T>(block, [&](const Group<T, D>& group) {
-    const Swelling<T> swelling(group.read(columns.mass), group.read(columns.volume),
+    const VolumeChange<T> volume_change(group.read(columns.mass), group.read(columns.volume),
                                group.get(block.volume), group.get(block.dilation),
                                material.density);
     const Sym<T, D> strength = group.get_stress(block);
     StressWork<T> work{group.get(block.deviatoric_work), group.get(block.force_work)};
-    const T V = swelling.J, per_volume = swelling.per_volume;
-    const T change = (swelling.after - swelling.before) * per_volume;  // of V
+    const T V = volume_change.J, per_volume = volume_change.per_volume;
+    const T change = (volume_change.after - volume_change.before) * per_volume;  // of V
     const T mean_before = group.get(block.mean_before);
 
     LinearInEnergy<T> p = model.at(V);
@@ -41,9 +41,9 @@ template <class T, int D, class Model>
         sqrt(sound_speed_squared(p, V, energy, guess, material.density) + group.get(block.speed));
     T q(0.0), damping = damped ? group.get(block.damping) : T(0.0);
     if (viscosity) {
-      const T artificial = swelling.viscous_speed(settings, speed);
-      q = swelling.viscous_pressure(settings, artificial);
-      energy += swelling.viscous_work(q) * per_volume;
+      const T artificial = volume_change.viscous_speed(settings, speed);
+      q = volume_change.viscous_pressure(settings, artificial);
+      energy += volume_change.viscous_work(q) * per_volume;
       damping += artificial;
     }
     if (viscosity || damped) speed = damped_speed(speed, damping);
@@ -59,8 +59,8 @@ template <class T, int D, class Model>
     const T shift = mean + pressure;  // of the mean stress, downwards
     const Sym<T, D> stress = strength - Sym<T, D>::isotropic(shift);
     if (last) {
-      if (settings.forces_follow) work.force -= swelling.after * shift * swelling.dilation;
-      end.template add<true>(group, swelling, work, T(0.5) * (mean_before - pressure),
+      if (settings.forces_follow) work.force -= volume_change.after * shift * volume_change.dilation;
+      writer.template add<true>(group, volume_change, work, T(0.5) * (mean_before - pressure),
                              {stress, group.get(block.dissipated), speed, q});
       return;
     }

@@ -1,6 +1,6 @@
 #pragma once
 // The third part: what has failed, and what failure does to the stress.
-#include "mpm/materials/block_end.hpp"
+#include "mpm/materials/stress_writer.hpp"
 
 namespace mpm {
 
@@ -8,7 +8,7 @@ namespace mpm {
 template <class T, int D>
 [[gnu::flatten]] void apply_failures(const Material& material, const BlockColumns<D>& columns,
                                      const StressSettings& settings, MaterialBlock<D>& block,
-                                     BlockEnd<T, D>& end, StressSums& sums) {
+                                     StressWriter<T, D>& writer, StressSums& sums) {
   double* state_at = columns.failure_state;
   for (const Failing& failing : material.failures)
     std::visit(
@@ -16,10 +16,10 @@ template <class T, int D>
           using State = typename Model::template State<T, D>;
           const T action(static_cast<double>(failing.action));
           for_each_group<T>(block, [&](const Group<T, D>& group) {
-            const Moved<T, D> moved(group, block, columns, material.density, settings);
+            const StepKinematics<T, D> kinematics(group, block, columns, material.density, settings);
             const T energy = columns.energy ? group.read(columns.energy) : T(0.0);
             const Condition<T, D> condition{group.get_stress(block),
-                                            moved.motion.gradient,
+                                            kinematics.motion.gradient,
                                             group.get(block.plastic_strain),
                                             group.get(block.plastic_increment),
                                             group.get(block.temperature),
@@ -49,13 +49,13 @@ template <class T, int D>
     const Sym<T, D> left =
         Sym<T, D>::isotropic(kept) + deviator * (stress - Sym<T, D>::isotropic(mean));
     // A torn particle that gapes is loose matter: no waves run in it, and closing it costs nothing.
-    const auto loose =
+    const auto separated =
         (failed >= T(static_cast<double>(FailureAction::no_tension))) & (kept >= T(0.0));
-    const Moved<T, D> moved(group, block, columns, material.density, settings);
-    end.template add<true>(
-        group, moved, group.read_stress(columns),
-        {left, group.get(block.dissipated), select(loose, T(0.0), group.get(block.speed)),
-         select(loose, T(0.0), group.get(block.viscous_pressure))});
+    const StepKinematics<T, D> kinematics(group, block, columns, material.density, settings);
+    writer.template add<true>(
+        group, kinematics, group.read_stress(columns),
+        {left, group.get(block.dissipated), select(separated, T(0.0), group.get(block.speed)),
+         select(separated, T(0.0), group.get(block.viscous_pressure))});
   });
   sums.eroded = sums.eroded || any(eroded);
 }

@@ -1,6 +1,6 @@
 #pragma once
 // The first part of a block's way through its material: stress and state by the strength model.
-#include "mpm/materials/block_end.hpp"
+#include "mpm/materials/stress_writer.hpp"
 
 namespace mpm {
 
@@ -8,13 +8,13 @@ namespace mpm {
 template <class T, int D, class Model>
 [[gnu::flatten]] void apply_strength(const Model model, const Material& material,
                                      const BlockColumns<D>& columns, const StressSettings& settings,
-                                     MaterialBlock<D>& block, BlockEnd<T, D>& end) {
+                                     MaterialBlock<D>& block, StressWriter<T, D>& writer) {
   using State = typename Model::template State<T, D>;
   const bool viscosity = settings.viscosity.active(), judged = !material.failures.empty();
   const bool last = !material.eos && !judged;
   for_each_group<T>(block, [&](const Group<T, D>& group) {
-    const Moved<T, D> moved(group, block, columns, material.density, settings);
-    const Motion<T, D>& motion = moved.motion;
+    const StepKinematics<T, D> kinematics(group, block, columns, material.density, settings);
+    const StrainIncrement<T, D>& motion = kinematics.motion;
     const Sym<T, D> stress_before = group.read_stress(columns);
     Sym<T, D> stress = stress_before;
     State state = group.template read_state<State>(columns.state, columns.stride);
@@ -29,13 +29,13 @@ template <class T, int D, class Model>
       if (!material.eos) {
         speed = model.sound_speed(stress, state, motion.J);
         if (viscosity) {
-          const T damping = moved.swelling.viscous_speed(settings, speed);
-          q = moved.swelling.viscous_pressure(settings, damping);
+          const T damping = kinematics.volume_change.viscous_speed(settings, speed);
+          q = kinematics.volume_change.viscous_pressure(settings, damping);
           speed = damped_speed(speed, damping);
         }
       }
     if (last) {
-      end.template add<false>(group, moved, stress_before, {stress, dissipated, speed, q});
+      writer.template add<false>(group, kinematics, stress_before, {stress, dissipated, speed, q});
       return;
     }
     group.put_stress(block, stress);
@@ -43,9 +43,9 @@ template <class T, int D, class Model>
     group.put(block.speed, speed);
     group.put(block.viscous_pressure, q);
     if (material.eos) {
-      const StressWork<T> work = moved.work(settings, stress_before, stress);
-      group.put(block.volume, moved.swelling.after);
-      group.put(block.dilation, moved.swelling.dilation);
+      const StressWork<T> work = kinematics.work(settings, stress_before, stress);
+      group.put(block.volume, kinematics.volume_change.after);
+      group.put(block.dilation, kinematics.volume_change.dilation);
       group.put(block.deviatoric_work, work.deviatoric);
       group.put(block.force_work, work.force);
       group.put(block.mean_before, T(1.0 / 3.0) * trace(stress_before));

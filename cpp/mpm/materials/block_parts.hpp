@@ -11,8 +11,8 @@ struct BlockColumns {
   std::size_t stride;
   const double* mass;
   double* volume;
-  const Rounded* velocity[D];
-  Rounded* stress[parts];
+  const Storage* velocity[D];
+  Storage* stress[parts];
   double *state, *energy, *recoverable, *viscosity_pressure, *failed, *failure_state;
 
   BlockColumns(Columns& columns, const MaterialColumns& at) : stride(columns.stride()) {
@@ -97,13 +97,13 @@ T damped_speed(T c, T Q) {
 
 /// What a step did to the volume of a group.
 template <class T>
-struct Swelling {
+struct VolumeChange {
   T mass, before, after;  // volumes [m^3]
   T dilation;             // trace of the velocity gradient x time step
   T per_volume;           // 1 / initial volume
   T J;                    // after / initial volume; of a particle at rest 1 to the bit
 
-  Swelling(T mass_, T before_, T after_, T dilation_, double density)
+  VolumeChange(T mass_, T before_, T after_, T dilation_, double density)
       : mass(mass_),
         before(before_),
         after(after_),
@@ -141,35 +141,35 @@ struct StressWork {
 
 /// The motion of a group over the step, and the volumes and mass that go with it.
 template <class T, int D>
-struct Moved {
-  Motion<T, D> motion;
+struct StepKinematics {
+  StrainIncrement<T, D> motion;
   Sym<T, D> strain;  // of the step, referred to its middle
-  Swelling<T> swelling;
+  VolumeChange<T> volume_change;
 
-  Moved(const Group<T, D>& group, const MaterialBlock<D>& block, const BlockColumns<D>& columns,
+  StepKinematics(const Group<T, D>& group, const MaterialBlock<D>& block, const BlockColumns<D>& columns,
         double density, const StressSettings& settings)
-      : Moved(group, gradient_of(group, block), columns, density, settings) {}
+      : StepKinematics(group, gradient_of(group, block), columns, density, settings) {}
 
   /// The material feels the strain of the middle of the step; the mean stress works on the change
   /// of volume as it is, from which the trace of the strain differs by the third order.
   StressWork<T> work(const StressSettings& settings, const Sym<T, D>& before,
                      const Sym<T, D>& after) const {
     const Sym<T, D> both = before + after, rate = symmetric_part(motion.gradient);
-    const T volume = T(0.5) * (swelling.before + swelling.after);
+    const T volume = T(0.5) * (volume_change.before + volume_change.after);
     const T deviatoric =
         T(0.5) * volume * (inner(both, strain) - T(1.0 / 3.0) * trace(both) * trace(strain));
-    return {deviatoric, settings.forces_follow ? swelling.after * inner(after, rate)
-                                               : swelling.before * inner(before, rate)};
+    return {deviatoric, settings.forces_follow ? volume_change.after * inner(after, rate)
+                                               : volume_change.before * inner(before, rate)};
   }
 
  private:
-  Moved(const Group<T, D>& group, const Mat<T, D>& gradient, const BlockColumns<D>& columns,
+  StepKinematics(const Group<T, D>& group, const Mat<T, D>& gradient, const BlockColumns<D>& columns,
         double density, const StressSettings& settings)
       : motion{gradient, T(1.0), settings.time_step, settings.time, settings.cell_size},
         strain(symmetric_part(mid_step(gradient))),
-        swelling(
-            swelling_of(gradient, group.read(columns.mass), group.read(columns.volume), density)) {
-    motion.J = swelling.J;
+        volume_change(
+            volume_change_of(gradient, group.read(columns.mass), group.read(columns.volume), density)) {
+    motion.J = volume_change.J;
   }
   static Mat<T, D> gradient_of(const Group<T, D>& group, const MaterialBlock<D>& block) {
     const auto valid = group.valid();
@@ -179,7 +179,7 @@ struct Moved {
         gradient[i][j] = select(valid, group.get(block.gradient[i][j]), T(0.0));
     return gradient;
   }
-  static Swelling<T> swelling_of(const Mat<T, D>& gradient, T mass, T volume, double density) {
+  static VolumeChange<T> volume_change_of(const Mat<T, D>& gradient, T mass, T volume, double density) {
     Mat<T, D> f = gradient;
     T dilation(0.0);
     for (int i = 0; i < D; ++i) {

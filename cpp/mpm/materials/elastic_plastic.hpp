@@ -51,14 +51,14 @@ struct ElasticPlastic {
 template <class Model>
 struct MisesPlastic : ElasticPlastic<Model> {
   template <Real T, int D>
-  MPM_HD T update(const Motion<T, D>& motion, Sym<T, D>& stress, PlasticState<T, D>& state) const {
+  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress, PlasticState<T, D>& state) const {
     this->elastic.update(motion, stress);
     const Model& model = static_cast<const Model&>(*this);
-    const T before = state.plastic_strain, at_rest = model.yield(before).value;
-    const auto done = return_radially(stress, this->elastic.G, at_rest,
+    const T before = state.plastic_strain, static_yield = model.yield(before).value;
+    const auto done = return_radially(stress, this->elastic.G, static_yield,
                                       [&](T d) { return model.yield(before + d); });
     state.plastic_strain += done.increment;
-    return T(0.5) * (at_rest + done.von_mises) * done.increment;
+    return T(0.5) * (static_yield + done.von_mises) * done.increment;
   }
 };
 

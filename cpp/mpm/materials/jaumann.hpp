@@ -40,7 +40,7 @@ MPM_HD Mat<T, 3> cayley(const Mat<T, 3>& w) {
 /// (w D - D w)/2; that makes the update second-order in simple shear, where a strain applied at the
 /// end is first-order.
 template <class T, int D>
-MPM_HD Corotated<T, D> corotate(const Motion<T, D>& motion, const Sym<T, D>& stress) {
+MPM_HD Corotated<T, D> corotate(const StrainIncrement<T, D>& motion, const Sym<T, D>& stress) {
   const Mat<T, D> middle = mid_step(motion.gradient);
   Mat<T, D> spin;
   for (int i = 0; i < D; ++i)

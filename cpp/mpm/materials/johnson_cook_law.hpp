@@ -60,7 +60,7 @@ struct JohnsonCookLaw {
   /// work. Rate, hardening and heating are implicit: the rate is d / time step, and the temperature
   /// that of the end of the step, T + heating J (q - 3 G d) d.
   template <bool thermal, Real T, int D>
-  MPM_HD T update(const Motion<T, D>& motion, double G, const Sym<T, D>& stress_before,
+  MPM_HD T update(const StrainIncrement<T, D>& motion, double G, const Sym<T, D>& stress_before,
                   Sym<T, D>& stress, T& plastic_strain, T& temperature) const;
 };
 
@@ -80,13 +80,13 @@ class JohnsonCookFlow {
         softening_(thermal ? max(law.homologous(temperature), T(tiny)) : T(1.0), law.m) {
     const auto hard = hardening_.first();
     const T left = thermal ? T(1.0) - softening_.first().value : T(1.0);
-    at_rest_ = (T(law.A) + T(law.B) * hard.value) * left;
-    hardens_ = T(law.B) * hard.slope * left;
-    gain_ = max(T(law.C) * at_rest_, T(tiny));
+    static_yield_ = (T(law.A) + T(law.B) * hard.value) * left;
+    hardening_ = T(law.B) * hard.slope * left;
+    gain_ = max(T(law.C) * static_yield_, T(tiny));
   }
 
-  MPM_HD T at_rest() const { return at_rest_; }
-  MPM_HD T hardens() const { return hardens_; }
+  MPM_HD T static_yield() const { return static_yield_; }
+  MPM_HD T hardening() const { return hardening_; }
 
   MPM_HD T value(T q, T d, T x) {
     const T Y = (T(law_.A) + T(law_.B) * hardening_.value(strain(d))) * faster(x);
@@ -101,7 +101,7 @@ class JohnsonCookFlow {
     RateYield<T> y;
     y.value = rest * faster(x);
     y.slope = harder + select(x > T(0.0), T(law_.C) * rest, T(0.0));
-    y.bend = harder * (T(1.0) + T(law_.n.exponent - 1.0) * d * hard.inverse);
+    y.curvature = harder * (T(1.0) + T(law_.n.exponent - 1.0) * d * hard.inverse);
     if constexpr (thermal) {
       const T hot = star(q, d);
       const auto lost = softening_.at(max(hot, T(tiny)));
@@ -111,16 +111,16 @@ class JohnsonCookFlow {
       const T left = T(1.0) - lost.value;
       y.value = y.value * left;
       y.slope = y.slope * left - softer * (q - T(6.0 * G_) * d);
-      y.bend = y.bend * left - softer * (q - T(12.0 * G_) * d);
+      y.curvature = y.curvature * left - softer * (q - T(12.0 * G_) * d);
     }
     return y;
   }
 
   MPM_HD T start(T q_before) const {
-    return min(max((q_before - at_rest_) / gain_, T(-50.0)), T(50.0));
+    return min(max((q_before - static_yield_) / gain_, T(-50.0)), T(50.0));
   }
   MPM_HD T above(T q) const {
-    const T over = max(q - at_rest_, T(tiny));
+    const T over = max(q - static_yield_, T(tiny));
     return min(max(over / gain_, T(0.0)), log(max(over * T(1.0 / (3.0 * G_ * unit_)), T(tiny))));
   }
 
@@ -135,11 +135,11 @@ class JohnsonCookFlow {
   double G_, unit_;
   T heat_, strain_, temperature_;
   Power<T> hardening_, softening_;
-  T at_rest_, hardens_, gain_;
+  T static_yield_, hardening_, gain_;
 };
 
 template <bool thermal, Real T, int D>
-MPM_HD T JohnsonCookLaw::update(const Motion<T, D>& motion, double G,
+MPM_HD T JohnsonCookLaw::update(const StrainIncrement<T, D>& motion, double G,
                                 const Sym<T, D>& stress_before, Sym<T, D>& stress,
                                 T& plastic_strain, T& temperature) const {
   const T heat = T(heating) * motion.J;

@@ -9,16 +9,16 @@ template <class T, int D>
 void update_block(const Material& material, Columns& all, const MaterialColumns& at,
                   MaterialBlock<D>& block, const StressSettings& settings, StressSums& sums) {
   const BlockColumns<D> columns(all, at);
-  BlockEnd<T, D> end(columns, settings, material.bounds);
+  StressWriter<T, D> writer(columns, settings, material.bounds);
   std::visit(
-      [&](const auto& model) { apply_strength(model, material, columns, settings, block, end); },
+      [&](const auto& model) { apply_strength(model, material, columns, settings, block, writer); },
       material.strength);
   if (material.eos)
     std::visit(
-        [&](const auto& model) { apply_eos(model, material, columns, settings, block, end); },
+        [&](const auto& model) { apply_eos(model, material, columns, settings, block, writer); },
         *material.eos);
-  if (!material.failures.empty()) apply_failures(material, columns, settings, block, end, sums);
-  end.add_to(sums);
+  if (!material.failures.empty()) apply_failures(material, columns, settings, block, writer, sums);
+  writer.add_to(sums);
 }
 
 template <int D>

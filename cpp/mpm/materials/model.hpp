@@ -47,7 +47,7 @@ inline constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 /// The motion of a particle over one step.
 template <class T, int D>
-struct Motion {
+struct StrainIncrement {
   Mat<T, D>
       gradient;  // velocity gradient x time step, on the configuration at the start of the step
   T J;           // volume after the step / initial volume
@@ -94,7 +94,7 @@ concept Model = requires(M m, double density) {
 /// has burnt.
 template <class M>
 concept StrengthModel =
-    Model<M> && requires(M m, Motion<double, 3> motion, Sym<double, 3> stress,
+    Model<M> && requires(M m, StrainIncrement<double, 3> motion, Sym<double, 3> stress,
                          typename M::template State<double, 3> state, double J) {
       { M::eos } -> std::convertible_to<EosUse>;
       M::state_columns;
@@ -141,7 +141,7 @@ concept EosModel = Model<M> && requires(M m, double V) {
 template <class T, int D>
 struct Condition {
   Sym<T, D> stress;    // [Pa]
-  Mat<T, D> gradient;  // as in Motion
+  Mat<T, D> gradient;  // as in StrainIncrement
   T plastic_strain, plastic_increment;
   T temperature;  // homologous, 0 at the reference and 1 at melting; 0 without a thermal model
   T energy;  // internal, per initial volume, at the start of the step [J/m^3]; 0 without an EOS

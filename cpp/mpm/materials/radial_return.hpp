@@ -20,7 +20,7 @@ struct Returned {
 /// Shorten the deviator of a stress whose von Mises stress is q to that of q - stiff d; where d is
 /// zero the stress stays as it is, to the bit.
 template <class T, int D>
-MPM_HD Returned<T> shorten(Sym<T, D>& stress, T q, T stiff, T d) {
+MPM_HD Returned<T> scale_deviator(Sym<T, D>& stress, T q, T stiff, T d) {
   const Sym<T, D> mean = Sym<T, D>::isotropic(T(1.0 / 3.0) * trace(stress));
   const T after = q - stiff * d;
   const Sym<T, D> shorter = mean + (after / q) * (stress - mean);
@@ -32,17 +32,17 @@ MPM_HD Returned<T> shorten(Sym<T, D>& stress, T q, T stiff, T d) {
 /// A residual, as a share of q, below which Newton's step is the last: convergence is quadratic.
 inline constexpr double return_tolerance = 1e-11;
 
-/// The return for hardening without rates: `yield(d)` gives Y and dY/dd; `at_rest` is Y(0), below
+/// The return for hardening without rates: `yield(d)` gives Y and dY/dd; `static_yield` is Y(0), below
 /// which nothing happens. Newton's steps are kept between 0 and q / (3 G) by halving.
 template <Real T, int D, class F>
-MPM_HD Returned<T> return_radially(Sym<T, D>& stress, double G, T at_rest, F&& yield) {
+MPM_HD Returned<T> return_radially(Sym<T, D>& stress, double G, T static_yield, F&& yield) {
   const T q = von_mises(stress);
-  const auto flows = q > at_rest;
+  const auto flows = q > static_yield;
   if (!any(flows)) return {T(0.0), q};
 
   const T stiff(3.0 * G);
   T low(0.0), high = q / stiff;
-  T d = select(flows, (q - at_rest) / stiff, T(0.0));
+  T d = select(flows, (q - static_yield) / stiff, T(0.0));
   auto open = flows;
   for (int turn = 0; turn < 80; ++turn) {
     const Yield<T> y = yield(d);
@@ -57,7 +57,7 @@ MPM_HD Returned<T> return_radially(Sym<T, D>& stress, double G, T at_rest, F&& y
     open = open & rough;
     if (!any(open)) break;
   }
-  return shorten(stress, q, stiff, d);
+  return scale_deviator(stress, q, stiff, d);
 }
 
 }  // namespace mpm

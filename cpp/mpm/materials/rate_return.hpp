@@ -9,7 +9,7 @@ namespace mpm {
 /// itself, the second `bend_error` times the first.
 template <class T>
 struct RateYield {
-  T value, slope, bend;
+  T value, slope, curvature;
 };
 inline constexpr double slope_error = 1e-5, bend_error = 0.01;
 
@@ -19,19 +19,19 @@ inline constexpr double slope_error = 1e-5, bend_error = 0.01;
 /// predicts, which asks for the yield stress alone. Gives the lanes that flow and are
 /// still to be found.
 template <Real T, class Flow>
-MPM_HD Truth<T> flow_on(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& flow,
+MPM_HD Truth<T> newton_steps(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& flow,
                         T& found) {
-  const T nothing(0.0), over = q - max(q_before, flow.at_rest());
+  const T nothing(0.0), over = q - max(q_before, flow.static_yield());
   auto open = flows & (over > T(1e-6) * q);
   if (!any(open)) return flows;
-  T d = select(open, over, q) / (stiff + flow.hardens()), x = log(d * T(1.0 / unit));
+  T d = select(open, over, q) / (stiff + flow.hardening()), x = log(d * T(1.0 / unit));
   // Lanes that are not open stay where `flow` has begun, so that nothing depends on neighbours.
   d = select(open, d, nothing);
   const RateYield<T> y = flow.yield(q, d, x);
   const T inverse = T(1.0) / (stiff * d + y.slope);
   const T newton = (q - stiff * d - y.value) * inverse;
-  const T bend = (stiff * d + y.bend) * inverse;
-  T step = newton * (T(1.0) - T(0.5) * newton * bend);
+  const T curvature = (stiff * d + y.curvature) * inverse;
+  T step = newton * (T(1.0) - T(0.5) * newton * curvature);
   // Up to here exp(step) - 1 is its series to step^6, within 2e-13 of d.
   open = open & (absolute(step) < T(0.05));
   step = select(open, step, nothing);
@@ -41,7 +41,7 @@ MPM_HD Truth<T> flow_on(T q, T q_before, T stiff, double unit, Truth<T> flows, F
   d += d * step * series;
   const T x_before = x, step_size = absolute(step);
   x += step;
-  const T predicted = inverse * (T(1.0) - step * bend);  // 1 / slope
+  const T predicted = inverse * (T(1.0) - step * curvature);  // 1 / slope
   const auto search = flows & !open;
   constexpr int most_steps = 3;
   for (int k = 0; k < most_steps && any(open); ++k) {
@@ -60,7 +60,7 @@ MPM_HD Truth<T> flow_on(T q, T q_before, T stiff, double unit, Truth<T> flows, F
 /// The same for any lane: Halley's steps, third order, kept between bounds by halving, from
 /// `flow.start(q_before)`, or, where that is far off, from `flow.above(q)`.
 template <Real T, class Flow>
-MPM_HD T search_flow(T q, T q_before, T stiff, double unit, Truth<T> open, Flow& flow) {
+MPM_HD T bracketed_halley(T q, T q_before, T stiff, double unit, Truth<T> open, Flow& flow) {
   const T nothing(0.0);
   // The flow takes no more than the whole stress: 3 G d <= q.
   T low(-700.0), high = log(max(q / stiff * T(1.0 / unit), T(tiny)));
@@ -71,12 +71,12 @@ MPM_HD T search_flow(T q, T q_before, T stiff, double unit, Truth<T> open, Flow&
     const T rest = q - stiff * d - y.value, slope = stiff * d + y.slope;
     // Far off the step is kept within a third of Newton's.
     const T inverse = T(1.0) / slope, newton = rest * inverse;
-    const T bent = T(0.5) * newton * (stiff * d + y.bend) * inverse;
+    const T bent = T(0.5) * newton * (stiff * d + y.curvature) * inverse;
     const T step = newton / (T(1.0) + min(max(bent, T(-0.25)), T(0.25)));
     low = select(rest > nothing, x, low);
     high = select(rest > nothing, high, x);
     T next = x + step;
-    // What this step leaves is of its third power, and of its square as far as `bend` is inexact,
+    // What this step leaves is of its third power, and of its square as far as `curvature` is inexact,
     // unless it passes the kink.
     const T size = absolute(step);
     const auto small = size < T(1e-3);
@@ -98,7 +98,7 @@ MPM_HD T search_flow(T q, T q_before, T stiff, double unit, Truth<T> open, Flow&
 }
 
 /// Return a trial stress to the yield surface over one step. `flow` gives the yield stress
-/// `at_rest` (d = 0 and no rate), below which nothing happens, and how it `hardens` there with d;
+/// `static_yield` (d = 0 and no rate), below which nothing happens, and how it has its `hardening` there with d;
 /// its `value` and its `yield` with derivatives at (q, d, x), q von Mises' trial stress; where to
 /// `start` if von Mises' stress before the step lay on the yield surface; and an x `above` the
 /// solution for q. x = 0 may be a kink.
@@ -106,12 +106,12 @@ template <Real T, int D, class Flow>
 MPM_HD Returned<T> return_with_rate(Sym<T, D>& stress, double G, double unit, T q_before,
                                     Flow& flow) {
   const T q = von_mises(stress), stiff(3.0 * G), nothing(0.0);
-  const auto flows = q > flow.at_rest();
+  const auto flows = q > flow.static_yield();
   if (!any(flows)) return {nothing, q};
   T d = nothing;
-  const auto search = flow_on(q, q_before, stiff, unit, flows, flow, d);
-  if (any(search)) d = select(search, search_flow(q, q_before, stiff, unit, search, flow), d);
-  return shorten(stress, q, stiff, select(flows, d, nothing));
+  const auto search = newton_steps(q, q_before, stiff, unit, flows, flow, d);
+  if (any(search)) d = select(search, bracketed_halley(q, q_before, stiff, unit, search, flow), d);
+  return scale_deviator(stress, q, stiff, select(flows, d, nothing));
 }
 
 }  // namespace mpm

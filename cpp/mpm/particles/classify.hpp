@@ -60,10 +60,10 @@ template <int D>
 std::size_t note_removed(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
                          const Patch<D>& patch, std::uint8_t* marks) {
   const double* failed = pool.at.failed >= 0 ? pool.columns.component(pool.at.failed) : nullptr;
-  if (!failed && !grid.keep.exist) return 0;
+  if (!failed && !grid.outflow_box.exist) return 0;
   const auto stays = [&](std::uint32_t row) {
     if (!body.deforms()) return !body.leaves;
-    return !grid.keep.exist || grid.keep.holds(pool.position_of(row));
+    return !grid.outflow_box.exist || grid.outflow_box.holds(pool.position_of(row));
   };
   std::size_t more = 0;
   patch.for_each_cell([&](int old_cell, std::uint32_t begin, std::uint32_t end) {

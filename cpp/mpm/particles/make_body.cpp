@@ -29,10 +29,10 @@ template <int D>
 void add_columns(ParticlePool<D>& pool, const Material& material, bool may_leave) {
   Columns& c = pool.columns;
   pool.position = c.add("position", "m", D);
-  pool.at.velocity = c.add("velocity", "m/s", D, Kept::rounded);
+  pool.at.velocity = c.add("velocity", "m/s", D, Precision::rounded);
   pool.at.mass = c.add("mass", "kg", 1);
   pool.at.volume = c.add("volume", "m^3", 1);
-  pool.at.stress = c.add("stress", "Pa", Sym<double, D>::size, Kept::rounded);
+  pool.at.stress = c.add("stress", "Pa", Sym<double, D>::size, Precision::rounded);
   add_material_columns<D>(material, c, pool.at);
   if (!may_leave) return;  // what particles that leave the region need
   if (pool.at.recoverable < 0) pool.at.recoverable = c.add("recoverable_energy", "J/m^3", 1);
@@ -96,10 +96,10 @@ void check_finite(std::span<const double> values, const std::string& what) {
 template <int D>
 ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid) {
   ParticlePool<D> pool;
-  add_columns(pool, material, grid.keep.exist);
+  add_columns(pool, material, grid.outflow_box.exist);
   // One particle, to ask for the speed of its waves.
   pool.columns.allocate(1);
-  for (int a = 0; a < D; ++a) pool.v(a)[0] = Rounded{0.0};
+  for (int a = 0; a < D; ++a) pool.v(a)[0] = Storage{0.0};
   pool.mass()[0] = material.density;
   pool.volume()[0] = 1.0;
   start_material_columns<D>(material, pool.columns, pool.at);
@@ -149,7 +149,7 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
        });
   take(bodies, patches, &GivenParticles::velocities, D,
        [&](const Body<D>& body, std::size_t row, const double* given) {
-         for (int a = 0; a < D; ++a) pool_of(body).v(a)[row] = static_cast<Rounded>(given[a]);
+         for (int a = 0; a < D; ++a) pool_of(body).v(a)[row] = static_cast<Storage>(given[a]);
        });
   take(bodies, patches, &GivenParticles::volumes, 1,
        [&](const Body<D>& body, std::size_t row, const double* given) {

@@ -33,14 +33,14 @@ struct ParticlePool {
 
   std::size_t count() const { return columns.rows(); }
   double* x(int a) { return columns.component(position + a); }
-  Rounded* v(int a) { return columns.rounded(at.velocity + a); }
+  Storage* v(int a) { return columns.rounded(at.velocity + a); }
   const double* x(int a) const { return columns.component(position + a); }
-  const Rounded* v(int a) const { return columns.rounded(at.velocity + a); }
+  const Storage* v(int a) const { return columns.rounded(at.velocity + a); }
   double* mass() { return columns.component(at.mass); }
   const double* mass() const { return columns.component(at.mass); }
   double* volume() { return columns.component(at.volume); }
   const double* volume() const { return columns.component(at.volume); }
-  const Rounded* stress(int k) const { return columns.rounded(at.stress + k); }
+  const Storage* stress(int k) const { return columns.rounded(at.stress + k); }
   Vec<double, D> position_of(std::size_t row) const {
     Vec<double, D> place;
     for (int a = 0; a < D; ++a) place[a] = x(a)[row];

@@ -28,7 +28,7 @@ RigidMotion motion_of(const std::vector<Particle<D>>& particles) {
 
 /// After eq. (17): v_p = v + w x (x_p - x).
 template <int D>
-void Step<D>::hold_rigid_bodies() {
+void Step<D>::project_rigid_velocities() {
   for (Body<D>& b : bodies) {
     if (!b.rigid) continue;
     b.motion = motion_of(b.particles);

@@ -163,7 +163,7 @@ struct Step {
     for (Body<D>& b : bodies) {
       if (b.rigid) continue;
       for (Particle<D>& p : b.particles) {
-        Motion<double, D> motion{};
+        StrainIncrement<double, D> motion{};
         for_each_node(p.x, [&](const Index<D>& i, double, const Vec<double, D>& dN) {
           for (int a = 0; a < D; ++a)
             for (int c = 0; c < D; ++c)
@@ -198,14 +198,14 @@ struct Step {
   void contact_forces();
   /// absorb.hpp, rigid.hpp
   void absorb_at_walls();
-  void hold_rigid_bodies();
+  void project_rigid_velocities();
   void move_rigid_bodies();
 
  private:
   /// Take away the components along the axes that walls hold at a node.
   void hold(const Index<D>& i, Vec<double, D>& v) const {
     for (int a = 0; a < D; ++a)
-      if (walls.held(i) >> a & 1u) v[a] = 0.0;
+      if (walls.constrained_axes(i) >> a & 1u) v[a] = 0.0;
   }
   /// Nodes beyond a wall belong to a mirrored body. add(node, image, mirrored): what particles give
   /// to the node is the image's, vectors mirrored.

@@ -30,7 +30,7 @@ void move_patch(const TileGrid<D>& grid, const RigidMotion& motion, ParticlePool
       const double m = pool.mass()[row], square = dot(v, v);
       for (int a = 0; a < D; ++a) {
         pool.x(a)[row] = x[a];
-        pool.v(a)[row] = static_cast<Rounded>(v[a]);
+        pool.v(a)[row] = static_cast<Storage>(v[a]);
         sums.momentum[a] += m * v[a];
         const double local = grid.in_cells(x[a], a) - cell.cell[a];
         patch.left_cell = patch.left_cell || local < 0.0 || local >= 1.0;

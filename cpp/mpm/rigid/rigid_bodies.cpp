@@ -61,10 +61,10 @@ void gather(Domain<D>& domain) {
 /// Axes along which walls hold a body of that extent: half a particle lies between its particles
 /// and the face.
 template <int D>
-unsigned held_axes(const Domain<D>& domain, const Body<D>& body, const Extent& extent) {
+unsigned constrained_axes(const Domain<D>& domain, const Body<D>& body, const Extent& extent) {
   const auto& grid = domain.grid;
-  unsigned held = 0;
-  if (!grid.walls.exist) return held;
+  unsigned constrained = 0;
+  if (!grid.walls.exist) return constrained;
   const double reach = 0.5 * body.mean_edge / grid.cell_size;
   for (int a = 0; a < D; ++a)
     for (int side = 0; side < 2; ++side) {
@@ -74,9 +74,9 @@ unsigned held_axes(const Domain<D>& domain, const Body<D>& body, const Extent& e
                                  ? extent.lower[a]
                                  : grid.walls.cells[static_cast<std::size_t>(a)] - extent.upper[a];
       // A thousandth of a cell for rounding.
-      if (nearest <= reach + 1e-3) held |= wall == Wall::fixed ? (1u << D) - 1u : 1u << a;
+      if (nearest <= reach + 1e-3) constrained |= wall == Wall::fixed ? (1u << D) - 1u : 1u << a;
     }
-  return held;
+  return constrained;
 }
 
 /// Give a patch's particles the motion of their body.
@@ -89,7 +89,7 @@ void set_velocities(ParticlePool<D>& pool, const Patch<D>& patch, const RigidMot
     const Vector3 v = motion.velocity_at(position(pool, row));
     const double m = pool.mass()[row], square = dot(v, v);
     for (int a = 0; a < D; ++a) {
-      pool.v(a)[row] = static_cast<Rounded>(v[a]);
+      pool.v(a)[row] = static_cast<Storage>(v[a]);
       sums.momentum[a] += m * v[a];
     }
     kinetic += 0.5 * m * square;
@@ -115,12 +115,12 @@ void find_rigid_motion(Domain<D>& domain) {
     RigidMotion& motion = domain.rigid[k];
     motion.velocity = (1.0 / sums.mass) * sums.momentum;
     motion.inertia = sums.inertia;
-    const unsigned held = held_axes(domain, body, sums.extent);
+    const unsigned constrained = constrained_axes(domain, body, sums.extent);
     motion.free_axes = D == 2 ? 4u : 7u;
     for (int a = 0; a < 3; ++a) {
-      if (held >> a & 1u) motion.velocity[a] = 0.0;
+      if (constrained >> a & 1u) motion.velocity[a] = 0.0;
       // A body that stands on a face turns about the face's normal only.
-      if (held & ~(1u << a)) motion.free_axes &= ~(1u << a);
+      if (constrained & ~(1u << a)) motion.free_axes &= ~(1u << a);
     }
     motion.spin = spin_of(motion.inertia, sums.angular, motion.free_axes);
   });
@@ -129,7 +129,7 @@ void find_rigid_motion(Domain<D>& domain) {
 }  // namespace
 
 template <int D>
-void hold_rigid_bodies(Domain<D>& domain) {
+void project_rigid_velocities(Domain<D>& domain) {
   if (!domain.has_rigid()) return;
   find_rigid_motion(domain);
   for_each_patch(domain, free_rigid, [&](std::size_t p) {
@@ -171,8 +171,8 @@ void move_rigid_bodies(Domain<D>& domain) {
   });
 }
 
-template void hold_rigid_bodies<2>(Domain<2>&);
-template void hold_rigid_bodies<3>(Domain<3>&);
+template void project_rigid_velocities<2>(Domain<2>&);
+template void project_rigid_velocities<3>(Domain<3>&);
 template void move_rigid_bodies<2>(Domain<2>&);
 template void move_rigid_bodies<3>(Domain<3>&);
 

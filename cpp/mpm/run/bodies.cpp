@@ -82,7 +82,7 @@ void SimulationOf<D>::start_motions() {
         const Vector3 x = in_space<D>(pool.position_of(row));
         motion.radius = std::max(motion.radius, norm(x - motion.now.centre));
         const Vector3 v = motion.now.velocity_at(x);
-        for (int a = 0; a < D; ++a) pool.v(a)[row] = static_cast<Rounded>(v[a]);
+        for (int a = 0; a < D; ++a) pool.v(a)[row] = static_cast<Storage>(v[a]);
       }
     }
   }
@@ -134,9 +134,9 @@ void SimulationOf<D>::set_velocity(int number, std::span<const double> velocitie
   ParticlePool<D>& pool = domain_.pools[static_cast<std::size_t>(b.material)];
   for_each_row(domain_.grid.patches, pool, number, [&](std::uint32_t row) {
     for (std::size_t a = 0; a < D; ++a)
-      pool.v(static_cast<int>(a))[row] = static_cast<Rounded>(velocities[pool.id[row] * D + a]);
+      pool.v(static_cast<int>(a))[row] = static_cast<Storage>(velocities[pool.id[row] * D + a]);
   });
-  hold_rigid_bodies(domain_);
+  project_rigid_velocities(domain_);
   domain_.ledger.external += kinetic_energy() - before;
   domain_.ledger.kinetic = kinetic_energy();
   domain_.ledger.momentum = momentum();

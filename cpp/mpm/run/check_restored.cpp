@@ -172,10 +172,10 @@ void SimulationOf<D>::check_pieces() const {
 template <int D>
 void SimulationOf<D>::check_rest(double cell_size, const Index<D>& walls) const {
   const TileGrid<D>& grid = domain_.grid;
-  check(doublings_ >= 0 && doublings_ <= most_doublings(), "its grid is damaged");
-  bool same = settings_.grid.cell_size == std::ldexp(cell_size, doublings_);
+  check(coarsenings_ >= 0 && coarsenings_ <= most_coarsenings(), "its grid is damaged");
+  bool same = settings_.grid.cell_size == std::ldexp(cell_size, coarsenings_);
   for (std::size_t a = 0; a < D; ++a)
-    same = same && (grid.walls.cells[a] == walls[a] >> std::min(doublings_, 31));
+    same = same && (grid.walls.cells[a] == walls[a] >> std::min(coarsenings_, 31));
   check(same && grid.cell_size == settings_.grid.cell_size, "its grid is damaged");
   check(domain_.step >= 0 && domain_.step < std::int64_t{1} << 62 && finite(domain_.time) &&
             domain_.time >= 0.0 && finite(domain_.time_step) && next_time_step_ > 0.0 &&

@@ -21,10 +21,10 @@ struct Point {
   double dissipated = 0.0, work = 0.0, sound_speed = 0.0, viscous = 0.0;
 
   explicit Point(const MaterialChoice& choice) : material(make_material(choice)) {
-    at.velocity = columns.add("velocity", "m/s", 3, Kept::rounded);
+    at.velocity = columns.add("velocity", "m/s", 3, Precision::rounded);
     at.mass = columns.add("mass", "kg", 1);
     at.volume = columns.add("volume", "m^3", 1);
-    at.stress = columns.add("stress", "Pa", 6, Kept::rounded);
+    at.stress = columns.add("stress", "Pa", 6, Precision::rounded);
     add_material_columns<3>(material, columns, at);
     columns.allocate(1);
     for (int a = 0; a < 3; ++a) columns.rounded(at.velocity + a)[0] = 0.0;

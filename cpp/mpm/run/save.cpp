@@ -38,7 +38,7 @@ template <int D>
 void SimulationOf<D>::exchange(StateStream& stream) {
   stream.same(format, other_version);
   for (const std::size_t size :
-       {sizeof(Rounded), sizeof(Ledger), sizeof(PatchSums<D>), sizeof(Removed<D>),
+       {sizeof(Storage), sizeof(Ledger), sizeof(PatchSums<D>), sizeof(Removed<D>),
         sizeof(RigidMotion), sizeof(SurfacePiece<D>), sizeof(StepWatch), sizeof(Note),
         sizeof(PairRecord), sizeof(CachedNode), sizeof(CachedPair<D>)})
     stream.same(size, other_version);
@@ -65,7 +65,7 @@ void SimulationOf<D>::exchange(StateStream& stream) {
   stream.vector(domain_.sums);
   stream.same(domain_.rigid.size(), other_case);
   stream.array(std::span(domain_.rigid));
-  stream(settings_.grid.cell_size, doublings_, next_time_step_, domain_.ledger);
+  stream(settings_.grid.cell_size, coarsenings_, next_time_step_, domain_.ledger);
   stream.vector(history_);
   stream(watch_, looked_);
   stream.vector(notes_);

@@ -13,12 +13,12 @@
 
 namespace mpm {
 
-struct DoublingSettings {
+struct CoarseningSettings {
   std::optional<std::int64_t> tiles, bytes;
   int times = 4;
 
-  static constexpr std::string_view table = "grid.doubling";
-  using Self = DoublingSettings;
+  static constexpr std::string_view table = "grid.coarsening";
+  using Self = CoarseningSettings;
   static constexpr Rule count{1.0, 1e15, false, false};
   static constexpr auto settings = std::tuple{
       Setting{"tiles", &Self::tiles,
@@ -51,14 +51,14 @@ struct GridSettings {
   std::array<double, 3> origin{};  // position of a node, and of the box's lower corner [m]
   std::array<int, 3> box_cells{};  // cells of the box; 0, 0, 0 for no box
   std::array<Wall, 6> walls{};     // of the box's faces: x-, x+, y-, y+, z-, z+
-  std::array<double, 3> keep_lower{}, keep_upper{};  // corners of the region that is kept [m] ...
-  bool keep = false;                                 // ... if particles that leave it are taken out
-  std::optional<DoublingSettings> doubling;
+  std::array<double, 3> outflow_lower{}, outflow_upper{};  // corners of the region that is kept [m] ...
+  bool outflow = false;  // ... if particles that leave it are taken out
+  std::optional<CoarseningSettings> coarsening;
 };
 
 struct RunSettings {
   Scheme scheme = Scheme::musl;
-  double time_step_factor = 0.25;
+  double cfl = 0.25;
   std::array<TimeFunction, 3> gravity{};
   double pic_damping = 0.0;
   double energy_growth_limit = 1.0;
@@ -69,8 +69,8 @@ struct RunSettings {
   using Self = RunSettings;
   static constexpr auto settings = std::tuple{
       Setting{"scheme", &Self::scheme, "when the stress is updated: \"usf\", \"usl\" or \"musl\""},
-      Setting{"time_step_factor", &Self::time_step_factor,
-              "share f of the largest stable step, 0 < f <= 1", Rule::fraction},
+      Setting{"cfl", &Self::cfl,
+              "share f of the largest stable step, 0 < f <= 1", Rule::fraction, {}, "time_step_factor"},
       Setting{"gravity", &Self::gravity,
               "acceleration [m/s^2], D numbers or functions of time; default zero", Rule::any,
               "m/s^2"},

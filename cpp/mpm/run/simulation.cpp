@@ -18,7 +18,7 @@ void check(bool condition, const char* sentence) {
 
 void check(const Settings& s) {
   check_settings(s.grid);
-  if (s.grid.doubling) check_settings(*s.grid.doubling);
+  if (s.grid.coarsening) check_settings(*s.grid.coarsening);
   check_settings(s.run);
   check_settings(s.contact);
   check_settings(s.execution);
@@ -47,12 +47,12 @@ SimulationOf<D>::SimulationOf(const Settings& settings)
   grid.bonded = settings.contact.bonded;
   grid.walls.exist = given.box_cells[0] > 0;
   grid.walls.odd_at_fixed = odd_at_fixed_walls(given.basis);
-  grid.keep.exist = given.keep;
+  grid.outflow_box.exist = given.outflow;
   for (std::size_t a = 0; a < D; ++a) {
     const int axis = static_cast<int>(a);
     grid.origin[axis] = given.origin[a];
-    grid.keep.lower[axis] = given.keep_lower[a];
-    grid.keep.upper[axis] = given.keep_upper[a];
+    grid.outflow_box.lower[axis] = given.outflow_lower[a];
+    grid.outflow_box.upper[axis] = given.outflow_upper[a];
     grid.walls.cells[a] = given.box_cells[a];
     grid.walls.face[a][0] = given.walls[2 * a];
     grid.walls.face[a][1] = given.walls[2 * a + 1];
@@ -85,10 +85,10 @@ void SimulationOf<D>::prepare() {
         "bodies are bonded, so none can be rigid");
   list_kinds(domain_);
   start_motions();
-  hold_rigid_bodies(domain_);
+  project_rigid_velocities(domain_);
   probe_speeds();
   const double fastest =
-      settings_.run.time_step_factor * settings_.grid.cell_size / next_time_step_;
+      settings_.run.cfl * settings_.grid.cell_size / next_time_step_;
   domain_.contact.records.set_scale(total_mass(), fastest);
   domain_.ledger.kinetic = kinetic_energy();
   domain_.ledger.internal = initial_internal_energy();
@@ -141,7 +141,7 @@ void SimulationOf<D>::make_step(double time_after) {
   choose_time_step();
   watch_step();
   if (domain_.step % look_every == 0) look();
-  if (must_double()) double_cells();
+  if (must_coarsen()) coarsen_cells();
 }
 
 template <int D>
@@ -149,7 +149,7 @@ void SimulationOf<D>::choose_time_step() {
   // Where neither waves nor particles are fast, nothing falls further than about a cell.
   double fastest = std::sqrt(norm(domain_.gravity) * settings_.grid.cell_size);
   for (const PatchSums<D>& s : domain_.sums) fastest = std::max(fastest, s.stress.fastest);
-  const double way = settings_.run.time_step_factor * settings_.grid.cell_size;
+  const double way = settings_.run.cfl * settings_.grid.cell_size;
   next_time_step_ = way / fastest;
   // Prescribed motions may have jumps.
   for (const std::size_t b : domain_.prescribed) {

@@ -83,11 +83,11 @@ class SimulationOf final : public Simulation {
   void probe_speeds();  // finds the next time step from the present state
   void make_step(double time_after);
   void choose_time_step();
-  bool must_double() const;
-  int most_doublings() const {
-    return settings_.grid.doubling ? settings_.grid.doubling->times : 0;
+  bool must_coarsen() const;
+  int most_coarsenings() const {
+    return settings_.grid.coarsening ? settings_.grid.coarsening->times : 0;
   }
-  void double_cells();
+  void coarsen_cells();
   void write_history_row();
   void exchange(StateStream& stream);
   /// f(pool, row) for the particles that take part, in the order of the lists.
@@ -120,7 +120,7 @@ class SimulationOf final : public Simulation {
   std::span<const Stage<D>> stages_;
   StageTimers timers_;
   double next_time_step_ = 0.0;
-  int doublings_ = 0;  // of the cells so far
+  int coarsenings_ = 0;  // of the cells so far
   bool prepared_ = false;
   std::optional<Failure> failure_;
   static constexpr std::int64_t look_every = 64;  // steps

@@ -16,7 +16,7 @@ const char* remedy_for_torn(bool loaded) {
                "give smaller cells"
              : "a particle may have been torn off: give its material a failure model with action "
                "= \"erode\", a spall_strength or artificial viscosity, or lower "
-               "run.time_step_factor";
+               "run.cfl";
 }
 
 /// What is so, and what can be done. `whose`: the body, or all of its entry.

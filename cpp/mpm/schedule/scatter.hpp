@@ -122,7 +122,7 @@ class ParticleReader {
   LocalPosition<D> local_position_;
   double minus_per_cell_size_;
   const double *mass_, *volume_, *q_ = nullptr;
-  const Rounded *velocity_[D], *stress_[Sym<double, D>::size];
+  const Storage *velocity_[D], *stress_[Sym<double, D>::size];
 };
 
 /// Scatter from all particles of a patch to its nodes (CellBuffer::give).

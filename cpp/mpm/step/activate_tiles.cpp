@@ -13,7 +13,7 @@ void mark_leaving(Domain<D>& domain) {
   for (std::size_t k = 0; k < domain.rigid.size(); ++k) {
     Vec<double, D> centre;
     for (int a = 0; a < D; ++a) centre[a] = domain.rigid[k].centre[a];
-    domain.bodies[domain.rigid_bodies[k]].leaves = !grid.keep.holds(centre);
+    domain.bodies[domain.rigid_bodies[k]].leaves = !grid.outflow_box.holds(centre);
   }
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
@@ -29,10 +29,10 @@ void mark_leaving(Domain<D>& domain) {
       lower[a] = grid.coordinates().origin[a] + first[a] * grid.cell_size;
       upper[a] = lower[a] + Tile<D>::cells * grid.cell_size;
     }
-    if (grid.keep.holds(lower, upper)) return;
+    if (grid.outflow_box.holds(lower, upper)) return;
     const ParticlePool<D>& pool = domain.pool_of(patch);
     for (const std::uint32_t row : pool.rows(patch))
-      if (!grid.keep.holds(pool.position_of(row))) patch.left_cell = true;
+      if (!grid.outflow_box.holds(pool.position_of(row))) patch.left_cell = true;
   });
 }
 
@@ -53,7 +53,7 @@ template <int D>
 void activate_tiles(Domain<D>& domain) {
   for (std::size_t p = 0; p < domain.sums.size(); ++p)
     if (domain.sums[p].stress.eroded) domain.grid.patches[p].left_cell = true;
-  if (domain.grid.keep.exist) mark_leaving(domain);
+  if (domain.grid.outflow_box.exist) mark_leaving(domain);
   const bool changed = update_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads,
                                          domain.list_scratch, domain.eroded, domain.outflow);
   sort_disordered(domain.grid, domain.bodies, domain.pools, domain.threads, domain.disorder,

@@ -27,9 +27,9 @@ void advance_nodes(Domain<D>& domain) {
     const NodeBlock<D> block = grid.block(p);
     // Walls take up the force along the axes they hold; gravity there is cancelled below with the
     // increment.
-    for_each_held_node(grid, patch, [&](int node, unsigned held) {
+    for_each_constrained_node(grid, patch, [&](int node, unsigned constrained) {
       for (int a = 0; a < D; ++a)
-        if (held >> a & 1u) block.force(a)[node] = -block.mass()[node] * domain.gravity[a];
+        if (constrained >> a & 1u) block.force(a)[node] = -block.mass()[node] * domain.gravity[a];
     });
     double own[BlockShape<D>::nodes_max];
     ownership(patch, block.count, own);

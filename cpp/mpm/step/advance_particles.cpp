@@ -49,7 +49,7 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   const LocalPosition<D> local_position(grid, pool);
   Moving<D> moving(grid, pool, domain.time_step);
   const double* mass = pool.mass();
-  Rounded* velocities[D];
+  Storage* velocities[D];
   for (int a = 0; a < D; ++a) velocities[a] = pool.v(a);
   // The increments are still read where the new momenta are scattered.
   alignas(

@@ -16,15 +16,15 @@ inline void copy_halves(const NodeRecords& to, const HalfRecords& from, int coun
   for (int n = 0; n < count; ++n) Batch<half_record>::load(from[n]).store(to[n]);
 }
 
-/// f(node, held axes) for the nodes of a patch that walls hold.
+/// f(node, constrained axes) for the nodes of a patch that walls hold.
 template <int D, class F>
-void for_each_held_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
+void for_each_constrained_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
   if (!patch.at_wall) return;
   const Index<D> first = grid.first_cell(patch.tile);
   for (int n = 0; n < patch.shape.node_count; ++n) {
     Index<D> node = patch.shape.index(n);
     for (int a = 0; a < D; ++a) node[a] += first[a];
-    if (const unsigned held = grid.walls.held(node)) f(n, held);
+    if (const unsigned constrained = grid.walls.constrained_axes(node)) f(n, constrained);
   }
 }
 
@@ -38,9 +38,9 @@ void momentum_to_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const 
     const double inverse = numbers[mass_at] > 0.0 ? 1.0 / numbers[mass_at] : 0.0;
     for (int a = 0; a < D; ++a) numbers[at + a] *= inverse;
   }
-  for_each_held_node(grid, patch, [&](int node, unsigned held) {
+  for_each_constrained_node(grid, patch, [&](int node, unsigned constrained) {
     for (int a = 0; a < D; ++a)
-      if (held >> a & 1u) block.records[node][at + a] = 0.0;
+      if (constrained >> a & 1u) block.records[node][at + a] = 0.0;
   });
 }
 

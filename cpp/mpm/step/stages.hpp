@@ -72,7 +72,7 @@ void advance_particles(Domain<D>& domain);
 
 /// Particles of rigid bodies take the rigid motion of the same momentum and angular momentum.
 template <int D>
-void hold_rigid_bodies(Domain<D>& domain);
+void project_rigid_velocities(Domain<D>& domain);
 
 /// MUSL: nodal momenta anew from the particles (3.6, step 10), of bodies that deform and of others.
 template <int D>
@@ -175,7 +175,7 @@ struct Stages : Data {
       "advance particles", mpm::advance_particles<D>,
       lists | of_particles | of_rigid | node_velocity | node_force | patch_sums,
       velocity | rigid_velocity | patch_sums, true};
-  static constexpr Row hold_rigid{"hold rigid bodies", mpm::hold_rigid_bodies<D>,
+  static constexpr Row hold_rigid{"project rigid velocities", mpm::project_rigid_velocities<D>,
                                   of_rigid | patch_sums, rigid_velocity | patch_sums};
   static constexpr Row remap_momentum{"remap momentum", mpm::remap_momentum<D>,
                                       lists | of_particles, node_force, true};

@@ -43,7 +43,7 @@ struct Walls {
 
   /// Bit a is set if a node may not move along axis a. Nodes beyond a fixed face are held like
   /// those on it, or have images.
-  unsigned held(const Index<D>& node) const {
+  unsigned constrained_axes(const Index<D>& node) const {
     unsigned axes = 0;
     if (!exist) return axes;
     for (int a = 0; a < D; ++a) {

@@ -66,7 +66,7 @@ void test_catalogue(Report& report) {
   CHECK(!Rule::any.allows(std::nan("")) && !Rule::positive.allows(HUGE_VAL));
 
   check_table<GridSettings>(report);
-  check_table<DoublingSettings>(report);
+  check_table<CoarseningSettings>(report);
   check_table<RunSettings>(report);
   check_table<ContactSettings>(report);
   check_table<ExecutionSettings>(report);

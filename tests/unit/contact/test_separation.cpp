@@ -23,8 +23,8 @@ void add(NearParticles<D>& to, const Vec<double, D>& x, double mass = 1.0) {
 }
 
 template <int D>
-Vec<double, D> separate(const NearParticles<D>& r, const NearParticles<D>& s, unsigned held = 0) {
-  return separating_normal(r, s, held);
+Vec<double, D> separate(const NearParticles<D>& r, const NearParticles<D>& s, unsigned constrained = 0) {
+  return separating_normal(r, s, constrained);
 }
 
 /// Two particles: the normal is the line between them, whatever their masses.

@@ -22,11 +22,11 @@ struct OtherSpace {
 
 void check_spaces(mpm::testing::Report& report) {
   mpm::Columns host;
-  const int mass = host.add("mass", "kg", 1), v = host.add("velocity", "m/s", 2, mpm::Kept::rounded);
+  const int mass = host.add("mass", "kg", 1), v = host.add("velocity", "m/s", 2, mpm::Precision::rounded);
   host.allocate(100);
   for (std::size_t i = 0; i < 100; ++i) {
     host.component(mass)[i] = 2.0 * static_cast<double>(i);
-    for (int a = 0; a < 2; ++a) host.rounded(v + a)[i] = static_cast<mpm::Rounded>(a);
+    for (int a = 0; a < 2; ++a) host.rounded(v + a)[i] = static_cast<mpm::Storage>(a);
   }
   mpm::ColumnsIn<OtherSpace> there;
   there.copy_from_host(host);
@@ -34,12 +34,12 @@ void check_spaces(mpm::testing::Report& report) {
   for (std::size_t i = 0; i < 100; ++i) {
     CHECK_EQUAL(there.component(mass)[i], 2.0 * static_cast<double>(i));
     there.component(mass)[i] += 1.0;
-    there.rounded(v + 1)[i] = mpm::Rounded{7};
+    there.rounded(v + 1)[i] = mpm::Storage{7};
   }
   there.copy_to_host(host);
   for (std::size_t i = 0; i < 100; ++i) {
     CHECK_EQUAL(host.component(mass)[i], 2.0 * static_cast<double>(i) + 1.0);
-    CHECK(host.rounded(v)[i] == mpm::Rounded{0} && host.rounded(v + 1)[i] == mpm::Rounded{7}, i);
+    CHECK(host.rounded(v)[i] == mpm::Storage{0} && host.rounded(v + 1)[i] == mpm::Storage{7}, i);
   }
   CHECK(OtherSpace::came == host.bytes() && OtherSpace::went == host.bytes());
 }

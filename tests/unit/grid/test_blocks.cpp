@@ -58,7 +58,7 @@ template <int D>
 void check_shapes(mpm::testing::Report& report, const TileGrid<D>& grid) {
   for (std::size_t p = 0; p < grid.patches.size(); ++p) {
     const Patch<D>& patch = grid.patches[p];
-    if (grid.bonded && patch.leader == p) continue;
+    if (grid.bonded && patch.primary == p) continue;
     Index<D> first, last;
     first.fill(99);
     last.fill(-99);

@@ -42,9 +42,9 @@ void test_tile_grid(mpm::testing::Report& report) {
     check_places<2>(report, id);
     check_places<3>(report, id);
   });
-  Keep<2> keep;
-  keep.lower = {0.0, -1.0};
-  keep.upper = {2.0, 1.0};
-  CHECK(keep.holds({0.0, 1.0}) && !keep.holds({-1e-9, 0.0}) && !keep.holds({1.0, 1.5}));
-  CHECK(keep.holds({0.5, 0.0}, {2.0, 1.0}) && !keep.holds({0.5, 0.0}, {2.5, 1.0}));
+  OutflowBox<2> box;
+  box.lower = {0.0, -1.0};
+  box.upper = {2.0, 1.0};
+  CHECK(box.holds({0.0, 1.0}) && !box.holds({-1e-9, 0.0}) && !box.holds({1.0, 1.5}));
+  CHECK(box.holds({0.5, 0.0}, {2.0, 1.0}) && !box.holds({0.5, 0.0}, {2.5, 1.0}));
 }

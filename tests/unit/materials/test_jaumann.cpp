@@ -49,7 +49,7 @@ void check_cayley(mpm::testing::Report& report) {
 /// angle.
 template <int D>
 double strain_of_rotation(double angle) {
-  Motion<double, D> motion{};
+  StrainIncrement<double, D> motion{};
   const double c = std::cos(angle), s = std::sin(angle);
   motion.gradient[0][0] = motion.gradient[1][1] = c - 1.0;
   motion.gradient[0][1] = -s;

@@ -25,7 +25,7 @@ struct Point {
 
   explicit Point(const Model& model) : state(model.template start<T, D>()) {}
   [[gnu::noinline]] void move(const Model& model, const Mat<T, D>& gradient) {
-    Motion<T, D> motion;
+    StrainIncrement<T, D> motion;
     motion.gradient = gradient;
     Mat<T, D> f = gradient;
     for (int i = 0; i < D; ++i) f[i][i] = f[i][i] + T(1.0);

@@ -99,7 +99,7 @@ void check_lanes(mpm::testing::Report& report, const MohrCoulomb& m) {
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   int flowed = 0;
   for (int n = 0; n < 500; ++n) {
-    Motion<Batch<W>, D> motion{};
+    StrainIncrement<Batch<W>, D> motion{};
     auto stress = Sym<Batch<W>, D>::zero();
     PlasticState<Batch<W>, D> state{Batch<W>(0.0)};
     for (int i = 0; i < D; ++i)
@@ -110,7 +110,7 @@ void check_lanes(mpm::testing::Report& report, const MohrCoulomb& m) {
     const Sym<Batch<W>, D> start = stress;
     const Batch<W> work = m.update(motion, stress, state);
     for (int l = 0; l < W; ++l) {
-      Motion<double, D> one{};
+      StrainIncrement<double, D> one{};
       Sym<double, D> s;
       PlasticState<double, D> p{0.0};
       for (int i = 0; i < D; ++i)
@@ -128,7 +128,7 @@ void check_lanes(mpm::testing::Report& report, const MohrCoulomb& m) {
       // A zero gradient leaves a stress on the surface as it is.
       const auto before = s;
       const auto strain = p.plastic_strain;
-      m.update(Motion<double, D>{}, s, p);
+      m.update(StrainIncrement<double, D>{}, s, p);
       for (int c = 0; c < Sym<double, D>::size; ++c) CHECK_EQUAL(s.c[c], before.c[c]);
       CHECK_EQUAL(p.plastic_strain, strain);
     }

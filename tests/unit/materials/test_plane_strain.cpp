@@ -34,10 +34,10 @@ struct Point {
   StressSums sums;
 
   explicit Point(const MaterialChoice& choice) : material(make_material(choice)) {
-    at.velocity = columns.add("velocity", "m/s", D, Kept::rounded);
+    at.velocity = columns.add("velocity", "m/s", D, Precision::rounded);
     at.mass = columns.add("mass", "kg", 1);
     at.volume = columns.add("volume", "m^3", 1);
-    at.stress = columns.add("stress", "Pa", Sym<double, D>::size, Kept::rounded);
+    at.stress = columns.add("stress", "Pa", Sym<double, D>::size, Precision::rounded);
     add_material_columns<D>(material, columns, at);
     columns.allocate(1);
     for (int a = 0; a < D; ++a) columns.rounded(at.velocity + a)[0] = 0.0;

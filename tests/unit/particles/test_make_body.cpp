@@ -43,7 +43,7 @@ void test_make_body(mpm::testing::Report& report) {
     for_each_row(patches, pool, b, [&](std::uint32_t row) {
       CHECK(pool.id[row] == i && pool.x(0)[row] == x[2 * i] && pool.x(1)[row] == x[2 * i + 1], i);
       CHECK(pool.mass()[row] == 8.0 * each[i] && pool.volume()[row] == each[i], i);
-      CHECK(pool.v(0)[row] == Rounded{7.0} && pool.v(1)[row] == Rounded{-1.0}, i);
+      CHECK(pool.v(0)[row] == Storage{7.0} && pool.v(1)[row] == Storage{-1.0}, i);
       const double given = b == 2 ? 5.0 + static_cast<double>(i) : 0.0;
       CHECK_EQUAL(double{pool.stress(0)[row]}, given);
       ++i;

@@ -26,10 +26,10 @@ struct World {
   World(std::mt19937_64& random, int thread_count, bool bonded) : threads(thread_count) {
     grid.cell_size = 0.5;
     grid.bonded = bonded;
-    grid.keep.exist = true;  // so that there are the columns that particles which leave need
+    grid.outflow_box.exist = true;  // so that there are the columns that particles which leave need
     for (int a = 0; a < D; ++a) {
-      grid.keep.lower[a] = -1e3;
-      grid.keep.upper[a] = 1e3;
+      grid.outflow_box.lower[a] = -1e3;
+      grid.outflow_box.upper[a] = 1e3;
     }
     const Material material =
         make_material({1.0, {"elastic", {{"E", 1.0}, {"nu", 0.2}}}, {}, {}, {}});

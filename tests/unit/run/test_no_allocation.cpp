@@ -69,15 +69,15 @@ std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& m
   settings.grid.cell_size = 1.0;
   settings.run.scheme = scheme;
   settings.grid.basis = scheme == Scheme::usf ? basis_id<Linear> : basis_id<Gimp>;
-  settings.run.time_step_factor = 0.3;
+  settings.run.cfl = 0.3;
   for (std::size_t a = 0; a < 3; ++a) settings.run.gravity[a] = motion.gravity[a];
   if (motion.gravity[1] != 0.0) {
     settings.grid.box_cells = {40, 40, dimension == 3 ? 40 : 0};
     settings.grid.walls[2] = Wall::fixed;
     settings.grid.walls[1] = Wall::absorbing;
-    settings.grid.keep = true;
-    settings.grid.keep_lower = {-100.0, -100.0, -100.0};
-    settings.grid.keep_upper = {100.0, 100.0, 100.0};
+    settings.grid.outflow = true;
+    settings.grid.outflow_lower = {-100.0, -100.0, -100.0};
+    settings.grid.outflow_upper = {100.0, 100.0, 100.0};
   }
   settings.contact.friction = 0.3;
   settings.execution.threads = threads;

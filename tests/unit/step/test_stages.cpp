@@ -46,7 +46,7 @@ class Comparison {
         {"advance particles", [&] { step.advance_particles(); }},
         {"advance and move particles", [&] { step.advance_particles(), step.move_particles(); }},
         {"advance and remap particles", [&] { step.advance_particles(); }},
-        {"hold rigid bodies", [&] { step.hold_rigid_bodies(); }},
+        {"project rigid velocities", [&] { step.project_rigid_velocities(); }},
         {"remap momentum", nothing},
         {"remap rigid bodies", nothing},
         {"fold remapped", nothing},
@@ -89,7 +89,7 @@ class Comparison {
         const auto at = known.find(i);
         const reference::Node<D> node = at == known.end() ? reference::Node<D>{} : at->second;
         const bool beyond = domain.grid.walls.image(i).has_value();
-        const unsigned held = domain.grid.walls.held(i);
+        const unsigned constrained = domain.grid.walls.constrained_axes(i);
         if (mapped) CHECK_CLOSE(block.mass()[n], node.m, 1e-12 * mass_scale);
         for (int a = 0; a < D; ++a) {
           if (mapped || stage == "advance nodes")

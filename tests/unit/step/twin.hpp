@@ -117,7 +117,7 @@ struct Twin {
       p.V = pool.volume()[i];
       for (int c = 0; c < Sym<double, D>::size; ++c)
         p.sigma.c[c] = pool.columns.rounded(pool.at.stress + c)[i] =
-            static_cast<Rounded>(other.rigid ? 0.0 : 1e8 * any());
+            static_cast<Storage>(other.rigid ? 0.0 : 1e8 * any());
       other.particles.push_back(p);
     }
   }

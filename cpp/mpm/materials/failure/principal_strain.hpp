@@ -30,7 +30,7 @@ struct PrincipalStrainLimit : OneLimit {
 
   template <Real T, int D>
   MPM_HD T damage(const Condition<T, D>& at, State<T, D>& state) const {
-    Motion<T, D> motion{};
+    StrainIncrement<T, D> motion{};
     motion.gradient = at.gradient;
     const Corotated<T, D> turned = corotate(motion, state.strain);
     state.strain = turned.stress + turned.strain;

@@ -47,7 +47,7 @@ struct DruckerPrager : ElasticPlastic<DruckerPrager> {
   /// `limit`, and beyond the corner of the two both hold. The plastic strain grows by
   /// d sqrt(1/3 + 2/9 q_psi^2) in shear and by the cut strain in tension.
   template <Real T, int D>
-  MPM_HD T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
     elastic.update(motion, stress);
     const T mean = T(1.0 / 3.0) * trace(stress);
     const Sym<T, D> deviator = stress - Sym<T, D>::isotropic(mean);
@@ -60,9 +60,9 @@ struct DruckerPrager : ElasticPlastic<DruckerPrager> {
     // return: a shear return that ends beyond the limit would end on the cone below the corner, so
     // it takes more shear flow than the corner does, and the tension flow left there is positive.
     const T corner(max(0.0, k_phi - q_phi * limit));
-    const auto torn = mean_after > T(limit);
+    const auto tensile = mean_after > T(limit);
     mean_after = min(mean_after, T(limit));
-    tau_after = select(torn, min(tau, corner), tau_after);
+    tau_after = select(tensile, min(tau, corner), tau_after);
     const T factor = select(tau > tau_after, tau_after / max(tau, T(tiny)), T(1.0));
     stress = Sym<T, D>::isotropic(mean_after) + factor * deviator;
     const T slid = (tau - tau_after) * T(1.0 / elastic.G);

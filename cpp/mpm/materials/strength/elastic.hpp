@@ -57,7 +57,7 @@ struct Elastic {
 
   // For plastic models, whose elastic part this is.
   template <Real T, int D>
-  MPM_HD void update(const Motion<T, D>& motion, Sym<T, D>& stress) const {
+  MPM_HD void update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress) const {
     const Corotated<T, D> at_end = corotate(motion, stress);
     const Sym<T, D> with_volume =
         at_end.stress + Sym<T, D>::isotropic(T(lambda) * trace(at_end.strain));
@@ -74,7 +74,7 @@ struct Elastic {
   }
 
   template <Real T, int D>
-  MPM_HD T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
+  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
     update(motion, stress);
     return T(0.0);
   }

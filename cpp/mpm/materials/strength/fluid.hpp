@@ -31,7 +31,7 @@ struct Fluid {
   std::string problem() const { return {}; }
 
   template <Real T, int D>
-  MPM_HD T update(const Motion<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
+  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress, State<T, D>&) const {
     const Sym<T, D> strain = symmetric_part(mid_step(motion.gradient));
     const Sym<T, D> shear = strain - Sym<T, D>::isotropic(T(1.0 / 3.0) * trace(strain));
     stress = T(2.0 * viscosity / motion.time_step) * shear;

@@ -30,7 +30,7 @@ struct Rigid {
   std::string problem() const { return {}; }
 
   template <Real T, int D>
-  MPM_HD T update(const Motion<T, D>&, Sym<T, D>&, State<T, D>&) const {
+  MPM_HD T update(const StrainIncrement<T, D>&, Sym<T, D>&, State<T, D>&) const {
     return T(0.0);
   }
   /// No wave limits the time step.

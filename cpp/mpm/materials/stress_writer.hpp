@@ -7,45 +7,45 @@ namespace mpm {
 
 /// Of one group of lanes, when all parts have done their work.
 template <class T, int D>
-struct Updated {
+struct StressUpdate {
   Sym<T, D> stress;
   T dissipated, speed, viscous_pressure;
 };
 
 template <class T, int D>
-class BlockEnd {
+class StressWriter {
  public:
-  BlockEnd(const BlockColumns<D>& columns, const StressSettings& settings, const EosBounds& bounds)
+  StressWriter(const BlockColumns<D>& columns, const StressSettings& settings, const EosBounds& bounds)
       : columns_(columns), settings_(settings), bounds_(bounds) {}
 
   /// `work`: with the stress at the end of the step. `mean_stress`: over the step the average of a
   /// third of the stress's trace, which works on the change of volume. `with_eos`: is there, or may
   /// there be, an equation of state, and with it an energy and its bounds?
   template <bool with_eos>
-  void add(const Group<T, D>& group, const Swelling<T>& swelling, const StressWork<T>& work,
-           T mean_stress, const Updated<T, D>& after) {
+  void add(const Group<T, D>& group, const VolumeChange<T>& volume_change, const StressWork<T>& work,
+           T mean_stress, const StressUpdate<T, D>& after) {
     const auto valid = group.valid();
-    negative_ = negative_ | (valid & !(swelling.after > T(0.0)));
+    negative_ = negative_ | (valid & !(volume_change.after > T(0.0)));
 
-    T done = work.deviatoric + swelling.work(mean_stress);
-    const T lost = T(0.5) * (swelling.before + swelling.after) * after.dissipated;
+    T done = work.deviatoric + volume_change.work(mean_stress);
+    const T lost = T(0.5) * (volume_change.before + volume_change.after) * after.dissipated;
     T used = work.force, heat = done;
     if (settings_.viscosity.active()) {
-      const T q = after.viscous_pressure, viscous_work = swelling.viscous_work(q);
+      const T q = after.viscous_pressure, viscous_work = volume_change.viscous_work(q);
       const T q_before = group.read(columns_.viscosity_pressure);
       group.write(columns_.viscosity_pressure, q);
       viscous_ += select(valid, viscous_work, T(0.0));
-      used -= (settings_.forces_follow ? swelling.after * q : swelling.before * q_before) *
-              swelling.dilation;
+      used -= (settings_.forces_follow ? volume_change.after * q : volume_change.before * q_before) *
+              volume_change.dilation;
       heat += viscous_work;
     }
     if (with_eos && columns_.energy) {
-      T energy = group.read(columns_.energy) + heat * swelling.per_volume;
+      T energy = group.read(columns_.energy) + heat * volume_change.per_volume;
       if (bounds_.active) {
         const T last = T(1.0 / 3.0) * trace(after.stress), first = T(2.0) * mean_stress - last;
         if (any(bounds_.limits(first) | bounds_.limits(last) |
                 (energy < T(bounds_.lowest_energy)))) {
-          const Taken taken = bound(bounds_, swelling, first, last, energy);
+          const Taken taken = bound(bounds_, volume_change, first, last, energy);
           energy = taken.energy;
           done -= taken.opening - taken.given;
           bounded_ += select(valid, taken.opening - taken.given, T(0.0));
@@ -56,9 +56,9 @@ class BlockEnd {
     }
     if (columns_.recoverable) {
       const T energy = group.read(columns_.recoverable);
-      group.write(columns_.recoverable, energy + (done - lost) * swelling.per_volume);
+      group.write(columns_.recoverable, energy + (done - lost) * volume_change.per_volume);
     }
-    group.write(columns_.volume, swelling.after);
+    group.write(columns_.volume, volume_change.after);
     for (int i = 0; i < Sym<T, D>::size; ++i) group.write(columns_.stress[i], after.stress.c[i]);
     internal_ += select(valid, done - lost, T(0.0));
     dissipated_ += select(valid, lost, T(0.0));
@@ -70,9 +70,9 @@ class BlockEnd {
     fastest_ = max(fastest_, select(valid, after.speed + sqrt(dot(v, v)), T(0.0)));
   }
   template <bool with_eos>
-  void add(const Group<T, D>& group, const Moved<T, D>& moved, const Sym<T, D>& before,
-           const Updated<T, D>& after) {
-    add<with_eos>(group, moved.swelling, moved.work(settings_, before, after.stress),
+  void add(const Group<T, D>& group, const StepKinematics<T, D>& kinematics, const Sym<T, D>& before,
+           const StressUpdate<T, D>& after) {
+    add<with_eos>(group, kinematics.volume_change, kinematics.work(settings_, before, after.stress),
                   T(1.0 / 6.0) * trace(before + after.stress), after);
   }
 
@@ -95,14 +95,14 @@ class BlockEnd {
   /// Keep the energy within the bounds. `first`, `last`: mean stresses before and after. Work that
   /// tension at its limit does opens voids between fragments, in place of straining the matter: it
   /// is taken, and given back when they close. What is missing to the least energy is given.
-  [[gnu::noinline, gnu::cold]] static Taken bound(EosBounds bounds, Swelling<T> swelling, T first,
+  [[gnu::noinline, gnu::cold]] static Taken bound(EosBounds bounds, VolumeChange<T> volume_change, T first,
                                                   T last, T energy) {
     const T limited = T(0.5) * (select(bounds.limits(first), first, T(0.0)) +
                                 select(bounds.limits(last), last, T(0.0)));
-    const T opening = swelling.work(limited);
-    const T left = energy - opening * swelling.per_volume;
+    const T opening = volume_change.work(limited);
+    const T left = energy - opening * volume_change.per_volume;
     const T missing = max(T(bounds.lowest_energy) - left, T(0.0));
-    return {max(left, T(bounds.lowest_energy)), opening, missing / swelling.per_volume};
+    return {max(left, T(bounds.lowest_energy)), opening, missing / volume_change.per_volume};
   }
 
   const BlockColumns<D>& columns_;

@@ -11,13 +11,13 @@ namespace mpm {
 /// Whether the grid has more tiles or bytes than wanted, and its box can be cut into cells of twice
 /// the size.
 template <int D>
-bool SimulationOf<D>::must_double() const {
+bool SimulationOf<D>::must_coarsen() const {
   const TileGrid<D>& grid = domain_.grid;
-  if (!settings_.grid.doubling || doublings_ >= most_doublings()) return false;
-  const DoublingSettings& doubling = *settings_.grid.doubling;
+  if (!settings_.grid.coarsening || coarsenings_ >= most_coarsenings()) return false;
+  const CoarseningSettings& coarsening = *settings_.grid.coarsening;
   constexpr auto no_limit = std::numeric_limits<std::int64_t>::max();
-  const bool many = std::cmp_greater(grid.patches.size(), doubling.tiles.value_or(no_limit));
-  const bool large = std::cmp_greater(grid.needed_bytes(), doubling.bytes.value_or(no_limit));
+  const bool many = std::cmp_greater(grid.patches.size(), coarsening.tiles.value_or(no_limit));
+  const bool large = std::cmp_greater(grid.needed_bytes(), coarsening.bytes.value_or(no_limit));
   if (!many && !large) return false;
   for (int a = 0; a < D; ++a)
     if (grid.walls.exist && grid.walls.cells[static_cast<std::size_t>(a)] % 2 != 0) return false;
@@ -28,9 +28,9 @@ bool SimulationOf<D>::must_double() const {
 /// and the walls stay where they are. Between two steps all mass, momentum and energy is the
 /// particles', so that none changes; what the coarser grid then costs is in the numerical terms.
 template <int D>
-void SimulationOf<D>::double_cells() {
+void SimulationOf<D>::coarsen_cells() {
   TileGrid<D>& grid = domain_.grid;
-  ++doublings_;
+  ++coarsenings_;
   settings_.grid.cell_size *= 2.0;
   grid.cell_size = settings_.grid.cell_size;
   for (int& cells : grid.walls.cells) cells /= 2;

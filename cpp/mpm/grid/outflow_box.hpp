@@ -7,7 +7,7 @@
 namespace mpm {
 
 template <int D>
-struct Keep {
+struct OutflowBox {
   bool exist = false;
   Vec<double, D> lower, upper;  // corners [m]; infinite where there is no limit
 
