@@ -55,6 +55,7 @@ nb::dict row_of(const Setting<Table, Value>& setting) {
   row["rule"] = setting.rule.formula();
   row["bounds"] = bounds_of(setting.rule);
   row["required"] = is_required(setting);
+  row["formerly"] = text(setting.formerly);
   row["default"] = nb::none();
   if constexpr (std::is_enum_v<Value>) {
     row["default"] = text(word_of(start));

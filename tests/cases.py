@@ -74,7 +74,7 @@ def three_blocks(
     }
     return Case(
         grid=Grid(dimension=d, cell_size=CELL, **(grid or {})),
-        run=Run(**{"end_time": 1.0, "scheme": scheme, "time_step_factor": 0.3} | (run or {})),
+        run=Run(**{"end_time": 1.0, "scheme": scheme, "cfl": 0.3} | (run or {})),
         contact=Contact(friction=friction),
         material=materials(),
         body={name: bodies[name] for name in order},
@@ -109,7 +109,7 @@ box = {{ lower = {zero}, upper = {box}, walls = {{ y_min = "slip", x_min = "{lef
 [run]
 scheme = "{scheme}"
 end_time = "1 s"
-time_step_factor = 0.3
+cfl = 0.3
 energy_growth_limit = 1e9
 gravity = {gravity}
 viscosity = {{}}

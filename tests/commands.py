@@ -15,7 +15,7 @@ dimension = 2
 cell_size = "10 mm"
 [run]
 end_time = "8 ms"
-time_step_factor = 0.3
+cfl = 0.3
 [output]
 frames = 4
 [material.soft]

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from mpm3dpp.case.body import Body
     from mpm3dpp.case.case import Case, Material, load_case
     from mpm3dpp.case.detonation import Detonation
-    from mpm3dpp.case.grid import Grid, GridBox, GridDoubling, GridKeep, Walls
+    from mpm3dpp.case.grid import Grid, GridBox, GridCoarsening, GridOutflowBox, Walls
     from mpm3dpp.case.loads import Load
     from mpm3dpp.case.motion import Motion
     from mpm3dpp.case.particles import Particles
@@ -58,7 +58,7 @@ _HOMES = {
     "case": ("Case", "Material", "load_case"),
     "case.body": ("Body",),
     "case.detonation": ("Detonation",),
-    "case.grid": ("Grid", "GridBox", "GridDoubling", "GridKeep", "Walls"),
+    "case.grid": ("Grid", "GridBox", "GridCoarsening", "GridOutflowBox", "Walls"),
     "case.loads": ("Load",),
     "case.motion": ("Motion",),
     "case.particles": ("Particles",),
@@ -70,6 +70,7 @@ _HOMES = {
     "run.simulation": ("Simulation",),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
+_FORMERLY = {"GridDoubling": "GridCoarsening", "GridKeep": "GridOutflowBox"}  # For this release.
 
 __all__ = [
     "Body",
@@ -86,8 +87,8 @@ __all__ = [
     "Grains",
     "Grid",
     "GridBox",
-    "GridDoubling",
-    "GridKeep",
+    "GridCoarsening",
+    "GridOutflowBox",
     "Load",
     "Material",
     "Motion",
@@ -118,6 +119,13 @@ def __getattr__(name: str) -> Any:
             return "0+unknown"
     if name in ("io", "shapes"):
         return importlib.import_module(f".{name}", __name__)
+    if name in _FORMERLY:
+        import warnings
+
+        now = _FORMERLY[name]
+        what = f"mpm3dpp.{name} is named mpm3dpp.{now} now; the next release will not know it"
+        warnings.warn(what, DeprecationWarning, stacklevel=2)
+        return __getattr__(now)
     if name in _HOME:
         return getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

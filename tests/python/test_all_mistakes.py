@@ -21,7 +21,7 @@ box = { lower = ["0 mm", "0 m/s"], upper = ["x", "1 m"] }
 [run]
 end_time = "8 ms"
 shceme = "usl"
-time_step_factor = 2
+cfl = 2
 [output]
 frames = 0
 [material.soft]
@@ -36,7 +36,7 @@ TOLD = [
     (4, "grid.box.lower[1]", "a velocity"),
     (4, "grid.box.upper[0]", "must be a length"),
     (7, "run.shceme", 'did you mean "scheme"'),
-    (8, "run.time_step_factor", "0 < f <= 1"),
+    (8, "run.cfl", "0 < f <= 1"),
     (10, "output.frames", ">= 1"),
     (12, "material.soft.densty", 'did you mean "density"'),
     (13, "material.soft.strength.elastic.E", "> 0"),

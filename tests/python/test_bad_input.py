@@ -26,7 +26,7 @@ box = { lower = ["0 mm", "0 mm"], upper = ["40 mm", "20 mm"], walls = "free" }
 [run]
 scheme = "musl"
 end_time = "1 ms"
-time_step_factor = 0.5
+cfl = 0.5
 gravity = ["0 m/s^2", "-9.81 m/s^2"]
 [output]
 frames = 10
@@ -98,8 +98,8 @@ EDITS: list[tuple[str, ...]] = [
     ("absurd size", END, "end_time = 1e300", "run.end_time", "must be zero or between", "give"),
     ("zero end time", END, "end_time = 0", "run.end_time", "must be > 0", "give"),
     ("negative end time", END, 'end_time = "-1 ms"', "run.end_time", "must be > 0", "give"),
-    ("time step factor above one", "time_step_factor = 0.5", "time_step_factor = 1.5",
-     "run.time_step_factor", "0 < f <= 1", "give"),
+    ("time step factor above one", "cfl = 0.5", "cfl = 1.5",
+     "run.cfl", "0 < f <= 1", "give"),
     ("unknown scheme", 'scheme = "musl"', 'scheme = "mussl"', "run.scheme", "known choice",
      '"musl"'),
     ("unknown wall", 'walls = "free"', 'walls = "fixd"', "grid.box.walls", "known choice",

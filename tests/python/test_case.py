@@ -73,7 +73,7 @@ def test_si_values_and_defaults() -> None:
     assert case.grid.origin == case.grid.lower == (0.0, 0.0)
     assert case.grid.box_cells == (100, 50)
     assert case.grid.walls == ("slip", "free", "free", "free", "free", "free")
-    assert (case.run.scheme, case.run.time_step_factor, case.run.end_time) == ("musl", 0.25, 0.0035)
+    assert (case.run.scheme, case.run.cfl, case.run.end_time) == ("musl", 0.25, 0.0035)
     assert case.run.gravity == (0.0, 0.0)
     assert case.run.viscosity is not None
     assert (case.run.viscosity.quadratic, case.run.viscosity.linear) == (1.5, 0.06)

@@ -278,7 +278,7 @@ def finished(folder: Path, text: str = CASE) -> Path:
 
 def test_a_run_whose_particles_have_all_left_goes_on(tmp_path: Path) -> None:
     """Its next step is infinite."""
-    kept = 'keep = { lower = ["-20 mm", "-20 mm"], upper = ["120 mm", "80 mm"] }'
+    kept = 'outflow_box = { lower = ["-20 mm", "-20 mm"], upper = ["120 mm", "80 mm"] }'
     text = CASE.replace("[run]", kept + "\n[run]").replace("-5 m/s", "5 m/s")
     text = text.replace("8 ms", "40 ms")
     path = finished(tmp_path, text)

@@ -45,10 +45,10 @@ title = "Three blocks"
 [grid]
 dimension = 3
 cell_size = "10 mm"
-doubling = { tiles = 4000, times = 1 }
+coarsening = { tiles = 4000, times = 1 }
 [run]
 end_time = "8 ms"
-time_step_factor = 0.3
+cfl = 0.3
 [contact]
 friction = 0.2
 [material.soft]

@@ -34,7 +34,7 @@ def torn_bar(
     size = (16, 4, 4)[:dimension]
     return Case(
         grid=Grid(dimension=dimension, cell_size=CELL, basis=basis),
-        run=Run(end_time=1.0, scheme=scheme, time_step_factor=0.3, energy_growth_limit=1e9, **run),
+        run=Run(end_time=1.0, scheme=scheme, cfl=0.3, energy_growth_limit=1e9, **run),
         material={"solid": material},
         body={"bar": block((140, 140, 140)[:dimension], size, material="solid")},
     )
@@ -132,7 +132,7 @@ def test_a_body_that_erodes_as_a_whole_is_in_nobodys_way() -> None:
     flying = block((170, 140), (4, 4), material="hard", velocity=(-10.0, 0.0))
     case = Case(
         grid=case.grid,
-        run=Run(end_time=4e-2, time_step_factor=0.3),
+        run=Run(end_time=4e-2, cfl=0.3),
         contact=Contact(),
         material=dict(case.material) | {"hard": hard},
         body=dict(case.body) | {"block": flying},

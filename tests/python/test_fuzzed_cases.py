@@ -34,13 +34,13 @@ dimension = 2
 cell_size = "2 mm"
 origin = [0, 0]
 box = { lower = ["0 mm", "0 mm"], upper = ["80 mm", "40 mm"], walls = { x_min = "slip" } }
-keep = { lower = ["-1 m", "-1 m"] }
-doubling = { tiles = 1000, times = 1 }
+outflow_box = { lower = ["-1 m", "-1 m"] }
+coarsening = { tiles = 1000, times = 1 }
 basis = "linear"
 [run]
 scheme = "usf"
 end_time = "1 us"
-time_step_factor = 0.5
+cfl = 0.5
 gravity = ["0 m/s^2", { sine = { amplitude = "1 m/s^2", period = "1 ms" } }]
 viscosity = { quadratic = 1.5, linear = 0.06 }
 pic_damping = "1 1/s"
@@ -56,7 +56,7 @@ detection = "gap"
 normal = "pair"
 friction = 0.1
 gap_distance = "0.1 mm"
-normal_travel = 0.1
+normal_refresh_distance = 0.1
 [[contact.pair]]
 bodies = ["left", "right"]
 friction = 0.3

@@ -33,7 +33,7 @@ def test_a_case_in_si_units() -> None:
     assert case.grid.box.lower == (-0.002, -0.002, 0.0)
     assert case.grid.walls == ("free", "free", "free", "free", "slip", "fixed")
     assert (case.run.end_time, case.output.interval) == (1e-6, 2e-7)
-    assert (case.run.scheme, case.run.time_step_factor) == ("musl", 0.5)
+    assert (case.run.scheme, case.run.cfl) == ("musl", 0.5)
     assert case.run.viscosity is not None
     assert (case.run.viscosity.quadratic, case.run.viscosity.linear) == (1.5, 0.06)
     assert case.material["elas_1"].density == 7800.0

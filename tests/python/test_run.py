@@ -23,7 +23,7 @@ from mpm3dpp.io.folders import forget_last_run
 LONG = CASE.replace('"8 ms"', '"1000 s"').replace("frames = 4", 'interval = "20 ms"')
 # Update stress last with the linear basis makes energy in contact (Bardenhagen 2002).
 UNSTABLE = CASE.replace('cell_size = "10 mm"', 'cell_size = "10 mm"\nbasis = "linear"').replace(
-    "time_step_factor = 0.3", 'time_step_factor = 0.5\nscheme = "usl"'
+    "cfl = 0.3", 'cfl = 0.5\nscheme = "usl"'
 )
 FIRST = (
     "step,time,dt,kinetic,internal,plastic,viscous,friction,contact,external,absorbed,"

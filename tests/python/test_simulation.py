@@ -109,7 +109,7 @@ def test_the_ledger_closes_with_plastic_work(scheme: str) -> None:
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_the_ledger_closes_with_gravity_and_walls(scheme: str) -> None:
     grid = box(2, 12, {"y_min": "fixed", "x_min": "slip"})
-    run = {"gravity": (0.0, -50.0), "scheme": scheme, "time_step_factor": 0.2}
+    run = {"gravity": (0.0, -50.0), "scheme": scheme, "cfl": 0.2}
     simulation = Simulation(one_block(2, grid, run, velocity=(-3.0, -4.0)), threads=1)
     simulation.advance(250)
     row = history(simulation)
@@ -292,7 +292,7 @@ def test_history_has_a_row_for_each_step() -> None:
 
 
 def test_the_time_step_is_the_critical_one_and_its_limiter_is_named() -> None:
-    run = {"time_step_factor": 0.25}
+    run = {"cfl": 0.25}
     simulation = Simulation(one_block(2, {}, run, velocity=(3.0, 4.0)), threads=1)
     c = np.sqrt(YOUNG * 0.7 / (1.3 * 0.4) / DENSITY)  # of pressure waves, nu = 0.3
     assert simulation.core.dt == pytest.approx(0.25 * CELL / (c + 5.0), rel=1e-12)
@@ -302,7 +302,7 @@ def test_the_time_step_is_the_critical_one_and_its_limiter_is_named() -> None:
 
 
 def failing(**run: Any) -> Simulation:
-    case = three_blocks(2, "usl", grid={"basis": "linear"}, run={"time_step_factor": 0.5, **run})
+    case = three_blocks(2, "usl", grid={"basis": "linear"}, run={"cfl": 0.5, **run})
     return Simulation(case, threads=1)
 
 

@@ -183,7 +183,7 @@ def test_a_load_that_tears_a_corner_off_is_told_of() -> None:
 
 def test_a_step_that_makes_energy_is_told_of() -> None:
     """USL with the linear basis: a node that a particle barely reaches gets any velocity."""
-    run = {"scheme": "usl", "time_step_factor": 0.5, "energy_growth_limit": 1e9}
+    run = {"scheme": "usl", "cfl": 0.5, "energy_growth_limit": 1e9}
     case = disc("slip", speed=20.0, end=20e-3, **run)
     case = case.model_copy(update={"grid": case.grid.model_copy(update={"basis": "linear"})})
     simulation, _ = ended(case)
@@ -193,7 +193,7 @@ def test_a_step_that_makes_energy_is_told_of() -> None:
     made = columns["numerical"][row - 1] - columns["numerical"][row]
     assert note.is_error and f"{made:.4g} J" in note.message
     assert made > 0.05 * columns["kinetic"][0]
-    for part in ("5 %", 'body "disc"', f"particle {note.particle}", "time_step_factor"):
+    for part in ("5 %", 'body "disc"', f"particle {note.particle}", "cfl"):
         assert part in note.message
 
 

@@ -87,7 +87,7 @@ def test_one_end_that_does_not_absorb_sends_its_half_back() -> None:
 @pytest.mark.parametrize("factor", [0.5, 0.8])
 def test_long_time_steps_are_stable(factor: float) -> None:
     """The dashpots are never unstable, whatever the step; here 2.5 times the pulse's time."""
-    case = longitudinal(2, time_step_factor=factor, scheme="usf", end_time=150 * CELL / 36.0)
+    case = longitudinal(2, cfl=factor, scheme="usf", end_time=150 * CELL / 36.0)
     simulation = run(case, 22.0, 0)
     assert np.abs(simulation.column("bar", "velocity")).max() < 0.02 * SPEED / 2
 

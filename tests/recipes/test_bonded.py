@@ -18,7 +18,7 @@ def simulation(dimension: int, scheme: str, basis: str, **bodies: Any) -> Simula
         run=Run(
             end_time=1.0,
             scheme=scheme,
-            time_step_factor=0.2,
+            cfl=0.2,
             gravity=(0.0, 0.0, -2.0)[3 - dimension :],
             energy_growth_limit=1e9,
         ),

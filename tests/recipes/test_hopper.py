@@ -19,10 +19,10 @@ def half_empty() -> Simulation:
     """60 grains that fall into the funnel at 2 m/s; those that get 60 mm below it end."""
     case = load_case(EXAMPLE)
     packing = case.grains["sand"].packing
-    assert packing is not None and case.grid.keep is not None
+    assert packing is not None and case.grid.outflow_box is not None
     packing.count, packing.upper = 60, (packing.upper[0], packing.lower[1] + 0.13)
     case.grains["sand"].velocity = (0.0, -2.0)
-    case.grid.keep.lower = (-5.0, -0.06)
+    case.grid.outflow_box.lower = (-5.0, -0.06)
     simulation = Simulation(case, threads=1)
     simulation.advance(10**9, end_time=0.12)
     return simulation

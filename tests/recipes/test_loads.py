@@ -141,7 +141,7 @@ def test_a_ring_under_pressure_from_within(basis: str) -> None:
     period = 2 * np.pi * 15  # cell lengths of the wave: about that of a thin ring
     ramp = {"ramp": {"to": p, "end": 3 * period * TIME}}
     load = {"within": Load(body="body", side="inner", pressure=ramp)}
-    case = loaded(ring, load, 2, 5 * period, {"basis": basis}, time_step_factor=0.5)
+    case = loaded(ring, load, 2, 5 * period, {"basis": basis}, cfl=0.5)
     start = Simulation(case, 1).column("body", "position")
     x, stress = mean_state(case, 3 * period * TIME, ("position", "stress"))
     r = np.linalg.norm(start, axis=1)
@@ -170,7 +170,7 @@ def test_a_ball_under_pressure_all_around_stays(dimension: int) -> None:
     body = Body(material="solid", shape=kind(centre=(0.0,) * dimension, radius=size))
     ramp = {"ramp": {"to": p, "end": 60 * TIME}}
     load = {"around": Load(body="body", side="outer", pressure=ramp)}
-    case = loaded(body, load, dimension, 90.0, time_step_factor=0.5)
+    case = loaded(body, load, dimension, 90.0, cfl=0.5)
     simulation = Simulation(case, 1)
     simulation.advance(1)
     [found] = simulation.core.loads()
@@ -205,7 +205,7 @@ def test_a_pressure_turns_with_its_body_and_a_traction_does_not(dimension: int) 
         "pressure": Load(body="body", side="x_max", pressure=1e-3),
         "traction": Load(body="body", side="x_max", traction=(0.0, 2e-3, 0.0)[:dimension]),
     }
-    case = loaded(body, loads, dimension, 2.5 / spin / TIME, time_step_factor=0.5)
+    case = loaded(body, loads, dimension, 2.5 / spin / TIME, cfl=0.5)
     first = Simulation(case, 1).column("body", "position")[:, :2]
     simulation, _ = finish(case)
     pressure, traction = simulation.core.loads()
@@ -232,7 +232,7 @@ def test_the_area_grows_with_the_body(dimension: int, basis: str) -> None:
     soft = Material(density=DENSITY, strength={"elastic": {"E": 1e-3, "nu": 0.3}})
     body = block((0,) * dimension, (12, 3, 12)[:dimension], material="solid")
     load = {"face": Load(body="body", side="y_min", pressure=1e-9)}
-    case = loaded(body, load, dimension, 1.0, {"basis": basis}, time_step_factor=0.02)
+    case = loaded(body, load, dimension, 1.0, {"basis": basis}, cfl=0.02)
     case.material["solid"] = soft
     case.run.end_time = 0.5
     simulation = Simulation(case, 1)
@@ -271,7 +271,7 @@ def test_a_load_goes_with_the_particles_that_leave() -> None:
     """Pieces of particles that are taken out are not loaded any more."""
     body = block((0, 0), (4, 4), material="solid", velocity=(5.0, 0.0))
     load = {"side": Load(body="body", side="y_min", pressure=1.0)}
-    grid = {"keep": {"upper": (6.0 * CELL, 1.0)}}
+    grid = {"outflow_box": {"upper": (6.0 * CELL, 1.0)}}
     case = loaded(body, load, 2, 10.0, grid, end_time=3.5 * CELL / 5.0)
     simulation, _ = finish(case)
     [found] = simulation.core.loads()

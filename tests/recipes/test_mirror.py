@@ -31,7 +31,7 @@ def run(
             basis=basis,
             box=GridBox(lower=[low, 0.0], upper=[2.0, 2.0], walls=walls),
         ),
-        run=Run(end_time=1.0, scheme=scheme, gravity=[0.0, gravity], time_step_factor=factor),
+        run=Run(end_time=1.0, scheme=scheme, gravity=[0.0, gravity], cfl=factor),
         contact=Contact(bonded=True),
         material={
             "solid": Material(density=1000.0, strength={"neo_hookean": {"K": 1e6, "G": 5e5}})

@@ -23,7 +23,7 @@ def simulation(
     grid: dict[str, Any] | None = None,
     **run: Any,
 ) -> Simulation:
-    settings = {"time_step_factor": 0.2, "end_time": 10.0, "energy_growth_limit": 1e9} | run
+    settings = {"cfl": 0.2, "end_time": 10.0, "energy_growth_limit": 1e9} | run
     case = Case(
         grid=Grid(dimension=dimension, cell_size=CELL, **(grid or {})),
         run=Run(**settings),
@@ -233,7 +233,7 @@ def test_a_ball_in_a_fixed_box() -> None:
         "box": Body(shape=outer - inner, material="stone", motion="fixed"),
         "ball": Body(shape=ball, material="solid", velocity=(2.0, 1.0, -3.0)),
     }
-    sim = simulation(3, bodies, friction=0.2, gravity=(0.0, 0.0, -9.81), time_step_factor=0.25)
+    sim = simulation(3, bodies, friction=0.2, gravity=(0.0, 0.0, -9.81), cfl=0.25)
     walls = sim.column("box", "position")
     sim.advance(10**9, end_time=0.012)
     x, v = sim.column("ball", "position"), sim.column("ball", "velocity")

@@ -20,7 +20,7 @@ def simulation(dimension: int, scheme: str, rate: float) -> Simulation:
     run = Run(
         end_time=1.0,
         scheme=scheme,
-        time_step_factor=TIME_STEP_FACTOR,
+        cfl=TIME_STEP_FACTOR,
         pic_damping=rate,
         energy_growth_limit=1e9,
     )

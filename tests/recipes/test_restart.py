@@ -51,7 +51,7 @@ def check(case: Case, folder: Path, steps: int, threads: tuple[int, int] = (1, 2
 def test_everything(tmp_path: Path, dimension: int, scheme: str, basis: str) -> None:
     for left, travel in (("absorbing", 0.0), ("slip", 0.05)):
         case = everything(tmp_path, dimension, scheme, basis, left)
-        case.contact.normal_travel = travel
+        case.contact.normal_refresh_distance = travel
         check(case, tmp_path, 6 if scheme == "usl" else 30)
 
 
@@ -64,7 +64,7 @@ def test_bonded(tmp_path: Path, dimension: int) -> None:
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_cells_that_have_doubled(tmp_path: Path, dimension: int) -> None:
-    case = three_blocks(dimension, apart=2, grid={"doubling": {"tiles": 1, "times": 2}})
+    case = three_blocks(dimension, apart=2, grid={"coarsening": {"tiles": 1, "times": 2}})
     again = check(case, tmp_path, 40)
     rows = again.core.history_columns
     assert again.advance(1) and again.core.history()[-1, rows.index("cell_size")] == 4 * CELL
@@ -77,8 +77,8 @@ def test_particles_that_erode_and_leave(tmp_path: Path) -> None:
         "strength": {"j2": {"E": "1 MPa", "nu": 0.3, "Y0": "1 kPa"}},
     }
     case = Case(
-        grid=Grid(dimension=2, cell_size=CELL, keep={"upper": (20 * CELL, 20 * CELL)}),
-        run=Run(end_time=1.0, time_step_factor=0.3),
+        grid=Grid(dimension=2, cell_size=CELL, outflow_box={"upper": (20 * CELL, 20 * CELL)}),
+        run=Run(end_time=1.0, cfl=0.3),
         contact=Contact(friction=0.2),
         material={"torn": torn, **materials()},
         body={
@@ -120,7 +120,9 @@ def test_rigid_bodies_that_turn_and_leave(tmp_path: Path, dimension: int) -> Non
         return cells[:dimension]
 
     case = Case(
-        grid=Grid(dimension=dimension, cell_size=CELL, keep={"upper": (24 * CELL,) * dimension}),
+        grid=Grid(
+            dimension=dimension, cell_size=CELL, outflow_box={"upper": (24 * CELL,) * dimension}
+        ),
         run=Run(
             end_time=1.0,
             gravity=(0.0, {"sine": {"amplitude": 9.0, "frequency": 50.0}}, 0.0)[:dimension],

@@ -21,7 +21,7 @@ def simulation(
     grid: Any = None,
     **run: Any,
 ) -> Simulation:
-    settings = {"time_step_factor": 0.2, "end_time": 1.0, "energy_growth_limit": 1e9} | run
+    settings = {"cfl": 0.2, "end_time": 1.0, "energy_growth_limit": 1e9} | run
     case = Case(
         grid=Grid(dimension=dimension, cell_size=CELL, **(grid or {})),
         run=Run(**settings),
@@ -56,7 +56,7 @@ def test_tumbles_freely(scheme: str) -> None:
     }
     drift = []
     for factor in (0.2, 0.1):
-        sim = simulation(3, bodies, scheme=scheme, time_step_factor=factor)
+        sim = simulation(3, bodies, scheme=scheme, cfl=factor)
         x = sim.column("stone", "position")
         shape = np.linalg.norm(x - x[0], axis=1)
         before, energy = spin(sim)
@@ -114,7 +114,7 @@ def test_hits_an_elastic_bar(scheme: str, basis: str) -> None:
                 walls=Walls(y_min="slip", y_max="slip"),
             ),
         ),
-        run=Run(end_time=1.0, scheme=scheme, time_step_factor=0.2, energy_growth_limit=1e9),
+        run=Run(end_time=1.0, scheme=scheme, cfl=0.2, energy_growth_limit=1e9),
         contact=Contact(),
         material={"bar": Material(density=DENSITY, strength=bar), "stone": STONE},
         body={

@@ -53,7 +53,7 @@ class Scene:
     ) -> None:
         s = _core.Settings()
         s.grid.dimension, s.grid.cell_size, s.grid.basis = dimension, cell_size, basis
-        s.run.scheme, s.run.time_step_factor = scheme, factor
+        s.run.scheme, s.run.cfl = scheme, factor
         if box is not None:
             lower, upper = box
             cells = [round((u - o) / cell_size) for o, u in zip(lower, upper, strict=True)]

@@ -59,7 +59,7 @@ def test_beside_mpm3d(name):
 def test_taylor_bar_with_as_many_steps():
     """With the time step of MPM3D-F90 all of its tolerances are met, kinetic energy too."""
     case = imported("Taylor")
-    case.run.time_step_factor = 0.83
+    case.run.cfl = 0.83
     simulation, history = run(case)
     assert simulation.step == pytest.approx(reference()["Taylor"]["steps"], rel=0.01)
     rows = [row for row in compare("Taylor", simulation, history) if row.tolerance is not None]

@@ -19,8 +19,8 @@ struct Setting {
   std::string_view name;
   Value Table::* member;
   std::string_view meaning;
-  Rule rule = Rule::any;       // of a number
-  std::string_view unit = {};  // of a number; empty for none
+  Rule rule = Rule::any;           // of a number
+  std::string_view unit = {};      // of a number; empty for none
   std::string_view formerly = {};  // its name before, which cases may have for one release more
 };
 

@@ -43,7 +43,7 @@ struct ContactPair {
 
 /// An overlapped node: its sides and its pairs.
 struct ContactNode {
-  std::uint8_t cell;  // the node's place in its tile, as the cell whose own node it is
+  std::uint8_t cell;              // the node's place in its tile, as the cell whose own node it is
   std::uint8_t constrained_axes;  // axes held by walls, a bit each
   std::uint16_t sides;
   std::uint32_t tile;  // of Contact::tiles

@@ -98,7 +98,8 @@ void place_sides(TileGrid<D>& grid, const TileBodies<D>& around, ContactPart<D>&
 template <int D>
 void read_sides(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                 ContactPart<D>& part, ContactNode& node) {
-  node.constrained_axes = static_cast<std::uint8_t>(grid.walls.constrained_axes(place_of(contact, grid, node)));
+  node.constrained_axes =
+      static_cast<std::uint8_t>(grid.walls.constrained_axes(place_of(contact, grid, node)));
   node.energy = node.force_work = 0.0;
   std::uint64_t hash = 0;
   for (BodyAtNode<D>& side : part.sides_of(node)) {

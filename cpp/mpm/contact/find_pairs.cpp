@@ -116,7 +116,8 @@ void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       if (rigid(r) && rigid(s)) continue;  // they have no stress that could part them
       // Bodies that are well apart along the line between their centres need no better normal.
       if (uses_gap(settings.detection) && !by_gradients) {
-        pair.normal = between_centres(sources[r].particles, sources[s].particles, node.constrained_axes);
+        pair.normal =
+            between_centres(sources[r].particles, sources[s].particles, node.constrained_axes);
         pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
         if (pair.gap > settings.gap_distance + surely_open * grid.cell_size) continue;
       }

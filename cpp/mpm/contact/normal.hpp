@@ -51,8 +51,8 @@ struct NormalSource {
   Vec<double, D> normal;  // from the gradient of mass (weighted_normal); zero for `plane`
 };
 
-/// A rule for the unit normal from body r to body s, zero if there is none; `constrained` are axes that
-/// walls hold. One that uses gradients of mass finds them in NormalSource::normal.
+/// A rule for the unit normal from body r to body s, zero if there is none; `constrained` are axes
+/// that walls hold. One that uses gradients of mass finds them in NormalSource::normal.
 template <class T>
 concept NormalModel = requires(const NormalSource<3>& source, unsigned constrained) {
   { T::name } -> std::convertible_to<std::string_view>;
@@ -68,7 +68,8 @@ struct PlaneNormal {
   static constexpr bool uses_gradients = false;
 
   template <int D>
-  static Vec<double, D> normal(const NormalSource<D>& r, const NormalSource<D>& s, unsigned constrained) {
+  static Vec<double, D> normal(const NormalSource<D>& r, const NormalSource<D>& s,
+                               unsigned constrained) {
     return separating_normal(r.particles, s.particles, constrained);
   }
 };

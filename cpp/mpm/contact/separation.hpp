@@ -131,7 +131,8 @@ class PlaneFit {
 
   /// Shorten a step that ends at z, unless the function falls along it, until it does: its slope
   /// rises along the step, so the root of it lies between.
-  void line_search(const Quadratic& here, const double (&step)[n], double (&z)[n], Quadratic& there) {
+  void line_search(const Quadratic& here, const double (&step)[n], double (&z)[n],
+                   Quadratic& there) {
     constexpr int most_trials = 20;
     constexpr double enough = 0.3;  // of the first slope: the next step mends the rest
     const double first = here.slope(z_, step), start = here.value(z_);
@@ -202,7 +203,8 @@ class PlaneFit {
 
 /// The plane that best separates the particles of two bodies; none where a body has no particles.
 template <int D>
-Plane<D> separating_plane(const NearParticles<D>& r, const NearParticles<D>& s, unsigned constrained) {
+Plane<D> separating_plane(const NearParticles<D>& r, const NearParticles<D>& s,
+                          unsigned constrained) {
   return PlaneFit<D>(r, s, constrained).plane();
 }
 

@@ -38,7 +38,8 @@ struct ContactSettings {
               Rule::not_negative},
       Setting{"gap_distance", &Self::gap_distance, "bodies closer than this touch [m]",
               Rule::not_negative, "m"},
-      Setting{"normal_refresh_distance", &Self::normal_refresh_distance,
+      Setting{"normal_refresh_distance",
+              &Self::normal_refresh_distance,
               "the direction and gap of a contact are found anew when its two bodies together have "
               "moved this far [cells]; 0: in every step. 0.1 saves half of the time of contact "
               "where grains move little, and costs one or two per cent of accuracy",

@@ -42,11 +42,11 @@ struct Patch {
       0;                   // where the bodies are bonded: the first patch of the tile; else itself
   BlockShape<D> shape;     // of its block; a primary's holds those of all that are secondary to it
   std::size_t memory = 0;  // where its block begins in the grid's memory [doubles]
-  NodeBits<D> owned;       // nodes that no earlier patch of the body holds; of a primary, no earlier
-                           // primary; none of a secondary one
-  SharedNodes<D> shared;   // of a primary; of others it means nothing
-  bool at_wall = false;    // its block has nodes on a wall
-  bool left_cell = false;  // a particle has left its cell since the lists were made
+  NodeBits<D> owned;      // nodes that no earlier patch of the body holds; of a primary, no earlier
+                          // primary; none of a secondary one
+  SharedNodes<D> shared;  // of a primary; of others it means nothing
+  bool at_wall = false;   // its block has nodes on a wall
+  bool left_cell = false;   // a particle has left its cell since the lists were made
   bool in_contact = false;  // its block may have nodes where bodies meet
 
   /// f(cell, first, last): every occupied cell with its range in the pool's lists.

@@ -84,7 +84,8 @@ template <int D>
 void TileGrid<D>::list_shared_nodes(Threads& threads) {
   find_outdated(threads);
   const auto each_primary = [&](auto&& f) {
-    threads.for_each(primaries_.size(), [&](std::size_t k) { f(primaries_[k], patches[primaries_[k]]); });
+    threads.for_each(primaries_.size(),
+                     [&](std::size_t k) { f(primaries_[k], patches[primaries_[k]]); });
   };
   // Made once to be counted and once to be written: few patches need it, and kept it would need
   // more room than all lists.

@@ -24,7 +24,8 @@ void TileGrid<D>::choose_primaries() {
   by_tile_ = primaries_;
   primaries_.clear();
   for (const std::uint32_t p : by_tile_) {
-    if (primaries_.empty() || patches[primaries_.back()].tile != patches[p].tile) primaries_.push_back(p);
+    if (primaries_.empty() || patches[primaries_.back()].tile != patches[p].tile)
+      primaries_.push_back(p);
     patches[p].primary = primaries_.back();
   }
 }

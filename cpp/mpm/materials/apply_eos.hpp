@@ -22,8 +22,8 @@ template <class T, int D, class Model>
   const EosBounds bounds = material.bounds;
   for_each_group<T>(block, [&](const Group<T, D>& group) {
     const VolumeChange<T> volume_change(group.read(columns.mass), group.read(columns.volume),
-                               group.get(block.volume), group.get(block.dilation),
-                               material.density);
+                                        group.get(block.volume), group.get(block.dilation),
+                                        material.density);
     const Sym<T, D> strength = group.get_stress(block);
     StressWork<T> work{group.get(block.deviatoric_work), group.get(block.force_work)};
     const T V = volume_change.J, per_volume = volume_change.per_volume;
@@ -59,9 +59,10 @@ template <class T, int D, class Model>
     const T shift = mean + pressure;  // of the mean stress, downwards
     const Sym<T, D> stress = strength - Sym<T, D>::isotropic(shift);
     if (last) {
-      if (settings.forces_follow) work.force -= volume_change.after * shift * volume_change.dilation;
+      if (settings.forces_follow)
+        work.force -= volume_change.after * shift * volume_change.dilation;
       writer.template add<true>(group, volume_change, work, T(0.5) * (mean_before - pressure),
-                             {stress, group.get(block.dissipated), speed, q});
+                                {stress, group.get(block.dissipated), speed, q});
       return;
     }
     group.put_stress(block, stress);

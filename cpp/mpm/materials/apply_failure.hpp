@@ -16,7 +16,8 @@ template <class T, int D>
           using State = typename Model::template State<T, D>;
           const T action(static_cast<double>(failing.action));
           for_each_group<T>(block, [&](const Group<T, D>& group) {
-            const StepKinematics<T, D> kinematics(group, block, columns, material.density, settings);
+            const StepKinematics<T, D> kinematics(group, block, columns, material.density,
+                                                  settings);
             const T energy = columns.energy ? group.read(columns.energy) : T(0.0);
             const Condition<T, D> condition{group.get_stress(block),
                                             kinematics.motion.gradient,

@@ -146,8 +146,8 @@ struct StepKinematics {
   Sym<T, D> strain;  // of the step, referred to its middle
   VolumeChange<T> volume_change;
 
-  StepKinematics(const Group<T, D>& group, const MaterialBlock<D>& block, const BlockColumns<D>& columns,
-        double density, const StressSettings& settings)
+  StepKinematics(const Group<T, D>& group, const MaterialBlock<D>& block,
+                 const BlockColumns<D>& columns, double density, const StressSettings& settings)
       : StepKinematics(group, gradient_of(group, block), columns, density, settings) {}
 
   /// The material feels the strain of the middle of the step; the mean stress works on the change
@@ -163,12 +163,12 @@ struct StepKinematics {
   }
 
  private:
-  StepKinematics(const Group<T, D>& group, const Mat<T, D>& gradient, const BlockColumns<D>& columns,
-        double density, const StressSettings& settings)
+  StepKinematics(const Group<T, D>& group, const Mat<T, D>& gradient,
+                 const BlockColumns<D>& columns, double density, const StressSettings& settings)
       : motion{gradient, T(1.0), settings.time_step, settings.time, settings.cell_size},
         strain(symmetric_part(mid_step(gradient))),
-        volume_change(
-            volume_change_of(gradient, group.read(columns.mass), group.read(columns.volume), density)) {
+        volume_change(volume_change_of(gradient, group.read(columns.mass),
+                                       group.read(columns.volume), density)) {
     motion.J = volume_change.J;
   }
   static Mat<T, D> gradient_of(const Group<T, D>& group, const MaterialBlock<D>& block) {
@@ -179,7 +179,8 @@ struct StepKinematics {
         gradient[i][j] = select(valid, group.get(block.gradient[i][j]), T(0.0));
     return gradient;
   }
-  static VolumeChange<T> volume_change_of(const Mat<T, D>& gradient, T mass, T volume, double density) {
+  static VolumeChange<T> volume_change_of(const Mat<T, D>& gradient, T mass, T volume,
+                                          double density) {
     Mat<T, D> f = gradient;
     T dilation(0.0);
     for (int i = 0; i < D; ++i) {

@@ -51,7 +51,8 @@ struct ElasticPlastic {
 template <class Model>
 struct MisesPlastic : ElasticPlastic<Model> {
   template <Real T, int D>
-  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress, PlasticState<T, D>& state) const {
+  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress,
+                  PlasticState<T, D>& state) const {
     this->elastic.update(motion, stress);
     const Model& model = static_cast<const Model&>(*this);
     const T before = state.plastic_strain, static_yield = model.yield(before).value;

@@ -81,12 +81,12 @@ class JohnsonCookFlow {
     const auto hard = hardening_.first();
     const T left = thermal ? T(1.0) - softening_.first().value : T(1.0);
     static_yield_ = (T(law.A) + T(law.B) * hard.value) * left;
-    hardening_ = T(law.B) * hard.slope * left;
+    hardening_slope_ = T(law.B) * hard.slope * left;
     gain_ = max(T(law.C) * static_yield_, T(tiny));
   }
 
   MPM_HD T static_yield() const { return static_yield_; }
-  MPM_HD T hardening() const { return hardening_; }
+  MPM_HD T hardening() const { return hardening_slope_; }
 
   MPM_HD T value(T q, T d, T x) {
     const T Y = (T(law_.A) + T(law_.B) * hardening_.value(strain(d))) * faster(x);
@@ -135,7 +135,7 @@ class JohnsonCookFlow {
   double G_, unit_;
   T heat_, strain_, temperature_;
   Power<T> hardening_, softening_;
-  T static_yield_, hardening_, gain_;
+  T static_yield_, hardening_slope_, gain_;
 };
 
 template <bool thermal, Real T, int D>

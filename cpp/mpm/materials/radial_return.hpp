@@ -32,8 +32,8 @@ MPM_HD Returned<T> scale_deviator(Sym<T, D>& stress, T q, T stiff, T d) {
 /// A residual, as a share of q, below which Newton's step is the last: convergence is quadratic.
 inline constexpr double return_tolerance = 1e-11;
 
-/// The return for hardening without rates: `yield(d)` gives Y and dY/dd; `static_yield` is Y(0), below
-/// which nothing happens. Newton's steps are kept between 0 and q / (3 G) by halving.
+/// The return for hardening without rates: `yield(d)` gives Y and dY/dd; `static_yield` is Y(0),
+/// below which nothing happens. Newton's steps are kept between 0 and q / (3 G) by halving.
 template <Real T, int D, class F>
 MPM_HD Returned<T> return_radially(Sym<T, D>& stress, double G, T static_yield, F&& yield) {
   const T q = von_mises(stress);

@@ -20,7 +20,7 @@ inline constexpr double slope_error = 1e-5, bend_error = 0.01;
 /// still to be found.
 template <Real T, class Flow>
 MPM_HD Truth<T> newton_steps(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& flow,
-                        T& found) {
+                             T& found) {
   const T nothing(0.0), over = q - max(q_before, flow.static_yield());
   auto open = flows & (over > T(1e-6) * q);
   if (!any(open)) return flows;
@@ -76,8 +76,8 @@ MPM_HD T bracketed_halley(T q, T q_before, T stiff, double unit, Truth<T> open, 
     low = select(rest > nothing, x, low);
     high = select(rest > nothing, high, x);
     T next = x + step;
-    // What this step leaves is of its third power, and of its square as far as `curvature` is inexact,
-    // unless it passes the kink.
+    // What this step leaves is of its third power, and of its square as far as `curvature` is
+    // inexact, unless it passes the kink.
     const T size = absolute(step);
     const auto small = size < T(1e-3);
     const auto settled =
@@ -98,10 +98,10 @@ MPM_HD T bracketed_halley(T q, T q_before, T stiff, double unit, Truth<T> open, 
 }
 
 /// Return a trial stress to the yield surface over one step. `flow` gives the yield stress
-/// `static_yield` (d = 0 and no rate), below which nothing happens, and how it has its `hardening` there with d;
-/// its `value` and its `yield` with derivatives at (q, d, x), q von Mises' trial stress; where to
-/// `start` if von Mises' stress before the step lay on the yield surface; and an x `above` the
-/// solution for q. x = 0 may be a kink.
+/// `static_yield` (d = 0 and no rate), below which nothing happens, and how it has its `hardening`
+/// there with d; its `value` and its `yield` with derivatives at (q, d, x), q von Mises' trial
+/// stress; where to `start` if von Mises' stress before the step lay on the yield surface; and an x
+/// `above` the solution for q. x = 0 may be a kink.
 template <Real T, int D, class Flow>
 MPM_HD Returned<T> return_with_rate(Sym<T, D>& stress, double G, double unit, T q_before,
                                     Flow& flow) {

@@ -15,15 +15,16 @@ struct StressUpdate {
 template <class T, int D>
 class StressWriter {
  public:
-  StressWriter(const BlockColumns<D>& columns, const StressSettings& settings, const EosBounds& bounds)
+  StressWriter(const BlockColumns<D>& columns, const StressSettings& settings,
+               const EosBounds& bounds)
       : columns_(columns), settings_(settings), bounds_(bounds) {}
 
   /// `work`: with the stress at the end of the step. `mean_stress`: over the step the average of a
   /// third of the stress's trace, which works on the change of volume. `with_eos`: is there, or may
   /// there be, an equation of state, and with it an energy and its bounds?
   template <bool with_eos>
-  void add(const Group<T, D>& group, const VolumeChange<T>& volume_change, const StressWork<T>& work,
-           T mean_stress, const StressUpdate<T, D>& after) {
+  void add(const Group<T, D>& group, const VolumeChange<T>& volume_change,
+           const StressWork<T>& work, T mean_stress, const StressUpdate<T, D>& after) {
     const auto valid = group.valid();
     negative_ = negative_ | (valid & !(volume_change.after > T(0.0)));
 
@@ -35,8 +36,9 @@ class StressWriter {
       const T q_before = group.read(columns_.viscosity_pressure);
       group.write(columns_.viscosity_pressure, q);
       viscous_ += select(valid, viscous_work, T(0.0));
-      used -= (settings_.forces_follow ? volume_change.after * q : volume_change.before * q_before) *
-              volume_change.dilation;
+      used -=
+          (settings_.forces_follow ? volume_change.after * q : volume_change.before * q_before) *
+          volume_change.dilation;
       heat += viscous_work;
     }
     if (with_eos && columns_.energy) {
@@ -70,8 +72,8 @@ class StressWriter {
     fastest_ = max(fastest_, select(valid, after.speed + sqrt(dot(v, v)), T(0.0)));
   }
   template <bool with_eos>
-  void add(const Group<T, D>& group, const StepKinematics<T, D>& kinematics, const Sym<T, D>& before,
-           const StressUpdate<T, D>& after) {
+  void add(const Group<T, D>& group, const StepKinematics<T, D>& kinematics,
+           const Sym<T, D>& before, const StressUpdate<T, D>& after) {
     add<with_eos>(group, kinematics.volume_change, kinematics.work(settings_, before, after.stress),
                   T(1.0 / 6.0) * trace(before + after.stress), after);
   }
@@ -95,8 +97,8 @@ class StressWriter {
   /// Keep the energy within the bounds. `first`, `last`: mean stresses before and after. Work that
   /// tension at its limit does opens voids between fragments, in place of straining the matter: it
   /// is taken, and given back when they close. What is missing to the least energy is given.
-  [[gnu::noinline, gnu::cold]] static Taken bound(EosBounds bounds, VolumeChange<T> volume_change, T first,
-                                                  T last, T energy) {
+  [[gnu::noinline, gnu::cold]] static Taken bound(EosBounds bounds, VolumeChange<T> volume_change,
+                                                  T first, T last, T energy) {
     const T limited = T(0.5) * (select(bounds.limits(first), first, T(0.0)) +
                                 select(bounds.limits(last), last, T(0.0)));
     const T opening = volume_change.work(limited);

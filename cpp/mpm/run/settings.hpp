@@ -51,7 +51,8 @@ struct GridSettings {
   std::array<double, 3> origin{};  // position of a node, and of the box's lower corner [m]
   std::array<int, 3> box_cells{};  // cells of the box; 0, 0, 0 for no box
   std::array<Wall, 6> walls{};     // of the box's faces: x-, x+, y-, y+, z-, z+
-  std::array<double, 3> outflow_lower{}, outflow_upper{};  // corners of the region that is kept [m] ...
+  std::array<double, 3> outflow_lower{},
+      outflow_upper{};   // corners of the region that is kept [m] ...
   bool outflow = false;  // ... if particles that leave it are taken out
   std::optional<CoarseningSettings> coarsening;
 };
@@ -69,8 +70,12 @@ struct RunSettings {
   using Self = RunSettings;
   static constexpr auto settings = std::tuple{
       Setting{"scheme", &Self::scheme, "when the stress is updated: \"usf\", \"usl\" or \"musl\""},
-      Setting{"cfl", &Self::cfl,
-              "share f of the largest stable step, 0 < f <= 1", Rule::fraction, {}, "time_step_factor"},
+      Setting{"cfl",
+              &Self::cfl,
+              "share f of the largest stable step, 0 < f <= 1",
+              Rule::fraction,
+              {},
+              "time_step_factor"},
       Setting{"gravity", &Self::gravity,
               "acceleration [m/s^2], D numbers or functions of time; default zero", Rule::any,
               "m/s^2"},

@@ -87,8 +87,7 @@ void SimulationOf<D>::prepare() {
   start_motions();
   project_rigid_velocities(domain_);
   probe_speeds();
-  const double fastest =
-      settings_.run.cfl * settings_.grid.cell_size / next_time_step_;
+  const double fastest = settings_.run.cfl * settings_.grid.cell_size / next_time_step_;
   domain_.contact.records.set_scale(total_mass(), fastest);
   domain_.ledger.kinetic = kinetic_energy();
   domain_.ledger.internal = initial_internal_energy();

@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, PrivateAttr, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from .errors import MISSING, CaseError, below, from_validation, nearest, report, violation
@@ -47,6 +47,8 @@ class CaseModel(BaseModel, metaclass=_CaseMeta):
     """
 
     by_position: ClassVar[str] = ""
+    formerly: ClassVar[dict[str, str]] = {}  # Key of the release before -> key, for this one.
+    _renamed: tuple[str, ...] = PrivateAttr(())  # Those keys that were given.
     model_config = ConfigDict(extra="forbid", validate_assignment=True, protected_namespaces=())
 
     @model_validator(mode="wrap")
@@ -59,6 +61,7 @@ class CaseModel(BaseModel, metaclass=_CaseMeta):
         if not isinstance(data, dict):
             remedy = "write it as { key = value, ... }"
             raise violation("must be a table", remedy, value=data)
+        data, renamed = cls._present_keys(data)
         known = {key: value for key, value in data.items() if key in cls.model_fields}
         found = []
         for key in data:
@@ -66,7 +69,9 @@ class CaseModel(BaseModel, metaclass=_CaseMeta):
                 remedy = nearest(str(key), cls.model_fields)
                 found.append(violation("is not a known key", remedy, path=(str(key),)))
         if not found:
-            return handler(known)
+            made = handler(known)
+            made._renamed = renamed
+            return made
         try:
             handler(known)
         except (ValidationError, PydanticCustomError) as error:
@@ -80,13 +85,33 @@ class CaseModel(BaseModel, metaclass=_CaseMeta):
         return data
 
     @classmethod
+    def _present_keys(cls, data: dict[Any, Any]) -> tuple[dict[Any, Any], tuple[str, ...]]:
+        """Return the table with its keys of now, and those of before that were given."""
+        renamed = tuple(key for key in data if key in cls.formerly)
+        for key in renamed:
+            if (now := cls.formerly[key]) in data:
+                rule = f"is the former name of {now}, which is given too"
+                raise violation(rule, f"remove {key}", path=(key,))
+        return {cls.formerly.get(key, key): value for key, value in data.items()}, renamed
+
+    def renamed_keys(self) -> dict[str, str]:
+        """Return the keys of the release before that were given, with their names of now."""
+        return {key: self.formerly[key] for key in self._renamed}
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            now = type(self).formerly.get(name)
+            return super().__getattr__(name) if now is None else getattr(self, now)
+
+    @classmethod
     def complete(cls, data: Any) -> Any:
         """Return what a user gave with what it leaves out, before it is checked."""
         return data
 
     def __setattr__(self, name: str, value: Any) -> None:
         try:
-            super().__setattr__(name, value)
+            super().__setattr__(type(self).formerly.get(name, name), value)
         except ValidationError as error:
             raise from_validation(error, prefix=(_table_name(type(self).__name__),)) from None
 

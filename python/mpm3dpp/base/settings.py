@@ -71,6 +71,7 @@ def table_of_rows(
     fields: Any = {key: field(row) for key, row in rows.items()}
     base: Any = create_model(f"Core_{name.replace('.', '_')}", __base__=_CoreTable, **fields)
     base.rows = rows
+    base.formerly = {row["formerly"]: key for key, row in rows.items() if row.get("formerly")}
     return base
 
 

@@ -247,7 +247,7 @@ def _settings(core: Any, bench: Bench, threads: int, scheme: str) -> Any:
     settings = core.Settings()
     grid, run, contact = settings.grid, settings.run, settings.contact
     grid.dimension, grid.cell_size, grid.basis = bench.dimension, CELL, bench.basis
-    run.scheme, run.time_step_factor = scheme, TIME_STEP_FACTOR
+    run.scheme, run.cfl = scheme, TIME_STEP_FACTOR
     run.outside_limit = run.volume_limit = 1.0
     contact.enabled, contact.friction = bench.contact, FRICTION
     settings.execution.threads = threads

@@ -193,7 +193,7 @@ def _output(case: Case) -> Found:
     extra = ["volume", "mass", *state_columns(set().union(*(m.models for m in materials)))]
     extra += ["internal_energy"] if any(m.eos is not None for m in materials) else []
     extra += ["failed"] if any(m.failure for m in materials) else []
-    if case.grid.keep is not None:
+    if case.grid.outflow_box is not None:
         extra += ["failed", "recoverable_energy"]
     if any(f.action == "erode" for m in materials for f in m.failure):
         extra.append("recoverable_energy")

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -65,11 +65,11 @@ class GridBox(CaseModel):
     walls: Walls = Field(default_factory=Walls)
 
 
-_Doubling: Any = core_table("grid.doubling")
+_Coarsening: Any = core_table("grid.coarsening")
 _Grid: Any = core_table("grid")
 
 
-class GridDoubling(_Doubling):
+class GridCoarsening(_Coarsening):
     """When the cells double, as the moving grid of Ma, Zhang & Huang 2010, section 3.5, ends.
 
     Mass, momentum and energy of the particles stay as they are. A box must have an even number of
@@ -77,13 +77,13 @@ class GridDoubling(_Doubling):
     """
 
     @model_validator(mode="after")
-    def _one_of_two(self) -> GridDoubling:
+    def _one_of_two(self) -> GridCoarsening:
         if self.tiles is None and self.bytes is None:
             raise violation("needs tiles or bytes", "give one of them, such as tiles = 20000")
         return self
 
 
-class GridKeep(CaseModel):
+class GridOutflowBox(CaseModel):
     """The region outside which particles take no part any more; the ledger counts them as `left`.
 
     A rigid body leaves as a whole, with its mass centre.
@@ -97,7 +97,7 @@ class GridKeep(CaseModel):
     upper: Point = ()
 
     @model_validator(mode="after")
-    def _one_of_two(self) -> GridKeep:
+    def _one_of_two(self) -> GridOutflowBox:
         if not self.lower and not self.upper:
             raise violation("has no limit", "give lower, upper or both")
         return self
@@ -109,39 +109,44 @@ class Grid(_Grid):
     Attributes:
         origin: a corner of a cell [m], D numbers; by default the box's lower corner, else zero.
         box: bounds and walls; None for an unbounded grid.
-        keep: region outside which particles are taken out of the run; None for none.
-        doubling: when the cells double; None for never.
+        outflow_box: region outside which particles are taken out of the run; None for none.
+        coarsening: when the cells double; None for never.
     """
+
+    formerly: ClassVar[dict[str, str]] = {"keep": "outflow_box", "doubling": "coarsening"}
 
     origin: Point = ()
     box: GridBox | None = None
-    keep: GridKeep | None = None
-    doubling: GridDoubling | None = None
+    outflow_box: GridOutflowBox | None = None
+    coarsening: GridCoarsening | None = None
 
     @model_validator(mode="after")
     def _consistent(self) -> Grid:
         report(self._numbers_per_vector())
         lower = self.box.lower if self.box is not None else (0.0,) * self.dimension
         self.__dict__["origin"] = self.origin or lower
-        report([*self._box_mistakes(), *self._keep_mistakes()])
+        report([*self._box_mistakes(), *self._outflow_mistakes()])
         return self
 
     def _numbers_per_vector(self) -> Iterator[PydanticCustomError]:
         names: dict[tuple[str, ...], tuple[float, ...]] = {("origin",): self.origin}
         if self.box is not None:
             names |= {("box", "lower"): self.box.lower, ("box", "upper"): self.box.upper}
-        if self.keep is not None:
-            names |= {("keep", "lower"): self.keep.lower, ("keep", "upper"): self.keep.upper}
+        if self.outflow_box is not None:
+            names |= {
+                ("outflow_box", "lower"): self.outflow_box.lower,
+                ("outflow_box", "upper"): self.outflow_box.upper,
+            }
         for path, vector in names.items():
             if vector and len(vector) != self.dimension:
                 rule = f"must have {self.dimension} numbers, as grid.dimension = {self.dimension}"
                 yield violation(rule, f"it has {len(vector)}", value=list(vector), path=path)
 
-    def _keep_mistakes(self) -> Iterator[PydanticCustomError]:
+    def _outflow_mistakes(self) -> Iterator[PydanticCustomError]:
         for d, (low, high) in enumerate(zip(*self.kept, strict=True)):
             if low >= high:
                 rule, remedy = f"must be > lower = {low:g} m", "swap the two corners"
-                yield violation(rule, remedy, value=high, path=("keep", "upper", d))
+                yield violation(rule, remedy, value=high, path=("outflow_box", "upper", d))
 
     def _box_mistakes(self) -> Iterator[PydanticCustomError]:
         box = self.box
@@ -169,9 +174,9 @@ class Grid(_Grid):
                 near = box.lower[d] + max(1, round(cells)) * self.cell_size
                 rule = f"must be a whole number of cells from lower (it is {cells:.4f} cells away)"
                 yield violation(rule, f"for example {near:.6g} m", value=box.upper[d], path=path)
-            elif self.doubling is not None and round(cells) % 2 != 0:
+            elif self.coarsening is not None and round(cells) % 2 != 0:
                 rule = (
-                    f"is {round(cells)} cells from lower, an odd number, so that grid.doubling "
+                    f"is {round(cells)} cells from lower, an odd number, so that grid.coarsening "
                     "cannot work"
                 )
                 yield violation(rule, "make the box one cell larger along this axis", path=path)
@@ -189,9 +194,9 @@ class Grid(_Grid):
     @property
     def kept(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Corners of the region that particles may be in [m], D numbers each; else infinite."""
-        keep, far = self.keep, (math.inf,) * self.dimension
-        lower = keep.lower if keep is not None else ()
-        upper = keep.upper if keep is not None else ()
+        box, far = self.outflow_box, (math.inf,) * self.dimension
+        lower = box.lower if box is not None else ()
+        upper = box.upper if box is not None else ()
         return lower or tuple(-x for x in far), upper or far
 
     @property

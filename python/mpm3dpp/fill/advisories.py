@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from mpm3dpp.base.errors import key_text
+from mpm3dpp.base.model import CaseModel
 from mpm3dpp.base.time_functions import TimeFunction
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import EXPLOSIVE
@@ -26,8 +27,24 @@ def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
         case: a checked case.
         bodies: its bodies, filled.
     """
-    found = [*_materials(case), *_rigid(case), *_detonations(case, bodies), *_walls(case)]
+    found = [
+        *_renamed(case),
+        *_materials(case),
+        *_rigid(case),
+        *_detonations(case, bodies),
+        *_walls(case),
+    ]
     return found + _speeds(case, bodies)
+
+
+def _renamed(case: Case) -> list[str]:
+    """Keys by the names that they had in the release before."""
+    tables: dict[str, CaseModel] = {"grid": case.grid, "run": case.run, "contact": case.contact}
+    return [
+        f"{name}.{before} is named {name}.{now} now; the next release will not know the old name"
+        for name, table in tables.items()
+        for before, now in table.renamed_keys().items()
+    ]
 
 
 def _materials(case: Case) -> list[str]:

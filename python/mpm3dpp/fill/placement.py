@@ -34,7 +34,7 @@ def box_mistakes(case: Case, body: FilledBody) -> Iterator[CaseError]:
         return
     if grid.box is not None:
         yield from _outside(case, body, "box", (grid.box.lower, grid.box.upper))
-    yield from _outside(case, body, "keep", grid.kept)
+    yield from _outside(case, body, "outflow_box", grid.kept)
 
 
 def _outside(

@@ -31,7 +31,7 @@ class Manifest:
         version: of mpm3dpp.          case_hash: SHA-256 of the case.
         mass: of all particles [kg] (per metre in 2D).          cell_size: [m].
         eroded, left: mass [kg] (per metre in 2D) and count of the particles that have eroded,
-            and that have left `grid.keep`.
+            and that have left `grid.outflow_box`.
         particles, steps: counts.          wall_time: of the run [s].
         ns_per_particle_step, stages: time in the steps and in each stage [ns].
         resumed_step: from which the run went on last with `--resume`, else 0. Steps, times and

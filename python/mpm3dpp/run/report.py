@@ -66,7 +66,7 @@ def energy_line(manifest: Manifest) -> str:
     word = "lost" if numerical >= 0.0 else "made"
     line = f"energy: numerical terms and normal contact {word} {abs(numerical):.2%} of {of_what}"
     if abs(numerical) > _NUMERICAL_WARNING:
-        line += "; a smaller run.time_step_factor or smaller cells may help"
+        line += "; a smaller run.cfl or smaller cells may help"
     return line
 
 

@@ -207,7 +207,7 @@ def _fields(case: Case) -> list[str]:
     """
     used = case.materials_used
     goes = any(f.action == "erode" for name in used for f in case.material[name].failure)
-    goes = goes or case.grid.keep is not None
+    goes = goes or case.grid.outflow_box is not None
     return list(dict.fromkeys([*case.output.fields, *(["failed"] if goes else [])]))
 
 

@@ -182,7 +182,7 @@ class Simulation:
         return dict(self.core.eroded())
 
     def left(self) -> dict[str, Any]:
-        """Return `mass` [kg] (per metre in 2D) and `count` of the particles that left `grid.keep`.
+        """Return `mass` [kg] (per metre in 2D) and `count` of particles out of `grid.outflow_box`.
 
         They stay in the columns as they were when they left, with `failed` = 4.
         """
@@ -266,10 +266,10 @@ def _settings(case: Case, threads: int) -> _core.Settings:
     grid.origin = three(given.lower, 0.0)
     grid.box_cells = three(given.box_cells, 0) if given.box_cells else [0, 0, 0]
     grid.walls = given.walls
-    grid.keep = given.keep is not None
-    grid.keep_lower = three(given.kept[0], -math.inf)
-    grid.keep_upper = three(given.kept[1], math.inf)
-    if given.doubling is not None:
-        grid.doubling = fill_core_table(_core.DoublingSettings(), given.doubling)
+    grid.outflow = given.outflow_box is not None
+    grid.outflow_lower = three(given.kept[0], -math.inf)
+    grid.outflow_upper = three(given.kept[1], math.inf)
+    if given.coarsening is not None:
+        grid.coarsening = fill_core_table(_core.CoarseningSettings(), given.coarsening)
     settings.execution.threads = threads
     return settings

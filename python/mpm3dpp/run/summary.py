@@ -45,7 +45,7 @@ def time_step(case: Case, bodies: list[FilledBody]) -> float:
         v = np.concatenate([body.velocities for body in members])
         speed = float(np.sqrt(np.einsum("ij,ij->i", v, v).max()))
         fastest = max(fastest, sound[name] + speed)
-    return case.run.time_step_factor * case.grid.cell_size / fastest
+    return case.run.cfl * case.grid.cell_size / fastest
 
 
 def steps_in_words(case: Case, bodies: list[FilledBody]) -> str:

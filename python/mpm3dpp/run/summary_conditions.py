@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from mpm3dpp.base.time_functions import TimeFunction
 from mpm3dpp.case.case import Case
-from mpm3dpp.case.grid import FACES, GridDoubling
+from mpm3dpp.case.grid import FACES, GridCoarsening
 from mpm3dpp.plots.labels import scaled
 
 Quantity = float | TimeFunction
@@ -68,9 +68,9 @@ def load_in_words(case: Case, name: str) -> str:
     return f"{kind} {vector_in_words(value, 'Pa')}"
 
 
-def doublings(cells: Sequence[int] | None, doubling: GridDoubling) -> int:
+def coarsenings(cells: Sequence[int] | None, coarsening: GridCoarsening) -> int:
     """Return how often the cells can double: a box is cut into even numbers of cells each time."""
-    possible = doubling.times
+    possible = coarsening.times
     for count in cells or ():
         possible = min(possible, (count & -count).bit_length() - 1)
     return possible
@@ -85,21 +85,21 @@ def condition_lines(case: Case) -> list[str]:
         same = set(kinds.values())
         each = ", ".join(f"{face} {kind}" for face, kind in kinds.items())
         lines.append(f"walls: {f'all {same.pop()}' if len(same) == 1 else each}")
-    if grid.keep is not None:
+    if grid.outflow_box is not None:
         limits = []
         for axis, low, high in zip("xyz", *grid.kept, strict=False):
             limits += [f"{axis} > {low:g} m"] if math.isfinite(low) else []
             limits += [f"{axis} < {high:g} m"] if math.isfinite(high) else []
         lines.append(f"keep: {', '.join(limits)}; particles outside are taken out")
-    if grid.doubling is not None:
+    if grid.coarsening is not None:
         limits = []
-        if grid.doubling.tiles is not None:
-            limits.append(f"{grid.doubling.tiles:,} tiles")
-        if grid.doubling.bytes is not None:
-            limits.append(f"{grid.doubling.bytes / 2**20:,.4g} MiB of nodes")
-        times = doublings(grid.box_cells, grid.doubling)
+        if grid.coarsening.tiles is not None:
+            limits.append(f"{grid.coarsening.tiles:,} tiles")
+        if grid.coarsening.bytes is not None:
+            limits.append(f"{grid.coarsening.bytes / 2**20:,.4g} MiB of nodes")
+        times = coarsenings(grid.box_cells, grid.coarsening)
         lines.append(
-            f"doubling: beyond {' or '.join(limits)}, {times} times at most, to cells of "
+            f"coarsening: beyond {' or '.join(limits)}, {times} times at most, to cells of "
             f"{grid.cell_size * 2**times:.4g} m"
         )
     if any(case.run.gravity):

@@ -23,7 +23,8 @@ void add(NearParticles<D>& to, const Vec<double, D>& x, double mass = 1.0) {
 }
 
 template <int D>
-Vec<double, D> separate(const NearParticles<D>& r, const NearParticles<D>& s, unsigned constrained = 0) {
+Vec<double, D> separate(const NearParticles<D>& r, const NearParticles<D>& s,
+                        unsigned constrained = 0) {
   return separating_normal(r, s, constrained);
 }
 

@@ -22,7 +22,8 @@ struct OtherSpace {
 
 void check_spaces(mpm::testing::Report& report) {
   mpm::Columns host;
-  const int mass = host.add("mass", "kg", 1), v = host.add("velocity", "m/s", 2, mpm::Precision::rounded);
+  const int mass = host.add("mass", "kg", 1),
+            v = host.add("velocity", "m/s", 2, mpm::Precision::rounded);
   host.allocate(100);
   for (std::size_t i = 0; i < 100; ++i) {
     host.component(mass)[i] = 2.0 * static_cast<double>(i);

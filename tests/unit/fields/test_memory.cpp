@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "check.hpp"
-#include "mpm/fields/memory_space.hpp"
 #include "mpm/fields/lanes.hpp"
+#include "mpm/fields/memory_space.hpp"
 
 namespace {
 

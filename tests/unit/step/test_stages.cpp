@@ -94,7 +94,7 @@ class Comparison {
         for (int a = 0; a < D; ++a) {
           if (mapped || stage == "advance nodes")
             CHECK_CLOSE(block.velocity(a)[n], node.v[a], tolerance(node, 100.0));
-          if (forced && !beyond && !(held >> a & 1u))
+          if (forced && !beyond && !(constrained >> a & 1u))
             CHECK_CLOSE(block.force(a)[n] + node.m * domain.gravity[a], node.f[a],
                         1e-11 * force_scale);
           if (stage == "advance nodes")

@@ -25,12 +25,12 @@ WallImage<2> image_of(const Walls<2>& walls, const Index<2>& node) {
 
 void test_walls(mpm::testing::Report& report) {
   const Walls<2> slip = box(Wall::slip, Wall::fixed, false);
-  CHECK_EQUAL(slip.held({0, 3}), 1u);   // on the face: not across it
-  CHECK_EQUAL(slip.held({1, 3}), 0u);   // inside
-  CHECK_EQUAL(slip.held({-1, 3}), 0u);  // beyond: it has an image
-  CHECK_EQUAL(slip.held({4, 6}), 3u);   // on the fixed face
-  CHECK_EQUAL(slip.held({4, 7}), 3u);   // and beyond, as that has no images
-  CHECK_EQUAL(slip.held({10, 3}), 0u);  // a free face
+  CHECK_EQUAL(slip.constrained_axes({0, 3}), 1u);   // on the face: not across it
+  CHECK_EQUAL(slip.constrained_axes({1, 3}), 0u);   // inside
+  CHECK_EQUAL(slip.constrained_axes({-1, 3}), 0u);  // beyond: it has an image
+  CHECK_EQUAL(slip.constrained_axes({4, 6}), 3u);   // on the fixed face
+  CHECK_EQUAL(slip.constrained_axes({4, 7}), 3u);   // and beyond, as that has no images
+  CHECK_EQUAL(slip.constrained_axes({10, 3}), 0u);  // a free face
   CHECK(!slip.image({3, 3}) && !slip.image({0, 3}) && !slip.image({4, 7}));
   const WallImage<2> image = image_of(slip, {-2, 3});
   CHECK(image.node == (Index<2>{2, 3}) && image.turned == 1u);
@@ -39,8 +39,8 @@ void test_walls(mpm::testing::Report& report) {
 
   // Odd at a fixed wall: both components turn there; at a slip wall too, the first turns back.
   const Walls<2> odd = box(Wall::slip, Wall::fixed, true);
-  CHECK_EQUAL(odd.held({4, 7}), 0u);
-  CHECK_EQUAL(odd.held({4, 6}), 3u);
+  CHECK_EQUAL(odd.constrained_axes({4, 7}), 0u);
+  CHECK_EQUAL(odd.constrained_axes({4, 6}), 3u);
   const WallImage<2> above = image_of(odd, {4, 7});
   CHECK(above.node == (Index<2>{4, 5}) && above.turned == 3u);
   const WallImage<2> corner = image_of(odd, {-1, 7});
@@ -48,6 +48,6 @@ void test_walls(mpm::testing::Report& report) {
 
   Walls<2> none = odd;
   none.exist = false;
-  CHECK(!none.image({-1, 7}) && none.held({0, 6}) == 0u && !none.absorb());
+  CHECK(!none.image({-1, 7}) && none.constrained_axes({0, 6}) == 0u && !none.absorb());
   CHECK(!odd.absorb() && box(Wall::absorbing, Wall::free, false).absorb());
 }

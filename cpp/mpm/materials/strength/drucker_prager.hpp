@@ -47,7 +47,8 @@ struct DruckerPrager : ElasticPlastic<DruckerPrager> {
   /// `limit`, and beyond the corner of the two both hold. The plastic strain grows by
   /// d sqrt(1/3 + 2/9 q_psi^2) in shear and by the cut strain in tension.
   template <Real T, int D>
-  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress,
+                  State<T, D>& state) const {
     elastic.update(motion, stress);
     const T mean = T(1.0 / 3.0) * trace(stress);
     const Sym<T, D> deviator = stress - Sym<T, D>::isotropic(mean);

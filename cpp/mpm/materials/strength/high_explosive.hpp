@@ -41,7 +41,8 @@ struct HighExplosive {
   std::string problem() const { return {}; }
 
   template <Real T, int D>
-  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress,
+                  State<T, D>& state) const {
     const T gone = (T(motion.time) - state.lighting_time) * T(D_front / (width * motion.cell_size));
     state.burn_fraction = max(state.burn_fraction, min(gone, T(1.0)));
     stress = Sym<T, D>::zero();

@@ -28,7 +28,8 @@ struct J2 : ElasticPlastic<J2> {
   /// The elastic stress, and where its von Mises stress q exceeds Y the deviator returned along its
   /// own direction: q = Y holds after it, as 3 G dep = q_trial - Y(ep + dep) is linear in dep.
   template <Real T, int D>
-  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress,
+                  State<T, D>& state) const {
     elastic.update(motion, stress);
     const Sym<T, D> mean = Sym<T, D>::isotropic(T(1.0 / 3.0) * trace(stress));
     const Sym<T, D> deviator = stress - mean;

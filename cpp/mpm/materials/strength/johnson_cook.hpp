@@ -67,7 +67,8 @@ struct JohnsonCook : ElasticPlastic<JohnsonCook> {
   }
 
   template <Real T, int D>
-  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress,
+                  State<T, D>& state) const {
     const Sym<T, D> before = stress;
     elastic.update(motion, stress);
     return law.update<true>(motion, elastic.G, before, stress, state.plastic_strain,

@@ -183,7 +183,8 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
 
   /// Stress and state after a step. The plastic strain grows by sqrt(2/3 e:e) of its increment e.
   template <Real T, int D>
-  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress,
+                  State<T, D>& state) const {
     elastic.update(motion, stress);
     // Principal stresses are needed only if some lane may yield: with tau = sqrt(s:s/2), s1 - s3 <=
     // 2 tau, and s1 and |s2| of the deviator are at most 2 tau / sqrt(3) and tau / sqrt(3).

@@ -42,7 +42,8 @@ struct NeoHookean {
   std::string problem() const { return {}; }
 
   template <Real T, int D>
-  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress,
+                  State<T, D>& state) const {
     Mat<T, D> f = motion.gradient;
     for (int i = 0; i < D; ++i) f[i][i] = f[i][i] + T(1.0);
     state.b = congruence(f, state.b);

@@ -33,7 +33,8 @@ struct SimplifiedJohnsonCook : ElasticPlastic<SimplifiedJohnsonCook> {
   }
 
   template <Real T, int D>
-  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress, State<T, D>& state) const {
+  MPM_HD T update(const StrainIncrement<T, D>& motion, Sym<T, D>& stress,
+                  State<T, D>& state) const {
     const Sym<T, D> before = stress;
     elastic.update(motion, stress);
     T no_temperature(0.0);

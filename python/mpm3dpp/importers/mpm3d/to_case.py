@@ -127,7 +127,7 @@ _KEYS: dict[tuple[str | int, ...], tuple[str, ...]] = {
     ("grid",): ("dcel",),
     ("grid", "box"): ("grid", "spx"),
     ("run",): ("endt",),
-    ("run", "time_step_factor"): ("dtsc",),
+    ("run", "cfl"): ("dtsc",),
     ("run", "scheme"): ("musl", "usl", "usf"),
     ("run", "viscosity"): ("bulk",),
     ("run", "gravity"): ("load",),
@@ -145,7 +145,7 @@ def _run(deck: Deck, units: UnitSystem) -> dict[str, Any]:
     table: dict[str, Any] = {
         "end_time": units.si(deck.end, "time"),
         "scheme": _scheme(deck),
-        "time_step_factor": deck.factor,
+        "cfl": deck.factor,
     }
     quadratic, linear = deck.bulk
     if quadratic or linear:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`grid.doubling`: cells double where debris spreads; particles, walls and contacts carry on."""
+"""`grid.coarsening`: cells double where debris spreads; particles, walls and contacts carry on."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from cases import BASES, CELL, block, materials
-from mpm3dpp import Case, CaseError, Contact, Grid, GridBox, GridDoubling, Run, Simulation
+from mpm3dpp import Case, CaseError, Contact, Grid, GridBox, GridCoarsening, Run, Simulation
 
 SPEED = 4.0
 
 
 def colliding(
-    dimension: int, doubling: dict[str, Any] | None, box: Any = None, **more: Any
+    dimension: int, coarsening: dict[str, Any] | None, box: Any = None, **more: Any
 ) -> Case:
     """Return two blocks of 6 cells that fly at each other, 5 cells apart."""
-    run = {"end_time": 0.02, "time_step_factor": 0.3, "scheme": more.pop("scheme", "musl")}
+    run = {"end_time": 0.02, "cfl": 0.3, "scheme": more.pop("scheme", "musl")}
     grid: dict[str, Any] = {"basis": more.pop("basis", "gimp"), "box": box}
     where = ((8, 4, 4)[:dimension], (19, 4, 4)[:dimension])
     velocity = np.zeros((2, dimension))
@@ -28,7 +28,7 @@ def colliding(
         for name, at, v in zip(("one", "other"), where, velocity, strict=True)
     }
     return Case(
-        grid=Grid(dimension=dimension, cell_size=CELL, doubling=doubling, **grid),
+        grid=Grid(dimension=dimension, cell_size=CELL, coarsening=coarsening, **grid),
         run=Run(**run),
         contact=Contact(friction=0.2),
         material=materials(),
@@ -50,8 +50,8 @@ def test_nothing_changes_but_the_cells(dimension: int, scheme: str, basis: str) 
     whole.advance(1000)
     limit = int(history(whole)["tiles"].max()) - 1
     plain = Simulation(colliding(dimension, None, scheme=scheme, basis=basis), 1)
-    doubling = {"tiles": limit, "times": 1}
-    double = Simulation(colliding(dimension, doubling, scheme=scheme, basis=basis), 1)
+    coarsening = {"tiles": limit, "times": 1}
+    double = Simulation(colliding(dimension, coarsening, scheme=scheme, basis=basis), 1)
     history(double)
     tiles = limit
     while tiles <= limit:
@@ -85,14 +85,14 @@ def bounced(threads: int) -> Simulation:
 
 
 def test_bodies_meet_after_their_cells_have_doubled() -> None:
-    """Two equal blocks exchange their velocities; the doubling comes before they meet."""
+    """Two equal blocks exchange their velocities; the coarsening comes before they meet."""
     simulation = bounced(1)
     row = history(simulation)
     assert row["cell_size"][1] == CELL
     assert row["cell_size"][2] == 2 * CELL
     speeds = [simulation.column(b, "velocity")[:, 0].mean() for b in ("one", "other")]
     assert speeds[0] == pytest.approx(-speeds[1], rel=1e-9)
-    assert -SPEED <= speeds[0] < -0.5 * SPEED  # the rest is vibration; without doubling 0.67
+    assert -SPEED <= speeds[0] < -0.5 * SPEED  # the rest is vibration; without coarsening 0.67
     (pair,) = simulation.core.contact_pairs()
     assert pair.impulse[0] == pytest.approx(-(SPEED - speeds[0]) * simulation.core.total_mass / 2)
 
@@ -121,7 +121,7 @@ def test_bytes() -> None:
 
 def test_what_cannot_be_is_refused() -> None:
     with pytest.raises(CaseError, match="needs tiles or bytes"):
-        GridDoubling()
+        GridCoarsening()
     odd = GridBox(lower=(0, 0), upper=(32 * CELL, 15 * CELL))
     with pytest.raises(CaseError, match="an odd number"):
         colliding(2, {"tiles": 4}, odd)

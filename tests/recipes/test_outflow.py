@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Particles that leave `grid.keep` take no part any more: mass, momentum and energy are counted."""
+"""Particles that leave `grid.outflow_box` take no part: what they have is counted."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from mpm3dpp import Case, CaseError, Contact, Eos, Grid, Material, Run, Simulati
 SPEED = 5.0
 
 
-def flying(dimension: int, keep: dict[str, Any], material: Any = None, **more: Any) -> Case:
+def flying(dimension: int, region: dict[str, Any], material: Any = None, **more: Any) -> Case:
     """Return a block that flies to the right, 8 cells long, its front at cell 8."""
     grid = {"basis": more.pop("basis", "gimp")}
-    run = {"end_time": 0.05, "time_step_factor": 0.3} | more
+    run = {"end_time": 0.05, "cfl": 0.3} | more
     return Case(
-        grid=Grid(dimension=dimension, cell_size=CELL, keep=keep, **grid),
+        grid=Grid(dimension=dimension, cell_size=CELL, outflow_box=region, **grid),
         run=Run(**run),
         material={"solid": material or materials()["solid"]},
         body={
@@ -84,11 +84,11 @@ def test_the_ledger_closes_where_stressed_particles_leave(
         strength=Strength(model="j2", parameters={"E": 1e6, "nu": 0.3, "Y0": 2e4}),
         eos=Eos(model="linear", parameters={"K": 1e6}) if eos else None,
     )
-    keep = {
+    region = {
         "lower": (-0.2 * CELL, -CELL, -CELL)[:dimension],
         "upper": (8.2 * CELL, 4 * CELL, 4 * CELL)[:dimension],
     }
-    case = flying(dimension, keep, plastic, scheme=scheme, energy_growth_limit=1e9)
+    case = flying(dimension, region, plastic, scheme=scheme, energy_growth_limit=1e9)
     simulation = Simulation(case, threads=1)
     x = simulation.column("block", "position")
     v = np.zeros_like(x)
@@ -118,7 +118,7 @@ def test_the_ledger_closes_where_stressed_particles_leave(
 def test_a_rigid_body_leaves_as_a_whole() -> None:
     """It goes with its mass centre; what is left flies on."""
     case = Case(
-        grid=Grid(dimension=2, cell_size=CELL, keep={"upper": (10 * CELL, 1.0)}),
+        grid=Grid(dimension=2, cell_size=CELL, outflow_box={"upper": (10 * CELL, 1.0)}),
         run=Run(end_time=0.05),
         contact=Contact(),
         material=materials() | {"stone": Material(density=3000.0, strength={"rigid": {}})},
@@ -140,10 +140,10 @@ def test_a_rigid_body_leaves_as_a_whole() -> None:
 
 
 def test_leaving_does_not_depend_on_threads() -> None:
-    keep = {"upper": (9.0 * CELL, 1.0, 1.0)}
+    region = {"upper": (9.0 * CELL, 1.0, 1.0)}
 
     def run(threads: int) -> list[np.ndarray]:
-        simulation = Simulation(flying(3, keep), threads)
+        simulation = Simulation(flying(3, region), threads)
         simulation.advance(100)
         assert simulation.left()["count"] > 0
         return [simulation.core.history(), simulation.column("block", "position")]
@@ -153,15 +153,15 @@ def test_leaving_does_not_depend_on_threads() -> None:
 
 
 @pytest.mark.parametrize(
-    ("keep", "sentence"),
+    ("region", "sentence"),
     [
-        ({}, "keep has no limit; give lower, upper or both"),
-        ({"lower": (0.0,)}, "grid.keep.lower = [0.0] must have two numbers"),
+        ({}, "outflow_box has no limit; give lower, upper or both"),
+        ({"lower": (0.0,)}, "grid.outflow_box.lower = [0.0] must have two numbers"),
         ({"lower": (1.0, 0.0), "upper": (0.5, 1.0)}, "must be > lower = 1 m; swap the two corners"),
-        ({"upper": (0.01, 1.0)}, "body.block.shape reaches out of grid.keep"),
+        ({"upper": (0.01, 1.0)}, "body.block.shape reaches out of grid.outflow_box"),
     ],
 )
-def test_bad_regions(keep: dict[str, Any], sentence: str) -> None:
+def test_bad_regions(region: dict[str, Any], sentence: str) -> None:
     with pytest.raises(CaseError) as error:
-        Simulation(flying(2, keep), threads=1)
+        Simulation(flying(2, region), threads=1)
     assert sentence in str(error.value)

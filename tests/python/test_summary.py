@@ -10,18 +10,18 @@ import pytest
 from cases import BASES
 from mpm3dpp import Body, Case, Grains, Grid, Material, Run, Simulation, load_case, shapes
 from mpm3dpp.base.time_functions import TimeFunction
-from mpm3dpp.case.grid import GridDoubling
+from mpm3dpp.case.grid import GridCoarsening
 from mpm3dpp.fill.build import build
 from mpm3dpp.run.summary import echo, memory_bytes
-from mpm3dpp.run.summary_conditions import doublings, in_words
+from mpm3dpp.run.summary_conditions import coarsenings, in_words
 
 CASE = """
 [grid]
 dimension = 2
 cell_size = "10 mm"
 box = { lower = [0, 0], upper = ["480 mm", "240 mm"], walls = { x_min = "slip", y_min = "fixed" } }
-keep = { lower = ["-1 m", "-2 m"], upper = ["5 m", "6 m"] }
-doubling = { tiles = 2000 }
+outflow_box = { lower = ["-1 m", "-2 m"], upper = ["5 m", "6 m"] }
+coarsening = { tiles = 2000 }
 [run]
 end_time = "1 ms"
 gravity = [0, { sine = { amplitude = "3 m/s^2", frequency = "15 Hz", mean = "-9.81 m/s^2" } }]
@@ -67,7 +67,7 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> str:
         "walls: x_min slip, x_max free, y_min fixed, y_max free",
         "keep: x > -1 m, x < 5 m, y > -2 m, y < 6 m; particles outside are taken out",
         # 48 x 24 cells can be halved three times.
-        "doubling: beyond 2,000 tiles, 3 times at most, to cells of 0.08 m",
+        "coarsening: beyond 2,000 tiles, 3 times at most, to cells of 0.08 m",
         "gravity: (0 m/s^2, -9.81 m/s^2 + 3 m/s^2 sin at 15 Hz)",
         "load push: pressure 2 kPa on x_min of block, 0.1 m^2 per metre, carried by 20 particles",
         "friction: 0.4 between block and piston",
@@ -135,8 +135,8 @@ def test_the_memory_is_about_that_of_a_run(what: str, dimension: int, basis: str
     )
 
 
-def test_doublings_of_a_box_and_without() -> None:
-    doubling = GridDoubling(tiles=10, times=4)
-    assert doublings(None, doubling) == 4
-    assert doublings((32, 64), doubling) == 4
-    assert doublings((6, 64), doubling) == 1
+def test_coarsenings_of_a_box_and_without() -> None:
+    coarsening = GridCoarsening(tiles=10, times=4)
+    assert coarsenings(None, coarsening) == 4
+    assert coarsenings((32, 64), coarsening) == 4
+    assert coarsenings((6, 64), coarsening) == 1
