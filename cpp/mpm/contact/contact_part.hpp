@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mpm/contact/contact_node.hpp"
+#include "mpm/contact/pair_records.hpp"
 
 namespace mpm {
 
@@ -34,6 +35,8 @@ struct ContactPart {
   std::vector<std::uint32_t> further_places;  // of records of the sides, each node's in a row
   std::size_t overlapped = 0;                 // nodes, those left out too
   int bodies_max = 0;                         // at a node
+  std::vector<PairShare> shares;  // scratch: of the step; those of one pair may be several
+  ExactSum energy, force_work, friction, friction_first;  // scratch: ContactSums of the part
   // Where pairs are cached: of this step and the last, in the order of `nodes` and of `pairs`.
   std::vector<CachedNode> cached_nodes, last_cached_nodes;
   std::vector<CachedPair<D>> cached, last_cached;
@@ -121,7 +124,8 @@ struct ContactPart {
   std::size_t bytes() const {
     const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
     return sizeof(*this) + size(nodes) + size(sides) + size(pairs) + size(further_places) +
-           size(cached_nodes) + size(last_cached_nodes) + size(cached) + size(last_cached);
+           size(shares) + size(cached_nodes) + size(last_cached_nodes) + size(cached) +
+           size(last_cached);
   }
 
  private:

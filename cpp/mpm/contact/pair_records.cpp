@@ -11,6 +11,8 @@ namespace mpm {
 namespace {
 
 constexpr const char* damaged = "its contacts are damaged";
+constexpr double least_share =
+    1e-6;  // of a particle's mass, for a node to count as a first contact
 
 /// Spread the pairs of bodies over all numbers (Fibonacci hashing, Knuth 1973, section 6.4).
 std::size_t hash(int a, int b) {
@@ -20,13 +22,22 @@ std::size_t hash(int a, int b) {
 
 }  // namespace
 
-std::size_t PairRecords::of(int a, int b) {
+std::size_t PairRecords::find(int a, int b) const {
+  if (places_.empty()) return none;
   const std::size_t mask = places_.size() - 1;
-  if (!places_.empty())
-    for (std::size_t at = hash(a, b) & mask; places_[at] != 0; at = (at + 1) & mask) {
-      const PairRecord& record = records_[places_[at] - 1];
-      if (record.a == a && record.b == b) return places_[at] - 1;
-    }
+  for (std::size_t at = hash(a, b) & mask; places_[at] != 0; at = (at + 1) & mask) {
+    const PairRecord& record = records_[places_[at] - 1];
+    if (record.a == a && record.b == b) return places_[at] - 1;
+  }
+  return none;
+}
+
+bool PairRecords::known(int a, int b, std::int64_t step) const {
+  const std::size_t record = find(a, b);
+  return record != none && records_[record].first_step >= 0 && records_[record].first_step < step;
+}
+
+std::size_t PairRecords::make(int a, int b) {
   PairRecord record;
   record.a = a;
   record.b = b;
@@ -69,8 +80,8 @@ void PairRecords::sort() {
 
 void PairRecords::set_scale(double mass, double speed) {
   constexpr int digits = 96;
-  impulse_unit_ = std::ilogb(mass * speed) - digits;
-  energy_unit_ = std::ilogb(mass * speed * speed) - digits;
+  impulse_unit_ = SumUnit(std::ilogb(mass * speed) - digits);
+  energy_unit_ = SumUnit(std::ilogb(mass * speed * speed) - digits);
 }
 
 void PairRecords::begin_step() {
@@ -78,13 +89,30 @@ void PairRecords::begin_step() {
     for (FixedSum& impulse : sums.step_impulse) impulse.clear();
 }
 
-void PairRecords::add(std::size_t record, const double (&impulse)[3], double friction_work) {
+void PairRecords::add_to(PairShare& share, const double (&impulse)[3], double friction_work) const {
+  for (std::size_t a = 0; a < 3; ++a)
+    share.impulse[a] += FixedSum::in_units(impulse[a], impulse_unit_);
+  share.friction_work += FixedSum::in_units(friction_work, energy_unit_);
+}
+
+void PairRecords::add(const PairShare& share, std::int64_t step, double time) {
+  std::size_t record = find(share.a, share.b);
+  if (record == none) record = make(share.a, share.b);
   PairSums& sums = sums_[record];
   for (std::size_t a = 0; a < 3; ++a) {
-    sums.step_impulse[a].add(impulse[a], impulse_unit_);
-    sums.impulse[a].add(impulse[a], impulse_unit_);
+    sums.step_impulse[a].add(share.impulse[a]);
+    sums.impulse[a].add(share.impulse[a]);
   }
-  sums.friction_work.add(friction_work, energy_unit_);
+  sums.friction_work.add(share.friction_work);
+  PairRecord& r = records_[record];
+  // A node that a body has only just reached tells nothing about when and where they met.
+  if (share.known || !(share.share > std::max(least_share, r.first_share))) return;
+  r.first_step = step;
+  r.first_time = time;
+  r.first_gap = share.gap;
+  r.first_share = share.share;
+  std::ranges::copy(share.normal, r.first_normal);
+  std::ranges::copy(share.node, r.first_node);
 }
 
 void PairRecords::end_step(double time_step) {

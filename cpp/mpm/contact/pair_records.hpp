@@ -29,6 +29,16 @@ struct PairSums {
   FixedSum step_impulse[3], impulse[3], friction_work;
 };
 
+/// What passes between two bodies at some nodes in a step, in the units of PairRecords.
+struct PairShare {
+  int a, b;    // a < b
+  bool known;  // they have met in an earlier step
+  FixedSum::Integer impulse[3] = {}, friction_work = 0;
+  // Of the node of those at which the lighter body has most mass [m].
+  double share = 0.0;  // that mass over a particle's
+  double gap = 0.0, normal[3] = {}, node[3] = {};
+};
+
 /// The records of all pairs that have met, found by the numbers of the bodies.
 class PairRecords {
  public:
@@ -40,11 +50,13 @@ class PairRecords {
   void set_scale(double mass, double speed);
   /// Forces are those of one step.
   void begin_step();
-  /// The number of the record of a pair, a < b; a new one stands at the end until end_step().
-  std::size_t of(int a, int b);
-  PairRecord& operator[](std::size_t record) { return records_[record]; }
-  /// Add an impulse on a [N s], zeros behind the dimension, and the work of friction [J].
-  void add(std::size_t record, const double (&impulse)[3], double friction_work);
+  /// Whether a pair, a < b, met in a step before this one.
+  bool known(int a, int b, std::int64_t step) const;
+  /// Add to a share an impulse on a [N s], zeros behind the dimension, and the work of friction
+  /// [J].
+  void add_to(PairShare& share, const double (&impulse)[3], double friction_work) const;
+  /// Add a share to its record. A new record stands at the end until end_step().
+  void add(const PairShare& share, std::int64_t step, double time);
   /// Write the sums into the records, and put new ones in their order among the old ones.
   void end_step(double time_step);
 
@@ -54,13 +66,16 @@ class PairRecords {
   std::size_t bytes() const;
 
  private:
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::size_t find(int a, int b) const;  // the number of the record of a pair, or none
+  std::size_t make(int a, int b);
   void enter(std::size_t record);
   void sort();
 
   std::vector<PairRecord> records_;
-  std::vector<PairSums> sums_;                  // of each record
-  std::size_t sorted_ = 0;                      // records
-  int impulse_unit_ = -96, energy_unit_ = -96;  // exponents of powers of two
+  std::vector<PairSums> sums_;  // of each record
+  std::size_t sorted_ = 0;      // records
+  SumUnit impulse_unit_{-96}, energy_unit_{-96};
   // Where a pair's record is: open addressing by pair_key, at most half full; 0 is empty, else the
   // record's number + 1.
   std::vector<std::uint32_t> places_;

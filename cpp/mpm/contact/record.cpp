@@ -7,66 +7,82 @@
 namespace mpm {
 namespace {
 
-// Of a particle's mass, for a node to count as a first contact.
-constexpr double least_share = 1e-6;
+/// The share of a pair, a < b, among those of a part: nodes beside each other have the same pairs.
+template <int D>
+PairShare& share_of(ContactPart<D>& part, const PairRecords& records, int a, int b,
+                    std::int64_t step) {
+  constexpr std::size_t near = 8;
+  auto& shares = part.shares;
+  for (std::size_t k = shares.size(); k > 0 && k + near > shares.size(); --k)
+    if (shares[k - 1].a == a && shares[k - 1].b == b) return shares[k - 1];
+  return shares.emplace_back(PairShare{a, b, records.known(a, b, step)});
+}
+
+/// What the contacts at the nodes of a part come to.
+template <int D>
+void sum_part(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+              ContactPart<D>& part, const StepEnd& end) {
+  // Mass of a side's node over that of a particle.
+  const auto mass_share = [&](const BodyAtNode<D>& side) {
+    return grid.record_at(side.place)[mass_at] /
+           bodies[static_cast<std::size_t>(side.body)].mean_mass;
+  };
+  part.shares.clear();
+  part.energy = part.force_work = part.friction = part.friction_first = {};
+  for (const ContactNode& node : part.nodes) {
+    part.energy.add(node.energy);
+    part.force_work.add(node.force_work);
+    for (const ContactPair<D>& pair : part.pairs_of(node)) {
+      if (!pair.loaded) continue;
+      const BodyAtNode<D>& r = part.sides_of(node)[pair.r];
+      const BodyAtNode<D>& s = part.sides_of(node)[pair.s];
+      const double sign = r.body < s.body ? 1.0 : -1.0;  // records hold what acts on the first
+      PairShare& share = share_of(part, contact.records, std::min(r.body, s.body),
+                                  std::max(r.body, s.body), end.step);
+      const Vec<double, D> impulse = pair.impulse();
+      double on_first[3] = {};
+      for (int a = 0; a < D; ++a) on_first[a] = sign * impulse[a];
+      contact.records.add_to(share, on_first, pair.friction_work);
+      part.friction.add(pair.friction_work);
+      part.friction_first.add(pair.friction_first);
+      if (share.known) continue;
+      const double lighter = std::min(mass_share(r), mass_share(s));
+      if (!(lighter > share.share)) continue;
+      share.share = lighter;
+      share.gap = pair.gap;
+      const Vec<double, D> x = grid.position_of(place_of(contact, grid, node));
+      for (int a = 0; a < D; ++a) {
+        share.normal[a] = sign * pair.normal[a];
+        share.node[a] = x[a];
+      }
+    }
+  }
+}
 
 }  // namespace
 
 template <int D>
 ContactSums record_pairs(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                         const StepEnd& end) {
-  // Mass of a side's node over that of a particle.
-  const auto share = [&](const BodyAtNode<D>& side) {
-    return grid.record_at(side.place)[mass_at] /
-           bodies[static_cast<std::size_t>(side.body)].mean_mass;
-  };
+                         const StepEnd& end, Threads& threads) {
   PairRecords& records = contact.records;
   records.begin_step();
+  threads.for_each(contact.parts.size(),
+                   [&](std::size_t p) { sum_part(contact, grid, bodies, contact.parts[p], end); });
   ExactSum energy, force_work, friction, friction_first;
-  const auto add = [&](ContactPart<D>& part, const ContactNode& node) {
-    energy.add(node.energy);
-    force_work.add(node.force_work);
-    for (const ContactPair<D>& pair : part.pairs_of(node)) {
-      if (!pair.loaded) continue;
-      const BodyAtNode<D>& side_r = part.sides_of(node)[pair.r];
-      const BodyAtNode<D>& side_s = part.sides_of(node)[pair.s];
-      const std::size_t record =
-          records.of(std::min(side_r.body, side_s.body), std::max(side_r.body, side_s.body));
-      PairRecord& r = records[record];
-      const double sign =
-          side_r.body < side_s.body ? 1.0 : -1.0;  // records hold what acts on the first
-      // A node that a body has only just reached tells nothing about when and where they met.
-      if (r.first_step < 0 || r.first_step == end.step) {
-        const double lighter = std::min(share(side_r), share(side_s));
-        if (lighter > std::max(least_share, r.first_share)) {
-          r.first_step = end.step;
-          r.first_time = end.time;
-          r.first_gap = pair.gap;
-          r.first_share = lighter;
-          const Vec<double, D> x = grid.position_of(place_of(contact, grid, node));
-          for (int a = 0; a < D; ++a) {
-            r.first_normal[a] = sign * pair.normal[a];
-            r.first_node[a] = x[a];
-          }
-        }
-      }
-      const Vec<double, D> impulse = pair.impulse();
-      double on_first[3] = {};
-      for (int a = 0; a < D; ++a) on_first[a] = sign * impulse[a];
-      records.add(record, on_first, pair.friction_work);
-      friction.add(pair.friction_work);
-      friction_first.add(pair.friction_first);
-    }
-  };
-  for (ContactPart<D>& part : contact.parts)
-    for (const ContactNode& node : part.nodes) add(part, node);
+  for (const ContactPart<D>& part : contact.parts) {
+    energy.add(part.energy);
+    force_work.add(part.force_work);
+    friction.add(part.friction);
+    friction_first.add(part.friction_first);
+    for (const PairShare& share : part.shares) records.add(share, end.step, end.time);
+  }
   records.end_step(end.time_step);
   return {friction.value(), friction_first.value(), energy.value(), force_work.value()};
 }
 
 template ContactSums record_pairs<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&,
-                                     const StepEnd&);
+                                     const StepEnd&, Threads&);
 template ContactSums record_pairs<3>(Contact<3>&, TileGrid<3>&, const std::vector<Body<3>>&,
-                                     const StepEnd&);
+                                     const StepEnd&, Threads&);
 
 }  // namespace mpm

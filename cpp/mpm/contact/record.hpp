@@ -12,6 +12,6 @@ struct StepEnd {
 /// Add this step's impulses and work to the records of the pairs and give the sums for the ledger.
 template <int D>
 ContactSums record_pairs(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                         const StepEnd& end);
+                         const StepEnd& end, Threads& threads);
 
 }  // namespace mpm

@@ -96,23 +96,39 @@ class ExactSum {
   int additions_ = 0;
 };
 
-/// The sum of values rounded to whole multiples of a unit, a power of two: 16 bytes, for sums of
-/// which there are many. The unit must be the same for all that are compared.
+/// A power of two, in whole multiples of which values are summed.
+class SumUnit {
+ public:
+  explicit SumUnit(int exponent)
+      : size_(std::ldexp(1.0, bounded(exponent))), per_unit_(std::ldexp(1.0, -bounded(exponent))) {}
+  double size() const { return size_; }
+  double per_unit() const { return per_unit_; }
+
+ private:
+  static constexpr int bounded(int exponent) { return std::clamp(exponent, -1000, 1000); }
+  double size_, per_unit_;
+};
+
+/// The sum of values rounded to whole multiples of a unit: 16 bytes, for sums of which there are
+/// many. The unit must be the same for all that are compared; sums of up to 2^127 units fit.
 class FixedSum {
  public:
-  /// `unit`: exponent of the power of two; sums of up to 2^127 units fit.
-  void add(double x, int unit) {
-    const double units = std::ldexp(x, -unit);
+  __extension__ typedef __int128 Integer;
+
+  /// A value in units.
+  static Integer in_units(double x, const SumUnit& unit) {
+    const double units = x * unit.per_unit();
     // In two parts, as a double has 53 bits and the sum 127.
-    const double high = std::trunc(std::ldexp(units, -64));
-    const double low = std::nearbyint(units - std::ldexp(high, 64));
-    sum_ += static_cast<Integer>(high) * (Integer{1} << 64) + static_cast<Integer>(low);
+    const double high = std::trunc(units * 0x1p-64);
+    const double low = std::nearbyint(units - high * 0x1p64);
+    return static_cast<Integer>(high) * (Integer{1} << 64) + static_cast<Integer>(low);
   }
-  double value(int unit) const { return std::ldexp(static_cast<double>(sum_), unit); }
+  void add(double x, const SumUnit& unit) { sum_ += in_units(x, unit); }
+  void add(Integer units) { sum_ += units; }
+  double value(const SumUnit& unit) const { return static_cast<double>(sum_) * unit.size(); }
   void clear() { sum_ = 0; }
 
  private:
-  __extension__ typedef __int128 Integer;
   Integer sum_ = 0;
 };
 

@@ -7,8 +7,9 @@ template <int D>
 void record_contacts(Domain<D>& domain) {
   domain.contact_sums = {};
   if (domain.has_contact())
-    domain.contact_sums = record_pairs(domain.contact, domain.grid, domain.bodies,
-                                       {domain.time_after, domain.time_step, domain.step + 1});
+    domain.contact_sums =
+        record_pairs(domain.contact, domain.grid, domain.bodies,
+                     {domain.time_after, domain.time_step, domain.step + 1}, domain.threads);
 }
 
 template <int D, bool forces_follow>

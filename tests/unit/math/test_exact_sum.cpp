@@ -63,7 +63,7 @@ void test_exact_sum(mpm::testing::Report& report) {
     std::vector<double> alike;
     FixedSum fixed, shuffled;
     long double reference = 0.0L;
-    constexpr int unit = -90;
+    const SumUnit unit(-90);
     for (int k = 0; k < 300; ++k) {
       alike.push_back(std::ldexp(std::nearbyint(std::ldexp(any(random), 40)), -40));
       reference += alike.back();
