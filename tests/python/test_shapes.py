@@ -11,7 +11,7 @@ import pytest
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.case.body import Body
 from mpm3dpp.case.grid import Grid
-from mpm3dpp.fill.overlap import close_particles
+from mpm3dpp.fill.placement import close_particles
 from mpm3dpp.shapes import (
     Box,
     Cylinder,

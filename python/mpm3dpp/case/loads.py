@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
@@ -157,7 +156,7 @@ def pieces(case: Case, name: str, positions: Array, spacing: float) -> Pieces:
     shape = case.body[load.body].shape
     assert shape is not None
     side = surface(shape, load.side, spacing / _FINER[dimension])
-    owner = nearest_particles(positions, side.points, np.asarray(case.grid.origin), spacing)
+    owner = nearest_particles(positions, side.points, spacing)
     lost = owner < 0
     if lost.any():
         share = np.linalg.norm(side.areas[lost], axis=1).sum()
@@ -184,37 +183,21 @@ def _share(side: Surface, owner: NDArray[np.int64], positions: Array) -> Pieces:
     return Pieces(particles.astype(np.uint32), added(side.areas), sizes, arms)
 
 
-def nearest_particles(
-    positions: Array, points: Array, origin: Array, spacing: float
-) -> NDArray[np.int64]:
+def nearest_particles(positions: Array, points: Array, spacing: float) -> NDArray[np.int64]:
     """Return the number of the particle nearest to each point, or -1 if none is within reach.
 
     Args:
-        positions: of particles, no two in one cell of a lattice [m], shape (n, D).
+        positions: of particles [m], shape (n, D).
         points: [m], shape (m, D).
-        origin, spacing: of the lattice [m].
+        spacing: distance of neighbouring particles [m].
 
     Returns:
-        Numbers, shape (m,); the reach is two cells of the lattice around the point's.
+        Numbers, shape (m,); the reach is two and a half spacings.
     """
-    low = np.floor((positions.min(axis=0) - origin) / spacing).astype(np.int64) - 4
-    cells = np.floor((positions - origin) / spacing).astype(np.int64) - low
-    here = np.floor((points - origin) / spacing).astype(np.int64) - low
-    extent = np.maximum(cells.max(axis=0), here.max(axis=0)) + 4
-    strides = np.cumprod([1, *extent[:-1]])
-    keys = cells @ strides
-    order = np.argsort(keys)
-    keys = keys[order]
-    best, distance = np.full(len(points), -1), np.full(len(points), np.inf)
-    for offset in itertools.product(range(-2, 3), repeat=positions.shape[1]):
-        wanted = (here + offset) @ strides
-        at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-        found = keys[at] == wanted
-        candidate = order[at]
-        far = np.linalg.norm(positions[candidate] - points, axis=1)
-        closer = found & (far < distance)
-        best[closer], distance[closer] = candidate[closer], far[closer]
-    return best
+    from scipy.spatial import cKDTree
+
+    away, owner = cKDTree(positions).query(points, distance_upper_bound=2.5 * spacing)
+    return np.where(np.isfinite(away), owner, -1)
 
 
 def add_load(core: Any, case: Case, name: str, body: int, found: Pieces) -> None:

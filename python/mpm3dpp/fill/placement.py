@@ -7,14 +7,13 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.errors import Path as KeyPath
 from mpm3dpp.base.neighbours import overlapping_boxes
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.grid import FARTHEST
-
-from .overlap import close_particles
 
 if TYPE_CHECKING:
     from .build import FilledBody
@@ -108,3 +107,33 @@ def overlap_mistakes(case: Case, bodies: list[FilledBody]) -> Iterator[CaseError
             remedy = "move the grains, or make them smaller"
         told.add((first.part, second.part))
         yield case.error(_key(case, second)[0], rule, remedy)
+
+
+def close_particles(
+    first: NDArray[np.float64], second: NDArray[np.float64], distance: float
+) -> int:
+    """Count the points of one set that have a point of another closer than a distance.
+
+    Args:
+        first: positions [m], shape (n, D).
+        second: positions [m], shape (m, D).
+        distance: [m], > 0.
+
+    Returns:
+        Number of points of `second` that are closer than `distance` to a point of `first`.
+    """
+    from scipy.spatial import cKDTree
+
+    first, second = _common(first, second, distance), _common(second, first, distance)
+    if len(first) == 0 or len(second) == 0:
+        return 0
+    away, _ = cKDTree(first).query(second, distance_upper_bound=distance)
+    return int(np.isfinite(away).sum())
+
+
+def _common(
+    points: NDArray[np.float64], others: NDArray[np.float64], distance: float
+) -> NDArray[np.float64]:
+    """Return the points within the bounds of the others, which are widened by a distance."""
+    lower, upper = others.min(axis=0) - distance, others.max(axis=0) + distance
+    return points[np.all((points >= lower) & (points <= upper), axis=1)]

@@ -241,49 +241,17 @@ def _squares(centres: np.ndarray, sizes: np.ndarray, shape: tuple[int, int]) -> 
 
 def _closed(owner: np.ndarray, steps: int) -> np.ndarray:
     """Fill slits narrower than 2 `steps` pixels with the nearest particle."""
-    grown = owner.copy()
-    for k in range(steps):
-        before = grown.copy()
-        for source, target in _neighbours(before.shape, diagonal=k % 2 == 1):
-            take = (grown[target] < 0) & (before[source] >= 0)
-            grown[target][take] = before[source][take]
-    keep = grown >= 0
-    for k in range(steps):
-        before_mask = keep.copy()
-        for source, target in _neighbours(keep.shape, diagonal=k % 2 == 1):
-            keep[target] &= before_mask[source]
-    return np.where(keep | (owner >= 0), grown, -1)
+    from scipy.ndimage import distance_transform_edt
+
+    away, nearest = distance_transform_edt(owner < 0, return_indices=True)
+    grown = away <= steps
+    inside = grown if grown.all() else distance_transform_edt(grown) > steps
+    return np.where(inside | (owner >= 0), owner[tuple(nearest)], -1)
 
 
 def _shrunk(mask: np.ndarray, steps: int) -> np.ndarray:
     """The mask without a rim of `steps` pixels."""
-    mask = np.pad(mask, 1)
-    for k in range(steps):
-        before = mask.copy()
-        for source, target in _neighbours(mask.shape, diagonal=k % 2 == 1):
-            mask[target] &= before[source]
-    return mask[1:-1, 1:-1]
+    from scipy.ndimage import distance_transform_edt
 
-
-def _neighbours(
-    shape: tuple[int, int], diagonal: bool
-) -> list[tuple[tuple[slice, slice], tuple[slice, slice]]]:
-    """Pairs of windows (source, target) that shift an image by one pixel each way.
-
-    Four neighbours and eight in turn make a rounder shape than either.
-    """
-    steps = [(1, 0), (-1, 0), (0, 1), (0, -1)]
-    if diagonal:
-        steps += [(1, 1), (1, -1), (-1, 1), (-1, -1)]
-
-    def window(step: int, size: int) -> tuple[slice, slice]:
-        if step == 0:
-            return slice(0, size), slice(0, size)
-        return (slice(0, size - 1), slice(1, size))[:: 1 if step > 0 else -1]  # type: ignore
-
-    pairs = []
-    for dy, dx in steps:
-        ys, yt = window(dy, shape[0])
-        xs, xt = window(dx, shape[1])
-        pairs.append(((ys, xs), (yt, xt)))
-    return pairs
+    inside: np.ndarray = distance_transform_edt(np.pad(mask, 1))[1:-1, 1:-1] > steps
+    return inside
