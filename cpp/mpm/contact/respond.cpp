@@ -184,7 +184,6 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vecto
 
 template <int D>
 void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
-  constexpr int remapped_at = force_at;
   for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, const ContactNode& node) {
     const auto sides = part.sides_of(node);
     // The slip at the end of the step is that of the particles. The nodes' own increments, forces

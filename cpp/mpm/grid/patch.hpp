@@ -10,19 +10,23 @@
 
 namespace mpm {
 
-/// The nodes of a patch. Units: kg, m/s, N. `velocity` holds momentum [kg m/s] until the shared
-/// nodes are summed; `force` holds the weights that slip walls mirror from when momentum is mapped
-/// until forces are; it holds the velocity increment of the step [m/s] once the nodes are advanced,
-/// and the remapped velocity [m/s] after the MUSL remap. `dashpot` exists where walls absorb:
-/// factors [kg/s], then forces, until the remap.
+/// The nodes of a patch, their fields by name; which of them share a place, and until when one is
+/// there, stands beside `momentum_at`. Dashpots exist where walls absorb: factors, then forces.
 template <int D>
 struct NodeBlock {
   NodeRecords records;
   int count;
-  NodeField<record> mass() const { return {records.data + mass_at}; }
-  NodeField<record> velocity(int a) const { return {records.data + velocity_at + a}; }
-  NodeField<record> force(int a) const { return {records.data + force_at + a}; }
-  NodeField<half_record> dashpot(int a) const { return {dashpots().data + a}; }
+  NodeField<record> mass() const { return {records.data + mass_at}; }                   // [kg]
+  NodeField<record> momentum(int a) const { return {records.data + momentum_at + a}; }  // [kg m/s]
+  NodeField<record> velocity(int a) const { return {records.data + velocity_at + a}; }  // [m/s]
+  NodeField<record> ghost_weight(int a) const {                                         // [N]
+    return {records.data + ghost_weight_at + a};
+  }
+  NodeField<record> force(int a) const { return {records.data + force_at + a}; }          // [N]
+  NodeField<record> increment(int a) const { return {records.data + increment_at + a}; }  // [m/s]
+  NodeField<record> remapped(int a) const { return {records.data + remapped_at + a}; }    // [m/s]
+  NodeField<half_record> dashpot_factor(int a) const { return {dashpots().data + a}; }    // [kg/s]
+  NodeField<half_record> dashpot_force(int a) const { return {dashpots().data + a}; }     // [N]
   HalfRecords dashpots() const { return {records[count]}; }  // behind the records
 };
 

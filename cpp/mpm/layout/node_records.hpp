@@ -10,6 +10,12 @@ namespace mpm {
 inline constexpr int half_record = 4;
 inline constexpr int record = 2 * half_record;
 inline constexpr int mass_at = 0, velocity_at = 1, force_at = half_record;
+/// Fields whose time is over before another's begins share its place: momentum is there until
+/// velocities are found; what slip walls mirror of the weight until forces are mapped, the forces
+/// until nodes are advanced, the increments of velocity until MUSL remaps, then the remapped
+/// momentum and velocity.
+inline constexpr int momentum_at = velocity_at, ghost_weight_at = force_at, increment_at = force_at,
+                     remapped_at = force_at;
 
 /// Nodes whose numbers begin `width` apart.
 template <int width>

@@ -87,7 +87,7 @@ Work work_of_loads(Domain<D>& domain, std::size_t p) {
     for_each_loaded_piece(domain, p, l, [&](const Vec<double, D>& force, auto&& nodes) {
       nodes([&](int node, double N) {
         for (int a = 0; a < D; ++a) {
-          const double f = N * force[a], dv = block.force(a)[node];
+          const double f = N * force[a], dv = block.increment(a)[node];
           work.first += f * (block.velocity(a)[node] - dv);
           work.second += f * dv;
         }

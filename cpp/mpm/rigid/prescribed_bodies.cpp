@@ -67,7 +67,7 @@ void advance_prescribed_nodes(Domain<D>& domain, std::size_t p) {
       sums.second_order += 0.5 * pushed * dv[a];
       sums.prescribed.impulse[a] += pushed;
       block.velocity(a)[n] += dv[a];
-      block.force(a)[n] = dv[a];
+      block.increment(a)[n] = dv[a];
     }
   }
   // The velocity changes evenly over the step.

@@ -39,13 +39,14 @@ void advance_nodes(Domain<D>& domain) {
       double* const numbers = block.records[n];
       const double m = numbers[mass_at], impulse = m > 0.0 ? dt / m : 0.0;
       for (int a = 0; a < D; ++a) {
-        double &v = numbers[velocity_at + a], &f = numbers[force_at + a];
-        const double weight = m * domain.gravity[a], dv = impulse * (f + weight);
+        double& v = numbers[velocity_at + a];
+        const double f = numbers[force_at + a], weight = m * domain.gravity[a];
+        const double dv = impulse * (f + weight);
         work += own[n] * f * v;
         gravity_first += own[n] * weight * v;
         gravity_second += own[n] * weight * dv;
         v += dv;
-        f = dv;
+        numbers[increment_at + a] = dv;
       }
     }
     Work loads, dashpots;
@@ -53,12 +54,12 @@ void advance_nodes(Domain<D>& domain) {
     // The mirrored weight went into the force; it is work of gravity.
     double weight_first = 0.0, weight_second = 0.0;
     for_each_ghost_weight(domain, patch, block, [&](int image, int a, double weight) {
-      const double dv = block.force(a)[image];
+      const double dv = block.increment(a)[image];
       weight_first += weight * (block.velocity(a)[image] - dv);
       weight_second += weight * dv;
     });
     reflect_at_walls(grid, patch, block, velocity_at);
-    reflect_at_walls(grid, patch, block, force_at);
+    reflect_at_walls(grid, patch, block, increment_at);
     if (loaded) loads = work_of_loads(domain, p);
     PatchSums<D>& sums = domain.sums[p];
     sums.force_work = dt * (work + weight_first) - loads.first - dashpots.first;

@@ -65,7 +65,7 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
     for_each_group<W>(cell, [&](const auto& rows) {
       const auto w = weights_at(basis, local_position(cell, rows));
       const T all = load(mass, rows), m = of_valid(rows, all);
-      const Vec<T, D> dv = nodes.template vector<force_at>(w);
+      const Vec<T, D> dv = nodes.template vector<increment_at>(w);
       Vec<T, D> of_grid, v;
       if constexpr (Transfer::takes_grid_velocity) of_grid = nodes.template vector<velocity_at>(w);
       unrolled<D>([&](auto a) {
@@ -93,7 +93,7 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   });
   if constexpr (also == Also::remap) {
     cells.finish();
-    copy_halves(block.records.at(force_at), {remapped}, block.count);
+    copy_halves(block.records.at(remapped_at), {remapped}, block.count);
   }
   if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
   sums.write(domain.sums[p]);

@@ -40,7 +40,7 @@ template <int D>
 void contact_remapped(Domain<D>& domain) {
   if (!domain.has_contact()) return;
   remove_remapped_approach(domain.contact, domain.grid, domain.threads);
-  reflect(domain, force_at);
+  reflect(domain, remapped_at);
 }
 
 template void contact_momentum<2>(Domain<2>&);

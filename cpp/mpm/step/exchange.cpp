@@ -30,7 +30,7 @@ void exchange_momentum_and_forces(Domain<D>& domain) {
 
 template <int D>
 void exchange_remapped(Domain<D>& domain) {
-  exchange(domain, force_at, record, false);
+  exchange(domain, remapped_at, record, false);
 }
 
 template void exchange_momentum<2>(Domain<2>&);

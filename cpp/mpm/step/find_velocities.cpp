@@ -36,9 +36,9 @@ void find_velocities(Domain<D>& domain) {
 
 template <int D>
 void find_remapped(Domain<D>& domain) {
-  find(domain, force_at, [](const Body<D>&, const Patch<D>&, const NodeBlock<D>& block) {
+  find(domain, remapped_at, [](const Body<D>&, const Patch<D>&, const NodeBlock<D>& block) {
     for (int n = 0; n < block.count; ++n)
-      for (int a = 0; a < D; ++a) block.force(a)[n] = block.velocity(a)[n];
+      for (int a = 0; a < D; ++a) block.remapped(a)[n] = block.velocity(a)[n];
   });
 }
 

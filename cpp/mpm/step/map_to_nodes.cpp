@@ -26,7 +26,7 @@ void map_patch(Domain<D>& domain, std::size_t p) {
   double weights[BlockShape<D>::nodes_max][D];
   const auto for_each_weight = [&](auto&& f) {
     for (int n = 0; n < (weighed ? block.count : 0); ++n)
-      for (int a = 0; a < D; ++a) f(weights[n][a], block.force(a)[n]);
+      for (int a = 0; a < D; ++a) f(weights[n][a], block.ghost_weight(a)[n]);
   };
   for_each_weight([](double& weight, double& force) { weight = std::exchange(force, 0.0); });
   with_transfer(domain, [&]<class Transfer>(const Transfer&) {

@@ -15,11 +15,11 @@ void remap(Domain<D>& domain, Kinds kinds) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
     const Body<D>& body = domain.body_of(patch);
-    clear(block.records.at(force_at), block.count, half_record);
+    clear(block.records.at(remapped_at), block.count, half_record);
     if (body.is_prescribed()) return;
     with_transfer(domain, [&]<class Transfer>(const Transfer&) {
-      scatter<Mapping<typename Transfer::Gives>, gives_momentum>(grid, body, domain.pool_of(patch),
-                                                                 patch, block.records.at(force_at));
+      scatter<Mapping<typename Transfer::Gives>, gives_momentum>(
+          grid, body, domain.pool_of(patch), patch, block.records.at(remapped_at));
     });
   });
 }

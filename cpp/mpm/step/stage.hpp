@@ -24,20 +24,36 @@ struct Data {
     lists = 1u << 7,  // of particles by cell; the patches and their blocks
     load_pieces = 1u << 8,
     node_mass = 1u << 9,
-    node_velocity = 1u << 10,
-    node_force = 1u << 11,  // and the increment of the velocity, and the remapped velocity
-    node_dashpots = 1u << 12,
-    contacts = 1u << 13,
-    patch_sums = 1u << 14,
-    records = 1u << 15,
-    energies = 1u << 16,
+    node_momentum = 1u << 10,
+    node_velocity = 1u << 11,
+    ghost_weights = 1u << 12,
+    node_force = 1u << 13,
+    node_increments = 1u << 14,
+    node_remapped = 1u << 15,
+    node_dashpots = 1u << 16,
+    contacts = 1u << 17,
+    patch_sums = 1u << 18,
+    records = 1u << 19,
+    energies = 1u << 20,
   };
 };
 /// Their names, in the order of the bits.
 inline constexpr auto data_names = std::to_array<std::string_view>(
-    {"position", "velocity", "mass", "volume", "stress", "rigid position", "rigid velocity",
-     "lists", "load pieces", "node mass", "node velocity", "node force", "node dashpots",
-     "contacts", "patch sums", "records", "energies"});
+    {"position",       "velocity",       "mass",          "volume",      "stress",
+     "rigid position", "rigid velocity", "lists",         "load pieces", "node mass",
+     "node momentum",  "node velocity",  "ghost weights", "node force",  "node increments",
+     "node remapped",  "node dashpots",  "contacts",      "patch sums",  "records",
+     "energies"});
+
+/// The data and what shares its place (layout/node_records.hpp): who writes one takes the others.
+constexpr std::uint32_t places_of(std::uint32_t data) {
+  constexpr std::uint32_t shared[] = {
+      Data::node_momentum | Data::node_velocity,
+      Data::ghost_weights | Data::node_force | Data::node_increments | Data::node_remapped};
+  for (const std::uint32_t one : shared)
+    if (data & one) data |= one;
+  return data;
+}
 
 template <int D>
 struct Stage {
@@ -50,7 +66,8 @@ struct Stage {
 /// May two stages change places?
 template <int D>
 constexpr bool independent(const Stage<D>& a, const Stage<D>& b) {
-  return !(a.writes & b.reads) && !(a.reads & b.writes) && !(a.writes & b.writes);
+  const std::uint32_t taken_by_a = places_of(a.writes), taken_by_b = places_of(b.writes);
+  return !(taken_by_a & b.reads) && !(a.reads & taken_by_b) && !(taken_by_a & b.writes);
 }
 
 template <int D>

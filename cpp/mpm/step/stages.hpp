@@ -5,13 +5,13 @@
 
 namespace mpm {
 
-/// Mend the lists of particles by cell, make and drop tiles (3.4), find where bodies may meet
+/// Update the lists of particles by cell, make and drop tiles (3.4), find where bodies may meet
 /// (3.3).
 template <int D>
 void activate_tiles(Domain<D>& domain);
 
 /// Nodal mass and momentum from the particles, eqs. (2)-(3). Clears all fields of the nodes, and
-/// leaves in the forces what walls with images mirror of the weight.
+/// leaves what walls with images mirror of the weight (ghost weights).
 template <int D>
 void map_momentum(Domain<D>& domain);
 /// Internal nodal forces, eq. (9). (Gravity, eq. (10), is added where the nodes are advanced.)
@@ -137,21 +137,21 @@ struct Stages : Data {
       "activate tiles", mpm::activate_tiles<D>,
       of_particles | of_rigid | stress | lists | patch_sums,
       velocity | stress | lists | patch_sums | node_mass | node_velocity | node_force};
-  static constexpr Row map_momentum{"map momentum", mpm::map_momentum<D>,
-                                    lists | of_particles | of_rigid,
-                                    node_mass | node_velocity | node_force | node_dashpots, true};
+  static constexpr Row map_momentum{
+      "map momentum", mpm::map_momentum<D>, lists | of_particles | of_rigid,
+      node_mass | node_momentum | ghost_weights | node_dashpots, true};
   static constexpr Row fold_momentum{"fold momentum", mpm::fold_momentum<D>,
-                                     node_mass | node_velocity, node_mass | node_velocity};
+                                     node_mass | node_momentum, node_mass | node_momentum};
   static constexpr Row exchange_momentum{"exchange momentum", mpm::exchange_momentum<D>,
-                                         node_mass | node_velocity, node_mass | node_velocity};
+                                         node_mass | node_momentum, node_mass | node_momentum};
   static constexpr Row find_velocities{"find velocities", mpm::find_velocities<D>,
-                                       node_mass | node_velocity, node_velocity};
+                                       node_mass | node_momentum, node_velocity};
   static constexpr Row contact_momentum{
       "contact momentum", mpm::contact_momentum<D>,
       lists | position | rigid_position | mass | volume | node_mass | node_velocity | contacts,
       node_velocity | contacts};
   static constexpr Row map_forces{"map forces", mpm::map_forces<D>,
-                                  lists | position | volume | stress | node_force, node_force,
+                                  lists | position | volume | stress | ghost_weights, node_force,
                                   true};
   static constexpr Row load_surfaces{"load surfaces", mpm::load_surfaces<D>,
                                      lists | position | load_pieces | node_force,
@@ -170,25 +170,25 @@ struct Stages : Data {
   static constexpr Row advance_nodes{
       "advance nodes", mpm::advance_nodes<D>,
       lists | load_pieces | node_mass | node_velocity | node_force | node_dashpots | patch_sums,
-      node_velocity | node_force | patch_sums};
+      node_velocity | node_increments | patch_sums};
   static constexpr Row advance_particles{
       "advance particles", mpm::advance_particles<D>,
-      lists | of_particles | of_rigid | node_velocity | node_force | patch_sums,
+      lists | of_particles | of_rigid | node_velocity | node_increments | patch_sums,
       velocity | rigid_velocity | patch_sums, true};
   static constexpr Row hold_rigid{"project rigid velocities", mpm::project_rigid_velocities<D>,
                                   of_rigid | patch_sums, rigid_velocity | patch_sums};
   static constexpr Row remap_momentum{"remap momentum", mpm::remap_momentum<D>,
-                                      lists | of_particles, node_force, true};
+                                      lists | of_particles, node_remapped, true};
   static constexpr Row remap_rigid{"remap rigid bodies", mpm::remap_rigid_bodies<D>, of_rigid,
-                                   node_force};
-  static constexpr Row fold_remapped{"fold remapped", mpm::fold_remapped<D>, node_force,
-                                     node_force};
-  static constexpr Row exchange_remapped{"exchange remapped", mpm::exchange_remapped<D>, node_force,
-                                         node_force};
+                                   node_remapped};
+  static constexpr Row fold_remapped{"fold remapped", mpm::fold_remapped<D>, node_remapped,
+                                     node_remapped};
+  static constexpr Row exchange_remapped{"exchange remapped", mpm::exchange_remapped<D>,
+                                         node_remapped, node_remapped};
   static constexpr Row find_remapped{"find remapped velocities", mpm::find_remapped<D>,
-                                     node_mass | node_velocity | node_force, node_force};
+                                     node_mass | node_velocity | node_remapped, node_remapped};
   static constexpr Row contact_remapped{"contact remapped", mpm::contact_remapped<D>,
-                                        node_force | contacts, node_force | contacts};
+                                        node_remapped | contacts, node_remapped | contacts};
   static constexpr Row move_particles{"move particles", mpm::move_particles<D>,
                                       lists | position | node_velocity, position | lists, true};
   static constexpr Row move_rigid{"move rigid bodies", mpm::move_rigid_bodies<D>,
@@ -204,7 +204,7 @@ struct Stages : Data {
   static constexpr Row update_last =
       update_stress_row<D>(mpm::update_stress_last<D>, node_velocity);
   static constexpr Row update_remapped =
-      update_stress_row<D>(mpm::update_stress_remapped<D>, node_force);
+      update_stress_row<D>(mpm::update_stress_remapped<D>, node_remapped);
 
   static constexpr Fusion<D> map_both{map_momentum, map_forces, "map momentum and forces",
                                       mpm::map_momentum_and_forces<D>};

@@ -76,7 +76,7 @@ void update_stress_last(Domain<D>& domain) {
 
 template <int D>
 void update_stress_remapped(Domain<D>& domain) {
-  update<false, force_at>(domain, false);
+  update<false, remapped_at>(domain, false);
 }
 
 template <int D>
@@ -86,7 +86,7 @@ void update_stress_last_and_move(Domain<D>& domain) {
 
 template <int D>
 void update_stress_remapped_and_move(Domain<D>& domain) {
-  update<true, force_at>(domain, false);
+  update<true, remapped_at>(domain, false);
 }
 
 template void update_stress_first<2>(Domain<2>&);

@@ -48,7 +48,7 @@ void scatter_dashpots(const TileGrid<D>& grid, const Body<D>& body, const Partic
             const int node =
                 around.first + patch.shape.corner_offset[static_cast<std::size_t>(corner)];
             for (int a = 0; a < D; ++a)
-              block.dashpot(a)[node] +=
+              block.dashpot_factor(a)[node] +=
                   share * (a == normal ? body.pressure_impedance : body.shear_impedance);
           }
         }
@@ -65,7 +65,7 @@ void add_dashpot_forces(const Patch<D>& patch, const NodeBlock<D>& block,
   if (!patch.at_wall) return;
   for (int a = 0; a < D; ++a)
     for (int n = 0; n < block.count; ++n) {
-      double& dashpot = block.dashpot(a)[n];
+      double& dashpot = block.dashpot_factor(a)[n];  // which becomes the force
       const double m = block.mass()[n];
       if (!(dashpot > 0.0 && m > 0.0)) continue;
       const double half = 0.5 * time_step / m;
@@ -81,7 +81,7 @@ Work work_of_dashpots(const NodeBlock<D>& block, const double* own, double time_
   Work work;
   for (int a = 0; a < D; ++a)
     for (int n = 0; n < block.count; ++n) {
-      const double f = own[n] * block.dashpot(a)[n], dv = block.force(a)[n];
+      const double f = own[n] * block.dashpot_force(a)[n], dv = block.increment(a)[n];
       work.first += f * (block.velocity(a)[n] - dv);
       work.second += f * dv;
     }

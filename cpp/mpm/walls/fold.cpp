@@ -19,7 +19,7 @@ void fold(Domain<D>& domain, int at) {
 
 template <int D>
 void fold_momentum(Domain<D>& domain) {
-  fold(domain, velocity_at);
+  fold(domain, momentum_at);
 }
 
 template <int D>
@@ -29,7 +29,7 @@ void fold_forces(Domain<D>& domain) {
 
 template <int D>
 void fold_remapped(Domain<D>& domain) {
-  fold(domain, force_at);
+  fold(domain, remapped_at);
 }
 
 template void fold_momentum<2>(Domain<2>&);

@@ -32,7 +32,7 @@ void fold_at_walls(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlo
                    int at) {
   for_each_ghost_node(grid, patch, [&](int node, int image, const WallImage<D>& turned) {
     double *const of_node = block.records[node], *const of_image = block.records[image];
-    if (at == velocity_at) of_image[mass_at] += of_node[mass_at];
+    if (at == momentum_at) of_image[mass_at] += of_node[mass_at];
     for (int k = at, a = 0; a < D; ++k, ++a) {
       of_image[k] += turned.component(of_node[k], a);
       of_node[k] = 0.0;
@@ -73,7 +73,7 @@ void subtract_ghost_weight(const Domain<D>& domain, const Patch<D>& patch,
       if (turned.turned >> a & 1u) weights[image][a] -= ghost_weight(domain, block, node, a);
   });
   for (int n = 0; n < block.count; ++n)
-    for (int a = 0; a < D; ++a) block.force(a)[n] += weights[n][a];
+    for (int a = 0; a < D; ++a) block.ghost_weight(a)[n] += weights[n][a];
 }
 
 /// When the nodes have their velocities, the vector at number `at` of the records: those beyond the

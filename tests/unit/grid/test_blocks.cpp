@@ -33,7 +33,7 @@ void check_sums(mpm::testing::Report& report, TileGrid<D>& grid, Threads& thread
     grid.block(p).mass()[n] = mass;
     grid.block(p).velocity(0)[n] = 2.0 * mass;
     grid.block(p).force(0)[n] = mass;
-    grid.block(p).dashpot(D - 1)[n] = 3.0 * mass;
+    grid.block(p).dashpot_factor(D - 1)[n] = 3.0 * mass;
     given[key].push_back(mass);
     owners[key] += grid.patches[p].owned[n];
   });
@@ -48,7 +48,7 @@ void check_sums(mpm::testing::Report& report, TileGrid<D>& grid, Threads& thread
     CHECK_CLOSE(grid.block(p).mass()[n], sum, rounding);
     CHECK_EQUAL(grid.block(p).velocity(0)[n], 2.0 * grid.block(p).mass()[n]);
     CHECK_EQUAL(grid.block(p).force(0)[n], grid.block(p).mass()[n]);
-    CHECK_CLOSE(grid.block(p).dashpot(D - 1)[n], 3.0 * sum, 3.0 * rounding);
+    CHECK_CLOSE(grid.block(p).dashpot_factor(D - 1)[n], 3.0 * sum, 3.0 * rounding);
     CHECK_EQUAL(owners[key], 1);
   });
 }

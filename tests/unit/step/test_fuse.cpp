@@ -31,6 +31,12 @@ void check_lists(mpm::testing::Report& report) {
     CHECK(place<D>(scheme, true, "load surfaces") < place<D>(scheme, true, "fold forces"));
     CHECK(exchange < place<D>(scheme, true, "contact momentum"));
   }
+  // Fields that share a place: who writes one takes the others.
+  const Stage<D> reader{"reader", nullptr, Data::node_force, Data::records};
+  const Stage<D> writer{"writer", nullptr, Data::mass, Data::node_increments};
+  const Stage<D> other{"other", nullptr, Data::mass, Data::node_velocity};
+  CHECK(!independent(reader, writer) && !independent(writer, reader));
+  CHECK(independent(reader, other));
   CHECK_EQUAL(stages_of<D>(Scheme::musl, false).size(),
               stages_of<D>(Scheme::musl, true).size() + 4);
 }
