@@ -78,13 +78,16 @@ void for_each_active_row(const std::vector<Patch<D>>& patches, const ParticlePoo
     for (const std::uint32_t row : pool.rows(patch)) f(row);
 }
 
-/// The same, and then for those that were removed.
+/// The same, and then for those that were removed, so many of them.
 template <int D, class F>
 void for_each_row(const std::vector<Patch<D>>& patches, const ParticlePool<D>& pool, int body,
-                  F&& f) {
+                  std::size_t removed, F&& f) {
   for_each_active_row(patches, pool, body, f);
-  for (const RemovedRow& removed : pool.removed)
-    if (removed.body == body) f(removed.row);
+  for (auto at = pool.removed.begin(); removed > 0; ++at)
+    if (at->body == body) {
+      f(at->row);
+      --removed;
+    }
 }
 
 }  // namespace mpm

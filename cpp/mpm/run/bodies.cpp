@@ -132,7 +132,7 @@ void SimulationOf<D>::set_velocity(int number, std::span<const double> velocitie
   }
   const double before = kinetic_energy();
   ParticlePool<D>& pool = domain_.pools[static_cast<std::size_t>(b.material)];
-  for_each_row(domain_.grid.patches, pool, number, [&](std::uint32_t row) {
+  for_each_row(domain_.grid.patches, pool, number, b.removed, [&](std::uint32_t row) {
     for (std::size_t a = 0; a < D; ++a)
       pool.v(static_cast<int>(a))[row] = static_cast<Storage>(velocities[pool.id[row] * D + a]);
   });

@@ -12,33 +12,50 @@
 
 namespace mpm {
 
+namespace {
+
+/// Where the particles of each body stand among all, body by body.
+template <int D>
+std::vector<std::size_t> first_places(const Domain<D>& domain) {
+  std::vector<std::size_t> first{0};
+  for (const Body<D>& body : domain.bodies) first.push_back(first.back() + body.count);
+  return first;
+}
+
+/// f(body, row) for all particles of a pool, those that were removed last.
+template <int D, class F>
+void for_each_row_of(const Domain<D>& domain, std::size_t pool, F&& f) {
+  for (const Patch<D>& patch : domain.grid.patches) {
+    const auto b = static_cast<std::size_t>(patch.body);
+    if (std::cmp_not_equal(domain.bodies[b].material, pool)) continue;
+    for (const std::uint32_t row : domain.pools[pool].rows(patch)) f(b, row);
+  }
+  for (const RemovedRow& removed : domain.pools[pool].removed)
+    f(static_cast<std::size_t>(removed.body), removed.row);
+}
+
+}  // namespace
+
 template <int D>
 void SimulationOf<D>::round_column(const std::string& name, std::span<const int> places,
                                    std::size_t width, std::span<float> to) const {
-  std::size_t first = 0;  // of the body's particles
-  for (std::size_t number = 0; number < domain_.bodies.size(); ++number) {
-    const Body<D>& b = domain_.bodies[number];
-    const ParticlePool<D>& of = pool(b);
-    const auto& infos = of.columns.infos();
-    const auto info = std::find_if(infos.begin(), infos.end(),
-                                   [&](const ColumnInfo& i) { return i.name == name; });
-    const std::size_t end = first + b.count;
-    if (to.size() < end * width) throw std::invalid_argument("round_column: wrong size");
-    if (info != infos.end()) {
-      if (places.size() != static_cast<std::size_t>(info->components) ||
-          !std::ranges::all_of(places, [&](int k) { return 0 <= k && std::cmp_less(k, width); }))
-        throw std::invalid_argument("round_column: wrong places");
-      for (int c = 0; c < info->components; ++c) {
-        const auto place = static_cast<std::size_t>(places[static_cast<std::size_t>(c)]);
-        float* const begin = to.data() + first * width + place;
-        of.columns.with_component(info->first + c, [&](const auto* from) {
-          for_each_row(domain_.grid.patches, of, static_cast<int>(number), [&](std::uint32_t row) {
-            begin[of.id[row] * width] = static_cast<float>(from[row]);
-          });
+  const std::vector<std::size_t> first = first_places(domain_);
+  if (to.size() < first.back() * width) throw std::invalid_argument("round_column: wrong size");
+  for (std::size_t m = 0; m < domain_.pools.size(); ++m) {
+    const ParticlePool<D>& of = domain_.pools[m];
+    const auto info = std::ranges::find(of.columns.infos(), name, &ColumnInfo::name);
+    if (of.count() == 0 || info == of.columns.infos().end()) continue;
+    if (places.size() != static_cast<std::size_t>(info->components) ||
+        !std::ranges::all_of(places, [&](int k) { return 0 <= k && std::cmp_less(k, width); }))
+      throw std::invalid_argument("round_column: wrong places");
+    for (int c = 0; c < info->components; ++c) {
+      float* const begin = to.data() + places[static_cast<std::size_t>(c)];
+      of.columns.with_component(info->first + c, [&](const auto* from) {
+        for_each_row_of(domain_, m, [&](std::size_t b, std::uint32_t row) {
+          begin[(first[b] + of.id[row]) * width] = static_cast<float>(from[row]);
         });
-      }
+      });
     }
-    first = end;
   }
 }
 
@@ -47,19 +64,16 @@ void SimulationOf<D>::round_derived(const std::string& name, std::span<float> to
   const auto field = std::ranges::find(derived_fields, name, &DerivedField::name);
   if (field == derived_fields.end())
     throw std::invalid_argument("no derived field is named " + name);
-  std::size_t first = 0;
-  for (std::size_t number = 0; number < domain_.bodies.size(); ++number) {
-    const Body<D>& b = domain_.bodies[number];
-    const ParticlePool<D>& of = pool(b);
-    const std::size_t end = first + b.count;
-    if (to.size() < end) throw std::invalid_argument("round_derived: wrong size");
-    for_each_row(domain_.grid.patches, of, static_cast<int>(number), [&](std::uint32_t row) {
-      ParticleState p{{}, of.mass()[row] / b.initial_density, D};
+  const std::vector<std::size_t> first = first_places(domain_);
+  if (to.size() < first.back()) throw std::invalid_argument("round_derived: wrong size");
+  for (std::size_t m = 0; m < domain_.pools.size(); ++m) {
+    const ParticlePool<D>& of = domain_.pools[m];
+    for_each_row_of(domain_, m, [&](std::size_t b, std::uint32_t row) {
+      ParticleState p{{}, of.mass()[row] / domain_.bodies[b].initial_density, D};
       for (int c = 0; c < Sym<double, D>::size; ++c)
         p.stress[D == 2 && c == 3 ? 5 : c] = of.stress(c)[row];
-      to[first + of.id[row]] = static_cast<float>(field->value(p));
+      to[first[b] + of.id[row]] = static_cast<float>(field->value(p));
     });
-    first = end;
   }
 }
 

@@ -146,7 +146,7 @@ void SimulationOf<D>::copy_column(int number, const std::string& name, std::span
     // Plane strain keeps xx yy zz xy; the fourth becomes the sixth of xx yy zz yz xz xy.
     const auto place = static_cast<std::size_t>(name == "stress" && D == 2 && c == 3 ? 5 : c);
     of.columns.with_component(info.first + c, [&](const auto* from) {
-      for_each_row(domain_.grid.patches, of, number,
+      for_each_row(domain_.grid.patches, of, number, b.removed,
                    [&](std::uint32_t row) { to[of.id[row] * width + place] = from[row]; });
     });
   }

@@ -90,7 +90,7 @@ template <int D>
 std::size_t SimulationOf<D>::row_of(int b, std::int64_t particle) const {
   const ParticlePool<D>& of = pool(body(b));
   std::size_t found = 0;
-  for_each_row(domain_.grid.patches, of, b, [&](std::uint32_t row) {
+  for_each_row(domain_.grid.patches, of, b, body(b).removed, [&](std::uint32_t row) {
     if (static_cast<std::int64_t>(of.id[row]) == particle) found = row;
   });
   return found;

@@ -40,7 +40,7 @@ void test_make_body(mpm::testing::Report& report) {
     CHECK(!bodies[static_cast<std::size_t>(b)].given, b);
     const ParticlePool<2>& pool = pools[b == 1 ? 1 : 0];
     std::size_t i = 0;
-    for_each_row(patches, pool, b, [&](std::uint32_t row) {
+    for_each_row(patches, pool, b, 0, [&](std::uint32_t row) {
       CHECK(pool.id[row] == i && pool.x(0)[row] == x[2 * i] && pool.x(1)[row] == x[2 * i + 1], i);
       CHECK(pool.mass()[row] == 8.0 * each[i] && pool.volume()[row] == each[i], i);
       CHECK(pool.v(0)[row] == Storage{7.0} && pool.v(1)[row] == Storage{-1.0}, i);

@@ -50,7 +50,7 @@ struct World {
   }
   std::vector<std::uint32_t> rows_of(int body) {
     std::vector<std::uint32_t> rows;
-    for_each_row(grid.patches, pool_of(body), body,
+    for_each_row(grid.patches, pool_of(body), body, bodies[static_cast<std::size_t>(body)].removed,
                  [&](std::uint32_t row) { rows.push_back(row); });
     return rows;
   }

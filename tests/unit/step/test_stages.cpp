@@ -107,7 +107,7 @@ class Comparison {
   void particles(std::string_view stage) {
     for (std::size_t b = 0; b < twin_.domain.bodies.size(); ++b) {
       const ParticlePool<D>& pool = twin_.domain.pools[0];
-      for_each_row(twin_.domain.grid.patches, pool, static_cast<int>(b), [&](std::uint32_t k) {
+      for_each_row(twin_.domain.grid.patches, pool, static_cast<int>(b), 0, [&](std::uint32_t k) {
         const reference::Particle<D>& p = twin_.reference.bodies[b].particles[pool.id[k]];
         for (int a = 0; a < D; ++a) {
           if (stage.find("move") != stage.npos) CHECK_CLOSE(pool.x(a)[k], p.x[a], 1e-12);
