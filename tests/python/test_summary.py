@@ -65,7 +65,7 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> str:
     "line",
     [
         "walls: x_min slip, x_max free, y_min fixed, y_max free",
-        "keep: x > -1 m, x < 5 m, y > -2 m, y < 6 m; particles outside are taken out",
+        "outflow box: x > -1 m, x < 5 m, y > -2 m, y < 6 m; particles outside are taken out",
         # 48 x 24 cells can be halved three times.
         "coarsening: beyond 2,000 tiles, 3 times at most, to cells of 0.08 m",
         "gravity: (0 m/s^2, -9.81 m/s^2 + 3 m/s^2 sin at 15 Hz)",

@@ -90,7 +90,7 @@ def condition_lines(case: Case) -> list[str]:
         for axis, low, high in zip("xyz", *grid.kept, strict=False):
             limits += [f"{axis} > {low:g} m"] if math.isfinite(low) else []
             limits += [f"{axis} < {high:g} m"] if math.isfinite(high) else []
-        lines.append(f"keep: {', '.join(limits)}; particles outside are taken out")
+        lines.append(f"outflow box: {', '.join(limits)}; particles outside are taken out")
     if grid.coarsening is not None:
         limits = []
         if grid.coarsening.tiles is not None:
