@@ -12,10 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm3dpp.base.rules import requirement
-from mpm3dpp.case import body as case_body
-from mpm3dpp.case import case
-from mpm3dpp.case import grid as case_grid
-from mpm3dpp.case import parts as case_parts
+from mpm3dpp.case import body, case, grid, parts
 from mpm3dpp.case.detonation import Detonation
 from mpm3dpp.case.loads import Load
 from mpm3dpp.case.motion import Motion
@@ -31,23 +28,23 @@ from mpm3dpp.shapes.base import KINDS
 NOTE = "Made by `tools/make_reference.py` from the code: do not edit."
 # Heading, class, note. The tables of a case in the order in which one writes them.
 TABLES: tuple[tuple[str, type, str], ...] = (
-    ("grid", case_grid.Grid, ""),
-    ("grid.box", case_grid.GridBox, ""),
-    ("grid.box.walls", case_grid.Walls, ""),
-    ("grid.outflow_box", case_grid.GridOutflowBox, ""),
-    ("grid.coarsening", case_grid.GridCoarsening, ""),
-    ("run", case_parts.Run, ""),
-    ("run.viscosity", case_parts.Viscosity, "`viscosity = {}` takes both defaults."),
-    ("output", case_parts.Output, ""),
-    ("contact", case_parts.Contact, ""),
-    ("contact.pair", case_parts.ContactPair, "Written `[[contact.pair]]`, once for each pair."),
+    ("grid", grid.Grid, ""),
+    ("grid.box", grid.GridBox, ""),
+    ("grid.box.walls", grid.Walls, ""),
+    ("grid.outflow_box", grid.GridOutflowBox, ""),
+    ("grid.coarsening", grid.GridCoarsening, ""),
+    ("run", parts.Run, ""),
+    ("run.viscosity", parts.Viscosity, "`viscosity = {}` takes both defaults."),
+    ("output", parts.Output, ""),
+    ("contact", parts.Contact, ""),
+    ("contact.pair", parts.ContactPair, "Written `[[contact.pair]]`, once for each pair."),
     (
         "material.NAME",
         case.Material,
         "The models are listed in [materials](materials.md), the named ones in "
         "[library](library.md).",
     ),
-    ("body.NAME", case_body.Body, ""),
+    ("body.NAME", body.Body, ""),
     ("body.NAME.motion", Motion, ""),
     (
         "grains.NAME",
@@ -120,8 +117,8 @@ def keys_table(model: type) -> list[str]:
     required = schema.get("required", [])
     for name, entry in sorted(schema["properties"].items(), key=lambda p: p[0] not in required):
         needed = name in required
-        parts = (f"`{name}`", kind(entry), default(name, entry, needed), meanings.get(name, ""))
-        rows.append("| " + " | ".join(cell(part) for part in parts) + " |")
+        cells = (f"`{name}`", kind(entry), default(name, entry, needed), meanings.get(name, ""))
+        rows.append("| " + " | ".join(cell(part) for part in cells) + " |")
     return rows
 
 
@@ -202,8 +199,8 @@ def models_of(kind: str) -> list[str]:
         for p in model.parameters:
             start = "required" if p.default is None else f"{p.default:g}"
             rule = requirement(p.rule) if p.rule else ""
-            parts = (f"`{p.name}`", p.unit or "1", p.meaning, rule, start)
-            lines.append("| " + " | ".join(cell(part) for part in parts) + " |")
+            cells = (f"`{p.name}`", p.unit or "1", p.meaning, rule, start)
+            lines.append("| " + " | ".join(cell(part) for part in cells) + " |")
         stored = ", ".join(f"`{column.name}`" for column in model.state) or "nothing"
         lines += ["", f"Stores for each particle (for `output.fields`): {stored}."]
     return lines

@@ -52,20 +52,15 @@ struct Domain {
   std::vector<Matrix3> rigid_turns;
 
   Body<D>& body_of(const Patch<D>& patch) { return bodies[static_cast<std::size_t>(patch.body)]; }
-  ParticlePool<D>& pool_of(const Patch<D>& patch) { return pools[material_number(patch)]; }
+  ParticlePool<D>& pool_of(const Patch<D>& patch) { return pools[pool_number(bodies, patch.body)]; }
   const Material& material_of(const Patch<D>& patch) const {
-    return materials[material_number(patch)];
+    return materials[pool_number(bodies, patch.body)];
   }
   bool has_rigid() const { return !rigid_bodies.empty(); }
   bool has_prescribed() const { return !prescribed.empty(); }
   bool has_loads() const { return !loads.empty(); }
   bool has_contact() const {
     return contact_settings.enabled && !contact_settings.bonded && bodies.size() > 1;
-  }
-
- private:
-  std::size_t material_number(const Patch<D>& patch) const {
-    return static_cast<std::size_t>(bodies[static_cast<std::size_t>(patch.body)].material);
   }
 };
 

@@ -43,7 +43,7 @@ def test_every_table_of_a_case_is_described(tool):
     from mpm3dpp.base.model import CaseModel
 
     described = {model for _, model, _ in tool.TABLES}
-    for module in (tool.case, tool.case_parts):
+    for module in (tool.case, tool.parts):
         for value in vars(module).values():
             own = isinstance(value, type) and issubclass(value, CaseModel)
             if own and value.__module__ == module.__name__ and value.__name__ != "Case":

@@ -63,8 +63,7 @@ void fetch_particles(const Contact<D>& contact, const TileGrid<D>& grid,
                      const std::vector<Body<D>>& bodies, const std::vector<ParticlePool<D>>& pools,
                      const TileBodies<D>& around, std::uint64_t nodes) {
   for (const TileBody<D>& at : around.all()) {
-    const int material = bodies[static_cast<std::size_t>(at.body)].material;
-    TileParticles<D>::fetch(grid, pools[static_cast<std::size_t>(material)], at.of(contact.holders),
+    TileParticles<D>::fetch(grid, pools[pool_number(bodies, at.body)], at.of(contact.holders),
                             at.nodes & nodes);
   }
 }

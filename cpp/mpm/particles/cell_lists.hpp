@@ -68,7 +68,8 @@ struct ListScratch {
   std::vector<Change> changes;       // one per patch, after patches were added
   std::vector<Arrival> arrivals;     // in the order of the patches that they come to
   std::vector<int> moved;            // the bodies of which particles have changed cell in this step
-  std::vector<std::uint8_t> flags;   // of each pool
+  // Of each pool: some particle has left its cell; its lists are laid out anew.
+  std::vector<std::uint8_t> touched, full;
   std::vector<std::uint32_t>
       first;  // where the list of each patch of a body begins, one after another
   std::uint32_t* lists = nullptr;  // the new lists of patches whose lists change

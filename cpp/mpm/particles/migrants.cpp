@@ -36,7 +36,7 @@ void find_migrants(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     if (scratch.notes[p].migrants == 0) return;
     const Patch<D>& patch = grid.patches[p];
-    const auto m = static_cast<std::size_t>(bodies[static_cast<std::size_t>(patch.body)].material);
+    const auto m = pool_number(bodies, patch.body);
     const std::uint8_t* mark = scratch.marks + scratch.notes[p].first_mark;
     Migrant<D>* to = &scratch.migrants[scratch.notes[p].first_migrant];
     for (const std::uint32_t row : pools[m].rows(patch)) {
@@ -147,11 +147,8 @@ template <int D>
 void find_ranges(const std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>>& pools,
                  ListScratch<D>& scratch) {
   using Change = typename ListScratch<D>::Change;
-  const auto pool_of = [&](const Change& change) {
-    return static_cast<std::size_t>(bodies[static_cast<std::size_t>(change.body)].material);
-  };
   const auto give = [&](Change& change) {
-    std::size_t& used = pools[pool_of(change)].used;
+    std::size_t& used = pools[pool_number(bodies, change.body)].used;
     change.begin = static_cast<std::uint32_t>(used);
     change.room = room_for(change.count());
     used += change.room;
@@ -159,21 +156,21 @@ void find_ranges(const std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>
   for (Change& change : scratch.changes)
     if (change.count() > change.room) give(change);
   bool any = false;
-  scratch.flags.assign(pools.size(), false);
+  scratch.full.assign(pools.size(), false);
   for (std::size_t m = 0; m < pools.size(); ++m) {
     if (pools[m].used <= pools[m].order.size()) continue;
     any = true;
-    scratch.flags[m] = true;
+    scratch.full[m] = true;
     pools[m].used = 0;
   }
   if (!any) return;
   for (Change& change : scratch.changes)
-    if (scratch.flags[pool_of(change)]) {
+    if (scratch.full[pool_number(bodies, change.body)]) {
       change.rewritten = true;
       give(change);
     }
   for (std::size_t m = 0; m < pools.size(); ++m)
-    if (scratch.flags[m])
+    if (scratch.full[m])
       pools[m].order.resize(
           std::max(pools[m].order.size(), pools[m].used + spare_room(pools[m].used)));
 }

@@ -63,6 +63,12 @@ constexpr std::uint32_t room_for(std::uint32_t count) { return count + count / 8
 /// How many entries there are behind the ranges of all patches, for those that outgrow theirs.
 constexpr std::size_t spare_room(std::size_t used) { return used / 16 + 64; }
 
+/// The number of the pool, and of the material, of the body with a number.
+template <int D>
+std::size_t pool_number(const std::vector<Body<D>>& bodies, int body) {
+  return static_cast<std::size_t>(bodies[static_cast<std::size_t>(body)].material);
+}
+
 /// The patches of a body.
 template <int D, class Patches>
 auto patches_of(Patches& patches, int body) {

@@ -14,7 +14,7 @@ namespace {
 template <int D>
 bool make_scratch(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<ParticlePool<D>>& pools, ListScratch<D>& scratch) {
-  auto& touched = scratch.flags;
+  auto& touched = scratch.touched;
   touched.assign(pools.size(), false);
   scratch.notes.resize(grid.patches.size());
   std::size_t marks = 0, entries = 0, all = 0;
@@ -29,7 +29,7 @@ bool make_scratch(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     if (!patch.left_cell) continue;
     note.first_mark = marks;
     marks += patch.count;
-    touched[static_cast<std::size_t>(bodies[static_cast<std::size_t>(patch.body)].material)] = true;
+    touched[pool_number(bodies, patch.body)] = true;
   }
   for (std::size_t m = 0; m < pools.size(); ++m) {
     all += pools[m].count();
@@ -156,28 +156,25 @@ void write_lists(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     change.first_entry = entries;
     entries += change.count();
   }
-  const auto material_of = [&](const auto& change) {
-    return static_cast<std::size_t>(bodies[static_cast<std::size_t>(change.body)].material);
-  };
   const auto place = [&](std::size_t p) {
     const auto& change = scratch.changes[p];
     Patch<D>& patch = grid.patches[p];
     patch.begin = change.begin;
     patch.room = change.room;
     std::copy_n(scratch.lists + change.first_entry, patch.count,
-                pools[material_of(change)].order.data() + patch.begin);
+                pools[pool_number(bodies, change.body)].order.data() + patch.begin);
   };
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const auto& change = scratch.changes[p];
     if (!change.rewritten) return;
-    const std::size_t m = material_of(change);
+    const std::size_t m = pool_number(bodies, change.body);
     write_list(pools[m], grid.patches[p], change, scratch);
-    if (!scratch.flags[m]) place(p);
+    if (!scratch.full[m]) place(p);
   });
   // Where all lists are laid out anew, one goes where others were.
-  if (std::ranges::none_of(scratch.flags, std::identity())) return;
+  if (std::ranges::none_of(scratch.full, std::identity())) return;
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
-    if (scratch.flags[material_of(scratch.changes[p])]) place(p);
+    if (scratch.full[pool_number(bodies, scratch.changes[p].body)]) place(p);
   });
 }
 
@@ -193,7 +190,7 @@ bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
     return bodies[static_cast<std::size_t>(patch.body)];
   };
   const auto pool_of = [&](const Patch<D>& patch) -> ParticlePool<D>& {
-    return pools[static_cast<std::size_t>(body_of(patch).material)];
+    return pools[pool_number(bodies, patch.body)];
   };
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
