@@ -84,7 +84,7 @@ Index<D> place_of(const Contact<D>& contact, const TileGrid<D>& grid, const Cont
 /// The vector at number `at` of the record of a side's node.
 template <int D>
 Vec<double, D> read(TileGrid<D>& grid, const BodyAtNode<D>& side, int at) {
-  const double* const numbers = grid.record_at(side.place) + at;
+  const double* const numbers = grid.nodes.record_at(side.place) + at;
   Vec<double, D> value;
   for (int a = 0; a < D; ++a) value[a] = numbers[a];
   return value;

@@ -90,7 +90,7 @@ void place_sides(TileGrid<D>& grid, const TileBodies<D>& around, ContactPart<D>&
         part.further_places.push_back(place);
     }
     side.further_count = static_cast<std::uint8_t>(part.further_places.size() - side.first_further);
-    __builtin_prefetch(grid.record_at(side.place));
+    __builtin_prefetch(grid.nodes.record_at(side.place));
   }
 }
 
@@ -105,7 +105,7 @@ void read_sides(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<
     const auto b = static_cast<std::size_t>(side.body);
     hash = mix(mix(hash, b), bodies[b].active());
     side.prescribed = bodies[b].is_prescribed();
-    side.mass = grid.record_at(side.place)[mass_at];
+    side.mass = grid.nodes.record_at(side.place)[mass_at];
     side.mapped = read(grid, side, velocity_at);
   }
   if (contact.cache.on) part.cached_of(node).membership_hash = hash;

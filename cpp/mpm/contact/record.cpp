@@ -24,7 +24,7 @@ void sum_part(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>
               ContactPart<D>& part, const StepEnd& end) {
   // Mass of a side's node over that of a particle.
   const auto mass_share = [&](const BodyAtNode<D>& side) {
-    return grid.record_at(side.place)[mass_at] /
+    return grid.nodes.record_at(side.place)[mass_at] /
            bodies[static_cast<std::size_t>(side.body)].mean_mass;
   };
   part.shares.clear();

@@ -47,7 +47,7 @@ void for_each_gap_closed(Contact<D>& contact, TileGrid<D>& grid, Threads& thread
     if (!part.any_gap_closed(node)) return;
     for (const BodyAtNode<D>& side : part.sides_of(node))
       part.for_each_place(
-          side, [&](std::uint32_t place) { __builtin_prefetch(grid.record_at(place), 1); });
+          side, [&](std::uint32_t place) { __builtin_prefetch(grid.nodes.record_at(place), 1); });
   };
   threads.for_each(contact.parts.size(), [&](std::size_t p) {
     ContactPart<D>& part = contact.parts[p];
@@ -65,7 +65,7 @@ template <int D>
 void write(TileGrid<D>& grid, const ContactPart<D>& part, const BodyAtNode<D>& side,
            const Vec<double, D>& value, int at) {
   part.for_each_place(side, [&](std::uint32_t place) {
-    double* const numbers = grid.record_at(place);
+    double* const numbers = grid.nodes.record_at(place);
     for (int a = 0; a < D; ++a) numbers[at + a] = value[a];
   });
 }
@@ -166,14 +166,14 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vecto
         const Vec<double, D> change = impulse - side.mass * velocity;  // of all forces
         impulse = change - time_step * force_of(side);
         // The node itself has its own mass only.
-        const double own_mass = grid.record_at(side.place)[mass_at];
+        const double own_mass = grid.nodes.record_at(side.place)[mass_at];
         const Vec<double, D> own =
             change - (time_step * (side.mass - own_mass)) * free_gravity(node, gravity);
         correction -= dot(own, velocity - side.mapped);
       }
       force_work += dot(impulse, velocity);
       part.for_each_place(side, [&](std::uint32_t place) {
-        double* const numbers = grid.record_at(place);
+        double* const numbers = grid.nodes.record_at(place);
         for (int a = 0; a < D; ++a) numbers[force_at + a] += (1.0 / time_step) * impulse[a];
       });
     }

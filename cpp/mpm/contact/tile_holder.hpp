@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "mpm/grid/tile_grid.hpp"
+#include "mpm/parallel/threads.hpp"
 
 namespace mpm {
 
@@ -49,7 +50,7 @@ struct HeldNodes {
   /// Find out where the records are.
   void locate(TileGrid<D>& grid, const TileHolder& holder) {
     const BlockShape<D>& shape = shape_of(grid, holder);
-    first = grid.index_of_record(grid.block(holder.patch).records.data) +
+    first = grid.nodes.index_of(grid.block(holder.patch).records.data) +
             std::int64_t{node_in_holder<D>(grid, holder, Index<D>{})};
     for (std::size_t a = 0, step = 1; a < D; step *= static_cast<std::size_t>(shape.nodes[a++]))
       stride[a] = static_cast<std::int32_t>(step);

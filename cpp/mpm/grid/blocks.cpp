@@ -1,7 +1,8 @@
-// The nodal blocks: which nodes a patch has, and where they are in memory.
+#include "mpm/grid/blocks.hpp"
+
 #include <algorithm>
 
-#include "mpm/grid/tile_grid.hpp"
+#include "mpm/grid/shared_nodes.hpp"
 
 namespace mpm {
 namespace {
@@ -19,46 +20,48 @@ bool box_touches_wall(const TileGrid<D>& grid, const Patch<D>& patch) {
   return false;
 }
 
-}  // namespace
-
 /// Find the shapes of the blocks; false if none has changed.
 template <int D>
-bool TileGrid<D>::find_shapes(Threads& threads) {
-  reshaped_.assign(patches.size(), bonded);
+bool find_shapes(TileGrid<D>& grid, Threads& threads) {
+  std::vector<Patch<D>>& patches = grid.patches;
+  grid.reshaped.assign(patches.size(), grid.bonded);
   threads.for_each(patches.size(), [&](std::size_t p) {
-    const auto shape = BlockShape<D>::around(patches[p].occupied, reach());
+    const auto shape = BlockShape<D>::around(patches[p].occupied, grid.reach());
     if (patches[p].shape == shape) return;
     patches[p].shape = shape;
-    reshaped_[p] = true;
+    grid.reshaped[p] = true;
   });
-  if (bonded)
-    for (const std::uint32_t p : by_tile_) {
+  if (grid.bonded)
+    for (const std::uint32_t p : grid.by_tile) {
       BlockShape<D>& all = patches[patches[p].primary].shape;
       all = all.joined_with(patches[p].shape);
     }
-  return std::ranges::any_of(reshaped_, [](std::uint8_t yes) { return yes; });
+  return std::ranges::any_of(grid.reshaped, [](std::uint8_t yes) { return yes; });
 }
+
+}  // namespace
 
 template <int D>
-void TileGrid<D>::cut_blocks(Threads& threads) {
-  if (!find_shapes(threads) && blocks_known_) return;
-  blocks_known_ = true;
-  needed_ = 0;
-  for (Patch<D>& patch : patches) {
-    patch.memory = needed_;
+void cut_blocks(TileGrid<D>& grid, Threads& threads) {
+  if (!find_shapes(grid, threads) && grid.blocks_known) return;
+  grid.blocks_known = true;
+  std::size_t needed = 0;
+  for (Patch<D>& patch : grid.patches) {
+    patch.memory = needed;
     const auto nodes = static_cast<std::size_t>(patch.shape.node_count);
-    needed_ += record * (nodes + (has_dashpots ? (nodes + 1) / 2 : 0));  // whole cache lines
+    needed += record * (nodes + (grid.has_dashpots ? (nodes + 1) / 2 : 0));  // whole cache lines
   }
-  make_room(node_memory_, needed_, needed_ + needed_ / 16);
-  threads.for_each(patches.size(), [&](std::size_t p) {
-    Patch<D>& patch = patches[p];
-    patch.at_wall = box_touches_wall(*this, patch);
+  grid.nodes.needed = needed;
+  make_room(grid.nodes.numbers, needed, needed + needed / 16);
+  threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    Patch<D>& patch = grid.patches[p];
+    patch.at_wall = box_touches_wall(grid, patch);
     if (patch.primary != p) patch.owned.fill(0);
   });
-  list_shared_nodes(threads);
+  list_shared_nodes(grid, threads);
 }
 
-template void TileGrid<2>::cut_blocks(Threads&);
-template void TileGrid<3>::cut_blocks(Threads&);
+template void cut_blocks<2>(TileGrid<2>&, Threads&);
+template void cut_blocks<3>(TileGrid<3>&, Threads&);
 
 }  // namespace mpm

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "mpm/grid/shared_nodes.hpp"
+#include "mpm/grid/shared_lists.hpp"
 #include "mpm/layout/node_bits.hpp"
 #include "mpm/layout/node_records.hpp"
 
@@ -63,5 +63,11 @@ struct Patch {
     }
   }
 };
+
+/// Order of patches: by body, then by tile.
+template <int D>
+bool patch_less(int body_x, const Index<D>& x, int body_y, const Index<D>& y) {
+  return body_x != body_y ? body_x < body_y : tile_less<D>(x, y);
+}
 
 }  // namespace mpm

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mpm/grid/blocks.hpp"
+#include "mpm/grid/connect.hpp"
 #include "mpm/particles/cell_lists.hpp"
 
 namespace mpm {
@@ -113,8 +115,8 @@ void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
     sort_columns(grid, bodies[b], patches_of<D>(grid.patches, static_cast<int>(b)),
                  pools[static_cast<std::size_t>(bodies[b].material)], threads, scratch);
   scratch.own.release_and_allocate(0);
-  grid.connect();
-  grid.cut_blocks(threads);
+  connect(grid);
+  cut_blocks(grid, threads);
 }
 
 template void build_cell_lists<2>(TileGrid<2>&, std::vector<Body<2>>&,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mpm/grid/tile_grid.hpp"
+#include "mpm/parallel/threads.hpp"
 #include "mpm/particles/pool.hpp"
 
 namespace mpm {
@@ -79,7 +80,7 @@ struct ListScratch {
   /// nodes, whose values are of no use before momentum is mapped, or where that is too small, our
   /// own, which then gets `most`.
   std::byte* room(TileGrid<D>& grid, std::size_t bytes, std::size_t most) {
-    const std::span<std::byte> idle = grid.idle_memory();
+    const std::span<std::byte> idle = grid.nodes.idle();
     if (bytes <= idle.size()) return idle.data();
     make_room(own, bytes, most);
     return own.data();

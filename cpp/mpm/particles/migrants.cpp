@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mpm/grid/connect.hpp"
 #include "mpm/particles/cell_lists.hpp"
 #include "mpm/particles/classify.hpp"
 
@@ -19,7 +20,7 @@ std::int32_t patch_beside(const TileGrid<D>& grid, const Patch<D>& patch, const 
     offset[a] = tile[a] - patch.tile[a];
     beside = beside && std::abs(offset[a]) <= 1;
   }
-  if (!beside) return grid.find(patch.body, tile);
+  if (!beside) return find_patch<D>(grid, patch.body, tile);
   return patch.neighbour[static_cast<std::size_t>(Tile<D>::neighbour(offset))];
 }
 
@@ -101,7 +102,7 @@ bool add_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
     while (patches[next].count == 0) ++next;
     n = static_cast<std::int32_t>(next++);
   }
-  grid.connect();
+  connect(grid);
   return true;
 }
 
@@ -123,8 +124,8 @@ void find_changes(const TileGrid<D>& grid, ListScratch<D>& scratch) {
     change.rewritten = note.left_cell;
   }
   for (Migrant<D>& m : scratch.migrants) {
-    m.patch =
-        m.patch < 0 ? grid.find(m.body, m.tile) : scratch.number[static_cast<std::size_t>(m.patch)];
+    m.patch = m.patch < 0 ? find_patch<D>(grid, m.body, m.tile)
+                          : scratch.number[static_cast<std::size_t>(m.patch)];
     auto& change = changes[static_cast<std::size_t>(m.patch)];
     ++change.arrivals_end;  // so far their number
     change.body = m.body;

@@ -3,6 +3,7 @@
 #include <numeric>
 #include <span>
 
+#include "mpm/grid/blocks.hpp"
 #include "mpm/particles/cell_lists.hpp"
 #include "mpm/particles/classify.hpp"
 
@@ -209,7 +210,7 @@ bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
   write_lists(grid, bodies, pools, threads, scratch);
   scratch.lists = nullptr;
   scratch.marks = nullptr;
-  grid.cut_blocks(threads);
+  cut_blocks(grid, threads);
   return changed;
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "mpm/contact/candidates.hpp"
+#include "mpm/grid/blocks.hpp"
 #include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
@@ -17,7 +18,7 @@ bool SimulationOf<D>::must_coarsen() const {
   const CoarseningSettings& coarsening = *settings_.grid.coarsening;
   constexpr auto no_limit = std::numeric_limits<std::int64_t>::max();
   const bool many = std::cmp_greater(grid.patches.size(), coarsening.tiles.value_or(no_limit));
-  const bool large = std::cmp_greater(grid.needed_bytes(), coarsening.bytes.value_or(no_limit));
+  const bool large = std::cmp_greater(needed_bytes(grid), coarsening.bytes.value_or(no_limit));
   if (!many && !large) return false;
   for (int a = 0; a < D; ++a)
     if (grid.walls.exist && grid.walls.cells[static_cast<std::size_t>(a)] % 2 != 0) return false;
@@ -34,7 +35,7 @@ void SimulationOf<D>::coarsen_cells() {
   settings_.grid.cell_size *= 2.0;
   grid.cell_size = settings_.grid.cell_size;
   for (int& cells : grid.walls.cells) cells /= 2;
-  grid.release_nodes();
+  release_nodes(grid);
   build_cell_lists(grid, domain_.bodies, domain_.pools, domain_.threads, domain_.list_scratch);
   for (Patch<D>& patch : grid.patches) patch.left_cell = true;  // what has just failed still leaves
   invalidate_pairs(domain_.contact);

@@ -1,6 +1,8 @@
 // The state of a run between two steps: what a step reads that neither the case nor the rest of the
 // state tells. It is restored into a simulation of the same case that has made no step.
 #include "mpm/contact/candidates.hpp"
+#include "mpm/grid/blocks.hpp"
+#include "mpm/grid/connect.hpp"
 #include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
@@ -51,12 +53,12 @@ void SimulationOf<D>::exchange(StateStream& stream) {
   for (ParticlePool<D>& pool : domain_.pools) exchange_pool(stream, pool);
   for (SurfaceLoad<D>& load : domain_.loads) stream(load.stress, load.force, load.impulse);
   stream.array(std::span(domain_.pieces));
-  domain_.grid.exchange(stream);
+  exchange_grid(domain_.grid, stream);
   if (stream.restores()) {
     check_lists();
-    domain_.grid.release_nodes();
-    domain_.grid.connect();
-    domain_.grid.cut_blocks(domain_.threads);
+    release_nodes(domain_.grid);
+    connect(domain_.grid);
+    cut_blocks(domain_.grid, domain_.threads);
     if (domain_.has_contact()) connect_tiles(domain_.contact, domain_.grid, domain_.bodies);
   }
   if (domain_.has_contact()) exchange_contact(domain_.contact, stream, domain_.bodies.size());

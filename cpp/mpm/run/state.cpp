@@ -123,7 +123,7 @@ Bytes SimulationOf<D>::bytes() const {
   Bytes r;
   for (const ParticlePool<D>& of : domain_.pools) r.particles += of.bytes();
   r.particles += domain_.list_scratch.bytes();
-  r.grid = domain_.grid.node_bytes();
+  r.grid = bytes_of(domain_.grid);
   if (domain_.has_contact()) r.contact = bytes_of(domain_.contact);
   r.other = domain_.sums.capacity() * sizeof(PatchSums<D>) + history_.capacity() * sizeof(double);
   return r;

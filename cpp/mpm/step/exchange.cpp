@@ -1,4 +1,5 @@
 // The sums over the patches that hold a node.
+#include "mpm/grid/shared_nodes.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -7,8 +8,8 @@ namespace {
 /// Of numbers [first, last) of the records; with the forces the dashpots.
 template <int D>
 void exchange(Domain<D>& domain, int first, int last, bool dashpots) {
-  domain.grid.sum_shared_nodes(domain.threads, first, last);
-  if (dashpots && domain.grid.has_dashpots) domain.grid.sum_shared_dashpots(domain.threads);
+  sum_shared_nodes(domain.grid, domain.threads, first, last);
+  if (dashpots && domain.grid.has_dashpots) sum_shared_dashpots(domain.grid, domain.threads);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ void map_patch(Domain<D>& domain, std::size_t p) {
   const Patch<D>& patch = grid.patches[p];
   const NodeBlock<D> block = grid.block(p);
   if constexpr (momentum) {
-    // All of all records: until now the memory may have been lent (TileGrid::idle_memory).
+    // All of all records: until now the memory may have been lent (NodeMemory::idle).
     clear(block.records, block.count, record);
     if (grid.has_dashpots) clear(block.dashpots(), block.count, half_record);
   }

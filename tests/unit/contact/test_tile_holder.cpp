@@ -5,6 +5,8 @@
 #include "check.hpp"
 #include "mpm/contact/tile_holder.hpp"
 #include "mpm/contact/tile_particles.hpp"
+#include "mpm/grid/blocks.hpp"
+#include "mpm/grid/connect.hpp"
 
 namespace {
 
@@ -24,8 +26,8 @@ void check_nodes(mpm::testing::Report& report, BasisId basis) {
   grid.patches[1].occupied = Tile<D>::slice(0, 1) & Tile<D>::slice(1, 2);  // a row or one cell
   grid.patches[1].body = 1;
   Threads threads(1);
-  grid.connect();
-  grid.cut_blocks(threads);
+  connect(grid);
+  cut_blocks(grid, threads);
   for (std::size_t p = 0; p < 2; ++p)
     for (int n = 0; n < grid.patches[p].shape.node_count; ++n)
       grid.block(p).mass()[n] = has_mass(random) ? 0.5 : 0.0;
@@ -50,7 +52,7 @@ void check_nodes(mpm::testing::Report& report, BasisId basis) {
         if (!expected) continue;
         const NodeBlock<D> block = grid.block(static_cast<std::size_t>(patch));
         const double* const numbers = block.records[node_in_holder<D>(grid, holder, node)];
-        CHECK(grid.record_at(held.place(node)) == numbers, patch, k, cell);
+        CHECK(grid.nodes.record_at(held.place(node)) == numbers, patch, k, cell);
       }
     }
 }

@@ -4,7 +4,9 @@
 #include <random>
 
 #include "check.hpp"
-#include "mpm/grid/tile_grid.hpp"
+#include "mpm/grid/blocks.hpp"
+#include "mpm/grid/connect.hpp"
+#include "mpm/grid/shared_nodes.hpp"
 
 namespace {
 
@@ -38,9 +40,9 @@ void check_sums(mpm::testing::Report& report, TileGrid<D>& grid, Threads& thread
     owners[key] += grid.patches[p].owned[n];
   });
   // Half by half, so that no other may change with one.
-  grid.sum_shared_nodes(threads, 0, half_record);
-  grid.sum_shared_nodes(threads, force_at, record);
-  grid.sum_shared_dashpots(threads);
+  sum_shared_nodes(grid, threads, 0, half_record);
+  sum_shared_nodes(grid, threads, force_at, record);
+  sum_shared_dashpots(grid, threads);
   constexpr double rounding = 1e-14;  // of up to 2 x 2^3 numbers below 1, added in another order
   for_each_node([&](std::size_t p, int n, const Key& key) {
     double sum = 0.0;
@@ -101,10 +103,10 @@ void check_blocks(mpm::testing::Report& report, BasisId basis, bool bonded) {
       patch.tile = tile;
       occupy(patch);
     });
-  grid.connect();
+  connect(grid);
   Patch<D> gone;
   for (int round = 0; round < 5; ++round) {
-    grid.cut_blocks(threads);
+    cut_blocks(grid, threads);
     check_sums(report, grid, threads, random);
     check_shapes(report, grid);
     // Then particles move: one patch alone changes, one goes, one comes, and in the end many
@@ -118,7 +120,7 @@ void check_blocks(mpm::testing::Report& report, BasisId basis, bool bonded) {
       patch.tile = gone.tile;
       patch.occupied = gone.occupied;
     }
-    if (round == 1 || round == 2) grid.connect();
+    if (round == 1 || round == 2) connect(grid);
     if (round == 3)
       for (Patch<D>& patch : grid.patches) occupy(patch);
   }

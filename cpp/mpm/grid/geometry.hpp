@@ -1,0 +1,92 @@
+#pragma once
+// Where cells, nodes and tiles are: from positions to their coordinates and back.
+#include <cmath>
+
+#include "mpm/basis/basis.hpp"
+#include "mpm/layout/tile.hpp"
+#include "mpm/math/vec.hpp"
+#include "mpm/walls/walls.hpp"
+
+namespace mpm {
+
+/// From positions to cells. Every kernel uses this one expression, so that all agree on cells.
+template <int D>
+struct CellCoordinates {
+  Vec<double, D> origin;
+  double cells_per_metre;
+
+  template <class T>
+  T in_cells(T x, int axis) const {
+    return (x - T(origin[axis])) * T(cells_per_metre);
+  }
+};
+
+/// Position within the cell, in [1e-12, 1 - 1e-12], from the position in cells and the cell's
+/// coordinate. A particle exactly on a cell's face would give force to nodes to which it gives no
+/// mass; it is held 1e-12 cells away.
+template <class T>
+T local_coordinate(T cells, double cell) {
+  constexpr double from_face = 1e-12;
+  return min(max(cells - T(cell), T(from_face)), T(1.0 - from_face));
+}
+
+template <int D>
+struct GridGeometry {
+  Vec<double, D> origin = Vec<double, D>::zero();  // position of node 0 [m]
+  double cell_size = 0.0;                          // [m]
+  BasisId basis = basis_id<Linear>;                // of all bodies
+  // Cell at the lower corner of tile 0. Tied to the particles' first place, so that a problem
+  // shifted by whole cells is cut into the same tiles and gives the same bits.
+  Index<D> anchor{};
+  Walls<D> walls;
+
+  CellCoordinates<D> coordinates() const {
+    Vec<double, D> corner = origin;
+    for (int a = 0; a < D; ++a) corner[a] -= reach().own_node * cell_size;
+    return {corner, 1.0 / cell_size};
+  }
+  /// Position along an axis in cells from the corner of cell 0.
+  template <class T>
+  T in_cells(T x, int axis) const {
+    return coordinates().in_cells(x, axis);
+  }
+  /// The same from node 0: between which nodes it is.
+  double among_nodes(double x, int axis) const {
+    return CellCoordinates<D>{origin, 1.0 / cell_size}.in_cells(x, axis);
+  }
+  /// Cell coordinates of a position.
+  Index<D> cell_of(const Vec<double, D>& x) const {
+    const CellCoordinates<D> cells = coordinates();
+    Index<D> i;
+    for (int a = 0; a < D; ++a)
+      i[a] = static_cast<std::int32_t>(std::floor(cells.in_cells(x[a], a)));
+    return i;
+  }
+  /// Position of a node [m].
+  Vec<double, D> position_of(const Index<D>& node) const {
+    Vec<double, D> x;
+    for (int a = 0; a < D; ++a) x[a] = origin[a] + cell_size * node[a];
+    return x;
+  }
+  Index<D> tile_of(const Index<D>& cell) const {
+    Index<D> t;
+    for (int a = 0; a < D; ++a) {
+      const int i = cell[a] - anchor[a];
+      t[a] = i >= 0 ? i / Tile<D>::cells : -((Tile<D>::cells - 1 - i) / Tile<D>::cells);
+    }
+    return t;
+  }
+  /// Coordinates of a tile's first cell, which are those of that cell's own node too.
+  Index<D> first_cell(const Index<D>& tile) const {
+    Index<D> c;
+    for (int a = 0; a < D; ++a) c[a] = anchor[a] + tile[a] * Tile<D>::cells;
+    return c;
+  }
+
+  /// Nodes around a cell's own that its particles reach.
+  Reach reach() const { return reach_of(basis); }
+  /// Do nodes beyond walls follow their images before them?
+  bool has_ghosts() const { return walls.exist && reach().before > 0; }
+};
+
+}  // namespace mpm
