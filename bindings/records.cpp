@@ -1,7 +1,10 @@
 // What a simulation tells: records of loads, failures, warnings and contacts.
+#include "mpm/run/records.hpp"
+
 #include <nanobind/stl/array.h>
 
-#include "mpm/run/simulation.hpp"
+#include "mpm/contact/pair_records.hpp"
+#include "mpm/fields/columns.hpp"
 #include "translate.hpp"
 
 namespace mpm::bindings {

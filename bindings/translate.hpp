@@ -68,9 +68,11 @@ inline StateStream::Transfer transfer_by(const nb::callable& f) {
   };
 }
 
-/// Settings, records, and the catalogue of material models with the single material point.
+/// Settings, records, simulations, and the catalogue of material models with the single material
+/// point.
 void add_settings(nb::module_& m);
 void add_records(nb::module_& m);
+void add_simulation(nb::module_& m);
 void add_materials(nb::module_& m);
 
 }  // namespace mpm::bindings

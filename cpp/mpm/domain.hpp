@@ -51,16 +51,35 @@ struct Domain {
   std::vector<RigidSums> rigid_parts, rigid_sums;  // scratch: per patch, per rigid body
   std::vector<Matrix3> rigid_turns;
 
+  /// A body by the number that a user gave; throws std::out_of_range.
+  Body<D>& body_at(int number) { return bodies.at(static_cast<std::size_t>(number)); }
+  const Body<D>& body_at(int number) const { return bodies.at(static_cast<std::size_t>(number)); }
   Body<D>& body_of(const Patch<D>& patch) { return bodies[static_cast<std::size_t>(patch.body)]; }
-  ParticlePool<D>& pool_of(const Patch<D>& patch) { return pools[pool_number(bodies, patch.body)]; }
+  const Body<D>& body_of(const Patch<D>& patch) const {
+    return bodies[static_cast<std::size_t>(patch.body)];
+  }
+  ParticlePool<D>& pool_of(const Body<D>& b) { return pools[static_cast<std::size_t>(b.material)]; }
+  const ParticlePool<D>& pool_of(const Body<D>& b) const {
+    return pools[static_cast<std::size_t>(b.material)];
+  }
+  ParticlePool<D>& pool_of(const Patch<D>& patch) { return pool_of(body_of(patch)); }
+  const ParticlePool<D>& pool_of(const Patch<D>& patch) const { return pool_of(body_of(patch)); }
   const Material& material_of(const Patch<D>& patch) const {
-    return materials[pool_number(bodies, patch.body)];
+    return materials[static_cast<std::size_t>(body_of(patch).material)];
   }
   bool has_rigid() const { return !rigid_bodies.empty(); }
   bool has_prescribed() const { return !prescribed.empty(); }
   bool has_loads() const { return !loads.empty(); }
   bool has_contact() const {
     return contact_settings.enabled && !contact_settings.bonded && bodies.size() > 1;
+  }
+  /// f(pool, row) for the particles that take part, in the order of the lists.
+  template <class F>
+  void for_each_particle(F&& f) const {
+    for (const Patch<D>& patch : grid.patches) {
+      const ParticlePool<D>& pool = pool_of(patch);
+      for (const std::uint32_t row : pool.rows(patch)) f(pool, row);
+    }
   }
 };
 

@@ -1,13 +1,13 @@
-// Whether a state that was restored is one that a run can have: bytes from a file may be anything,
-// and a step trusts its lists.
+// Bytes from a file may be anything, and a step trusts its lists.
+#include "mpm/run/check_restored.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <utility>
 
-#include "mpm/ledger/history.hpp"
-#include "mpm/run/simulation_of.hpp"
+#include "mpm/run/coarsen_cells.hpp"
 
 namespace mpm {
 namespace {
@@ -66,30 +66,29 @@ void check_particles(const TileGrid<D>& grid, const ParticlePool<D>& pool, const
   });
 }
 
-}  // namespace
-
 /// Each row of a pool, and each number of a body, is that of one particle, in a list or removed.
 template <int D>
-void SimulationOf<D>::check_rows() const {
+void check_rows(const Domain<D>& domain) {
   std::vector<std::vector<bool>> rows, ids;
-  for (const ParticlePool<D>& pool : domain_.pools) rows.emplace_back(pool.count());
-  for (const Body<D>& body : domain_.bodies) ids.emplace_back(body.count);
+  for (const ParticlePool<D>& pool : domain.pools) rows.emplace_back(pool.count());
+  for (const Body<D>& body : domain.bodies) ids.emplace_back(body.count);
   const auto see = [&](std::uint32_t row, int number) {
-    const auto m = static_cast<std::size_t>(body(number).material);
+    const auto m = static_cast<std::size_t>(domain.body_at(number).material);
     check(row < rows[m].size() && !rows[m][row], "its lists are damaged");
     rows[m][row] = true;
     std::vector<bool>& seen = ids[static_cast<std::size_t>(number)];
-    const std::uint32_t id = domain_.pools[m].id[row];
+    const std::uint32_t id = domain.pools[m].id[row];
     check(id < seen.size() && !seen[id], "its lists are damaged");
     seen[id] = true;
   };
-  for (const Patch<D>& patch : domain_.grid.patches)
-    for (const std::uint32_t row : pool(body(patch.body)).rows(patch)) see(row, patch.body);
-  std::vector<std::size_t> removed(domain_.bodies.size(), 0);
+  for (const Patch<D>& patch : domain.grid.patches)
+    for (const std::uint32_t row : domain.pool_of(patch).rows(patch)) see(row, patch.body);
+  std::vector<std::size_t> removed(domain.bodies.size(), 0);
   for (std::size_t m = 0; m < rows.size(); ++m)
-    for (const RemovedRow& one : domain_.pools[m].removed) {
+    for (const RemovedRow& one : domain.pools[m].removed) {
       const auto b = static_cast<std::size_t>(one.body);
-      check(one.body >= 0 && b < removed.size() && std::cmp_equal(body(one.body).material, m),
+      check(one.body >= 0 && b < removed.size() &&
+                std::cmp_equal(domain.body_at(one.body).material, m),
             "its lists are damaged");
       ++removed[b];
       see(one.row, one.body);
@@ -97,17 +96,18 @@ void SimulationOf<D>::check_rows() const {
   for (const std::vector<bool>& seen : rows)
     check(std::ranges::all_of(seen, std::identity()), "its lists are damaged");
   for (std::size_t b = 0; b < removed.size(); ++b)
-    check(removed[b] == domain_.bodies[b].removed, "its lists are damaged");
+    check(removed[b] == domain.bodies[b].removed, "its lists are damaged");
 }
 
 /// The ranges that patches own of their pools' lists: none of another's.
 template <int D>
-void SimulationOf<D>::check_ranges() const {
-  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> ranges(domain_.pools.size());
-  for (const Patch<D>& patch : domain_.grid.patches) {
-    check(patch.body >= 0 && patch.body < body_count() && patch.count <= patch.room,
+void check_ranges(const Domain<D>& domain) {
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> ranges(domain.pools.size());
+  for (const Patch<D>& patch : domain.grid.patches) {
+    check(patch.body >= 0 && std::cmp_less(patch.body, domain.bodies.size()) &&
+              patch.count <= patch.room,
           "its lists are damaged");
-    const auto m = static_cast<std::size_t>(body(patch.body).material);
+    const auto m = static_cast<std::size_t>(domain.body_of(patch).material);
     ranges[m].emplace_back(patch.begin, patch.begin + std::size_t{patch.room});
   }
   for (std::size_t m = 0; m < ranges.size(); ++m) {
@@ -117,24 +117,41 @@ void SimulationOf<D>::check_ranges() const {
       check(first >= end, "its lists are damaged");
       end = last;
     }
-    const ParticlePool<D>& pool = domain_.pools[m];
+    const ParticlePool<D>& pool = domain.pools[m];
     check(end <= pool.used && pool.used <= pool.order.size(), "its lists are damaged");
   }
 }
 
-/// Bodies and patches: what numbers the particles and says where they are. Throws
-/// std::invalid_argument if no step can have left them so.
+/// The chains of pieces that particles carry: each piece once, by the particle that it is of.
 template <int D>
-void SimulationOf<D>::check_lists() const {
-  const TileGrid<D>& grid = domain_.grid;
+void check_pieces(const Domain<D>& domain) {
+  const auto& pieces = domain.pieces;
+  std::vector<bool> seen(pieces.size());
+  for (const ParticlePool<D>& pool : domain.pools)
+    for (const std::uint32_t first : pool.piece)
+      for (std::uint32_t k = first; k != 0; k = pieces[k - 1].next) {
+        check(k <= seen.size() && !seen[k - 1], "its loads are damaged");
+        seen[k - 1] = true;
+      }
+  for (const SurfacePiece<D>& piece : pieces)
+    check(piece.load >= 0 && std::cmp_less(piece.load, domain.loads.size()) && finite(piece.area) &&
+              finite(piece.size) && finite(piece.arm),
+          "its loads are damaged");
+}
+
+}  // namespace
+
+template <int D>
+void check_lists(const Domain<D>& domain) {
+  const TileGrid<D>& grid = domain.grid;
   check(finite(grid.cell_size) && grid.cell_size > 0.0, "its grid is damaged");
   for (const std::int32_t cell : grid.anchor)
     check(std::abs(static_cast<double>(cell)) < farthest, "its grid is damaged");
-  for (const Body<D>& body : domain_.bodies)
+  for (const Body<D>& body : domain.bodies)
     if (body.is_prescribed())
       check(finite(body.motion->before) && finite(body.motion->now), "its motions are damaged");
-  check_ranges();
-  check_rows();
+  check_ranges(domain);
+  check_rows(domain);
   const Patch<D>* last = nullptr;
   for (const Patch<D>& patch : grid.patches) {
     check(!last || patch_less<D>(last->body, last->tile, patch.body, patch.tile),
@@ -144,78 +161,54 @@ void SimulationOf<D>::check_lists() const {
             "its lists are damaged");
     last = &patch;
     check_cells<D>(patch);
-    check_particles<D>(grid, pool(body(patch.body)), patch);
+    check_particles<D>(grid, domain.pool_of(patch), patch);
   }
-  check_pieces();
+  check_pieces(domain);
 }
 
-/// The chains of pieces that particles carry: each piece once, by the particle that it is of.
 template <int D>
-void SimulationOf<D>::check_pieces() const {
-  const auto& pieces = domain_.pieces;
-  std::vector<bool> seen(pieces.size());
-  for (const ParticlePool<D>& pool : domain_.pools)
-    for (const std::uint32_t first : pool.piece)
-      for (std::uint32_t k = first; k != 0; k = pieces[k - 1].next) {
-        check(k <= seen.size() && !seen[k - 1], "its loads are damaged");
-        seen[k - 1] = true;
-      }
-  for (const SurfacePiece<D>& piece : pieces)
-    check(piece.load >= 0 && std::cmp_less(piece.load, domain_.loads.size()) &&
-              finite(piece.area) && finite(piece.size) && finite(piece.arm),
-          "its loads are damaged");
-}
-
-/// All else, when it has been restored. Throws std::invalid_argument likewise.
-///
-/// `cell_size`, `walls`: of the case, before cells have doubled.
-template <int D>
-void SimulationOf<D>::check_rest(double cell_size, const Index<D>& walls) const {
-  const TileGrid<D>& grid = domain_.grid;
-  check(coarsenings_ >= 0 && coarsenings_ <= most_coarsenings(), "its grid is damaged");
-  bool same = settings_.grid.cell_size == std::ldexp(cell_size, coarsenings_);
+void check_rest(const Simulation<D>& simulation) {
+  const Domain<D>& domain = simulation.domain;
+  const GridSettings& given = simulation.settings.grid;
+  const int coarsenings = simulation.coarsenings;
+  const TileGrid<D>& grid = domain.grid;
+  check(coarsenings >= 0 && coarsenings <= most_coarsenings(given), "its grid is damaged");
+  bool same = grid.cell_size == std::ldexp(given.cell_size, coarsenings);
   for (std::size_t a = 0; a < D; ++a)
-    same = same && (grid.walls.cells[a] == walls[a] >> std::min(coarsenings_, 31));
-  check(same && grid.cell_size == settings_.grid.cell_size, "its grid is damaged");
-  check(domain_.step >= 0 && domain_.step < std::int64_t{1} << 62 && finite(domain_.time) &&
-            domain_.time >= 0.0 && finite(domain_.time_step) && next_time_step_ > 0.0 &&
-            finite(domain_.gravity),
+    same = same && (grid.walls.cells[a] == given.box_cells[a] >> std::min(coarsenings, 31));
+  check(same, "its grid is damaged");
+  check(domain.step >= 0 && domain.step < std::int64_t{1} << 62 && finite(domain.time) &&
+            domain.time >= 0.0 && finite(domain.time_step) && simulation.next_time_step > 0.0 &&
+            finite(domain.gravity),
         "its time is damaged");
-  for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
+  domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
     for (int a = 0; a < D; ++a) {
       const double v = of.v(a)[row];  // The next step is infinite where none moves.
-      check(v == 0.0 || std::abs(v) * next_time_step_ < farthest * grid.cell_size,
+      check(v == 0.0 || std::abs(v) * simulation.next_time_step < farthest * grid.cell_size,
             "its particles are damaged");
     }
   });
-  check(domain_.sums.size() == grid.patches.size(), "its sums are damaged");
-  for (const PatchSums<D>& s : domain_.sums) {
+  check(domain.sums.size() == grid.patches.size(), "its sums are damaged");
+  for (const PatchSums<D>& s : domain.sums) {
     StateStream::check_flag(s.stress.negative_volume);
     StateStream::check_flag(s.stress.eroded);
   }
-  for (const RigidMotion& motion : domain_.rigid) check(finite(motion), "its motions are damaged");
-  const std::size_t columns = history_terms.size();
-  check(history_.size() % columns == 0 && history_.size() <= (history_capacity + 1) * columns,
-        "its history is damaged");
-  check(finite(domain_.ledger.kinetic) && finite(domain_.ledger.residual()),
+  for (const RigidMotion& motion : domain.rigid) check(finite(motion), "its motions are damaged");
+  check(simulation.history.plausible(), "its history is damaged");
+  check(finite(domain.ledger.kinetic) && finite(domain.ledger.residual()),
         "its energies are damaged");
-  check(watch_.plausible() && looked_ <= domain_.step, "its warnings are damaged");
-  const auto number_of = [&](int n) { return n >= 0 && n < body_count(); };
-  for (const Note& note : notes_)
+  const Watch<D>& watch = simulation.watch;
+  check(watch.steps.plausible() && watch.looked <= domain.step, "its warnings are damaged");
+  const auto number_of = [&](int n) { return n >= 0 && std::cmp_less(n, domain.bodies.size()); };
+  for (const Note& note : watch.notes)
     check(static_cast<std::size_t>(note.kind) < note_names.size() && number_of(note.body) &&
               number_of(note.group) && note.face >= -1 && note.face < 2 * D,
           "its warnings are damaged");
 }
 
-template void SimulationOf<2>::check_rows() const;
-template void SimulationOf<3>::check_rows() const;
-template void SimulationOf<2>::check_ranges() const;
-template void SimulationOf<3>::check_ranges() const;
-template void SimulationOf<2>::check_lists() const;
-template void SimulationOf<3>::check_lists() const;
-template void SimulationOf<2>::check_pieces() const;
-template void SimulationOf<3>::check_pieces() const;
-template void SimulationOf<2>::check_rest(double, const Index<2>&) const;
-template void SimulationOf<3>::check_rest(double, const Index<3>&) const;
+template void check_lists<2>(const Domain<2>&);
+template void check_lists<3>(const Domain<3>&);
+template void check_rest<2>(const Simulation<2>&);
+template void check_rest<3>(const Simulation<3>&);
 
 }  // namespace mpm

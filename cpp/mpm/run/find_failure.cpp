@@ -1,67 +1,91 @@
-// The part of a simulation that finds out why it cannot go on.
+#include "mpm/run/find_failure.hpp"
+
 #include <cmath>
 #include <sstream>
 
-#include "mpm/run/simulation_of.hpp"
+#include "mpm/run/time_step.hpp"
 
 namespace mpm {
 
 template <int D>
-void SimulationOf<D>::find_failure() {
+void find_failure(Simulation<D>& simulation) {
+  const Domain<D>& domain = simulation.domain;
+  const auto fail = [&](const char* kind, std::size_t body, std::size_t row,
+                        const std::string& what) {
+    simulation.failure = failure_at(domain, kind, body, row, what);
+  };
   bool negative = false;
-  for (const PatchSums<D>& s : domain_.sums) negative = negative || s.stress.negative_volume;
-  if (!negative && std::isfinite(domain_.ledger.kinetic) &&
-      std::isfinite(domain_.ledger.residual())) {
-    if (domain_.ledger.growth() <= settings_.run.energy_growth_limit) return;
-    const Limiter fastest = limiter();
-    const std::size_t row = row_of(fastest.body, fastest.particle);
+  for (const PatchSums<D>& s : domain.sums) negative = negative || s.stress.negative_volume;
+  if (!negative && std::isfinite(domain.ledger.kinetic) &&
+      std::isfinite(domain.ledger.residual())) {
+    if (domain.ledger.growth() <= simulation.settings.run.energy_growth_limit) return;
+    const Limiter fastest = find_limiter(domain);
+    const std::size_t row = row_of(domain, fastest.body, fastest.particle);
     std::ostringstream text;
-    text << "the numerical terms have made " << domain_.ledger.growth()
+    text << "the numerical terms have made " << domain.ledger.growth()
          << " of the largest energy brought in";
-    failure_ = failure_at("energy growth", static_cast<std::size_t>(fastest.body), row, text.str());
+    fail("energy growth", static_cast<std::size_t>(fastest.body), row, text.str());
     return;
   }
-  for (const Patch<D>& patch : domain_.grid.patches) {
+  for (const Patch<D>& patch : domain.grid.patches) {
     const auto b = static_cast<std::size_t>(patch.body);
-    const ParticlePool<D>& of = domain_.pool_of(patch);
+    const ParticlePool<D>& of = domain.pool_of(patch);
     for (const std::uint32_t i : of.rows(patch)) {
       bool finite = true;
       for (int c = 0; c < of.columns.component_count(); ++c)
         finite = finite && std::isfinite(of.columns.value(c, i));
       if (!finite) {
-        failure_ = failure_at("non-finite", b, i, "a value of the particle is not a finite number");
+        fail("non-finite", b, i, "a value of the particle is not a finite number");
         return;
       }
       if (!(of.volume()[i] > 0.0)) {
-        failure_ = failure_at("negative volume", b, i, "the particle has been turned inside out");
+        fail("negative volume", b, i, "the particle has been turned inside out");
         return;
       }
     }
   }
-  failure_ = failure_at("non-finite", 0, 0, "the energy is not a finite number");
+  fail("non-finite", 0, 0, "the energy is not a finite number");
 }
 
 template <int D>
-Failure SimulationOf<D>::failure_at(const std::string& kind, std::size_t b, std::size_t row,
-                                    const std::string& what) const {
-  const Body<D>& body = domain_.bodies[b];
+Failure failure_at(const Domain<D>& domain, const std::string& kind, std::size_t b, std::size_t row,
+                   const std::string& what) {
+  const Body<D>& body = domain.bodies[b];
+  const ParticlePool<D>& pool = domain.pool_of(body);
   Failure f;
   f.kind = kind;
   f.body = static_cast<int>(b);
-  f.particle = pool(body).id[row];
-  f.step = domain_.step;
-  f.time = domain_.time;
-  for (int a = 0; a < D; ++a) f.position[static_cast<std::size_t>(a)] = pool(body).x(a)[row];
+  f.particle = pool.id[row];
+  f.step = domain.step;
+  f.time = domain.time;
+  for (int a = 0; a < D; ++a) f.position[static_cast<std::size_t>(a)] = pool.x(a)[row];
   std::ostringstream text;
   text << kind << " at step " << f.step << ", t = " << f.time << " s: " << what << " (body \""
        << body.name << "\", particle " << f.particle << ", at";
-  for (int a = 0; a < D; ++a) text << ' ' << pool(body).x(a)[row];
+  for (int a = 0; a < D; ++a) text << ' ' << pool.x(a)[row];
   text << " m)";
   f.message = text.str();
   return f;
 }
 
-template class SimulationOf<2>;
-template class SimulationOf<3>;
+template <int D>
+std::size_t row_of(const Domain<D>& domain, int number, std::int64_t particle) {
+  const Body<D>& body = domain.body_at(number);
+  const ParticlePool<D>& of = domain.pool_of(body);
+  std::size_t found = 0;
+  for_each_row(domain.grid.patches, of, number, body.removed, [&](std::uint32_t row) {
+    if (static_cast<std::int64_t>(of.id[row]) == particle) found = row;
+  });
+  return found;
+}
+
+template void find_failure<2>(Simulation<2>&);
+template void find_failure<3>(Simulation<3>&);
+template Failure failure_at<2>(const Domain<2>&, const std::string&, std::size_t, std::size_t,
+                               const std::string&);
+template Failure failure_at<3>(const Domain<3>&, const std::string&, std::size_t, std::size_t,
+                               const std::string&);
+template std::size_t row_of<2>(const Domain<2>&, int, std::int64_t);
+template std::size_t row_of<3>(const Domain<3>&, int, std::int64_t);
 
 }  // namespace mpm

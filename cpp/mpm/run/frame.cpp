@@ -1,14 +1,13 @@
-// What a frame holds of the bodies: columns rounded to floats, without room for doubles between.
-//
 // This file is compiled without fused multiply-add, so that the invariants of the stress have the
 // bits of their formulas on any processor.
+#include "mpm/run/frame.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "mpm/run/derived_fields.hpp"
-#include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
 
@@ -37,12 +36,12 @@ void for_each_row_of(const Domain<D>& domain, std::size_t pool, F&& f) {
 }  // namespace
 
 template <int D>
-void SimulationOf<D>::round_column(const std::string& name, std::span<const int> places,
-                                   std::size_t width, std::span<float> to) const {
-  const std::vector<std::size_t> first = first_places(domain_);
+void round_column(const Domain<D>& domain, const std::string& name, std::span<const int> places,
+                  std::size_t width, std::span<float> to) {
+  const std::vector<std::size_t> first = first_places(domain);
   if (to.size() < first.back() * width) throw std::invalid_argument("round_column: wrong size");
-  for (std::size_t m = 0; m < domain_.pools.size(); ++m) {
-    const ParticlePool<D>& of = domain_.pools[m];
+  for (std::size_t m = 0; m < domain.pools.size(); ++m) {
+    const ParticlePool<D>& of = domain.pools[m];
     const auto info = std::ranges::find(of.columns.infos(), name, &ColumnInfo::name);
     if (of.count() == 0 || info == of.columns.infos().end()) continue;
     if (places.size() != static_cast<std::size_t>(info->components) ||
@@ -51,7 +50,7 @@ void SimulationOf<D>::round_column(const std::string& name, std::span<const int>
     for (int c = 0; c < info->components; ++c) {
       float* const begin = to.data() + places[static_cast<std::size_t>(c)];
       of.columns.with_component(info->first + c, [&](const auto* from) {
-        for_each_row_of(domain_, m, [&](std::size_t b, std::uint32_t row) {
+        for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
           begin[(first[b] + of.id[row]) * width] = static_cast<float>(from[row]);
         });
       });
@@ -60,16 +59,16 @@ void SimulationOf<D>::round_column(const std::string& name, std::span<const int>
 }
 
 template <int D>
-void SimulationOf<D>::round_derived(const std::string& name, std::span<float> to) const {
+void round_derived(const Domain<D>& domain, const std::string& name, std::span<float> to) {
   const auto field = std::ranges::find(derived_fields, name, &DerivedField::name);
   if (field == derived_fields.end())
     throw std::invalid_argument("no derived field is named " + name);
-  const std::vector<std::size_t> first = first_places(domain_);
+  const std::vector<std::size_t> first = first_places(domain);
   if (to.size() < first.back()) throw std::invalid_argument("round_derived: wrong size");
-  for (std::size_t m = 0; m < domain_.pools.size(); ++m) {
-    const ParticlePool<D>& of = domain_.pools[m];
-    for_each_row_of(domain_, m, [&](std::size_t b, std::uint32_t row) {
-      ParticleState p{{}, of.mass()[row] / domain_.bodies[b].initial_density, D};
+  for (std::size_t m = 0; m < domain.pools.size(); ++m) {
+    const ParticlePool<D>& of = domain.pools[m];
+    for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
+      ParticleState p{{}, of.mass()[row] / domain.bodies[b].initial_density, D};
       for (int c = 0; c < Sym<double, D>::size; ++c)
         p.stress[D == 2 && c == 3 ? 5 : c] = of.stress(c)[row];
       to[first[b] + of.id[row]] = static_cast<float>(field->value(p));
@@ -77,7 +76,11 @@ void SimulationOf<D>::round_derived(const std::string& name, std::span<float> to
   }
 }
 
-template class SimulationOf<2>;
-template class SimulationOf<3>;
+template void round_column<2>(const Domain<2>&, const std::string&, std::span<const int>,
+                              std::size_t, std::span<float>);
+template void round_column<3>(const Domain<3>&, const std::string&, std::span<const int>,
+                              std::size_t, std::span<float>);
+template void round_derived<2>(const Domain<2>&, const std::string&, std::span<float>);
+template void round_derived<3>(const Domain<3>&, const std::string&, std::span<float>);
 
 }  // namespace mpm

@@ -1,19 +1,20 @@
-// The part of a simulation that takes loads on surfaces in and tells what they have done.
+#include "mpm/run/loads.hpp"
+
 #include <cmath>
 #include <stdexcept>
-
-#include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
 
 template <int D>
-void SimulationOf<D>::add_load(const std::string& name, int number, const std::string& kind,
-                               const std::array<TimeFunction, 3>& value, const Pieces& pieces) {
+void add_load(Simulation<D>& simulation, const std::string& name, int number,
+              const std::string& kind, const std::array<TimeFunction, 3>& value,
+              const Pieces& pieces) {
+  Domain<D>& domain = simulation.domain;
   const auto check = [&](bool condition, const std::string& rule) {
     if (!condition) throw std::invalid_argument("load " + name + ": " + rule);
   };
-  check(!prepared_, "must be added before prepare()");
-  const Body<D>& on = body(number);
+  check(!simulation.prepared, "must be added before prepare()");
+  const Body<D>& on = domain.body_at(number);
   check(on.deforms(), "its body is rigid, and a load acts on bodies that deform");
   const std::size_t n = pieces.particles.size();
   check(n > 0, "no particle carries a piece of the surface");
@@ -31,7 +32,7 @@ void SimulationOf<D>::add_load(const std::string& name, int number, const std::s
   std::vector<SurfacePiece<D>> found(n);
   for (std::size_t k = 0; k < n; ++k) {
     SurfacePiece<D>& piece = found[k];
-    piece.load = static_cast<int>(domain_.loads.size());
+    piece.load = static_cast<int>(domain.loads.size());
     piece.particle = pieces.particles[k];
     piece.size = pieces.sizes[k];
     check(piece.size > 0.0 && std::isfinite(piece.size), "sizes must be finite numbers > 0");
@@ -46,19 +47,17 @@ void SimulationOf<D>::add_load(const std::string& name, int number, const std::s
             "areas and arms must be finite numbers");
     }
   }
-  domain_.pieces.insert(domain_.pieces.end(), found.begin(), found.end());
-  domain_.loads.push_back(std::move(load));
+  domain.pieces.insert(domain.pieces.end(), found.begin(), found.end());
+  domain.loads.push_back(std::move(load));
 }
 
-/// Tell the particles which pieces they carry; each body's lie in one patch yet, as they were
-/// given.
 template <int D>
-void SimulationOf<D>::place_pieces() {
-  for (std::size_t k = 0; k < domain_.pieces.size(); ++k) {
-    SurfacePiece<D>& piece = domain_.pieces[k];
-    const int on = domain_.loads[static_cast<std::size_t>(piece.load)].body;
-    const Patch<D>& patch = domain_.grid.patches[static_cast<std::size_t>(on)];
-    ParticlePool<D>& pool = domain_.pool_of(patch);
+void place_pieces(Domain<D>& domain) {
+  for (std::size_t k = 0; k < domain.pieces.size(); ++k) {
+    SurfacePiece<D>& piece = domain.pieces[k];
+    const int on = domain.loads[static_cast<std::size_t>(piece.load)].body;
+    const Patch<D>& patch = domain.grid.patches[static_cast<std::size_t>(on)];
+    ParticlePool<D>& pool = domain.pool_of(patch);
     pool.piece.resize(pool.count(), 0);
     std::uint32_t& first = pool.piece[patch.begin + std::size_t{piece.particle}];
     piece.next = first;
@@ -67,9 +66,9 @@ void SimulationOf<D>::place_pieces() {
 }
 
 template <int D>
-std::vector<LoadRecord> SimulationOf<D>::loads() const {
+std::vector<LoadRecord> load_records(const Domain<D>& domain) {
   std::vector<LoadRecord> records;
-  for (const SurfaceLoad<D>& load : domain_.loads) {
+  for (const SurfaceLoad<D>& load : domain.loads) {
     LoadRecord& record = records.emplace_back();
     record.name = load.name;
     for (std::size_t a = 0; a < D; ++a) {
@@ -77,20 +76,26 @@ std::vector<LoadRecord> SimulationOf<D>::loads() const {
       record.impulse[a] = load.impulse[static_cast<int>(a)];
     }
   }
-  std::vector<bool> removed(domain_.pieces.size());  // with the particles that carried them
-  for (const ParticlePool<D>& pool : domain_.pools)
+  std::vector<bool> removed(domain.pieces.size());  // with the particles that carried them
+  for (const ParticlePool<D>& pool : domain.pools)
     for (const RemovedRow& one : pool.removed)
       for (std::uint32_t k = pool.piece.empty() ? 0 : pool.piece[one.row]; k != 0;
-           k = domain_.pieces[k - 1].next)
+           k = domain.pieces[k - 1].next)
         removed[k - 1] = true;
   for (std::size_t k = 0; k < removed.size(); ++k) {
-    const SurfacePiece<D>& piece = domain_.pieces[k];
+    const SurfacePiece<D>& piece = domain.pieces[k];
     if (!removed[k]) records[static_cast<std::size_t>(piece.load)].area += piece.size;
   }
   return records;
 }
 
-template class SimulationOf<2>;
-template class SimulationOf<3>;
+template void add_load<2>(Simulation<2>&, const std::string&, int, const std::string&,
+                          const std::array<TimeFunction, 3>&, const Pieces&);
+template void add_load<3>(Simulation<3>&, const std::string&, int, const std::string&,
+                          const std::array<TimeFunction, 3>&, const Pieces&);
+template void place_pieces<2>(Domain<2>&);
+template void place_pieces<3>(Domain<3>&);
+template std::vector<LoadRecord> load_records<2>(const Domain<2>&);
+template std::vector<LoadRecord> load_records<3>(const Domain<3>&);
 
 }  // namespace mpm

@@ -1,16 +1,17 @@
-// The state of a run between two steps: what a step reads that neither the case nor the rest of the
-// state tells. It is restored into a simulation of the same case that has made no step.
+// What a step reads that neither the case nor the rest of the state tells.
+#include "mpm/run/save.hpp"
+
 #include "mpm/contact/candidates.hpp"
 #include "mpm/grid/blocks.hpp"
 #include "mpm/grid/connect.hpp"
-#include "mpm/run/simulation_of.hpp"
+#include "mpm/run/check_restored.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 4;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 5;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
@@ -34,10 +35,9 @@ void exchange_pool(StateStream& stream, ParticlePool<D>& pool) {
   stream.vector(pool.removed);
 }
 
-}  // namespace
-
 template <int D>
-void SimulationOf<D>::exchange(StateStream& stream) {
+void exchange(Simulation<D>& simulation, StateStream& stream) {
+  Domain<D>& domain = simulation.domain;
   stream.same(format, other_version);
   for (const std::size_t size :
        {sizeof(Storage), sizeof(Ledger), sizeof(PatchSums<D>), sizeof(Removed<D>),
@@ -45,58 +45,61 @@ void SimulationOf<D>::exchange(StateStream& stream) {
         sizeof(PairRecord), sizeof(CachedNode), sizeof(CachedPair<D>)})
     stream.same(size, other_version);
   stream.same(D, other_case);
-  stream.same(domain_.bodies.size(), other_case);
-  stream.same(domain_.loads.size(), other_case);
-  stream.same(domain_.pools.size(), other_case);
-  stream.same(domain_.pieces.size(), other_case);
-  for (Body<D>& body : domain_.bodies) exchange_body(stream, body);
-  for (ParticlePool<D>& pool : domain_.pools) exchange_pool(stream, pool);
-  for (SurfaceLoad<D>& load : domain_.loads) stream(load.stress, load.force, load.impulse);
-  stream.array(std::span(domain_.pieces));
-  exchange_grid(domain_.grid, stream);
+  stream.same(domain.bodies.size(), other_case);
+  stream.same(domain.loads.size(), other_case);
+  stream.same(domain.pools.size(), other_case);
+  stream.same(domain.pieces.size(), other_case);
+  for (Body<D>& body : domain.bodies) exchange_body(stream, body);
+  for (ParticlePool<D>& pool : domain.pools) exchange_pool(stream, pool);
+  for (SurfaceLoad<D>& load : domain.loads) stream(load.stress, load.force, load.impulse);
+  stream.array(std::span(domain.pieces));
+  exchange_grid(domain.grid, stream);
   if (stream.restores()) {
-    check_lists();
-    release_nodes(domain_.grid);
-    connect(domain_.grid);
-    cut_blocks(domain_.grid, domain_.threads);
-    if (domain_.has_contact()) connect_tiles(domain_.contact, domain_.grid, domain_.bodies);
+    check_lists(domain);
+    release_nodes(domain.grid);
+    connect(domain.grid);
+    cut_blocks(domain.grid, domain.threads);
+    if (domain.has_contact()) connect_tiles(domain.contact, domain.grid, domain.bodies);
   }
-  if (domain_.has_contact()) exchange_contact(domain_.contact, stream, domain_.bodies.size());
-  stream(domain_.time, domain_.time_step, domain_.step, domain_.gravity);
-  stream(domain_.eroded, domain_.outflow);
-  stream.vector(domain_.sums);
-  stream.same(domain_.rigid.size(), other_case);
-  stream.array(std::span(domain_.rigid));
-  stream(settings_.grid.cell_size, coarsenings_, next_time_step_, domain_.ledger);
-  stream.vector(history_);
-  stream(watch_, looked_);
-  stream.vector(notes_);
-  timers_.exchange(stream);
+  if (domain.has_contact()) exchange_contact(domain.contact, stream, domain.bodies.size());
+  stream(domain.time, domain.time_step, domain.step, domain.gravity);
+  stream(domain.eroded, domain.outflow);
+  stream.vector(domain.sums);
+  stream.same(domain.rigid.size(), other_case);
+  stream.array(std::span(domain.rigid));
+  stream(simulation.coarsenings, simulation.next_time_step, domain.ledger);
+  simulation.history.exchange(stream);
+  stream(simulation.watch.steps, simulation.watch.looked);
+  stream.vector(simulation.watch.notes);
+  simulation.timers.exchange(stream);
 }
 
+}  // namespace
+
 template <int D>
-void SimulationOf<D>::save(const StateStream::Transfer& to) {
-  if (!prepared_) throw std::invalid_argument("call prepare() before save()");
-  if (failure_) throw std::invalid_argument("a run that had to stop has no state to go on from");
+void save(Simulation<D>& simulation, const StateStream::Transfer& to) {
+  if (!simulation.prepared) throw std::invalid_argument("call prepare() before save()");
+  if (simulation.failure)
+    throw std::invalid_argument("a run that had to stop has no state to go on from");
   StateStream stream(StateStream::Way::save, to);
-  exchange(stream);
+  exchange(simulation, stream);
 }
 
 template <int D>
-void SimulationOf<D>::restore(const StateStream::Transfer& from, std::size_t size) {
-  if (!prepared_ || domain_.step > 0)
+void restore(Simulation<D>& simulation, const StateStream::Transfer& from, std::size_t size) {
+  if (!simulation.prepared || simulation.domain.step > 0)
     throw std::invalid_argument("call restore() after prepare() and before any step");
-  const double cell_size = settings_.grid.cell_size;
-  const auto walls = domain_.grid.walls.cells;
   StateStream stream(StateStream::Way::restore, from, size);
-  prepared_ = false;  // what has been restored half must not step
-  exchange(stream);
+  simulation.prepared = false;  // what has been restored half must not step
+  exchange(simulation, stream);
   stream.end();
-  check_rest(cell_size, walls);
-  prepared_ = true;
+  check_rest(simulation);
+  simulation.prepared = true;
 }
 
-template class SimulationOf<2>;
-template class SimulationOf<3>;
+template void save<2>(Simulation<2>&, const StateStream::Transfer&);
+template void save<3>(Simulation<3>&, const StateStream::Transfer&);
+template void restore<2>(Simulation<2>&, const StateStream::Transfer&, std::size_t);
+template void restore<3>(Simulation<3>&, const StateStream::Transfer&, std::size_t);
 
 }  // namespace mpm

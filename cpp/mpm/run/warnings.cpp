@@ -1,8 +1,8 @@
-// The part of a simulation that puts what it has noted into sentences.
+#include "mpm/run/warnings.hpp"
+
+#include <algorithm>
 #include <array>
 #include <sstream>
-
-#include "mpm/run/simulation_of.hpp"
 
 namespace mpm {
 namespace {
@@ -65,9 +65,18 @@ std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded
 }  // namespace
 
 template <int D>
-std::vector<Warning> SimulationOf<D>::warnings() const {
+std::string group_name(const Domain<D>& domain, int first) {
+  const Body<D>& body = domain.body_at(first);
+  const bool several = std::ranges::any_of(
+      domain.bodies, [&](const Body<D>& b) { return b.group == first && &b != &body; });
+  return "body \"" + body.name + '"' + (several ? " and those grouped with it" : "");
+}
+
+template <int D>
+std::vector<Warning> warnings(const Simulation<D>& simulation) {
+  const Domain<D>& domain = simulation.domain;
   std::vector<Warning> told;
-  for (const Note& n : notes_) {
+  for (const Note& n : simulation.watch.notes) {
     Warning& w = told.emplace_back();
     w.kind = note_names[static_cast<std::size_t>(n.kind)];
     w.body = n.body;
@@ -79,11 +88,11 @@ std::vector<Warning> SimulationOf<D>::warnings() const {
     w.count = n.count;
     w.is_error = n.kind != NoteKind::left_box;
     const bool loaded =
-        std::ranges::any_of(domain_.loads, [&](const auto& load) { return load.body == n.body; });
+        std::ranges::any_of(domain.loads, [&](const auto& load) { return load.body == n.body; });
     std::ostringstream text;
     text.precision(4);
-    text << what_and_remedy(n, group_name(n.group), loaded) << " (body \"" << body(n.body).name
-         << "\", ";
+    text << what_and_remedy(n, group_name(domain, n.group), loaded) << " (body \""
+         << domain.body_at(n.body).name << "\", ";
     if (n.particle >= 0) text << "particle " << n.particle << ", ";
     text << "at";
     for (std::size_t a = 0; a < D; ++a) text << ' ' << n.position[a];
@@ -93,7 +102,9 @@ std::vector<Warning> SimulationOf<D>::warnings() const {
   return told;
 }
 
-template std::vector<Warning> SimulationOf<2>::warnings() const;
-template std::vector<Warning> SimulationOf<3>::warnings() const;
+template std::vector<Warning> warnings<2>(const Simulation<2>&);
+template std::vector<Warning> warnings<3>(const Simulation<3>&);
+template std::string group_name<2>(const Domain<2>&, int);
+template std::string group_name<3>(const Domain<3>&, int);
 
 }  // namespace mpm

@@ -1,10 +1,11 @@
-// The part of a simulation that looks whether what it computes can be so.
 #include "mpm/run/watch.hpp"
 
 #include <sstream>
 
 #include "mpm/contact/find_nodes.hpp"
-#include "mpm/run/simulation_of.hpp"
+#include "mpm/run/find_failure.hpp"
+#include "mpm/run/time_step.hpp"
+#include "mpm/run/warnings.hpp"
 
 namespace mpm {
 namespace {
@@ -17,113 +18,135 @@ constexpr int many_bodies = 30;
 
 std::size_t number(int k) { return static_cast<std::size_t>(k); }
 
-}  // namespace
-
 /// Count something that is so about a body, and note it if that is new.
 template <int D>
-void SimulationOf<D>::note(Note found) {
-  found.group = body(found.body).group;
-  found.step = domain_.step;
-  found.time = domain_.time;
-  for (Note& known : notes_)
+void note(Simulation<D>& simulation, Note found) {
+  const Domain<D>& domain = simulation.domain;
+  std::vector<Note>& notes = simulation.watch.notes;
+  found.group = domain.body_at(found.body).group;
+  found.step = domain.step;
+  found.time = domain.time;
+  for (Note& known : notes)
     if (known.kind == found.kind && known.group == found.group && known.face == found.face) {
       ++known.count;
       known.share = std::max(known.share, found.share);
       return;
     }
-  notes_.push_back(found);
-  notes_.back().count = 1;
+  notes.push_back(found);
+  notes.back().count = 1;
 }
 
 /// The same about a particle.
 template <int D>
-void SimulationOf<D>::note_at(Note found, int b, std::size_t row) {
-  const Body<D>& at = body(b);
+void note_at(Simulation<D>& simulation, Note found, int b, std::size_t row) {
+  const Domain<D>& domain = simulation.domain;
+  const ParticlePool<D>& pool = domain.pool_of(domain.body_at(b));
   found.body = b;
-  found.particle = pool(at).id[row];
-  for (int a = 0; a < D; ++a) found.position[number(a)] = pool(at).x(a)[row];
-  note(found);
+  found.particle = pool.id[row];
+  for (int a = 0; a < D; ++a) found.position[number(a)] = pool.x(a)[row];
+  note(simulation, found);
 }
 
 /// Note the first node at which so many bodies meet that steps take long, and count such steps.
 template <int D>
-void SimulationOf<D>::watch_crowd() {
-  if (domain_.contact.counts.bodies_max <= many_bodies) return;
-  const Crowd most = largest_crowd(domain_.contact, domain_.grid);
+void watch_crowd(Simulation<D>& simulation) {
+  const Domain<D>& domain = simulation.domain;
+  if (domain.contact.counts.bodies_max <= many_bodies) return;
+  const Crowd most = largest_crowd(domain.contact, domain.grid);
   if (most.bodies <= many_bodies) return;
-  for (Note& known : notes_)
+  for (Note& known : simulation.watch.notes)
     if (known.kind == NoteKind::crowd) {
       ++known.count;
       return;
     }
   Note found{.kind = NoteKind::crowd, .body = most.body, .value = static_cast<double>(most.bodies)};
   std::copy(std::begin(most.position), std::end(most.position), found.position.begin());
-  note(found);
+  note(simulation, found);
 }
 
-/// Judge the step that has been made, by the ledger and the next time step.
+/// Tell what was seen, and stop if it is too much.
 template <int D>
-void SimulationOf<D>::watch_step() {
-  watch_crowd();
-  const double median = watch_.median_fallen_below(next_time_step_);
-  const double made = watch_.energy_made(domain_.ledger.made(), domain_.ledger.largest);
-  const double work = domain_.has_loads()
-                          ? watch_.load_energy(domain_.ledger.load_work, domain_.ledger.largest)
-                          : 0.0;
+void judge(Simulation<D>& simulation) {
+  const Domain<D>& domain = simulation.domain;
+  const std::vector<Sight<D>>& sights = simulation.watch.sights;
+  for (std::size_t g = 0; g < sights.size(); ++g) {
+    const Sight<D>& sight = sights[g];
+    const auto tell = [&](NoteKind kind, const Seen& seen, int face, double limit) {
+      if (seen.count == 0) return;
+      const double share = static_cast<double>(seen.count) / static_cast<double>(sight.particles);
+      note_at(simulation,
+              {.kind = kind, .value = seen.value, .against = limit, .face = face, .share = share},
+              static_cast<int>(seen.body), seen.row);
+      if (!(share > limit) || simulation.failure) return;
+      std::ostringstream text;
+      text.precision(4);
+      text << 100.0 * share << " % of the particles of " << group_name(domain, static_cast<int>(g))
+           << (kind == NoteKind::volume
+                   ? " have less than 0.01 or more than 100 times their initial volume"
+                   : " lie beyond closed walls of the box")
+           << ", and run." << (kind == NoteKind::volume ? "volume_limit" : "outside_limit")
+           << " allows " << 100.0 * limit
+           << " %; give smaller steps or cells, or a stiffer material";
+      simulation.failure = failure_at(domain, note_names[number(static_cast<int>(kind))], seen.body,
+                                      seen.row, text.str());
+    };
+    tell(NoteKind::outside, sight.outside, -1, simulation.settings.run.outside_limit);
+    tell(NoteKind::volume, sight.odd, -1, simulation.settings.run.volume_limit);
+    for (int face = 0; face < 2 * D; ++face)
+      tell(NoteKind::left_box, sight.left[number(face)], face, 1.0);
+  }
+}
+
+}  // namespace
+
+template <int D>
+void watch_step(Simulation<D>& simulation) {
+  const Domain<D>& domain = simulation.domain;
+  StepWatch& watch = simulation.watch.steps;
+  watch_crowd(simulation);
+  const double median = watch.median_fallen_below(simulation.next_time_step);
+  const double made = watch.energy_made(domain.ledger.made(), domain.ledger.largest);
+  const double work =
+      domain.has_loads() ? watch.load_energy(domain.ledger.load_work, domain.ledger.largest) : 0.0;
   if (median == 0.0 && made == 0.0 && work == 0.0) return;
-  const Limiter fastest = limiter();  // an unstable particle is the fastest, or soon will be
+  const Limiter fastest =
+      find_limiter(domain);  // an unstable particle is the fastest, or soon will be
   if (fastest.body < 0) return;
-  const std::size_t row = row_of(fastest.body, fastest.particle);
+  const std::size_t row = row_of(domain, fastest.body, fastest.particle);
   if (median > 0.0)
-    note_at({.kind = NoteKind::time_step, .value = next_time_step_, .against = median},
+    note_at(simulation,
+            {.kind = NoteKind::time_step, .value = simulation.next_time_step, .against = median},
             fastest.body, row);
   if (made > 0.0)
-    note_at({.kind = NoteKind::energy_made, .value = made, .against = domain_.ledger.largest},
+    note_at(simulation,
+            {.kind = NoteKind::energy_made, .value = made, .against = domain.ledger.largest},
             fastest.body, row);
   // A load may be meant to be sudden; but what it moves faster than waves run is torn off.
   if (work > 0.0 && fastest.speed > fastest.sound_speed)
-    note_at({.kind = NoteKind::load_energy, .value = work, .against = domain_.ledger.largest},
+    note_at(simulation,
+            {.kind = NoteKind::load_energy, .value = work, .against = domain.ledger.largest},
             fastest.body, row);
 }
 
 template <int D>
-std::size_t SimulationOf<D>::row_of(int b, std::int64_t particle) const {
-  const ParticlePool<D>& of = pool(body(b));
-  std::size_t found = 0;
-  for_each_row(domain_.grid.patches, of, b, body(b).removed, [&](std::uint32_t row) {
-    if (static_cast<std::int64_t>(of.id[row]) == particle) found = row;
-  });
-  return found;
-}
-
-/// The body, and that it stands for all of its entry.
-template <int D>
-std::string SimulationOf<D>::group_name(int first) const {
-  const bool several = std::ranges::any_of(
-      domain_.bodies, [&](const Body<D>& b) { return b.group == first && &b != &body(first); });
-  return "body \"" + body(first).name + '"' + (several ? " and those grouped with it" : "");
-}
-
-/// Look at the places and volumes of all particles, in the order of the bodies' lists, which no
-/// number of threads changes; some ten operations for each.
-template <int D>
-void SimulationOf<D>::look() {
-  looked_ = domain_.step;
-  const TileGrid<D>& grid = domain_.grid;
+void look(Simulation<D>& simulation) {
+  const Domain<D>& domain = simulation.domain;
+  simulation.watch.looked = domain.step;
+  const TileGrid<D>& grid = domain.grid;
   Vec<double, D> lower, upper;
   for (int a = 0; a < D; ++a) {
     lower[a] = grid.origin[a] - beyond * grid.cell_size;
     upper[a] = grid.origin[a] + (grid.walls.cells[a] + beyond) * grid.cell_size;
   }
-  std::vector<Sight>& seen = sights_;
-  seen.assign(domain_.bodies.size(), {});
+  std::vector<Sight<D>>& seen = simulation.watch.sights;
+  seen.assign(domain.bodies.size(), {});
   for (const Patch<D>& patch : grid.patches) {
     const std::size_t number_of = number(patch.body);
-    const Body<D>& b = domain_.bodies[number_of];
-    const ParticlePool<D>& of = pool(b);
-    Sight& sight = seen[number(b.group)];
+    const Body<D>& b = domain.bodies[number_of];
+    const ParticlePool<D>& of = domain.pool_of(b);
+    Sight<D>& sight = seen[number(b.group)];
     sight.particles += patch.count;
-    const bool solid = b.deforms() && !domain_.material_of(patch).is_gas();
+    const bool solid = b.deforms() && !domain.material_of(patch).is_gas();
     const double* failed = of.at.failed >= 0 ? of.columns.component(of.at.failed) : nullptr;
     const bool placed = grid.walls.exist && !b.is_prescribed();
     if (!solid && !placed) continue;
@@ -150,40 +173,12 @@ void SimulationOf<D>::look() {
       }
     }
   }
-  judge();
+  judge(simulation);
 }
 
-/// Tell what was seen, and stop if it is too much.
-template <int D>
-void SimulationOf<D>::judge() {
-  for (std::size_t g = 0; g < sights_.size(); ++g) {
-    const Sight& sight = sights_[g];
-    const auto tell = [&](NoteKind kind, const Seen& seen, int face, double limit) {
-      if (seen.count == 0) return;
-      const double share = static_cast<double>(seen.count) / static_cast<double>(sight.particles);
-      note_at({.kind = kind, .value = seen.value, .against = limit, .face = face, .share = share},
-              static_cast<int>(seen.body), seen.row);
-      if (!(share > limit) || failure_) return;
-      std::ostringstream text;
-      text.precision(4);
-      text << 100.0 * share << " % of the particles of " << group_name(static_cast<int>(g))
-           << (kind == NoteKind::volume
-                   ? " have less than 0.01 or more than 100 times their initial volume"
-                   : " lie beyond closed walls of the box")
-           << ", and run." << (kind == NoteKind::volume ? "volume_limit" : "outside_limit")
-           << " allows " << 100.0 * limit
-           << " %; give smaller steps or cells, or a stiffer material";
-      failure_ =
-          failure_at(note_names[number(static_cast<int>(kind))], seen.body, seen.row, text.str());
-    };
-    tell(NoteKind::outside, sight.outside, -1, settings_.run.outside_limit);
-    tell(NoteKind::volume, sight.odd, -1, settings_.run.volume_limit);
-    for (int face = 0; face < 2 * D; ++face)
-      tell(NoteKind::left_box, sight.left[number(face)], face, 1.0);
-  }
-}
-
-template class SimulationOf<2>;
-template class SimulationOf<3>;
+template void watch_step<2>(Simulation<2>&);
+template void watch_step<3>(Simulation<3>&);
+template void look<2>(Simulation<2>&);
+template void look<3>(Simulation<3>&);
 
 }  // namespace mpm

@@ -5,7 +5,10 @@
 
 #include "check.hpp"
 #include "count_allocations.hpp"
-#include "mpm/run/simulation.hpp"
+#include "mpm/run/advance.hpp"
+#include "mpm/run/bodies.hpp"
+#include "mpm/run/loads.hpp"
+#include "mpm/run/prepare.hpp"
 
 namespace {
 
@@ -62,17 +65,17 @@ struct Motion3 {
 
 /// Two blocks side by side on a third, elastic and neo-Hookean (E about 1e7 Pa, waves of 100 m/s),
 /// so that nodes of three bodies exist from the start.
-std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& motion,
-                                  int threads) {
+template <int D>
+std::unique_ptr<Simulation<D>> stack(Scheme scheme, const Motion3& motion, int threads) {
   Settings settings;
-  settings.grid.dimension = dimension;
+  settings.grid.dimension = D;
   settings.grid.cell_size = 1.0;
   settings.run.scheme = scheme;
   settings.grid.basis = scheme == Scheme::usf ? basis_id<Linear> : basis_id<Gimp>;
   settings.run.cfl = 0.3;
   for (std::size_t a = 0; a < 3; ++a) settings.run.gravity[a] = motion.gravity[a];
   if (motion.gravity[1] != 0.0) {
-    settings.grid.box_cells = {40, 40, dimension == 3 ? 40 : 0};
+    settings.grid.box_cells = {40, 40, D == 3 ? 40 : 0};
     settings.grid.walls[2] = Wall::fixed;
     settings.grid.walls[1] = Wall::absorbing;
     settings.grid.outflow = true;
@@ -82,20 +85,19 @@ std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& m
   settings.contact.friction = 0.3;
   settings.execution.threads = threads;
   settings.run.energy_growth_limit = 1e9;
-  auto simulation = make_simulation(settings);
+  auto made = std::make_unique<Simulation<D>>(settings);
+  Simulation<D>& simulation = *made;
   const BulkViscosity viscosity{1.5, 0.06};
-  const int rubber = simulation->add_material(
-      {1000.0, {"neo_hookean", {{"K", 1e7}, {"G", 3e6}}}, {}, {}, viscosity});
-  const int solid =
-      simulation->add_material({1000.0, {"elastic", {{"E", 1e7}, {"nu", 0.3}}}, {}, {}, viscosity});
+  const int rubber = add_material(
+      simulation.domain, {1000.0, {"neo_hookean", {{"K", 1e7}, {"G", 3e6}}}, {}, {}, viscosity});
+  const int solid = add_material(
+      simulation.domain, {1000.0, {"elastic", {{"E", 1e7}, {"nu", 0.3}}}, {}, {}, viscosity});
   const Block blocks[] = {
       {{8, 0, 8}, {20, 5, 11}}, {{8, 5, 8}, {14, 9, 11}}, {{14, 5, 8}, {20, 9, 11}}};
   for (int b = 0; b < 3; ++b) {
-    const double volume[] = {dimension == 3 ? 0.125 : 0.25};
-    const std::span<const double> velocity(motion.velocity.data(),
-                                           static_cast<std::size_t>(dimension));
-    simulation->add_body("block", b == 0 ? solid : rubber, fill(blocks[b], dimension), velocity,
-                         volume);
+    const double volume[] = {D == 3 ? 0.125 : 0.25};
+    const std::span<const double> velocity(motion.velocity.data(), static_cast<std::size_t>(D));
+    add_body(simulation, "block", b == 0 ? solid : rubber, fill(blocks[b], D), velocity, volume);
   }
   if (motion.plate) {
     TimeFunction shaking(0.0), turning(0.0);
@@ -103,50 +105,58 @@ std::unique_ptr<Simulation> stack(int dimension, Scheme scheme, const Motion3& m
     shaking.frequency = 5.0;
     turning.times = {0.0, 0.1, 0.2};
     turning.values = {0.0, 1e-3, -1e-3};
-    simulation->set_motion(0, {shaking, 0.0, 0.0}, {0.0, 0.0, turning}, {14.0, 2.0, 9.5});
+    set_motion(simulation, 0, {shaking, 0.0, 0.0}, {0.0, 0.0, turning}, {14.0, 2.0, 9.5});
   } else if (motion.gravity[1] != 0.0) {
     const std::uint32_t particles[] = {0, 1, 2};
-    const std::vector<double> vectors(3 * static_cast<std::size_t>(dimension), 0.25);
+    const std::vector<double> vectors(3 * static_cast<std::size_t>(D), 0.25);
     const double sizes[] = {0.5, 0.5, 0.5};
-    simulation->add_load("load", 0, "pressure", {TimeFunction(10.0)},
-                         {particles, vectors, sizes, vectors});
+    add_load(simulation, "load", 0, "pressure", {TimeFunction(10.0)},
+             {particles, vectors, sizes, vectors});
   }
-  simulation->prepare();
-  return simulation;
+  prepare(simulation);
+  return made;
 }
 
-std::size_t allocations_of(Simulation& simulation, std::int64_t steps) {
+template <int D>
+std::size_t allocations_of(Simulation<D>& simulation, std::int64_t steps) {
   const std::size_t before = mpm::testing::allocation_count();
-  simulation.advance(steps, 1e9);
+  advance(simulation, steps, 1e9);
   return mpm::testing::allocation_count() - before;
+}
+
+// Together through many tiles; and resting on a floor, sliding, the contacts loaded in every step,
+// with a pressure, in a region that is kept, before a wall that absorbs.
+constexpr Motion3 motions[] = {{"through tiles", {40.0, 40.0, 40.0}, {0.0, 0.0, 0.0}, false},
+                               {"on a floor", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, false},
+                               {"on a plate", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, true}};
+
+template <int D>
+void check_steps(mpm::testing::Report& report, Scheme scheme, const Motion3& motion) {
+  const int threads = scheme == Scheme::musl && D == 2 ? 2 : 1;
+  const auto simulation = stack<D>(scheme, motion, threads);
+  // Warm: the blocks have crossed two tiles, and been everywhere on the cells and tiles that they
+  // will be; or they have swung on the floor.
+  const int warm = D == 2 ? 200 : 100;
+  advance(*simulation, warm, 1e9);
+  const std::size_t call = allocations_of(*simulation, 0);  // of the call itself
+  // A thread that gets its first contact late, on a busy machine, makes its own scratch then.
+  std::size_t steps = 1;
+  for (int turn = 0; turn < threads && steps > 0; ++turn)
+    steps = allocations_of(*simulation, warm / 2) - call;
+  CHECK(steps == 0, steps, D, static_cast<int>(scheme), motion.name);
+  const Domain<D>& domain = simulation->domain;
+  CHECK(domain.step >= warm + warm / 2);
+  CHECK(domain.contact.counts.overlapped > 0, D, motion.name);
+  CHECK_EQUAL(domain.contact.counts.bodies_max, 3);
 }
 
 }  // namespace
 
 void test_no_allocation(mpm::testing::Report& report) {
   check_counter(report);
-  // Together through many tiles; and resting on a floor, sliding, the contacts loaded in every
-  // step, with a pressure, in a region that is kept, before a wall that absorbs.
-  const Motion3 motions[] = {{"through tiles", {40.0, 40.0, 40.0}, {0.0, 0.0, 0.0}, false},
-                             {"on a floor", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, false},
-                             {"on a plate", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, true}};
-  for (const int dimension : {2, 3})
-    for (const Scheme scheme : {Scheme::usf, Scheme::usl, Scheme::musl})
-      for (const Motion3& motion : motions) {
-        const int threads = scheme == Scheme::musl && dimension == 2 ? 2 : 1;
-        const auto simulation = stack(dimension, scheme, motion, threads);
-        // Warm: the blocks have crossed two tiles, and been everywhere on the cells and tiles that
-        // they will be; or they have swung on the floor.
-        const int warm = dimension == 2 ? 200 : 100;
-        simulation->advance(warm, 1e9);
-        const std::size_t call = allocations_of(*simulation, 0);  // of the call itself
-        // A thread that gets its first contact late, on a busy machine, makes its own scratch then.
-        std::size_t steps = 1;
-        for (int turn = 0; turn < threads && steps > 0; ++turn)
-          steps = allocations_of(*simulation, warm / 2) - call;
-        CHECK(steps == 0, steps, dimension, static_cast<int>(scheme), motion.name);
-        CHECK(simulation->step() >= warm + warm / 2);
-        CHECK(simulation->overlapped_nodes() > 0, dimension, motion.name);
-        CHECK_EQUAL(simulation->bodies_per_node_max(), 3);
-      }
+  for (const Scheme scheme : {Scheme::usf, Scheme::usl, Scheme::musl})
+    for (const Motion3& motion : motions) {
+      check_steps<2>(report, scheme, motion);
+      check_steps<3>(report, scheme, motion);
+    }
 }

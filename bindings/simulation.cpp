@@ -1,0 +1,243 @@
+// The class of simulations: what it takes in, its steps, and what it tells.
+#include <nanobind/stl/array.h>
+
+#include "interrupt.hpp"
+#include "mpm/run/advance.hpp"
+#include "mpm/run/bodies.hpp"
+#include "mpm/run/columns.hpp"
+#include "mpm/run/frame.hpp"
+#include "mpm/run/loads.hpp"
+#include "mpm/run/measures.hpp"
+#include "mpm/run/pair_groups.hpp"
+#include "mpm/run/prepare.hpp"
+#include "mpm/run/save.hpp"
+#include "mpm/run/time_step.hpp"
+#include "mpm/run/warnings.hpp"
+#include "one_thread.hpp"
+#include "translate.hpp"
+
+namespace mpm::bindings {
+namespace {
+
+/// A function of a simulation of any dimension, from a generic one of Simulation<D>&.
+template <class F, class R, class... Arguments>
+auto of_any(F f, R (F::*)(Simulation<2>&, Arguments...) const) {
+  return [f](AnySimulation& either, Arguments... arguments) -> R {
+    return either.visit([&](auto& s) -> R { return f(s, std::forward<Arguments>(arguments)...); });
+  };
+}
+template <class F>
+auto of_any(F f) {
+  return of_any(f, &F::template operator()<Simulation<2>>);
+}
+
+nb::dict dict_of(const RemovedSum& removed) {
+  nb::dict d;
+  d["mass"] = removed.mass;
+  d["count"] = removed.count;
+  return d;
+}
+
+using Functions3 = std::array<TimeFunction, 3>;
+
+/// What makes a simulation ready to step.
+void def_building(SimulationClass& simulation) {
+  simulation
+      .def("add_material",
+           of_any([](auto& s, double density, const std::string& strength,
+                     const Parameters& parameters, const std::optional<Named>& eos,
+                     const std::vector<NamedFailure>& failures, Viscosity viscosity) {
+             return add_material(
+                 s.domain, choice_of(density, strength, parameters, eos, failures, viscosity));
+           }),
+           nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
+           nb::arg("failures"), nb::arg("viscosity"))
+      .def("add_body",
+           of_any([](auto& s, const std::string& name, int material, const Input& positions,
+                     const Input& velocities, const Input& volumes) {
+             return add_body(s, name, material, span_of(positions), span_of(velocities),
+                             span_of(volumes));
+           }),
+           nb::arg("name"), nb::arg("material"), nb::arg("positions"), nb::arg("velocities"),
+           nb::arg("volumes"))
+      .def("set_state",
+           of_any([](auto& s, int body, const std::string& column, const Input& values) {
+             set_state(s, body, column, span_of(values));
+           }),
+           nb::arg("body"), nb::arg("column"), nb::arg("values"))
+      .def("set_motion",
+           of_any([](auto& s, int body, const Functions3& velocity, const Functions3& spin,
+                     const std::array<double, 3>& centre) {
+             set_motion(s, body, velocity, spin, centre);
+           }),
+           nb::arg("body"), nb::arg("velocity"), nb::arg("spin"), nb::arg("centre"))
+      .def("add_load",
+           of_any([](auto& s, const std::string& name, int body, const std::string& kind,
+                     const Functions3& value, const std::vector<std::uint32_t>& particles,
+                     const Input& areas, const Input& sizes, const Input& arms) {
+             add_load(s, name, body, kind, value,
+                      {particles, span_of(areas), span_of(sizes), span_of(arms)});
+           }),
+           nb::arg("name"), nb::arg("body"), nb::arg("kind"), nb::arg("value"),
+           nb::arg("particles"), nb::arg("areas"), nb::arg("sizes"), nb::arg("arms"))
+      .def("set_group",
+           of_any([](auto& s, int body, int first) { set_group(s.domain, body, first); }),
+           nb::arg("body"), nb::arg("first"))
+      .def("set_friction",
+           of_any([](auto& s, int a, int b, double mu) { set_pair_friction(s.domain, a, b, mu); }),
+           nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"))
+      .def("set_velocity", of_any([](auto& s, int body, const Input& velocities) {
+             set_velocity(s, body, span_of(velocities));
+           }),
+           nb::arg("body"), nb::arg("velocities"))
+      .def("set_gravity",
+           of_any([](auto& s, const Functions3& gravity) { set_gravity(s.domain, gravity); }),
+           nb::arg("gravity"));
+}
+
+/// Steps, and the state between two of them.
+void def_stepping(SimulationClass& simulation) {
+  simulation
+      .def("prepare",
+           [](AnySimulation& either) {
+             const AtWork here(either);
+             const nb::gil_scoped_release without_lock;
+             either.visit([](auto& s) { prepare(s); });
+           })
+      .def(
+          "advance",
+          [](AnySimulation& either, std::int64_t max_steps, double end_time) {
+            std::int64_t made = 0;
+            {
+              const AtWork here(either);
+              const InterruptFlag interrupt;
+              if (PyErr_CheckSignals() != 0) throw nb::python_error();
+              const nb::gil_scoped_release without_lock;
+              made = either.visit(
+                  [&](auto& s) { return advance(s, max_steps, end_time, interrupt.get()); });
+            }
+            if (PyErr_CheckSignals() != 0) throw nb::python_error();
+            return made;
+          },
+          nb::arg("max_steps"), nb::arg("end_time"))
+      .def(
+          "save",
+          [](AnySimulation& either, const nb::callable& write) {
+            const AtWork here(either);
+            either.visit([&](auto& s) { save(s, transfer_by(write)); });
+          },
+          nb::arg("write"))
+      .def(
+          "restore",
+          [](AnySimulation& either, const nb::callable& readinto, std::size_t size) {
+            const AtWork here(either);
+            either.visit([&](auto& s) { restore(s, transfer_by(readinto), size); });
+          },
+          nb::arg("readinto"), nb::arg("size"))
+      .def("set_threads", of_any([](auto& s, int count) { s.domain.threads.resize(count); }),
+           nb::arg("count"));
+}
+
+/// What it tells of itself.
+void def_telling(SimulationClass& simulation) {
+  simulation.def_prop_ro("time", of_any([](auto& s) { return s.domain.time; }))
+      .def_prop_ro("dt", of_any([](auto& s) { return s.next_time_step; }))
+      .def_prop_ro("step", of_any([](auto& s) { return s.domain.step; }))
+      .def_prop_ro("body_count", of_any([](auto& s) { return s.domain.bodies.size(); }))
+      .def("body_particle_count",
+           of_any([](auto& s, int body) { return s.domain.body_at(body).count; }), nb::arg("body"))
+      .def_prop_ro("particle_count", of_any([](auto& s) { return particle_count(s.domain); }))
+      .def_prop_ro("total_mass", of_any([](auto& s) { return total_mass(s.domain); }))
+      .def("eroded", of_any([](auto& s) { return dict_of(sum_of(s.domain.eroded)); }))
+      .def("left", of_any([](auto& s) { return dict_of(sum_of(s.domain.outflow)); }))
+      .def("loads", of_any([](auto& s) { return load_records(s.domain); }))
+      .def_prop_ro("failure", of_any([](auto& s) { return s.failure; }))
+      .def("limiter", of_any([](auto& s) { return find_limiter(s.domain); }))
+      .def("warnings", of_any([](auto& s) { return warnings(s); }));
+}
+
+/// The particles' numbers.
+void def_columns(SimulationClass& simulation) {
+  simulation
+      .def("columns", of_any([](auto& s, int body) { return columns(s.domain, body); }),
+           nb::arg("body"))
+      .def("column", of_any([](auto& s, int body, const std::string& name) {
+             const auto width = static_cast<std::size_t>(column_components(s.domain, body, name));
+             std::vector<double> values(s.domain.body_at(body).count * width);
+             copy_column(s.domain, body, name, values);
+             return to_numpy(std::move(values), width);
+           }),
+           nb::arg("body"), nb::arg("name"))
+      .def("rounded_column",
+           of_any([](auto& s, const std::string& name, const std::vector<int>& places,
+                     std::size_t width, float elsewhere) {
+             Floats values = floats(particle_count(s.domain), width, elsewhere);
+             round_column(s.domain, name, places, width, {values.data(), values.size()});
+             return values;
+           }),
+           nb::arg("name"), nb::arg("places"), nb::arg("width"), nb::arg("elsewhere"))
+      .def("rounded_derived", of_any([](auto& s, const std::string& name) {
+             Floats values = floats(particle_count(s.domain), 1, 0.0F);
+             round_derived(s.domain, name, {values.data(), values.size()});
+             return values;
+           }),
+           nb::arg("name"));
+}
+
+/// What has happened: history, contacts, times, memory.
+void def_records(SimulationClass& simulation) {
+  simulation
+      .def("history",
+           of_any([](auto& s) { return to_numpy(s.history.take(), history_terms.size()); }))
+      .def("contact_pairs", of_any([](auto& s) { return s.domain.contact.records.all(); }))
+      .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))
+      .def("contact_summary", of_any([](auto& s) {
+             const auto& contact = s.domain.contact;
+             nb::dict d;
+             d["overlapped_nodes"] = contact.counts.overlapped;
+             d["overlapped_nodes_max"] = contact.counts.overlapped_max;
+             d["bodies_per_node_max"] = contact.counts.bodies_max;
+             d["unconverged_nodes"] = contact.unconverged.load();
+             d["bytes"] = bytes_of(s).contact;
+             return d;
+           }))
+      .def("timers", of_any([](auto& s) {
+             nb::dict d;
+             for (const auto& [name, seconds] : s.timers.seconds())
+               d[nb::str(name.data(), name.size())] = seconds;
+             return d;
+           }))
+      .def("reset_timers", of_any([](auto& s) { s.timers.reset(); }))
+      .def("bytes", of_any([](auto& s) {
+             const Bytes b = bytes_of(s);
+             nb::dict d;
+             d["particles"] = b.particles;
+             d["grid"] = b.grid;
+             d["contact"] = b.contact;
+             d["other"] = b.other;
+             return d;
+           }));
+  simulation
+      .def_prop_ro_static("history_columns",
+                          [](nb::handle) {
+                            std::vector<std::string> names;
+                            names.reserve(history_terms.size());
+                            for (const HistoryTerm& t : history_terms) names.emplace_back(t.name);
+                            return names;
+                          })
+      .def_ro_static("history_capacity", &HistoryRows::capacity);
+}
+
+}  // namespace
+
+void add_simulation(nb::module_& m) {
+  SimulationClass simulation(m, "Simulation");
+  simulation.nb::class_<AnySimulation>::def(nb::init<const Settings&>(), nb::arg("settings"));
+  def_building(simulation);
+  def_stepping(simulation);
+  def_telling(simulation);
+  def_columns(simulation);
+  def_records(simulation);
+}
+
+}  // namespace mpm::bindings

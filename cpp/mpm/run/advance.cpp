@@ -1,0 +1,69 @@
+#include "mpm/run/advance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "mpm/run/coarsen_cells.hpp"
+#include "mpm/run/find_failure.hpp"
+#include "mpm/run/measures.hpp"
+#include "mpm/run/time_step.hpp"
+#include "mpm/run/watch.hpp"
+
+namespace mpm {
+namespace {
+
+/// Say when the step is, and what is a function of time in it.
+template <int D>
+void begin_step(Domain<D>& domain, double time_after) {
+  for (std::size_t a = 0; a < D; ++a)
+    domain.gravity[static_cast<int>(a)] = domain.gravity_of_time[a].mean(domain.time, time_after);
+  for (const std::size_t b : domain.prescribed)
+    domain.bodies[b].motion->begin_step(domain.time, time_after);
+  domain.time_after = time_after;
+}
+
+template <int D>
+void make_step(Simulation<D>& simulation, double time_after) {
+  Domain<D>& domain = simulation.domain;
+  begin_step(domain, time_after);
+  for (std::size_t k = 0; k < simulation.stages.size(); ++k)
+    simulation.timers.time(k, [&] { simulation.stages[k].run(domain); });
+  domain.time = time_after;
+  ++domain.step;
+  simulation.history.add(step_state(domain));
+  find_failure(simulation);
+  if (simulation.failure) return;
+  simulation.next_time_step = stable_time_step(domain, simulation.settings.run.cfl);
+  watch_step(simulation);
+  if (domain.step % look_every == 0) look(simulation);
+  if (must_coarsen(simulation)) coarsen_cells(simulation);
+}
+
+}  // namespace
+
+template <int D>
+std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double end_time,
+                     const std::atomic<bool>* stop) {
+  if (!simulation.prepared) throw std::invalid_argument("call prepare() before advance()");
+  if (!std::isfinite(end_time)) throw std::invalid_argument("end_time must be a finite number");
+  Domain<D>& domain = simulation.domain;
+  std::int64_t made = 0;
+  while (made < max_steps && domain.time < end_time && !simulation.failure) {
+    const double left = end_time - domain.time;
+    const bool last = simulation.next_time_step >= left;
+    // Two last steps of equal length rather than a tiny one, in which forces would be rounding.
+    domain.time_step = last ? left : std::min(simulation.next_time_step, 0.5 * left);
+    make_step(simulation, last ? end_time : domain.time + domain.time_step);
+    ++made;
+    if (stop != nullptr && stop->load(std::memory_order_relaxed)) break;
+  }
+  const bool looked = simulation.watch.looked == domain.step;
+  if (made > 0 && domain.time >= end_time && !looked && !simulation.failure) look(simulation);
+  return made;
+}
+
+template std::int64_t advance<2>(Simulation<2>&, std::int64_t, double, const std::atomic<bool>*);
+template std::int64_t advance<3>(Simulation<3>&, std::int64_t, double, const std::atomic<bool>*);
+
+}  // namespace mpm

@@ -1,0 +1,45 @@
+#pragma once
+// Takes materials and bodies in. All throw std::invalid_argument, in one sentence, for what makes
+// no sense, and std::out_of_range for a body or material that there is not.
+#include <array>
+#include <span>
+#include <string>
+
+#include "mpm/run/simulation.hpp"
+
+namespace mpm {
+
+/// Returns its number.
+template <int D>
+int add_material(Domain<D>& domain, const MaterialChoice& choice);
+/// Positions and velocities are (n, D) row by row, or one row of velocities for all; volumes n
+/// values, or one for all. Returns the body's number.
+template <int D>
+int add_body(Simulation<D>& simulation, const std::string& name, int material,
+             std::span<const double> positions, std::span<const double> velocities,
+             std::span<const double> volumes);
+/// Values of a state column of a body, one component, in the order in which the user gave the
+/// particles; before prepare().
+template <int D>
+void set_state(Simulation<D>& simulation, int body, const std::string& column,
+               std::span<const double> values);
+/// Prescribe the motion of a body, which is rigid then: the velocity of a centre and the spin about
+/// it (in 2D of the third axis), as functions of time; before prepare().
+template <int D>
+void set_motion(Simulation<D>& simulation, int body, const std::array<TimeFunction, 3>& velocity,
+                const std::array<TimeFunction, 3>& spin, const std::array<double, 3>& centre);
+/// Put a body into the group of an earlier one, by that one's number: they have the same frictions,
+/// and group_pairs() sums over them. Every other body is a group by itself.
+template <int D>
+void set_group(Domain<D>& domain, int body, int first);
+/// Friction between the bodies of two groups, each given by its first body; of one, if a == b.
+template <int D>
+void set_pair_friction(Domain<D>& domain, int a, int b, double mu);
+/// Of the particles of a body, (n, D) row by row; between two steps the ledger takes the work.
+template <int D>
+void set_velocity(Simulation<D>& simulation, int body, std::span<const double> velocities);
+/// [m/s^2], from the next step on.
+template <int D>
+void set_gravity(Domain<D>& domain, const std::array<TimeFunction, 3>& gravity);
+
+}  // namespace mpm

@@ -1,0 +1,44 @@
+#include "mpm/run/columns.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace mpm {
+
+template <int D>
+const std::vector<ColumnInfo>& columns(const Domain<D>& domain, int body) {
+  return domain.pool_of(domain.body_at(body)).columns.infos();
+}
+
+template <int D>
+int column_components(const Domain<D>& domain, int body, const std::string& name) {
+  return name == "stress" ? 6 : domain.pool_of(domain.body_at(body)).columns.info(name).components;
+}
+
+template <int D>
+void copy_column(const Domain<D>& domain, int number, const std::string& name,
+                 std::span<double> to) {
+  const Body<D>& b = domain.body_at(number);
+  const ParticlePool<D>& of = domain.pool_of(b);
+  const ColumnInfo& info = of.columns.info(name);
+  const auto width = static_cast<std::size_t>(column_components(domain, number, name));
+  if (to.size() != b.count * width) throw std::invalid_argument("copy_column: wrong size");
+  std::fill(to.begin(), to.end(), 0.0);
+  for (int c = 0; c < info.components; ++c) {
+    // Plane strain keeps xx yy zz xy; the fourth becomes the sixth of xx yy zz yz xz xy.
+    const auto place = static_cast<std::size_t>(name == "stress" && D == 2 && c == 3 ? 5 : c);
+    of.columns.with_component(info.first + c, [&](const auto* from) {
+      for_each_row(domain.grid.patches, of, number, b.removed,
+                   [&](std::uint32_t row) { to[of.id[row] * width + place] = from[row]; });
+    });
+  }
+}
+
+template const std::vector<ColumnInfo>& columns<2>(const Domain<2>&, int);
+template const std::vector<ColumnInfo>& columns<3>(const Domain<3>&, int);
+template int column_components<2>(const Domain<2>&, int, const std::string&);
+template int column_components<3>(const Domain<3>&, int, const std::string&);
+template void copy_column<2>(const Domain<2>&, int, const std::string&, std::span<double>);
+template void copy_column<3>(const Domain<3>&, int, const std::string&, std::span<double>);
+
+}  // namespace mpm

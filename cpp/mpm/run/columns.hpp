@@ -1,0 +1,19 @@
+#pragma once
+// The particles' numbers as the user knows them: in the order in which they were given.
+#include <span>
+#include <string>
+
+#include "mpm/domain.hpp"
+
+namespace mpm {
+
+template <int D>
+const std::vector<ColumnInfo>& columns(const Domain<D>& domain, int body);
+/// Stress has six components in 2D too.
+template <int D>
+int column_components(const Domain<D>& domain, int body, const std::string& name);
+/// (n, components) row by row.
+template <int D>
+void copy_column(const Domain<D>& domain, int body, const std::string& name, std::span<double> to);
+
+}  // namespace mpm

@@ -1,0 +1,20 @@
+#pragma once
+// What a frame holds of the bodies: columns rounded to floats, without room for doubles between.
+#include <span>
+#include <string>
+
+#include "mpm/domain.hpp"
+
+namespace mpm {
+
+/// A column of all bodies, one after another, rounded to floats: component c of particle i goes to
+/// to[i * width + places[c]]. What belongs to bodies without the column, or to no component, stays
+/// as it is.
+template <int D>
+void round_column(const Domain<D>& domain, const std::string& name, std::span<const int> places,
+                  std::size_t width, std::span<float> to);
+/// A field of `derived_fields` of all particles, rounded to floats.
+template <int D>
+void round_derived(const Domain<D>& domain, const std::string& name, std::span<float> to);
+
+}  // namespace mpm

@@ -1,0 +1,26 @@
+#pragma once
+// Takes loads on surfaces in, and tells what they have done.
+#include <array>
+#include <string>
+#include <vector>
+
+#include "mpm/run/simulation.hpp"
+
+namespace mpm {
+
+/// Load a part of the surface of a body that deforms with a kind of LoadKinds; its value is a
+/// function of time [Pa], a number the first of the three; before prepare(). Throws
+/// std::invalid_argument, in one sentence, for what makes no sense.
+template <int D>
+void add_load(Simulation<D>& simulation, const std::string& name, int body, const std::string& kind,
+              const std::array<TimeFunction, 3>& value, const Pieces& pieces);
+
+/// Tell the particles which pieces they carry; each body's lie in one patch yet, as they were
+/// given.
+template <int D>
+void place_pieces(Domain<D>& domain);
+
+template <int D>
+std::vector<LoadRecord> load_records(const Domain<D>& domain);
+
+}  // namespace mpm

@@ -1,0 +1,74 @@
+#include "mpm/run/measures.hpp"
+
+namespace mpm {
+
+template <int D>
+double total_mass(const Domain<D>& domain) {
+  double total = 0.0;
+  domain.for_each_particle(
+      [&](const ParticlePool<D>& of, std::uint32_t row) { total += of.mass()[row]; });
+  for (const ParticlePool<D>& of : domain.pools)
+    for (const RemovedRow& removed : of.removed) total += of.mass()[removed.row];
+  return total;
+}
+
+template <int D>
+double kinetic_energy(const Domain<D>& domain) {
+  double total = 0.0;
+  domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
+    for (int a = 0; a < D; ++a) total += 0.5 * of.mass()[row] * of.v(a)[row] * of.v(a)[row];
+  });
+  return total;
+}
+
+template <int D>
+std::array<double, 3> momentum(const Domain<D>& domain) {
+  std::array<double, 3> total{};
+  domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
+    for (std::size_t a = 0; a < D; ++a) total[a] += of.mass()[row] * of.v(static_cast<int>(a))[row];
+  });
+  return total;
+}
+
+template <int D>
+double initial_internal_energy(const Domain<D>& domain) {
+  double total = 0.0;
+  domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
+    if (of.at.energy >= 0) total += of.columns.component(of.at.energy)[row] * of.volume()[row];
+  });
+  return total;
+}
+
+template <int D>
+std::size_t particle_count(const Domain<D>& domain) {
+  std::size_t count = 0;
+  for (const Body<D>& body : domain.bodies) count += body.count;
+  return count;
+}
+
+template <int D>
+Bytes bytes_of(const Simulation<D>& simulation) {
+  const Domain<D>& domain = simulation.domain;
+  Bytes r;
+  for (const ParticlePool<D>& of : domain.pools) r.particles += of.bytes();
+  r.particles += domain.list_scratch.bytes();
+  r.grid = bytes_of(domain.grid);
+  if (domain.has_contact()) r.contact = bytes_of(domain.contact);
+  r.other = domain.sums.capacity() * sizeof(PatchSums<D>) + simulation.history.bytes();
+  return r;
+}
+
+template double total_mass<2>(const Domain<2>&);
+template double total_mass<3>(const Domain<3>&);
+template double kinetic_energy<2>(const Domain<2>&);
+template double kinetic_energy<3>(const Domain<3>&);
+template std::array<double, 3> momentum<2>(const Domain<2>&);
+template std::array<double, 3> momentum<3>(const Domain<3>&);
+template double initial_internal_energy<2>(const Domain<2>&);
+template double initial_internal_energy<3>(const Domain<3>&);
+template std::size_t particle_count<2>(const Domain<2>&);
+template std::size_t particle_count<3>(const Domain<3>&);
+template Bytes bytes_of<2>(const Simulation<2>&);
+template Bytes bytes_of<3>(const Simulation<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,28 @@
+#pragma once
+// Sums over the particles, as they are between two steps.
+#include <array>
+
+#include "mpm/run/simulation.hpp"
+
+namespace mpm {
+
+template <int D>
+double total_mass(const Domain<D>& domain);  // of all particles, those that are removed too [kg]
+template <int D>
+double kinetic_energy(const Domain<D>& domain);  // [J]
+template <int D>
+std::array<double, 3> momentum(const Domain<D>& domain);  // [kg m/s]
+/// What the particles' material has at the start, by its equation of state [J].
+template <int D>
+double initial_internal_energy(const Domain<D>& domain);
+template <int D>
+std::size_t particle_count(const Domain<D>& domain);
+template <int D>
+RemovedSum sum_of(const Removed<D>& removed) {
+  return {removed.mass, removed.count};
+}
+
+template <int D>
+Bytes bytes_of(const Simulation<D>& simulation);
+
+}  // namespace mpm

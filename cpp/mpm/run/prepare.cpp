@@ -1,0 +1,89 @@
+#include "mpm/run/prepare.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "mpm/contact/candidates.hpp"
+#include "mpm/particles/make_body.hpp"
+#include "mpm/run/loads.hpp"
+#include "mpm/run/measures.hpp"
+#include "mpm/run/time_step.hpp"
+
+namespace mpm {
+namespace {
+
+void check(bool condition, const char* sentence) {
+  if (!condition) throw std::invalid_argument(sentence);
+}
+
+template <int D>
+void check_bodies(const Domain<D>& domain) {
+  const auto is_rigid = [](const Body<D>& b) { return !b.deforms(); };
+  check(!std::ranges::all_of(domain.bodies, is_rigid),
+        "all bodies are rigid, so no wave limits the time step: one must deform");
+  check(!domain.grid.bonded || std::ranges::none_of(domain.bodies, is_rigid),
+        "bodies are bonded, so none can be rigid");
+}
+
+/// Give the particles of bodies with prescribed motion their velocities at the start.
+template <int D>
+void start_motions(Domain<D>& domain) {
+  for (const std::size_t b : domain.prescribed) {
+    PrescribedMotion& motion = *domain.bodies[b].motion;
+    motion.radius = 0.0;
+    for (const Patch<D>& patch : patches_of<D>(domain.grid.patches, static_cast<int>(b))) {
+      ParticlePool<D>& pool = domain.pool_of(patch);
+      for (const std::uint32_t row : pool.rows(patch)) {
+        const Vector3 x = in_space<D>(pool.position_of(row));
+        motion.radius = std::max(motion.radius, norm(x - motion.now.centre));
+        const Vector3 v = motion.now.velocity_at(x);
+        for (int a = 0; a < D; ++a) pool.v(a)[row] = static_cast<Storage>(v[a]);
+      }
+    }
+  }
+}
+
+template <int D>
+void start_ledger(Domain<D>& domain) {
+  Ledger& ledger = domain.ledger;
+  ledger.kinetic = kinetic_energy(domain);
+  ledger.internal = initial_internal_energy(domain);
+  ledger.start = ledger.kinetic + ledger.internal;
+  ledger.momentum = momentum(domain);
+  for (const Patch<D>& patch : domain.grid.patches)
+    if (domain.body_of(patch).is_prescribed()) ledger.add_prescribed(domain.pool_of(patch), patch);
+}
+
+}  // namespace
+
+template <int D>
+void prepare(Simulation<D>& simulation) {
+  Domain<D>& domain = simulation.domain;
+  check(!simulation.prepared, "prepare() has been called already");
+  check(!domain.bodies.empty(), "there is no body");
+  fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches);
+  place_pieces(domain);
+  build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
+  if (domain.has_contact()) connect_tiles(domain.contact, domain.grid, domain.bodies);
+  domain.sums.resize(domain.grid.patches.size());
+  check_bodies(domain);
+  list_kinds(domain);
+  start_motions(domain);
+  project_rigid_velocities(domain);
+  probe_speeds(domain);
+  const double cfl = simulation.settings.run.cfl;
+  simulation.next_time_step = stable_time_step(domain, cfl);
+  const double fastest = cfl * domain.grid.cell_size / simulation.next_time_step;
+  domain.contact.records.set_scale(total_mass(domain), fastest);
+  start_ledger(domain);
+  simulation.watch.sights.resize(domain.bodies.size());
+  simulation.watch.notes.reserve(2 * note_names.size());
+  domain.time_step = 0.0;
+  simulation.history.add(step_state(domain));  // the state at the start
+  simulation.prepared = true;
+}
+
+template void prepare<2>(Simulation<2>&);
+template void prepare<3>(Simulation<3>&);
+
+}  // namespace mpm

@@ -1,0 +1,68 @@
+#pragma once
+// What a simulation tells of itself, the same in 2D and 3D.
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace mpm {
+
+/// Why a run had to stop.
+struct Failure {
+  std::string kind;  // "non-finite", "negative volume", "energy growth", "outside walls", "volume"
+  int body = -1;
+  std::int64_t particle = -1;  // in the order in which the user gave them
+  std::int64_t step = 0;
+  double time = 0.0;
+  std::array<double, 3> position{};
+  std::string message;
+};
+
+/// What goes on but may be going wrong; told once for each kind and body, then counted.
+struct Warning {
+  std::string kind;  // of note_names (run/notes.hpp)
+  int body = -1;
+  std::int64_t particle = -1;
+  std::int64_t step = 0;  // when and where it was first so
+  double time = 0.0;
+  std::array<double, 3> position{};
+  double share = 0.0;      // of the particles, the largest so far; 0 where it is about one
+  std::int64_t count = 0;  // steps at which it was so; of places and volumes, looks
+  bool is_error = true;    // else it is only told: particles may leave through an open face
+  std::string message;
+};
+
+/// The particle that limits the time step.
+struct Limiter {
+  int body = -1;
+  std::int64_t particle = -1;
+  double sound_speed = 0.0, speed = 0.0;  // [m/s]
+};
+
+/// Particles that take no part any more: eroded, or left the region that is kept.
+struct RemovedSum {
+  double mass = 0.0;  // [kg]
+  std::size_t count = 0;
+};
+
+/// A load on a part of a body's surface; vectors have zeros behind the dimension.
+struct LoadRecord {
+  std::string name;
+  std::array<double, 3> force{};    // of the last step [N]
+  std::array<double, 3> impulse{};  // since the start [N s]
+  double area = 0.0;                // of the pieces on which it still acts [m^2]
+};
+
+/// The pieces of a surface on which a load acts, each with its particle.
+struct Pieces {
+  std::span<const std::uint32_t> particles;  // in the order in which the user gave them
+  std::span<const double> areas;             // outward area vectors [m^2], (pieces, D)
+  std::span<const double> sizes;             // areas [m^2], (pieces,)
+  std::span<const double> arms;              // from the particle to the piece [m], (pieces, D)
+};
+
+struct Bytes {
+  std::size_t particles = 0, grid = 0, contact = 0, other = 0;
+};
+
+}  // namespace mpm

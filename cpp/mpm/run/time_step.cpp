@@ -1,0 +1,81 @@
+#include "mpm/run/time_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mpm {
+namespace {
+
+template <int D>
+double speed_of(const ParticlePool<D>& pool, std::size_t row) {
+  double squared = 0.0;
+  for (int a = 0; a < D; ++a) squared += pool.v(a)[row] * pool.v(a)[row];
+  return std::sqrt(squared);
+}
+
+/// Of the fastest wave in a particle [m/s]; 0 in a rigid body, which limits no time step.
+template <int D>
+double wave_speed(const Domain<D>& domain, const Patch<D>& patch, std::size_t row) {
+  if (!domain.body_of(patch).deforms()) return 0.0;
+  const ParticlePool<D>& pool = domain.pool_of(patch);
+  return sound_speed<D>(domain.material_of(patch), pool.columns, pool.at, row,
+                        domain.grid.cell_size);
+}
+
+}  // namespace
+
+template <int D>
+void probe_speeds(Domain<D>& domain) {
+  domain.sums.resize(domain.grid.patches.size());
+  for (std::size_t p = 0; p < domain.sums.size(); ++p) {
+    const Patch<D>& patch = domain.grid.patches[p];
+    const ParticlePool<D>& pool = domain.pool_of(patch);
+    double& fastest = domain.sums[p].stress.fastest;
+    fastest = 0.0;
+    for (const std::uint32_t row : pool.rows(patch))
+      fastest = std::max(fastest, wave_speed(domain, patch, row) + speed_of(pool, row));
+  }
+}
+
+template <int D>
+double stable_time_step(const Domain<D>& domain, double cfl) {
+  // Where neither waves nor particles are fast, nothing falls further than about a cell.
+  double fastest = std::sqrt(norm(domain.gravity) * domain.grid.cell_size);
+  for (const PatchSums<D>& s : domain.sums) fastest = std::max(fastest, s.stress.fastest);
+  const double way = cfl * domain.grid.cell_size;
+  double time_step = way / fastest;
+  // Prescribed motions may have jumps.
+  for (const std::size_t b : domain.prescribed) {
+    const PrescribedMotion& motion = *domain.bodies[b].motion;
+    if (!motion.moves) continue;
+    const double speed = motion.speed(domain.time, domain.time + time_step);
+    time_step = std::min(time_step, way / speed);
+  }
+  return time_step;
+}
+
+template <int D>
+Limiter find_limiter(const Domain<D>& domain) {
+  Limiter result;
+  if (domain.sums.empty() || domain.sums.size() != domain.grid.patches.size()) return result;
+  std::size_t fastest = 0;
+  for (std::size_t p = 1; p < domain.sums.size(); ++p)
+    if (domain.sums[p].stress.fastest > domain.sums[fastest].stress.fastest) fastest = p;
+  const Patch<D>& patch = domain.grid.patches[fastest];
+  const ParticlePool<D>& pool = domain.pool_of(patch);
+  for (const std::uint32_t row : pool.rows(patch)) {
+    const double c = wave_speed(domain, patch, row), v = speed_of(pool, row);
+    if (c + v > result.sound_speed + result.speed || result.body < 0)
+      result = {patch.body, static_cast<std::int64_t>(pool.id[row]), c, v};
+  }
+  return result;
+}
+
+template void probe_speeds<2>(Domain<2>&);
+template void probe_speeds<3>(Domain<3>&);
+template double stable_time_step<2>(const Domain<2>&, double);
+template double stable_time_step<3>(const Domain<3>&, double);
+template Limiter find_limiter<2>(const Domain<2>&);
+template Limiter find_limiter<3>(const Domain<3>&);
+
+}  // namespace mpm
