@@ -13,6 +13,11 @@ EPS = np.finfo(float).eps
 GAS = ("ideal_gas", {"gamma": 1.4, "E0": 2.5e5})
 TNT = ("jwl", {"A": 371.2e9, "B": 3.21e9, "R1": 4.15, "R2": 0.95, "omega": 0.3, "E0": 7e9})
 COPPER = ("mie_gruneisen", {"c0": 3940.0, "s": 1.49, "gamma0": 1.96})
+# Aluminium of 2700 kg/m^3 (Melosh 1989, table AII.3).
+ALUMINIUM = (
+    "tillotson",
+    {"a": 0.5, "b": 1.63, "A": 75.2e9, "B": 65e9, "e0": 5e6, "e_iv": 3e6, "e_cv": 13.9e6},
+)
 DETONATION = 6930.0  # [m/s]
 EXAMPLES = {
     "linear": {"K": 2e9},
@@ -22,6 +27,7 @@ EXAMPLES = {
     "ideal_gas": GAS[1],
     "tait": {"c0": 1480.0},
     "murnaghan": {"K0": 2e9, "n": 4.0},
+    "tillotson": ALUMINIUM[1],
 }
 
 
@@ -128,6 +134,54 @@ def test_a_jump_in_one_step_is_a_shock(
         assert speed == pytest.approx(Us, rel=1e-6)
         assert exact == pytest.approx(pressure, rel=1e-5)
         assert density / V == pytest.approx(after, rel=1e-5)
+
+
+def tillotson(V: float, e: float) -> float:
+    """Return Tillotson's pressure of aluminium [Pa] at a specific energy e > 0 [J/kg]."""
+    c, rho, eta = ALUMINIUM[1], 2700.0 / V, 1 / V
+    mu, b = eta - 1, c["b"] / (e / (c["e0"] * eta**2) + 1)
+    solid = (c["a"] + b) * rho * e + c["A"] * mu + c["B"] * mu**2
+    part, fades = np.exp(-5 * (V - 1)), np.exp(-5 * (V - 1) ** 2)
+    vapour = c["a"] * rho * e + (b * rho * e + c["A"] * mu * part) * fades
+    if V <= 1:
+        return solid
+    share = np.clip((e - c["e_iv"]) / (c["e_cv"] - c["e_iv"]), 0, 1)
+    return solid + share * (vapour - solid)
+
+
+@pytest.mark.parametrize("lanes", [False, True])
+@pytest.mark.parametrize("V", [0.7, 1.0, 1.1, 2.0, 10.0])
+@pytest.mark.parametrize("e", [1e5, 2.9e6, 3.1e6, 1e7, 1.3e7, 2e7])
+def test_tillotson_from_solid_to_vapour(e: float, V: float, lanes: bool) -> None:
+    rows, _, _ = drive_point(
+        2700.0, "fluid", {"viscosity": 0.0}, np.zeros((1, 3, 3)), lanes, eos=ALUMINIUM,
+        state={"volume": V, "internal_energy": 2700.0 * e},
+    )  # fmt: skip
+    assert -rows[1, :3] == pytest.approx(3 * [tillotson(V, e)], rel=1e-12, abs=75.2e9 * 1e-13)
+
+
+@pytest.mark.parametrize("V", [0.97, 0.9, 0.8, 0.7, 0.6])
+def test_energy_and_pressure_that_is_not_linear_in_it_are_solved_together(V: float) -> None:
+    """One step to a shocked volume ends on the Hugoniot, p = P(V, E) and E = p (1 - V) / 2.
+
+    Newton's steps reach rounding, at 149 GPa too.
+    """
+    found = squeeze(ALUMINIUM, np.array([1.0, V]), 2700.0)
+    energy, p = found["internal_energy"][1], found["pressure"][1]
+    assert energy == pytest.approx(p * (1 - V) / 2, rel=1e-12)
+    assert p == pytest.approx(tillotson(V, energy / 2700.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("V", [0.9, 0.8, 0.7])
+def test_tillotson_s_aluminium_is_that_of_experiments(V: float) -> None:
+    """Us = 5328 + 1.338 up m/s for aluminium 2024 of 2785 kg/m^3 (Marsh 1980, LASL Shock Data).
+
+    Held at the same V, as the densities differ by 3 %. Melosh's constants fit the shocks to 4.5 %.
+    """
+    p = squeeze(ALUMINIUM, np.array([1.0, V]), 2700.0)["pressure"][1]
+    x = 1 - V
+    measured = 2785.0 * 5328.0**2 * x / (1 - 1.338 * x) ** 2
+    assert p == pytest.approx(measured, rel=0.06)
 
 
 def burn(

@@ -69,3 +69,16 @@ def test_python_names() -> None:
     with pytest.warns(DeprecationWarning, match=r"is named mpm3dpp\.GridOutflowBox now"):
         box = mpm3dpp.GridKeep(lower=(0.0, 0.0))
     assert Grid(dimension=2, cell_size=1.0, keep=box).outflow_box == box
+
+
+def test_a_mistake_is_told_of_the_key_that_was_given(tmp_path: Path) -> None:
+    file = written(tmp_path, BEFORE)
+    text = file.read_text().replace("time_step_factor = 0.4", "time_step_factor = 3")
+    file.write_text(text.replace('lower = ["-1 m", "-1 m"]', 'lower = ["-1 m"]'))
+    with pytest.raises(CaseError) as raised:
+        load_case(file)
+    told = [raised.value, *raised.value.others]
+    assert {(e.key, e.place) for e in told} == {
+        ("grid.keep.lower", f"{file}:5"),
+        ("run.time_step_factor", f"{file}:10"),
+    }

@@ -6,13 +6,29 @@ namespace mpm {
 
 /// dp/drho at constant entropy [m^2/s^2], from dE = -p dV: V^2 (p B - A' - B' E) / rho0.
 template <class T>
-T sound_speed_squared(const LinearInEnergy<T>& at, T V, T energy, T pressure, double density) {
-  return max(V * V * (pressure * at.B - at.dA - at.dB * energy) * T(1.0 / density), T(0.0));
+T sound_speed_squared(const LinearInEnergy<T>& at, T V, T energy, double density) {
+  return max(V * V * (at.pressure(energy) * at.B - at.dA - at.dB * energy) * T(1.0 / density),
+             T(0.0));
 }
 
+/// p (1 + B dV/2) = A + B E, E the energy of the end but for the work -p dV/2 of the new pressure.
+template <class T>
+T pressure_at_end(const LinearInEnergy<T>& line, T V, T energy, T change) {
+  // Debris of many times its volume may close by more than its initial volume in one step, where
+  // the energy's part of the denominator would pass zero; a shock ends below that volume.
+  T implicit = T(1.0) + T(0.5) * line.B * change;
+  implicit = select(V > T(1.0), max(implicit, T(0.5)), implicit);
+  return line.pressure(energy) / implicit;
+}
+
+/// Steps of Newton's method where the pressure is not linear in the energy, the same for all, so
+/// that a particle's bits do not depend on those beside it: the first guess is wrong by the square
+/// of p dV/2 over the energy, and each step squares that.
+inline constexpr int energy_steps = 4;
+
 /// The energy per initial volume grows by the work of the deviator, of the pressure (mean of old
-/// and new) and of the artificial viscosity; with p = A + B E that gives p in closed form: p (1 + B
-/// dV/2) = A + B (E + deviatoric and viscous work - p_old dV/2).
+/// and new) and of the artificial viscosity; with p = A + B E that gives p in closed form. Where p
+/// is not linear in E, the same with its tangent is a step of Newton's method.
 template <class T, int D, class Model>
 [[gnu::flatten]] void apply_eos(const Model model, const Material& material,
                                 const BlockColumns<D>& columns, const StressSettings& settings,
@@ -30,15 +46,16 @@ template <class T, int D, class Model>
     const T change = (volume_change.after - volume_change.before) * per_volume;  // of V
     const T mean_before = group.get(block.mean_before);
 
-    LinearInEnergy<T> p = model.at(V);
-    if (burns) p = p.burnt(group.get(block.burnt));
+    const auto line_at = [&](T energy) {
+      const LinearInEnergy<T> line = line_of(model, V, energy);
+      return burns ? line.burnt(group.get(block.burnt)) : line;
+    };
     T energy =
         group.read(columns.energy) + work.deviatoric * per_volume + T(0.5) * mean_before * change;
     if (bounds.active && any(bounds.limits(mean_before)))
       energy = bounds.without_voids(energy, mean_before, change);
-    const T guess = p.A + p.B * energy;
-    T speed =
-        sqrt(sound_speed_squared(p, V, energy, guess, material.density) + group.get(block.speed));
+    LinearInEnergy<T> p = line_at(energy);
+    T speed = sqrt(sound_speed_squared(p, V, energy, material.density) + group.get(block.speed));
     T q(0.0), damping = damped ? group.get(block.damping) : T(0.0);
     if (viscosity) {
       const T artificial = volume_change.viscous_speed(settings, speed);
@@ -47,14 +64,15 @@ template <class T, int D, class Model>
       damping += artificial;
     }
     if (viscosity || damped) speed = damped_speed(speed, damping);
-    // Debris of many times its volume may close by more than its initial volume in one step, where
-    // the energy's part of the denominator would pass zero; a shock ends below that volume.
-    T implicit = T(1.0) + T(0.5) * p.B * change;
-    implicit = select(V > T(1.0), max(implicit, T(0.5)), implicit);
-    T pressure = (p.A + p.B * energy) / implicit;
+    T pressure = pressure_at_end(p, V, energy, change);
+    if constexpr (!LinearEos<Model>)
+      for (int k = 0; k < energy_steps; ++k) {
+        p = line_at(energy - T(0.5) * pressure * change);
+        pressure = pressure_at_end(p, V, energy, change);
+      }
     if (bounds.active && any((pressure < T(-bounds.tension)) |
                              (energy - T(0.5) * pressure * change < T(bounds.lowest_energy))))
-      pressure = bounds.held(pressure, energy, change, p);
+      pressure = bounds.held(pressure, energy, change, line_at(T(bounds.lowest_energy)));
     const T mean = T(1.0 / 3.0) * trace(strength);
     const T shift = mean + pressure;  // of the mean stress, downwards
     const Sym<T, D> stress = strength - Sym<T, D>::isotropic(shift);

@@ -10,6 +10,7 @@
 #include "mpm/materials/eos/murnaghan.hpp"
 #include "mpm/materials/eos/polynomial.hpp"
 #include "mpm/materials/eos/tait.hpp"
+#include "mpm/materials/eos/tillotson.hpp"
 #include "mpm/materials/failure/energy_limit.hpp"
 #include "mpm/materials/failure/hydrostatic_tension.hpp"
 #include "mpm/materials/failure/johnson_cook_damage.hpp"
@@ -45,7 +46,8 @@ struct Catalogue {
 using StrengthModels =
     Catalogue<Elastic, J2, Voce, Swift, JohnsonCook, SimplifiedJohnsonCook, DruckerPrager,
               MohrCoulomb, NeoHookean, Fluid, HighExplosive, Rigid>;
-using EosModels = Catalogue<LinearBulk, Polynomial, MieGruneisen, Jwl, IdealGas, Tait, Murnaghan>;
+using EosModels =
+    Catalogue<LinearBulk, Polynomial, MieGruneisen, Jwl, IdealGas, Tait, Murnaghan, Tillotson>;
 using FailureModels =
     Catalogue<PlasticStrainLimit, PrincipalStressLimit, PrincipalStrainLimit, MaximumShearLimit,
               HydrostaticTensionLimit, JohnsonCookDamage, EnergyLimit>;

@@ -61,11 +61,13 @@ struct EosBounds {
   [[gnu::noinline, gnu::cold]] T without_voids(T energy, T mean_stress, T change) const {
     return energy - select(limits(mean_stress), T(0.5) * mean_stress * change, T(0.0));
   }
-  /// The pressure within the bounds; `energy` is that of the end but for the new pressure's work.
+  /// The pressure within the bounds; `energy` is that of the end but for the new pressure's work,
+  /// `lowest` the pressure about the lowest energy.
   template <class T>
-  [[gnu::noinline, gnu::cold]] T held(T pressure, T energy, T change, LinearInEnergy<T> p) const {
+  [[gnu::noinline, gnu::cold]] T held(T pressure, T energy, T change,
+                                      LinearInEnergy<T> lowest) const {
     const auto below = energy - T(0.5) * pressure * change < T(lowest_energy);
-    return max(select(below, p.A + p.B * T(lowest_energy), pressure), T(-tension));
+    return max(select(below, lowest.pressure(T(lowest_energy)), pressure), T(-tension));
   }
 };
 

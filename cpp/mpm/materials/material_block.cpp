@@ -65,11 +65,11 @@ void start_material_columns(const Material& material, Columns& columns, const Ma
   std::visit(
       [&](const auto& model) {
         const double energy = model.initial_energy();
-        const LinearInEnergy<double> p = model.at(1.0);
+        const double pressure = line_of(model, 1.0, energy).pressure(energy);
         fill(at.energy, energy);
         if (at.recoverable >= 0) fill(at.recoverable, energy);
         if (material.burns()) return;  // not burning yet
-        for (int c = 0; c < 3; ++c) fill(at.stress + c, -(p.A + p.B * energy));
+        for (int c = 0; c < 3; ++c) fill(at.stress + c, -pressure);
       },
       *material.eos);
 }
@@ -98,9 +98,9 @@ double sound_speed(const Material& material, const Columns& columns, const Mater
           const double bulk = std::visit(
               [&](const auto& eos) {
                 const double energy = value(at.energy);
-                LinearInEnergy<double> p = eos.at(J);
+                LinearInEnergy<double> p = line_of(eos, J, energy);
                 if constexpr (Burns<Model>) p = p.burnt(state.burn_fraction);
-                return sound_speed_squared(p, J, energy, p.A + p.B * energy, material.density);
+                return sound_speed_squared(p, J, energy, material.density);
               },
               *material.eos);
           const double c = sqrt(bulk + other);

@@ -118,19 +118,40 @@ template <class T>
 struct LinearInEnergy {
   T A, B, dA, dB;
 
+  MPM_HD T pressure(T energy) const { return A + B * energy; }
+
   /// The same of which a fraction has burnt: programmed burn multiplies the pressure.
   MPM_HD LinearInEnergy burnt(T fraction) const {
     return {fraction * A, fraction * B, fraction * dA, fraction * dB};
   }
 };
 
-/// An equation of state that is linear in the energy. `E0` [J/m^3] is the internal energy at the
-/// start, `energy_at_zero(heat)` the least that there is, at absolute zero, where the material
-/// holds `heat` [J/m^3] at the start (infinite if that is unknown); minus infinity where the
-/// pressure does not depend on it. A gas, as products of detonation are, fills any volume.
+/// One that is linear in the energy, by `at(V)` ...
 template <class M>
-concept EosModel = Model<M> && requires(M m, double V) {
+concept LinearEos = requires(M m, double V) {
   { m.at(V) } -> std::same_as<LinearInEnergy<double>>;
+};
+/// ... or any other, by `tangent(V, E)`: B = dp/dE, A = p - B E, dA = dp/dV and dB = 0 there.
+template <class M>
+concept NonlinearEos = requires(M m, double V, double E) {
+  { m.tangent(V, E) } -> std::same_as<LinearInEnergy<double>>;
+};
+
+/// The pressure about an energy, whichever way the model gives it.
+template <class T, class M>
+MPM_HD LinearInEnergy<T> line_of(const M& eos, T V, T energy) {
+  if constexpr (LinearEos<M>)
+    return eos.at(V);
+  else
+    return eos.tangent(V, energy);
+}
+
+/// An equation of state. `initial_energy` [J/m^3] is the internal energy at the start,
+/// `energy_at_zero(heat)` the least that there is, at absolute zero, where the material holds
+/// `heat` [J/m^3] at the start (infinite if that is unknown); minus infinity where the pressure
+/// does not depend on it. A gas, as products of detonation are, fills any volume.
+template <class M>
+concept EosModel = Model<M> && (LinearEos<M> || NonlinearEos<M>) && requires(M m) {
   { m.initial_energy() } -> std::convertible_to<double>;
   { m.energy_at_zero(1.0) } -> std::convertible_to<double>;
   { m.is_gas() } -> std::same_as<bool>;

@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from pydantic import BaseModel, ConfigDict, PrivateAttr, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
-from .errors import MISSING, CaseError, below, from_validation, nearest, report, violation
+from .errors import (
+    MISSING,
+    CaseError,
+    from_validation,
+    nearest,
+    report,
+    violation,
+    violations_of,
+)
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -68,19 +76,23 @@ class CaseModel(BaseModel, metaclass=_CaseMeta):
             if key not in known:
                 remedy = nearest(str(key), cls.model_fields)
                 found.append(violation("is not a known key", remedy, path=(str(key),)))
-        if not found:
-            made = handler(known)
-            made._renamed = renamed
-            return made
         try:
-            handler(known)
+            made = handler(known)
+            if not found:
+                made._renamed = renamed
+                return made
         except (ValidationError, PydanticCustomError) as error:
+            if not found and not renamed:
+                raise
+            given = {cls.formerly[key]: key for key in renamed}
             meant = " ".join(v.context["remedy"].partition("?")[0] for v in found if v.context)
-            for other in below(error, ()):
-                context: dict[str, Any] = other.context or {}
-                name = context["path"][-1] if context["path"] else ""
-                if context["rule"] != MISSING or f'"{name}"' not in meant:
-                    found.append(other)
+            for other in violations_of(error):
+                path = other["path"]
+                name = path[-1] if path else ""
+                if other["rule"] != MISSING or f'"{name}"' not in meant:
+                    path = (given.get(path[0], path[0]), *path[1:]) if path else path
+                    rule, remedy, value = other["rule"], other["remedy"], other["value"]
+                    found.append(violation(rule, remedy, value=value, path=path))
         report(found)
         return data
 

@@ -150,20 +150,27 @@ template <class Model>
 void check_eos(mpm::testing::Report& report) {
   constexpr int W = native_lanes;
   const Model model = example<Model>();
-  for (const double V : {0.75, 0.9, 0.99, 1.01, 1.2, 3.0}) {
-    const LinearInEnergy<double> one = model.at(V);
-    const LinearInEnergy<Batch<W>> all = model.at(Batch<W>(V));
-    const double near = 64 * eps * modulus;
-    CHECK_CLOSE(all.A[0], one.A, near);
-    CHECK_CLOSE(all.B[0], one.B, 64 * eps * (1.0 + std::abs(one.B)));
-    CHECK_CLOSE(all.dA[0], one.dA, 64 * eps * (modulus + std::abs(one.dA)));
-    CHECK_CLOSE(all.dB[0], one.dB, 64 * eps * (1.0 + std::abs(one.dB)));
-    const double h = 1e-5;
-    const auto above = model.at(V + h), below = model.at(V - h);
-    const double size = std::abs(one.dA) + modulus;
-    CHECK_CLOSE((above.A - below.A) / (2 * h), one.dA, 1e-7 * size);
-    CHECK_CLOSE((above.B - below.B) / (2 * h), one.dB, 1e-7 * (1.0 + std::abs(one.dB)));
-  }
+  const auto pressure = [&](double V, double energy) {
+    return line_of(model, V, energy).pressure(energy);
+  };
+  for (const double V : {0.75, 0.9, 0.99, 1.01, 1.2, 3.0})
+    for (const double energy : {0.5 * modulus, 2.0 * modulus, 4.0 * modulus}) {
+      const LinearInEnergy<double> one = line_of(model, V, energy);
+      const LinearInEnergy<Batch<W>> all = line_of(model, Batch<W>(V), Batch<W>(energy));
+      const double near = 64 * eps * modulus;
+      CHECK_CLOSE(all.A[0], one.A, near);
+      CHECK_CLOSE(all.B[0], one.B, 64 * eps * (1.0 + std::abs(one.B)));
+      CHECK_CLOSE(all.dA[0], one.dA, 64 * eps * (modulus + std::abs(one.dA)));
+      CHECK_CLOSE(all.dB[0], one.dB, 64 * eps * (1.0 + std::abs(one.dB)));
+      const double h = 1e-5;
+      const double by_volume = (pressure(V + h, energy) - pressure(V - h, energy)) / (2 * h);
+      const double slope = one.dA + one.dB * energy;
+      CHECK_CLOSE(by_volume, slope,
+                  1e-7 * (std::abs(one.dA) + std::abs(one.dB) * energy + modulus));
+      const double H = h * modulus;
+      const double by_energy = (pressure(V, energy + H) - pressure(V, energy - H)) / (2 * H);
+      CHECK_CLOSE(by_energy, one.B, 1e-7 * (1.0 + std::abs(one.B)));
+    }
 }
 
 }  // namespace
