@@ -33,7 +33,10 @@
   X(load_kinds) \
   X(surface_load) \
   X(tile_grid) \
+  X(patch) \
+  X(outflow_box) \
   X(blocks) \
+  X(shared_nodes) \
   X(make_body) \
   X(build_cell_lists) \
   X(update_cell_lists) \

@@ -1,6 +1,8 @@
-// From positions to cells, tiles and nodes and back, and the region that is kept.
+// From positions to cells, tiles and nodes and back; and who a patch's neighbours are.
+#include <map>
+
 #include "check.hpp"
-#include "mpm/grid/tile_grid.hpp"
+#include "grid/tiles.hpp"
 
 namespace {
 
@@ -35,6 +37,47 @@ void check_places(mpm::testing::Report& report, BasisId basis) {
   CHECK(local_coordinate(4.0, 4.0) > 0.0 && local_coordinate(5.0, 4.0) < 1.0);
 }
 
+template <int D>
+int find(const TileGrid<D>& grid, int body, const Index<D>& tile) {
+  return grid.find(body, tile);
+}
+
+/// The neighbours of a patch are those of its body in the tiles around it; of bonded bodies, of the
+/// first in each tile the first ones.
+template <int D>
+void check_neighbours(mpm::testing::Report& report, bool bonded) {
+  const mpm::testing::Tiles<D> tiles(basis_id<Linear>, bonded);
+  const TileGrid<D>& grid = tiles.grid;
+  std::map<std::pair<int, Index<D>>, int> at;
+  std::map<Index<D>, int> first;
+  for (int p = 0; const Patch<D>& patch : grid.patches) {
+    at[{patch.body, patch.tile}] = p;
+    first.try_emplace(patch.tile, p++);
+  }
+  const auto found = [](const auto& map, const auto& key) {
+    const auto entry = map.find(key);
+    return entry == map.end() ? -1 : entry->second;
+  };
+  for (std::size_t p = 0; p < grid.patches.size(); ++p) {
+    const Patch<D>& patch = grid.patches[p];
+    CHECK_EQUAL(static_cast<int>(patch.primary), bonded ? first[patch.tile] : static_cast<int>(p));
+    if (patch.primary != p) continue;
+    for (int k = 0; k < Tile<D>::neighbours; ++k) {
+      Index<D> tile = patch.tile;
+      for (std::size_t a = 0; a < D; ++a) tile[a] += Tile<D>::offset(k)[a];
+      const int expected = bonded ? found(first, tile) : found(at, std::pair(patch.body, tile));
+      CHECK_EQUAL(patch.neighbour[static_cast<std::size_t>(k)], expected);
+    }
+  }
+  Index<D> low, high;
+  low.fill(-2);
+  high.fill(2);
+  for (int body = -1; body < 4; ++body)
+    for_each_index<D>(low, high, [&](const Index<D>& tile) {
+      CHECK_EQUAL(find<D>(grid, body, tile), found(at, std::pair(body, tile)));
+    });
+}
+
 }  // namespace
 
 void test_tile_grid(mpm::testing::Report& report) {
@@ -42,9 +85,8 @@ void test_tile_grid(mpm::testing::Report& report) {
     check_places<2>(report, id);
     check_places<3>(report, id);
   });
-  OutflowBox<2> box;
-  box.lower = {0.0, -1.0};
-  box.upper = {2.0, 1.0};
-  CHECK(box.holds({0.0, 1.0}) && !box.holds({-1e-9, 0.0}) && !box.holds({1.0, 1.5}));
-  CHECK(box.holds({0.5, 0.0}, {2.0, 1.0}) && !box.holds({0.5, 0.0}, {2.5, 1.0}));
+  for (const bool bonded : {false, true}) {
+    check_neighbours<2>(report, bonded);
+    check_neighbours<3>(report, bonded);
+  }
 }
