@@ -32,6 +32,10 @@
   X(rigid_motion) \
   X(load_kinds) \
   X(surface_load) \
+  X(tile) \
+  X(block_shape) \
+  X(node_bits) \
+  X(node_batch) \
   X(tile_grid) \
   X(patch) \
   X(outflow_box) \
