@@ -42,8 +42,12 @@
   X(blocks) \
   X(shared_nodes) \
   X(make_body) \
+  X(pool) \
   X(build_cell_lists) \
   X(update_cell_lists) \
+  X(classify) \
+  X(migrants) \
+  X(sort_columns) \
   X(fuse) \
   X(stages) \
   X(two_bodies) \
