@@ -48,6 +48,10 @@
   X(classify) \
   X(migrants) \
   X(sort_columns) \
+  X(transfer) \
+  X(move) \
+  X(nodes_around) \
+  X(loops) \
   X(fuse) \
   X(stages) \
   X(two_bodies) \
