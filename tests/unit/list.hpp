@@ -59,6 +59,9 @@
   X(separation) \
   X(tile_holder) \
   X(contact_part) \
+  X(derived_fields) \
+  X(watch) \
+  X(timers) \
   X(no_allocation) \
   /* end */
 // clang-format on
