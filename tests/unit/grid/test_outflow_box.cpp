@@ -19,6 +19,8 @@ void check_corners(mpm::testing::Report& report) {
     region.lower[a] = -1.0;
     region.upper[a] = 1.0;
   }
+  CHECK(region.holds(region.lower) && region.holds(region.upper));
+  CHECK(region.holds(region.lower, region.upper));
   int inside = 0;
   for (int trial = 0; trial < 1000; ++trial) {
     Vec<double, D> low, high;
