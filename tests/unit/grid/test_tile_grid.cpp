@@ -78,6 +78,26 @@ void check_neighbours(mpm::testing::Report& report, bool bonded) {
     });
 }
 
+/// Two bodies with a tile each, one beside the other: only if they are bonded do they know of it.
+template <int D>
+void check_two_bodies(mpm::testing::Report& report, bool bonded) {
+  mpm::testing::Tiles<D> tiles(basis_id<Linear>, bonded);
+  std::vector<Patch<D>>& patches = tiles.grid.patches;
+  patches.assign(2, {});
+  patches[1].body = 1;
+  patches[1].tile[0] = 1;
+  tiles.connect();
+  for (std::size_t p = 0; p < 2; ++p)
+    for (int k = 0; k < Tile<D>::neighbours; ++k) {
+      const int step = p == 0 ? 1 : -1;
+      const bool beside = bonded && k == Tile<D>::self + step;
+      const int expected = k == Tile<D>::self ? static_cast<int>(p)
+                           : beside           ? 1 - static_cast<int>(p)
+                                              : -1;
+      CHECK_EQUAL(patches[p].neighbour[static_cast<std::size_t>(k)], expected);
+    }
+}
+
 }  // namespace
 
 void test_tile_grid(mpm::testing::Report& report) {
@@ -88,5 +108,7 @@ void test_tile_grid(mpm::testing::Report& report) {
   for (const bool bonded : {false, true}) {
     check_neighbours<2>(report, bonded);
     check_neighbours<3>(report, bonded);
+    check_two_bodies<2>(report, bonded);
+    check_two_bodies<3>(report, bonded);
   }
 }
