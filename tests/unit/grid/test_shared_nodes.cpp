@@ -27,6 +27,7 @@ std::vector<std::vector<std::size_t>> in_order(const TileGrid<D>& grid) {
   for (std::size_t p = 0; p < grid.patches.size(); ++p)
     by_primary[grid.patches[p].primary].push_back(p);
   std::vector<std::vector<std::size_t>> order;
+  order.reserve(by_primary.size());
   for (const auto& [primary, patches] : by_primary) order.push_back(patches);
   if (grid.bonded)
     std::ranges::sort(order, [&](const auto& x, const auto& y) {

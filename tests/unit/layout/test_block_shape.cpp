@@ -21,7 +21,7 @@ void check_shape(mpm::testing::Report& report, const BlockShape<D>& shape, std::
                  const Reach& reach) {
   CHECK(shape.node_count <= BlockShape<D>::nodes_max, shape.node_count);
   // Every node that a cell reaches is in the box, and on each face there is one.
-  std::array<bool, 2 * D> on_face{};
+  std::array<bool, std::size_t{2} * D> on_face{};
   for (int c = 0; c < Tile<D>::cell_count; ++c) {
     if (!(occupied >> c & 1u)) continue;
     Index<D> first = Tile<D>::cell_index(c), last = first;
