@@ -29,6 +29,17 @@ class Report {
     }
     failures_.push_back(text.str());
   }
+  template <class A, class B>
+  void check_equal(const A& actual, const B& expected, const char* file, int line,
+                   std::string_view what, std::string_view names) {
+    check(actual == expected, file, line, what, names, actual, expected);
+  }
+  /// |actual - expected| <= tolerance; not so for NaN.
+  void check_close(double actual, double expected, double tolerance, const char* file, int line,
+                   std::string_view what, std::string_view names) {
+    const bool close = std::abs(actual - expected) <= tolerance;
+    check(close, file, line, what, names, actual, expected, tolerance);
+  }
   std::size_t check_count() const { return check_count_; }
   const std::vector<std::string>& failures() const { return failures_; }
 
@@ -37,11 +48,6 @@ class Report {
   std::size_t check_count_ = 0, failure_count_ = 0;
   std::vector<std::string> failures_;
 };
-
-/// |actual - expected| <= tolerance; false for NaN.
-inline bool close(double actual, double expected, double tolerance) {
-  return std::abs(actual - expected) <= tolerance;
-}
 
 /// True if `call` throws a std::exception whose text holds `part`.
 template <class Call>
@@ -60,14 +66,14 @@ bool throws(Call&& call, std::string_view part) {
 #define CHECK(condition, ...) \
   report.check((condition), __FILE__, __LINE__, #condition, #__VA_ARGS__ __VA_OPT__(, ) __VA_ARGS__)
 
-#define CHECK_EQUAL(actual, expected)                                                \
-  report.check((actual) == (expected), __FILE__, __LINE__, #actual " == " #expected, \
-               #actual ", " #expected, (actual), (expected))
+#define CHECK_EQUAL(actual, expected)                                                    \
+  report.check_equal((actual), (expected), __FILE__, __LINE__, #actual " == " #expected, \
+                     #actual ", " #expected)
 
-#define CHECK_CLOSE(actual, expected, tolerance)                                           \
-  report.check(mpm::testing::close((actual), (expected), (tolerance)), __FILE__, __LINE__, \
-               "|" #actual " - (" #expected ")| <= " #tolerance,                           \
-               #actual ", " #expected ", " #tolerance, (actual), (expected), (tolerance))
+#define CHECK_CLOSE(actual, expected, tolerance)                            \
+  report.check_close((actual), (expected), (tolerance), __FILE__, __LINE__, \
+                     "|" #actual " - (" #expected ")| <= " #tolerance,      \
+                     #actual ", " #expected ", " #tolerance)
 
 #define CHECK_THROWS(expression, part)                                                      \
   report.check(mpm::testing::throws([&] { (void)(expression); }, part), __FILE__, __LINE__, \

@@ -32,11 +32,26 @@
   X(rigid_motion) \
   X(load_kinds) \
   X(surface_load) \
-  X(tile_grid) \
+  X(tile) \
+  X(block_shape) \
+  X(node_bits) \
+  X(node_batch) \
+  X(connect) \
+  X(patch) \
+  X(outflow_box) \
   X(blocks) \
+  X(shared_nodes) \
   X(make_body) \
+  X(pool) \
   X(build_cell_lists) \
   X(update_cell_lists) \
+  X(classify) \
+  X(migrants) \
+  X(sort_columns) \
+  X(transfer) \
+  X(move) \
+  X(nodes_around) \
+  X(loops) \
   X(fuse) \
   X(stages) \
   X(two_bodies) \
@@ -44,6 +59,9 @@
   X(separation) \
   X(tile_holder) \
   X(contact_part) \
+  X(derived_fields) \
+  X(step_watch) \
+  X(timers) \
   X(no_allocation) \
   /* end */
 // clang-format on

@@ -11,6 +11,7 @@ namespace mpm::reference {
 template <int D>
 void Step<D>::absorb_at_walls() {
   for (Body<D>& b : bodies) {
+    if (!b.deforms()) continue;
     const Elastic& law = b.material;
     const double rho = law.density, pressure = std::sqrt(rho * (law.lambda + 2.0 * law.G)),
                  shear = std::sqrt(rho * law.G);
@@ -41,9 +42,10 @@ void Step<D>::absorb_at_walls() {
       for (int a = 0; a < D; ++a) {
         // The acceleration is that with the dashpot: f - C (v + dt f / 2 m) solved for f.
         const double half = 0.5 * dt / node.m;
-        node.f[a] -= factor[a] * (node.v[a] + half * node.f[a]) / (1.0 + half * factor[a]);
+        node.f_absorb[a] = -factor[a] * (node.v[a] + half * node.f[a]) / (1.0 + half * factor[a]);
       }
-      hold(i, node.f);
+      hold(i, node.f_absorb);
+      node.f += node.f_absorb;
     }
   }
 }

@@ -25,7 +25,34 @@ void Step<D>::find_contacts() {
   for (auto& [i, r] : bodies[0].nodes) {
     const auto s = bodies[1].nodes.find(i);
     if (s == bodies[1].nodes.end() || walls.image(i)) continue;
-    contacts.push_back({i, &r, &s->second, normalised(normal[0][i] - normal[1][i], 1e-6)});
+    contacts.push_back({i, &r, &s->second, normalised(normal[0][i] - normal[1][i], 1e-6), 1.0 / r.m,
+                        1.0 / s->second.m});
+  }
+  find_meeting_masses();
+}
+
+/// The masses with which bodies that do not deform meet others: of one that moves as prescribed
+/// infinite, but where it has a share below 1 of a tenth of the other's volume, share / (1 - share)
+/// of its mass: a node that it has only just reached is not held. A rigid body has the mass of all
+/// of it, shared out among the nodes at which it meets the other.
+template <int D>
+void Step<D>::find_meeting_masses() {
+  double shared[2] = {0.0, 0.0};
+  for (const Contact<D>& c : contacts) shared[0] += c.r->m, shared[1] += c.s->m;
+  const auto inverse = [&](std::size_t k, double own, double other) {
+    const Body<D>&b = bodies[k], &met = bodies[1 - k];
+    if (b.deforms()) return 1.0 / own;
+    if (b.prescribed()) {
+      const double share = own / b.material.density / (0.1 * other / met.material.density);
+      return share < 1.0 ? (1.0 - share) / (share * other) : 0.0;
+    }
+    double all = 0.0;
+    for (const Particle<D>& p : b.particles) all += p.m;
+    return shared[k] / (own * all);
+  };
+  for (Contact<D>& c : contacts) {
+    c.w_r = inverse(0, c.r->m, c.s->m);
+    c.w_s = inverse(1, c.s->m, c.r->m);
   }
 }
 
@@ -35,21 +62,28 @@ void Step<D>::contact_momentum(Vec<double, D> Node<D>::* velocity) {
   for (Contact<D>& c : contacts) {
     const double approach = dot(c.r->*velocity - c.s->*velocity, c.n);
     c.touching = approach >= 0.0;
-    const double a = c.r->m * c.s->m / (c.r->m + c.s->m) * std::max(approach, 0.0);
-    c.r->*velocity -= (a / c.r->m) * c.n;
-    c.s->*velocity += (a / c.s->m) * c.n;
+    const double a = std::max(approach, 0.0) / (c.w_r + c.w_s);
+    c.r->*velocity -= (a * c.w_r) * c.n;
+    c.s->*velocity += (a * c.w_s) * c.n;
   }
-  for (Body<D>& b : bodies) reflect(b, velocity);
+  for (Body<D>& b : bodies) {
+    reflect(b, velocity);
+    if (b.prescribed()) set_prescribed_velocities(b, velocity);  // whatever pushes it
+  }
 }
 
 /// f_nor = (m_s P_r - m_r P_s) . n / ((m_r + m_s) dt) > 0 with P = m v + dt f, f_tan likewise along
 /// the slip, and of that no more than mu f_nor.
 template <int D>
 void Step<D>::contact_forces() {
+  /// P / m: where a body would go without the other.
+  const auto alone = [&](const Body<D>& b, const Node<D>& i) {
+    return i.v + (b.prescribed() ? i.dv : (dt / i.m) * i.f);
+  };
   for (Contact<D>& c : contacts) {
     if (!c.touching) continue;
-    const Vec<double, D> P_r = c.r->m * c.r->v + dt * c.r->f, P_s = c.s->m * c.s->v + dt * c.s->f;
-    const Vec<double, D> all = (1.0 / ((c.r->m + c.s->m) * dt)) * (c.s->m * P_r - c.r->m * P_s);
+    const Vec<double, D> slip = alone(bodies[0], *c.r) - alone(bodies[1], *c.s);
+    const Vec<double, D> all = (1.0 / ((c.w_r + c.w_s) * dt)) * slip;
     const double f_nor = std::max(dot(all, c.n), 0.0);
     const Vec<double, D> tangential = all - dot(all, c.n) * c.n;
     const double f_fric = std::min(mu * f_nor, norm(tangential));

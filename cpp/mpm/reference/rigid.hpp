@@ -30,7 +30,7 @@ RigidMotion motion_of(const std::vector<Particle<D>>& particles) {
 template <int D>
 void Step<D>::project_rigid_velocities() {
   for (Body<D>& b : bodies) {
-    if (!b.rigid) continue;
+    if (b.kind != BodyKind::rigid) continue;
     b.motion = motion_of(b.particles);
     for (Particle<D>& p : b.particles) p.v = from_space<D>(b.motion.velocity_at(in_space<D>(p.x)));
   }
@@ -40,7 +40,7 @@ void Step<D>::project_rigid_velocities() {
 template <int D>
 void Step<D>::move_rigid_bodies() {
   for (Body<D>& b : bodies) {
-    if (!b.rigid) continue;
+    if (b.kind != BodyKind::rigid) continue;
     const Vector3 before = b.motion.centre;
     const Matrix3 turned = turn(b.motion, dt);
     for (Particle<D>& p : b.particles) {

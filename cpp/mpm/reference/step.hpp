@@ -3,61 +3,24 @@
 // node at a time, in doubles, without tiles, vectors or threads. Read it first. It is slow; what
 // runs is in step/, and tests hold the stages there to it (tests/unit/step).
 #include <functional>
-#include <map>
-#include <vector>
 
-#include "mpm/materials/strength/elastic.hpp"
 #include "mpm/reference/shape.hpp"
-#include "mpm/rigid/prescribed_motion.hpp"
+#include "mpm/reference/state.hpp"
 #include "mpm/walls/walls.hpp"
 
 namespace mpm::reference {
 
 template <int D>
-struct Particle {
-  Vec<double, D> x, v;   // position [m], velocity [m/s]
-  double m, V;           // mass [kg], volume [m^3]
-  Sym<double, D> sigma;  // stress [Pa]
-};
-
-template <int D>
-struct Node {
-  double m = 0.0;                                 // mass [kg]
-  Vec<double, D> v = Vec<double, D>::zero();      // velocity [m/s]; a momentum while it is summed
-  Vec<double, D> f = Vec<double, D>::zero();      // force [N]
-  Vec<double, D> dv = Vec<double, D>::zero();     // change of the velocity in this step [m/s]
-  Vec<double, D> v_new = Vec<double, D>::zero();  // remapped velocity [m/s]
-};
-
-/// A body; every body has its own velocity field on the common grid.
-template <int D>
-struct Body {
-  std::vector<Particle<D>> particles;
-  Elastic material;
-  bool rigid = false;  // it has no stress, and its particles move as one
-  RigidMotion motion;
-  std::map<Index<D>, Node<D>> nodes;
-};
-
-/// Two bodies r and s at a node, and what eqs. (6)-(7) and (11)-(15) need there.
-template <int D>
-struct Contact {
-  Index<D> node;
-  Node<D>*r, *s;
-  Vec<double, D> n;                           // unit normal from r to s
-  bool touching = false;                      // the bodies approach, or rest against each other
-  Vec<double, D> f = Vec<double, D>::zero();  // contact force on s [N]
-};
-
-template <int D>
 struct Step {
-  double h = 0.0, dt = 0.0;                   // cell size [m], time step [s]
+  double h = 0.0, t = 0.0, dt = 0.0;          // cell size [m], time [s], time step [s]
   Vec<double, D> g = Vec<double, D>::zero();  // gravity [m/s^2]
   double mu = 0.0;                            // coefficient of friction
   double pic = 0.0;                           // share of the grid's velocity that particles take
   std::function<ShapeValue(double)> S;        // shape function along an axis, of d [cells]
-  Walls<D> walls{};                           // the grid's node 0 is the lower corner of the box
+  double half_width = 0.0;  // of the box over which it is the mean of the hat [cells]
+  Walls<D> walls{};         // the grid's node 0 is the lower corner of the box
   std::vector<Body<D>> bodies;
+  std::vector<Load<D>> loads;
   std::vector<Contact<D>> contacts;  // of this step
 
   /// f(node, N_ip, grad N_ip [1/m]) for the nodes that a place reaches.
@@ -105,6 +68,7 @@ struct Step {
   void map_forces() {
     for (Body<D>& b : bodies) {
       for (auto& [i, node] : b.nodes) node.f = Vec<double, D>::zero();
+      if (b.prescribed()) continue;
       for (const Particle<D>& p : b.particles)
         for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>& dN) {
           for (int a = 0; a < D; ++a) {
@@ -121,7 +85,10 @@ struct Step {
   void advance_nodes() {
     for (Body<D>& b : bodies) {
       for (auto& [i, node] : b.nodes) {
-        node.dv = (dt / node.m) * node.f;
+        if (!b.prescribed()) {
+          hold(i, node.f);  // Friction of a prescribed body may act along a wall.
+          node.dv = (dt / node.m) * node.f;
+        }
         node.v += node.dv;
       }
       reflect(b, &Node<D>::v);
@@ -131,15 +98,17 @@ struct Step {
 
   /// v_p += sum dv_i N_ip, eq. (17); of a share `pic` the velocity of the grid takes the place.
   void advance_particles() {
-    for (Body<D>& b : bodies)
+    for (Body<D>& b : bodies) {
+      if (b.prescribed()) continue;
       for (Particle<D>& p : b.particles) {
         Vec<double, D> of_grid = Vec<double, D>::zero();
         for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>&) {
           p.v += N * b.nodes[i].dv;
           of_grid += N * b.nodes[i].v;
         });
-        if (!b.rigid) p.v += pic * (of_grid - p.v);
+        if (b.deforms()) p.v += pic * (of_grid - p.v);
       }
+    }
   }
 
   /// MUSL: the nodes' velocities anew from those of the particles, section 3.6, step 10.
@@ -161,7 +130,7 @@ struct Step {
   /// take the nodes' velocities `v`, MUSL the remapped ones.
   void update_stress(Vec<double, D> Node<D>::* velocity) {
     for (Body<D>& b : bodies) {
-      if (b.rigid) continue;
+      if (!b.deforms()) continue;
       for (Particle<D>& p : b.particles) {
         StrainIncrement<double, D> motion{};
         for_each_node(p.x, [&](const Index<D>& i, double, const Vec<double, D>& dN) {
@@ -180,7 +149,7 @@ struct Step {
   /// x_p += dt sum v_i N_ip, eq. (16).
   void move_particles() {
     for (Body<D>& b : bodies) {
-      if (b.rigid) continue;
+      if (!b.deforms()) continue;
       for (Particle<D>& p : b.particles) {
         Vec<double, D> v = Vec<double, D>::zero();
         for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>&) {
@@ -194,14 +163,23 @@ struct Step {
   /// contact.hpp: where two bodies meet, with the normals of their gradients of mass, eq. (4); the
   /// momentum of approach, eqs. (6)-(7); normal force and friction, eqs. (11)-(15).
   void find_contacts();
+  void find_meeting_masses();
   void contact_momentum(Vec<double, D> Node<D>::* velocity);
   void contact_forces();
-  /// absorb.hpp, rigid.hpp
+  /// loads.hpp, absorb.hpp: forces of loads on surfaces and of walls that absorb.
+  void load_surfaces();
+  void carry_loads(Vec<double, D> Node<D>::* velocity);
   void absorb_at_walls();
+  /// rigid.hpp, prescribed.hpp: bodies that move as one.
   void project_rigid_velocities();
   void move_rigid_bodies();
+  void begin_prescribed_motions();
+  void move_prescribed_bodies();
+  /// works.hpp: the work of forces over the step, once the nodes are advanced.
+  Works works() const;
 
  private:
+  void set_prescribed_velocities(Body<D>& b, Vec<double, D> Node<D>::* velocity);
   /// Take away the components along the axes that walls hold at a node.
   void hold(const Index<D>& i, Vec<double, D>& v) const {
     for (int a = 0; a < D; ++a)
@@ -216,6 +194,7 @@ struct Step {
   }
   /// Such a node moves as its image does.
   void reflect(Body<D>& b, Vec<double, D> Node<D>::* velocity) {
+    if (b.prescribed()) return;
     for (auto& [i, node] : b.nodes)
       for_image(b, i, [&](Node<D>& image, auto&& mirrored) {
         node.*velocity = mirrored(image.*velocity);
@@ -232,6 +211,7 @@ struct Step {
   }
   /// From momenta to velocities.
   void find_velocities(Body<D>& b, Vec<double, D> Node<D>::* velocity) {
+    if (b.prescribed()) return set_prescribed_velocities(b, velocity);
     for (auto& [i, node] : b.nodes) {
       node.*velocity = (1.0 / node.m) * (node.*velocity);
       hold(i, node.*velocity);

@@ -7,7 +7,10 @@
 #include "mpm/particles/make_body.hpp"
 #include "mpm/reference/absorb.hpp"
 #include "mpm/reference/contact.hpp"
-#include "mpm/reference/rigid.hpp"
+#include "mpm/reference/loads.hpp"
+#include "mpm/reference/prescribed.hpp"
+#include "mpm/reference/works.hpp"
+#include "mpm/schedule/cell_loop.hpp"
 #include "mpm/step/scheme.hpp"
 
 namespace mpm::testing {
@@ -20,8 +23,9 @@ template <int D>
 struct Choice {
   BasisId basis = basis_id<Linear>;
   bool contact = false;
-  bool rigid = false;        // the first body
-  double pic_damping = 0.0;  // [1/s]
+  bool load = false;                     // a pressure and a traction on the second body
+  BodyKind kind = BodyKind::deformable;  // of the first body
+  double pic_damping = 0.0;              // [1/s]
   std::array<Wall, 2 * D> walls{};
 };
 
@@ -45,6 +49,7 @@ struct Twin {
     reference.walls = grid.walls;
     grid.has_dashpots = grid.walls.absorb();
     reference.S = shape(choice.basis);
+    reference.half_width = half_width(choice.basis, edge);
     domain.time_step = reference.dt = 1e-5;
     domain.pic_damping = choice.pic_damping;
     reference.pic = choice.pic_damping * domain.time_step;
@@ -56,13 +61,29 @@ struct Twin {
     reference.mu = 0.3;
     domain.threads.resize(1);
     add_material();
-    for (int k = 0; k < 2; ++k) add_body(k, choice.rigid && k == 0);
+    for (int k = 0; k < 2; ++k) add_body(k, k == 0 ? choice.kind : BodyKind::deformable);
     fill_pools(domain.pools, domain.materials, domain.bodies, grid.patches);
     for (Patch<D>& patch : grid.patches) disturb(patch);  // one a body, the rows as they were given
+    if (choice.load)
+      for (const LoadKind kind : {LoadKinds::id_of<Pressure>(), LoadKinds::id_of<Traction>()})
+        add_load(kind);
     build_cell_lists(grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
     list_kinds(domain);
     if (domain.has_contact()) connect_tiles(domain.contact, grid, domain.bodies);
     domain.sums.resize(grid.patches.size());
+    start_ledger();
+  }
+
+  /// What the time loop does before and after the stages of a step.
+  void begin_step() {
+    domain.time_after = domain.time + domain.time_step;
+    for (const std::size_t b : domain.prescribed)
+      domain.bodies[b].motion->begin_step(domain.time, domain.time_after);
+    reference.begin_prescribed_motions();
+  }
+  void end_step() {
+    reference.t = domain.time = domain.time_after;
+    ++domain.step;
   }
 
   static std::function<reference::ShapeValue(double)> shape(BasisId basis) {
@@ -86,7 +107,7 @@ struct Twin {
     domain.pools.push_back(make_pool(domain.materials[0], domain.grid));
   }
   /// Two bodies that overlap: the second begins at two fifths of the box along x.
-  void add_body(int k, bool rigid) {
+  void add_body(int k, BodyKind kind) {
     std::vector<double> x, v;
     for (std::size_t i = 0; i < particles; ++i)
       for (int a = 0; a < D; ++a) {
@@ -97,15 +118,82 @@ struct Twin {
     const double volume = std::pow(edge * cell_size, D);
     Body<D> body =
         make_body<D>("body", domain.materials[0], domain.pools[0], x, v, std::array{volume});
-    body.kind = rigid ? BodyKind::rigid : BodyKind::deformable;
+    body.kind = kind;
+    reference::Body<D>& other = reference.bodies.emplace_back();
+    other.kind = kind;
+    other.material = Elastic::of(E, nu, density);
+    if (body.is_prescribed()) prescribe(body, other);
     domain.bodies.push_back(std::move(body));
+  }
+  /// A motion and a spin that are other ones in every step.
+  void prescribe(Body<D>& body, reference::Body<D>& other) {
+    body.motion = std::make_unique<PrescribedMotion>();
+    Vector3 centre = Vector3::zero();
+    for (int a = 0; a < D; ++a) {
+      body.motion->velocity[static_cast<std::size_t>(a)] = any_function(100.0);
+      centre[a] = cell_size * (1.0 + any());
+    }
+    for (std::size_t a = D == 2 ? 2 : 0; a < 3; ++a) body.motion->spin[a] = any_function(100.0);
+    body.motion->start(centre, domain.time);
+    other.velocity = body.motion->velocity;
+    other.spin = body.motion->spin;
+    other.motion.centre = centre;
+    for (std::size_t a = 0; a < 3; ++a) {
+      other.motion.velocity.c[a] = other.velocity[a].at(reference.t);
+      other.motion.spin.c[a] = other.spin[a].at(reference.t);
+    }
+  }
+  TimeFunction any_function(double size) {
+    TimeFunction f(size * any());
+    f.amplitude = size * any();
+    f.frequency = 2e4;  // five steps
+    f.phase = 3.0 * any();
+    return f;
+  }
+  /// On every third particle of the second body, so that some carry pieces of several loads, some
+  /// far from the particle.
+  void add_load(LoadKind kind) {
+    SurfaceLoad<D>& load = domain.loads.emplace_back();
+    load.body = 1;
+    load.kind = kind;
+    for (TimeFunction& value : load.value) value = any_function(1e8);
+    reference::Load<D>& other = reference.loads.emplace_back();
+    other.body = 1;
+    other.pressure = kind == LoadKinds::id_of<Pressure>();
+    other.value = load.value;
+    ParticlePool<D>& pool = domain.pools[0];
+    pool.piece.resize(pool.count(), 0);
+    for (std::uint32_t i = 0; i < particles; ++i) {
+      if (random() % 3 != 0) continue;
+      SurfacePiece<D> piece;
+      piece.load = static_cast<int>(domain.loads.size()) - 1;
+      piece.particle = i;
+      for (int a = 0; a < D; ++a) {
+        piece.area[a] = any() * std::pow(edge * cell_size, D - 1);
+        piece.arm[a] = cell_size * any();
+      }
+      piece.size = (1.5 + 0.5 * any()) * norm(piece.area);
+      std::uint32_t& first = pool.piece[domain.grid.patches[1].begin + i];
+      piece.next = std::exchange(first, static_cast<std::uint32_t>(domain.pieces.size() + 1));
+      domain.pieces.push_back(piece);
+      other.pieces.push_back({i, piece.size, piece.area, piece.arm});
+    }
+  }
+  void start_ledger() {
+    Ledger& ledger = domain.ledger;
+    for (const Patch<D>& patch : domain.grid.patches) {
+      const ParticlePool<D>& pool = domain.pool_of(patch);
+      for (const std::uint32_t row : pool.rows(patch))
+        for (int a = 0; a < D; ++a)
+          ledger.start += 0.5 * pool.mass()[row] * pool.v(a)[row] * pool.v(a)[row];
+      if (domain.body_of(patch).is_prescribed()) ledger.add_prescribed(pool, patch);
+    }
+    ledger.kinetic = ledger.start;
   }
   /// Volumes and stresses at random, and the same body for the reference.
   void disturb(const Patch<D>& patch) {
     ParticlePool<D>& pool = domain.pools[0];
-    reference::Body<D>& other = reference.bodies.emplace_back();
-    other.rigid = !domain.body_of(patch).deforms();
-    other.material = Elastic::of(E, nu, density);
+    reference::Body<D>& other = reference.bodies[static_cast<std::size_t>(patch.body)];
     for (const std::uint32_t i : pool.rows(patch)) {
       pool.volume()[i] *= 1.0 + 0.2 * any();
       reference::Particle<D> p;
@@ -117,7 +205,7 @@ struct Twin {
       p.V = pool.volume()[i];
       for (int c = 0; c < Sym<double, D>::size; ++c)
         p.sigma.c[c] = pool.columns.rounded(pool.at.stress + c)[i] =
-            static_cast<Storage>(other.rigid ? 0.0 : 1e8 * any());
+            static_cast<Storage>(other.deforms() ? 1e8 * any() : 0.0);
       other.particles.push_back(p);
     }
   }

@@ -1,0 +1,73 @@
+#pragma once
+// Loads on surfaces in the reference step: the surface term of the equation of motion, on pieces of
+// the surface that particles carry (Sulsky, Chen & Schreyer 1994).
+#include "mpm/loads/surface_load.hpp"
+#include "mpm/reference/step.hpp"
+
+namespace mpm::reference {
+
+/// f_i += sum N_i(x) f over the pieces, f = -p a or t |a|, of p and t the means over the step; N_i
+/// are the hats and x is the middle of the piece. It is held between the nodes around the particle,
+/// or in the box over which the particle's own function is a mean: there all nodes have mass.
+template <int D>
+void Step<D>::load_surfaces() {
+  for (Body<D>& b : bodies)
+    for (auto& [i, node] : b.nodes) node.f_load = Vec<double, D>::zero();
+  for (Load<D>& load : loads) {
+    Body<D>& b = bodies[load.body];
+    Vec<double, D> value;
+    for (int a = 0; a < D; ++a) value[a] = load.value[static_cast<std::size_t>(a)].mean(t, t + dt);
+    load.force = Vec<double, D>::zero();
+    for (const Piece<D>& piece : load.pieces) {
+      const Vec<double, D> f = load.pressure ? -value[0] * piece.a : piece.size * value;
+      load.force += f;
+      Vec<double, D> x;  // [cells]
+      Index<D> low, high;
+      for (int a = 0; a < D; ++a) {
+        const double at = b.particles[piece.particle].x[a] / h;
+        x[a] = std::clamp(at + piece.middle[a] / h, std::min(std::floor(at), at - half_width),
+                          std::max(std::floor(at) + 1.0, at + half_width));
+        low[static_cast<std::size_t>(a)] = static_cast<std::int32_t>(std::floor(x[a]));
+        high[static_cast<std::size_t>(a)] = low[static_cast<std::size_t>(a)] + 1;
+      }
+      for_each_index<D>(low, high, [&](const Index<D>& i) {
+        double N = 1.0;
+        for (int a = 0; a < D; ++a) N *= linear(x[a] - i[static_cast<std::size_t>(a)]).N;
+        if (N > 0.0) b.nodes[i].f_load += N * f;
+      });
+    }
+  }
+  for (Body<D>& b : bodies) {
+    fold(b, [](Node<D>& node, Node<D>& image, auto&& mirrored) {
+      image.f_load += mirrored(node.f_load);
+    });
+    for (auto& [i, node] : b.nodes) {
+      hold(i, node.f_load);
+      node.f += node.f_load;
+    }
+  }
+}
+
+/// The pieces go with their particles: da' = cof(F) da (Nanson), dx' = F dx, F = (1 - L/2)^-1
+/// (1 + L/2) the deformation of the step (Hughes & Winget 1980), L = dt sum v_i grad N_ip.
+template <int D>
+void Step<D>::carry_loads(Vec<double, D> Node<D>::* velocity) {
+  for (Load<D>& load : loads)
+    for (Piece<D>& piece : load.pieces) {
+      Body<D>& b = bodies[load.body];
+      Mat<double, D> L{};
+      for_each_node(b.particles[piece.particle].x,
+                    [&](const Index<D>& i, double, const Vec<double, D>& dN) {
+                      for (int a = 0; a < D; ++a)
+                        for (int c = 0; c < D; ++c)
+                          L[a][c] += dt * (b.nodes[i].*velocity)[a] * dN[c];
+                    });
+      const Mat<double, D> F = deformation(L);
+      const double before = norm(piece.a);
+      piece.a = product(cofactor(F), piece.a);
+      piece.size *= norm(piece.a) / before;
+      piece.middle = product(F, piece.middle);
+    }
+}
+
+}  // namespace mpm::reference

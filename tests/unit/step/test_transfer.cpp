@@ -1,0 +1,156 @@
+// What particles give to nodes and take from them, against the formulas written out, in one lane
+// and in several; and what follows from them.
+#include <random>
+#include <type_traits>
+
+#include "check.hpp"
+#include "mpm/step/transfer/transfer.hpp"
+
+namespace {
+
+using namespace mpm;
+
+/// As a schedule hands them to a transfer, with its own product of a tensor and a vector.
+template <class T, int D>
+struct Traction {
+  Sym<T, D> t;
+  friend Vec<T, D> operator*(const Traction& traction, const Vec<T, D>& x) {
+    Vec<T, D> r;
+    for (int a = 0; a < D; ++a) {
+      r[a] = traction.t(a, 0) * x[0];
+      for (int b = 1; b < D; ++b) r[a] += traction.t(a, b) * x[b];
+    }
+    return r;
+  }
+};
+template <class T, int D>
+struct Giver {
+  T m;
+  Vec<T, D> v;
+  Traction<T, D> traction;
+};
+template <class T, int D>
+struct Taker {
+  T m{0.0};
+  Vec<T, D> p = Vec<T, D>::zero(), f = Vec<T, D>::zero();
+};
+
+double any(std::mt19937_64& random) {
+  return std::uniform_real_distribution<double>(-1.0, 1.0)(random);
+}
+
+/// m_i = sum m_p N_ip, p_i = sum m_p N_ip v_p, f_i = sum t_p . grad N_ip.
+template <class Transfer, int D>
+void check_give(mpm::testing::Report& report) {
+  constexpr int W = 4;
+  using T = Batch<W>;
+  std::mt19937_64 random(1);
+  Taker<double, D> one[W], expected[W];
+  Taker<T, D> lanes;
+  for (int k = 0; k < 10; ++k) {
+    Giver<T, D> particles;
+    T N_ip;
+    Vec<T, D> grad;
+    for (int lane = 0; lane < W; ++lane) {
+      Giver<double, D> p;
+      Vec<double, D> dN;
+      p.m = particles.m.v[lane] = 1.0 + any(random);
+      const double N = N_ip.v[lane] = 0.5 + 0.5 * any(random);
+      for (int a = 0; a < D; ++a) {
+        p.v[a] = particles.v[a].v[lane] = any(random);
+        dN[a] = grad[a].v[lane] = any(random);
+      }
+      for (int c = 0; c < Sym<double, D>::size; ++c)
+        p.traction.t.c[c] = particles.traction.t.c[c].v[lane] = any(random);
+      Mapping<Transfer>::give_momentum(p, N, one[lane]);
+      Mapping<Transfer>::give_force(p, dN, one[lane]);
+      expected[lane].m += p.m * N;
+      for (int a = 0; a < D; ++a) {
+        expected[lane].p[a] += p.m * N * p.v[a];
+        for (int c = 0; c < D; ++c) expected[lane].f[a] += p.traction.t(a, c) * dN[c];
+      }
+    }
+    Mapping<Transfer>::give_momentum(particles, N_ip, lanes);
+    Mapping<Transfer>::give_force(particles, grad, lanes);
+  }
+  constexpr double rounding = 1e-14;  // of 30 products below 2, added
+  for (int lane = 0; lane < W; ++lane) {
+    CHECK_CLOSE(one[lane].m, expected[lane].m, rounding);
+    CHECK_CLOSE(lanes.m[lane], expected[lane].m, rounding);
+    for (int a = 0; a < D; ++a) {
+      CHECK_CLOSE(one[lane].p[a], expected[lane].p[a], rounding);
+      CHECK_CLOSE(lanes.p[a][lane], expected[lane].p[a], rounding);
+      CHECK_CLOSE(one[lane].f[a], expected[lane].f[a], rounding);
+      CHECK_CLOSE(lanes.f[a][lane], expected[lane].f[a], rounding);
+    }
+  }
+}
+
+/// v_p + dv, of which a share gives way to the velocity of the grid.
+void check_take(mpm::testing::Report& report) {
+  std::mt19937_64 random(2);
+  constexpr double rounding = 1e-15;  // of a few numbers below 2
+  for (int k = 0; k < 100; ++k) {
+    const double v = any(random), dv = any(random), grid = any(random);
+    CHECK_EQUAL(Flip().take(v, dv), v + dv);
+    CHECK_EQUAL(FlipPic(0.0).take(v, dv, grid), v + dv);
+    CHECK_CLOSE(FlipPic(1.0).take(v, dv, grid), grid, rounding);
+    const double share = 0.5 + 0.5 * any(random);
+    const double taken = FlipPic(share).take(v, dv, grid);
+    CHECK_CLOSE(taken, (1.0 - share) * (v + dv) + share * grid, 2.0 * rounding);
+    // Who moves as the grid does, goes on so.
+    CHECK_EQUAL(FlipPic(share).take(v, dv, v + dv), v + dv);
+    using T = Batch<4>;
+    CHECK_EQUAL(FlipPic(share).take(T(v), T(dv), T(grid))[3], taken);
+    CHECK_EQUAL(Flip().take(T(v), T(dv))[3], v + dv);
+  }
+}
+
+/// Particles of one place, of which the grid sees the mean: their momentum stays, and of their
+/// motion against each other the square of 1 - share is left of the energy.
+void check_damping(mpm::testing::Report& report) {
+  std::mt19937_64 random(3);
+  constexpr int particles = 8;
+  double v[particles], mean = 0.0, before = 0.0, after = 0.0, momentum = 0.0;
+  for (double& each : v) mean += (each = any(random)) / particles;
+  const FlipPic transfer(0.3);
+  for (const double each : v) {
+    const double taken = transfer.take(each, 0.0, mean);
+    momentum += taken / particles;
+    before += (each - mean) * (each - mean);
+    after += (taken - mean) * (taken - mean);
+  }
+  CHECK_CLOSE(momentum, mean, 1e-15);
+  CHECK_CLOSE(after, 0.7 * 0.7 * before, 1e-14);
+}
+
+/// Of the run: a share is the rate of damping times the step, one at most, and FLIP without.
+template <int D>
+void check_choice(mpm::testing::Report& report) {
+  Domain<D> domain;
+  domain.time_step = 0.01;
+  for (const double damping : {0.0, 30.0, 1e4}) {
+    domain.pic_damping = damping;
+    int called = 0;
+    with_transfer(domain, [&]<class Transfer>(const Transfer& transfer) {
+      ++called;
+      if constexpr (std::is_same_v<Transfer, FlipPic>)
+        CHECK_CLOSE(transfer.pic, damping == 30.0 ? 0.3 : 1.0, 1e-15);
+      else
+        CHECK(damping == 0.0, damping);
+    });
+    CHECK_EQUAL(called, 1);
+  }
+}
+
+}  // namespace
+
+void test_transfer(mpm::testing::Report& report) {
+  check_give<Flip, 2>(report);
+  check_give<Flip, 3>(report);
+  check_give<FlipPic, 3>(report);
+  check_take(report);
+  check_damping(report);
+  check_choice<2>(report);
+  check_choice<3>(report);
+}
