@@ -16,6 +16,9 @@
 
 namespace mpm {
 
+/// Which transfer: its place in `Transfers` (step/transfer/transfer.hpp).
+enum class TransferId : std::uint8_t {};
+
 template <int D>
 struct Domain {
   TileGrid<D> grid;
@@ -31,6 +34,7 @@ struct Domain {
   Threads threads;
 
   double disorder = disorder_that_pays;  // share of a body's particles at which it is sorted
+  TransferId transfer{};
   double pic_damping = 0.0;  // rate at which particles take over the velocity of the grid [1/s]
 
   double time = 0.0;        // [s]

@@ -10,6 +10,7 @@
 #include "mpm/math/time_function.hpp"
 #include "mpm/particles/cell_lists.hpp"
 #include "mpm/step/scheme.hpp"
+#include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm {
 
@@ -61,6 +62,7 @@ struct RunSettings {
   Scheme scheme = Scheme::musl;
   double cfl = 0.25;
   std::array<TimeFunction, 3> gravity{};
+  TransferId transfer = Transfers::id_of<Flip>();
   double pic_damping = 0.0;
   double energy_growth_limit = 1.0;
   double outside_limit = 0.05;
@@ -79,6 +81,8 @@ struct RunSettings {
       Setting{"gravity", &Self::gravity,
               "acceleration [m/s^2], D numbers or functions of time; default zero", Rule::any,
               "m/s^2"},
+      Setting{"transfer", &Self::transfer,
+              "how particles take the velocity of the grid: \"flip\", the paper's, or \"pic\""},
       Setting{"pic_damping", &Self::pic_damping,
               "rate at which particles take over the velocity of the grid [1/s], PIC in place of "
               "FLIP; takes away noise that the grid does not see, over very long runs",

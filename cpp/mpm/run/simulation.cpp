@@ -48,6 +48,7 @@ Simulation<D>::Simulation(const Settings& given)
   set_grid(domain.grid, given.grid);
   domain.grid.bonded = given.contact.bonded;
   domain.gravity_of_time = given.run.gravity;
+  domain.transfer = given.run.transfer;
   domain.pic_damping = given.run.pic_damping;
   domain.disorder = given.execution.disorder;
   domain.contact_settings = given.contact;

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .disk import writing
 from .errors import CaseError, nearest, violation
 from .machine import MEMORY, memory_text
 from .reading import open_file, unreadable
@@ -286,6 +287,19 @@ class FromFile:
 def file_entry(file: str, unit: str) -> str | dict[str, str]:
     """Return what a case file says of a file of points: its name, with the unit if not metres."""
     return file if unit == "m" else {"file": file, "unit": unit}
+
+
+def write_points(path: Path, names: list[str], table: Array, about: str = "") -> None:
+    """Write a file of points; its numbers come back to the last bit.
+
+    Raises:
+        CaseError: the file cannot be written.
+    """
+    lines = [f"# {line}" for line in about.splitlines()]
+    lines.append(",".join(names))
+    lines += [",".join(map(repr, row)) for row in (table + 0.0).tolist()]
+    with writing(path):
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def digest_of(table: Array) -> str:

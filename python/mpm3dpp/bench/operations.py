@@ -25,6 +25,8 @@ def operations_per_particle_step(
 ) -> dict[str, int]:
     """Return the operations of each stage per particle and step; stages of nodes only have none.
 
+    Nor have those that are not counted here.
+
     Args:
         stages: names of the stages of a scheme.
         dimension: 2 or 3.
@@ -32,7 +34,7 @@ def operations_per_particle_step(
         law: of the material, a key of `LAWS`.
 
     Raises:
-        KeyError: a stage is not in `traffic.STAGES`, or moves particles and is not counted here.
+        KeyError: a stage is not in `traffic.STAGES`.
     """
     d = dimension
     nodes = _core.bases[basis]["nodes"] ** d
@@ -53,4 +55,4 @@ def operations_per_particle_step(
         "update stress, move particles": update + move,
         "move particles": move,  # eq. (16)
     }
-    return {stage: counts[stage] if moves_particles(stage) else 0 for stage in stages}
+    return {stage: counts.get(stage, 0) if moves_particles(stage) else 0 for stage in stages}

@@ -17,8 +17,15 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import SkipValidation
 
-from mpm3dpp.base.csv_points import FromFile, Layout, digest_of, file_entry, read_points, short
-from mpm3dpp.base.disk import writing
+from mpm3dpp.base.csv_points import (
+    FromFile,
+    Layout,
+    digest_of,
+    file_entry,
+    read_points,
+    short,
+    write_points,
+)
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.machine import PARTICLE_BYTES_WITH_GRID
 
@@ -91,17 +98,16 @@ class Particles:
             return self.positions
         return np.column_stack([self.positions, self.volumes])
 
+    def columns(self) -> list[str]:
+        """Return the names of the columns of those numbers in a file, with their units."""
+        names = [f"{axis} [m]" for axis in "xyz"[: self.dimension]]
+        return names if self.volumes is None else [*names, f"volume [m^{self.dimension}]"]
+
     def table(self) -> str | dict[str, str]:
         """Return the value of the key `particles` of a case file."""
         if self.file:
             return file_entry(self.file, self.unit)
         return f"({len(self.positions)} particles, SHA-256 {self.digest})"
-
-
-def column_names(dimension: int, volumes: bool) -> list[str]:
-    """Return the columns of a file of particles, with their units."""
-    names = [f"{axis} [m]" for axis in "xyz"[:dimension]]
-    return [*names, f"volume [m^{dimension}]"] if volumes else names
 
 
 def write_particles(path: Path, particles: Particles, about: str = "") -> None:
@@ -110,12 +116,7 @@ def write_particles(path: Path, particles: Particles, about: str = "") -> None:
     Raises:
         CaseError: the file cannot be written.
     """
-    table = particles.table_of_numbers() + 0.0
-    lines = [f"# {line}" for line in about.splitlines()]
-    lines.append(",".join(column_names(particles.dimension, particles.volumes is not None)))
-    lines += [",".join(map(repr, row)) for row in table.tolist()]
-    with writing(path):
-        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_points(path, particles.columns(), particles.table_of_numbers(), about)
 
 
 def read_particles(path: Path, name: str = "", unit: str = "m") -> Particles:

@@ -69,7 +69,15 @@ class GrainCentres:
     @cached_property
     def digest(self) -> str:
         """SHA-256 (hexadecimal) of the grains, numbers to 12 digits."""
-        return digest_of(np.column_stack([self.centres, self.radii]))
+        return digest_of(self.table_of_numbers())
+
+    def table_of_numbers(self) -> Array:
+        """Return centres and radii, shape (n, D + 1)."""
+        return np.column_stack([self.centres, self.radii])
+
+    def columns(self) -> list[str]:
+        """Return the names of the columns of those numbers in a file, with their units."""
+        return [*(f"{axis} [m]" for axis in "xyz"[: self.dimension]), "radius [m]"]
 
     def table(self) -> str | dict[str, str]:
         """Return the value of the key `file` of a case file."""

@@ -8,10 +8,12 @@ import re
 from pathlib import Path
 from typing import Any
 
+from mpm3dpp.base.csv_points import write_points
 from mpm3dpp.base.disk import make_folder, writing
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.readers import reader_of
-from mpm3dpp.case.particles import Particles, write_particles
+from mpm3dpp.case.particles import Particles
+from mpm3dpp.grains import GrainCentres
 
 from .imported import Imported
 
@@ -25,11 +27,13 @@ _UNITS = {
     "spacing": "m",
     "point": "m",
 }
+_POINTS = (Particles, GrainCentres)
+_NAMED = ("material", "body", "grains", "load")
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def write_case(found: Imported, target: Path, force: bool = False) -> list[Path]:
-    """Write a case file, and for each body of single particles a CSV file beside it.
+    """Write a case file, and beside it a CSV file for each list of particles or grains.
 
     Args:
         found: what was imported.
@@ -43,13 +47,11 @@ def write_case(found: Imported, target: Path, force: bool = False) -> list[Path]
         CaseError: a file cannot be written, is there already, or is the one that was imported.
     """
     tables = dict(found.tables)
-    tables["body"] = {name: dict(body) for name, body in tables["body"].items()}
-    clouds = {
-        name: body["particles"]
-        for name, body in tables["body"].items()
-        if isinstance(body.get("particles"), Particles)
-    }
-    files = [target, *(target.with_name(f"{target.stem}_{name}.csv") for name in clouds)]
+    points: dict[tuple[str, str, str], Particles | GrainCentres] = {}
+    for kind in ("body", "grains"):
+        for name, entry in tables.get(kind, {}).items():
+            points |= {(kind, name, key): v for key, v in entry.items() if isinstance(v, _POINTS)}
+    files = [target, *(target.with_name(f"{target.stem}_{name}.csv") for _, name, _ in points)]
     _keep_source(Path(found.name), files)
     there = next((file for file in files if file.exists()), None)
     if there is not None and not force:
@@ -57,11 +59,12 @@ def write_case(found: Imported, target: Path, force: bool = False) -> list[Path]
         raise CaseError("is there already", remedy, key=str(there))
     make_folder(target.parent)
     origin = Path(found.name).name
-    for (name, particles), file in zip(clouds.items(), files[1:], strict=True):
-        line = found.lines["body", name]
-        about = f"Particles of {name} from {origin}, line {line}; SI units."
-        write_particles(file, particles, about)
-        tables["body"][name]["particles"] = file.name
+    for ((kind, name, key), given), file in zip(points.items(), files[1:], strict=True):
+        line = f", line {found.lines[kind, name]}" if (kind, name) in found.lines else ""
+        what = "Particles" if kind == "body" else "Grains"
+        about = f"{what} of {name} from {origin}{line}; SI units."
+        write_points(file, given.columns(), given.table_of_numbers(), about)
+        tables[kind] = tables[kind] | {name: tables[kind][name] | {key: file.name}}
     with writing(target):
         target.write_text(case_text(found, tables), encoding="utf-8")
     return files
@@ -94,7 +97,7 @@ def case_text(found: Imported, tables: dict[str, Any]) -> str:
     for name, table in tables.items():
         if name == "title":
             continue
-        if name in ("material", "body"):
+        if name in _NAMED:
             for key, inner in table.items():
                 lines += _section(f"[{name}.{_key(key)}]", inner, _line(found, name, key))
         elif isinstance(table, list):

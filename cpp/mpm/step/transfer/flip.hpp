@@ -7,7 +7,8 @@ namespace mpm {
 
 /// FLIP, the paper's: particles keep their velocity and take the change of the grid's.
 struct Flip {
-  static constexpr std::string_view name = "flip";
+  static constexpr std::string_view name = "flip";  // the word in a case file
+  static constexpr std::string_view doc = "they take the change of the grid's velocity";
   static constexpr std::string_view source = "Brackbill & Ruppel 1986";
   static constexpr bool takes_grid_velocity = false, takes_energy = false;
   using Gives = Flip;  // whose `give` it has

@@ -1,9 +1,12 @@
 #pragma once
 // What passes between particles and nodes: the transfers, one line in all, and the internal force.
 #include <algorithm>
+#include <type_traits>
 
+#include "mpm/catalogue/choice_list.hpp"
 #include "mpm/domain.hpp"
 #include "mpm/step/transfer/flip_pic.hpp"
+#include "mpm/step/transfer/pic.hpp"
 
 namespace mpm {
 
@@ -23,14 +26,33 @@ struct Mapping {
   }
 };
 
+/// `take` has the sum of the velocities too if `takes_grid_velocity`. With `takes_energy` what
+/// particles lose against FLIP goes to the ledger. `Gives` is the transfer whose `give` it has.
+template <class T>
+concept TransferModel = requires {
+  { T::name } -> std::convertible_to<std::string_view>;
+  { T::doc } -> std::convertible_to<std::string_view>;
+  { T::source } -> std::convertible_to<std::string_view>;
+  { T::takes_grid_velocity } -> std::convertible_to<bool>;
+  { T::takes_energy } -> std::convertible_to<bool>;
+  typename T::Gives;
+};
+
+template <TransferModel... T>
+using TransferList = ChoiceList<TransferId, T...>;
+using Transfers = TransferList<Flip, Pic>;
+template <>
+inline constexpr auto words<TransferId> = Transfers::words_of();
+
 /// f(transfer) for that of the run.
 template <int D, class F>
 void with_transfer(const Domain<D>& domain, F&& f) {
   const double share = std::min(domain.pic_damping * domain.time_step, 1.0);
-  if (share > 0.0)
-    f(FlipPic(share));
-  else
-    f(Flip());
+  Transfers::with(domain.transfer, [&]<class T>(const T& transfer) {
+    if constexpr (std::is_same_v<T, Flip>)
+      if (share > 0.0) return f(FlipPic(share));
+    f(transfer);
+  });
 }
 
 }  // namespace mpm

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Laws of every transfer: momentum stays, the ledger closes, a rigid translation is kept."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from cases import CELL, SCHEMES, block, materials
+from mpm3dpp import Case, Contact, Grid, Run, Simulation, _core
+
+TRANSFERS = tuple(_core.settings["run"]["transfer"]["words"][0])
+
+
+def simulation(dimension: int, scheme: str, transfer: str, basis: str) -> Simulation:
+    """Return a block at rest, 4 cells along each edge, two particles a cell along each axis."""
+    run = Run(end_time=1.0, scheme=scheme, transfer=transfer, energy_growth_limit=1e9)
+    case = Case(
+        grid=Grid(dimension=dimension, cell_size=CELL, basis=basis),
+        run=run,
+        contact=Contact(),
+        material=materials(),
+        body={"body": block((0,) * dimension, (4,) * dimension, material="solid")},
+    )
+    return Simulation(case, threads=1)
+
+
+@pytest.mark.parametrize("transfer", TRANSFERS)
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_laws(dimension: int, scheme: str, transfer: str) -> None:
+    for basis in _core.bases:
+        sim = simulation(dimension, scheme, transfer, basis)
+        v = np.random.default_rng(1).uniform(-1.0, 1.0, sim.column("body", "velocity").shape)
+        sim.set_velocity("body", v)
+        sim.advance(5)
+        rows = dict(zip(sim.core.history_columns, sim.core.history().T, strict=True))
+        mass = sim.column("body", "mass")[:, 0]
+        scale = float(0.5 * np.sum(mass[:, None] * v**2))
+        # Sums over at most 512 particles of terms of these sizes: some thousand roundings a step.
+        assert np.abs(rows["residual"][1:]).max() <= 1e-11 * scale
+        momentum = np.abs(rows["momentum_x"][1:] - mass @ v[:, 0]).max()
+        assert momentum <= 1e-12 * float(mass @ np.abs(v[:, 0]))
+
+
+@pytest.mark.parametrize("transfer", TRANSFERS)
+def test_a_translation_is_kept(transfer: str) -> None:
+    sim = simulation(2, "musl", transfer, "gimp")
+    v = np.broadcast_to([3.0, -2.0], sim.column("body", "velocity").shape)
+    sim.set_velocity("body", v)
+    sim.advance(50)
+    assert np.abs(sim.column("body", "velocity") - v).max() <= 1e-12  # 50 steps of 20 roundings
+
+
+def test_pic_takes_the_velocity_of_the_grid() -> None:
+    """What alternates from particle to particle is not seen by the grid, and gone after a step."""
+    left = {}
+    for transfer in ("flip", "pic"):
+        sim = simulation(2, "musl", transfer, "linear")
+        place = np.rint(sim.column("body", "position") / (CELL / 2) - 0.5).astype(int)
+        v = np.zeros_like(sim.column("body", "velocity"))
+        v[:, 0] = np.prod(1 - 2 * (place % 2), axis=1)
+        sim.set_velocity("body", v)
+        sim.advance(1)
+        inner = np.all((place > 1) & (place < 6), axis=1)
+        left[transfer] = np.abs(sim.column("body", "velocity")[inner, 0]).max()
+    assert left["flip"] > 0.9 and left["pic"] < 0.1
