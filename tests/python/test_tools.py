@@ -16,7 +16,7 @@ def tool(monkeypatch):
     """Import a script of tools/ by name."""
     monkeypatch.syspath_prepend(TOOLS)
     yield importlib.import_module
-    for name in ("check_imports", "check_layers", "check_sizes", "check_words", "files"):
+    for name in ("check_classes", "check_imports", "check_layers", "check_sizes", "check_words", "files"):
         sys.modules.pop(name, None)
 
 
@@ -76,6 +76,20 @@ def test_sizes(tool, tmp_path, lines, errors, warnings):
         (tmp_path / name).write_text("x\n" * (lines if name.stem == "long" else 3))
     found = tool("check_sizes").check(tmp_path, names)
     assert [len(each) for each in found] == [errors, warnings]
+
+
+@pytest.mark.parametrize(
+    ("members", "sources", "errors"), [(20, 1, 0), (21, 1, 1), (20, 2, 1), (21, 2, 2)]
+)
+def test_classes(tool, tmp_path, members, sources, errors):
+    inline = [f"  int f{k}(int x = g(1)) const {{ return x; }}" for k in range(members - 2)]
+    data = ["  int a = f(), b[2] = {};", "  A(const A&) = delete;", "  void g();", "  void h();"]
+    (tmp_path / "a.hpp").write_text("\n".join(["struct A : B<int> {", *data, *inline, "};"]))
+    names = [Path("a.hpp")]
+    for name, member in list({"a.cpp": "g", "b.cpp": "h"}.items())[:sources]:
+        (tmp_path / name).write_text(f"void A::{member}() {{ call(A::{member}(0)); }}\n")
+        names.append(Path(name))
+    assert len(tool("check_classes").check(tmp_path, names)) == errors
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,19 @@ struct ColumnInfo {
   }
 };
 
+/// Numbers from one component to the next for so many rows: at least eight rows more, so that whole
+/// vectors may be read at the end. Columns a multiple of 4096 bytes apart would all fall into the
+/// same cache sets: stagger them by three lines. Whole pages between them would double the memory of
+/// small bodies, which stay off such multiples instead.
+inline std::size_t padded(std::size_t rows) {
+  constexpr std::size_t line = cache_line / sizeof(Storage), page = 4096 / sizeof(double),
+                        stagger = 3 * line;  // in numbers; pages of doubles, halves of floats'
+  const std::size_t lines = (rows + 7 + line) / line * line, beyond = lines % page;
+  if (lines < page) return lines;
+  if (lines < 16 * page) return beyond < stagger ? lines + stagger - beyond : lines;
+  return (lines - stagger + page - 1) / page * page + stagger;
+}
+
 /// Columns of so many rows each, in one allocation in a memory space: component c of row i is
 /// `component(c)[i]`, or `rounded(c)[i]` if the column is kept so.
 template <MemorySpace Space>
@@ -122,19 +135,6 @@ class ColumnsIn {
  private:
   template <MemorySpace>
   friend class ColumnsIn;
-
-  // At least eight rows more, so that whole vectors may be read at the end. Columns a multiple of
-  // 4096 bytes apart would all fall into the same cache sets: stagger them by three lines. Whole
-  // pages between them would double the memory of small bodies, which stay off such multiples
-  // instead.
-  static std::size_t padded(std::size_t rows) {
-    constexpr std::size_t line = cache_line / sizeof(Storage), page = 4096 / sizeof(double),
-                          stagger = 3 * line;  // in numbers; pages of doubles, halves of floats'
-    const std::size_t lines = (rows + 7 + line) / line * line, beyond = lines % page;
-    if (lines < page) return lines;
-    if (lines < 16 * page) return beyond < stagger ? lines + stagger - beyond : lines;
-    return (lines - stagger + page - 1) / page * page + stagger;
-  }
 
   const ColumnInfo& info_of(int c) const {
     std::size_t k = infos_.size();

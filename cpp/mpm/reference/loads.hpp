@@ -10,13 +10,14 @@ namespace mpm::reference {
 /// are the hats and x is the middle of the piece. It is held between the nodes around the particle,
 /// or in the box over which the particle's own function is a mean: there all nodes have mass.
 template <int D>
-void Step<D>::load_surfaces() {
-  for (Body<D>& b : bodies)
+void load_surfaces(Step<D>& step) {
+  for (Body<D>& b : step.bodies)
     for (auto& [i, node] : b.nodes) node.f_load = Vec<double, D>::zero();
-  for (Load<D>& load : loads) {
-    Body<D>& b = bodies[load.body];
+  for (Load<D>& load : step.loads) {
+    Body<D>& b = step.bodies[load.body];
     Vec<double, D> value;
-    for (int a = 0; a < D; ++a) value[a] = load.value[static_cast<std::size_t>(a)].mean(t, t + dt);
+    for (int a = 0; a < D; ++a)
+      value[a] = load.value[static_cast<std::size_t>(a)].mean(step.t, step.t + step.dt);
     load.force = Vec<double, D>::zero();
     for (const Piece<D>& piece : load.pieces) {
       const Vec<double, D> f = load.pressure ? -value[0] * piece.a : piece.size * value;
@@ -24,9 +25,10 @@ void Step<D>::load_surfaces() {
       Vec<double, D> x;  // [cells]
       Index<D> low, high;
       for (int a = 0; a < D; ++a) {
-        const double at = b.particles[piece.particle].x[a] / h;
-        x[a] = std::clamp(at + piece.middle[a] / h, std::min(std::floor(at), at - half_width),
-                          std::max(std::floor(at) + 1.0, at + half_width));
+        const double at = b.particles[piece.particle].x[a] / step.h;
+        x[a] = std::clamp(at + piece.middle[a] / step.h,
+                          std::min(std::floor(at), at - step.half_width),
+                          std::max(std::floor(at) + 1.0, at + step.half_width));
         low[static_cast<std::size_t>(a)] = static_cast<std::int32_t>(std::floor(x[a]));
         high[static_cast<std::size_t>(a)] = low[static_cast<std::size_t>(a)] + 1;
       }
@@ -37,12 +39,12 @@ void Step<D>::load_surfaces() {
       });
     }
   }
-  for (Body<D>& b : bodies) {
-    fold(b, [](Node<D>& node, Node<D>& image, auto&& mirrored) {
+  for (Body<D>& b : step.bodies) {
+    step.fold(b, [](Node<D>& node, Node<D>& image, auto&& mirrored) {
       image.f_load += mirrored(node.f_load);
     });
     for (auto& [i, node] : b.nodes) {
-      hold(i, node.f_load);
+      step.hold(i, node.f_load);
       node.f += node.f_load;
     }
   }
@@ -51,17 +53,17 @@ void Step<D>::load_surfaces() {
 /// The pieces go with their particles: da' = cof(F) da (Nanson), dx' = F dx, F = (1 - L/2)^-1
 /// (1 + L/2) the deformation of the step (Hughes & Winget 1980), L = dt sum v_i grad N_ip.
 template <int D>
-void Step<D>::carry_loads(Vec<double, D> Node<D>::* velocity) {
-  for (Load<D>& load : loads)
+void carry_loads(Step<D>& step, Vec<double, D> Node<D>::* velocity) {
+  for (Load<D>& load : step.loads)
     for (Piece<D>& piece : load.pieces) {
-      Body<D>& b = bodies[load.body];
+      Body<D>& b = step.bodies[load.body];
       Mat<double, D> L{};
-      for_each_node(b.particles[piece.particle].x,
-                    [&](const Index<D>& i, double, const Vec<double, D>& dN) {
-                      for (int a = 0; a < D; ++a)
-                        for (int c = 0; c < D; ++c)
-                          L[a][c] += dt * (b.nodes[i].*velocity)[a] * dN[c];
-                    });
+      step.for_each_node(b.particles[piece.particle].x,
+                         [&](const Index<D>& i, double, const Vec<double, D>& dN) {
+                           for (int a = 0; a < D; ++a)
+                             for (int c = 0; c < D; ++c)
+                               L[a][c] += step.dt * (b.nodes[i].*velocity)[a] * dN[c];
+                         });
       const Mat<double, D> F = deformation(L);
       const double before = norm(piece.a);
       piece.a = product(cofactor(F), piece.a);

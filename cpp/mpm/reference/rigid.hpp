@@ -28,8 +28,8 @@ RigidMotion motion_of(const std::vector<Particle<D>>& particles) {
 
 /// After eq. (17): v_p = v + w x (x_p - x).
 template <int D>
-void Step<D>::project_rigid_velocities() {
-  for (Body<D>& b : bodies) {
+void project_rigid_velocities(Step<D>& step) {
+  for (Body<D>& b : step.bodies) {
     if (b.kind != BodyKind::rigid) continue;
     b.motion = motion_of(b.particles);
     for (Particle<D>& p : b.particles) p.v = from_space<D>(b.motion.velocity_at(in_space<D>(p.x)));
@@ -38,11 +38,11 @@ void Step<D>::project_rigid_velocities() {
 
 /// In place of eq. (16): the particles turn about the centre, which moves straight.
 template <int D>
-void Step<D>::move_rigid_bodies() {
-  for (Body<D>& b : bodies) {
+void move_rigid_bodies(Step<D>& step) {
+  for (Body<D>& b : step.bodies) {
     if (b.kind != BodyKind::rigid) continue;
     const Vector3 before = b.motion.centre;
-    const Matrix3 turned = turn(b.motion, dt);
+    const Matrix3 turned = turn(b.motion, step.dt);
     for (Particle<D>& p : b.particles) {
       p.x = from_space<D>(b.motion.centre + turned * (in_space<D>(p.x) - before));
       p.v = from_space<D>(b.motion.velocity_at(in_space<D>(p.x)));

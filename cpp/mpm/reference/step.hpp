@@ -11,6 +11,13 @@
 namespace mpm::reference {
 
 template <int D>
+struct Step;
+template <int D>
+void set_prescribed_velocities(const Step<D>& step, Body<D>& b, Vec<double, D> Node<D>::* velocity);
+
+/// The stages; those of contact, loads, walls, rigid and prescribed bodies, and the work of forces
+/// have a file each beside this one.
+template <int D>
 struct Step {
   double h = 0.0, t = 0.0, dt = 0.0;          // cell size [m], time [s], time step [s]
   Vec<double, D> g = Vec<double, D>::zero();  // gravity [m/s^2]
@@ -160,26 +167,6 @@ struct Step {
     }
   }
 
-  /// contact.hpp: where two bodies meet, with the normals of their gradients of mass, eq. (4); the
-  /// momentum of approach, eqs. (6)-(7); normal force and friction, eqs. (11)-(15).
-  void find_contacts();
-  void find_meeting_masses();
-  void contact_momentum(Vec<double, D> Node<D>::* velocity);
-  void contact_forces();
-  /// loads.hpp, absorb.hpp: forces of loads on surfaces and of walls that absorb.
-  void load_surfaces();
-  void carry_loads(Vec<double, D> Node<D>::* velocity);
-  void absorb_at_walls();
-  /// rigid.hpp, prescribed.hpp: bodies that move as one.
-  void project_rigid_velocities();
-  void move_rigid_bodies();
-  void begin_prescribed_motions();
-  void move_prescribed_bodies();
-  /// works.hpp: the work of forces over the step, once the nodes are advanced.
-  Works works() const;
-
- private:
-  void set_prescribed_velocities(Body<D>& b, Vec<double, D> Node<D>::* velocity);
   /// Take away the components along the axes that walls hold at a node.
   void hold(const Index<D>& i, Vec<double, D>& v) const {
     for (int a = 0; a < D; ++a)
@@ -211,7 +198,7 @@ struct Step {
   }
   /// From momenta to velocities.
   void find_velocities(Body<D>& b, Vec<double, D> Node<D>::* velocity) {
-    if (b.prescribed()) return set_prescribed_velocities(b, velocity);
+    if (b.prescribed()) return set_prescribed_velocities(*this, b, velocity);
     for (auto& [i, node] : b.nodes) {
       node.*velocity = (1.0 / node.m) * (node.*velocity);
       hold(i, node.*velocity);

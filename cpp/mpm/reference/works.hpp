@@ -7,20 +7,20 @@ namespace mpm::reference {
 
 /// Call between the advance of the nodes and that of the particles.
 template <int D>
-Works Step<D>::works() const {
+Works works(const Step<D>& step) {
   Works sum;
-  for (const Body<D>& b : bodies) {
+  for (const Body<D>& b : step.bodies) {
     const auto middle = [&](const Node<D>& i) { return i.v - 0.5 * i.dv; };
     for (const auto& [i, node] : b.nodes) {
-      if (walls.image(i)) continue;  // what it was given is its image's
-      sum.loads += dt * dot(node.f_load, middle(node));
-      sum.absorbed -= dt * dot(node.f_absorb, middle(node));
-      if (b.prescribed()) sum.on_prescribed += dt * dot(node.f, middle(node));
+      if (step.walls.image(i)) continue;  // what it was given is its image's
+      sum.loads += step.dt * dot(node.f_load, middle(node));
+      sum.absorbed -= step.dt * dot(node.f_absorb, middle(node));
+      if (b.prescribed()) sum.on_prescribed += step.dt * dot(node.f, middle(node));
     }
     if (b.prescribed()) continue;
     for (const Particle<D>& p : b.particles)
-      for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>&) {
-        sum.gravity += dt * p.m * N * dot(g, middle(b.nodes.at(i)));
+      step.for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>&) {
+        sum.gravity += step.dt * p.m * N * dot(step.g, middle(b.nodes.at(i)));
       });
   }
   return sum;

@@ -84,8 +84,8 @@ struct RunSettings {
       Setting{"transfer", &Self::transfer,
               "how particles take the velocity of the grid: \"flip\", the paper's, or \"pic\""},
       Setting{"pic_damping", &Self::pic_damping,
-              "rate at which particles take over the velocity of the grid [1/s], PIC in place of "
-              "FLIP; takes away noise that the grid does not see, over very long runs",
+              "rate at which particles take over the velocity of the grid [1/s], a share of PIC in "
+              "\"flip\"; takes away noise that the grid does not see, over very long runs",
               Rule::not_negative, "1/s"},
       Setting{"energy_growth_limit", &Self::energy_growth_limit,
               "the run stops when the numerical error has created this share of the largest energy "

@@ -28,8 +28,8 @@ class Comparison {
     const auto v = scheme == Scheme::musl ? &Node::v_new : &Node::v;  // that strains the material
     const bool meet = twin_.domain.has_contact();
     const auto later = [&](unsigned data) { return [this, data] { pending_ |= data; }; };
-    const auto map_forces = [&] { step.map_forces(), step.load_surfaces(); };
-    const auto update_stress = [&] { step.carry_loads(v), step.update_stress(v); };
+    const auto map_forces = [&] { step.map_forces(), load_surfaces(step); };
+    const auto update_stress = [&] { carry_loads(step, v), step.update_stress(v); };
     const std::map<std::string_view, std::function<void()>> stages = {
         {"activate tiles", [&] { lists(); }},
         {"map momentum", later(momentum)},
@@ -40,23 +40,23 @@ class Comparison {
         {"find velocities", [&] { step.map_momentum(), map_forces(); }},
         {"contact momentum",
          [&] {
-           if (meet) step.find_contacts(), step.contact_momentum(&Node::v);
+           if (meet) find_contacts(step), contact_momentum(step, &Node::v);
          }},
         {"map forces", later(forces)},
         {"load surfaces", later(forces)},
         {"place dashpots", later(dashpots)},
         {"fold forces", later(forces)},
         {"exchange forces", [&] { map_forces(), forced_ = true; }},
-        {"absorb at walls", [&] { step.absorb_at_walls(), pending_ &= ~dashpots; }},
+        {"absorb at walls", [&] { absorb_at_walls(step), pending_ &= ~dashpots; }},
         {"contact forces",
          [&] {
-           if (meet) step.contact_forces();
+           if (meet) contact_forces(step);
          }},
         {"advance nodes", [&] { step.advance_nodes(), forced_ = false, add_works(); }},
         {"advance particles", [&] { step.advance_particles(); }},
         {"advance and move particles", [&] { step.advance_particles(), step.move_particles(); }},
         {"advance and remap particles", [&] { step.advance_particles(), pending_ |= remapped; }},
-        {"project rigid velocities", [&] { step.project_rigid_velocities(); }},
+        {"project rigid velocities", [&] { project_rigid_velocities(step); }},
         {"remap momentum", later(remapped)},
         {"remap rigid bodies", later(remapped)},
         {"fold remapped", later(remapped)},
@@ -64,12 +64,12 @@ class Comparison {
         {"find remapped velocities", [&] { step.remap_momentum(); }},
         {"contact remapped",
          [&] {
-           if (meet) step.contact_momentum(&Node::v_new);
+           if (meet) contact_momentum(step, &Node::v_new);
          }},
         {"update stress", update_stress},
         {"update stress, move particles", [&] { update_stress(), step.move_particles(); }},
         {"move particles", [&] { step.move_particles(); }},
-        {"move rigid bodies", [&] { step.move_rigid_bodies(), step.move_prescribed_bodies(); }},
+        {"move rigid bodies", [&] { move_rigid_bodies(step), move_prescribed_bodies(step); }},
         {"record contacts", [&] { records(); }},
         {"sum energies", [&] { energies(); }},
     };
@@ -185,7 +185,7 @@ class Comparison {
     for (int a = 0; a < D; ++a) CHECK_CLOSE(pairs[0].force[a], force[a], 1e-10 * force_scale);
   }
   void add_works() {
-    const reference::Works works = twin_.reference.works();
+    const reference::Works works = reference::works(twin_.reference);
     external_ += works.gravity + works.loads;
     load_work_ += works.loads;
     absorbed_ += works.absorbed;

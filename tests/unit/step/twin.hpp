@@ -79,7 +79,7 @@ struct Twin {
     domain.time_after = domain.time + domain.time_step;
     for (const std::size_t b : domain.prescribed)
       domain.bodies[b].motion->begin_step(domain.time, domain.time_after);
-    reference.begin_prescribed_motions();
+    begin_prescribed_motions(reference);
   }
   void end_step() {
     reference.t = domain.time = domain.time_after;
