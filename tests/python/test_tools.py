@@ -16,7 +16,14 @@ def tool(monkeypatch):
     """Import a script of tools/ by name."""
     monkeypatch.syspath_prepend(TOOLS)
     yield importlib.import_module
-    for name in ("check_classes", "check_imports", "check_layers", "check_sizes", "check_words", "files"):
+    for name in (
+        "check_classes",
+        "check_imports",
+        "check_layers",
+        "check_sizes",
+        "check_words",
+        "files",
+    ):
         sys.modules.pop(name, None)
 
 
