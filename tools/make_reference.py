@@ -18,8 +18,8 @@ from mpm3dpp.case.loads import Load
 from mpm3dpp.case.motion import Motion
 from mpm3dpp.grains import GrainLattice, GrainPacking, Grains
 from mpm3dpp.io.history import PAIR_LIMIT, PAIR_MEANINGS, PAIRS, TERMS
-from mpm3dpp.materials import catalogue
 from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
+from mpm3dpp.materials.catalogue import catalogue
 from mpm3dpp.materials.chosen import ACTIONS
 from mpm3dpp.materials.describe import lines_for_a_case, provenance, rows
 from mpm3dpp.materials.library import NamedMaterial, library
@@ -38,12 +38,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ("output", parts.Output, ""),
     ("contact", parts.Contact, ""),
     ("contact.pair", parts.ContactPair, "Written `[[contact.pair]]`, once for each pair."),
-    (
-        "material.NAME",
-        case.Material,
-        "The models are listed in [materials](materials.md), the named ones in "
-        "[library](library.md).",
-    ),
+    ("material.NAME", case.Material, "[Models](materials.md), and [named ones](library.md)."),
     ("body.NAME", body.Body, ""),
     ("body.NAME.motion", Motion, ""),
     (
@@ -290,7 +285,6 @@ def pages() -> dict[str, str]:
 def main() -> None:
     """Write the pages."""
     folder = Path(__file__).resolve().parents[1] / "docs" / "reference"
-    folder.mkdir(parents=True, exist_ok=True)
     for name, text in pages().items():
         (folder / name).write_text(text)
         print(folder / name)

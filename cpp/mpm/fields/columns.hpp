@@ -38,8 +38,8 @@ struct ColumnInfo {
 
 /// Numbers from one component to the next for so many rows: at least eight rows more, so that whole
 /// vectors may be read at the end. Columns a multiple of 4096 bytes apart would all fall into the
-/// same cache sets: stagger them by three lines. Whole pages between them would double the memory of
-/// small bodies, which stay off such multiples instead.
+/// same cache sets: stagger them by three lines. Whole pages between them would double the memory
+/// of small bodies, which stay off such multiples instead.
 inline std::size_t padded(std::size_t rows) {
   constexpr std::size_t line = cache_line / sizeof(Storage), page = 4096 / sizeof(double),
                         stagger = 3 * line;  // in numbers; pages of doubles, halves of floats'
