@@ -1,5 +1,6 @@
 // The catalogue of material models, and one point of a material by itself.
 #include "catalogue.hpp"
+#include "mpm/particles/make_body.hpp"
 #include "mpm/run/drive_material.hpp"
 
 namespace mpm::bindings {
@@ -19,6 +20,18 @@ struct CatalogueModel {
   std::vector<CatalogueColumn> state;
   std::string eos;  // of a strength model: "never", "may", "must"
 };
+
+/// The names of the columns of particles of a material; `may_leave`: there is an outflow box.
+template <int D>
+std::vector<std::string> columns_of(const Material& material, bool may_leave) {
+  TileGrid<D> grid;
+  grid.cell_size = 1.0;
+  grid.outflow_box.exist = may_leave;
+  const ParticlePool<D> pool = make_pool(material, grid);
+  std::vector<std::string> names;
+  for (const ColumnInfo& info : pool.columns.infos()) names.push_back(info.name);
+  return names;
+}
 
 template <class M>
 CatalogueModel described(const char* kind, const M& model) {
@@ -69,6 +82,20 @@ void add_materials(nb::module_& m) {
       .def_ro("state", &CatalogueModel::state)
       .def_ro("eos", &CatalogueModel::eos);
   m.def("catalogue", &catalogue);
+  m.def(
+      "column_names",
+      [](int dimension, bool may_leave, double density, const std::string& strength,
+         const Parameters& parameters, const std::optional<Named>& eos,
+         const std::vector<NamedFailure>& failures, Viscosity viscosity) {
+        const Material material =
+            make_material(choice_of(density, strength, parameters, eos, failures, viscosity));
+        return dimension == 2 ? columns_of<2>(material, may_leave)
+                              : columns_of<3>(material, may_leave);
+      },
+      nb::arg("dimension"), nb::arg("may_leave"), nb::arg("density"), nb::arg("strength"),
+      nb::arg("parameters"), nb::arg("eos").none(), nb::arg("failures"), nb::arg("viscosity"),
+      "The names of the columns that particles of a material have; `may_leave`: there is an "
+      "outflow box");
 
   m.def(
       "drive_material",

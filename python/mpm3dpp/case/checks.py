@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from pydantic_core import PydanticCustomError
 
+from mpm3dpp import _core
 from mpm3dpp.base.errors import Path, nearest, report, violation
 from mpm3dpp.base.outputs import COLUMNS, STANDARD
-from mpm3dpp.materials import state_columns
 
 from .detonation import check_detonations
 from .loads import check_loads
@@ -187,19 +187,19 @@ def _check_body(case: Case, body: Body, path: Path) -> Found:
         yield from check_motion(case, body, path)
 
 
+def _columns(case: Case, material: str) -> list[str]:
+    """Return the names of the columns that the core has for particles of a material."""
+    return _core.column_names(
+        dimension=case.grid.dimension,
+        may_leave=case.grid.outflow_box is not None,
+        viscosity=case.viscosity_of(material),
+        **case.material[material].for_core(),
+    )
+
+
 def _output(case: Case) -> Found:
-    used = case.materials_used
-    materials = [case.material[name] for name in used]
-    extra = ["volume", "mass", *state_columns(set().union(*(m.models for m in materials)))]
-    extra += ["internal_energy"] if any(m.eos is not None for m in materials) else []
-    extra += ["failed"] if any(m.failure for m in materials) else []
-    if case.grid.outflow_box is not None:
-        extra += ["failed", "recoverable_energy"]
-    if any(f.action == "erode" for m in materials for f in m.failure):
-        extra.append("recoverable_energy")
-    if any(sum(case.viscosity_of(name)) > 0 for name in used):
-        extra.append("viscosity_pressure")
-    extra = list(dict.fromkeys(extra))
+    stored = dict.fromkeys(name for used in case.materials_used for name in _columns(case, used))
+    extra = [name for name in stored if name not in STANDARD]
     for index, word in enumerate(case.output.fields):
         if word not in (*STANDARD, *extra):
             rule = "is not a column that this case stores"
