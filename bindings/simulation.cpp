@@ -48,7 +48,7 @@ void def_building(SimulationClass& simulation) {
                      const Parameters& parameters, const std::optional<Named>& eos,
                      const std::vector<NamedFailure>& failures, Viscosity viscosity) {
              return add_material(
-                 s.domain, choice_of(density, strength, parameters, eos, failures, viscosity));
+                 s, choice_of(density, strength, parameters, eos, failures, viscosity));
            }),
            nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
            nb::arg("failures"), nb::arg("viscosity"))
@@ -80,8 +80,7 @@ void def_building(SimulationClass& simulation) {
            }),
            nb::arg("name"), nb::arg("body"), nb::arg("kind"), nb::arg("value"),
            nb::arg("particles"), nb::arg("areas"), nb::arg("sizes"), nb::arg("arms"))
-      .def("set_group",
-           of_any([](auto& s, int body, int first) { set_group(s.domain, body, first); }),
+      .def("set_group", of_any([](auto& s, int body, int first) { set_group(s, body, first); }),
            nb::arg("body"), nb::arg("first"))
       .def("set_friction",
            of_any([](auto& s, int a, int b, double mu) { set_pair_friction(s.domain, a, b, mu); }),

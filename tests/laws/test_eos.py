@@ -160,11 +160,11 @@ def test_tillotson_from_solid_to_vapour(e: float, V: float, lanes: bool) -> None
     assert -rows[1, :3] == pytest.approx(3 * [tillotson(V, e)], rel=1e-12, abs=75.2e9 * 1e-13)
 
 
-@pytest.mark.parametrize("V", [0.97, 0.9, 0.8, 0.7, 0.6])
+@pytest.mark.parametrize("V", [0.97, 0.9, 0.8, 0.7, 0.6, 0.55, 0.5, 0.45, 0.4])
 def test_energy_and_pressure_that_is_not_linear_in_it_are_solved_together(V: float) -> None:
     """One step to a shocked volume ends on the Hugoniot, p = P(V, E) and E = p (1 - V) / 2.
 
-    Newton's steps reach rounding, at 149 GPa too.
+    Newton's steps reach rounding, at 825 GPa and a particle velocity of 13.5 km/s too.
     """
     found = squeeze(ALUMINIUM, np.array([1.0, V]), 2700.0)
     energy, p = found["internal_energy"][1], found["pressure"][1]
@@ -181,7 +181,7 @@ def test_tillotson_s_aluminium_is_that_of_experiments(V: float) -> None:
     p = squeeze(ALUMINIUM, np.array([1.0, V]), 2700.0)["pressure"][1]
     x = 1 - V
     measured = 2785.0 * 5328.0**2 * x / (1 - 1.338 * x) ** 2
-    assert p == pytest.approx(measured, rel=0.06)
+    assert p == pytest.approx(measured, rel=0.045)
 
 
 def burn(

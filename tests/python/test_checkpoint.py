@@ -549,8 +549,16 @@ def test_half_a_state_does_not_step(tmp_path: Path) -> None:
     half = io.BytesIO(b"".join(parts)[: sum(map(len, parts)) // 2])
     with pytest.raises(ValueError, match="it ends too early"):
         simulation.core.restore(half.readinto, len(half.getvalue()))
-    with pytest.raises(ValueError, match=r"prepare\(\)"):
-        simulation.core.advance(1, 1.0)
+    velocities = np.zeros((simulation.core.body_particle_count(0), case.grid.dimension))
+    for call in (
+        lambda: simulation.core.advance(1, 1.0),
+        lambda: simulation.core.set_velocity(0, velocities),
+        lambda: simulation.core.save(len),
+        lambda: simulation.core.restore(half.readinto, 1),
+        simulation.core.prepare,
+    ):
+        with pytest.raises(ValueError, match="make a new one"):
+            call()
 
 
 SAVE = """

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from cases import CELL, SCHEMES, block, everything, materials
-from mpm3dpp import Case, Contact, Grid, Run, Simulation, _core
+from mpm3dpp import Case, CaseError, Contact, Grid, Run, Simulation, _core
 from mpm3dpp.io import result_hash
 
 TRANSFERS = tuple(_core.settings["run"]["transfer"]["words"][0])
@@ -63,6 +63,7 @@ def test_bits_do_not_depend_on_threads_fusion_and_restarts(
 ) -> None:
     case = everything(tmp_path, dimension, "musl", "gimp", "absorbing")
     case.run.transfer = transfer
+    case.contact.enabled = transfer == "flip"
     found = set()
     for threads, fused, restarts in ((1, True, False), (2, False, False), (2, True, True)):
         sim = Simulation(case, threads=threads, fused=fused)
@@ -92,3 +93,21 @@ def test_pic_takes_the_velocity_of_the_grid() -> None:
         inner = np.all((place > 1) & (place < 6), axis=1)
         left[transfer] = np.abs(sim.column("body", "velocity")[inner, 0]).max()
     assert left["flip"] > 0.9 and left["pic"] < 0.1
+
+
+def test_pic_does_not_go_with_contact() -> None:
+    """Its particles take the momentum of eqs. (6)-(7), which records of contact do not count."""
+    blocks = {name: block((x, 0), (x + 4, 4), material="solid") for name, x in (("a", 0), ("b", 4))}
+    grid, run = Grid(dimension=2, cell_size=CELL), Run(end_time=1.0, transfer="pic", pic_damping=1)
+    with pytest.raises(CaseError) as raised:
+        Case(grid=grid, run=run, contact=Contact(), material=materials(), body=blocks)
+    keys = {error.key for error in (raised.value, *raised.value.others)}
+    assert keys == {"run.transfer", "run.pic_damping"}
+    case = Case(
+        grid=grid,
+        run=Run(end_time=1.0, transfer="pic"),
+        material=materials(),
+        contact=Contact(bonded=True),
+        body=blocks,
+    )
+    assert Simulation(case, threads=1).advance(3) == 3

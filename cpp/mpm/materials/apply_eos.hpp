@@ -15,16 +15,17 @@ T sound_speed_squared(const LinearInEnergy<T>& at, T V, T energy, double density
 template <class T>
 T pressure_at_end(const LinearInEnergy<T>& line, T V, T energy, T change) {
   // Debris of many times its volume may close by more than its initial volume in one step, where
-  // the energy's part of the denominator would pass zero; a shock ends below that volume.
+  // the energy's part of the denominator would pass zero; a shock begins below that volume, as heat
+  // swells a solid by less than a fifth.
   T implicit = T(1.0) + T(0.5) * line.B * change;
-  implicit = select(V > T(1.0), max(implicit, T(0.5)), implicit);
+  implicit = select((V > T(1.0)) | (V - change > T(1.2)), max(implicit, T(0.5)), implicit);
   return line.pressure(energy) / implicit;
 }
 
 /// Steps of Newton's method where the pressure is not linear in the energy, the same for all, so
-/// that a particle's bits do not depend on those beside it: the first guess is wrong by the square
-/// of p dV/2 over the energy, and each step squares that.
-inline constexpr int energy_steps = 4;
+/// that a particle's bits do not depend on those beside it. They start from the pressure of the old
+/// energy: its tangent would lead to energies below zero where a shock halves the volume.
+inline constexpr int energy_steps = 5;
 
 /// The energy per initial volume grows by the work of the deviator, of the pressure (mean of old
 /// and new) and of the artificial viscosity; with p = A + B E that gives p in closed form. Where p
@@ -64,7 +65,7 @@ template <class T, int D, class Model>
       damping += artificial;
     }
     if (viscosity || damped) speed = damped_speed(speed, damping);
-    T pressure = pressure_at_end(p, V, energy, change);
+    T pressure = LinearEos<Model> ? pressure_at_end(p, V, energy, change) : p.pressure(energy);
     if constexpr (!LinearEos<Model>)
       for (int k = 0; k < energy_steps; ++k) {
         p = line_at(energy - T(0.5) * pressure * change);

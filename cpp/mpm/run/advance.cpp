@@ -45,7 +45,7 @@ void make_step(Simulation<D>& simulation, double time_after) {
 template <int D>
 std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double end_time,
                      const std::atomic<bool>* stop) {
-  if (!simulation.prepared) throw std::invalid_argument("call prepare() before advance()");
+  require(simulation, Phase::ready, "call prepare() before advance()");
   if (!std::isfinite(end_time)) throw std::invalid_argument("end_time must be a finite number");
   Domain<D>& domain = simulation.domain;
   std::int64_t made = 0;

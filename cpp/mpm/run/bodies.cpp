@@ -27,7 +27,9 @@ bool leads_group(const Domain<D>& domain, int number) {
 }  // namespace
 
 template <int D>
-int add_material(Domain<D>& domain, const MaterialChoice& choice) {
+int add_material(Simulation<D>& simulation, const MaterialChoice& choice) {
+  require(simulation, Phase::building, "materials must be added before prepare()");
+  Domain<D>& domain = simulation.domain;
   domain.materials.push_back(make_material(choice));
   domain.pools.push_back(make_pool(domain.materials.back(), domain.grid));
   return static_cast<int>(domain.materials.size()) - 1;
@@ -38,7 +40,7 @@ int add_body(Simulation<D>& simulation, const std::string& name, int material_nu
              std::span<const double> positions, std::span<const double> velocities,
              std::span<const double> volumes) {
   Domain<D>& domain = simulation.domain;
-  if (simulation.prepared) throw std::invalid_argument("bodies must be added before prepare()");
+  require(simulation, Phase::building, "bodies must be added before prepare()");
   const auto m = static_cast<std::size_t>(material_number);
   Body<D> body =
       make_body(name, domain.materials.at(m), domain.pools.at(m), positions, velocities, volumes);
@@ -51,7 +53,7 @@ int add_body(Simulation<D>& simulation, const std::string& name, int material_nu
 template <int D>
 void set_state(Simulation<D>& simulation, int number, const std::string& column,
                std::span<const double> values) {
-  if (simulation.prepared) throw std::invalid_argument("states must be set before prepare()");
+  require(simulation, Phase::building, "states must be set before prepare()");
   Body<D>& b = simulation.domain.body_at(number);
   const ColumnInfo& info = simulation.domain.pool_of(b).columns.info(column);
   if (info.components != 1 || values.size() != b.count)
@@ -64,7 +66,7 @@ template <int D>
 void set_motion(Simulation<D>& simulation, int number, const std::array<TimeFunction, 3>& velocity,
                 const std::array<TimeFunction, 3>& spin, const std::array<double, 3>& centre) {
   Domain<D>& domain = simulation.domain;
-  if (simulation.prepared) throw std::invalid_argument("motions must be set before prepare()");
+  require(simulation, Phase::building, "motions must be set before prepare()");
   Body<D>& b = domain.body_at(number);
   for (const SurfaceLoad<D>& load : domain.loads)
     if (load.body == number)
@@ -81,7 +83,9 @@ void set_motion(Simulation<D>& simulation, int number, const std::array<TimeFunc
 }
 
 template <int D>
-void set_group(Domain<D>& domain, int number, int first) {
+void set_group(Simulation<D>& simulation, int number, int first) {
+  require(simulation, Phase::building, "groups must be set before prepare()");
+  Domain<D>& domain = simulation.domain;
   if (number <= first || std::cmp_greater_equal(number, domain.bodies.size()) ||
       !leads_group(domain, first))
     throw std::invalid_argument("a group is given by its first body");
@@ -108,10 +112,11 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
   if (b.is_prescribed()) throw std::invalid_argument("the motion of " + b.name + " is prescribed");
   if (velocities.size() != b.count * D) throw std::invalid_argument("velocities must be (n, D)");
   check_finite(velocities, "velocities");
-  if (!simulation.prepared) {
+  if (simulation.phase == Phase::building) {
     b.given->velocities.assign(velocities.begin(), velocities.end());
     return;
   }
+  require(simulation, Phase::ready, "");
   const double before = kinetic_energy(domain);
   ParticlePool<D>& pool = domain.pool_of(b);
   for_each_row(domain.grid.patches, pool, number, b.removed, [&](std::uint32_t row) {
@@ -135,8 +140,8 @@ void set_gravity(Domain<D>& domain, const std::array<TimeFunction, 3>& gravity) 
   domain.gravity_of_time = gravity;
 }
 
-template int add_material<2>(Domain<2>&, const MaterialChoice&);
-template int add_material<3>(Domain<3>&, const MaterialChoice&);
+template int add_material<2>(Simulation<2>&, const MaterialChoice&);
+template int add_material<3>(Simulation<3>&, const MaterialChoice&);
 template int add_body<2>(Simulation<2>&, const std::string&, int, std::span<const double>,
                          std::span<const double>, std::span<const double>);
 template int add_body<3>(Simulation<3>&, const std::string&, int, std::span<const double>,
@@ -147,8 +152,8 @@ template void set_motion<2>(Simulation<2>&, int, const std::array<TimeFunction, 
                             const std::array<TimeFunction, 3>&, const std::array<double, 3>&);
 template void set_motion<3>(Simulation<3>&, int, const std::array<TimeFunction, 3>&,
                             const std::array<TimeFunction, 3>&, const std::array<double, 3>&);
-template void set_group<2>(Domain<2>&, int, int);
-template void set_group<3>(Domain<3>&, int, int);
+template void set_group<2>(Simulation<2>&, int, int);
+template void set_group<3>(Simulation<3>&, int, int);
 template void set_pair_friction<2>(Domain<2>&, int, int, double);
 template void set_pair_friction<3>(Domain<3>&, int, int, double);
 template void set_velocity<2>(Simulation<2>&, int, std::span<const double>);

@@ -11,7 +11,7 @@ namespace mpm {
 
 /// Returns its number.
 template <int D>
-int add_material(Domain<D>& domain, const MaterialChoice& choice);
+int add_material(Simulation<D>& simulation, const MaterialChoice& choice);
 /// Positions and velocities are (n, D) row by row, or one row of velocities for all; volumes n
 /// values, or one for all. Returns the body's number.
 template <int D>
@@ -31,7 +31,7 @@ void set_motion(Simulation<D>& simulation, int body, const std::array<TimeFuncti
 /// Put a body into the group of an earlier one, by that one's number: they have the same frictions,
 /// and group_pairs() sums over them. Every other body is a group by itself.
 template <int D>
-void set_group(Domain<D>& domain, int body, int first);
+void set_group(Simulation<D>& simulation, int body, int first);
 /// Friction between the bodies of two groups, each given by its first body; of one, if a == b.
 template <int D>
 void set_pair_friction(Domain<D>& domain, int a, int b, double mu);

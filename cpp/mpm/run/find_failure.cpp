@@ -20,6 +20,7 @@ void find_failure(Simulation<D>& simulation) {
       std::isfinite(domain.ledger.residual())) {
     if (domain.ledger.growth() <= simulation.settings.run.energy_growth_limit) return;
     const Limiter fastest = find_limiter(domain);
+    if (fastest.body < 0) return fail("energy growth", 0, 0, "no particle takes part any more");
     const std::size_t row = row_of(domain, fastest.body, fastest.particle);
     std::ostringstream text;
     text << "the numerical terms have made " << domain.ledger.growth()

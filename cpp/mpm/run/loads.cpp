@@ -13,7 +13,7 @@ void add_load(Simulation<D>& simulation, const std::string& name, int number,
   const auto check = [&](bool condition, const std::string& rule) {
     if (!condition) throw std::invalid_argument("load " + name + ": " + rule);
   };
-  check(!simulation.prepared, "must be added before prepare()");
+  require(simulation, Phase::building, "loads must be added before prepare()");
   const Body<D>& on = domain.body_at(number);
   check(on.deforms(), "its body is rigid, and a load acts on bodies that deform");
   const std::size_t n = pieces.particles.size();

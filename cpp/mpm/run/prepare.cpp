@@ -59,14 +59,15 @@ void start_ledger(Domain<D>& domain) {
 template <int D>
 void prepare(Simulation<D>& simulation) {
   Domain<D>& domain = simulation.domain;
-  check(!simulation.prepared, "prepare() has been called already");
+  require(simulation, Phase::building, "prepare() has been called already");
   check(!domain.bodies.empty(), "there is no body");
+  check_bodies(domain);
+  simulation.phase = Phase::broken;  // until all is done
   fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches);
   place_pieces(domain);
   build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
   if (domain.has_contact()) connect_tiles(domain.contact, domain.grid, domain.bodies);
   domain.sums.resize(domain.grid.patches.size());
-  check_bodies(domain);
   list_kinds(domain);
   start_motions(domain);
   project_rigid_velocities(domain);
@@ -80,7 +81,7 @@ void prepare(Simulation<D>& simulation) {
   simulation.watch.notes.reserve(2 * note_names.size());
   domain.time_step = 0.0;
   simulation.history.add(step_state(domain));  // the state at the start
-  simulation.prepared = true;
+  simulation.phase = Phase::ready;
 }
 
 template void prepare<2>(Simulation<2>&);

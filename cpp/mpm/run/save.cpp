@@ -78,7 +78,7 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
 
 template <int D>
 void save(Simulation<D>& simulation, const StateStream::Transfer& to) {
-  if (!simulation.prepared) throw std::invalid_argument("call prepare() before save()");
+  require(simulation, Phase::ready, "call prepare() before save()");
   if (simulation.failure)
     throw std::invalid_argument("a run that had to stop has no state to go on from");
   StateStream stream(StateStream::Way::save, to);
@@ -87,14 +87,15 @@ void save(Simulation<D>& simulation, const StateStream::Transfer& to) {
 
 template <int D>
 void restore(Simulation<D>& simulation, const StateStream::Transfer& from, std::size_t size) {
-  if (!simulation.prepared || simulation.domain.step > 0)
-    throw std::invalid_argument("call restore() after prepare() and before any step");
+  constexpr const char* when = "call restore() after prepare() and before any step";
+  require(simulation, Phase::ready, when);
+  if (simulation.domain.step > 0) throw std::invalid_argument(when);
   StateStream stream(StateStream::Way::restore, from, size);
-  simulation.prepared = false;  // what has been restored half must not step
+  simulation.phase = Phase::broken;  // what has been restored half must not step
   exchange(simulation, stream);
   stream.end();
   check_rest(simulation);
-  simulation.prepared = true;
+  simulation.phase = Phase::ready;
 }
 
 template void save<2>(Simulation<2>&, const StateStream::Transfer&);

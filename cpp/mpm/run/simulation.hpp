@@ -5,6 +5,7 @@
 // pair_groups and warnings.
 #include <optional>
 #include <span>
+#include <stdexcept>
 
 #include "mpm/domain.hpp"
 #include "mpm/run/history_rows.hpp"
@@ -14,6 +15,10 @@
 #include "mpm/run/timers.hpp"
 
 namespace mpm {
+
+/// What a simulation can be asked for: to take bodies in; to step; nothing, when preparing or
+/// restoring it has failed half-way.
+enum class Phase { building, ready, broken };
 
 template <int D>
 struct Simulation {
@@ -26,11 +31,20 @@ struct Simulation {
   StageTimers timers;
   double next_time_step = 0.0;  // [s]
   int coarsenings = 0;          // of the cells so far
-  bool prepared = false;
+  Phase phase = Phase::building;
   std::optional<Failure> failure;
   Watch<D> watch;
   HistoryRows history;
 };
+
+/// Throws std::invalid_argument with the sentence unless the simulation is in a phase.
+template <int D>
+void require(const Simulation<D>& simulation, Phase phase, const char* sentence) {
+  if (simulation.phase == Phase::broken)
+    throw std::invalid_argument(
+        "preparing or restoring this simulation has failed: make a new one");
+  if (simulation.phase != phase) throw std::invalid_argument(sentence);
+}
 
 extern template struct Simulation<2>;
 extern template struct Simulation<3>;

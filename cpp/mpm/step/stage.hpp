@@ -35,6 +35,7 @@ struct Data {
     patch_sums = 1u << 18,
     records = 1u << 19,
     energies = 1u << 20,
+    left_cells = 1u << 21,  // whether particles have left the cells of their lists
   };
 };
 /// Their names, in the order of the bits.
@@ -43,7 +44,7 @@ inline constexpr auto data_names = std::to_array<std::string_view>(
      "rigid position", "rigid velocity", "lists",         "load pieces", "node mass",
      "node momentum",  "node velocity",  "ghost weights", "node force",  "node increments",
      "node remapped",  "node dashpots",  "contacts",      "patch sums",  "records",
-     "energies"});
+     "energies",       "left cells"});
 
 /// The data and what shares its place (layout/node_records.hpp): who writes one takes the others.
 constexpr std::uint32_t places_of(std::uint32_t data) {

@@ -135,8 +135,9 @@ struct Stages : Data {
 
   static constexpr Row activate{
       "activate tiles", mpm::activate_tiles<D>,
-      of_particles | of_rigid | stress | lists | patch_sums,
-      velocity | stress | lists | patch_sums | node_mass | node_velocity | node_force};
+      of_particles | of_rigid | volume | stress | load_pieces | lists | left_cells | patch_sums,
+      of_particles | of_rigid | volume | stress | load_pieces | lists | left_cells | patch_sums |
+          node_mass | node_velocity | node_force};
   static constexpr Row map_momentum{
       "map momentum", mpm::map_momentum<D>, lists | of_particles | of_rigid,
       node_mass | node_momentum | ghost_weights | node_dashpots, true};
@@ -167,20 +168,20 @@ struct Stages : Data {
   static constexpr Row contact_forces{"contact forces", mpm::contact_forces<D>,
                                       node_mass | node_velocity | node_force | contacts,
                                       node_force | contacts};
-  static constexpr Row advance_nodes{
-      "advance nodes", mpm::advance_nodes<D>,
-      lists | load_pieces | node_mass | node_velocity | node_force | node_dashpots | patch_sums,
-      node_velocity | node_increments | patch_sums};
+  static constexpr Row advance_nodes{"advance nodes", mpm::advance_nodes<D>,
+                                     lists | position | load_pieces | node_mass | node_velocity |
+                                         node_force | node_dashpots | patch_sums,
+                                     node_velocity | node_increments | patch_sums};
   static constexpr Row advance_particles{
       "advance particles", mpm::advance_particles<D>,
       lists | of_particles | of_rigid | node_velocity | node_increments | patch_sums,
       velocity | rigid_velocity | patch_sums, true};
   static constexpr Row hold_rigid{"project rigid velocities", mpm::project_rigid_velocities<D>,
-                                  of_rigid | patch_sums, rigid_velocity | patch_sums};
+                                  lists | of_rigid | patch_sums, rigid_velocity | patch_sums};
   static constexpr Row remap_momentum{"remap momentum", mpm::remap_momentum<D>,
                                       lists | of_particles, node_remapped, true};
-  static constexpr Row remap_rigid{"remap rigid bodies", mpm::remap_rigid_bodies<D>, of_rigid,
-                                   node_remapped};
+  static constexpr Row remap_rigid{"remap rigid bodies", mpm::remap_rigid_bodies<D>,
+                                   lists | of_rigid, node_remapped};
   static constexpr Row fold_remapped{"fold remapped", mpm::fold_remapped<D>, node_remapped,
                                      node_remapped};
   static constexpr Row exchange_remapped{"exchange remapped", mpm::exchange_remapped<D>,
@@ -190,11 +191,13 @@ struct Stages : Data {
   static constexpr Row contact_remapped{"contact remapped", mpm::contact_remapped<D>,
                                         node_remapped | contacts, node_remapped | contacts};
   static constexpr Row move_particles{"move particles", mpm::move_particles<D>,
-                                      lists | position | node_velocity, position | lists, true};
+                                      lists | position | node_velocity, position | left_cells,
+                                      true};
   static constexpr Row move_rigid{"move rigid bodies", mpm::move_rigid_bodies<D>,
-                                  lists | of_rigid | patch_sums, of_rigid | lists | patch_sums};
+                                  lists | of_rigid | patch_sums,
+                                  of_rigid | left_cells | patch_sums};
   static constexpr Row record_contacts{"record contacts", mpm::record_contacts<D>,
-                                       contacts | records, records};
+                                       node_mass | contacts | records, records};
   template <bool forces_follow>
   static constexpr Row sum_energies{"sum energies", mpm::sum_energies<D, forces_follow>,
                                     patch_sums | records | energies, energies};

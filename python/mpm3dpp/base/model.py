@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import operator
 import re
 from dataclasses import dataclass
@@ -192,7 +193,8 @@ class Exactly:
         examples = {int: str(self.least or 1), str: '"steel"', bool: "true"}
         give = f"give {names[self.kind]} such as {examples[self.kind]}"
         if self.kind is int and hasattr(value, "__index__") and not isinstance(value, bool):
-            value = operator.index(value)
+            with contextlib.suppress(TypeError):  # an array is none, though it has the method
+                value = operator.index(value)
         if type(value) is not self.kind:
             raise violation(f"must be {names[self.kind]}", give, value=value)
         if isinstance(value, str) and _CONTROL.search(value):

@@ -23,9 +23,10 @@ LAWS = {"elastic": (95, 40), "johnson_cook": (230, 160)}
 def operations_per_particle_step(
     stages: list[str], dimension: int, basis: str, law: str
 ) -> dict[str, int]:
-    """Return the operations of each stage per particle and step; stages of nodes only have none.
+    """Return the operations of each stage per particle and step.
 
-    Nor have those that are not counted here.
+    Stages of nodes only have none; of stages that nobody has counted here none are known, and 0 is
+    returned too.
 
     Args:
         stages: names of the stages of a scheme.

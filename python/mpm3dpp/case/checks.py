@@ -69,6 +69,22 @@ def _bodies_together(case: Case) -> Found:
         yield violation(rule, "give one another strength", path=path)
     yield from check_detonations(case)
     yield from check_loads(case)
+    yield from _transfer(case)
+
+
+def _transfer(case: Case) -> Found:
+    """Refuse what takes more from the nodes than contact has given them by its forces."""
+    run, contact = case.run, case.contact
+    if run.transfer == "flip":
+        return
+    alone = len(case.body) == 1 and not case.grains
+    if contact.enabled and not contact.bonded and not alone:
+        rule = "goes with one body, or bonded ones: contact counts what FLIP's particles take"
+        remedy = 'use "flip", with run.pic_damping if it must be damped'
+        yield violation(rule, remedy, value=run.transfer, path=("run", "transfer"))
+    if run.pic_damping > 0:
+        rule, path = 'is for the transfer "flip"', ("run", "pic_damping")
+        yield violation(rule, "leave it out", value=run.pic_damping, path=path)
 
 
 def _pairs(case: Case) -> Found:

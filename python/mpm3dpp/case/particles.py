@@ -18,15 +18,14 @@ from numpy.typing import NDArray
 from pydantic import SkipValidation
 
 from mpm3dpp.base.csv_points import (
-    FromFile,
     Layout,
     digest_of,
-    file_entry,
     read_points,
     short,
     write_points,
 )
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.from_file import FromFile, file_entry
 from mpm3dpp.base.machine import PARTICLE_BYTES_WITH_GRID
 
 Array = NDArray[np.float64]

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import SkipValidation
 
-from mpm3dpp.base.csv_points import FromFile, Layout, digest_of, file_entry, read_points, short
+from mpm3dpp.base.csv_points import Layout, digest_of, read_points, short
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.from_file import FromFile, file_entry
 from mpm3dpp.base.machine import BODY_BYTES
 
 Array = NDArray[np.float64]

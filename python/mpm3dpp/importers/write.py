@@ -8,6 +8,8 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from mpm3dpp.base.csv_points import write_points
 from mpm3dpp.base.disk import make_folder, writing
 from mpm3dpp.base.errors import CaseError
@@ -131,6 +133,8 @@ def _key(key: str) -> str:
 
 def _value(value: Any) -> str:
     """Return a value as TOML; numbers come back to the last bit."""
+    if isinstance(value, np.generic):
+        value = value.item()
     if isinstance(value, dict):
         inner = ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items())
         return f"{{ {inner} }}"

@@ -38,6 +38,9 @@ void check_all(Report& report) {
     choice.basis = basis;
     choice.load = true;
     check_schemes(report, choice);
+    choice.transfer = Transfers::id_of<Pic>();
+    check_schemes(report, choice);
+    choice.transfer = Transfers::id_of<Flip>();
     choice.pic_damping = 1e3;
     for (const BodyKind kind : {BodyKind::rigid, BodyKind::prescribed})
       for (const bool contact : {false, true}) {

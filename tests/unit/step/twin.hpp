@@ -12,6 +12,7 @@
 #include "mpm/reference/works.hpp"
 #include "mpm/schedule/cell_loop.hpp"
 #include "mpm/step/scheme.hpp"
+#include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm::testing {
 
@@ -26,6 +27,7 @@ struct Choice {
   bool load = false;                     // a pressure and a traction on the second body
   BodyKind kind = BodyKind::deformable;  // of the first body
   double pic_damping = 0.0;              // [1/s]
+  TransferId transfer = Transfers::id_of<Flip>();
   std::array<Wall, 2 * D> walls{};
 };
 
@@ -52,7 +54,9 @@ struct Twin {
     reference.half_width = half_width(choice.basis, edge);
     domain.time_step = reference.dt = 1e-5;
     domain.pic_damping = choice.pic_damping;
-    reference.pic = choice.pic_damping * domain.time_step;
+    domain.transfer = choice.transfer;
+    const bool pic = choice.transfer == Transfers::id_of<Pic>();
+    reference.pic = pic ? 1.0 : choice.pic_damping * domain.time_step;
     for (int a = 0; a < D; ++a) domain.gravity[a] = reference.g[a] = 1e4 * any();
     domain.contact_settings.enabled = choice.contact;
     domain.contact_settings.detection = Detections::id_of<VelocityDetection>();
