@@ -58,6 +58,8 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
   };
   for (std::size_t p = 0; p < grid.patches.size(); ++p)
     for (int k = 0; k < Tile<D>::neighbours; ++k)
+      // By tiles, not by the boxes of blocks: those change too often to sort this list each time
+      // (decision 0013).
       if (reaches<D>(grid.reach(), k)) holders.emplace_back(grid.patches[p].body, p, k);
   std::sort(holders.begin(), holders.end(), [&](const TileHolder& x, const TileHolder& y) {
     const Index<D> tx = tile_of(x), ty = tile_of(y);
@@ -72,6 +74,7 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
       several = several || holders[end].body != holders[begin].body;
       deforms = deforms || bodies[static_cast<std::size_t>(holders[end].body)].deforms();
     }
+    // Bodies that do not deform have no stress that could part them, and do not act on each other.
     if (!several || !deforms) continue;
     ContactTile<D>& made = tiles.emplace_back();
     made.tile = tile;

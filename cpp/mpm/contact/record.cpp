@@ -47,6 +47,8 @@ void sum_part(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>
       part.friction_first.add(pair.friction_first);
       if (share.known) continue;
       const double lighter = std::min(mass_share(r), mass_share(s));
+      // The node that tells of the first contact is the one where the lighter body has most mass;
+      // of equals the first, so a strict comparison in the order of the nodes.
       if (!(lighter > share.share)) continue;
       share.share = lighter;
       share.gap = pair.gap;
@@ -74,6 +76,8 @@ ContactSums record_pairs(Contact<D>& contact, TileGrid<D>& grid, const std::vect
     force_work.add(part.force_work);
     friction.add(part.friction);
     friction_first.add(part.friction_first);
+    // In the order of the parts, though the sums need none (decision 0038): ties between nodes of a
+    // first contact do.
     for (const PairShare& share : part.shares) records.add(share, end.step, end.time);
   }
   records.end_step(end.time_step);
