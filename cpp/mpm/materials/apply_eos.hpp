@@ -50,6 +50,8 @@ template <class T, int D, class Model>
       const LinearInEnergy<T> line = line_of(model, V, energy);
       return burns ? line.burnt(group.get(block.burnt)) : line;
     };
+    // E of the end but for -p dV / 2 of the new pressure: the old mean stress, tension
+    // positive, works on half of the change.
     T energy =
         group.read(columns.energy) + work.deviatoric * per_volume + T(0.5) * mean_before * change;
     if (bounds.active && any(bounds.limits(mean_before)))
@@ -74,6 +76,7 @@ template <class T, int D, class Model>
                              (energy - T(0.5) * pressure * change < T(bounds.lowest_energy))))
       pressure = bounds.held(pressure, energy, change, line_at(T(bounds.lowest_energy)));
     const T mean = T(1.0 / 3.0) * trace(strength);
+    // The strength's own mean stress is dropped: p takes its place, s - (mean + p) 1.
     const T shift = mean + pressure;  // of the mean stress, downwards
     const Sym<T, D> stress = strength - Sym<T, D>::isotropic(shift);
     if (last) {
