@@ -13,7 +13,7 @@ namespace mpm {
 template <int D>
 struct BodyAtNode {
   std::int32_t body;
-  std::uint32_t place;  // of its record in the first patch that has it (TileGrid::record_at)
+  std::uint32_t place;  // of its record in the first patch that has it (NodeMemory::record_at)
   std::uint32_t first_further;  // of ContactPart::further_places: its records in further patches
   std::uint8_t further_count;
   bool prescribed;  // the body moves as it does, whatever pushes it

@@ -47,7 +47,7 @@ struct ContactPart {
   std::span<ContactPair<D>> pairs_of(const ContactNode& node) {
     return {&pairs[node.first_pair], pair_count(node.sides)};
   }
-  /// f(place) of a side's record in each patch that has it (TileGrid::record_at).
+  /// f(place) of a side's record in each patch that has it (NodeMemory::record_at).
   template <class F>
   void for_each_place(const BodyAtNode<D>& side, F&& f) const {
     f(side.place);

@@ -56,7 +56,7 @@ struct HeldNodes {
       stride[a] = static_cast<std::int32_t>(step);
   }
   /// Of the record of a node `with_mass`, by its coordinates from the tile's first
-  /// (TileGrid::record_at).
+  /// (NodeMemory::record_at).
   std::uint32_t place(const Index<D>& node) const {
     std::int64_t at = first;
     for (std::size_t a = 0; a < D; ++a) at += std::int64_t{stride[a]} * node[a];
