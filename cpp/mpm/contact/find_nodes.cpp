@@ -19,6 +19,7 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t x) {
 
 template <int D>
 TileBodies<D>& bodies_around() {
+  // Of a thread, not of a part: it keeps its memory from tile to tile.
   thread_local TileBodies<D> around;
   return around;
 }
@@ -149,6 +150,7 @@ void add_nodes(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<B
     ContactNode& node = part.nodes.emplace_back();
     node.cell = static_cast<std::uint8_t>(std::countr_zero(left));
     node.tile = static_cast<std::uint32_t>(tile);
+    // Numbers in place of pointers: the arrays may still move while further tiles are added.
     node.first_side = static_cast<std::uint32_t>(part.sides.size());
     node.first_pair = static_cast<std::uint32_t>(part.pairs.size());
     place_sides(grid, around, part, node);
@@ -187,6 +189,7 @@ void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<
       find_pairs(grid, bodies, settings, around, part, node);
       if (contact.cache.on) store_pairs(contact.cache, part, node);
     }
+  // Where nodes are kept none is left out, so that those of the bits are there one by one.
   tile.cached = contact.cache.on ? around.overlapped : 0;
   tile.cached_part = static_cast<std::uint32_t>(p);
   tile.first_cached = static_cast<std::uint32_t>(first);
@@ -236,6 +239,7 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
         });
     }
   });
+  // Integers and maxima: no order of the parts is seen.
   contact.counts.overlapped = 0;
   for (const ContactPart<D>& part : contact.parts) {
     contact.counts.overlapped += part.overlapped;

@@ -9,9 +9,8 @@
 namespace mpm {
 namespace {
 
-// A pair with a wider gap along the line between the centres is left as found so, without a plane:
-// such a pair must not close before it is looked at again, so normal_refresh_distance is at most
-// half of this (decision 0012).
+// A pair with a wider gap along the line between the centres gets no plane, and must not close
+// before it is looked at again: normal_refresh_distance is at most half of this (decision 0012).
 constexpr double surely_open = 0.5;  // [cells]
 
 /// D_rs = D_r + D_s of eq. (5) [m], each D the distance from the node to the body's surface along
@@ -123,6 +122,8 @@ void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       pair.gap = std::numeric_limits<double>::infinity();
       if (rigid(r) && rigid(s)) continue;  // they have no stress that could part them
       // Bodies that are well apart along the line between their centres need no better normal.
+      // Only where the gap decides and the normal costs a fit. Where the centres coincide the gap
+      // is infinite, and the pair is left here too.
       if (uses_gap(settings.detection) && !by_gradients) {
         pair.normal =
             between_centres(sources[r].particles, sources[s].particles, node.constrained_axes);

@@ -21,6 +21,7 @@ class NearParticles {
     count_ = 0;
     constexpr std::size_t line = cache_line / sizeof(double);
     const std::size_t lines = (room + T::lanes) / line + 1;  // whole lanes are written at the end
+    // Room only grows: it is scratch that every node of a thread uses again.
     if (lines * line <= stride_) return;
     // Numbers of one kind lie an odd number of lines from those of the next, so that they fall
     // into different cache sets.

@@ -89,6 +89,7 @@ bool solve_node(NodeSolution<D>& node) {
   for (std::size_t sweep = 0; sweep < sweeps; ++sweep) {
     double change = 0.0, scale = 0.0;
     for (SolvedPair<D>& pair : pairs) {
+      // Kept in the list, so that pairs of the solution and of the node have the same numbers.
       if (!pair.takes_part) continue;
       SolvedSide<D>& r = sides[pair.r];
       SolvedSide<D>& s = sides[pair.s];
@@ -100,6 +101,8 @@ bool solve_node(NodeSolution<D>& node) {
       const double normal = std::max(pair.normal_impulse + m_rs * dot(relative, pair.normal), 0.0);
       Vec<double, D> impulse = (normal - pair.normal_impulse) * pair.normal;
       change = std::max(change, std::abs(normal - pair.normal_impulse));
+      // The tolerance is relative to the largest impulse at the node: a light pair beside a heavy
+      // one need not be better known than the heavy one is.
       scale = std::max(scale, normal);
       pair.normal_impulse = normal;
       if constexpr (with_friction) {

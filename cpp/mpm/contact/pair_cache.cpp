@@ -33,6 +33,7 @@ void for_each_cached(ContactPart<D>& part, const ContactNode& node, Cached* cach
 
 template <int D>
 void invalidate_pairs(Contact<D>& contact) {
+  // Without bits nobody looks at what the parts still hold.
   for (ContactTile<D>& tile : contact.tiles) tile.cached = 0;
 }
 
@@ -69,6 +70,7 @@ void store_pairs(const PairCache& cache, ContactPart<D>& part, const ContactNode
   for_each_cached(part, node, &part.cached[node.first_pair],
                   [&](const ContactPair<D>& pair, CachedPair<D>& cached, double sign) {
                     const double moved = cache.displacement_of<D>(part.sides_of(node), pair);
+                    // The way so far, not the way since: it is compared with what it will be then.
                     cached = {sign * pair.normal, pair.gap, moved};
                   });
 }
@@ -119,6 +121,7 @@ bool reuse_pairs(Contact<D>& contact, const std::vector<Body<D>>& bodies,
 template <int D>
 void move_gaps(ContactPart<D>& part, const ContactNode& node, const NodeSolution<D>& solution,
                double time_step) {
+  // Next step reuse_pairs() must not move these gaps a second time.
   part.cached_of(node).solved = true;
   for_each_cached(part, node, &part.cached[node.first_pair],
                   [&](const ContactPair<D>& pair, CachedPair<D>& cached, double) {

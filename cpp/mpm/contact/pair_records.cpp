@@ -72,6 +72,8 @@ void PairRecords::sort() {
     for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
     std::ranges::copy(sorted, values.begin());
   };
+  // Only in steps with new pairs: between steps records are in the order of (a, b), whenever pairs
+  // met.
   reorder(records_);
   reorder(sums_);
   std::fill(places_.begin(), places_.end(), 0u);

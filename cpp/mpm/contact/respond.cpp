@@ -36,6 +36,7 @@ Vec<double, D> free_gravity(const ContactNode& node, Vec<double, D> gravity) {
 
 template <bool with_friction, int D>
 void solve(Contact<D>& contact, NodeSolution<D>& solution) {
+  // A count and nothing else: no order between threads is needed.
   if (!solve_node<with_friction>(solution))
     contact.unconverged.fetch_add(1, std::memory_order_relaxed);
 }
@@ -100,6 +101,8 @@ double take_impulses(TileGrid<D>& grid, std::span<const BodyAtNode<D>> sides,
     const Vec<double, D> end =
         solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
     pair.friction_first = dot(solved.friction_impulse, begin);
+    // By either of the two solutions: a pair that (6)-(7) have pushed is recorded even if no force
+    // follows.
     pair.loaded = pair.loaded || solved.normal_impulse > 0.0;
     pair.normal_impulse = solved.normal_impulse;
     pair.friction_impulse = solved.friction_impulse;
@@ -195,6 +198,8 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vecto
       });
     }
     node.force_work = force_work;
+    // For the ledger's `contact`: what contact takes at the velocities of the start, less friction
+    // with the slip of the start, which has a column of its own.
     node.energy = -(force_work + correction) - friction_first;
   });
 }

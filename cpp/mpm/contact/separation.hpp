@@ -104,10 +104,10 @@ class PlaneFit {
       square += apart[a] * apart[a];
       middle += apart[a] * 0.5 * (r[a] + s[a]);
     }
-    // Then z stays zero, where all particles are inside: a start as good as any.
+    // Without a direction z stays zero, where all particles are inside: a start as good as any.
     if (!(square > 0.0)) return;
-    // a . s + b = 1 and a . r + b = -1 with a along s - r: a = 2 (s - r) / |s - r|^2, b = -a . (r +
-    // s) / 2.
+    // a . s + b = 1 and a . r + b = -1 with a along s - r:
+    // a = 2 (s - r) / |s - r|^2, b = -a . (r + s) / 2.
     for (int a = 0; a < D; ++a) z_[a] = 2.0 * apart[a] / square;
     z_[D] = -2.0 * middle / square;
   }
@@ -191,15 +191,16 @@ class PlaneFit {
   /// The quadratic of those that are inside the margin of a plane or beyond.
   Quadratic at(const double (&z)[n]) const {
     const Moments r = moments_of(r_, -1.0, z), s = moments_of(s_, 1.0, z);
-    // A body counts as 1 however heavy it is at the node, and the shares are taken once, behind the
-    // sums: a light body beside a heavy one would else be allowed to lie inside the margin.
+    // A body counts as 1 however heavy it is at the node, else a light one beside a heavy one would
+    // be allowed to lie inside the margin. The shares are taken once, behind the sums.
     const T of_r(1.0 / r_.mass()), of_s(1.0 / s_.mass());  // shares of a body's mass
     const auto fixed = [&](int i) { return i < D && (constrained_ >> i & 1u); };
     Quadratic q;
     for (int i = 0; i < n; ++i) {
       const T first_r = of_r * r.first[i], first_s = of_s * s.first[i];
-      // With c^2 = 1 the terms of those inside are w (1 - c z.(x, 1))^2 = w - 2 w c z.(x, 1) + w
-      // (z.(x, 1))^2: b has the sign of c, A has none, and the constant is the sum of w.
+      // With c^2 = 1 the terms of those inside are
+      // w (1 - c z . (x, 1))^2 = w - 2 w c z . (x, 1) + w (z . (x, 1))^2:
+      // b has the sign of c, A has none, and the constant is the sum of w.
       q.b[i] = fixed(i) ? 0.0 : sum(first_s - first_r);
       q.A[D][i] = fixed(i) ? 0.0 : sum(first_s + first_r);
       for (int j = 0; j <= i && i < D; ++j)

@@ -50,6 +50,8 @@ struct HeldNodes {
   /// Find out where the records are.
   void locate(TileGrid<D>& grid, const TileHolder& holder) {
     const BlockShape<D>& shape = shape_of(grid, holder);
+    // May be a number before the block's own: only nodes with mass are asked for, and these are in
+    // it.
     first = grid.nodes.index_of(grid.block(holder.patch).records.data) +
             std::int64_t{node_in_holder<D>(grid, holder, Index<D>{})};
     for (std::size_t a = 0, step = 1; a < D; step *= static_cast<std::size_t>(shape.nodes[a++]))

@@ -170,6 +170,7 @@ class TileParticles {
       __builtin_prefetch(column + first);
       __builtin_prefetch(column + last);
     };
+    // Both ends, for a cell's rows may lie across two cache lines (decision 0026).
     bring(pool.order.data() + patch.begin);
     for (int a = 0; a < D; ++a) bring(pool.x(a) + patch.first_row);
     bring(pool.mass() + patch.first_row);
@@ -182,6 +183,7 @@ class TileParticles {
     constexpr int W = contact_lanes;
     const CellCoordinates<D> coordinates = grid.coordinates();
     const auto n = static_cast<std::size_t>(number(place)), c = static_cast<std::size_t>(cell);
+    // Each cell is read once: tiles and patches of a body are one to one.
     filled_[n / 64] |= std::uint64_t{1} << n % 64;
     cells_[n].begin = static_cast<std::uint32_t>(lanes_.size());
     const std::uint32_t end = patch.cell_begin[c + 1];

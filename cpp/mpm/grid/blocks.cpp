@@ -25,6 +25,8 @@ bool box_touches_wall(const TileGrid<D>& grid, const Patch<D>& patch) {
 template <int D>
 bool find_shapes(TileGrid<D>& grid, Threads& threads) {
   std::vector<Patch<D>>& patches = grid.patches;
+  // Where bodies are bonded a primary's block may change by what its secondary patches do, so all
+  // lists are made anew.
   grid.reshaped.assign(patches.size(), grid.bonded);
   threads.for_each(patches.size(), [&](std::size_t p) {
     // A look at one word of bits; blocks that stay as they are keep their lists of shared nodes.

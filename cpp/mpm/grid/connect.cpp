@@ -60,6 +60,7 @@ void connect(TileGrid<D>& grid) {
       for (int a = 0; a < D; ++a) target[a] += o[a];
       while (finger < primaries.size() &&
              before<D>(grid, patches[primaries[finger]], patch.body, target))
+        // It never goes back: all searches for one offset together are one walk along the list.
         ++finger;
       if (finger == primaries.size()) break;
       Patch<D>& other = patches[primaries[finger]];

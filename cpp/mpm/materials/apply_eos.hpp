@@ -56,6 +56,8 @@ template <class T, int D, class Model>
         group.read(columns.energy) + work.deviatoric * per_volume + T(0.5) * mean_before * change;
     if (bounds.active && any(bounds.limits(mean_before)))
       energy = bounds.without_voids(energy, mean_before, change);
+    // The speed of sound is that at the energy before the pressure's own work: it only bounds the
+    // next step and scales the viscosity.
     LinearInEnergy<T> p = line_at(energy);
     T speed = sqrt(sound_speed_squared(p, V, energy, material.density) + group.get(block.speed));
     T q(0.0), damping = damped ? group.get(block.damping) : T(0.0);

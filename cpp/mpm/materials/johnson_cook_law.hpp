@@ -102,8 +102,8 @@ class JohnsonCookFlow {
     const T harder = T(law_.B) * hard.slope * d * faster(x);
     RateYield<T> y;
     y.value = rest * faster(x);
-    // x = ln(rate / rate0), as unit = time step x rate0: the rate term is C x, with a kink at x =
-    // 0, below which rates count as rate0.
+    // x = ln(rate / rate0), as unit = time step x rate0: the rate term is C x, with a kink at
+    // x = 0, below which rates count as rate0.
     y.slope = harder + select(x > T(0.0), T(law_.C) * rest, T(0.0));
     // Terms of C times the hardening's slope are left out, and of two slopes below: `bend_error`
     // allows for it.

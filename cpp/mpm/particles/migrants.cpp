@@ -84,6 +84,7 @@ bool add_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
   auto& number = scratch.number;
   number.resize(patches.size());
   const auto no_patch = [](const Migrant<D>& l) { return l.patch < 0; };
+  // The usual step: nothing is added, and empty patches may stay a while.
   if (std::none_of(scratch.migrants.begin(), scratch.migrants.end(), no_patch)) {
     std::iota(number.begin(), number.end(), 0);
     return false;
@@ -110,6 +111,7 @@ bool add_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
     while (patches[next].count == 0) ++next;
     n = static_cast<std::int32_t>(next++);
   }
+  // Numbers have changed, and with them everyone's neighbours.
   connect(grid);
   return true;
 }

@@ -44,6 +44,7 @@ struct SortedRows {
 template <int D>
 void sort_columns(TileGrid<D>& grid, Body<D>& body, std::span<Patch<D>> patches,
                   ParticlePool<D>& pool, Threads& threads, ListScratch<D>& scratch) {
+  // Changes are counted anew from here.
   body.moved = 0;
   const std::size_t n = body.active();
   const std::span<const Patch<D>> lists = patches;

@@ -154,6 +154,7 @@ void write_list(const ParticlePool<D>& pool, Patch<D>& patch,
   for (int c = 0; c < cells; ++c)
     if (begin[static_cast<std::size_t>(c) + 1] > begin[static_cast<std::size_t>(c)])
       patch.occupied |= std::uint64_t{1} << c;
+  // Until the stage that moves particles sees one leave its cell again.
   patch.left_cell = false;
 }
 
