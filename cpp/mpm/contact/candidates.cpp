@@ -9,6 +9,8 @@ namespace {
 /// May a block reach any node that belongs to neighbour k?
 template <int D>
 bool reaches(const Reach& reach, int k) {
+  // Neighbour k's nodes lie on one side of the block along each axis with an offset: with the
+  // linear basis a block reaches those behind it alone, with GIMP those before it too.
   bool any = true;
   const Index<D> o = Tile<D>::offset(k);
   for (int a = 0; a < D; ++a)
@@ -22,6 +24,7 @@ void reuse_tiles(std::vector<ContactTile<D>>& last_tiles, std::vector<ContactTil
   const auto less = [](const ContactTile<D>& x, const ContactTile<D>& y) {
     return tile_less<D>(x.tile, y.tile);
   };
+  // They were last sorted by body; the new ones get there at the end of connect_tiles().
   std::sort(last_tiles.begin(), last_tiles.end(), less);
   auto last = last_tiles.begin();
   for (ContactTile<D>& tile : tiles) {
@@ -47,6 +50,7 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
   tiles.clear();
   contact.has_rigid = false;
   for (Patch<D>& patch : grid.patches) {
+    // Set below for the patches around tiles that stay: for others no masses are looked at.
     patch.in_contact = false;
     if (!bodies[static_cast<std::size_t>(patch.body)].deforms()) contact.has_rigid = true;
   }
@@ -58,6 +62,8 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
   };
   for (std::size_t p = 0; p < grid.patches.size(); ++p)
     for (int k = 0; k < Tile<D>::neighbours; ++k)
+      // By tiles, not by the boxes of blocks: those change too often to sort this list each time
+      // (decision 0013).
       if (reaches<D>(grid.reach(), k)) holders.emplace_back(grid.patches[p].body, p, k);
   std::sort(holders.begin(), holders.end(), [&](const TileHolder& x, const TileHolder& y) {
     const Index<D> tx = tile_of(x), ty = tile_of(y);
@@ -72,6 +78,7 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
       several = several || holders[end].body != holders[begin].body;
       deforms = deforms || bodies[static_cast<std::size_t>(holders[end].body)].deforms();
     }
+    // Bodies that do not deform have no stress that could part them, and do not act on each other.
     if (!several || !deforms) continue;
     ContactTile<D>& made = tiles.emplace_back();
     made.tile = tile;

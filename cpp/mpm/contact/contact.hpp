@@ -2,10 +2,11 @@
 // What contact works on: plain data. A step goes through it in this order:
 //   candidates.hpp    the tiles whose nodes two or more bodies touch, when patches come or go;
 //   find_nodes.hpp    the overlapped nodes, and who is there;
-//   find_pairs.hpp    normals and gaps of the pairs at a node, eq. (5), by the rules of
-//                     normal.hpp and detection.hpp; kept from step to step in pair_cache.hpp;
+//   find_pairs.hpp    normals and gaps of the pairs at a node, eq. (5), by the rules of normal.hpp
+//                     and detection.hpp;
+//   pair_cache.hpp    what of it is kept from step to step;
 //   rigid_masses.hpp  the masses with which bodies that do not deform meet others;
-//   respond.hpp       velocities and forces, eqs. (6)-(7), (11)-(15), solved by node_solver.hpp;
+//   respond.hpp       velocities and forces, eqs. (6)-(7), (11)-(15), by node_solver.hpp;
 //   record.hpp        what has passed between the bodies, pair by pair.
 #include <atomic>
 #include <cstdint>

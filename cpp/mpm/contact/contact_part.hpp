@@ -96,6 +96,8 @@ struct ContactPart {
     const auto places_of = [&](const ContactNode& node) {
       return further_places.begin() + static_cast<std::ptrdiff_t>(first_further_of(node));
     };
+    // Everything moves to the front in the order it has, so that each range is copied onto itself
+    // or towards the front.
     auto place = places_of(nodes[first]);
     for (std::size_t n = first; n < nodes.size(); ++n) {
       ContactNode node = nodes[n];

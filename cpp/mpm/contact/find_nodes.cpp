@@ -19,6 +19,7 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t x) {
 
 template <int D>
 TileBodies<D>& bodies_around() {
+  // Of a thread, not of a part: it keeps its memory from tile to tile.
   thread_local TileBodies<D> around;
   return around;
 }
@@ -44,6 +45,8 @@ void look_around(const Contact<D>& contact, const TileGrid<D>& grid, const Conta
       at.nodes |= nodes;
     }
     at.holders = h - at.first_holder;
+    // The holders are in the order of the bodies, so each body comes once: a node that has been
+    // seen before and is seen again is overlapped, whatever the number of bodies.
     found.overlapped |= once & at.nodes;
     once |= at.nodes;
   }
@@ -81,6 +84,8 @@ void place_sides(TileGrid<D>& grid, const TileBodies<D>& around, ContactPart<D>&
     side.body = at.body;
     side.first_further = static_cast<std::uint32_t>(part.further_places.size());
     bool first = true;
+    // The places are searched once, here; three stages then go straight to the records (decision
+    // 0027).
     for (const HeldNodes<D>& nodes : around.held_by(at)) {
       if (!(nodes.with_mass >> node.cell & 1u)) continue;
       const std::uint32_t place = nodes.place(index);
@@ -90,6 +95,7 @@ void place_sides(TileGrid<D>& grid, const TileBodies<D>& around, ContactPart<D>&
         part.further_places.push_back(place);
     }
     side.further_count = static_cast<std::uint8_t>(part.further_places.size() - side.first_further);
+    // read_sides() comes to it when all nodes of the tile have been placed.
     __builtin_prefetch(grid.nodes.record_at(side.place));
   }
 }
@@ -99,12 +105,17 @@ void read_sides(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<
                 ContactPart<D>& part, ContactNode& node) {
   node.constrained_axes =
       static_cast<std::uint8_t>(grid.walls.constrained_axes(place_of(contact, grid, node)));
+  // Nodes that the response passes by are still summed for the ledger.
   node.energy = node.force_work = 0.0;
   std::uint64_t hash = 0;
   for (BodyAtNode<D>& side : part.sides_of(node)) {
     const auto b = static_cast<std::size_t>(side.body);
+    // Before the sides are sorted: by their bodies' numbers, as pairs are cached, else a change of
+    // masses would look like a change of bodies. With the number of active particles, for erosion
+    // moves a surface without any motion.
     hash = mix(mix(hash, b), bodies[b].active());
     side.prescribed = bodies[b].is_prescribed();
+    // Of the first copy: all hold the sum over the patches.
     side.mass = grid.nodes.record_at(side.place)[mass_at];
     side.mapped = read(grid, side, velocity_at);
   }
@@ -119,6 +130,7 @@ void add_nodes(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<B
   for (std::uint32_t h = 0; h < contact.tiles[tile].holders; ++h)
     around.held[h].locate(grid, contact.holders[contact.tiles[tile].first_holder + h]);
   const std::size_t first = part.nodes.size();
+  // Counted first, so that each array grows once for a tile, and references into it hold.
   std::size_t sides = 0, pairs = 0, places = 0;
   for (const HeldNodes<D>& held : around.held)
     places += static_cast<std::size_t>(std::popcount(held.with_mass & around.overlapped));
@@ -138,6 +150,7 @@ void add_nodes(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<B
     ContactNode& node = part.nodes.emplace_back();
     node.cell = static_cast<std::uint8_t>(std::countr_zero(left));
     node.tile = static_cast<std::uint32_t>(tile);
+    // Numbers in place of pointers: the arrays may still move while further tiles are added.
     node.first_side = static_cast<std::uint32_t>(part.sides.size());
     node.first_pair = static_cast<std::uint32_t>(part.pairs.size());
     place_sides(grid, around, part, node);
@@ -158,6 +171,7 @@ void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<
   ContactPart<D>& part = contact.parts[p];
   const std::span<ContactNode> nodes(part.nodes.begin() + static_cast<std::ptrdiff_t>(first),
                                      part.nodes.end());
+  // Particles are gathered only around nodes where nothing is cached: most of what contact costs.
   std::uint64_t missing = around.overlapped;
   if (contact.cache.on)
     for (const ContactNode& node : nodes)
@@ -175,6 +189,7 @@ void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<
       find_pairs(grid, bodies, settings, around, part, node);
       if (contact.cache.on) store_pairs(contact.cache, part, node);
     }
+  // Where nodes are kept none is left out, so that those of the bits are there one by one.
   tile.cached = contact.cache.on ? around.overlapped : 0;
   tile.cached_part = static_cast<std::uint32_t>(p);
   tile.first_cached = static_cast<std::uint32_t>(first);
@@ -187,9 +202,12 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
                 const std::vector<ParticlePool<D>>& pools, const ContactSettings& settings,
                 double time_step, Threads& threads) {
   contact.cache.on = settings.normal_refresh_distance > 0.0;
+  // The bits hold for this step only: masses have just been mapped.
   contact.masses.find(grid, threads);
   if (contact.cache.on) add_displacements(contact.cache, bodies.size());
   // Few parts, so that their sizes hardly change; enough to share them out evenly.
+  // Decision 0014. The order of the nodes is that of the tiles, however many parts there are: no
+  // sum and no solution sees where one part ends.
   constexpr std::size_t least_tiles = 32, per_thread = 8;
   const std::size_t parts = std::clamp(contact.tiles.size() / least_tiles, std::size_t{1},
                                        per_thread * static_cast<std::size_t>(threads.count()));
@@ -221,6 +239,7 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
         });
     }
   });
+  // Integers and maxima: no order of the parts is seen.
   contact.counts.overlapped = 0;
   for (const ContactPart<D>& part : contact.parts) {
     contact.counts.overlapped += part.overlapped;

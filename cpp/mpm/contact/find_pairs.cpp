@@ -9,7 +9,8 @@
 namespace mpm {
 namespace {
 
-// Gaps along the line between the centres wider than this are left as they are (decision 0008).
+// A pair with a wider gap along the line between the centres gets no plane, and must not close
+// before it is looked at again: normal_refresh_distance is at most half of this (decision 0012).
 constexpr double surely_open = 0.5;  // [cells]
 
 /// D_rs = D_r + D_s of eq. (5) [m], each D the distance from the node to the body's surface along
@@ -17,7 +18,9 @@ constexpr double surely_open = 0.5;  // [cells]
 template <int D>
 double gap_along(const Vec<double, D>& normal, const NormalSource<D>& r, const NormalSource<D>& s,
                  double cell_size) {
+  // A pair without a normal is never closed by distance: infinity fails eq. (5).
   if (!(dot(normal, normal) > 0.0)) return std::numeric_limits<double>::infinity();
+  // Eq. (5): D_r = -max[(x_p - x_i) . n + l_p], and the same for s with -n; extents are in cells.
   return -cell_size * (r.particles.extent_along(normal) + s.particles.extent_along(-1.0 * normal));
 }
 
@@ -62,6 +65,8 @@ std::span<const NormalSource<D>> sources_at(const TileGrid<D>& grid,
     source.stiffness = bodies[b].stiffness;
     Vec<double, D> gradient = Vec<double, D>::zero();
     TileBody<D>& at = around.with(sides[k].body);
+    // The reach of GIMP grows with the particle's width at the start; that of the others ignores
+    // it.
     const double edge = bodies[b].mean_edge / grid.cell_size;
     collect_near<D>(at.particles, index, support(grid.basis, edge), source.particles);
     if (by_gradients) gradient = mass_gradient<D>(at.particles, index, grid, edge);
@@ -93,6 +98,7 @@ bool passes_gap_test(const ContactPair<D>& pair, const ContactSettings& settings
   Detections::with(settings.detection, [&]<class Rule>(const Rule&) {
     touches = Rule::touches(pair.gap, settings.gap_distance, cell_size);
   });
+  // The rule "velocity" asks for no distance, so it would close pairs without a normal.
   return touches && dot(pair.normal, pair.normal) > 0.0;
 }
 
@@ -109,21 +115,27 @@ void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       sources_at<D>(grid, bodies, around, node, sides, by_gradients);
   ContactPair<D>* next = &part.pairs[node.first_pair];
   for (std::uint16_t r = 0; r < node.sides; ++r)
+    // This order of pairs is the order of the solver's sweeps; the sides were sorted for it.
     for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
       ContactPair<D>& pair = *next++;
       pair = new_pair<D>(bodies, settings, sides, r, s);
       pair.gap = std::numeric_limits<double>::infinity();
       if (rigid(r) && rigid(s)) continue;  // they have no stress that could part them
       // Bodies that are well apart along the line between their centres need no better normal.
+      // Only where the gap decides and the normal costs a fit. Where the centres coincide the gap
+      // is infinite, and the pair is left here too.
       if (uses_gap(settings.detection) && !by_gradients) {
         pair.normal =
             between_centres(sources[r].particles, sources[s].particles, node.constrained_axes);
+        // One pass over the particles where a plane takes two to five (decision 0032): of the pairs
+        // of a bed of spheres 44 % end here (decision 0027).
         pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
         if (pair.gap > settings.gap_distance + surely_open * grid.cell_size) continue;
       }
       NormalRules::with(settings.normal, [&]<class Rule>(const Rule&) {
         pair.normal = Rule::normal(sources[r], sources[s], node.constrained_axes);
       });
+      // Also where the rule does not use it: the gap at the first contact is recorded.
       pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
       pair.gap_closed = passes_gap_test(pair, settings, grid.cell_size);
     }

@@ -21,6 +21,7 @@ class NearParticles {
     count_ = 0;
     constexpr std::size_t line = cache_line / sizeof(double);
     const std::size_t lines = (room + T::lanes) / line + 1;  // whole lanes are written at the end
+    // Room only grows: it is scratch that every node of a thread uses again.
     if (lines * line <= stride_) return;
     // Numbers of one kind lie an odd number of lines from those of the next, so that they fall
     // into different cache sets.
@@ -33,6 +34,7 @@ class NearParticles {
   void add(const Vec<T, D>& x, T half, T weight) {
     const std::uint64_t lanes = lane_bits(weight > T(0.0));
     double* const to = numbers_.data() + count_;
+    // Each call writes whole lanes and moves on by those that count: the next writes over the rest.
     for (int a = 0; a < D; ++a) store_chosen(to + at(a), x[a], lanes);
     store_chosen(to + at(half_at), half, lanes);
     store_chosen(to + at(weight_at), weight, lanes);
@@ -45,6 +47,8 @@ class NearParticles {
     if (count_ == 0) return;
     double* const end = numbers_.data() + count_;
     for (int a = 0; a < D; ++a) T(end[at(a) - 1]).store(end + at(a));
+    // An extent of minus infinity never is the largest. Positions repeat one that is there, for a
+    // weight of zero does not make a number of what is none.
     T(-std::numeric_limits<double>::infinity()).store(end + at(half_at));
     T(0.0).store(end + at(weight_at));
     T mass(0.0);
@@ -84,6 +88,7 @@ class NearParticles {
     for_each([&](const Vec<T, D>& x, T half, T) {
       T along(0.0), square(0.0);
       for (int a = 0; a < D; ++a) {
+        // |x|^2 - (x . n)^2 is the square of the distance from the line: no root, no division.
         along = fma(T(normal[a]), x[a], along);
         square = fma(x[a], x[a], square);
       }
@@ -92,6 +97,7 @@ class NearParticles {
       on_line =
           select(fma(-along, along, square) < T(radius * radius), max(on_line, distance), on_line);
     });
+    // Both are found in one pass, for which of them counts is known at its end only.
     const double there = largest(on_line);
     return there > -std::numeric_limits<double>::infinity() ? there : largest(anywhere);
   }
@@ -121,6 +127,7 @@ void collect_near(const TileParticles<D>& particles, const Index<D>& node, doubl
     T weight = lanes.mass;
     for (int a = 0; a < D; ++a) {
       x[a] = lanes.xi[a] - T(place[a] + particles.own_node());
+      // A product over the axes, as shape functions are: the rim is that of a box.
       const T to_rim = T(reach) - absolute(x[a]);
       weight *= min(max(T(1.0 / rim) * to_rim, T(0.0)), T(1.0));
     }

@@ -28,6 +28,9 @@ struct SolvedSide {
     return prescribed ? std::numeric_limits<double>::infinity() : norm(momentum);
   }
   /// Velocity in the solver.
+  // A prescribed body of infinite mass keeps `base`, as 1 / mass is 0. One that hardly reaches the
+  // node has a finite mass (rigid_masses.cpp) and gives way in the solver, but its motion is given
+  // all the same: hence two velocities.
   Vec<double, D> working_velocity() const { return base + (1.0 / mass) * momentum; }
   /// Velocity that comes of it.
   Vec<double, D> end_velocity() const { return prescribed ? base : (1.0 / mass) * momentum; }
@@ -75,34 +78,48 @@ bool solve_node(NodeSolution<D>& node) {
   // them.
   constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
   double unresolved = 0.0;
+  // A single pair needs no tolerance: its first sweep is exact.
   if (pairs.size() > 1)
     for (const SolvedPair<D>& pair : pairs) {
+      // What one pair can settle is limited by the rounding of the lighter momentum; a prescribed
+      // body has no such limit.
       const double lighter = std::min(sides[pair.r].size(), sides[pair.s].size());
       unresolved = std::max(unresolved, rounding * lighter);
     }
   for (std::size_t sweep = 0; sweep < sweeps; ++sweep) {
     double change = 0.0, scale = 0.0;
     for (SolvedPair<D>& pair : pairs) {
+      // Kept in the list, so that pairs of the solution and of the node have the same numbers.
       if (!pair.takes_part) continue;
       SolvedSide<D>& r = sides[pair.r];
       SolvedSide<D>& s = sides[pair.s];
       const double m_rs = reduced_mass(r.mass, s.mass);
       const Vec<double, D> relative = r.working_velocity() - s.working_velocity();
+      // Eqs. (6)-(7): (m_s p_r - m_r p_s) . n / (m_r + m_s) = m_rs (v_r - v_s) . n. The whole
+      // impulse is kept from below zero, not the change of this sweep: what other pairs have pushed
+      // since may take some of it back, and only the sum must not pull.
       const double normal = std::max(pair.normal_impulse + m_rs * dot(relative, pair.normal), 0.0);
       Vec<double, D> impulse = (normal - pair.normal_impulse) * pair.normal;
       change = std::max(change, std::abs(normal - pair.normal_impulse));
+      // The tolerance is relative to the largest impulse at the node: a light pair beside a heavy
+      // one need not be better known than the heavy one is.
       scale = std::max(scale, normal);
       pair.normal_impulse = normal;
       if constexpr (with_friction) {
+        // The change along n does not alter the slip, so both may be taken from one relative
+        // velocity.
         Vec<double, D> slip = relative - dot(relative, pair.normal) * pair.normal;
         Vec<double, D> hold = pair.friction_impulse + m_rs * slip;
         const double limit = pair.friction * normal, needed = norm(hold);
+        // Back to Coulomb's cone along the radius, by the normal impulse of this very sweep, eq.
+        // (14): the direction is that of the slip which is left, so friction opposes it.
         if (needed > limit) hold = (limit / needed) * hold;
         const Vec<double, D> difference = hold - pair.friction_impulse;
         change = std::max(change, norm(difference));
         pair.friction_impulse = hold;
         impulse += difference;
       }
+      // One vector with both signs: momentum is conserved to rounding whether or not sweeps settle.
       r.momentum -= impulse;
       s.momentum += impulse;
     }

@@ -23,6 +23,8 @@ Vec<double, D> mass_gradient(const TileParticles<D>& particles, const Index<D>& 
           const int k = place[static_cast<std::size_t>(b)] + B::before;
           g = g * (b == a ? w.dN[k] : w.N[k]);
         }
+        // By x_p, at the particle: N_i rises towards the node, so the sum points from the body's
+        // mass to the node, outwards.
         total[a] += g;
       }
     });

@@ -15,6 +15,9 @@ namespace {
 template <int D, class Cached, class F>
 void for_each_cached(ContactPart<D>& part, const ContactNode& node, Cached* cached, F&& f) {
   const auto sides = part.sides_of(node);
+  // Sides are ordered by mass, which changes from step to step; numbers of bodies do not. Pairs of
+  // n sides in rows, r < s: row r begins behind n - 1, n - 2, ... entries, that is at r (2 n - r -
+  // 1) / 2.
   const auto rank = [&](std::uint16_t k) {
     return std::ranges::count_if(sides,
                                  [&](const BodyAtNode<D>& x) { return x.body < sides[k].body; });
@@ -30,6 +33,7 @@ void for_each_cached(ContactPart<D>& part, const ContactNode& node, Cached* cach
 
 template <int D>
 void invalidate_pairs(Contact<D>& contact) {
+  // Without bits nobody looks at what the parts still hold.
   for (ContactTile<D>& tile : contact.tiles) tile.cached = 0;
 }
 
@@ -38,6 +42,9 @@ void add_displacements(PairCache& cache, std::size_t bodies) {
   cache.fastest.resize(bodies, 0.0);
   for (const int body : cache.moving) {
     const auto b = static_cast<std::size_t>(body);
+    // Sums of the fastest node's way, an upper bound for every other node of the body; of bodies
+    // and not of nodes or tiles, so that mirrored bodies find their planes in the same steps
+    // (decision 0012).
     cache.displacement[b] += cache.last_time_step * std::sqrt(std::exchange(cache.fastest[b], 0.0));
   }
   cache.moving.clear();
@@ -50,7 +57,9 @@ void note_speeds(Contact<D>& contact, double time_step) {
   for (const ContactPart<D>& part : contact.parts)
     for (const BodyAtNode<D>& side : part.sides) {
       double& fastest = contact.cache.fastest[static_cast<std::size_t>(side.body)];
+      // Squares, so that one root a body and step is enough.
       const double square = dot(side.mapped, side.mapped);
+      // The first speed of a body in this step lists it; the maximum does not depend on the order.
       if (fastest == 0.0 && square > 0.0) contact.cache.moving.push_back(side.body);
       fastest = std::max(fastest, square);
     }
@@ -61,6 +70,7 @@ void store_pairs(const PairCache& cache, ContactPart<D>& part, const ContactNode
   for_each_cached(part, node, &part.cached[node.first_pair],
                   [&](const ContactPair<D>& pair, CachedPair<D>& cached, double sign) {
                     const double moved = cache.displacement_of<D>(part.sides_of(node), pair);
+                    // The way so far, not the way since: it is compared with what it will be then.
                     cached = {sign * pair.normal, pair.gap, moved};
                   });
 }
@@ -76,14 +86,18 @@ bool reuse_pairs(Contact<D>& contact, const std::vector<Body<D>>& bodies,
   if (!(tile.cached & bit)) return false;
   const ContactPart<D>& before = contact.parts[tile.cached_part];
   const auto place = static_cast<std::uint32_t>(std::popcount(tile.cached & (bit - 1)));
+  // The nodes of a tile were stored in the order of their bits: the rank of a bit is the place.
   const CachedNode& last = before.last_cached_nodes[tile.first_cached + place];
   const std::size_t end = last.first_pair + std::size_t{pair_count(node.sides)};
+  // Other bodies, or others' particles, make other pairs. The second test is for a hash that agrees
+  // by chance, or a restored state.
   if (last.membership_hash != now.membership_hash || end > before.last_cached.size()) return false;
   const auto sides = part.sides_of(node);
   ContactPair<D>* next = &part.pairs[node.first_pair];
   for (std::uint16_t r = 0; r < node.sides; ++r)
     for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s)
       *next++ = new_pair<D>(bodies, settings, sides, r, s);
+  // Copied even if one of them no longer holds: then find_pairs() and store_pairs() write over all.
   std::copy_n(&before.last_cached[last.first_pair], pair_count(node.sides),
               &part.cached[node.first_pair]);
   bool holds = true;
@@ -107,11 +121,14 @@ bool reuse_pairs(Contact<D>& contact, const std::vector<Body<D>>& bodies,
 template <int D>
 void move_gaps(ContactPart<D>& part, const ContactNode& node, const NodeSolution<D>& solution,
                double time_step) {
+  // Next step reuse_pairs() must not move these gaps a second time.
   part.cached_of(node).solved = true;
   for_each_cached(part, node, &part.cached[node.first_pair],
                   [&](const ContactPair<D>& pair, CachedPair<D>& cached, double) {
                     const Vec<double, D> parting = solution.sides[pair.s].end_velocity() -
                                                    solution.sides[pair.r].end_velocity();
+                    // First order: the normal stays, and the gap opens by (v_s - v_r) . n, with the
+                    // velocities that move the particles, eq. (16).
                     cached.gap += time_step * dot(parting, pair.normal);
                   });
 }

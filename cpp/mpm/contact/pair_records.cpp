@@ -25,6 +25,7 @@ std::size_t hash(int a, int b) {
 std::size_t PairRecords::find(int a, int b) const {
   if (places_.empty()) return none;
   const std::size_t mask = places_.size() - 1;
+  // Ends at an empty place: at most half of them are taken.
   for (std::size_t at = hash(a, b) & mask; places_[at] != 0; at = (at + 1) & mask) {
     const PairRecord& record = records_[places_[at] - 1];
     if (record.a == a && record.b == b) return places_[at] - 1;
@@ -71,6 +72,8 @@ void PairRecords::sort() {
     for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
     std::ranges::copy(sorted, values.begin());
   };
+  // Only in steps with new pairs: between steps records are in the order of (a, b), whenever pairs
+  // met.
   reorder(records_);
   reorder(sums_);
   std::fill(places_.begin(), places_.end(), 0u);
@@ -79,6 +82,7 @@ void PairRecords::sort() {
 }
 
 void PairRecords::set_scale(double mass, double speed) {
+  // 127 bits less 96 leave sums of up to 2^31 of the scale (decision 0038).
   constexpr int digits = 96;
   impulse_unit_ = SumUnit(std::ilogb(mass * speed) - digits);
   energy_unit_ = SumUnit(std::ilogb(mass * speed * speed) - digits);

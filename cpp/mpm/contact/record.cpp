@@ -11,6 +11,8 @@ namespace {
 template <int D>
 PairShare& share_of(ContactPart<D>& part, const PairRecords& records, int a, int b,
                     std::int64_t step) {
+  // A short look back in place of a map: a pair that is not found gets a second share, and shares
+  // of one pair are added all the same.
   constexpr std::size_t near = 8;
   auto& shares = part.shares;
   for (std::size_t k = shares.size(); k > 0 && k + near > shares.size(); --k)
@@ -45,8 +47,11 @@ void sum_part(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>
       contact.records.add_to(share, on_first, pair.friction_work);
       part.friction.add(pair.friction_work);
       part.friction_first.add(pair.friction_first);
+      // They have met before this step: where and how they first did is known.
       if (share.known) continue;
       const double lighter = std::min(mass_share(r), mass_share(s));
+      // The node that tells of the first contact is the one where the lighter body has most mass;
+      // of equals the first, so a strict comparison in the order of the nodes.
       if (!(lighter > share.share)) continue;
       share.share = lighter;
       share.gap = pair.gap;
@@ -74,6 +79,8 @@ ContactSums record_pairs(Contact<D>& contact, TileGrid<D>& grid, const std::vect
     force_work.add(part.force_work);
     friction.add(part.friction);
     friction_first.add(part.friction_first);
+    // In the order of the parts, though the sums need none (decision 0038): ties between nodes of a
+    // first contact do.
     for (const PairShare& share : part.shares) records.add(share, end.step, end.time);
   }
   records.end_step(end.time_step);

@@ -13,6 +13,7 @@ namespace {
 template <int D, class Choose>
 NodeSolution<D>& solution_of(std::span<const BodyAtNode<D>> sides,
                              std::span<const ContactPair<D>> pairs, Choose&& takes_part) {
+  // Grows to the largest crowd once: a step must not allocate.
   thread_local NodeSolution<D> solution;
   solution.sides.resize(sides.size());
   for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -35,6 +36,7 @@ Vec<double, D> free_gravity(const ContactNode& node, Vec<double, D> gravity) {
 
 template <bool with_friction, int D>
 void solve(Contact<D>& contact, NodeSolution<D>& solution) {
+  // A count and nothing else: no order between threads is needed.
   if (!solve_node<with_friction>(solution))
     contact.unconverged.fetch_add(1, std::memory_order_relaxed);
 }
@@ -42,6 +44,8 @@ void solve(Contact<D>& contact, NodeSolution<D>& solution) {
 /// f(part, node) for the nodes where any pair may act. The memory is told of them in time.
 template <int D, class F>
 void for_each_gap_closed(Contact<D>& contact, TileGrid<D>& grid, Threads& threads, F&& f) {
+  // The blocks of a node's bodies lie far apart, so each is a miss of the caches (decision 0013). A
+  // tile belongs to one part and a node to one tile, so no two threads write to one record.
   constexpr std::size_t ahead = 6;
   const auto fetch = [&](ContactPart<D>& part, const ContactNode& node) {
     if (!part.any_gap_closed(node)) return;
@@ -89,11 +93,16 @@ double take_impulses(TileGrid<D>& grid, std::span<const BodyAtNode<D>> sides,
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     ContactPair<D>& pair = pairs[k];
     const SolvedPair<D>& solved = solution.pairs[k];
+    // A constant force over the step meets a slip that changes linearly: the mean of both ends
+    // gives its work exactly. The impulse is that on s and the slip is of r against s: what
+    // friction takes is positive.
     const Vec<double, D> begin =
         read(grid, sides[pair.r], velocity_at) - read(grid, sides[pair.s], velocity_at);
     const Vec<double, D> end =
         solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
     pair.friction_first = dot(solved.friction_impulse, begin);
+    // By either of the two solutions: a pair that (6)-(7) have pushed is recorded even if no force
+    // follows.
     pair.loaded = pair.loaded || solved.normal_impulse > 0.0;
     pair.normal_impulse = solved.normal_impulse;
     pair.friction_impulse = solved.friction_impulse;
@@ -112,6 +121,7 @@ void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
     const auto pairs = part.pairs_of(node);
     auto& solution =
         solution_of<D>(sides, pairs, [](const ContactPair<D>& pair) { return pair.gap_closed; });
+    // Without forces: eqs. (6)-(7) act on what was mapped.
     for (std::size_t k = 0; k < sides.size(); ++k)
       solution.sides[k].start(sides[k].mapped, Vec<double, D>::zero());
     solve<false>(contact, solution);
@@ -119,6 +129,8 @@ void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
       write(grid, part, sides[k], solution.sides[k].end_velocity(), velocity_at);
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       ContactPair<D>& pair = pairs[k];
+      // Of pairs that take no part the impulse is zero, so that they end up neither active nor
+      // loaded.
       const bool pushed = solution.pairs[k].normal_impulse > 0.0;
       const Vec<double, D> relative =
           solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
@@ -138,6 +150,9 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vecto
     const auto pairs = part.pairs_of(node);
     auto& solution =
         solution_of<D>(sides, pairs, [](const ContactPair<D>& pair) { return pair.active; });
+    // Gravity cancels from eqs. (13) and (15) between two free bodies, m_s m_r g - m_r m_s g = 0,
+    // but not against a wall or a prescribed body, where it is what presses. The nodes get it
+    // later, so it is added here.
     const auto force_of = [&](const BodyAtNode<D>& side) {
       Vec<double, D> f = read(grid, side, force_at) + side.mass * gravity;
       for (int a = 0; a < D; ++a)
@@ -164,11 +179,16 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vecto
       Vec<double, D> impulse = solution.sides[k].momentum;  // of the others
       if (!side.prescribed) {
         const Vec<double, D> change = impulse - side.mass * velocity;  // of all forces
+        // What is left are the others' impulses alone: they become the force of eqs. (11)-(12)
+        // below, which all copies of the node's record get, for no sum over patches follows.
         impulse = change - time_step * force_of(side);
         // The node itself has its own mass only.
         const double own_mass = grid.nodes.record_at(side.place)[mass_at];
         const Vec<double, D> own =
             change - (time_step * (side.mass - own_mass)) * free_gravity(node, gravity);
+        // Forces change the particles' velocities, eq. (17), which have no part of the correction
+        // by (6)-(7) (decision 0003): the work of the forces on that difference is lost or made by
+        // contact.
         correction -= dot(own, velocity - side.mapped);
       }
       force_work += dot(impulse, velocity);
@@ -178,6 +198,8 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vecto
       });
     }
     node.force_work = force_work;
+    // For the ledger's `contact`: what contact takes at the velocities of the start, less friction
+    // with the slip of the start, which has a column of its own.
     node.energy = -(force_work + correction) - friction_first;
   });
 }

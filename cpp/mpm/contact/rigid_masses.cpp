@@ -26,6 +26,8 @@ void harden(const std::vector<Body<D>>& bodies, std::span<BodyAtNode<D>> sides) 
   for (BodyAtNode<D>& side : sides) {
     if (!side.prescribed) continue;
     const double share = side.mass / density(side) / (full * volume);
+    // m' = m s / (1 - s) has with all others together, of mass m, the reduced mass m m' / (m + m')
+    // = s m: the share s of what an infinite mass has, and no jump at s = 1.
     side.mass =
         share < 1.0 ? mass * share / (1.0 - share) : std::numeric_limits<double>::infinity();
   }
@@ -43,11 +45,15 @@ void share_rigid_masses(Contact<D>& contact, const std::vector<Body<D>>& bodies)
   for (ContactPart<D>& part : contact.parts) {
     for (const ContactNode& node : part.nodes) harden(bodies, part.sides_of(node));
     for (const BodyAtNode<D>& side : part.sides)
+      // Doubles, summed by one thread in the order of the nodes: no share may depend on the
+      // threads.
       contact.rigid_share[static_cast<std::size_t>(side.body)] += side.mass;
   }
   for (ContactPart<D>& part : contact.parts)
     for (BodyAtNode<D>& side : part.sides) {
       const auto b = static_cast<std::size_t>(side.body);
+      // m_i M / sum m_i: at all overlapped nodes together the body has its whole mass M, so a light
+      // surface stops a heavy tool no more than it should.
       if (bodies[b].is_free_rigid()) side.mass /= contact.rigid_share[b] / bodies[b].total_mass;
     }
 }

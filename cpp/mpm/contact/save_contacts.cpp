@@ -43,6 +43,7 @@ void exchange_contact(Contact<D>& contact, StateStream& stream, std::size_t bodi
     stream(tile.cached, tile.cached_part, tile.first_cached);
   stream.length(contact.parts, 2 * sizeof(std::size_t));
   for (ContactPart<D>& part : contact.parts) {
+    // The last_ arrays are not saved: start() exchanges both before they are read.
     stream.vector(part.cached_nodes);
     stream.vector(part.cached);
   }

@@ -34,6 +34,7 @@ struct Plane {
 template <int D>
 class PlaneFit {
   using T = Batch<contact_lanes>;
+  // The unknowns z = (a, b): as many as D + 1, so that a step solves a system of three or four.
   static constexpr int n = D + 1;
 
  public:
@@ -103,7 +104,10 @@ class PlaneFit {
       square += apart[a] * apart[a];
       middle += apart[a] * 0.5 * (r[a] + s[a]);
     }
+    // Without a direction z stays zero, where all particles are inside: a start as good as any.
     if (!(square > 0.0)) return;
+    // a . s + b = 1 and a . r + b = -1 with a along s - r:
+    // a = 2 (s - r) / |s - r|^2, b = -a . (r + s) / 2.
     for (int a = 0; a < D; ++a) z_[a] = 2.0 * apart[a] / square;
     z_[D] = -2.0 * middle / square;
   }
@@ -121,6 +125,9 @@ class PlaneFit {
         size = std::max(size, std::abs(z[i]));
       }
       Quadratic there = at(z);
+      // Equal to the bit if the same particles are inside, for they are summed in one order: so the
+      // sets need not be kept to be compared. The other test is for a particle that lies on the
+      // margin and is in or out by rounding.
       const bool settled = there == here || !(change > 1e-13 * size);
       if (!settled) line_search(here, step, z, there);
       std::copy(z, z + n, z_);
@@ -135,12 +142,15 @@ class PlaneFit {
                    Quadratic& there) {
     constexpr int most_trials = 20;
     constexpr double enough = 0.3;  // of the first slope: the next step mends the rest
+    // The slope is below 0 here: step = -A^-1 gradient, A positive definite.
     const double first = here.slope(z_, step), start = here.value(z_);
     double low = 0.0, high = 1.0, t = 1.0;
     for (int k = 0; k < most_trials; ++k) {
       const double slope = there.slope(z, step);
       if (!(slope > -enough * first) && there.value(z) < start) return;
       (slope > 0.0 ? high : low) = t;
+      // Newton for the root of the slope, whose own slope along the step is step . A step; halving
+      // where it would leave what is known to hold the root.
       t -= slope / there.along(step, step);
       if (!(t > low && t < high)) t = 0.5 * (low + high);
       for (int i = 0; i < n; ++i) z[i] = z_[i] + t * step[i];
@@ -161,10 +171,12 @@ class PlaneFit {
     }
     const T level(1.0 - sign * z[D]);
     T slope[D];
+    // lack = 1 - c (a . x + b), what a particle lacks to the margin's edge on its own side.
     for (int a = 0; a < D; ++a) slope[a] = T(-sign * z[a]);
     body.for_each([&](const Vec<T, D>& x, T, T weight) MPM_INLINE {
       T lack = level;
       for (int a = 0; a < D; ++a) lack = fma(slope[a], x[a], lack);
+      // A weight of 0 in place of a branch: particles inside and outside lie in the same lanes.
       const T inside = select(lack > T(0.0), weight, T(0.0));
       m.first[D] += inside;
       for (int i = 0; i < D; ++i) {
@@ -179,16 +191,22 @@ class PlaneFit {
   /// The quadratic of those that are inside the margin of a plane or beyond.
   Quadratic at(const double (&z)[n]) const {
     const Moments r = moments_of(r_, -1.0, z), s = moments_of(s_, 1.0, z);
+    // A body counts as 1 however heavy it is at the node, else a light one beside a heavy one would
+    // be allowed to lie inside the margin. The shares are taken once, behind the sums.
     const T of_r(1.0 / r_.mass()), of_s(1.0 / s_.mass());  // shares of a body's mass
     const auto fixed = [&](int i) { return i < D && (constrained_ >> i & 1u); };
     Quadratic q;
     for (int i = 0; i < n; ++i) {
       const T first_r = of_r * r.first[i], first_s = of_s * s.first[i];
+      // With c^2 = 1 the terms of those inside are
+      // w (1 - c z . (x, 1))^2 = w - 2 w c z . (x, 1) + w (z . (x, 1))^2:
+      // b has the sign of c, A has none, and the constant is the sum of w.
       q.b[i] = fixed(i) ? 0.0 : sum(first_s - first_r);
       q.A[D][i] = fixed(i) ? 0.0 : sum(first_s + first_r);
       for (int j = 0; j <= i && i < D; ++j)
         q.A[i][j] = fixed(i) || fixed(j) ? 0.0 : sum(of_r * r.second[i][j] + of_s * s.second[i][j]);
     }
+    // Before the damping is added: it is no weight. Rows of held axes become 1 z = 0.
     q.constant = q.A[D][D];
     for (int i = 0; i < n; ++i)
       q.A[i][i] = fixed(i) ? 1.0 : q.A[i][i] + (i < D ? regularisation : damping);

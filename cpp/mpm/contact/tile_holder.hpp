@@ -50,6 +50,8 @@ struct HeldNodes {
   /// Find out where the records are.
   void locate(TileGrid<D>& grid, const TileHolder& holder) {
     const BlockShape<D>& shape = shape_of(grid, holder);
+    // May be a number before the block's own: only nodes with mass are asked for, and these are in
+    // it.
     first = grid.nodes.index_of(grid.block(holder.patch).records.data) +
             std::int64_t{node_in_holder<D>(grid, holder, Index<D>{})};
     for (std::size_t a = 0, step = 1; a < D; step *= static_cast<std::size_t>(shape.nodes[a++]))
@@ -80,6 +82,7 @@ class NodesWithMass {
       const NodeBlock<D> block = grid.block(p);
       std::uint64_t* bits = &bits_[p * words_];
       for (int n = 0; n < block.count; ++n)
+        // Any mass counts, be it 1e-30: whether bodies touch there is left to the gap, eq. (5).
         bits[n / 64] |= std::uint64_t{block.mass()[n] > 0.0} << n % 64;
     });
   }
@@ -99,6 +102,7 @@ class NodesWithMass {
     const std::uint64_t row = low_bits(high[0] - low[0] + 1);
     const std::uint64_t* bits = &bits_[static_cast<std::size_t>(holder.patch) * words_];
     std::uint64_t nodes = 0;
+    // Row by row: a row of the tile is at most eight bits that follow one another in the block too.
     const int layer = node_in_holder<D>(grid, holder, low), cell = Tile<D>::cell(low);
     for (int z = 0; z <= (D == 3 ? high[D - 1] - low[D - 1] : 0); ++z)
       for (int y = 0; y <= high[1] - low[1]; ++y) {

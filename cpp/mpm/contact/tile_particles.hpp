@@ -21,6 +21,9 @@ T particle_edge(T volume, double mean_edge) {
     return sqrt(volume);
   } else {
     const T ratio = volume * T(1.0 / (mean_edge * mean_edge * mean_edge));
+    // Halley's step for y^3 = ratio: y (y^3 + 2 ratio) / (2 y^3 + ratio), third order. Two are
+    // enough within a factor of two of the mean (decision 0012). The third is chosen lane by lane,
+    // so that an edge does not depend on the particles beside it.
     T y(1.0);
     const auto halley = [&](T z) {
       const T cube = z * z * z;
@@ -40,6 +43,8 @@ std::uint64_t cells_in_reach(std::uint64_t nodes, const Index<D>& offset, const 
   std::uint64_t cells = nodes;
   for (std::size_t a = 0; a < D; ++a) {
     const std::uint64_t along = std::exchange(cells, 0);
+    // Node n is reached from the cells n - after to n + before, hence the signs. Axis by axis: a
+    // box of shifts costs the sum of its edges, not their product.
     for (int k = -reach.after; k <= reach.before; ++k)  // as counted from the other tile's first
       cells |= Tile<D>::moved(along, a, k - Tile<D>::cells * offset[a]);
   }
@@ -90,6 +95,8 @@ class TileParticles {
   template <class F>
   void around(const Index<D>& node, F&& f) const {
     const CellsAround& cells = around_[static_cast<std::size_t>(basis_)];
+    // The cells around a node are rows of `width` bits; at most 27 in all fit into one word, and
+    // cells without particles cost nothing (decision 0027).
     const int width = cells.width, own = number(node);
     std::uint64_t filled = 0;  // those with particles, a bit each
     for (int k = 0; k < power(width, D); k += width)
@@ -147,6 +154,8 @@ class TileParticles {
                             std::uint64_t nodes, F&& f) {
     for (const TileHolder& h : holders) {
       const Patch<D>& patch = grid.patches[static_cast<std::size_t>(h.patch)];
+      // A holder says where the tile lies from its patch; offsets are numbered so that k and
+      // neighbours - 1 - k are opposite.
       const Index<D> offset = Tile<D>::offset(Tile<D>::neighbours - 1 - h.neighbour);
       std::uint64_t cells = patch.occupied & cells_in_reach<D>(nodes, offset, grid.reach());
       for (; cells != 0; cells &= cells - 1) f(patch, offset, std::countr_zero(cells));
@@ -161,6 +170,7 @@ class TileParticles {
       __builtin_prefetch(column + first);
       __builtin_prefetch(column + last);
     };
+    // Both ends, for a cell's rows may lie across two cache lines (decision 0026).
     bring(pool.order.data() + patch.begin);
     for (int a = 0; a < D; ++a) bring(pool.x(a) + patch.first_row);
     bring(pool.mass() + patch.first_row);
@@ -173,6 +183,7 @@ class TileParticles {
     constexpr int W = contact_lanes;
     const CellCoordinates<D> coordinates = grid.coordinates();
     const auto n = static_cast<std::size_t>(number(place)), c = static_cast<std::size_t>(cell);
+    // Each cell is read once: tiles and patches of a body are one to one.
     filled_[n / 64] |= std::uint64_t{1} << n % 64;
     cells_[n].begin = static_cast<std::uint32_t>(lanes_.size());
     const std::uint32_t end = patch.cell_begin[c + 1];
@@ -184,6 +195,7 @@ class TileParticles {
         p.xi[a] =
             local_coordinate(coordinates.in_cells(load(pool.x(a), rows), a), first[k] + place[k]);
       }
+      // Zero mass is how all that follows knows an empty lane.
       p.mass = select(first_lanes<W>(rows.count), load(pool.mass(), rows), T(0.0));
       p.half = T(0.5 / grid.cell_size) * particle_edge<D>(load(pool.volume(), rows), mean_edge);
     }

@@ -12,6 +12,7 @@ bool box_touches_wall(const TileGrid<D>& grid, const Patch<D>& patch) {
   if (!grid.walls.exist || patch.shape.node_count == 0) return false;
   const Index<D> first = grid.first_cell(patch.tile), last = patch.shape.last();
   for (std::size_t a = 0; a < D; ++a) {
+    // Walls lie at the nodes 0 and `cells` of the box, by index, and not at a tile's edge.
     const bool lower = first[a] + patch.shape.low[a] <= 0 && grid.walls.face[a][0] != Wall::free;
     const bool upper =
         first[a] + last[a] >= grid.walls.cells[a] && grid.walls.face[a][1] != Wall::free;
@@ -24,8 +25,11 @@ bool box_touches_wall(const TileGrid<D>& grid, const Patch<D>& patch) {
 template <int D>
 bool find_shapes(TileGrid<D>& grid, Threads& threads) {
   std::vector<Patch<D>>& patches = grid.patches;
+  // Where bodies are bonded a primary's block may change by what its secondary patches do, so all
+  // lists are made anew.
   grid.reshaped.assign(patches.size(), grid.bonded);
   threads.for_each(patches.size(), [&](std::size_t p) {
+    // A look at one word of bits; blocks that stay as they are keep their lists of shared nodes.
     const auto shape = BlockShape<D>::around(patches[p].occupied, grid.reach());
     if (patches[p].shape == shape) return;
     patches[p].shape = shape;
@@ -33,6 +37,8 @@ bool find_shapes(TileGrid<D>& grid, Threads& threads) {
   });
   if (grid.bonded)
     for (const std::uint32_t p : grid.by_tile) {
+      // The primary takes the sums of all bodies in its tile, so it needs every node that any of
+      // them has.
       BlockShape<D>& all = patches[patches[p].primary].shape;
       all = all.joined_with(patches[p].shape);
     }
@@ -47,6 +53,8 @@ void cut_blocks(TileGrid<D>& grid, Threads& threads) {
   grid.blocks_known = true;
   std::size_t needed = 0;
   for (Patch<D>& patch : grid.patches) {
+    // One behind another in the order of the patches. Nothing in a block outlives a step, so they
+    // may move freely (decision 0013).
     patch.memory = needed;
     const auto nodes = static_cast<std::size_t>(patch.shape.node_count);
     needed += record * (nodes + (grid.has_dashpots ? (nodes + 1) / 2 : 0));  // whole cache lines

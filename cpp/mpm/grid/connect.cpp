@@ -29,6 +29,7 @@ void choose_primaries(TileGrid<D>& grid) {
   for (const std::uint32_t p : grid.by_tile) {
     if (primaries.empty() || patches[primaries.back()].tile != patches[p].tile)
       primaries.push_back(p);
+    // by_tile is by body within a tile: the lowest body leads, whatever the threads do.
     patches[p].primary = primaries.back();
   }
 }
@@ -48,6 +49,8 @@ void connect(TileGrid<D>& grid) {
   }
   // A list of tiles stays in order when shifted, so a neighbour is found by walking two fingers
   // along the list.
+  // Half of the offsets; the other half are the same pairs seen from the other side, k and
+  // neighbours - 1 - k being opposite.
   for (int k = T::self + 1; k < T::neighbours; ++k) {
     const Index<D> o = T::offset(k);
     std::size_t finger = 0;
@@ -57,6 +60,7 @@ void connect(TileGrid<D>& grid) {
       for (int a = 0; a < D; ++a) target[a] += o[a];
       while (finger < primaries.size() &&
              before<D>(grid, patches[primaries[finger]], patch.body, target))
+        // It never goes back: all searches for one offset together are one walk along the list.
         ++finger;
       if (finger == primaries.size()) break;
       Patch<D>& other = patches[primaries[finger]];

@@ -42,6 +42,8 @@ struct GridGeometry {
 
   CellCoordinates<D> coordinates() const {
     Vec<double, D> corner = origin;
+    // With GIMP and the quadratic B-spline a node lies amid its cell, so that all particles of a
+    // cell reach the same 3^D nodes (decision 0022).
     for (int a = 0; a < D; ++a) corner[a] -= reach().own_node * cell_size;
     return {corner, 1.0 / cell_size};
   }
@@ -72,6 +74,7 @@ struct GridGeometry {
     Index<D> t;
     for (int a = 0; a < D; ++a) {
       const int i = cell[a] - anchor[a];
+      // Division rounded down, also for cells below the anchor, where particles may go later.
       t[a] = i >= 0 ? i / Tile<D>::cells : -((Tile<D>::cells - 1 - i) / Tile<D>::cells);
     }
     return t;

@@ -27,6 +27,7 @@ class SharedList {
   }
   void write(int nodes, const SharedNodes<D>& shared, SharedEntry<D>* to) const {
     std::array<SharedEntry<D>*, SharedNodes<D>::most + 1> next{};
+    // By the number of holders, so that the sum over a group has a length that the compiler knows.
     for (std::size_t m = 2; m < next.size(); ++m) {
       next[m] = to;
       to += m * shared.groups[m];
@@ -53,6 +54,8 @@ void find_outdated(TileGrid<D>& grid, Threads& threads) {
   threads.for_each(grid.primaries.size(), [&](std::size_t primary) {
     const std::uint32_t p = grid.primaries[primary];
     Patch<D>& patch = grid.patches[p];
+    // A neighbour's number may change and its block may move: neither is in an entry. Its shape is,
+    // and whether it exists (decision 0020).
     std::uint32_t present = 0;
     bool reshaped = false;
     for (std::size_t k = 0; k < Tile<D>::neighbours; ++k)
@@ -67,6 +70,9 @@ void find_outdated(TileGrid<D>& grid, Threads& threads) {
 
 template <int D>
 void find_owned(const std::vector<Patch<D>>& patches, Patch<D>& patch) {
+  // The first patch in the order of the tiles owns: neighbours are numbered in that order, so those
+  // before `self` come first. One bit a node, for boxes of any size share any nodes (decision
+  // 0013).
   patch.owned.fill(patch.shape.node_count);
   for (int k = 0; k < Tile<D>::self; ++k)
     if (const std::int32_t q = patch.neighbour[static_cast<std::size_t>(k)]; q >= 0)
@@ -78,6 +84,8 @@ void find_owned(const std::vector<Patch<D>>& patches, Patch<D>& patch) {
 template <int D>
 SharedList<D> list_of(const std::vector<Patch<D>>& patches, const Patch<D>& patch) {
   SharedList<D> list;
+  // Patches that hold one node lie within 2^D tiles, so all others are neighbours of its owner, and
+  // come in the order of the tiles, in which sums are taken.
   for (int k = Tile<D>::self + 1; k < Tile<D>::neighbours; ++k) {
     const std::int32_t q = patch.neighbour[static_cast<std::size_t>(k)];
     if (q < 0) continue;
@@ -122,6 +130,7 @@ void list_shared_nodes(TileGrid<D>& grid, Threads& threads) {
     lists.first_before[p] = std::exchange(patches[p].shared.first, lists.used);
     lists.used += patches[p].shared.entries();
   }
+  // A sixteenth to spare: lists that creep up must not allocate in every step.
   make_room(lists.entries, lists.used, lists.used + lists.used / 16);
   each_primary([&](std::uint32_t p, const Patch<D>& patch) {
     SharedEntry<D>* const to = lists.entries.data() + patch.shared.first;

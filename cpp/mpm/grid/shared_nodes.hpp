@@ -25,11 +25,13 @@ void for_each_shared_row(const Patch<D>& p, const Patch<D>& q, F&& f) {
   Index<D> low, high, shift;  // as p counts; `shift` to what q counts
   const Index<D> p_last = p.shape.last(), q_last = q.shape.last();
   for (std::size_t a = 0; a < D; ++a) {
+    // Both count from the first node of their own tile.
     shift[a] = Tile<D>::cells * (p.tile[a] - q.tile[a]);
     low[a] = std::max(p.shape.low[a], q.shape.low[a] - shift[a]);
     high[a] = std::min(p_last[a], q_last[a] - shift[a]);
     if (low[a] > high[a]) return;
   }
+  // Row by row along the first axis: nodes that follow one another in both blocks.
   const int p_first = p.shape.node(low), count = high[0] - low[0] + 1;
   Index<D> rows;
   for (std::size_t a = 0; a < D; ++a) {

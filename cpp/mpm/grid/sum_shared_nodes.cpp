@@ -12,6 +12,7 @@ void for_each_secondary(TileGrid<D>& grid, Threads& threads, F&& f) {
   if (!grid.bonded) return;
   std::vector<Patch<D>>& patches = grid.patches;
   threads.for_each(grid.primaries.size(), [&](std::size_t k) {
+    // Those of one tile by one thread: they all add to the same primary.
     const std::uint32_t primary = grid.primaries[k];
     const auto begin = std::lower_bound(grid.by_tile.begin(), grid.by_tile.end(), primary,
                                         [&](std::uint32_t x, std::uint32_t y) {
@@ -38,9 +39,13 @@ void sum_nodes_of(TileGrid<D>& grid, const Patch<D>& patch, F&& begin_of) {
       double* numbers[holders];
       for (int h = 0; h < holders; ++h) numbers[h] = block[entry[h].neighbour][entry[h].node];
       unrolled<halves>([&](auto q) {
+        // The owner's first, then the others' in the order of the tiles: bits that no thread count
+        // changes. Four numbers of a record at once, the unused one with them.
         auto sum = Batch<half_record>::load(numbers[0] + q * half_record);
         for (int h = 1; h < holders; ++h)
           sum += Batch<half_record>::load(numbers[h] + q * half_record);
+        // At once to all holders: no second pass, and no patch reads what another writes (decision
+        // 0020).
         for (int h = 0; h < holders; ++h) sum.store(numbers[h] + q * half_record);
       });
     }
@@ -58,6 +63,8 @@ void sum_shared(TileGrid<D>& grid, Threads& threads, F&& begin_of) {
           f(of_p[here + i] + k, of_q[there + i] + k);
     });
   };
+  // Bonded bodies first into the first patch of their tile, then across tiles, then back to all:
+  // the sum is that of one body of several materials.
   for_each_secondary(grid, threads, [&](const Patch<D>& patch, const Patch<D>& primary) {
     each_quad(primary, patch, [](double* to, const double* from) {
       (Batch<half_record>::load(to) + Batch<half_record>::load(from)).store(to);

@@ -35,6 +35,7 @@ struct BlockShape {
     Index<D> first, last;
     for (std::size_t a = 0; a < D; ++a) {
       int i = 0, j = Tile<D>::cells - 1;
+      // Ends, for some cell is occupied.
       while (!(occupied & Tile<D>::slice(a, i))) ++i;
       while (!(occupied & Tile<D>::slice(a, j))) --j;
       first[a] = i - reach.before;

@@ -8,6 +8,7 @@ namespace mpm {
 inline std::uint64_t bits_from(const std::uint64_t* words, int n) {
   const std::uint64_t* word = words + n / 64;
   const int shift = n % 64;
+  // A shift by 64 is undefined, hence the condition.
   return word[0] >> shift | (shift ? word[1] << (64 - shift) : 0);
 }
 /// The lowest n bits, n < 64.
@@ -29,6 +30,7 @@ class NodeBits {
   }
   void clear_row(int node, int count) {
     words_[word(node)] &= ~(low_bits(count) << node % 64);
+    // Rows have fewer than 64 nodes, so that they lie in two words at most.
     if (node % 64 + count > 64) words_[word(node) + 1] &= ~(low_bits(count) >> (64 - node % 64));
   }
 

@@ -55,6 +55,7 @@ struct Tile {
   static constexpr std::uint64_t moved(std::uint64_t set, std::size_t axis, int by) {
     if (by <= -cells || by >= cells) return 0;
     const int bits = by * power(cells, static_cast<int>(axis));
+    // What would leave the tile is cut off before, else it would come back in as the next row.
     set &= stay[axis][static_cast<std::size_t>(by + cells)];
     return bits < 0 ? set >> -bits : set << bits;
   }

@@ -51,10 +51,14 @@ template <class T, int D, class Model>
       const LinearInEnergy<T> line = line_of(model, V, energy);
       return burns ? line.burnt(group.get(block.burnt)) : line;
     };
+    // E of the end but for -p dV / 2 of the new pressure: the old mean stress, tension
+    // positive, works on half of the change.
     T energy =
         group.read(columns.energy) + work.deviatoric * per_volume + T(0.5) * mean_before * change;
     if (bounds.active && any(bounds.limits(mean_before)))
       energy = bounds.without_voids(energy, mean_before, change);
+    // The speed of sound is that at the energy before the pressure's own work: it only bounds the
+    // next step and scales the viscosity.
     LinearInEnergy<T> p = line_at(energy);
     T speed = sqrt(sound_speed_squared(p, V, energy, material.density) + group.get(block.speed));
     T q(0.0), damping = damped ? group.get(block.damping) : T(0.0);
@@ -75,6 +79,7 @@ template <class T, int D, class Model>
                              (energy - T(0.5) * pressure * change < T(bounds.lowest_energy))))
       pressure = bounds.held(pressure, energy, change, line_at(T(bounds.lowest_energy)));
     const T mean = T(1.0 / 3.0) * trace(strength);
+    // The strength's own mean stress is dropped: p takes its place, s - (mean + p) 1.
     const T shift = mean + pressure;  // of the mean stress, downwards
     const Sym<T, D> stress = strength - Sym<T, D>::isotropic(shift);
     if (last) {

@@ -30,6 +30,8 @@ template <class T, int D>
             const T damage = model.damage(condition, state);
             group.write_state(state_at, columns.stride, state);
             const T failed = group.read(columns.failed);
+            // The largest: actions are numbered by what they take, and a failed particle does not
+            // heal.
             group.write(columns.failed, max(failed, select(damage >= T(1.0), action, T(0.0))));
           });
           state_at += state_size<State, T> * columns.stride;
@@ -43,6 +45,7 @@ template <class T, int D>
     eroded = eroded | (group.valid() & (failed >= gone));
     const Sym<T, D> stress = group.get_stress(block);
     const T mean = T(1.0 / 3.0) * trace(stress);
+    // In every step, not once: strength and equation of state have made a new stress.
     T kept = select(failed >= T(static_cast<double>(FailureAction::no_tension)), min(mean, T(0.0)),
                     mean);
     kept = select(failed >= gone, T(0.0), kept);

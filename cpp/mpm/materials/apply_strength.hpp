@@ -11,11 +11,14 @@ template <class T, int D, class Model>
                                      MaterialBlock<D>& block, StressWriter<T, D>& writer) {
   using State = typename Model::template State<T, D>;
   const bool viscosity = settings.viscosity.active(), judged = !material.failures.empty();
+  // Decided for the block, not in lanes: the last part of the way writes, the others leave their
+  // values in the block, which stays in the first-level cache (decision 0009).
   const bool last = !material.eos && !judged;
   for_each_group<T>(block, [&](const Group<T, D>& group) {
     const StepKinematics<T, D> kinematics(group, block, columns, material.density, settings);
     const StrainIncrement<T, D>& motion = kinematics.motion;
     const Sym<T, D> stress_before = group.read_stress(columns);
+    // The old stress is read once, for the work takes the mean of both.
     Sym<T, D> stress = stress_before;
     State state = group.template read_state<State>(columns.state, columns.stride);
     const State before = state;
@@ -23,6 +26,7 @@ template <class T, int D, class Model>
     group.write_state(columns.state, columns.stride, state);
 
     T speed(0.0), q(0.0);
+    // By the model where it can be known: functions that a model does not have are not asked for.
     if constexpr (Model::eos != EosUse::never)
       if (material.eos) speed = model.other_speed_squared(state, motion.J);
     if constexpr (Model::eos != EosUse::must)
@@ -53,6 +57,7 @@ template <class T, int D, class Model>
     if constexpr (Burns<Model>) group.put(block.burnt, state.burn_fraction);
     if constexpr (Damps<Model>)
       group.put(block.damping, model.damping_speed(motion.J, motion.cell_size));
+    // Failure models alone ask for what follows.
     if (!judged) return;
     T strain(0.0), increment(0.0), temperature(0.0);
     if constexpr (requires { state.plastic_strain; }) {

@@ -127,6 +127,7 @@ struct VolumeChange {
                   T(0.0));
   }
   T viscous_pressure(const StressSettings& settings, T viscous_speed) const {
+    // q = rho (C2 h^2 e^2 - C1 h c e) = -rho (h e) (C1 c - C2 h e), h e = closing (materials.md).
     return T(-1.0) * mass / after * closing(settings) * viscous_speed;
   }
   T viscous_work(T pressure) const { return -after * pressure * dilation; }
@@ -156,6 +157,7 @@ struct StepKinematics {
                      const Sym<T, D>& after) const {
     const Sym<T, D> both = before + after, rate = symmetric_part(motion.gradient);
     const T volume = T(0.5) * (volume_change.before + volume_change.after);
+    // dev(s) : dev(e) = s : e - tr(s) tr(e) / 3, of the mean of both stresses.
     const T deviatoric =
         T(0.5) * volume * (inner(both, strain) - T(1.0 / 3.0) * trace(both) * trace(strain));
     return {deviatoric, settings.forces_follow ? volume_change.after * inner(after, rate)
@@ -176,6 +178,8 @@ struct StepKinematics {
     Mat<T, D> gradient;
     for (int i = 0; i < D; ++i)
       for (int j = 0; j < D; ++j)
+        // Behind its last particle the block's arrays may hold anything: an empty lane, which
+        // repeats a particle, gets no motion.
         gradient[i][j] = select(valid, group.get(block.gradient[i][j]), T(0.0));
     return gradient;
   }
@@ -187,6 +191,8 @@ struct StepKinematics {
       dilation += gradient[i][i];
       f[i][i] = gradient[i][i] + T(1.0);
     }
+    // det(1 + g) and not 1 + tr(g): exact for any gradient, so that volume does not drift over a
+    // cycle.
     return {mass, volume, volume * determinant(f), dilation, density};
   }
 };

@@ -18,6 +18,8 @@ template <class T>
 MPM_HD Mat<T, 2> cayley(const Mat<T, 2>& w) {
   const T h = T(0.5) * w[0][1];
   const T s = T(1.0) / fma(h, h, T(1.0));
+  // cos = (1 - h^2) / (1 + h^2), sin = 2 h / (1 + h^2) with h the tangent of half the angle: a
+  // rotation to rounding, whatever the angle.
   const T cosine = fma(-h, h, T(1.0)) * s, sine = T(2.0) * h * s;
   return {{{cosine, sine}, {-sine, cosine}}};
 }

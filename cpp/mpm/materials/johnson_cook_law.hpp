@@ -76,12 +76,14 @@ class JohnsonCookFlow {
         heat_(heat),
         strain_(plastic_strain),
         temperature_(temperature),
+        // `tiny` for a power of zero: its logarithm must be a number.
         hardening_(max(plastic_strain, T(tiny)), law.n),
         softening_(thermal ? max(law.homologous(temperature), T(tiny)) : T(1.0), law.m) {
     const auto hard = hardening_.first();
     const T left = thermal ? T(1.0) - softening_.first().value : T(1.0);
     static_yield_ = (T(law.A) + T(law.B) * hard.value) * left;
     hardening_slope_ = T(law.B) * hard.slope * left;
+    // dY/dx at d = 0: a law without rates has none, and no division by it may be asked for.
     gain_ = max(T(law.C) * static_yield_, T(tiny));
   }
 
@@ -100,16 +102,22 @@ class JohnsonCookFlow {
     const T harder = T(law_.B) * hard.slope * d * faster(x);
     RateYield<T> y;
     y.value = rest * faster(x);
+    // x = ln(rate / rate0), as unit = time step x rate0: the rate term is C x, with a kink at
+    // x = 0, below which rates count as rate0.
     y.slope = harder + select(x > T(0.0), T(law_.C) * rest, T(0.0));
+    // Terms of C times the hardening's slope are left out, and of two slopes below: `bend_error`
+    // allows for it.
     y.curvature = harder * (T(1.0) + T(law_.n.exponent - 1.0) * d * hard.inverse);
     if constexpr (thermal) {
       const T hot = star(q, d);
       const auto lost = softening_.at(max(hot, T(tiny)));
+      // Outside, homologous() is held at 0 or 1 and does not change.
       const auto varies = (hot > T(0.0)) & (hot < T(1.0));
       const double per_kelvin = 1.0 / (law_.T_melt - law_.T_room);
       const T softer = select(varies, y.value * lost.slope * heat_ * d * T(per_kelvin), T(0.0));
       const T left = T(1.0) - lost.value;
       y.value = y.value * left;
+      // d/dx of (q - 3 G d) d is (q - 6 G d) d, and of that (q - 12 G d) d.
       y.slope = y.slope * left - softer * (q - T(6.0 * G_) * d);
       y.curvature = y.curvature * left - softer * (q - T(12.0 * G_) * d);
     }
@@ -117,10 +125,13 @@ class JohnsonCookFlow {
   }
 
   MPM_HD T start(T q_before) const {
+    // q_before = Y0 (1 + C x): the rate at which the particle flowed before this step.
     return min(max((q_before - static_yield_) / gain_, T(-50.0)), T(50.0));
   }
   MPM_HD T above(T q) const {
     const T over = max(q - static_yield_, T(tiny));
+    // Two bounds of x, by the rate term alone and by 3 G d alone: where nothing softens, each takes
+    // no more than what is over.
     return min(max(over / gain_, T(0.0)), log(max(over * T(1.0 / (3.0 * G_ * unit_)), T(tiny))));
   }
 
@@ -148,6 +159,7 @@ MPM_HD T JohnsonCookLaw::update(const StrainIncrement<T, D>& motion, double G,
   const auto done = return_with_rate(stress, G, unit, von_mises(stress_before), flow);
   plastic_strain += done.increment;
   const T work = done.von_mises * done.increment;
+  // The very work that was in the law's temperature: what heats is what the ledger counts.
   if constexpr (thermal) temperature += heat * work;
   return work;
 }

@@ -41,18 +41,22 @@ MPM_HD Returned<T> return_radially(Sym<T, D>& stress, double G, T static_yield, 
   if (!any(flows)) return {T(0.0), q};
 
   const T stiff(3.0 * G);
+  // The flow takes no more than the whole stress.
   T low(0.0), high = q / stiff;
   T d = select(flows, (q - static_yield) / stiff, T(0.0));
   auto open = flows;
   for (int turn = 0; turn < 80; ++turn) {
     const Yield<T> y = yield(d);
     const T rest = q - stiff * d - y.value;
+    // rest falls with d as long as 3 G + dY/dd > 0, so that its sign says where the root lies.
     low = select(rest > T(0.0), d, low);
     high = select(rest > T(0.0), high, d);
     const T newton = d + rest / (stiff + y.slope);
     const auto rough = absolute(rest) > T(return_tolerance) * q;
     const auto good = (newton > low) & (newton < high);
     const T inside = select(good, newton, T(0.5) * (low + high));
+    // A lane that has settled takes this last Newton step and no more, however long others go on:
+    // what it gives does not depend on its neighbours (decision 0026).
     d = select(open, select(rough, inside, newton), d);
     open = open & rough;
     if (!any(open)) break;

@@ -21,6 +21,7 @@ inline constexpr double slope_error = 1e-5, bend_error = 0.01;
 template <Real T, class Flow>
 MPM_HD Truth<T> newton_steps(T q, T q_before, T stiff, double unit, Truth<T> flows, Flow& flow,
                              T& found) {
+  // On the yield surface before and after, at the same rate: q - q_before = (3 G + dY/dd) d.
   const T nothing(0.0), over = q - max(q_before, flow.static_yield());
   auto open = flows & (over > T(1e-6) * q);
   if (!any(open)) return flows;
@@ -29,8 +30,10 @@ MPM_HD Truth<T> newton_steps(T q, T q_before, T stiff, double unit, Truth<T> flo
   d = select(open, d, nothing);
   const RateYield<T> y = flow.yield(q, d, x);
   const T inverse = T(1.0) / (stiff * d + y.slope);
+  // g(x) = 3 G d + Y - q with dd/dx = d, so g' = 3 G d + Y' and g'' = 3 G d + Y''.
   const T newton = (q - stiff * d - y.value) * inverse;
   const T curvature = (stiff * d + y.curvature) * inverse;
+  // Chebyshev: x - (g / g') (1 + g g'' / 2 g'^2), and newton = -g / g'.
   T step = newton * (T(1.0) - T(0.5) * newton * curvature);
   // Up to here exp(step) - 1 is its series to step^6, within 2e-13 of d.
   open = open & (absolute(step) < T(0.05));
@@ -41,11 +44,13 @@ MPM_HD Truth<T> newton_steps(T q, T q_before, T stiff, double unit, Truth<T> flo
   d += d * step * series;
   const T x_before = x, step_size = absolute(step);
   x += step;
+  // g'(x + step) = g' (1 + step g'' / g') to first order.
   const T predicted = inverse * (T(1.0) - step * curvature);  // 1 / slope
   const auto search = flows & !open;
   constexpr int most_steps = 3;
   for (int k = 0; k < most_steps && any(open); ++k) {
     const T last = (q - stiff * d - flow.value(q, d, x)) * predicted, size = absolute(last);
+    // exp(last) to second order: `last` is small enough, or the lane stays open.
     d = select(open, d + d * last * (T(1.0) + T(0.5) * last), d);
     x = select(open, x + last, x);
     // What a step leaves is its own square, and what the slope was wrong by.
@@ -63,6 +68,7 @@ template <Real T, class Flow>
 MPM_HD T bracketed_halley(T q, T q_before, T stiff, double unit, Truth<T> open, Flow& flow) {
   const T nothing(0.0);
   // The flow takes no more than the whole stress: 3 G d <= q.
+  // exp of less than -708 is held there; at -700 nothing flows.
   T low(-700.0), high = log(max(q / stiff * T(1.0 / unit), T(tiny)));
   T x = min(flow.start(q_before), high), found = nothing;
   for (int turn = 0; turn < 100; ++turn) {
@@ -71,8 +77,10 @@ MPM_HD T bracketed_halley(T q, T q_before, T stiff, double unit, Truth<T> open, 
     const T rest = q - stiff * d - y.value, slope = stiff * d + y.slope;
     // Far off the step is kept within a third of Newton's.
     const T inverse = T(1.0) / slope, newton = rest * inverse;
+    // Halley: newton / (1 + newton g'' / 2 g'), g as above.
     const T bent = T(0.5) * newton * (stiff * d + y.curvature) * inverse;
     const T step = newton / (T(1.0) + min(max(bent, T(-0.25)), T(0.25)));
+    // The rest falls with x, so that its sign says on which side the root is.
     low = select(rest > nothing, x, low);
     high = select(rest > nothing, high, x);
     T next = x + step;
@@ -84,6 +92,7 @@ MPM_HD T bracketed_halley(T q, T q_before, T stiff, double unit, Truth<T> open, 
         (small & (size * size * (size + T(bend_error)) * slope < T(return_tolerance) * q) &
          (x * next > nothing)) |
         (absolute(rest) < T(return_tolerance) * q);
+    // exp(step) to third order, below 1e-3: 4e-14 of d is left.
     const T after =
         select(small, d + d * step * (T(1.0) + step * (T(0.5) + T(1.0 / 6.0) * step)), d);
     found = select(open, after, found);
@@ -91,6 +100,7 @@ MPM_HD T bracketed_halley(T q, T q_before, T stiff, double unit, Truth<T> open, 
     if (!any(open)) break;
     const auto far = size > T(0.5);
     next = select((next > low) & (next < high), next, T(0.5) * (low + high));
+    // A step of more than 0.5 from a start that says nothing of this lane.
     if (turn == 0 && any(open & far)) next = select(far, flow.above(q), next);
     x = select(open, next, x);
   }
@@ -106,6 +116,7 @@ template <Real T, int D, class Flow>
 MPM_HD Returned<T> return_with_rate(Sym<T, D>& stress, double G, double unit, T q_before,
                                     Flow& flow) {
   const T q = von_mises(stress), stiff(3.0 * G), nothing(0.0);
+  // Below the static yield stress the rate term only adds: no lane that is elastic asks for it.
   const auto flows = q > flow.static_yield();
   if (!any(flows)) return {nothing, q};
   T d = nothing;

@@ -26,9 +26,11 @@ class StressWriter {
   void add(const Group<T, D>& group, const VolumeChange<T>& volume_change,
            const StressWork<T>& work, T mean_stress, const StressUpdate<T, D>& after) {
     const auto valid = group.valid();
+    // Written so that no number counts as negative too.
     negative_ = negative_ | (valid & !(volume_change.after > T(0.0)));
 
     T done = work.deviatoric + volume_change.work(mean_stress);
+    // Dissipation is per present volume, the ledger wants joules: the mean volume of the step.
     const T lost = T(0.5) * (volume_change.before + volume_change.after) * after.dissipated;
     T used = work.force, heat = done;
     if (settings_.viscosity.active()) {
@@ -36,14 +38,19 @@ class StressWriter {
       const T q_before = group.read(columns_.viscosity_pressure);
       group.write(columns_.viscosity_pressure, q);
       viscous_ += select(valid, viscous_work, T(0.0));
+      // The viscous pressure that the nodal forces use, eq. (9): of this step where they follow
+      // the stress (USF), else that of the step before.
       used -=
           (settings_.forces_follow ? volume_change.after * q : volume_change.before * q_before) *
           volume_change.dilation;
       heat += viscous_work;
     }
     if (with_eos && columns_.energy) {
+      // The energy keeps what plastic flow and viscosity heat; the ledger's `internal` has neither,
+      // for both have columns of their own (materials.md).
       T energy = group.read(columns_.energy) + heat * volume_change.per_volume;
       if (bounds_.active) {
+        // The mean of both is given: the one before need not be read again.
         const T last = T(1.0 / 3.0) * trace(after.stress), first = T(2.0) * mean_stress - last;
         if (any(bounds_.limits(first) | bounds_.limits(last) |
                 (energy < T(bounds_.lowest_energy)))) {

@@ -43,6 +43,7 @@ Batch<W> log(Batch<W> x) {
       w * horner(w, 3.999999999940941908e-01, 2.222219843214978396e-01, 1.531383769920937332e-01);
   const Batch<W> odd = z * horner(w, 6.666666666666735130e-01, 2.857142874366239149e-01,
                                   1.818357216161805012e-01, 1.479819860511658591e-01);
+  // k ln 2 in two parts, as in fdlibm: k times the upper one is exact, as its last 21 bits are 0.
   const Batch<W> half_square = Batch<W>(0.5) * f * f;
   const Batch<W> rest =
       half_square - fma(s, half_square + even + odd, k * Batch<W>(1.90821492927058770002e-10));
@@ -54,13 +55,16 @@ Batch<W> log(Batch<W> x) {
 template <int W>
 Batch<W> exp(Batch<W> x) {
   using Bits = typename Mask<W>::Vector;
+  // So that 2^k is a normal number whose exponent fits: -1021 <= k <= 1023.
   const Batch<W> bounded = min(max(x, Batch<W>(-708.0)), Batch<W>(709.0));
   // Adding 1.5 x 2^52 rounds to a whole number and leaves it in the low bits.
   const Batch<W> magic(6755399441055744.0);
   const Batch<W> shifted = fma(bounded, Batch<W>(1.44269504088896338700), magic);
   const Batch<W> k = shifted - magic;
+  // ln 2 in the same two parts as in log.
   const Batch<W> r = fma(k, Batch<W>(-1.90821492927058770002e-10),
                          fma(k, Batch<W>(-6.93147180369123816490e-01), bounded));
+  // Pairs and powers of r^2 (Estrin's scheme): a product need not wait for the one before.
   const Batch<W> r2 = r * r, r4 = r2 * r2;
   const Batch<W> a = horner(r, 1.0 / 2.0, 1.0 / 6.0);
   const Batch<W> b = horner(r, 1.0 / 24.0, 1.0 / 120.0);

@@ -8,6 +8,7 @@ namespace mpm {
 /// method without square roots (A = L D L^T) in place: y becomes z.
 template <int n>
 MPM_HD void solve_symmetric(double (&A)[n][n], double (&y)[n]) {
+  // No pivoting: pivots of a positive definite system are positive in any order.
   double inverse[n];  // of D
   for (int j = 0; j < n; ++j) {
     for (int k = 0; k < j; ++k) {

@@ -29,6 +29,8 @@ template <int p, int q, class T, int D>
 MPM_HD void rotate_jacobi(Sym<T, D>& a, Vec<T, D> (&axis)[D]) {
   const T off = a(p, q), half = T(0.5) * (a(q, q) - a(p, p));
   const T size = absolute(half) + sqrt(half * half + off * off + T(tiny));
+  // t = tan of the angle, the smaller root of t^2 + 2 t half / off - 1 = 0, written so that nothing
+  // cancels.
   const T t = select(half < T(0.0), -off, off) / size;
   const T c = T(1.0) / sqrt(T(1.0) + t * t), s = t * c;
   a(p, p) = a(p, p) - t * off;
@@ -49,7 +51,10 @@ MPM_HD void rotate_jacobi(Sym<T, D>& a, Vec<T, D> (&axis)[D]) {
 /// rotation is exact; in space `sweeps` of three leave less than a rounding, as the tests show.
 template <class T, int D>
 MPM_HD Eigen<T, D> eigen(const Sym<T, D>& tensor) {
+  // A fixed number, not until it settles: lanes would wait for each other, and what one gives would
+  // depend on its neighbours.
   constexpr int sweeps = 4;
+  // rotate_jacobi wants components of order one; where all are zero this is no division by zero.
   T size(tiny);
   for (int k = 0; k < Sym<T, D>::size; ++k) size = max(size, absolute(tensor.c[k]));
   Sym<T, D> a = (T(1.0) / size) * tensor;

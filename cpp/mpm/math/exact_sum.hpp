@@ -21,21 +21,27 @@ class ExactSum {
     const auto exponent = static_cast<int>(bits >> 52 & 0x7ff);
     std::uint64_t mantissa = bits & 0xfffffffffffffu;
     if (exponent != 0) mantissa |= std::uint64_t{1} << 52;
+    // Numbers below 2^-1022 have no leading one and the same lowest bit as those with exponent 1.
     const int shift = exponent == 0 ? 0 : exponent - 1;  // of the lowest bit, from 2^-1074
     const auto chunk = static_cast<std::size_t>(shift / 32);
     const int within = shift % 32;
+    // The mantissa has up to 53 + 31 bits from here, three chunks; what the first shift drops is in
+    // `high`.
     const std::uint64_t low = mantissa << within & 0xffffffffu;
-    const std::uint64_t high = mantissa >> (32 - within);  // up to 53 bits
+    const std::uint64_t high = mantissa >> (32 - within);  // below 2^52
     const std::int64_t sign = std::signbit(x) ? -1 : 1;
+    // Chunk + 3, one more than written: it takes the carry and the sign.
     first_ = std::min(first_, chunk);
     top_ = std::max(top_, chunk + 3);
     chunks_[chunk] += sign * static_cast<std::int64_t>(low);
     chunks_[chunk + 1] += sign * static_cast<std::int64_t>(high & 0xffffffffu);
     chunks_[chunk + 2] += sign * static_cast<std::int64_t>(high >> 32);
+    // Carries wait: an addition is three sums of integers without a branch on what is there.
     if (++additions_ == most_additions) carry();
   }
   void add(const ExactSum& other) {
     special_ += other.special_;
+    // Both carried first: what two chunks below 2^32 add up to leaves room for 2^29 additions more.
     ExactSum carried = other;
     carried.carry();
     carry();
@@ -50,6 +56,7 @@ class ExactSum {
     ExactSum sum = *this;
     sum.carry();
     const bool negative = sum.chunks_[top_] < 0;
+    // To sign and size: rounding to the nearest even is alike on both sides of zero.
     if (negative) {
       for (std::size_t k = first_; k <= top_; ++k) sum.chunks_[k] = -sum.chunks_[k];
       sum.carry();
@@ -61,6 +68,8 @@ class ExactSum {
     const auto at = [&](std::size_t k) { return static_cast<std::uint64_t>(sum.chunks_[k]); };
     const int lead = std::countl_zero(static_cast<std::uint32_t>(at(top - 1)));
     const std::uint64_t second = top >= 2 ? at(top - 2) : 0, third = top >= 3 ? at(top - 3) : 0;
+    // A conversion of 64 bits rounds to the nearest even one at bit 11; with the lowest bit set for
+    // all that is behind, a tie is seen as none where it is none.
     std::uint64_t bits = at(top - 1) << 32 | second;
     bool more = false;
     if (lead > 0) {
@@ -72,11 +81,15 @@ class ExactSum {
     for (std::size_t k = first_; k + 3 < top && !more; ++k) more = sum.chunks_[k] != 0;
     if (more) bits |= 1;
     const int exponent = 32 * (static_cast<int>(top) - 2) - lead - 1074;
+    // No second rounding: all sums are multiples of 2^-1074, so one below 2^-1022 has fewer than 53
+    // bits, and is exact before and after.
     const double size = std::ldexp(static_cast<double>(bits), exponent);
     return negative ? -size : size;
   }
 
  private:
+  // Doubles have bits from 2^-1074 to 2^1023, 2098 in all or 66 chunks; above them is room for
+  // carries.
   static constexpr std::size_t count = 68;
   static constexpr int most_additions = 1 << 29;  // of 32 bits each to 63
 
@@ -105,6 +118,7 @@ class SumUnit {
   double per_unit() const { return per_unit_; }
 
  private:
+  // So that neither the unit nor its inverse leaves the range of doubles.
   static constexpr int bounded(int exponent) { return std::clamp(exponent, -1000, 1000); }
   double size_, per_unit_;
 };
@@ -117,6 +131,8 @@ class FixedSum {
 
   /// A value in units.
   static Integer in_units(double x, const SumUnit& unit) {
+    // Exact, for the unit is a power of two, and what underflows is far below one unit; a product
+    // takes less time than ldexp (decision 0038).
     const double units = x * unit.per_unit();
     // In two parts, as a double has 53 bits and the sum 127.
     const double high = std::trunc(units * 0x1p-64);

@@ -18,6 +18,8 @@ struct Key {
 
 template <int D>
 std::uint64_t key_of(const Index<D>& tile, int cell) {
+  // Three tile coordinates and the 64 cells of a tile: 3 x 19 + 6 = 63 bits of one integer. The
+  // last axis is highest, so that keys are in the order of tile_less, and patches come out sorted.
   constexpr int bits = 19;
   constexpr std::int32_t half = 1 << (bits - 1);
   std::uint64_t key = 0;
@@ -33,6 +35,8 @@ std::uint64_t key_of(const Index<D>& tile, int cell) {
 template <int D>
 std::pair<Index<D>, int> tile_and_cell(const TileGrid<D>& grid, const Vec<double, D>& x) {
   const Index<D> cell = grid.cell_of(x);
+  // By the expression that all kernels use (CellCoordinates): a particle at a face must not be in
+  // one cell here and in the next one there.
   const Index<D> tile = grid.tile_of(cell);
   Index<D> local = grid.first_cell(tile);
   for (std::size_t a = 0; a < D; ++a) local[a] = cell[a] - local[a];
@@ -42,6 +46,9 @@ std::pair<Index<D>, int> tile_and_cell(const TileGrid<D>& grid, const Vec<double
 template <int D>
 void find_anchor(TileGrid<D>& grid, const std::vector<Patch<D>>& patches,
                  const std::vector<Body<D>>& bodies, const std::vector<ParticlePool<D>>& pools) {
+  // No two cells are further apart than this; counted from the lowest one in tiles of four they
+  // stay below 2^18, half the range of a key. Written as !(a < b), for no number is too far as
+  // well.
   constexpr double furthest = 1 << 20;  // cells; within the 19 bits of a key's tile coordinates
   grid.anchor.fill(std::numeric_limits<std::int32_t>::max());
   for (const Patch<D>& patch : patches) {
@@ -74,9 +81,11 @@ void add_patches(TileGrid<D>& grid, int body, const ParticlePool<D>& pool,
     Patch<D>& patch = grid.patches.back();
     patch.occupied |= std::uint64_t{1} << cell;
     ++patch.count;
+    // Cells come in order: what is behind this one begins, as far as is known, at its end.
     for (int k = cell + 1; k <= Tile<D>::cell_count; ++k)
       patch.cell_begin[static_cast<std::size_t>(k)] = patch.count;
     order.push_back(keys[i].row);
+    // Room in the range for some that come (decision 0040), so that few changes lay out lists anew.
     const bool last = i + 1 == keys.size() || keys[i + 1].value >> 6 != keys[i].value >> 6;
     if (!last) continue;
     patch.room = room_for(patch.count);
@@ -103,6 +112,8 @@ void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
       const auto [tile, cell] = tile_and_cell(grid, pools[m].position_of(row));
       keys.push_back({key_of<D>(tile, cell), pools[m].id[row], row});
     });
+    // By number within a cell: sums over its particles have one order wherever rows lie (decision
+    // 0033).
     std::ranges::sort(keys, {}, [](const Key& k) { return std::pair(k.value, k.id); });
     add_patches(grid, static_cast<int>(b), pools[m], keys, orders[m]);
   }
@@ -112,8 +123,10 @@ void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
     pools[m].order = std::move(orders[m]);
   }
   for (std::size_t b = 0; b < bodies.size(); ++b)
+    // Each body's rows among themselves: one that moves beside one at rest is worth sorting alone.
     sort_columns(grid, bodies[b], patches_of<D>(grid.patches, static_cast<int>(b)),
                  pools[static_cast<std::size_t>(bodies[b].material)], threads, scratch);
+  // At the start there are no nodes that could lend their memory; from here on there are.
   scratch.own.release_and_allocate(0);
   connect(grid);
   cut_blocks(grid, threads);

@@ -24,6 +24,8 @@ Batch<W> cells_in_tile(const CellCoordinates<D>& cells, const Index<D>& first,
   T number(0.0);
   auto inside = T(0.0) < T(1.0);
   for (int a = D - 1; a >= 0; --a) {
+    // The expression of GridGeometry::cell_of, in lanes: one that rounds otherwise would leave
+    // particles in cells that they are not in.
     const T local = floor(cells.in_cells(x[a], a)) - T(first[static_cast<std::size_t>(a)]);
     inside = inside & (local >= T(0.0)) & (local < T(Tile<D>::cells));
     number = number * T(Tile<D>::cells) + local;
@@ -47,6 +49,7 @@ std::size_t note_cells(const TileGrid<D>& grid, const ParticlePool<D>& pool, con
       for (int a = 0; a < D; ++a) x[a] = load(pool.x(a), rows);
       const Batch<W> now = cells_in_tile<D>(coordinates, first, x), old(old_cell);
       for (int k = 0; k < rows.count; ++k) *to++ = static_cast<std::uint8_t>(now[k]);
+      // Empty lanes repeat a particle, which must not count twice.
       const auto others = ((now < old) | (now > old)) & first_lanes<W>(rows.count);
       changed += static_cast<std::size_t>(std::popcount(lane_bits(others)));
     });

@@ -20,6 +20,8 @@ std::int32_t patch_beside(const TileGrid<D>& grid, const Patch<D>& patch, const 
     offset[a] = tile[a] - patch.tile[a];
     beside = beside && std::abs(offset[a]) <= 1;
   }
+  // A particle may go further than to the next tile in a step: there is no bound on speed (decision
+  // 0002).
   if (!beside) return find_patch<D>(grid, patch.body, tile);
   return patch.neighbour[static_cast<std::size_t>(Tile<D>::neighbour(offset))];
 }
@@ -28,6 +30,8 @@ template <int D>
 void find_migrants(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                    const std::vector<ParticlePool<D>>& pools, Threads& threads,
                    ListScratch<D>& scratch) {
+  // Each patch has counted its own; with the places known, all threads write without asking each
+  // other (decision 0027), and the order is that of the patches.
   std::uint32_t count = 0;
   for (auto& note : scratch.notes) {
     note.first_migrant = count;
@@ -55,6 +59,7 @@ void find_migrants(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
 /// Put new patches, sorted, among the others.
 template <int D>
 void merge(std::vector<Patch<D>>& patches, const std::vector<std::pair<int, Index<D>>>& added) {
+  // From the end, in place: nothing is written over that has not been moved yet.
   std::size_t from = patches.size(), to = from + added.size(), next = added.size();
   patches.resize(to);
   while (next > 0) {
@@ -79,13 +84,17 @@ bool add_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
   auto& number = scratch.number;
   number.resize(patches.size());
   const auto no_patch = [](const Migrant<D>& l) { return l.patch < 0; };
+  // The usual step: nothing is added, and empty patches may stay a while.
   if (std::none_of(scratch.migrants.begin(), scratch.migrants.end(), no_patch)) {
     std::iota(number.begin(), number.end(), 0);
     return false;
   }
+  // Empty patches are dropped only here, where numbers change anyway: contact and neighbours go by
+  // the numbers of patches, and a particle that comes back into a tile finds its patch again.
   for (std::size_t p = 0; p < patches.size(); ++p) number[p] = patches[p].count == 0 ? -1 : 0;
   entered.clear();
   for (Migrant<D>& l : scratch.migrants) {
+    // It goes to a patch that is about to be dropped, which is then made anew for it.
     if (l.patch >= 0 && number[static_cast<std::size_t>(l.patch)] < 0) l.patch = -1;
     if (l.patch < 0) entered.emplace_back(l.body, l.tile);
   }
@@ -102,6 +111,7 @@ bool add_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
     while (patches[next].count == 0) ++next;
     n = static_cast<std::int32_t>(next++);
   }
+  // Numbers have changed, and with them everyone's neighbours.
   connect(grid);
   return true;
 }
@@ -138,6 +148,8 @@ void find_changes(const TileGrid<D>& grid, ListScratch<D>& scratch) {
     arrival += count;
   }
   scratch.arrivals.resize(arrival);
+  // The second half of a counting sort. Nobody needs a patch's arrivals in order: its list is by
+  // cell and number (decision 0033).
   for (const Migrant<D>& m : scratch.migrants)
     scratch.arrivals[changes[static_cast<std::size_t>(m.patch)].arrivals_end++] = {m.row, m.cell};
 }
@@ -154,6 +166,7 @@ void find_ranges(const std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>
     change.room = room_for(change.count());
     used += change.room;
   };
+  // In the order of the patches, by one thread: ranges depend on the case alone.
   for (Change& change : scratch.changes)
     if (change.count() > change.room) give(change);
   bool any = false;
@@ -162,6 +175,8 @@ void find_ranges(const std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>
     if (pools[m].used <= pools[m].order.size()) continue;
     any = true;
     scratch.full[m] = true;
+    // All of its patches get new ranges from the front; what outgrown ranges have left behind is
+    // free again.
     pools[m].used = 0;
   }
   if (!any) return;

@@ -24,6 +24,8 @@ struct SortedRows {
         first = std::min(first, row);
         last = std::max(last, row);
       }
+    // As many rows as numbers from the least to the greatest, and none twice: then no list of them
+    // is needed.
     in_sequence = count == 0 || last - first + std::size_t{1} == count;
   }
   template <int D>
@@ -32,6 +34,7 @@ struct SortedRows {
     rows = room;
     auto to = rows.begin();
     for (const Patch<D>& patch : patches) to = std::ranges::copy(pool.rows(patch), to).out;
+    // The body's rows are exchanged among themselves; those of other bodies may lie between.
     std::ranges::sort(rows);
   }
 };
@@ -41,10 +44,13 @@ struct SortedRows {
 template <int D>
 void sort_columns(TileGrid<D>& grid, Body<D>& body, std::span<Patch<D>> patches,
                   ParticlePool<D>& pool, Threads& threads, ListScratch<D>& scratch) {
+  // Changes are counted anew from here.
   body.moved = 0;
   const std::size_t n = body.active();
   const std::span<const Patch<D>> lists = patches;
   SortedRows rows(pool, lists, n);
+  // One component at a time in the idle memory of the nodes: 8 bytes a particle, however many
+  // columns.
   const std::size_t each = sizeof(double) + (rows.in_sequence ? 0 : sizeof(std::uint32_t));
   std::byte* const room = scratch.room(grid, n * each, n * each);
   if (!rows.in_sequence)
@@ -63,6 +69,7 @@ void sort_columns(TileGrid<D>& grid, Body<D>& body, std::span<Patch<D>> patches,
       const std::span<const std::uint32_t> list = pool.rows(patches[p]);
       for (std::size_t k = 0; k < list.size(); ++k) to[k] = values[list[k]];
     });
+    // A pass of its own: a patch's new rows are those that other patches read in the first.
     threads.for_each(patches.size(), [&](std::size_t p) {
       const std::size_t begin = first[p], end = begin + patches[p].count;
       if (rows.in_sequence)
@@ -71,6 +78,7 @@ void sort_columns(TileGrid<D>& grid, Body<D>& body, std::span<Patch<D>> patches,
         for (std::size_t k = begin; k < end; ++k) values[rows.rows[k]] = sorted[k];
     });
   };
+  // Moved, not computed: no result can tell that columns were sorted (decision 0033).
   for (int c = 0; c < pool.columns.component_count(); ++c) pool.columns.with_component(c, sort);
   sort(pool.id.data());
   if (!pool.piece.empty()) sort(pool.piece.data());
@@ -87,6 +95,8 @@ void sort_disordered(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                      ListScratch<D>& scratch) {
   for (const int number : scratch.moved) {
     Body<D>& body = bodies[static_cast<std::size_t>(number)];
+    // A quarter by default: a compromise between rows loaded one by one and the cost of sorting
+    // (decision 0002).
     if (static_cast<double>(body.moved) >= share * static_cast<double>(body.count))
       sort_columns(grid, body, patches_of<D>(grid.patches, number),
                    pools[static_cast<std::size_t>(body.material)], threads, scratch);

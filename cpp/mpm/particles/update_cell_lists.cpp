@@ -34,8 +34,10 @@ bool make_scratch(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   }
   for (std::size_t m = 0; m < pools.size(); ++m) {
     all += pools[m].count();
+    // An upper bound: who arrives somewhere has left a patch of the same pool.
     if (touched[m]) entries += pools[m].count();
   }
+  // Entries before marks: those of four bytes need the alignment that the memory begins with.
   constexpr std::size_t entry = sizeof(*scratch.lists), mark = sizeof(*scratch.marks);
   std::byte* const room = scratch.room(grid, entry * entries + mark * marks, (entry + mark) * all);
   scratch.lists = reinterpret_cast<std::uint32_t*>(room);
@@ -56,6 +58,7 @@ void note_changes(const TileGrid<D>& grid, const Body<D>& body, const ParticlePo
   const auto others = static_cast<std::uint32_t>(
       std::ranges::count_if(now, [](std::uint8_t c) { return c >= CellMark::left; }));
   note.removed = others - note.migrants;
+  // The marks are ordered by CellMark: cells, then those removed, then those outside.
   note.kept = patch.count - others;
 }
 
@@ -65,6 +68,7 @@ void count_changes(std::vector<Body<D>>& bodies, ListScratch<D>& scratch) {
   for (const auto& note : scratch.notes) {
     if (note.changes == 0) continue;
     bodies[static_cast<std::size_t>(note.body)].moved += note.changes;
+    // Notes are in the order of the patches, bodies one after another, so that the last is enough.
     if (scratch.moved.empty() || scratch.moved.back() != note.body)
       scratch.moved.push_back(note.body);
   }
@@ -83,6 +87,7 @@ void take_out(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t ro
     sums.momentum[a] += m * v;
   }
   const double energy = pool.columns.component(pool.at.recoverable)[row];
+  // Energies are kept per initial volume, m / rho_0.
   sums.recoverable += energy * m / body.initial_density;
 }
 
@@ -90,6 +95,7 @@ void take_out(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t ro
 template <int D>
 void remove_particles(Body<D>& body, ParticlePool<D>& pool, const Patch<D>& patch,
                       const std::uint8_t* mark, Removed<D>& eroded, Removed<D>& outflow) {
+  // By one thread, in the order of the lists: sums of doubles, and rows that are pushed back.
   for (const std::uint32_t row : pool.rows(patch)) {
     const std::uint8_t now = *mark++;
     if (now != CellMark::eroded && now != CellMark::left) continue;
@@ -108,10 +114,12 @@ void write_list(const ParticlePool<D>& pool, Patch<D>& patch,
   std::uint32_t* const to = scratch.lists + change.first_entry;
   const std::span<const Arrival> arrivals(scratch.arrivals.data() + change.first_arrival,
                                           scratch.arrivals.data() + change.arrivals_end);
+  // Only moved, for all lists of its pool are laid out anew.
   if (!patch.left_cell && arrivals.empty()) {
     std::ranges::copy(pool.rows(patch), to);
     return;
   }
+  // Where nobody has left its cell there are no marks, and the cells are those of the old list.
   const auto for_each_kept = [&](auto&& f) {
     if (patch.left_cell) {
       const std::uint8_t* mark = scratch.marks + change.first_mark;
@@ -126,6 +134,8 @@ void write_list(const ParticlePool<D>& pool, Patch<D>& patch,
   };
   constexpr int cells = Tile<D>::cell_count;
   std::array<std::uint32_t, cells + 1> begin{};
+  // Counting sort by cell; within a cell by insertion, which costs next to nothing, as those that
+  // stay come in their order already.
   for_each_kept([&](std::size_t cell, std::uint32_t) { ++begin[cell + 1]; });
   for (const Arrival& arrival : arrivals) ++begin[arrival.cell + std::size_t{1}];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -144,6 +154,7 @@ void write_list(const ParticlePool<D>& pool, Patch<D>& patch,
   for (int c = 0; c < cells; ++c)
     if (begin[static_cast<std::size_t>(c) + 1] > begin[static_cast<std::size_t>(c)])
       patch.occupied |= std::uint64_t{1} << c;
+  // Until the stage that moves particles sees one leave its cell again.
   patch.left_cell = false;
 }
 
@@ -170,6 +181,7 @@ void write_lists(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     if (!change.rewritten) return;
     const std::size_t m = pool_number(bodies, change.body);
     write_list(pools[m], grid.patches[p], change, scratch);
+    // A range of its own, old or new, that no other patch reads.
     if (!scratch.full[m]) place(p);
   });
   // Where all lists are laid out anew, one goes where others were.
@@ -199,6 +211,8 @@ bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
       note_changes(grid, body_of(patch), pool_of(patch), patch, scratch, scratch.notes[p]);
   });
   count_changes(bodies, scratch);
+  // Numbers of patches mean something else from here on: `notes` has the old ones, `changes` the
+  // new.
   const bool changed = migrate_particles(grid, bodies, pools, threads, scratch);
   for (std::size_t p = 0; p < grid.patches.size(); ++p) {
     const auto& change = scratch.changes[p];
@@ -208,6 +222,7 @@ bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                      eroded, outflow);
   }
   write_lists(grid, bodies, pools, threads, scratch);
+  // They lie in the memory of the nodes, which gets its blocks now.
   scratch.lists = nullptr;
   scratch.marks = nullptr;
   cut_blocks(grid, threads);

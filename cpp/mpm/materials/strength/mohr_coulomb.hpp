@@ -47,6 +47,7 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
     k = (1.0 + friction) / (1.0 - friction);
     m = (1.0 + dilation) / (1.0 - dilation);
     strength = 2.0 * cohesion * std::sqrt(k);
+    // A tension beyond the apex c cot(phi) would bound nothing: no admissible stress is there.
     limit = friction > 0.0 ? min(tension, cohesion / std::tan(friction_angle)) : tension;
   }
   std::string problem() const {
@@ -63,11 +64,12 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
     T stress[3], fault;
   };
 
-  /// The stress D^-1 backwards: plastic strain, times 2 G, that takes a trial to another stress.
+  /// D^-1 (trial - stress): the plastic strain, times 2 G, that takes a trial to another stress.
   template <Real T>
   MPM_HD void plastic(const T (&trial)[3], const T (&stress)[3], T (&e)[3]) const {
     T sum(0.0);
     for (int i = 0; i < 3; ++i) sum = sum + (e[i] = trial[i] - stress[i]);
+    // Hooke backwards: 2 G e = s - nu / (1 + nu) tr(s).
     for (int i = 0; i < 3; ++i) e[i] = e[i] - T(nu / (1.0 + nu)) * sum;
   }
 
@@ -75,6 +77,8 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
   template <Real T>
   MPM_HD Candidate<T> moved(const T (&trial)[3], T a, const double (&first)[3], T b,
                             const double (&second)[3]) const {
+    // D b = 2 G (b + lambda / 2 G tr(b)): all multipliers are in Pa, times 2 G, so that as faults
+    // they can be compared with stresses.
     const double ratio = nu / (1.0 - 2.0 * nu);  // lambda / 2 G
     const double sum_a = ratio * (first[0] + first[1] + first[2]);
     const double sum_b = ratio * (second[0] + second[1] + second[2]);
@@ -93,9 +97,13 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
   MPM_HD void return_to_surface(const T (&trial)[3], T (&stress)[3]) const {
     T least(std::numeric_limits<double>::max());
     for (int i = 0; i < 3; ++i) stress[i] = trial[i];
+    // Nine tries and a select in place of a search for the region: lanes of all regions take one
+    // way.
     const auto try_one = [&](Candidate<T> c) {
       const T order = max(c.stress[1] - c.stress[0], c.stress[2] - c.stress[1]);
       const T shear = (T(k) * c.stress[0] - c.stress[2] - T(strength)) * T(1.0 / k);
+      // Each try brings the sign of its own multipliers; order and yield conditions are asked of
+      // all.
       c.fault = max(max(c.fault, order), max(shear, c.stress[0] - T(limit)));
       const auto better = c.fault < least;
       least = select(better, c.fault, least);
@@ -113,6 +121,9 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
     const double flow13[3] = {m, 0.0, -1.0}, flow12[3] = {m, -1.0, 0.0}, flow23[3] = {0.0, m, -1.0};
     // What flow along a vector takes from a plane's yield function, times 1 / 2 G.
     const double both = ratio * (m - 1.0) * (k - 1.0);
+    // With a of a plane and b of a flow, a . D b / 2 G = a . b + ratio tr(a) tr(b); tr(a) = k - 1
+    // and tr(b) = m - 1 for every face of shear. `right`, `left`: of the faces 13 and 23, 13 and
+    // 12.
     const double own = both + m * k + 1.0, right = both + 1.0, left = both + m * k;
     const T f13 = T(k) * trial[0] - trial[2] - T(strength);
     const T f12 = T(k) * trial[0] - trial[1] - T(strength);
@@ -121,6 +132,7 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
     c.fault = -f13;
     try_one(c);
     const auto edge = [&](T other, double mixed, const double (&flow)[3]) {
+      // Both yield functions vanish: own a + mixed b = f13, mixed a + own b = other.
       const T scale(1.0 / (own * own - mixed * mixed));
       const T a = (T(own) * f13 - T(mixed) * other) * scale;
       const T b = (T(own) * other - T(mixed) * f13) * scale;
@@ -148,6 +160,7 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
   MPM_HD void by_tension(const T (&trial)[3], const Try& try_one) const {
     const double ratio = nu / (1.0 - 2.0 * nu);
     const double open1[3] = {1.0, 0.0, 0.0}, open2[3] = {0.0, 1.0, 0.0};
+    // Opening along one axis takes 1 + ratio from its own stress and ratio from each other.
     const T t(limit), over1 = trial[0] - t, over2 = trial[1] - t;
     Candidate<T> c = moved(trial, over1 * T(1.0 / (1.0 + ratio)), open1, T(0.0), open1);
     c.fault = -over1;
@@ -158,6 +171,8 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
     c.fault = max(-a, -b);
     try_one(c);
     T e[3];
+    // The apex of tension is a point: no multipliers to solve for, the strain itself must not
+    // close.
     c = cut(trial, t, t, t, e);
     c.fault = -min(min(e[0], e[1]), e[2]);
     try_one(c);
@@ -168,9 +183,12 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
   MPM_HD void by_both(const T (&trial)[3], const Try& try_one) const {
     const double ratio = nu / (1.0 - 2.0 * nu);
     const T t(limit), s(k * limit - strength), over1 = trial[0] - t;
+    // No strain along the second axis: trial - stress = e + ratio sum along the first and the
+    // third, which added give (1 + 2 ratio) sum, sum = e1 + e3.
     const T sum = (over1 + trial[2] - s) * T(1.0 / (1.0 + 2.0 * ratio));
     T e[3];
     Candidate<T> c = cut(trial, t, trial[1] - T(ratio) * sum, s, e);
+    // e = x (1, 0, 0) + y (m, 0, -1) with x, y >= 0: y = -e3, x = e1 + m e3.
     c.fault = max(e[2], -(e[0] + T(m) * e[2]));
     try_one(c);
     c = cut(trial, t, t, s, e);
@@ -191,6 +209,8 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
     const T mean = T(1.0 / 3.0) * trace(stress);
     const T tau = von_mises(stress) * T(1.0 / std::numbers::sqrt3);
     const T shear = T(k - 1.0) * (mean + T(0.5 / std::numbers::sqrt3) * tau) + T(k + 1.0) * tau;
+    // k s1 - s3 = (k - 1) (s1 + s3) / 2 + (k + 1) (s1 - s3) / 2, and (s1 + s3) / 2 = mean - s2' / 2
+    // with s2' of the deviator.
     if (!any((shear > T(strength)) | (mean + T(2.0 / std::numbers::sqrt3) * tau > T(limit))))
       return T(0.0);
 
@@ -211,8 +231,11 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
       e[i] = select(flows, e[i], T(0.0)) * T(0.5 / elastic.G);
       change[i] = select(flows, after[i] - trial[i], T(0.0));
       squares = squares + e[i] * e[i];
+      // With the stress after the step, which is what the return solves for (StrengthModel).
       work = work + after[i] * e[i];
     }
+    // The change, and not the stress, goes back by the axes: where a lane does not flow nothing is
+    // added, and its stress stays to the bit.
     sorted.unsort(change);
     stress = stress + principal.with(change);
     state.plastic_strain += sqrt(T(2.0 / 3.0) * squares);
