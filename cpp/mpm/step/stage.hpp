@@ -66,6 +66,8 @@ struct Stage {
 /// May two stages change places?
 template <int D>
 constexpr bool independent(const Stage<D>& a, const Stage<D>& b) {
+  // Neither writes what the other reads or writes; by places, as writing a field ends those that
+  // share its place.
   const std::uint32_t taken_by_a = places_of(a.writes), taken_by_b = places_of(b.writes);
   return !(taken_by_a & b.reads) && !(a.reads & taken_by_b) && !(taken_by_a & b.writes);
 }
@@ -106,6 +108,8 @@ constexpr StageList<D> fuse(const StageList<D>& list, const Fusion<D>& fusion) {
     throw std::logic_error("the two stages are not in this order in the list");
   std::array<bool, 32> ahead{};
   ahead[j] = true;
+  // Backwards: what a stage that goes ahead needs has to go ahead as well. Those that do keep their
+  // order among each other, and so do those that do not.
   for (std::size_t k = j; k-- > i + 1;)
     for (std::size_t m = k + 1; m <= j; ++m)
       ahead[k] = ahead[k] || (ahead[m] && !independent(list.stages[k], list.stages[m]));

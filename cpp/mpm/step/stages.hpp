@@ -133,6 +133,7 @@ struct Stages : Data {
   static constexpr std::uint32_t of_particles = position | velocity | mass,
                                  of_rigid = rigid_position | rigid_velocity;
 
+  // The nodes are written as their memory is lent to the lists until momentum is mapped.
   static constexpr Row activate{
       "activate tiles", mpm::activate_tiles<D>,
       of_particles | of_rigid | stress | lists | patch_sums,
@@ -150,23 +151,28 @@ struct Stages : Data {
       "contact momentum", mpm::contact_momentum<D>,
       lists | position | rigid_position | mass | volume | node_mass | node_velocity | contacts,
       node_velocity | contacts};
+  // The weights it reads are in the places of the forces, and stay in the sum (map_to_nodes.cpp).
   static constexpr Row map_forces{"map forces", mpm::map_forces<D>,
                                   lists | position | volume | stress | ghost_weights, node_force,
                                   true};
   static constexpr Row load_surfaces{"load surfaces", mpm::load_surfaces<D>,
                                      lists | position | load_pieces | node_force,
                                      load_pieces | node_force};
+  // Between the mappings and the exchange, as dashpots and loads are sums over particles as well.
   static constexpr Row place_dashpots{"place dashpots", mpm::place_dashpots<D>,
                                       lists | position | mass | node_dashpots, node_dashpots};
   static constexpr Row fold_forces{"fold forces", mpm::fold_forces<D>, node_force, node_force};
   static constexpr Row exchange_forces{"exchange forces", mpm::exchange_forces<D>,
                                        node_force | node_dashpots, node_force | node_dashpots};
+  // After the exchange, as the force of a dashpot is not linear in C_i and m_i; before contact,
+  // which balances all other forces of two bodies, eq. (13).
   static constexpr Row absorb{"absorb at walls", mpm::absorb_at_walls<D>,
                               node_mass | node_velocity | node_force | node_dashpots,
                               node_force | node_dashpots};
   static constexpr Row contact_forces{"contact forces", mpm::contact_forces<D>,
                                       node_mass | node_velocity | node_force | contacts,
                                       node_force | contacts};
+  // It reads the pieces for the work of loads, once increments are known.
   static constexpr Row advance_nodes{
       "advance nodes", mpm::advance_nodes<D>,
       lists | load_pieces | node_mass | node_velocity | node_force | node_dashpots | patch_sums,
@@ -179,6 +185,8 @@ struct Stages : Data {
                                   of_rigid | patch_sums, rigid_velocity | patch_sums};
   static constexpr Row remap_momentum{"remap momentum", mpm::remap_momentum<D>,
                                       lists | of_particles, node_remapped, true};
+  // Apart from that of others, so that theirs can be fused with eq. (17) while rigid bodies wait
+  // for their motion (decision 0034).
   static constexpr Row remap_rigid{"remap rigid bodies", mpm::remap_rigid_bodies<D>, of_rigid,
                                    node_remapped};
   static constexpr Row fold_remapped{"fold remapped", mpm::fold_remapped<D>, node_remapped,

@@ -14,6 +14,7 @@ void record_contacts(Domain<D>& domain) {
 
 template <int D, bool forces_follow>
 void sum_energies(Domain<D>& domain) {
+  // All sums over patches at once, exactly: no order of patches matters (decision 0038).
   domain.ledger.add(domain.sums, domain.contact_sums, domain.eroded, domain.outflow, forces_follow);
 }
 
