@@ -13,6 +13,8 @@ template <int D>
 void move_patch(const TileGrid<D>& grid, const RigidMotion& motion, ParticlePool<D>& pool,
                 Patch<D>& patch, const Matrix3& turned, double time_step, PatchSums<D>& sums) {
   const bool turns = dot(motion.spin, motion.spin) > 0.0;
+  // The velocities are means over the step, so that the displacement of the centre is their
+  // integral.
   const Vector3 centre = motion.centre + time_step * motion.velocity;
   double kinetic = 0.0, fastest = 0.0;
   patch.left_cell = false;
@@ -32,6 +34,7 @@ void move_patch(const TileGrid<D>& grid, const RigidMotion& motion, ParticlePool
         pool.x(a)[row] = x[a];
         pool.v(a)[row] = static_cast<Storage>(v[a]);
         sums.momentum[a] += m * v[a];
+        // As lists do (CellCoordinates).
         const double local = grid.in_cells(x[a], a) - cell.cell[a];
         patch.left_cell = patch.left_cell || local < 0.0 || local >= 1.0;
       }
@@ -40,6 +43,7 @@ void move_patch(const TileGrid<D>& grid, const RigidMotion& motion, ParticlePool
     }
   });
   sums.kinetic = kinetic;
+  // |v| alone: its waves do not limit the time step.
   sums.stress.fastest = std::sqrt(fastest);
   sums.prescribed.kinetic = kinetic;
   for (int a = 0; a < D; ++a) sums.prescribed.momentum[a] = sums.momentum[a];
@@ -51,6 +55,7 @@ template <int D>
 void advance_prescribed_nodes(Domain<D>& domain, std::size_t p) {
   const auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
+  // Its nodes are mapped only where another body is near, and no one else reads them.
   if (!patch.in_contact) return;
   const PrescribedMotion& motion = *domain.body_of(patch).motion;
   const NodeBlock<D> block = domain.grid.block(p);
@@ -62,7 +67,11 @@ void advance_prescribed_nodes(Domain<D>& domain, std::size_t p) {
     const Vector3 dv = motion.increment_at(in_space<D>(grid.position_of(node)));
     const bool own = patch.owned[n];
     for (int a = 0; a < D; ++a) {
+      // The force here is that of contact alone, as no stress is mapped and no gravity added: with
+      // the time step J_i, which is finite though the mass counts as infinite.
       const double pushed = own ? domain.time_step * block.force(a)[n] : 0.0;  // [N s]
+      // J . w into B and J . dw / 2 into S, as for free bodies, with w that of the last step
+      // (docs/theory/motion.md).
       sums.force_work += pushed * block.velocity(a)[n];
       sums.second_order += 0.5 * pushed * dv[a];
       sums.prescribed.impulse[a] += pushed;
@@ -85,6 +94,7 @@ void move_prescribed_bodies(Domain<D>& domain) {
     move_patch(grid, motion.now, domain.pool_of(patch), patch, turned, domain.time_step,
                domain.sums[p]);
   });
+  // After all patches, which turn about the centre of the start of the step.
   for (const std::size_t b : domain.prescribed) {
     RigidMotion& motion = domain.bodies[b].motion->now;
     motion.centre += domain.time_step * motion.velocity;

@@ -15,6 +15,8 @@ void set_rigid_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const No
   for (int n = 0; n < patch.shape.node_count; ++n) {
     Index<D> node = patch.shape.index(n);
     for (int a = 0; a < D; ++a) node[a] += first[a];
+    // At the node itself, not mapped from particles: exact in a rotation, and at nodes without
+    // particles too.
     const Vector3 v = motion.velocity_at(in_space<D>(grid.position_of(node)));
     for (int a = 0; a < D; ++a) block.velocity(a)[n] = v[a];
   }

@@ -24,8 +24,8 @@ void reflect(Domain<D>& domain, int at) {
 template <int D>
 void contact_momentum(Domain<D>& domain) {
   if (!domain.has_contact()) return;
-  // Eqs. (4)-(7) with the velocities of the start of the step; planes and gaps are found once, and
-  // hold for forces and remapped velocities too, as particles move last.
+  // Eqs. (4)-(7) with the velocities of the start of the step; planes and gaps are found at most
+  // once a step, and hold for forces and remapped velocities too, as particles move last.
   find_nodes(domain.contact, domain.grid, domain.bodies, domain.pools, domain.contact_settings,
              domain.time_step, domain.threads);
   remove_approach(domain.contact, domain.grid, domain.threads);
