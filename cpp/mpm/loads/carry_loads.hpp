@@ -33,6 +33,7 @@ template <int at, int D>
   const ParticlePool<D>& pool = domain.pool_of(patch);
   const double scale = domain.time_step / grid.cell_size;
   for (int l = 0; l < static_cast<int>(domain.loads.size()); ++l) {
+    // A piece per load: where two loads meet on a particle each carries its own along.
     if (domain.loads[static_cast<std::size_t>(l)].body != patch.body) continue;
     with_basis(grid, body, [&]<BasisModel B>(const B& basis) {
       const NodeStrides<D> stride(patch.shape);

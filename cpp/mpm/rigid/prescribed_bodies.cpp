@@ -25,6 +25,7 @@ void move_patch(const TileGrid<D>& grid, const RigidMotion& motion, ParticlePool
       for (int a = 0; a < D; ++a) x[a] = pool.x(a)[row];
       if (turns) {
         x = centre + turned * (x - motion.centre);
+        // v at the place where the particle comes to be, which is where the next step maps it.
         v += cross(motion.spin, x - centre);
       } else {
         x += time_step * v;
@@ -45,6 +46,8 @@ void move_patch(const TileGrid<D>& grid, const RigidMotion& motion, ParticlePool
   sums.kinetic = kinetic;
   // |v| alone: its waves do not limit the time step.
   sums.stress.fastest = std::sqrt(fastest);
+  // For the work of the motion: the ledger takes their change since the last step, less what
+  // contact gave (docs/theory/motion.md).
   sums.prescribed.kinetic = kinetic;
   for (int a = 0; a < D; ++a) sums.prescribed.momentum[a] = sums.momentum[a];
 }
@@ -89,6 +92,7 @@ void move_prescribed_bodies(Domain<D>& domain) {
   for_each_patch(domain, prescribed, [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
     const PrescribedMotion& motion = *domain.body_of(patch).motion;
+    // A fixed one keeps its places, and its sums stay 0.
     if (!motion.moves) return;
     const Matrix3 turned = rotation(domain.time_step * motion.now.spin);
     move_patch(grid, motion.now, domain.pool_of(patch), patch, turned, domain.time_step,

@@ -1,7 +1,7 @@
 #pragma once
 // Bodies whose motion is prescribed: their nodes and particles have the velocity of that motion,
-// whatever acts on them. They have no stress, and map nothing but their mass, where others are
-// near.
+// whatever acts on them. They have no stress, and give mass to nodes only where others are near;
+// the momentum that comes with it is overwritten (find_velocities).
 #include "mpm/domain.hpp"
 #include "mpm/schedule/cell_loop.hpp"
 

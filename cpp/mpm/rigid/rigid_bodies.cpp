@@ -62,7 +62,8 @@ void gather(Domain<D>& domain) {
 }
 
 /// Axes along which walls hold a body of that extent: half a particle lies between its particles
-/// and the face.
+/// and the face. Held nodes have no increment, but a body that is not stressed is not stopped by
+/// that alone: so its motion is held as a whole.
 template <int D>
 unsigned constrained_axes(const Domain<D>& domain, const Body<D>& body, const Extent& extent) {
   const auto& grid = domain.grid;
@@ -128,6 +129,7 @@ void find_rigid_motion(Domain<D>& domain) {
     motion.velocity = (1.0 / sums.mass) * sums.momentum;
     motion.inertia = sums.inertia;
     const unsigned constrained = constrained_axes(domain, body, sums.extent);
+    // In the plane about z alone.
     motion.free_axes = D == 2 ? 4u : 7u;
     for (int a = 0; a < 3; ++a) {
       if (constrained >> a & 1u) motion.velocity[a] = 0.0;

@@ -160,6 +160,8 @@ inline Matrix3 turn(RigidMotion& motion, double time_step) {
   // From L again, so that L is kept for any number of steps and only the energy is not, which the
   // ledger counts (made_rigid).
   motion.spin = spin_of(motion.inertia, angular, motion.free_axes);
+  // Straight: gravity and contact of the step are in the velocity already, as for particles, eq.
+  // (16).
   motion.centre += time_step * motion.velocity;
   return whole;
 }

@@ -105,7 +105,8 @@ class NodesInLanes {
  public:
   template <int room>
   using Payload = PayloadColumns<D, room>;
-  /// What is to be known of a cell's particles: their position in the cell.
+  /// What is to be known of a cell's particles: their position in the cell, D numbers in place of
+  /// the factors, which are cheap to make from it in the lanes of the nodes.
   template <int room>
   struct Places {
     double xi[D][room];
@@ -164,6 +165,7 @@ class NodesInLanes {
   }
   template <unsigned what, int room>
   static nodes_in_lanes::Particle<D> particle(const Payload<room>& payload, int k) {
+    // What is not scattered has not been laid out either, and is not read.
     nodes_in_lanes::Particle<D> p;
     if constexpr (what != gives_forces) {
       p.m = payload.mass[k];
@@ -196,6 +198,7 @@ class NodesInLanes {
     for (int a = 0; a < inner_axes; ++a) N[a] = lanes(a, places.xi[a][p]);
     for (int a = 0; a < D; ++a)
       for (int k = 0; k < Sums::parts; ++k) {
+        // Along axis a the slope, of the others N; inner axes first, as in `functions`.
         Part g = a < inner_axes ? Part::load(slopes(a)) : Part(place(a, k) ? 1.0 : -1.0);
         for (int b = 0; b < inner_axes; ++b)
           if (b != a) g = g * N[b];

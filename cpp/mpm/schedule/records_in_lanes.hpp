@@ -122,6 +122,7 @@ class RecordsInLanes {
     // and both would be more than the 16 registers of AVX2.
     if constexpr (what != gives_forces)
       give_sums(nodes, n, [&](int k, auto x, auto y, auto z, Half& sum) MPM_INLINE {
+        // In 2D there is one layer, with N_z = 1 and no derivative along z.
         const records_in_lanes::Momentum p{payload.mass[k], Half::load(payload.velocity[k])};
         const records_in_lanes::Function<D> N{D == 3 ? places.N[D - 1][z][k] : 1.0,
                                               places.N[1][y][k], places.N[0][x][k]};
@@ -150,6 +151,8 @@ class RecordsInLanes {
   template <int width, class F>
   [[gnu::always_inline]] void give_sums(const Nodes<width>& nodes, int n, F&& give) const {
     unrolled<D == 3 ? count : 1>([&](auto z) MPM_INLINE {
+      // From 0 and not from the nodes: one addition to memory for a cell, and the same sums
+      // whatever other cells have given.
       Half sums[count][count];
       for (auto& row_sums : sums)
         for (auto& sum : row_sums) sum = Half(0.0);

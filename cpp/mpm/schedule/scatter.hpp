@@ -158,6 +158,7 @@ template <class Mapping, unsigned what, int lanes, int D, BasisModel B>
   cells.finish();
 }
 
+/// The same for the basis of the grid, and as many lanes as the patch's cells fill.
 template <class Mapping, unsigned what, int D>
 void scatter(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
              const Patch<D>& patch, const NodeRecords& nodes) {

@@ -8,7 +8,8 @@
 namespace mpm {
 namespace {
 
-/// What is done beside eq. (17) while the particles are at hand.
+/// What is done beside eq. (17) while the particles, their weights and their nodes are at hand:
+/// stages fused (decisions 0015, 0034), from the source that makes the single ones too.
 enum class Also { nothing, remap, move };
 
 /// Of the particles in the lanes, for the ledger: every lane has its own sums over the patch, which
@@ -67,6 +68,8 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       stride, {remapped});
 
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
+    // With the linear basis one polynomial for increments and velocities, as both are in the
+    // record.
     const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
     if constexpr (also == Also::remap) cells.begin(cell);
     for_each_group<W>(cell, [&](const auto& rows) {
@@ -85,10 +88,14 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
         else
           v[a] = transfer.take(before, dv[a]);
         if constexpr (Transfer::takes_energy) {
+          // m (|v_p + dv_p|^2 - |v_p'|^2), halved at the end: what PIC takes goes to the ledger's T
+          // (docs/theory/step.md).
           const T kept = before + dv[a];  // with all of the change, as FLIP does
           sums.lost += m * kept * kept;
           sums.lost -= m * v[a] * v[a];
         }
+        // With MPM_FLOAT32 rounded here; the ledger and the remap below take v as computed
+        // (decision 0021).
         store(velocities[a], rows, v[a]);
       });
       sums.add(m, v, dv);

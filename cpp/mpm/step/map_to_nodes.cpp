@@ -32,6 +32,8 @@ void map_patch(Domain<D>& domain, std::size_t p) {
       for (int a = 0; a < D; ++a) f(weights[n][a], block.ghost_weight(a)[n]);
   };
   for_each_weight([](double& weight, double& force) { weight = std::exchange(force, 0.0); });
+  // Every instance writes to this patch's block alone; nodes that others hold too are incomplete
+  // until the exchange.
   with_transfer(domain, [&]<class Transfer>(const Transfer&) {
     using Gives = Mapping<typename Transfer::Gives>;
     if (body.deforms())

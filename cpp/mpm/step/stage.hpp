@@ -47,6 +47,7 @@ inline constexpr auto data_names = std::to_array<std::string_view>(
 
 /// The data and what shares its place (layout/node_records.hpp): who writes one takes the others.
 constexpr std::uint32_t places_of(std::uint32_t data) {
+  // First halves of records beside the mass; second halves.
   constexpr std::uint32_t shared[] = {
       Data::node_momentum | Data::node_velocity,
       Data::ghost_weights | Data::node_force | Data::node_increments | Data::node_remapped};
@@ -63,7 +64,7 @@ struct Stage {
   bool all_particles = false;           // it goes through all of them, and not only some
 };
 
-/// May two stages change places?
+/// May two stages change places, to the same bits?
 template <int D>
 constexpr bool independent(const Stage<D>& a, const Stage<D>& b) {
   // Neither writes what the other reads or writes; by places, as writing a field ends those that
@@ -85,6 +86,7 @@ struct StageList {
   constexpr void add(const Stage<D>& stage) { stages[count++] = stage; }
   constexpr std::size_t find(const Stage<D>& stage) const {
     std::size_t k = 0;
+    // By what it does: names are for people, and two stages may share one.
     while (k < count && stages[k].run != stage.run) ++k;
     return k;
   }
@@ -117,6 +119,7 @@ constexpr StageList<D> fuse(const StageList<D>& list, const Fusion<D>& fusion) {
   for (std::size_t k = 0; k < i; ++k) fused.add(list.stages[k]);
   for (std::size_t k = i + 1; k < j; ++k)
     if (ahead[k]) {
+      // It would have to come before the first and after it.
       if (!independent(list.stages[k], list.stages[i]))
         throw std::logic_error("a stage between needs the first");
       fused.add(list.stages[k]);

@@ -143,10 +143,13 @@ struct Stages : Data {
       node_mass | node_momentum | ghost_weights | node_dashpots, true};
   static constexpr Row fold_momentum{"fold momentum", mpm::fold_momentum<D>,
                                      node_mass | node_momentum, node_mass | node_momentum};
+  // The mass with the momentum: v_i of a node that patches share is the mean over all its
+  // particles.
   static constexpr Row exchange_momentum{"exchange momentum", mpm::exchange_momentum<D>,
                                          node_mass | node_momentum, node_mass | node_momentum};
   static constexpr Row find_velocities{"find velocities", mpm::find_velocities<D>,
                                        node_mass | node_momentum, node_velocity};
+  // Volumes and positions for gaps and normals, eq. (5); it changes velocities and no mass.
   static constexpr Row contact_momentum{
       "contact momentum", mpm::contact_momentum<D>,
       lists | position | rigid_position | mass | volume | node_mass | node_velocity | contacts,
@@ -181,6 +184,7 @@ struct Stages : Data {
       "advance particles", mpm::advance_particles<D>,
       lists | of_particles | of_rigid | node_velocity | node_increments | patch_sums,
       velocity | rigid_velocity | patch_sums, true};
+  // Before anything takes their velocities: the remap in MUSL, the end of the step in the others.
   static constexpr Row hold_rigid{"project rigid velocities", mpm::project_rigid_velocities<D>,
                                   of_rigid | patch_sums, rigid_velocity | patch_sums};
   static constexpr Row remap_momentum{"remap momentum", mpm::remap_momentum<D>,
@@ -197,6 +201,8 @@ struct Stages : Data {
                                      node_mass | node_velocity | node_remapped, node_remapped};
   static constexpr Row contact_remapped{"contact remapped", mpm::contact_remapped<D>,
                                         node_remapped | contacts, node_remapped | contacts};
+  // Last of what reads nodes: until here weights are those of the mapping. It writes the lists as
+  // it marks patches that a particle has left its cell in.
   static constexpr Row move_particles{"move particles", mpm::move_particles<D>,
                                       lists | position | node_velocity, position | lists, true};
   static constexpr Row move_rigid{"move rigid bodies", mpm::move_rigid_bodies<D>,

@@ -5,6 +5,7 @@ namespace mpm {
 
 template <int D>
 void record_contacts(Domain<D>& domain) {
+  // Zero without contact, as the ledger adds them all the same.
   domain.contact_sums = {};
   if (domain.has_contact())
     domain.contact_sums =

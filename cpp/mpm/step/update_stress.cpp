@@ -45,6 +45,8 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
       if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
       const auto w = weights_at(basis, local_position(cell, rows));
       const auto gradients = nodes.template gradients<straining_at>(w);
+      // [i][j] is dv_i / dx_j dt: rows are components, columns the axes of derivation, as in eqs.
+      // (18)-(19).
       unrolled<D>([&](auto i) {
         unrolled<D>(
             [&](auto j) { (scale * gradients[i][j]).store(block.gradient[i][j] + block.count); });
@@ -63,6 +65,7 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
 
 template <bool moves, int straining_at, int D>
 void update(Domain<D>& domain, bool forces_follow) {
+  // A rigid motion strains nothing.
   for_each_patch(domain, deformable, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     with_basis_and_lanes(
@@ -76,11 +79,14 @@ void update(Domain<D>& domain, bool forces_follow) {
 
 template <int D>
 void update_stress_first(Domain<D>& domain) {
+  // Velocities of the start of the step; its forces use the stress made here, and so does the term
+  // P of the ledger.
   update<false, velocity_at>(domain, true);
 }
 
 template <int D>
 void update_stress_last(Domain<D>& domain) {
+  // Nodes have been advanced: v_i + dv_i. The forces have used the stress before.
   update<false, velocity_at>(domain, false);
 }
 
