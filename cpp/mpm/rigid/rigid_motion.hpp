@@ -117,7 +117,8 @@ class RigidTotal {
 /// centre: I w = L on the free axes, w = 0 on the others. An axis without inertia does not turn.
 inline Vector3 spin_of(const Matrix3& inertia, const Vector3& angular, unsigned free_axes) {
   // Of a single particle, or of a row of them about their line along an axis, inertia is rounding.
-  // In 2D xx and yy are not 0, but free_axes leaves these out.
+  // A row oblique to the axes is not caught: I is singular, but no entry of it small. In 2D xx and
+  // yy are not 0, but free_axes leaves these out.
   const double least = 1e-12 * (inertia[0][0] + inertia[1][1] + inertia[2][2]);
   double A[3][3], y[3];
   for (int i = 0; i < 3; ++i) {
