@@ -7,7 +7,8 @@
 
 namespace mpm {
 
-/// N and dN/dxi of the nodes that a particle reaches along an axis, the lowest first.
+/// N and dN/dxi of the nodes that a particle reaches along an axis, the lowest first. xi is in
+/// cells: divide by the cell size for the gradient in space, eq. (20).
 template <class T, int count>
 struct AxisWeights {
   static constexpr int nodes = count;

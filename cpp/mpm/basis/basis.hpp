@@ -61,7 +61,8 @@ inline double half_width(BasisId id, double edge) {
   Bases::with(id, edge, [&](const auto& basis) { half = basis.half_width(); });
   return half;
 }
-/// Distance along an axis at which a particle's function ends [cells].
+/// Distance along an axis at which a particle's function ends [cells]: the hat's own reach and that
+/// of the box over which it is averaged.
 inline double support(BasisId id, double edge) { return 1.0 + half_width(id, edge); }
 
 }  // namespace mpm

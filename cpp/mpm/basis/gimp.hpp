@@ -8,7 +8,10 @@ namespace mpm {
 /// reach the same three. With u the distance from the nearest, a = max(l - |u|, 0) and A = a^2 / (4
 /// l), all lengths in cells, that node and its two neighbours get
 ///   1 - |u| - 2 A,  max(-u, 0) + A below,  max(u, 0) + A above:
-/// the hat plus second differences where the box reaches over the node.
+/// the hat plus second differences where the box reaches over the node. For the mean of |s| over u
+/// - l <= s <= u + l is |u| + 2 A, and the hat is 1 - |s| at the node, max(s, 0) above and max(-s,
+/// 0) below. The three sum to 1 and their first moment is u: mass is kept, and a linear field is
+/// read as it is.
 struct Gimp {
   static constexpr std::string_view name = "gimp";
   static constexpr std::string_view doc =
@@ -21,18 +24,23 @@ struct Gimp {
 
   double l;  // half the particle's edge [cells], at most 1/2
 
+  // No more than half a cell: a wider box would reach a fourth node, which blocks do not hold.
   MPM_HD explicit Gimp(double edge) : l(min(0.5 * edge, 0.5)) {}
   MPM_HD double half_width() const { return l; }
 
   template <class T>
   MPM_HD AxisWeights<T, nodes> along(T xi) const {
     const T u = xi - T(0.5);
+    // By select and max, for the particles in the lanes lie on both sides. At u = 0 both sides give
+    // the derivatives -1/2, 0, 1/2.
     const auto is_above = u >= T(0.0);
     const T above = max(u, T(0.0)), below = max(-u, T(0.0));
     const T a = max(T(l) - (below + above), T(0.0)), A = T(0.25 / l) * a * a;
+    // a falls by 1 as |u| grows by 1: dA/du = -sign(u) a / (2 l).
     const T dA = select(is_above, T(-0.5 / l), T(0.5 / l)) * a;
     const T low = select(is_above, T(0.0), T(-1.0)) + dA;
     const T high = select(is_above, T(1.0), T(0.0)) + dA;
+    // The middle derivative is what makes the sum 0: a body that moves as one is not strained.
     return {{below + A, fma(T(-2.0), A, T(1.0) - (below + above)), above + A},
             {low, -(low + high), high}};
   }

@@ -10,6 +10,8 @@ struct Linear {
       "the paper's shape functions, and the fastest; noisy where particles cross cells";
   static constexpr std::string_view source = "Sulsky, Chen & Schreyer 1994";
 
+  // Its gradient jumps where particles cross cells, and with it eq. (9): the noise that GIMP was
+  // made against (Bardenhagen & Kober 2004).
   static constexpr int nodes = 2, before = 0;
   static constexpr double own_node = 0.0;
   static constexpr bool odd_at_fixed_walls = false;

@@ -5,7 +5,9 @@ namespace mpm {
 
 /// The quadratic B-spline with knots midway between the nodes, where cells are centred at the
 /// nodes: with u = xi - 1/2 the distance from the cell's own node, (1/2 -+ u)^2 / 2 at its
-/// neighbours and 3/4 - u^2 between them. Its derivative is continuous.
+/// neighbours and 3/4 - u^2 between them. Its derivative is continuous. It is GIMP with l = 1/2,
+/// the hat averaged over a cell: there A = (1/2 - |u|)^2 / 2, so that max(u, 0) + A = (1/2 + u)^2 /
+/// 2.
 struct QuadraticBSpline {
   static constexpr std::string_view name = "quadratic_bspline";
   static constexpr std::string_view doc =
@@ -14,6 +16,8 @@ struct QuadraticBSpline {
 
   static constexpr int nodes = 3, before = 1;
   static constexpr double own_node = 0.5;
+  // At a node on the wall (u = 0) its neighbours still have 1/8. Were the one beyond held, v at the
+  // wall would be 1/8 of that of the one before it; turned, the two cancel.
   static constexpr bool odd_at_fixed_walls = true;
 
   MPM_HD explicit QuadraticBSpline(double /*edge*/) {}
@@ -21,6 +25,7 @@ struct QuadraticBSpline {
 
   template <class T>
   MPM_HD AxisWeights<T, nodes> along(T xi) const {
+    // xi = 1/2 + u and rest = 1/2 - u.
     const T rest = T(1.0) - xi, u = xi - T(0.5);
     return {{T(0.5) * rest * rest, fma(-u, u, T(0.75)), T(0.5) * xi * xi},
             {-rest, T(-2.0) * u, xi}};

@@ -23,7 +23,8 @@ void for_each_piece(Domain<D>& domain, int load, const ParticlePool<D>& pool,
 }
 
 /// Take the pieces of a patch's particles along; the nodal velocity that strains the material is
-/// the vector at number `at` of the records.
+/// the vector at number `at` of the records, so that surface and material deform by the same L. One
+/// by one and apart from the loop over all particles, as few of them carry a piece.
 template <int at, int D>
 [[gnu::noinline]] void carry_loads(Domain<D>& domain, std::size_t p) {
   const auto& grid = domain.grid;
@@ -32,10 +33,12 @@ template <int at, int D>
   const ParticlePool<D>& pool = domain.pool_of(patch);
   const double scale = domain.time_step / grid.cell_size;
   for (int l = 0; l < static_cast<int>(domain.loads.size()); ++l) {
+    // A piece per load: where two loads meet on a particle each carries its own along.
     if (domain.loads[static_cast<std::size_t>(l)].body != patch.body) continue;
     with_basis(grid, body, [&]<BasisModel B>(const B& basis) {
       const NodeStrides<D> stride(patch.shape);
       for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
+        // With the linear basis a field is made for a whole cell, which few cells need.
         bool loaded = false;
         for_each_piece(domain, l, pool, cell,
                        [&](std::uint32_t, const SurfacePiece<D>&) { loaded = true; });
@@ -49,6 +52,7 @@ template <int at, int D>
           const auto gradients = nodes.template gradients<at>(w);
           Mat<double, D> L;
           for (int i = 0; i < D; ++i)
+            // L dt: gradients are with respect to xi, in cells.
             for (int j = 0; j < D; ++j) L[i][j] = scale * gradients[static_cast<std::size_t>(i)][j];
           piece.carry(L);
         });

@@ -9,7 +9,9 @@ namespace mpm {
 namespace {
 
 /// f(force [N], nodes) for the pieces of a load that a patch's particles carry; nodes(g) calls
-/// g(node, N) for the nodes around the middle of the piece with their linear functions there.
+/// g(node, N) for the nodes around the middle of the piece with their linear functions there. The
+/// force and, once nodes are advanced, its work go through this one loop, at the same places, so
+/// that the work is exactly that of the force given: particles move later.
 template <int D, class F>
 void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& f) {
   const TileGrid<D>& grid = domain.grid;
@@ -17,6 +19,8 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
   const SurfaceLoad<D>& load = domain.loads[l];
   if (load.body != patch.body) return;
   const ParticlePool<D>& pool = domain.pool_of(patch);
+  // The box of the particle's function. Within it the nodes around the piece are among those to
+  // which the particle gives mass.
   const double reach = half_width(grid.basis, domain.body_of(patch).mean_edge / grid.cell_size);
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto number = static_cast<int>(l);
@@ -27,11 +31,15 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
       for (int a = 0; a < D; ++a) {
         const auto k = static_cast<std::size_t>(a);
         const double x = around.place[a] - around.lower[k];
-        // No further than the nodes beside the cell's own: rounding may put x beyond its cell.
+        // Between the nodes around the particle, or in its box: nodes farther off may have no mass.
+        // No further than the nodes beside the cell's own, which the block holds: rounding may put
+        // x beyond its cell. The load then acts too deep, by half a spacing at most
+        // (docs/theory/step.md).
         const int own = cell.cell[k] - around.lower[k];
         const double low = std::max(std::min(0.0, x - reach), own - 1.0);
         const double high = std::min(std::max(1.0, x + reach), own + 1.0);
         xi[a] = std::clamp(x + piece.arm[a] / grid.cell_size, low, high);
+        // With a box the point may lie between the next pair of nodes.
         shift[k] = xi[a] < 0.0 ? -1 : xi[a] > 1.0 ? 1 : 0;
         xi[a] -= shift[k];
       }
@@ -51,6 +59,7 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
 /// The loads of a step: their means over it, and room for the patches' sums.
 template <int D>
 void start_loads(Domain<D>& domain) {
+  // The mean over the step, in closed form: the impulse is exact whatever the step's length.
   const double now = domain.time, next = domain.time + domain.time_step;
   for (SurfaceLoad<D>& load : domain.loads)
     for (int a = 0; a < D; ++a)
@@ -62,13 +71,16 @@ void start_loads(Domain<D>& domain) {
 /// f_i += sum over the pieces of N_i(x) f, x the middle of the piece: the surface term of the
 /// equation of motion (Sulsky, Chen & Schreyer 1994). N_i are the linear functions. x is held
 /// between the nodes around the particle, or within the box over which its function is a mean, so
-/// that only nodes with mass are loaded.
+/// that only nodes with mass are loaded. Linear with GIMP too: its boxes of a uniform stress are in
+/// balance with just these, for the mean of grad N_i over a box is what the divergence theorem
+/// turns into N_i on its surface.
 template <int D>
 void scatter_loads(Domain<D>& domain, std::size_t p) {
   const NodeBlock<D> block = domain.grid.block(p);
   for (std::size_t l = 0; l < domain.loads.size(); ++l) {
     Vec<double, D>& total = domain.load_parts[p * domain.loads.size() + l];
     for_each_loaded_piece(domain, p, l, [&](const Vec<double, D>& force, auto&& nodes) {
+      // Per patch and load, so that no thread adds to another's; summed exactly below.
       total += force;
       nodes([&](int node, double N) {
         for (int a = 0; a < D; ++a) block.force(a)[node] += N * force[a];
@@ -87,6 +99,8 @@ Work work_of_loads(Domain<D>& domain, std::size_t p) {
     for_each_loaded_piece(domain, p, l, [&](const Vec<double, D>& force, auto&& nodes) {
       nodes([&](int node, double N) {
         for (int a = 0; a < D; ++a) {
+          // Before the step the velocity was v - dv; first and half of second together are the work
+          // in the middle of the step.
           const double f = N * force[a], dv = block.increment(a)[node];
           work.first += f * (block.velocity(a)[node] - dv);
           work.second += f * dv;
@@ -100,12 +114,14 @@ template <int D>
 void load_surfaces(Domain<D>& domain) {
   if (!domain.has_loads()) return;
   start_loads(domain);
+  // Onto the internal forces of the patch's own block, before these are folded and exchanged.
   domain.threads.for_each(domain.grid.patches.size(),
                           [&](std::size_t p) { scatter_loads(domain, p); });
   const std::size_t count = domain.loads.size();
   for (std::size_t l = 0; l < count; ++l) {
     SurfaceLoad<D>& load = domain.loads[l];
     for (int a = 0; a < D; ++a) {
+      // Patch by patch, of no order (decision 0038).
       ExactSum force;
       for (std::size_t k = l; k < domain.load_parts.size(); k += count)
         force.add(domain.load_parts[k][a]);

@@ -12,6 +12,8 @@
 
 namespace mpm {
 
+/// Transpose of the adjugate: det(a) a^-T, also where a has no inverse. [i][j] without row i and
+/// column j; by indices modulo 3 the signs come by themselves.
 template <int D>
 Mat<double, D> cofactor(const Mat<double, D>& a) {
   Mat<double, D> r;
@@ -47,6 +49,8 @@ Mat<double, D> deformation(const Mat<double, D>& L) {
       plus[i][j] = 0.5 * L[i][j] + (i == j ? 1.0 : 0.0);
       minus[i][j] = -0.5 * L[i][j] + (i == j ? 1.0 : 0.0);
     }
+  // The inverse is the adjugate over the determinant; for a spin (1 - L/2) is never singular, as |1
+  // - L/2| = 1 + |omega dt|^2 / 4.
   const Mat<double, D> adjugate = cofactor(minus);  // transposed
   const double inverse = 1.0 / determinant(minus);
   Mat<double, D> r;
@@ -72,6 +76,8 @@ struct SurfacePiece {
   /// Take it along with its particle: da = cof(F) dA (Nanson), dx = F dX; L as above.
   void carry(const Mat<double, D>& L) {
     const Mat<double, D> F = deformation(L);
+    // The size follows the vector's length: at an edge, where vectors of two sides have been added,
+    // the size is larger than that, and no cofactor is its own.
     const double before = norm(area);
     area = product(cofactor(F), area);
     if (before > 0.0) size *= norm(area) / before;

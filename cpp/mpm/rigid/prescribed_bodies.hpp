@@ -1,7 +1,7 @@
 #pragma once
 // Bodies whose motion is prescribed: their nodes and particles have the velocity of that motion,
-// whatever acts on them. They have no stress, and map nothing but their mass, where others are
-// near.
+// whatever acts on them. They have no stress, and give mass to nodes only where others are near;
+// the momentum that comes with it is overwritten (find_velocities).
 #include "mpm/domain.hpp"
 #include "mpm/schedule/cell_loop.hpp"
 
@@ -15,6 +15,8 @@ void set_rigid_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const No
   for (int n = 0; n < patch.shape.node_count; ++n) {
     Index<D> node = patch.shape.index(n);
     for (int a = 0; a < D; ++a) node[a] += first[a];
+    // At the node itself, not mapped from particles: exact in a rotation, and at nodes without
+    // particles too.
     const Vector3 v = motion.velocity_at(in_space<D>(grid.position_of(node)));
     for (int a = 0; a < D; ++a) block.velocity(a)[n] = v[a];
   }

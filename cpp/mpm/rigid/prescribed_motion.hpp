@@ -26,13 +26,16 @@ struct PrescribedMotion {
     before = now;
   }
   void begin_step(double from, double to) {
+    // The last step's mean, not its end: what nodes and particles have had, so that increments add
+    // up.
     before = now;
     for (std::size_t a = 0; a < 3; ++a) {
       now.velocity.c[a] = velocity[a].mean(from, to);
       now.spin.c[a] = spin[a].mean(from, to);
     }
   }
-  /// Bound of the speed of the body's particles in a step from `from` to `to` [m/s].
+  /// Bound of the speed of the body's particles in a step from `from` to `to` [m/s], for the time
+  /// step: a function of time may jump, so the last step's speed is none.
   double speed(double from, double to) const {
     Vector3 v, w;
     for (std::size_t a = 0; a < 3; ++a) {

@@ -36,6 +36,7 @@ std::size_t rigid_of(Domain<D>& domain, const Patch<D>& patch) {
 template <int D>
 void gather(Domain<D>& domain) {
   auto& parts = domain.rigid_parts;
+  // Per patch, in the order of its particles, and then over patches exactly: whichever thread.
   parts.assign(domain.grid.patches.size(), {});
   for_each_patch(domain, free_rigid, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
@@ -44,6 +45,7 @@ void gather(Domain<D>& domain) {
     for (const std::uint32_t row : pool.rows(patch)) {
       parts[p].add(pool.mass()[row], position(pool, row) - centre, velocity(pool, row));
       for (int a = 0; a < D; ++a)
+        // In cells from node 0, as walls are.
         parts[p].extent.add(a, domain.grid.among_nodes(pool.x(a)[row], a));
     }
   });
@@ -51,6 +53,7 @@ void gather(Domain<D>& domain) {
   for_each_moving(domain, [&](const Body<D>&, std::size_t k) {
     const auto patches =
         patches_of<D>(domain.grid.patches, static_cast<int>(domain.rigid_bodies[k]));
+    // The patches of a body follow each other, and `parts` is in the order of the patches.
     const RigidSums* part = &parts[static_cast<std::size_t>(&patches[0] - &domain.grid.patches[0])];
     RigidTotal total;
     for (std::size_t p = 0; p < patches.size(); ++p) total.add(part[p]);
@@ -59,7 +62,8 @@ void gather(Domain<D>& domain) {
 }
 
 /// Axes along which walls hold a body of that extent: half a particle lies between its particles
-/// and the face.
+/// and the face. Held nodes have no increment, but a body that is not stressed is not stopped by
+/// that alone: so its motion is held as a whole.
 template <int D>
 unsigned constrained_axes(const Domain<D>& domain, const Body<D>& body, const Extent& extent) {
   const auto& grid = domain.grid;
@@ -69,6 +73,7 @@ unsigned constrained_axes(const Domain<D>& domain, const Body<D>& body, const Ex
   for (int a = 0; a < D; ++a)
     for (int side = 0; side < 2; ++side) {
       const Wall wall = grid.walls.face[a][side];
+      // Nodes on an absorbing face are not held, and rigid bodies have no dashpots.
       if (wall == Wall::free || wall == Wall::absorbing) continue;
       const double nearest = side == 0
                                  ? extent.lower[a]
@@ -86,6 +91,7 @@ void set_velocities(ParticlePool<D>& pool, const Patch<D>& patch, const RigidMot
   double kinetic = 0.0, fastest = 0.0;
   for (int a = 0; a < D; ++a) sums.momentum[a] = 0.0;
   for (const std::uint32_t row : pool.rows(patch)) {
+    // At the place where the particle is now: called before and after the move.
     const Vector3 v = motion.velocity_at(position(pool, row));
     const double m = pool.mass()[row], square = dot(v, v);
     for (int a = 0; a < D; ++a) {
@@ -95,8 +101,10 @@ void set_velocities(ParticlePool<D>& pool, const Patch<D>& patch, const RigidMot
     kinetic += 0.5 * m * square;
     fastest = std::max(fastest, square);
   }
+  // |v| alone: no wave of a rigid body limits the time step. From the squares, one root a patch.
   sums.stress.fastest = std::sqrt(fastest);
-  // What differs from the velocities before is numerical: increments are not rigid.
+  // What differs from the velocities before is numerical: increments are not rigid, and (second
+  // time in a step) places have changed. Counted as energy of the time integration.
   sums.made_rigid += sums.kinetic - kinetic;
   sums.kinetic = kinetic;
 }
@@ -104,7 +112,9 @@ void set_velocities(ParticlePool<D>& pool, const Patch<D>& patch, const RigidMot
 /// Centre, velocity, spin and inertia of every rigid body.
 template <int D>
 void find_rigid_motion(Domain<D>& domain) {
-  // Twice: about a centre that is far off, inertia would be a difference of large numbers.
+  // Twice: about a centre that is far off, inertia would be a difference of large numbers. The
+  // first pass is about that of the last step and finds the centre, the second has r small and sum
+  // m r = 0 but for rounding, so that momentum and spin come apart.
   gather(domain);
   for_each_moving(domain, [&](const Body<D>&, std::size_t k) {
     domain.rigid[k].centre += (1.0 / domain.rigid_sums[k].mass) * domain.rigid_sums[k].first;
@@ -113,13 +123,18 @@ void find_rigid_motion(Domain<D>& domain) {
   for_each_moving(domain, [&](const Body<D>& body, std::size_t k) {
     const RigidSums& sums = domain.rigid_sums[k];
     RigidMotion& motion = domain.rigid[k];
+    // Linear momentum by the mass, angular by the inertia: the rigid field nearest to the
+    // velocities of eq. (17) in the norm of kinetic energy, so that the projection takes energy and
+    // never gives any.
     motion.velocity = (1.0 / sums.mass) * sums.momentum;
     motion.inertia = sums.inertia;
     const unsigned constrained = constrained_axes(domain, body, sums.extent);
+    // In the plane about z alone.
     motion.free_axes = D == 2 ? 4u : 7u;
     for (int a = 0; a < 3; ++a) {
       if (constrained >> a & 1u) motion.velocity[a] = 0.0;
-      // A body that stands on a face turns about the face's normal only.
+      // A body that stands on a face turns about the face's normal only: about axis a if no axis
+      // but a is held.
       if (constrained & ~(1u << a)) motion.free_axes &= ~(1u << a);
     }
     motion.spin = spin_of(motion.inertia, sums.angular, motion.free_axes);
@@ -145,6 +160,8 @@ void move_rigid_bodies(Domain<D>& domain) {
   if (!domain.has_rigid()) return;
   auto& before = domain.rigid_before;
   auto& turns = domain.rigid_turns;
+  // The centre of the start of the step, about which particles turn; no allocation once it has its
+  // size.
   before = domain.rigid;
   turns.resize(domain.rigid.size());
   for_each_moving(domain, [&](const Body<D>&, std::size_t k) {
@@ -159,14 +176,18 @@ void move_rigid_bodies(Domain<D>& domain) {
       for (std::uint32_t k = 0; k < cell.count; ++k) {
         const std::uint32_t row = cell.rows[k];
         const Vector3 x =
+            // From the centre anew, so that distances in the body grow by rounding alone, not with
+            // the step as by x + v dt.
             domain.rigid[r].centre + turns[r] * (position(pool, row) - before[r].centre);
         for (int a = 0; a < D; ++a) {
           pool.x(a)[row] = x[a];
+          // As lists do (CellCoordinates), so that both agree on who has left.
           const double local = domain.grid.in_cells(x[a], a) - cell.cell[a];
           patch.left_cell = patch.left_cell || local < 0.0 || local >= 1.0;
         }
       }
     });
+    // With the spin and the places of the end of the step.
     set_velocities(pool, patch, domain.rigid[r], domain.sums[p]);
   });
 }

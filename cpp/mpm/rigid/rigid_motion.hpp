@@ -27,7 +27,8 @@ inline Matrix3 transposed(const Matrix3& a) {
   return r;
 }
 
-/// Rotation by the vector `angle` [rad] (Rodrigues).
+/// Rotation by the vector `angle` [rad] (Rodrigues): R = 1 + sin [n]x + (1 - cos) [n]x^2, written
+/// out with [n]x^2 = n n^T - 1. Without an angle n is 0, and R is 1 exactly.
 inline Matrix3 rotation(const Vector3& angle) {
   const double size = norm(angle);
   const Vector3 n = normalised(angle);
@@ -57,7 +58,8 @@ struct Extent {
   }
 };
 
-/// Mass, momentum, angular momentum and inertia of particles, about a point; and where they lie.
+/// Mass, momentum, angular momentum and inertia of particles, about a point; and where they lie. In
+/// 2D z is 0, so that of the inertia zz alone is that of the motion, and the spin has z alone.
 struct RigidSums {
   double mass = 0.0;                   // [kg]
   Vector3 first = Vector3::zero();     // sum of m r [kg m]
@@ -71,11 +73,12 @@ struct RigidSums {
     first += m * r;
     momentum += m * v;
     angular += m * cross(r, v);
+    // I = sum m (r^2 1 - r r^T), of points: a particle alone has none.
     const double square = dot(r, r);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) inertia[i][j] += m * ((i == j ? square : 0.0) - r[i] * r[j]);
   }
-  /// f(number) for all that are sums, in one order.
+  /// f(number) for all that are sums, in one order: 1 + 3 (3 + 3) = 19.
   template <class F>
   void for_each(F&& f) {
     f(mass);
@@ -88,7 +91,8 @@ struct RigidSums {
   }
 };
 
-/// The sums over parts of a body, which depend on no order.
+/// The sums over parts of a body, which depend on no order: exact, rounded once (decision 0038). So
+/// are the extents, of which each is some particle's place.
 class RigidTotal {
  public:
   void add(RigidSums part) {
@@ -109,18 +113,43 @@ class RigidTotal {
   Extent extent_;
 };
 
+/// Give a row of particles, oblique to the axes, an inertia about its own line, about which it has
+/// no angular momentum: I of rank two is made regular, and the solution of I w = L along the line
+/// is 0. The line d is in the cofactors of I, which are mu_1 mu_2 d d^T.
+inline void turn_no_line(double (&I)[3][3]) {
+  double cofactors[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+      cofactors[i][j] = I[a][c] * I[b][d] - I[a][d] * I[b][c];
+    }
+  const double determinant =
+      I[0][0] * cofactors[0][0] + I[0][1] * cofactors[0][1] + I[0][2] * cofactors[0][2];
+  const double trace = I[0][0] + I[1][1] + I[2][2];
+  if (determinant > 1e-12 * trace * trace * trace) return;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) I[i][j] += cofactors[i][j] / trace;
+}
+
 /// Spin [rad/s] about the axes that are free, of an angular momentum and an inertia about the mass
-/// centre. An axis without inertia does not turn.
+/// centre: I w = L on the free axes, w = 0 on the others. An axis without inertia does not turn.
 inline Vector3 spin_of(const Matrix3& inertia, const Vector3& angular, unsigned free_axes) {
+  // Of a single particle, or of a row of them about their line along an axis, inertia is rounding.
+  // In 2D xx and yy are not 0, but free_axes leaves these out.
   const double least = 1e-12 * (inertia[0][0] + inertia[1][1] + inertia[2][2]);
   double A[3][3], y[3];
+  int turning = 0;
   for (int i = 0; i < 3; ++i) {
     const bool turns = (free_axes >> i & 1u) && inertia[i][i] > least;
+    turning += turns ? 1 : 0;
     y[i] = turns ? angular[i] : 0.0;
     for (int j = 0; j < 3; ++j)
+      // The row of an axis that does not turn is that of the unit matrix, with 0 on the right: one
+      // solution of 3 x 3 for all cases.
       A[i][j] = turns && (free_axes >> j & 1u) && inertia[j][j] > least ? inertia[i][j]
                                                                         : (i == j ? 1.0 : 0.0);
   }
+  if (turning == 3) turn_no_line(A);
   solve_symmetric(A, y);
   return {y[0], y[1], y[2]};
 }
@@ -140,13 +169,20 @@ struct RigidMotion {
 /// middle of the step, and its angular momentum stays (second-order accurate, after Simo & Wong
 /// 1991, sec. 4). Returns the turn; `motion` becomes that of the end of the step.
 inline Matrix3 turn(RigidMotion& motion, double time_step) {
+  // L stays in space while the body's inertia turns with it: I = R I R^T. The spin at the half
+  // step, I_half^-1 L, turns it for the whole step (explicit midpoint rule), which for a spin about
+  // a principal axis is exact.
   const Vector3 angular = motion.inertia * motion.spin;
   const auto turned = [&](const Matrix3& R) { return R * motion.inertia * transposed(R); };
   const Matrix3 half = rotation((0.5 * time_step) * motion.spin);
   const Vector3 middle = spin_of(turned(half), angular, motion.free_axes);
   const Matrix3 whole = rotation(time_step * middle);
   motion.inertia = turned(whole);
+  // From L again, so that L is kept for any number of steps and only the energy is not, which the
+  // ledger counts (made_rigid).
   motion.spin = spin_of(motion.inertia, angular, motion.free_axes);
+  // Straight: gravity and contact of the step are in the velocity already, as for particles, eq.
+  // (16).
   motion.centre += time_step * motion.velocity;
   return whole;
 }

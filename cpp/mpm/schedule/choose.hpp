@@ -1,5 +1,8 @@
 #pragma once
-// Which schedule a basis has.
+// Which schedule a basis has. With two nodes along an axis a field is a polynomial of 2^D
+// coefficients in a cell, and the 2^D nodes of a cell fill registers. With three, 3^D, neither is
+// so: there nodes are summed over one by one as particles lie in the lanes (decision 0024), and
+// what is given has the four numbers of half a record in the lanes (decision 0018).
 #include <type_traits>
 
 #include "mpm/schedule/multilinear_field.hpp"

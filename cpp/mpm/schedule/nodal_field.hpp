@@ -7,7 +7,10 @@
 
 namespace mpm {
 
-/// The nodal fields around one cell, whose particles reach `count` nodes along an axis.
+/// The nodal fields around one cell, whose particles reach `count` nodes along an axis: the same
+/// nodes for all of them, as cells are centred at the nodes (decision 0022). So particles can be
+/// the lanes, and each number of a node is loaded once for all of them and repeated (decision
+/// 0024).
 template <int D, int count>
 class NodalField {
  public:
@@ -20,6 +23,8 @@ class NodalField {
   Vec<T, D> vector(const Weights<T, D, count>& w) const {
     Vec<T, D> total = Vec<T, D>::zero();
     for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
+      // Along x first: N_y N_z is then multiplied in once a row, not at every node. Rows come y
+      // within z in all instances, so that the sum has one order.
       T share = w.axis[1].N[y];
       if constexpr (D == 3) share *= w.axis[D - 1].N[z];
       unrolled<D>([&](auto i) MPM_INLINE {
@@ -35,6 +40,9 @@ class NodalField {
     std::array<Vec<T, D>, D> g;
     g.fill(Vec<T, D>::zero());
     for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
+      // d/dx, d/dy, d/dz of N_x N_y N_z: of each row two sums along x are enough, with N and with
+      // dN, as the other factors are one for the row. 270 operations in 3D and 48 in 2D for all
+      // particles in the lanes (decision 0024).
       T N = w.axis[1].N[y], dy = w.axis[1].dN[y], dz(0.0);
       if constexpr (D == 3) {
         dz = N * w.axis[D - 1].dN[z];
@@ -59,7 +67,8 @@ class NodalField {
       unrolled<count>([&](auto y) MPM_INLINE { f(y, z, first_.from(stride_.to(0, y, z))); });
     });
   }
-  /// Of a row, whose records begin at the number that is wanted: the sum with factors along x.
+  /// Of a row, whose records begin at the number that is wanted: the sum with factors along x. It
+  /// begins with a product: 0 + a b would be an addition that the compiler must keep.
   template <class T>
   [[gnu::always_inline]] static T along(const NodeRecords& row, const T* x) {
     T sum = x[0] * T(*row[0]);

@@ -1,14 +1,17 @@
 #pragma once
 // Scatter with the nodes of a cell in the lanes, for a basis of two nodes along an axis: the sums
-// of all particles of a cell stay in registers.
+// of all particles of a cell stay in registers, eqs. (2), (3) and (9), and memory is touched once a
+// cell. Particles follow each other in the order of their numbers, so every sum has that order for
+// any width of registers.
 #include "mpm/schedule/payload.hpp"
 #include "mpm/schedule/weights.hpp"
 
 namespace mpm {
 
 namespace nodes_in_lanes {
-/// Places of the nodes along an axis, 0 or 1, over the lanes; and 1 - 2 of them: N along the axis
-/// is 1 - place - (1 - 2 place) xi.
+/// Over the nodes of a cell: N along an axis is base + slope xi, where base = 1 - place and slope =
+/// 2 place - 1 of the node's place 0 or 1: 1 - xi and xi. In tables, so that one multiply-add gives
+/// it in all lanes and no lane is chosen by a condition.
 template <int D>
 constexpr auto pattern(bool slope) {
   std::array<std::array<double, 1 << D>, D> r{};
@@ -25,8 +28,10 @@ template <int D>
 inline constexpr auto slope = pattern<D>(true);
 }  // namespace nodes_in_lanes
 
-/// Arithmetic of a mapping's formulas: p.m, p.v and p.traction are a particle's numbers, N_ip and
-/// its gradient have a lane for each node.
+/// Arithmetic of a mapping's formulas (step/transfer): p.m, p.v and p.traction are a particle's
+/// numbers, N_ip and its gradient have a lane for each node. A product with a vector is not carried
+/// out but noted (Momentum, Force), so that `VectorSums` does it with the sum, rounded once
+/// (decision 0033).
 namespace nodes_in_lanes {
 template <int D>
 using Sums = NodeBatch<(1 << D)>;
@@ -61,7 +66,7 @@ template <int D>
 Force<D> operator*(const Traction<D>& traction, const Gradient<D>& gradient) {
   return {traction, gradient};
 }
-/// A sum over particles of vectors.
+/// A sum over particles of vectors. In 2D the third stays 0, for the empty place of a half record.
 template <int D>
 struct VectorSums {
   Sums<D> c[3] = {Sums<D>::zero(), Sums<D>::zero(), Sums<D>::zero()};
@@ -69,13 +74,14 @@ struct VectorSums {
   MPM_INLINE void operator+=(const Momentum<D>& p) {
     unrolled<D>([&](auto a) { c[a].add(p.v.c[a], p.m); });
   }
+  // f_a += t_ab dN/dxi_b; the sign of eq. (9), the volume and 1 / h are in t (ParticleReader).
   MPM_INLINE void operator+=(const Force<D>& p) {
     unrolled<D>([&](auto a) {
       unrolled<D>([&](auto b) { c[a].add(p.traction.t(a, b), p.gradient.along[b]); });
     });
   }
 };
-/// What is not asked for.
+/// What is not asked for: a formula adds to it, and nothing is computed.
 struct Nothing {
   template <class T>
   void operator+=(const T&) {}
@@ -99,7 +105,8 @@ class NodesInLanes {
  public:
   template <int room>
   using Payload = PayloadColumns<D, room>;
-  /// What is to be known of a cell's particles: their position in the cell.
+  /// What is to be known of a cell's particles: their position in the cell, D numbers in place of
+  /// the factors, which are cheap to make from it in the lanes of the nodes.
   template <int room>
   struct Places {
     double xi[D][room];
@@ -119,7 +126,10 @@ class NodesInLanes {
             int count) const {
     constexpr bool forces = (what & gives_forces) != 0, momentum = what != gives_forces;
     static_assert(!(forces && momentum) || (what & gives_mass), "mass comes before the momentum");
-    // All sums at once where the machine's registers hold them and a quarter is left for the rest.
+    // All sums at once where the machine's registers hold them and a quarter is left for the rest:
+    // 1 + 2 D of them (mass, momentum, force), each in `parts` registers. In 3D that is 7 of 32
+    // with AVX-512, but 14 of 16 with AVX2: there the particles are gone through twice, momentum
+    // and then forces. The terms and their order are the same either way, and so are the bits.
     constexpr int all = native_lanes == 8 ? 32 : 16;
     if constexpr (!forces || !momentum || Sums::parts * (1 + 2 * D) <= all - all / 4) {
       give_sums<Mapping, what>(nodes, places, payload, count);
@@ -142,6 +152,8 @@ class NodesInLanes {
       if constexpr (what != gives_forces) Mapping::give_momentum(p, functions(places, k), sums);
       if constexpr ((what & gives_forces) != 0) Mapping::give_force(p, gradients(places, k), sums);
     }
+    // As halves of records: mass and momentum, or momentum alone from the first place on (MUSL's
+    // remap, whose mass is known), and the force.
     const auto& p = sums.p.c;
     const auto& f = sums.f.c;
     if constexpr ((what & gives_mass) != 0)
@@ -153,6 +165,7 @@ class NodesInLanes {
   }
   template <unsigned what, int room>
   static nodes_in_lanes::Particle<D> particle(const Payload<room>& payload, int k) {
+    // What is not scattered has not been laid out either, and is not read.
     nodes_in_lanes::Particle<D> p;
     if constexpr (what != gives_forces) {
       p.m = payload.mass[k];
@@ -163,7 +176,7 @@ class NodesInLanes {
     return p;
   }
 
-  /// N_ip over the cell's nodes, for particle p of those.
+  /// N_ip over the cell's nodes, for particle p of those: the product over the axes.
   template <int room>
   static Sums functions(const Places<room>& places, int p) {
     Part inner = lanes(0, places.xi[0][p]);
@@ -176,7 +189,8 @@ class NodesInLanes {
     }
     return N;
   }
-  /// dN_ip / d xi over the cell's nodes, along each axis.
+  /// dN_ip / d xi over the cell's nodes, along each axis: its slope, -1 or 1, times N along the
+  /// others. These are exact factors, so it matters for no bit where the sign is multiplied in.
   template <int room>
   static nodes_in_lanes::Gradient<D> gradients(const Places<room>& places, int p) {
     nodes_in_lanes::Gradient<D> G;
@@ -184,6 +198,7 @@ class NodesInLanes {
     for (int a = 0; a < inner_axes; ++a) N[a] = lanes(a, places.xi[a][p]);
     for (int a = 0; a < D; ++a)
       for (int k = 0; k < Sums::parts; ++k) {
+        // Along axis a the slope, of the others N; inner axes first, as in `functions`.
         Part g = a < inner_axes ? Part::load(slopes(a)) : Part(place(a, k) ? 1.0 : -1.0);
         for (int b = 0; b < inner_axes; ++b)
           if (b != a) g = g * N[b];
@@ -193,13 +208,16 @@ class NodesInLanes {
       }
     return G;
   }
-  /// To half the nodes' records: the values of four fields.
+  /// To half the nodes' records: the values of four fields. Lanes hold nodes, memory holds fields,
+  /// so registers are transposed and each node is read and written once, as one register.
   template <int width>
   void add_to_nodes(const Nodes<width>& nodes, const Sums& a, const Sums& b, const Sums& c,
                     const Sums& d) const {
     unrolled<Sums::parts>([&](auto part) {
       transpose_to_nodes(a.part[part], b.part[part], c.part[part], d.part[part],
                          [&](int k, Batch<4> q) {
+                           // Number of the node in the cell, its bits being the places along x, y,
+                           // z (base, slope).
                            k += part * Sums::width;
                            double* to = nodes[stride_.to(k & 1, k >> 1 & 1, k >> 2)];
                            (Batch<4>::load(to) + q).store(to);
@@ -207,7 +225,8 @@ class NodesInLanes {
     });
   }
 
-  // The nodes of one register differ in the place along these axes; along the others they share it.
+  // The nodes of one register differ in the place along these axes; along the others they share it,
+  // so that a whole register has one factor, xi or 1 - xi, and no table.
   static constexpr int inner_axes = Sums::width == 8 ? 3 : Sums::width == 4 ? 2 : 1;
 
   static const double* slopes(int a) {
@@ -215,7 +234,8 @@ class NodesInLanes {
   }
   /// Place along an outer axis of the nodes in register k.
   static constexpr int place(int a, int k) { return k * Sums::width >> a & 1; }
-  /// One-axis factor of an inner axis, and of an outer one in register k.
+  /// One-axis factor of an inner axis, and of an outer one in register k. 1 - xi is rounded once in
+  /// both, so it makes no difference to the bits which axes are inner ones.
   static Part lanes(int a, double xi) {
     return fma(Part(xi), Part::load(slopes(a)),
                Part::load(nodes_in_lanes::base<D>[static_cast<std::size_t>(a)].data()));

@@ -6,18 +6,21 @@
 
 namespace mpm {
 
-/// What is scattered: a sum of these. Forces come with neither or with both of the others.
+/// What is scattered: a sum of these. Forces come with neither or with both of the others; MUSL's
+/// remap gives momentum alone, onto the mass of the first mapping.
 enum Gives : unsigned { gives_mass = 1, gives_momentum = 2, gives_forces = 4 };
 
 /// Of some particles of a cell, one after another, as far as it is scattered: where nodes are the
-/// lanes.
+/// lanes. Columns, since registers of particles are written as they are and single numbers are
+/// read, each repeated over the nodes.
 template <int D, int room>
 struct PayloadColumns {
   double mass[room];                            // [kg]
   double velocity[D][room];                     // [m/s]
   double traction[Sym<double, D>::size][room];  // components of -V_p (sigma_p - q_p 1) / h [N]
 
-  /// Of the particles in the lanes, from place `at` on.
+  /// Of the particles in the lanes, from place `at` on: whole registers, so that `room` must leave
+  /// space for the lanes that hold no particle (CellBuffer).
   template <unsigned /*what*/, class T>
   void add(int at, T m, const Vec<T, D>& v) {
     store_lanes(mass + at, m);
@@ -29,7 +32,9 @@ struct PayloadColumns {
   }
 };
 
-/// The same where the numbers of half a node's record are the lanes.
+/// The same where the numbers of half a node's record are the lanes. With a one before the velocity
+/// (1, v) m_p N_ip is (m_ip, p_ip): mass and momentum of eqs. (2) and (3) in one multiply-add. The
+/// registers of particles are transposed once here and not for each layer of nodes (decision 0024).
 template <int D, int room>
 struct PayloadRecords {
   static constexpr std::size_t alignment = half_record * sizeof(double);
@@ -42,6 +47,7 @@ struct PayloadRecords {
     const T none(0.0), z = D == 3 ? v[D - 1] : none;
     store_lanes(mass + at, m);
     if constexpr ((what & gives_mass) != 0)
+      // As the record has them: mass_at before velocity_at.
       lay_out(velocity + at, T(1.0), v[0], v[1], z);
     else
       lay_out(velocity + at, v[0], v[1], z, none);
@@ -49,6 +55,7 @@ struct PayloadRecords {
   template <class T>
   void add_tractions(int at, const Sym<T, D>& t) {
     const T none(0.0);
+    // By columns: f = sum over b of t_b dN/dxi_b is then a sum of vectors. t is symmetric.
     unrolled<D>([&](auto b) MPM_INLINE {
       lay_out(traction[b] + at, t(0, b), t(1, b), D == 3 ? t(D - 1, b) : none, none);
     });

@@ -1,6 +1,7 @@
 #pragma once
 // Scatter with the four numbers of half a node's record in the lanes, for any basis: particles
-// follow each other, and the sums of a layer of nodes stay in registers.
+// follow each other in the order of their numbers, and the sums of a layer of nodes stay in
+// registers. No lane is idle for want of particles (decision 0018).
 #include "mpm/schedule/payload.hpp"
 #include "mpm/schedule/weights.hpp"
 
@@ -8,7 +9,9 @@ namespace mpm {
 
 /// Arithmetic of a mapping's formulas: p.v and the columns of p.traction are halves of records,
 /// N_ip and its gradient are factors along the axes. What does not change along a row of nodes, or
-/// in a layer of them, is one expression there, which the compiler evaluates once.
+/// in a layer of them, is one expression there, which the compiler evaluates once. So a vector
+/// takes 3 products for layers, 9 for rows and 27 multiply-adds in 3D (decision 0018). Axes are
+/// multiplied in from z to x, as the loops nest.
 namespace records_in_lanes {
 using Half = Batch<half_record>;
 
@@ -29,7 +32,9 @@ struct Scaled {
   Half part;
   double x;
 };
-/// along dx + across x.
+/// along dx + across x, with the derivative and the function along x of the node: with t_b the
+/// columns of the traction, t . grad N = (t_x N_y N_z) dN_x + (t_y dN_y N_z + t_z N_y dN_z) N_x,
+/// and both brackets are one for a row.
 struct Force {
   Half along, across;
   double x, dx;
@@ -40,10 +45,12 @@ MPM_INLINE inline Function<D> operator*(double m, const Function<D>& N) {
 }
 template <int D>
 MPM_INLINE inline Scaled operator*(const Function<D>& scale, const Half& v) {
+  // In this order, so that the first product is one for the layer and the second one for the row.
   return {(scale.z * v) * scale.y, scale.x};
 }
 template <int D>
 MPM_INLINE inline Force operator*(const Traction<D>& t, const Gradient<D>& N) {
+  // What a layer shares: N_z, but dN_z for the column along z.
   const auto in_layer = [&](int b) MPM_INLINE {
     return D == 3 ? t.column[b] * Half(b == 2 ? N.dz : N.z) : t.column[b];
   };
@@ -56,12 +63,14 @@ MPM_INLINE inline Force operator*(const Traction<D>& t, const Gradient<D>& N) {
 struct HalfSum {
   Half& sum;
   MPM_INLINE void operator+=(const Scaled& p) { sum = fma(p.part, Half(p.x), sum); }
+  // Two multiply-adds a node whatever D is; the order of the two is part of the bits.
   MPM_INLINE void operator+=(const Force& p) {
     sum = fma(p.along, Half(p.dx), sum);
     sum = fma(p.across, Half(p.x), sum);
   }
 };
-/// The mass is a number of the half record beside the momentum.
+/// The mass is a number of the half record beside the momentum: its own formula has nothing left to
+/// do.
 struct WithMomentum {
   template <class T>
   void operator+=(const T&) {}
@@ -85,7 +94,8 @@ class RecordsInLanes {
  public:
   template <int room>
   using Payload = PayloadRecords<D, room>;
-  /// What is to be known of a cell's particles: their weights; derivatives for forces only.
+  /// What is to be known of a cell's particles: their weights; derivatives for forces only. As many
+  /// columns as factors along an axis, 3 D, not 3^D products: these are made as they are used.
   template <int room>
   struct Places {
     double N[D][count][room], dN[D][count][room];
@@ -108,8 +118,11 @@ class RecordsInLanes {
   template <class Mapping, unsigned what, int width, int room>
   void give(const Nodes<width>& nodes, const Places<room>& places, const Payload<room>& payload,
             int n) const {
+    // Momentum and forces one after another and not in one pass: each has the 9 sums of a layer,
+    // and both would be more than the 16 registers of AVX2.
     if constexpr (what != gives_forces)
       give_sums(nodes, n, [&](int k, auto x, auto y, auto z, Half& sum) MPM_INLINE {
+        // In 2D there is one layer, with N_z = 1 and no derivative along z.
         const records_in_lanes::Momentum p{payload.mass[k], Half::load(payload.velocity[k])};
         const records_in_lanes::Function<D> N{D == 3 ? places.N[D - 1][z][k] : 1.0,
                                               places.N[1][y][k], places.N[0][x][k]};
@@ -132,10 +145,14 @@ class RecordsInLanes {
  private:
   using Half = records_in_lanes::Half;
 
-  /// Layer by layer: give(k, x, y, z, sum) adds to the sum of a node what particle k gives.
+  /// Layer by layer: give(k, x, y, z, sum) adds to the sum of a node what particle k gives. The 9
+  /// sums of a layer fit into registers, the 27 of all do not (decision 0022), so the particles are
+  /// read again for each layer; these are in the first cache.
   template <int width, class F>
   [[gnu::always_inline]] void give_sums(const Nodes<width>& nodes, int n, F&& give) const {
     unrolled<D == 3 ? count : 1>([&](auto z) MPM_INLINE {
+      // From 0 and not from the nodes: one addition to memory for a cell, and the same sums
+      // whatever other cells have given.
       Half sums[count][count];
       for (auto& row_sums : sums)
         for (auto& sum : row_sums) sum = Half(0.0);
@@ -143,6 +160,7 @@ class RecordsInLanes {
         unrolled<count>([&](auto y) MPM_INLINE {
           unrolled<count>([&](auto x) MPM_INLINE { give(k, x, y, z, sums[y][x]); });
         });
+      // Neighbouring cells share nodes: their sums are added in the order of the cells.
       unrolled<count>([&](auto y) MPM_INLINE {
         unrolled<count>([&](auto x) MPM_INLINE { add(nodes[stride_.to(x, y, z)], sums[y][x]); });
       });

@@ -1,6 +1,7 @@
 #pragma once
 // From particles to nodes, cell by cell; what the particles give is first laid out in the first
-// cache.
+// cache. Only the patch's own block is written, so that threads never meet; what several patches
+// hold is summed later (decision 0020).
 #include "mpm/schedule/cell_loop.hpp"
 #include "mpm/schedule/choose.hpp"
 
@@ -15,7 +16,8 @@ class CellBuffer {
 
   void begin(const CellRange<D>& cell) { first_node_ = cell.first_node + to_first_; }
   bool full() const { return count_ == room; }
-  /// The first `added` lanes by their weights; what they give is added before `place`.
+  /// The first `added` lanes by their weights; what they give is added before `place`, which moves
+  /// on. The lanes behind are written as well, and overwritten or never read.
   template <class T>
   void place(const Weights<T, D, B::nodes>& w, int added) {
     Scatter<B, D>::template put<what>(places_, count_, w);
@@ -31,7 +33,8 @@ class CellBuffer {
     payload_.add_tractions(count_, t);
   }
 
-  /// To the nodes of a patch, from its first on, as a mapping's formulas say.
+  /// To the nodes of a patch, from its first on, as a mapping's formulas say. An empty buffer gives
+  /// nothing: at the first cell there is none before.
   template <class Mapping, int width>
   void give(const Nodes<width>& patch) {
     if (count_ == 0) return;
@@ -40,6 +43,8 @@ class CellBuffer {
   }
 
  private:
+  // A multiple of every number of lanes: only the last group of a cell is not whole, so one that
+  // finds `full()` false has room for all its lanes. A cell with more gives several times.
   static constexpr int room = 16;
   Scatter<B, D> scatter_;
   int to_first_;  // from a cell's own node to the first in reach
@@ -49,11 +54,13 @@ class CellBuffer {
 };
 
 /// The particles of a cell and of the one before, which give once those of this cell are laid out:
-/// what has just been written would have to be waited for.
+/// what has just been written would have to be waited for (decision 0024). Nodes get the sums of
+/// cells in the order of the cells all the same, as where there was one buffer.
 template <class Mapping, unsigned what, int D, BasisModel B, int width>
 class DoubleBuffer {
  public:
-  /// `patch` are its nodes, from its first on.
+  /// `patch` are its nodes, from its first on: the block itself, or room for half of its records
+  /// where MUSL's remap is fused with eq. (17).
   DoubleBuffer(const NodeStrides<D>& stride, const Nodes<width>& patch)
       : cells_{CellBuffer<what, D, B>(stride), CellBuffer<what, D, B>(stride)}, patch_(patch) {}
 
@@ -61,6 +68,7 @@ class DoubleBuffer {
   /// Where the next particles of the cell are laid out.
   CellBuffer<what, D, B>& next() {
     if (now().full()) {
+      // The cell before goes first, to keep that order.
       last().template give<Mapping>(patch_);
       now().template give<Mapping>(patch_);
     }
@@ -69,6 +77,7 @@ class DoubleBuffer {
   /// The cell has all its particles.
   void end() {
     last().template give<Mapping>(patch_);
+    // Empty from here on, so `begin` may give it another cell.
     now_ = 1 - now_;
   }
   /// After the last cell.
@@ -83,7 +92,8 @@ class DoubleBuffer {
   Nodes<width> patch_;
 };
 
-/// Takes what particles give out of the columns of a pool.
+/// Takes what particles give out of the columns of a pool. Pointers to columns and 1 / h are found
+/// once a patch (decision 0015).
 template <unsigned what, int D>
 class ParticleReader {
  public:
@@ -100,6 +110,10 @@ class ParticleReader {
   void add(CellBuffer<what, D, B>& to, const CellRange<D>& cell, const Rows& rows,
            const B& basis) const {
     using T = Batch<Rows::lanes>;
+    // -V_p (sigma_p - q_p 1) / h: the sign and the volume V_p = m_p / rho_p of eq. (9), with 1 / h
+    // as gradients are in cells. Stress is positive in tension, q in compression, hence the
+    // difference, on the diagonal alone: its components come first in `Sym`. In 2D zz is carried
+    // along and not used, as nothing varies along z.
     if constexpr ((what & gives_forces) != 0) {
       const T scale = T(minus_per_cell_size_) * load(volume_, rows);
       const T q = q_ ? load(q_, rows) : T(0.0);
@@ -115,6 +129,7 @@ class ParticleReader {
       unrolled<D>([&](auto a) { v[a] = load(velocity_[a], rows); });
       to.add(load(mass_, rows), v);
     }
+    // Last, as it counts the particles. Their position is that of the start of the step.
     to.place(weights_at(basis, local_position_(cell, rows)), rows.count);
   }
 
@@ -125,7 +140,9 @@ class ParticleReader {
   const Storage *velocity_[D], *stress_[Sym<double, D>::size];
 };
 
-/// Scatter from all particles of a patch to its nodes (CellBuffer::give).
+/// Scatter from all particles of a patch to its nodes (CellBuffer::give). A function of its own for
+/// each basis and width, inlined whole: with several in one, g++ reached its limits of growth and
+/// left innermost loops as calls (decision 0018).
 template <class Mapping, unsigned what, int lanes, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void scatter_by(const B& basis, const TileGrid<D>& grid,
                                                 const ParticlePool<D>& pool, const Patch<D>& patch,
@@ -141,6 +158,7 @@ template <class Mapping, unsigned what, int lanes, int D, BasisModel B>
   cells.finish();
 }
 
+/// The same for the basis of the grid, and as many lanes as the patch's cells fill.
 template <class Mapping, unsigned what, int D>
 void scatter(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
              const Patch<D>& patch, const NodeRecords& nodes) {

@@ -11,7 +11,8 @@ template <class T, int D, int count>
 struct Weights {
   AxisWeights<T, count> axis[D];
 };
-/// Two functions that sum to one and carry the position are 1 - xi and xi.
+/// Two functions that sum to one and carry the position are 1 - xi and xi, so xi is all there is to
+/// know: whichever basis of two nodes it is, it is this one.
 template <class T, int D>
 struct Weights<T, D, 2> {
   Vec<T, D> xi;
@@ -29,7 +30,8 @@ template <BasisModel B, class T, int D>
     }(std::make_integer_sequence<int, D>{});
 }
 
-/// From a node of a block to the next along y, and along z.
+/// From a node of a block to the next along y, and along z; x is the fastest, as in BlockShape. In
+/// 2D a layer is 0, so that `to` and `to_first` serve both.
 template <int D>
 struct NodeStrides {
   int row, layer;
@@ -38,7 +40,8 @@ struct NodeStrides {
       : row(shape.nodes[0]), layer(D == 3 ? shape.nodes[0] * shape.nodes[1] : 0) {}
   /// To the node so many steps further along each axis.
   int to(int x, int y, int z) const { return x + y * row + z * layer; }
-  /// From a cell's own node to the first that its particles reach.
+  /// From a cell's own node to the first that its particles reach, which the block holds: it is cut
+  /// to the reach of the occupied cells (decision 0013).
   int to_first(int before) const { return -before * (1 + row + layer); }
 };
 

@@ -8,7 +8,8 @@
 namespace mpm {
 namespace {
 
-/// 1 at the nodes that a patch owns, 0 at those that another patch counts.
+/// 1 at the nodes that a patch owns, 0 at those that another patch counts: as factors, so that the
+/// loop over nodes has no branch and each shared node enters the ledger once.
 template <int D>
 void ownership(const Patch<D>& patch, int node_count, double* own) {
   for (int n = 0; n < node_count; ++n) own[n] = patch.owned[n] ? 1.0 : 0.0;
@@ -22,26 +23,35 @@ void advance_nodes(Domain<D>& domain) {
   const double dt = domain.time_step;
   const bool absorb = grid.walls.absorb(), loaded = domain.has_loads();
   for_each_patch(domain, prescribed, [&](std::size_t p) { advance_prescribed_nodes(domain, p); });
+  // Eq. (8), m_i dv_i = (f_i + m_i g) dt, with eq. (10) in the form m_i g: exact as gravity is
+  // uniform, and no work for the particles. f_i holds the internal, contact, load and dashpot
+  // forces.
   for_each_patch(domain, deformable | free_rigid, [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
-    // Walls take up the force along the axes they hold; gravity there is cancelled below with the
-    // increment.
+    // Walls take up the force along the axes they hold. It becomes -m g, the product that gravity
+    // adds again below, so that dv is 0 to the bit; v is 0 there already (momentum_to_velocity),
+    // and neither does work.
     for_each_constrained_node(grid, patch, [&](int node, unsigned constrained) {
       for (int a = 0; a < D; ++a)
         if (constrained >> a & 1u) block.force(a)[node] = -block.mass()[node] * domain.gravity[a];
     });
     double own[BlockShape<D>::nodes_max];
     ownership(patch, block.count, own);
+    // What moves beyond a wall is the image's: its mass and force have been folded there.
     for_each_ghost_node(grid, patch, [&](int node, int, const WallImage<D>&) { own[node] = 0.0; });
     double work = 0.0, gravity_first = 0.0, gravity_second = 0.0;
     for (int n = 0; n < block.count; ++n) {
       double* const numbers = block.records[n];
+      // Nodes without mass stay at rest. Tiny masses have huge increments; that particles take them
+      // weighed with N_ip is what keeps them harmless, except in USL (docs/theory/step.md).
       const double m = numbers[mass_at], impulse = m > 0.0 ? dt / m : 0.0;
       for (int a = 0; a < D; ++a) {
         double& v = numbers[velocity_at + a];
         const double f = numbers[force_at + a], weight = m * domain.gravity[a];
         const double dv = impulse * (f + weight);
+        // With v before the step: A + B and G of the ledger, and twice S_g, all but for the time
+        // step.
         work += own[n] * f * v;
         gravity_first += own[n] * weight * v;
         gravity_second += own[n] * weight * dv;
@@ -51,17 +61,24 @@ void advance_nodes(Domain<D>& domain) {
     }
     Work loads, dashpots;
     if (absorb && patch.at_wall) dashpots = work_of_dashpots(block, own, dt);
-    // The mirrored weight went into the force; it is work of gravity.
+    // The mirrored weight went into the force (ghost_weight, subtracted); it is work of gravity, so
+    // it is taken from there and put here. By the velocity of the image before the step.
     double weight_first = 0.0, weight_second = 0.0;
     for_each_ghost_weight(domain, patch, block, [&](int image, int a, double weight) {
       const double dv = block.increment(a)[image];
       weight_first += weight * (block.velocity(a)[image] - dv);
       weight_second += weight * dv;
     });
+    // Particles near a wall read nodes beyond it: positions by the velocity, eq. (16), velocities
+    // by the increment, eq. (17).
     reflect_at_walls(grid, patch, block, velocity_at);
     reflect_at_walls(grid, patch, block, increment_at);
+    // After the reflection, as a piece may load a node beyond a wall: a force and a velocity that
+    // are both turned do the same work as those of the image, which has the force.
     if (loaded) loads = work_of_loads(domain, p);
     PatchSums<D>& sums = domain.sums[p];
+    // What is left is work of internal and contact forces; loads, dashpots and gravity have terms
+    // of their own in the ledger, with the velocity in the middle of the step.
     sums.force_work = dt * (work + weight_first) - loads.first - dashpots.first;
     sums.load_first = loads.first;
     sums.load_second = loads.second;

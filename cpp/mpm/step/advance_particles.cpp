@@ -8,16 +8,19 @@
 namespace mpm {
 namespace {
 
-/// What is done beside eq. (17) while the particles are at hand.
+/// What is done beside eq. (17) while the particles, their weights and their nodes are at hand:
+/// stages fused (decisions 0015, 0034), from the source that makes the single ones too.
 enum class Also { nothing, remap, move };
 
-/// Of the particles in the lanes, for the ledger.
+/// Of the particles in the lanes, for the ledger: every lane has its own sums over the patch, which
+/// are brought together once at the end, in one order (decision 0038).
 template <class T, int D>
 struct LaneSums {
   T kinetic{0.0}, second_order{0.0}, lost{0.0};
   Vec<T, D> momentum = Vec<T, D>::zero();
 
-  /// Masses m with velocities v after a change dv.
+  /// Masses m with velocities v after a change dv: K, and S = 1/2 sum m dv^2, by which the
+  /// particles' energy changes beyond dt sum f_i . v_i (ledger.hpp). Halved when written.
   MPM_INLINE void add(const T& m, const Vec<T, D>& v, const Vec<T, D>& dv) {
     T speed2(0.0), change2(0.0);
     unrolled<D>([&](auto a) MPM_INLINE {
@@ -36,7 +39,9 @@ struct LaneSums {
   }
 };
 
-/// Velocities of a patch's particles, eq. (17), as the transfer says.
+/// Velocities of a patch's particles, eq. (17), as the transfer says. Taken from the increments of
+/// the nodes, v_p is smoothed by no mapping to the grid and back. A function of its own for each
+/// basis, width and transfer (decision 0018).
 template <int W, Also also, class Transfer, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p, const B& basis,
                                                    const Transfer transfer) {
@@ -51,22 +56,30 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   const double* mass = pool.mass();
   Storage* velocities[D];
   for (int a = 0; a < D; ++a) velocities[a] = pool.v(a);
-  // The increments are still read where the new momenta are scattered.
+  // The increments are still read where the new momenta are scattered, and both have the same place
+  // in the record (node_records.hpp): so these are summed here, 7 kB in 3D, and copied once all
+  // particles of the patch have read. Other patches read their own blocks alone.
   alignas(
       cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * half_record : 1];
   if constexpr (also == Also::remap) std::fill_n(remapped, block.count * half_record, 0.0);
   const NodeStrides<D> stride(patch.shape);
+  // Momentum without mass: particles have not moved since the mass was mapped.
   DoubleBuffer<Mapping<typename Transfer::Gives>, gives_momentum, D, B, half_record> cells(
       stride, {remapped});
 
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
+    // With the linear basis one polynomial for increments and velocities, as both are in the
+    // record.
     const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
     if constexpr (also == Also::remap) cells.begin(cell);
     for_each_group<W>(cell, [&](const auto& rows) {
       const auto w = weights_at(basis, local_position(cell, rows));
+      // Lanes behind the last particle repeat its row. With no mass they count for nothing in the
+      // ledger; the nodes are told how many there are (`place`).
       const T all = load(mass, rows), m = of_valid(rows, all);
       const Vec<T, D> dv = nodes.template vector<increment_at>(w);
       Vec<T, D> of_grid, v;
+      // v_i here is that of the end of the step, the sum of N_ip (v_i + dv_i): nodes are advanced.
       if constexpr (Transfer::takes_grid_velocity) of_grid = nodes.template vector<velocity_at>(w);
       unrolled<D>([&](auto a) {
         const T before = load(velocities[a], rows);
@@ -75,15 +88,21 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
         else
           v[a] = transfer.take(before, dv[a]);
         if constexpr (Transfer::takes_energy) {
+          // m (|v_p + dv_p|^2 - |v_p'|^2), halved at the end: what PIC takes goes to the ledger's T
+          // (docs/theory/step.md).
           const T kept = before + dv[a];  // with all of the change, as FLIP does
           sums.lost += m * kept * kept;
           sums.lost -= m * v[a] * v[a];
         }
+        // With MPM_FLOAT32 rounded here; the ledger and the remap below take v as computed
+        // (decision 0021).
         store(velocities[a], rows, v[a]);
       });
       sums.add(m, v, dv);
+      // USF: eq. (16) with the same weights, which are those of the positions before.
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {
+        // With the new v_p: m_i v_i' = sum N_ip m_p v_p (3.6, step 10).
         auto& particles = cells.next();
         particles.add(all, v);
         particles.place(w, rows.count);
@@ -93,13 +112,15 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   });
   if constexpr (also == Also::remap) {
     cells.finish();
+    // The increments of this block are of no use any more.
     copy_halves(block.records.at(remapped_at), {remapped}, block.count);
   }
   if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
   sums.write(domain.sums[p]);
 }
 
-/// Rigid bodies are only advanced: their velocities are not final yet.
+/// Rigid bodies are only advanced: their velocities are not final yet, so they are neither moved
+/// nor remapped, and FLIP alone: PIC would damp their turning.
 template <Also also, int D>
 void advance(Domain<D>& domain) {
   for_each_patch(domain, deformable | free_rigid, [&](std::size_t p) {

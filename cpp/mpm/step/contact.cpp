@@ -7,8 +7,9 @@ namespace mpm {
 
 namespace {
 
-/// Nodes beyond slip walls follow their images; contact has changed the vector at number `at` of
-/// the records.
+/// Nodes beyond walls follow their images; contact has changed the vector at number `at` of the
+/// records. Not needed for forces: what nodes beyond walls get from those is overwritten when nodes
+/// are advanced.
 template <int D>
 void reflect(Domain<D>& domain, int at) {
   TileGrid<D>& grid = domain.grid;
@@ -23,6 +24,8 @@ void reflect(Domain<D>& domain, int at) {
 template <int D>
 void contact_momentum(Domain<D>& domain) {
   if (!domain.has_contact()) return;
+  // Eqs. (4)-(7) with the velocities of the start of the step; planes and gaps are found at most
+  // once a step, and hold for forces and remapped velocities too, as particles move last.
   find_nodes(domain.contact, domain.grid, domain.bodies, domain.pools, domain.contact_settings,
              domain.time_step, domain.threads);
   remove_approach(domain.contact, domain.grid, domain.threads);
@@ -39,6 +42,8 @@ void contact_forces(Domain<D>& domain) {
 template <int D>
 void contact_remapped(Domain<D>& domain) {
   if (!domain.has_contact()) return;
+  // The particles have kept v_i when they were advanced by increments, so what approach (6)-(7)
+  // took from the nodes is in the remapped velocities again (3.6, step 10: "readjust").
   remove_remapped_approach(domain.contact, domain.grid, domain.threads);
   reflect(domain, remapped_at);
 }

@@ -1,11 +1,14 @@
-// The sums over the patches that hold a node.
+// The sums over the patches that hold a node. Every sum is taken by the one patch that owns the
+// node, in the order of the tiles, so it depends on no thread (decision 0020). Here processes that
+// hold parts of the patches would meet (decision 0034).
 #include "mpm/grid/shared_nodes.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
 namespace {
 
-/// Of numbers [first, last) of the records; with the forces the dashpots.
+/// Of numbers [first, last) of the records, whole halves, which is how they are moved; with the
+/// forces the dashpots, which stand behind the records.
 template <int D>
 void exchange(Domain<D>& domain, int first, int last, bool dashpots) {
   sum_shared_nodes(domain.grid, domain.threads, first, last);
@@ -31,6 +34,8 @@ void exchange_momentum_and_forces(Domain<D>& domain) {
 
 template <int D>
 void exchange_remapped(Domain<D>& domain) {
+  // The mass is that of the first mapping and has been summed: a second time it would count each
+  // holder's share twice or more.
   exchange(domain, remapped_at, record, false);
 }
 

@@ -19,6 +19,8 @@ void find(Domain<D>& domain, int at, F&& prescribed) {
       prescribed(body, patch, block);
       return;
     }
+    // After the sums: momenta add up over patches, velocities do not. Then the images, which must
+    // have theirs before nodes beyond walls take them.
     momentum_to_velocity(grid, patch, block, at);
     reflect_at_walls(grid, patch, block, at);
   });
@@ -30,6 +32,9 @@ template <int D>
 void find_velocities(Domain<D>& domain) {
   find(domain, velocity_at,
        [&](const Body<D>& body, const Patch<D>& patch, const NodeBlock<D>& block) {
+         // That of the last step: in (6)-(7) a body has the velocity with which it arrives, in
+         // (11)-(15) that of this step, so that contact pushes with what a change of speed takes
+         // (docs/theory/motion.md).
          set_rigid_velocity(domain.grid, patch, block, body.motion->before);
        });
 }
@@ -37,6 +42,7 @@ void find_velocities(Domain<D>& domain) {
 template <int D>
 void find_remapped(Domain<D>& domain) {
   find(domain, remapped_at, [](const Body<D>&, const Patch<D>&, const NodeBlock<D>& block) {
+    // Of this step by now (advance_prescribed_nodes).
     for (int n = 0; n < block.count; ++n)
       for (int a = 0; a < D; ++a) block.remapped(a)[n] = block.velocity(a)[n];
   });

@@ -9,19 +9,22 @@ namespace {
 /// What a patch's particles give to its nodes.
 template <unsigned what, int D>
 void map_patch(Domain<D>& domain, std::size_t p) {
+  // With all three at once the bits are those of two stages, as each sum starts at 0 and has the
+  // same terms in the same order (decision 0034).
   constexpr bool momentum = (what & gives_momentum) != 0;
   auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   const NodeBlock<D> block = grid.block(p);
   if constexpr (momentum) {
-    // All of all records: until now the memory may have been lent (NodeMemory::idle).
+    // All of all records: until now the memory may have been lent (NodeMemory::idle). Also of
+    // bodies that map nothing, for the exchange reads every block.
     clear(block.records, block.count, record);
     if (grid.has_dashpots) clear(block.dashpots(), block.count, half_record);
   }
   const Body<D>& body = domain.body_of(patch);
   if (body.is_prescribed() && !patch.in_contact) return;  // Nobody asks for its nodes.
   // The weights that "map momentum" leaves in the forces are added last, as where both are mapped
-  // at once: to the same bits.
+  // at once: to the same bits. For (0 + f) + w is not (w + f_1) + f_2 when rounded.
   const bool weighed = !momentum && patch.at_wall && grid.has_ghosts();
   double weights[BlockShape<D>::nodes_max][D];
   const auto for_each_weight = [&](auto&& f) {
@@ -29,6 +32,8 @@ void map_patch(Domain<D>& domain, std::size_t p) {
       for (int a = 0; a < D; ++a) f(weights[n][a], block.ghost_weight(a)[n]);
   };
   for_each_weight([](double& weight, double& force) { weight = std::exchange(force, 0.0); });
+  // Every instance writes to this patch's block alone; nodes that others hold too are incomplete
+  // until the exchange.
   with_transfer(domain, [&]<class Transfer>(const Transfer&) {
     using Gives = Mapping<typename Transfer::Gives>;
     if (body.deforms())
@@ -37,6 +42,8 @@ void map_patch(Domain<D>& domain, std::size_t p) {
       scatter<Gives, what & ~gives_forces>(grid, body, domain.pool_of(patch), patch, block.records);
   });
   for_each_weight([](double weight, double& force) { force += weight; });
+  // Now, as the mass is still what this patch's own particles gave. Gravity does not act on a body
+  // whose motion is prescribed.
   if (momentum && !body.is_prescribed()) subtract_ghost_weight(domain, patch, block);
 }
 

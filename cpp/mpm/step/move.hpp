@@ -5,7 +5,8 @@
 
 namespace mpm {
 
-/// Moves particles of a patch, eq. (16), and notes whether any leaves its cell.
+/// Moves particles of a patch, eq. (16), and notes whether any leaves its cell: only patches that
+/// one has left are looked at when lists are mended (decision 0002).
 template <int D>
 class Moving {
  public:
@@ -18,10 +19,16 @@ class Moving {
   template <class Rows, class Field, class Weights>
   void move(const CellRange<D>& cell, const Rows& rows, const Field& nodes, const Weights& w) {
     using T = Batch<Rows::lanes>;
+    // v_i at the end of the step, p_i / m_i of eq. (16) with the p_i of eq. (8). A field has one
+    // value at a place, so that particles which follow it do not pass through each other; with
+    // their own v_p they might.
     const Vec<T, D> velocity = nodes.template vector<velocity_at>(w);
     unrolled<D>([&](auto a) {
       const T x = fma(T(time_step_), velocity[a], load(x_[a], rows));
       store(x_[a], rows, x);
+      // The expression that puts particles into cells (CellCoordinates), so that both agree to the
+      // bit on who has left. A cell holds its lower face and not its upper one. Collected as bits,
+      // without a branch; lanes behind the last particle repeat it and add nothing.
       const T local = cells_.in_cells(x, a) - T(cell.cell[a]);
       left_ |= lane_bits((local < T(0.0)) | (local >= T(1.0)));
     });

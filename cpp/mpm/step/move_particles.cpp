@@ -17,6 +17,8 @@ void move_particles(Domain<D>& domain) {
     with_basis_and_lanes(grid, body, patch, [&]<BasisModel B>(const B& basis, auto lanes) {
       const NodeStrides<D> stride(patch.shape);
       for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
+        // Fields are made again only in the schemes that are not fused; elsewhere `Moving` uses
+        // those at hand.
         const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
         for_each_group<lanes>(cell, [&](const auto& rows) {
           moving.move(cell, rows, nodes, weights_at(basis, local_position(cell, rows)));

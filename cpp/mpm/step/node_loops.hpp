@@ -19,6 +19,7 @@ inline void copy_halves(const NodeRecords& to, const HalfRecords& from, int coun
 /// f(node, constrained axes) for the nodes of a patch that walls hold.
 template <int D, class F>
 void for_each_constrained_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
+  // Found when blocks are cut, so that patches inside the box cost nothing.
   if (!patch.at_wall) return;
   const Index<D> first = grid.first_cell(patch.tile);
   for (int n = 0; n < patch.shape.node_count; ++n) {
@@ -35,9 +36,12 @@ void momentum_to_velocity(const TileGrid<D>& grid, const Patch<D>& patch, const 
                           int at) {
   for (int n = 0; n < block.count; ++n) {
     double* const numbers = block.records[n];
+    // One division a node in place of D. No least mass: the momentum vanishes with the mass, so
+    // that v_i is a mean of v_p however small the mass is.
     const double inverse = numbers[mass_at] > 0.0 ? 1.0 / numbers[mass_at] : 0.0;
     for (int a = 0; a < D; ++a) numbers[at + a] *= inverse;
   }
+  // Overwritten and not left out of the loop above, which so has no branch.
   for_each_constrained_node(grid, patch, [&](int node, unsigned constrained) {
     for (int a = 0; a < D; ++a)
       if (constrained >> a & 1u) block.records[node][at + a] = 0.0;

@@ -19,11 +19,14 @@ struct NodesAround {
     Index<D> from_cell;
     for (int a = 0; a < D; ++a) {
       const auto k = static_cast<std::size_t>(a);
+      // A cell that is centred at its own node reaches half a cell to both sides of it: before it,
+      // the node below is the lower corner.
       place[a] = grid.among_nodes(pool.x(a)[row], a);
       const bool before = grid.reach().own_node > 0.0 && place[a] < cell.cell[k];
       lower[k] = cell.cell[k] - (before ? 1 : 0);
       from_cell[k] = lower[k] - cell.cell[k];
     }
+    // In the block, as this holds a node on either side where cells are centred (BlockShape).
     first = cell.first_node + patch.shape.distance(from_cell);
   }
 };

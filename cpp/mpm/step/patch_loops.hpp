@@ -11,7 +11,8 @@ inline constexpr Kinds deformable = kind_bit(BodyKind::deformable);
 inline constexpr Kinds free_rigid = kind_bit(BodyKind::rigid);
 inline constexpr Kinds prescribed = kind_bit(BodyKind::prescribed);
 
-/// f(p) for the patches of bodies of these kinds.
+/// f(p) for the patches of bodies of these kinds. The range is always that of all patches, so that
+/// a thread has the same ones in every stage, and in its cache (decision 0025).
 template <int D, class F>
 void for_each_patch(Domain<D>& domain, Kinds kinds, F&& f) {
   domain.threads.for_each(domain.grid.patches.size(), [&](std::size_t p) {

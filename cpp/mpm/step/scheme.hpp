@@ -22,7 +22,8 @@ struct Schemes {
   using S = Stages<D>;
 
   // clang-format off
-  /// Update stress first (Bardenhagen 2002).
+  /// Update stress first (Bardenhagen 2002): strains with the v_i that were mapped, after contact,
+  /// so that this step's forces are those of the new stress, and both do the same work.
   static constexpr StageList<D> usf = std::array{
       S::activate,
       S::map_momentum,
@@ -47,7 +48,8 @@ struct Schemes {
       S::template sum_energies<true>,
   };
 
-  /// Update stress last (Sulsky, Chen & Schreyer 1994).
+  /// Update stress last (Sulsky, Chen & Schreyer 1994): strains with v_i + dv_i. Unstable where
+  /// particles enter empty cells, as dv_i is huge at a node of almost no mass.
   static constexpr StageList<D> usl = std::array{
       S::activate,
       S::map_momentum,
@@ -72,7 +74,9 @@ struct Schemes {
       S::template sum_energies<false>,
   };
 
-  /// Modified update stress last (Sulsky, Zhou & Schreyer 1995).
+  /// Modified update stress last (Sulsky, Zhou & Schreyer 1995): strains with velocities mapped
+  /// anew from the advanced particles (3.6, step 10), with approach removed again. Positions move
+  /// with v_i + dv_i all the same, eq. (16).
   static constexpr StageList<D> musl = std::array{
       S::activate,
       S::map_momentum,
@@ -104,6 +108,8 @@ struct Schemes {
   };
 
   // clang-format on
+  // With USF the stress lies between momentum and forces, which is why these are not mapped at once
+  // (decision 0034).
   static constexpr StageList<D> usf_fused = fuse(usf, S::advance_and_move);
   static constexpr StageList<D> usl_fused =
       fuse(usl, S::map_both, S::exchange_both, S::update_last_and_move);

@@ -48,6 +48,7 @@ inline constexpr auto data_names = std::to_array<std::string_view>(
 
 /// The data and what shares its place (layout/node_records.hpp): who writes one takes the others.
 constexpr std::uint32_t places_of(std::uint32_t data) {
+  // First halves of records beside the mass; second halves.
   constexpr std::uint32_t shared[] = {
       Data::node_momentum | Data::node_velocity,
       Data::ghost_weights | Data::node_force | Data::node_increments | Data::node_remapped};
@@ -64,9 +65,11 @@ struct Stage {
   bool all_particles = false;           // it goes through all of them, and not only some
 };
 
-/// May two stages change places?
+/// May two stages change places, to the same bits?
 template <int D>
 constexpr bool independent(const Stage<D>& a, const Stage<D>& b) {
+  // Neither writes what the other reads or writes; by places, as writing a field ends those that
+  // share its place.
   const std::uint32_t taken_by_a = places_of(a.writes), taken_by_b = places_of(b.writes);
   return !(taken_by_a & b.reads) && !(a.reads & taken_by_b) && !(taken_by_a & b.writes);
 }
@@ -84,6 +87,7 @@ struct StageList {
   constexpr void add(const Stage<D>& stage) { stages[count++] = stage; }
   constexpr std::size_t find(const Stage<D>& stage) const {
     std::size_t k = 0;
+    // By what it does: names are for people, and two stages may share one.
     while (k < count && stages[k].run != stage.run) ++k;
     return k;
   }
@@ -107,6 +111,8 @@ constexpr StageList<D> fuse(const StageList<D>& list, const Fusion<D>& fusion) {
     throw std::logic_error("the two stages are not in this order in the list");
   std::array<bool, 32> ahead{};
   ahead[j] = true;
+  // Backwards: what a stage that goes ahead needs has to go ahead as well. Those that do keep their
+  // order among each other, and so do those that do not.
   for (std::size_t k = j; k-- > i + 1;)
     for (std::size_t m = k + 1; m <= j; ++m)
       ahead[k] = ahead[k] || (ahead[m] && !independent(list.stages[k], list.stages[m]));
@@ -114,6 +120,7 @@ constexpr StageList<D> fuse(const StageList<D>& list, const Fusion<D>& fusion) {
   for (std::size_t k = 0; k < i; ++k) fused.add(list.stages[k]);
   for (std::size_t k = i + 1; k < j; ++k)
     if (ahead[k]) {
+      // It would have to come before the first and after it.
       if (!independent(list.stages[k], list.stages[i]))
         throw std::logic_error("a stage between needs the first");
       fused.add(list.stages[k]);

@@ -133,6 +133,7 @@ struct Stages : Data {
   static constexpr std::uint32_t of_particles = position | velocity | mass,
                                  of_rigid = rigid_position | rigid_velocity;
 
+  // The nodes are written as their memory is lent to the lists until momentum is mapped.
   static constexpr Row activate{
       "activate tiles", mpm::activate_tiles<D>,
       of_particles | of_rigid | volume | stress | load_pieces | lists | left_cells | patch_sums,
@@ -143,31 +144,39 @@ struct Stages : Data {
       node_mass | node_momentum | ghost_weights | node_dashpots, true};
   static constexpr Row fold_momentum{"fold momentum", mpm::fold_momentum<D>,
                                      node_mass | node_momentum, node_mass | node_momentum};
+  // The mass with the momentum: v_i of a node that patches share is the mean over all its
+  // particles.
   static constexpr Row exchange_momentum{"exchange momentum", mpm::exchange_momentum<D>,
                                          node_mass | node_momentum, node_mass | node_momentum};
   static constexpr Row find_velocities{"find velocities", mpm::find_velocities<D>,
                                        node_mass | node_momentum, node_velocity};
+  // Volumes and positions for gaps and normals, eq. (5); it changes velocities and no mass.
   static constexpr Row contact_momentum{
       "contact momentum", mpm::contact_momentum<D>,
       lists | position | rigid_position | mass | volume | node_mass | node_velocity | contacts,
       node_velocity | contacts};
+  // The weights it reads are in the places of the forces, and stay in the sum (map_to_nodes.cpp).
   static constexpr Row map_forces{"map forces", mpm::map_forces<D>,
                                   lists | position | volume | stress | ghost_weights, node_force,
                                   true};
   static constexpr Row load_surfaces{"load surfaces", mpm::load_surfaces<D>,
                                      lists | position | load_pieces | node_force,
                                      load_pieces | node_force};
+  // Between the mappings and the exchange, as dashpots and loads are sums over particles as well.
   static constexpr Row place_dashpots{"place dashpots", mpm::place_dashpots<D>,
                                       lists | position | mass | node_dashpots, node_dashpots};
   static constexpr Row fold_forces{"fold forces", mpm::fold_forces<D>, node_force, node_force};
   static constexpr Row exchange_forces{"exchange forces", mpm::exchange_forces<D>,
                                        node_force | node_dashpots, node_force | node_dashpots};
+  // After the exchange, as the force of a dashpot is not linear in C_i and m_i; before contact,
+  // which balances all other forces of two bodies, eq. (13).
   static constexpr Row absorb{"absorb at walls", mpm::absorb_at_walls<D>,
                               node_mass | node_velocity | node_force | node_dashpots,
                               node_force | node_dashpots};
   static constexpr Row contact_forces{"contact forces", mpm::contact_forces<D>,
                                       node_mass | node_velocity | node_force | contacts,
                                       node_force | contacts};
+  // It reads the pieces for the work of loads, once increments are known.
   static constexpr Row advance_nodes{"advance nodes", mpm::advance_nodes<D>,
                                      lists | position | load_pieces | node_mass | node_velocity |
                                          node_force | node_dashpots | patch_sums,
@@ -176,10 +185,13 @@ struct Stages : Data {
       "advance particles", mpm::advance_particles<D>,
       lists | of_particles | of_rigid | node_velocity | node_increments | patch_sums,
       velocity | rigid_velocity | patch_sums, true};
+  // Before anything takes their velocities: the remap in MUSL, the end of the step in the others.
   static constexpr Row hold_rigid{"project rigid velocities", mpm::project_rigid_velocities<D>,
                                   lists | of_rigid | patch_sums, rigid_velocity | patch_sums};
   static constexpr Row remap_momentum{"remap momentum", mpm::remap_momentum<D>,
                                       lists | of_particles, node_remapped, true};
+  // Apart from that of others, so that theirs can be fused with eq. (17) while rigid bodies wait
+  // for their motion (decision 0034).
   static constexpr Row remap_rigid{"remap rigid bodies", mpm::remap_rigid_bodies<D>,
                                    lists | of_rigid, node_remapped};
   static constexpr Row fold_remapped{"fold remapped", mpm::fold_remapped<D>, node_remapped,
@@ -190,6 +202,8 @@ struct Stages : Data {
                                      node_mass | node_velocity | node_remapped, node_remapped};
   static constexpr Row contact_remapped{"contact remapped", mpm::contact_remapped<D>,
                                         node_remapped | contacts, node_remapped | contacts};
+  // Last of what reads nodes: until here weights are those of the mapping. It marks
+  // patches that a particle has left its cell in.
   static constexpr Row move_particles{"move particles", mpm::move_particles<D>,
                                       lists | position | node_velocity, position | left_cells,
                                       true};

@@ -5,6 +5,7 @@ namespace mpm {
 
 template <int D>
 void record_contacts(Domain<D>& domain) {
+  // Zero without contact, as the ledger adds them all the same.
   domain.contact_sums = {};
   if (domain.has_contact())
     domain.contact_sums =
@@ -14,6 +15,7 @@ void record_contacts(Domain<D>& domain) {
 
 template <int D, bool forces_follow>
 void sum_energies(Domain<D>& domain) {
+  // All sums over patches at once, exactly: no order of patches matters (decision 0038).
   domain.ledger.add(domain.sums, domain.contact_sums, domain.eroded, domain.outflow, forces_follow);
 }
 

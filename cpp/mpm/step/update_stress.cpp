@@ -8,7 +8,9 @@ namespace {
 
 /// Velocity gradients, eqs. (18)-(20), of a patch's particles, handed to the material block by
 /// block. The nodal velocity that strains is the vector at number `straining_at` of the records;
-/// with `moves` the particles move as well, eq. (16).
+/// with `moves` the particles move as well, eq. (16). L dt is handed on whole: the material refers
+/// it to the middle of the step and splits it into strain, eq. (18), and vorticity, eq. (19)
+/// (materials/jaumann.hpp).
 template <int W, bool moves, int straining_at, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void update_patch(Domain<D>& domain, std::size_t p, const B& basis,
                                                   bool forces_follow) {
@@ -16,16 +18,21 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   const auto& grid = domain.grid;
   Patch<D>& patch = domain.grid.patches[p];
   ParticlePool<D>& pool = domain.pool_of(patch);
+  // Before particles move: the pieces go with L at the positions that the gradients belong to.
   if (domain.has_loads()) carry_loads<straining_at>(domain, p);
   const Material& material = domain.material_of(patch);
   const StressSettings settings{domain.time_step, domain.time + domain.time_step, grid.cell_size,
                                 material.viscosity, forces_follow};
   const NodeRecords records = domain.grid.block(p).records;
   const NodeStrides<D> stride(patch.shape);
+  // Gradients come with respect to xi, in cells: 1 / h of eq. (20) and dt of eqs. (18)-(19) in one.
   const T scale(domain.time_step / grid.cell_size);
   const LocalPosition<D> local_position(grid, pool);
   Moving<D> moving(grid, pool, domain.time_step);
   MaterialBlock<D> block;
+  // Blocks of up to 128 across cells, in full registers however few particles a cell has; one
+  // indirect call for each part of the material and block (material_block.hpp). No particle's
+  // result depends on its neighbours in the lanes (decision 0026).
   auto flush = [&] {
     update_block<Batch<native_lanes>>(material, pool.columns, pool.at, block, settings,
                                       domain.sums[p].stress);
@@ -34,9 +41,12 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto nodes = field_of<B>(records.from(cell.first_node), stride);
     for_each_group<W>(cell, [&](const auto& rows) {
+      // Whole registers are stored, so W places have to be free.
       if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
       const auto w = weights_at(basis, local_position(cell, rows));
       const auto gradients = nodes.template gradients<straining_at>(w);
+      // [i][j] is dv_i / dx_j dt: rows are components, columns the axes of derivation, as in eqs.
+      // (18)-(19).
       unrolled<D>([&](auto i) {
         unrolled<D>(
             [&](auto j) { (scale * gradients[i][j]).store(block.gradient[i][j] + block.count); });
@@ -44,6 +54,8 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
       unrolled<W>([&](auto k) { block.row[block.count + k] = rows[k]; });
       // Lanes past the end are overwritten by the next group.
       block.count += static_cast<std::size_t>(rows.count);
+      // The velocity of the advanced nodes, not that which strains: in MUSL these are two. x is not
+      // read again in this stage, the weights being those of before.
       if constexpr (moves) moving.move(cell, rows, nodes, w);
     });
   });
@@ -53,6 +65,7 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
 
 template <bool moves, int straining_at, int D>
 void update(Domain<D>& domain, bool forces_follow) {
+  // A rigid motion strains nothing.
   for_each_patch(domain, deformable, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     with_basis_and_lanes(
@@ -66,11 +79,14 @@ void update(Domain<D>& domain, bool forces_follow) {
 
 template <int D>
 void update_stress_first(Domain<D>& domain) {
+  // Velocities of the start of the step; its forces use the stress made here, and so does the term
+  // P of the ledger.
   update<false, velocity_at>(domain, true);
 }
 
 template <int D>
 void update_stress_last(Domain<D>& domain) {
+  // Nodes have been advanced: v_i + dv_i. The forces have used the stress before.
   update<false, velocity_at>(domain, false);
 }
 

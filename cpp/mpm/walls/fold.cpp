@@ -1,4 +1,6 @@
-// Nodes beyond walls that belong to mirrored bodies.
+// Nodes beyond walls that belong to mirrored bodies (decision 0010). Each patch folds what its own
+// particles have given, before the exchange adds the images up: folding is linear, so the two may
+// come in this order.
 #include "mpm/step/stages.hpp"
 #include "mpm/walls/mirror.hpp"
 

@@ -2,8 +2,9 @@
 // Walls for a basis that reaches beyond them: slip walls are planes of symmetry. What particles
 // give to a node beyond the wall belongs to its image, with the component along the normal turned;
 // and such a node moves as its image does, turned likewise. So half a body at a wall moves as the
-// half of a whole one. At an odd fixed wall all components are turned. The mass of the node beyond
-// stays there, for gravity: it pulls the mirrored particles the other way.
+// half of a whole one, to rounding (decision 0010). At an odd fixed wall all components are turned.
+// The mass of the node beyond stays there, for gravity: it pulls the mirrored particles the other
+// way.
 #include "mpm/step/node_loops.hpp"
 
 namespace mpm {
@@ -12,6 +13,7 @@ namespace mpm {
 template <int D, class F>
 void for_each_ghost_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
   const BlockShape<D>& shape = patch.shape;
+  // The linear basis reaches no node beyond a wall that its particles are not beyond.
   if (!patch.at_wall || !grid.has_ghosts()) return;
   const Index<D> first = grid.first_cell(patch.tile);
   for (int n = 0; n < shape.node_count; ++n) {
@@ -32,8 +34,11 @@ void fold_at_walls(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlo
                    int at) {
   for_each_ghost_node(grid, patch, [&](int node, int image, const WallImage<D>& turned) {
     double *const of_node = block.records[node], *const of_image = block.records[image];
+    // With the momentum alone: the remapped one and the forces find the mass folded. It is not
+    // taken from the node beyond, whose weight is still to be counted (ghost_weight).
     if (at == momentum_at) of_image[mass_at] += of_node[mass_at];
     for (int k = at, a = 0; a < D; ++k, ++a) {
+      // Moved and not copied: what was given counts once, and at the image.
       of_image[k] += turned.component(of_node[k], a);
       of_node[k] = 0.0;
     }
@@ -41,7 +46,8 @@ void fold_at_walls(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlo
 }
 
 /// What the mass of a node beyond a wall adds too much to the weight of its image along a turned
-/// axis, where gravity pulls mirrored particles the other way [N].
+/// axis, where gravity pulls mirrored particles the other way [N]: the image has the mass m + m_g,
+/// so the weight (m + m_g) g, and should have (m - m_g) g.
 template <int D>
 double ghost_weight(const Domain<D>& domain, const NodeBlock<D>& block, int node, int axis) {
   return 2.0 * block.mass()[node] * domain.gravity[axis];
@@ -53,6 +59,7 @@ template <int D, class F>
 void for_each_ghost_weight(const Domain<D>& domain, const Patch<D>& patch,
                            const NodeBlock<D>& block, F&& f) {
   for_each_ghost_node(domain.grid, patch, [&](int node, int image, const WallImage<D>& turned) {
+    // By the mass after the exchange, the sum of what all patches gave to the node.
     if (!patch.owned[node]) return;
     for (int a = 0; a < D; ++a)
       if (turned.turned >> a & 1u) f(image, a, ghost_weight(domain, block, node, a));
@@ -66,6 +73,7 @@ template <int D>
 void subtract_ghost_weight(const Domain<D>& domain, const Patch<D>& patch,
                            const NodeBlock<D>& block) {
   if (!patch.at_wall || !domain.grid.has_ghosts()) return;
+  // Near an edge of the box a node is the image of several; in 3D 5 kB of the stack.
   double weights[BlockShape<D>::nodes_max][D];
   std::fill_n(weights[0], D * block.count, 0.0);
   for_each_ghost_node(domain.grid, patch, [&](int node, int image, const WallImage<D>& turned) {
@@ -82,6 +90,7 @@ template <int D>
 void reflect_at_walls(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block,
                       int at) {
   for_each_ghost_node(grid, patch, [&](int node, int image, const WallImage<D>& turned) {
+    // The image has the same vector in all patches that hold it, so that no exchange follows.
     double *const of_node = block.records[node] + at, *const of_image = block.records[image] + at;
     for (int a = 0; a < D; ++a) of_node[a] = turned.component(of_image[a], a);
   });

@@ -42,7 +42,8 @@ struct Walls {
   }
 
   /// Bit a is set if a node may not move along axis a. Nodes beyond a fixed face are held like
-  /// those on it, or have images.
+  /// those on it, or have images. On a slip face the normal velocity is 0 by symmetry, as for a
+  /// turned component v = -v.
   unsigned constrained_axes(const Index<D>& node) const {
     unsigned axes = 0;
     if (!exist) return axes;
@@ -58,7 +59,8 @@ struct Walls {
   }
 
   /// Of a node beyond a slip face, which is a plane of symmetry, or beyond a fixed one if that is
-  /// odd: where it is mirrored to.
+  /// odd: where it is mirrored to, as deep before the face. Beyond two faces, at an edge of the
+  /// box, it is mirrored twice; a component that is turned twice is as it was (hence ^=).
   std::optional<WallImage<D>> image(const Index<D>& node) const {
     if (!exist) return {};
     WallImage<D> image{node, 0};

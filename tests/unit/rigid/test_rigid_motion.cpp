@@ -46,6 +46,14 @@ void test_rigid_motion(mpm::testing::Report& report) {
   CHECK_CLOSE(total.inertia[2][2], sums.inertia[2][2], 1e-14);
   CHECK(total.extent.lower[1] == -2.0 && total.extent.upper[1] == 2.0);
 
+  // A row of particles oblique to the axes: it turns across its line, and not about it.
+  for (const Vector3& line : {Vector3{1.0, 1.0, 0.0}, Vector3{1.0, -2.0, 3.0}, any}) {
+    RigidSums row;
+    for (const double at : {-1.0, -0.5, 0.5, 1.0}) row.add(2.0, at * line, cross(w, at * line));
+    const Vector3 across = w - (dot(w, line) / dot(line, line)) * line;
+    CHECK(distance(spin_of(row.inertia, row.angular, 7u), across) < 1e-13, line[0], line[1]);
+  }
+
   // Turning freely: angular momentum stays, energy to second order in the step.
   double error[2];
   for (int k = 0; k < 2; ++k) {

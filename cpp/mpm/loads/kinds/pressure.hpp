@@ -13,6 +13,7 @@ struct Pressure {
       "or a function of time";
   static constexpr bool is_vector = false;
 
+  // By the vector, as pressures add as vectors: those on a closed surface cancel.
   template <int D>
   static Vec<double, D> force(const Vec<double, D>& value, const Vec<double, D>& area, double) {
     return -value[0] * area;

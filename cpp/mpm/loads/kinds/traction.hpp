@@ -12,6 +12,7 @@ struct Traction {
       "force per present area in a fixed direction [Pa], D numbers or functions of time";
   static constexpr bool is_vector = true;
 
+  // By the size: over an edge tractions of one direction add up, where area vectors cancel in part.
   template <int D>
   static Vec<double, D> force(const Vec<double, D>& value, const Vec<double, D>&, double size) {
     return size * value;

@@ -16,6 +16,8 @@ struct Flip {
   /// From particle p to node i: m_i += m_p N_ip, eq. (2); p_i += m_p N_ip v_p, eq. (3).
   template <class P, class N, class Node>
   MPM_INLINE static void give(const P& p, const N& N_ip, Node& node) {
+    // One product for both, so that v_i = p_i / m_i of a body that moves as one is v_p but for
+    // rounding.
     const auto m_ip = p.m * N_ip;
     node.m += m_ip;
     node.p += m_ip * p.v;

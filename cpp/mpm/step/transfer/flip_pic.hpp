@@ -16,6 +16,8 @@ struct FlipPic : Flip {
   /// `of_grid`.
   template <class T>
   MPM_INLINE T take(T v, T dv, T of_grid) const {
+    // Momentum is kept, as sum m_p N_ip = m_i: the sum over particles of m_p times the grid's
+    // velocity is sum m_i v_i (docs/theory/step.md, PIC damping).
     const T flip = v + dv;
     return fma(T(pic), of_grid - flip, flip);
   }

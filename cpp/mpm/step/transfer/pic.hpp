@@ -3,7 +3,8 @@
 
 namespace mpm {
 
-/// PIC: the grid's velocity is the particle's (Harlow 1964).
+/// PIC: the grid's velocity is the particle's (Harlow 1964). What the grid does not see is lost in
+/// every step, however short, and the ledger counts it.
 struct Pic : Flip {
   static constexpr std::string_view name = "pic";
   static constexpr std::string_view doc = "they take the velocity of the grid";
