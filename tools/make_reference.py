@@ -196,7 +196,8 @@ def models_of(kind: str) -> list[str]:
             rule = requirement(p.rule) if p.rule else ""
             cells = (f"`{p.name}`", p.unit or "1", p.meaning, rule, start)
             lines.append("| " + " | ".join(cell(part) for part in cells) + " |")
-        stored = ", ".join(f"`{column.name}`" for column in model.state) or "nothing"
+        names = ["internal_energy"] if kind == "eos" else [column.name for column in model.state]
+        stored = ", ".join(f"`{name}`" for name in names) or "nothing"
         lines += ["", f"Stores for each particle (for `output.fields`): {stored}."]
     return lines
 

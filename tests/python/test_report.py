@@ -13,7 +13,8 @@ from mpm3dpp.run.report import energy_line, warning_lines
 
 def manifest(initial: dict[str, float], final: dict[str, float]) -> Any:
     zero = dict.fromkeys(("kinetic", "internal", "external", "numerical", "contact"), 0.0)
-    return SimpleNamespace(energies={"initial": {**zero, **initial}, "final": {**zero, **final}})
+    energies = {"initial": {**zero, **initial}, "final": {**zero, **final}}
+    return SimpleNamespace(energies=energies, case={})
 
 
 @pytest.mark.parametrize(
@@ -55,3 +56,10 @@ def test_three_warnings_of_a_kind_are_shown() -> None:
         "warning: it fell; seen 7 times",
         "warning: 97 more of outside walls, in manifest.json",
     ]
+
+
+def test_what_pic_takes_is_no_reason_for_smaller_steps() -> None:
+    told = manifest({"kinetic": 100.0}, {"kinetic": 50.0, "numerical": 50.0})
+    assert energy_line(told).endswith("; a smaller run.cfl or smaller cells may help")
+    told.case = {"run": {"transfer": "pic"}}
+    assert energy_line(told).endswith("; what run.transfer or run.pic_damping takes is in it")

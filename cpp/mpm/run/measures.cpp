@@ -1,5 +1,7 @@
 #include "mpm/run/measures.hpp"
 
+#include "mpm/math/exact_sum.hpp"
+
 namespace mpm {
 
 template <int D>
@@ -14,29 +16,32 @@ double total_mass(const Domain<D>& domain) {
 
 template <int D>
 double kinetic_energy(const Domain<D>& domain) {
-  double total = 0.0;
+  ExactSum total;
   domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
-    for (int a = 0; a < D; ++a) total += 0.5 * of.mass()[row] * of.v(a)[row] * of.v(a)[row];
+    for (int a = 0; a < D; ++a) total.add(0.5 * of.mass()[row] * of.v(a)[row] * of.v(a)[row]);
   });
-  return total;
+  return total.value();
 }
 
 template <int D>
 std::array<double, 3> momentum(const Domain<D>& domain) {
-  std::array<double, 3> total{};
+  std::array<ExactSum, D> total{};
   domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
-    for (std::size_t a = 0; a < D; ++a) total[a] += of.mass()[row] * of.v(static_cast<int>(a))[row];
+    for (std::size_t a = 0; a < D; ++a)
+      total[a].add(of.mass()[row] * of.v(static_cast<int>(a))[row]);
   });
-  return total;
+  std::array<double, 3> sums{};
+  for (std::size_t a = 0; a < D; ++a) sums[a] = total[a].value();
+  return sums;
 }
 
 template <int D>
 double initial_internal_energy(const Domain<D>& domain) {
-  double total = 0.0;
+  ExactSum total;
   domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
-    if (of.at.energy >= 0) total += of.columns.component(of.at.energy)[row] * of.volume()[row];
+    if (of.at.energy >= 0) total.add(of.columns.component(of.at.energy)[row] * of.volume()[row]);
   });
-  return total;
+  return total.value();
 }
 
 template <int D>

@@ -81,8 +81,10 @@ struct RunSettings {
       Setting{"gravity", &Self::gravity,
               "acceleration [m/s^2], D numbers or functions of time; default zero", Rule::any,
               "m/s^2"},
-      Setting{"transfer", &Self::transfer,
-              "how particles take the velocity of the grid: \"flip\", the paper's, or \"pic\""},
+      Setting{
+          "transfer", &Self::transfer,
+          "how particles take the velocity of the grid: \"flip\", the paper's, or \"pic\", which "
+          "takes all motion of a cell's size away, turning too; for one body, or bonded ones"},
       Setting{"pic_damping", &Self::pic_damping,
               "rate at which particles take over the velocity of the grid [1/s], a share of PIC in "
               "\"flip\"; takes away noise that the grid does not see, over very long runs",

@@ -103,7 +103,7 @@ class CaseModel(BaseModel, metaclass=_CaseMeta):
         renamed = tuple(key for key in data if key in cls.formerly)
         for key in renamed:
             if (now := cls.formerly[key]) in data:
-                rule = f"is the former name of {now}, which is given too"
+                rule = f"is the former name of the key {now}, which is given too"
                 raise violation(rule, f"remove {key}", path=(key,))
         return {cls.formerly.get(key, key): value for key, value in data.items()}, renamed
 

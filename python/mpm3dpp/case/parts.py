@@ -40,7 +40,8 @@ class Output(CaseModel):
     """What is written.
 
     Attributes:
-        frames: number of frames after the first one at t = 0; default 50.
+        frames: number of frames after the first one at t = 0; default 50. The first contact has one
+            of its own.
         interval: time between frames [s], in place of `frames`.
         history_every: steps between two rows of the history table.
         fields: columns to write beyond position, velocity, stress, pressure, von_mises, body and

@@ -24,7 +24,10 @@ _EXAMPLES = {
     "cohesion": '"1 kPa"', "friction_angle": '"33 deg"', "D": '"6930 m/s"',
     "jwl.A": '"371.2 GPa"', "jwl.B": '"3.21 GPa"', "R1": "4.15", "R2": "0.95", "omega": "0.3",
     "jwl.E0": '"7 GPa"', "gamma": "1.4", "ideal_gas.E0": '"253.3 kPa"', "tait.c0": '"1482 m/s"',
-    "c1": '"2.2 GPa"', "D1": "0.05", "D2": "3.44", "D3": "-2.12", "limit": "0.5",
+    "tillotson.a": "0.5", "tillotson.b": "1.63", "tillotson.A": '"75.2 GPa"',
+    "tillotson.B": '"65 GPa"', "tillotson.e0": '"5 MJ/kg"', "e_iv": '"3 MJ/kg"',
+    "e_cv": '"13.9 MJ/kg"', "c1": '"2.2 GPa"', "D1": "0.05", "D2": "3.44", "D3": "-2.12",
+    "limit": "0.5",
     "principal_stress.limit": '"300 MPa"', "maximum_shear.limit": '"200 MPa"',
     "hydrostatic_tension.limit": '"1.2 GPa"', "energy_limit.limit": '"7 GJ/m^3"',
 }

@@ -90,8 +90,8 @@ std::unique_ptr<Simulation<D>> stack(Scheme scheme, const Motion3& motion, int t
   const BulkViscosity viscosity{1.5, 0.06};
   const int rubber = add_material(
       simulation, {1000.0, {"neo_hookean", {{"K", 1e7}, {"G", 3e6}}}, {}, {}, viscosity});
-  const int solid = add_material(
-      simulation, {1000.0, {"elastic", {{"E", 1e7}, {"nu", 0.3}}}, {}, {}, viscosity});
+  const int solid =
+      add_material(simulation, {1000.0, {"elastic", {{"E", 1e7}, {"nu", 0.3}}}, {}, {}, viscosity});
   const Block blocks[] = {
       {{8, 0, 8}, {20, 5, 11}}, {{8, 5, 8}, {14, 9, 11}}, {{14, 5, 8}, {20, 9, 11}}};
   for (int b = 0; b < 3; ++b) {
