@@ -119,6 +119,7 @@ void add_settings(nb::module_& m) {
       .def_rw("outflow_upper", &GridSettings::outflow_upper)
       .def_rw("coarsening", &GridSettings::coarsening, nb::arg("coarsening").none());
   add_table<RunSettings>(m, "RunSettings", tables);
+  add_table<BulkViscosity>(m, "BulkViscosity", tables);
   add_table<ContactSettings>(m, "ContactSettings", tables);
   add_table<ExecutionSettings>(m, "ExecutionSettings", tables);
   nb::class_<Settings>(m, "Settings")

@@ -61,7 +61,7 @@ def test_they_mean_the_same(tmp_path: Path) -> None:
 
 
 def test_not_both() -> None:
-    with pytest.raises(CaseError, match="is the former name of cfl, which is given too"):
+    with pytest.raises(CaseError, match="is the former name of the key cfl, which is given too"):
         Run(end_time=1.0, time_step_factor=0.4, cfl=0.4)
 
 

@@ -109,11 +109,11 @@ def test_another_world_is_the_same_to_rounding(text: str, steps: int, basis: str
 
 
 def test_another_world_is_the_same_with_pic() -> None:
-    """One body, thrown at walls: PIC does not go with contact."""
-    text = RINGS.replace("[run]", '[run]\ntransfer = "pic"').replace(
-        '"52 mm"] }', '"52 mm"], walls = "slip" }'
-    )
-    check_worlds(Case.from_text(text.partition("[body.right]")[0]), 1800, text, meet=False)
+    """One ring, thrown at two walls: PIC does not go with contact."""
+    text = RINGS.replace("[run]", '[run]\ntransfer = "pic"').partition("[body.right]")[0]
+    text = text.replace('"52 mm"] }', '"52 mm"], walls = "slip" }')
+    text = text.replace('velocity = ["30 m/s", 0]', 'velocity = ["-30 m/s", "20 m/s"]')
+    check_worlds(Case.from_text(text), 1800, text, meet=False)
 
 
 def check_worlds(case: Case, steps: int, text: str, meet: bool = True) -> None:

@@ -4,15 +4,15 @@
 
 namespace mpm {
 
-/// The model is a copy, which no store to a column can change.
+/// The model is a copy, which no store to a column can change. Which part is the last is decided
+/// for the block, not in lanes: the last part of the way writes, the others leave their values in
+/// the block, which stays in the first-level cache (decision 0009).
 template <class T, int D, class Model>
 [[gnu::flatten]] void apply_strength(const Model model, const Material& material,
                                      const BlockColumns<D>& columns, const StressSettings& settings,
                                      MaterialBlock<D>& block, StressWriter<T, D>& writer) {
   using State = typename Model::template State<T, D>;
   const bool viscosity = settings.viscosity.active(), judged = !material.failures.empty();
-  // Decided for the block, not in lanes: the last part of the way writes, the others leave their
-  // values in the block, which stays in the first-level cache (decision 0009).
   const bool last = !material.eos && !judged;
   for_each_group<T>(block, [&](const Group<T, D>& group) {
     const StepKinematics<T, D> kinematics(group, block, columns, material.density, settings);

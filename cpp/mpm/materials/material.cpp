@@ -134,8 +134,7 @@ Material make_material(const MaterialChoice& choice) {
         }
       },
       material.strength);
-  for (const double factor : {choice.viscosity.quadratic, choice.viscosity.linear})
-    if (!Rule::not_negative.allows(factor)) refuse("viscosity", factor, Rule::not_negative.text());
+  check_settings(choice.viscosity);
   material.viscosity = choice.viscosity;
   material.bounds = bounds_of(material);
   return material;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mpm/catalogue/setting.hpp"
 #include "mpm/catalogue/words.hpp"
 #include "mpm/materials/catalogue.hpp"
 
@@ -35,7 +36,15 @@ struct Failing {
 /// Artificial bulk viscosity (von Neumann & Richtmyer 1950, with Landshoff's linear term):
 /// q = rho h^2 quadratic e^2 - rho h c linear e for a rate of volume change e < 0.
 struct BulkViscosity {
-  double quadratic = 0.0, linear = 0.0;
+  double quadratic = 1.5, linear = 0.06;
+
+  static constexpr std::string_view table = "run.viscosity";
+  using Self = BulkViscosity;
+  static constexpr auto settings = std::tuple{
+      Setting{"quadratic", &Self::quadratic, "factor of the term that spreads shocks over cells",
+              Rule::not_negative},
+      Setting{"linear", &Self::linear, "factor of the term that damps the ringing behind them",
+              Rule::not_negative}};
   bool active() const { return quadratic > 0.0 || linear > 0.0; }
 };
 
@@ -76,7 +85,7 @@ struct Material {
   StrengthModels::Any strength;
   std::optional<EosModels::Any> eos;
   std::vector<Failing> failures;
-  BulkViscosity viscosity{};
+  BulkViscosity viscosity{0.0, 0.0};  // none
   EosBounds bounds{};
 
   bool moves_as_one() const {
@@ -115,7 +124,7 @@ struct MaterialChoice {
   ModelChoice strength;
   std::optional<ModelChoice> eos;
   std::vector<FailureChoice> failures;
-  BulkViscosity viscosity{};
+  BulkViscosity viscosity{0.0, 0.0};  // none
 };
 
 /// Throws std::invalid_argument, in one sentence, for an unknown model or parameter, one that is

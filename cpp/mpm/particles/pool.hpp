@@ -59,7 +59,7 @@ struct ParticlePool {
 };
 
 /// How many entries of its pool's lists a patch with so many particles gets: some come and go.
-constexpr std::uint32_t room_for(std::uint32_t count) { return count + count / 8 + 4; }
+constexpr std::uint32_t room_for(std::uint32_t count) { return count + count / 16 + 1; }
 /// How many entries there are behind the ranges of all patches, for those that outgrow theirs.
 constexpr std::size_t spare_room(std::size_t used) { return used / 16 + 64; }
 

@@ -15,27 +15,32 @@ void ownership(const Patch<D>& patch, int node_count, double* own) {
   for (int n = 0; n < node_count; ++n) own[n] = patch.owned[n] ? 1.0 : 0.0;
 }
 
+/// Walls take up the force along the axes they hold. It becomes -m g, the product that gravity adds
+/// again in eq. (8), so that dv is 0 to the bit; v is 0 there already (momentum_to_velocity), and
+/// neither does work.
+template <int D>
+void hold_at_walls(const Domain<D>& domain, const Patch<D>& patch, const NodeBlock<D>& block) {
+  for_each_constrained_node(domain.grid, patch, [&](int node, unsigned constrained) {
+    for (int a = 0; a < D; ++a)
+      if (constrained >> a & 1u) block.force(a)[node] = -block.mass()[node] * domain.gravity[a];
+  });
+}
+
 }  // namespace
 
+/// Eq. (8), m_i dv_i = (f_i + m_i g) dt, with eq. (10) in the form m_i g: exact as gravity is
+/// uniform, and no work for the particles. f_i holds the internal, contact, load and dashpot
+/// forces.
 template <int D>
 void advance_nodes(Domain<D>& domain) {
   auto& grid = domain.grid;
   const double dt = domain.time_step;
   const bool absorb = grid.walls.absorb(), loaded = domain.has_loads();
   for_each_patch(domain, prescribed, [&](std::size_t p) { advance_prescribed_nodes(domain, p); });
-  // Eq. (8), m_i dv_i = (f_i + m_i g) dt, with eq. (10) in the form m_i g: exact as gravity is
-  // uniform, and no work for the particles. f_i holds the internal, contact, load and dashpot
-  // forces.
   for_each_patch(domain, deformable | free_rigid, [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
-    // Walls take up the force along the axes they hold. It becomes -m g, the product that gravity
-    // adds again below, so that dv is 0 to the bit; v is 0 there already (momentum_to_velocity),
-    // and neither does work.
-    for_each_constrained_node(grid, patch, [&](int node, unsigned constrained) {
-      for (int a = 0; a < D; ++a)
-        if (constrained >> a & 1u) block.force(a)[node] = -block.mass()[node] * domain.gravity[a];
-    });
+    hold_at_walls(domain, patch, block);
     double own[BlockShape<D>::nodes_max];
     ownership(patch, block.count, own);
     // What moves beyond a wall is the image's: its mass and force have been folded there.

@@ -40,8 +40,19 @@ struct LaneSums {
 };
 
 /// Velocities of a patch's particles, eq. (17), as the transfer says. Taken from the increments of
-/// the nodes, v_p is smoothed by no mapping to the grid and back. A function of its own for each
-/// basis, width and transfer (decision 0018).
+/// the nodes, v_p is smoothed by no mapping to the grid and back; the nodes are advanced, so v_i is
+/// that of the end of the step. A function of its own for each basis, width and transfer (decision
+/// 0018).
+///
+/// The increments are still read where MUSL's new momenta are scattered, m_i v_i' = sum N_ip m_p
+/// v_p (3.6, step 10), and both have the same place in the record (node_records.hpp): so these are
+/// summed aside, 7 kB in 3D, and copied once all particles of the patch have read. Other patches
+/// read their own blocks alone. There is no mass among them, for particles have not moved since it
+/// was mapped.
+///
+/// Lanes behind the last particle repeat its row. With no mass they count for nothing in the
+/// ledger; the nodes are told how many there are (`place`). With MPM_FLOAT32 velocities are rounded
+/// when stored; the ledger and the remap take v as computed (decision 0021).
 template <int W, Also also, class Transfer, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p, const B& basis,
                                                    const Transfer transfer) {
@@ -56,30 +67,21 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   const double* mass = pool.mass();
   Storage* velocities[D];
   for (int a = 0; a < D; ++a) velocities[a] = pool.v(a);
-  // The increments are still read where the new momenta are scattered, and both have the same place
-  // in the record (node_records.hpp): so these are summed here, 7 kB in 3D, and copied once all
-  // particles of the patch have read. Other patches read their own blocks alone.
   alignas(
       cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * half_record : 1];
   if constexpr (also == Also::remap) std::fill_n(remapped, block.count * half_record, 0.0);
   const NodeStrides<D> stride(patch.shape);
-  // Momentum without mass: particles have not moved since the mass was mapped.
   DoubleBuffer<Mapping<typename Transfer::Gives>, gives_momentum, D, B, half_record> cells(
       stride, {remapped});
 
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
-    // With the linear basis one polynomial for increments and velocities, as both are in the
-    // record.
     const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
     if constexpr (also == Also::remap) cells.begin(cell);
     for_each_group<W>(cell, [&](const auto& rows) {
       const auto w = weights_at(basis, local_position(cell, rows));
-      // Lanes behind the last particle repeat its row. With no mass they count for nothing in the
-      // ledger; the nodes are told how many there are (`place`).
       const T all = load(mass, rows), m = of_valid(rows, all);
       const Vec<T, D> dv = nodes.template vector<increment_at>(w);
       Vec<T, D> of_grid, v;
-      // v_i here is that of the end of the step, the sum of N_ip (v_i + dv_i): nodes are advanced.
       if constexpr (Transfer::takes_grid_velocity) of_grid = nodes.template vector<velocity_at>(w);
       unrolled<D>([&](auto a) {
         const T before = load(velocities[a], rows);
@@ -94,15 +96,12 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
           sums.lost += m * kept * kept;
           sums.lost -= m * v[a] * v[a];
         }
-        // With MPM_FLOAT32 rounded here; the ledger and the remap below take v as computed
-        // (decision 0021).
         store(velocities[a], rows, v[a]);
       });
       sums.add(m, v, dv);
       // USF: eq. (16) with the same weights, which are those of the positions before.
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {
-        // With the new v_p: m_i v_i' = sum N_ip m_p v_p (3.6, step 10).
         auto& particles = cells.next();
         particles.add(all, v);
         particles.place(w, rows.count);
@@ -112,7 +111,6 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   });
   if constexpr (also == Also::remap) {
     cells.finish();
-    // The increments of this block are of no use any more.
     copy_halves(block.records.at(remapped_at), {remapped}, block.count);
   }
   if constexpr (also == Also::move) patch.left_cell = moving.left_cell();

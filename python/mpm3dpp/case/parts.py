@@ -12,16 +12,13 @@ from mpm3dpp.base.model import CaseModel, Count, Exactly, Flag, Text
 from mpm3dpp.base.settings import core_table
 from mpm3dpp.base.units import NonNegative, Quantity, Time
 
-
-class Viscosity(CaseModel):
-    """Artificial bulk viscosity (von Neumann & Richtmyer 1950, Landshoff 1955), dimensionless."""
-
-    quadratic: NonNegative = 1.5
-    linear: NonNegative = 0.06
-
-
+_Viscosity: Any = core_table("run.viscosity")
 _Run: Any = core_table("run")
 _Contact: Any = core_table("contact")
+
+
+class Viscosity(_Viscosity):
+    """Artificial bulk viscosity (von Neumann & Richtmyer 1950, Landshoff 1955), dimensionless."""
 
 
 class Run(_Run):
