@@ -134,7 +134,10 @@ Material make_material(const MaterialChoice& choice) {
         }
       },
       material.strength);
-  check_settings(choice.viscosity);
+  for_each_setting<BulkViscosity>([&](const auto& row) {
+    const double factor = choice.viscosity.*row.member;
+    if (!row.rule.allows(factor)) refuse("viscosity", factor, row.rule.text());
+  });
   material.viscosity = choice.viscosity;
   material.bounds = bounds_of(material);
   return material;
