@@ -100,3 +100,11 @@ def test_a_gas_has_no_energy_below_zero(eos: tuple[str, dict[str, float]]) -> No
     found = swell(np.array([1.0, 10.0, 100.0, 1000.0]), solid=False, eos=eos)
     assert found["internal_energy"].min() >= 0.0
     assert found["pressure"].min() >= 0.0
+
+
+@pytest.mark.parametrize("lanes", [False, True])
+def test_debris_that_closes_in_one_step_is_pressed(lanes: bool) -> None:
+    """From ten times its volume to 0.95 of it the pressure was -14 GPa: a factor below zero."""
+    state = {"volume": 10.0, "internal_energy": 1e9}
+    found = swell(np.array([10.0, 0.95]), 0.0, False, lanes, state=state)
+    assert found["pressure"][1] > 0.0
