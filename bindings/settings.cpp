@@ -20,9 +20,23 @@ nb::dict all_bases() {
     known["nodes"] = B::nodes;
     known["before"] = B::before;
     known["own_node"] = B::own_node;
+    known["second_moment"] = B::second_moment;
     bases[text(B::name)] = known;
   });
   return bases;
+}
+
+nb::dict all_transfers() {
+  nb::dict transfers;
+  Transfers::for_each([&]<TransferModel T>(TransferId, const T&) {
+    nb::dict known;
+    known["doc"] = text(T::doc);
+    known["source"] = text(T::source);
+    known["affine"] = T::affine;
+    known["shares"] = T::has_share;
+    transfers[text(T::name)] = known;
+  });
+  return transfers;
 }
 
 nb::dict all_history_terms() {
@@ -134,6 +148,7 @@ void add_settings(nb::module_& m) {
   m.attr("failure_actions") = words_of<FailureAction>();
   m.attr("schemes") = words_of<Scheme>()[0];
   m.attr("bases") = all_bases();
+  m.attr("transfers") = all_transfers();
   m.attr("history_terms") = all_history_terms();
   m.attr("load_kinds") = all_load_kinds();
   m.attr("derived_fields") = all_derived_fields();

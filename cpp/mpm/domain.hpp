@@ -35,6 +35,7 @@ struct Domain {
 
   double disorder = disorder_that_pays;  // share of a body's particles at which it is sorted
   TransferId transfer{};
+  double flip_share = 1.0;   // of the velocity, in "flip" and "aflip"; the rest is the grid's
   double pic_damping = 0.0;  // rate at which particles take over the velocity of the grid [1/s]
 
   double time = 0.0;        // [s]

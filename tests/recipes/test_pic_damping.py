@@ -65,7 +65,7 @@ def test_decays_towards_the_grid(dimension: int, scheme: str) -> None:
         # What is taken from v is at most r dt |v|, so twice r dt of the energy; the rest is room
         # for the terms of the stress.
         if rate > 0.0:
-            assert 0.0 < rows["numerical_time"][-1] < 2.5 * rate * dt * scale
+            assert 0.0 < rows["numerical_transfer"][-1] < 2.5 * rate * dt * scale
     taken, twice = (outcomes[0.0] - outcomes[r] for r in (RATE, 2 * RATE))
     # Of a noise of 1 m/s what the grid does not see is taken: a third at least.
     assert np.abs(taken[:, 0]).max() > 0.3 * RATE * dt

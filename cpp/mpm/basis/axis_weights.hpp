@@ -20,7 +20,8 @@ struct AxisWeights {
 /// lie before the cell's own, which is at `own_node` in the cell: 0, its corner, or 0.5, its
 /// middle. `half_width()`: of the box over which the function is the mean of the hat [cells].
 /// `odd_at_fixed_walls`: beyond a fixed wall the nodes move the other way than their images before
-/// it, so that nothing moves at the wall; else they are held.
+/// it, so that nothing moves at the wall; else they are held. `second_moment`: sum over the nodes
+/// of N_i (x_i - x)^2 along the axis [cells^2], if it is the same at all places; else 0.
 template <class B>
 concept BasisModel = requires(const B basis, double xi) {
   { B::name } -> std::convertible_to<std::string_view>;
@@ -30,6 +31,7 @@ concept BasisModel = requires(const B basis, double xi) {
   { B::before } -> std::convertible_to<int>;
   { B::own_node } -> std::convertible_to<double>;
   { B::odd_at_fixed_walls } -> std::convertible_to<bool>;
+  { B::second_moment } -> std::convertible_to<double>;
   B(0.5);
   { basis.half_width() } -> std::convertible_to<double>;
   { basis.along(xi) } -> std::same_as<AxisWeights<double, B::nodes>>;

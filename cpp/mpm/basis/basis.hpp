@@ -27,6 +27,7 @@ struct BasisList : ChoiceList<BasisId, B...> {
   static constexpr std::array<Reach, sizeof...(B)> reach = {
       Reach{B::before, B::nodes - 1 - B::before, B::own_node}...};
   static constexpr std::array<bool, sizeof...(B)> odd_at_fixed_walls = {B::odd_at_fixed_walls...};
+  static constexpr std::array<double, sizeof...(B)> second_moments = {B::second_moment...};
 
   /// f(basis of particles with that edge [cells]).
   template <class F>
@@ -52,6 +53,12 @@ constexpr Reach reach_of(BasisId id) { return Bases::reach[static_cast<std::size
 
 constexpr bool odd_at_fixed_walls(BasisId id) {
   return Bases::odd_at_fixed_walls[static_cast<std::size_t>(id)];
+}
+
+/// D of APIC along an axis: the sum of N_i (x_i - x)^2 over the nodes [cells^2], if it is the same
+/// at all places; else 0.
+constexpr double second_moment(BasisId id) {
+  return Bases::second_moments[static_cast<std::size_t>(id)];
 }
 
 /// Half the width of the box over which a particle's function is the mean of the hat [cells], from

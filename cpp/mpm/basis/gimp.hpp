@@ -21,6 +21,7 @@ struct Gimp {
   static constexpr int nodes = 3, before = 1;
   static constexpr double own_node = 0.5;
   static constexpr bool odd_at_fixed_walls = false;
+  static constexpr double second_moment = 0.0;  // |u| + 2 A - u^2 is another at each place
 
   double l;  // half the particle's edge [cells], at most 1/2
 

@@ -15,6 +15,7 @@ struct Linear {
   static constexpr int nodes = 2, before = 0;
   static constexpr double own_node = 0.0;
   static constexpr bool odd_at_fixed_walls = false;
+  static constexpr double second_moment = 0.0;  // xi (1 - xi): none at a node
 
   MPM_HD explicit Linear(double /*edge*/) {}
   MPM_HD double half_width() const { return 0.0; }

@@ -19,6 +19,8 @@ struct QuadraticBSpline {
   // At a node on the wall (u = 0) its neighbours still have 1/8. Were the one beyond held, v at the
   // wall would be 1/8 of that of the one before it; turned, the two cancel.
   static constexpr bool odd_at_fixed_walls = true;
+  // (1 + u)^2 (1/2 - u)^2 / 2 + u^2 (3/4 - u^2) + (1 - u)^2 (1/2 + u)^2 / 2 (Jiang et al. 2015).
+  static constexpr double second_moment = 0.25;
 
   MPM_HD explicit QuadraticBSpline(double /*edge*/) {}
   MPM_HD double half_width() const { return 0.5; }  // it is the hat averaged over a cell

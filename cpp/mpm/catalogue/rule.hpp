@@ -13,7 +13,7 @@ struct Rule {
   bool lower_open = true, upper_open = true;
   bool finite = true;  // else an infinite one will do too
 
-  static const Rule any, positive, not_negative, fraction, poisson_ratio;
+  static const Rule any, positive, not_negative, fraction, share, poisson_ratio;
 
   bool operator==(const Rule&) const = default;
   bool allows(double value) const {
@@ -31,6 +31,8 @@ inline constexpr Rule Rule::any{};
 inline constexpr Rule Rule::positive{.lower = 0.0};
 inline constexpr Rule Rule::not_negative{.lower = 0.0, .lower_open = false};
 inline constexpr Rule Rule::fraction{.lower = 0.0, .upper = 1.0, .upper_open = false};
+inline constexpr Rule Rule::share{
+    .lower = 0.0, .upper = 1.0, .lower_open = false, .upper_open = false};
 inline constexpr Rule Rule::poisson_ratio{.lower = -1.0, .upper = 0.5};
 
 }  // namespace mpm

@@ -227,6 +227,25 @@ void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& t
   });
 }
 
+template <int D>
+void release_particles(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
+  for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, const ContactNode& node) {
+    for (BodyAtNode<D>& side : part.sides_of(node)) {
+      const Vec<double, D> free = side.mapped + read(grid, side, increment_at);
+      side.mapped = read(grid, side, velocity_at);  // kept there until `restore_nodes`
+      write(grid, part, side, free, velocity_at);
+    }
+  });
+}
+
+template <int D>
+void restore_nodes(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
+  for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, const ContactNode& node) {
+    for (const BodyAtNode<D>& side : part.sides_of(node))
+      write(grid, part, side, side.mapped, velocity_at);
+  });
+}
+
 template void remove_approach<2>(Contact<2>&, TileGrid<2>&, Threads&);
 template void remove_approach<3>(Contact<3>&, TileGrid<3>&, Threads&);
 template void add_contact_forces<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&,
@@ -235,5 +254,9 @@ template void add_contact_forces<3>(Contact<3>&, TileGrid<3>&, const std::vector
                                     const Vec<double, 3>&, double, Threads&);
 template void remove_remapped_approach<2>(Contact<2>&, TileGrid<2>&, Threads&);
 template void remove_remapped_approach<3>(Contact<3>&, TileGrid<3>&, Threads&);
+template void release_particles<2>(Contact<2>&, TileGrid<2>&, Threads&);
+template void release_particles<3>(Contact<3>&, TileGrid<3>&, Threads&);
+template void restore_nodes<2>(Contact<2>&, TileGrid<2>&, Threads&);
+template void restore_nodes<3>(Contact<3>&, TileGrid<3>&, Threads&);
 
 }  // namespace mpm

@@ -13,6 +13,13 @@ template <int D>
 void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                         const Vec<double, D>& gravity, double time_step, Threads& threads);
 
+/// Between these two the nodes have the velocity without what (6)-(7) have changed: particles that
+/// take the velocity of the grid are to take no part in it (decision 0046).
+template <int D>
+void release_particles(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
+template <int D>
+void restore_nodes(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
+
 /// Remove the approach from the remapped velocities (3.6, step 10).
 template <int D>
 void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);

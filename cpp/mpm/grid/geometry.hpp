@@ -86,6 +86,9 @@ struct GridGeometry {
     return c;
   }
 
+  /// D of APIC: sum over the nodes of N_i (x_i - x)^2 along an axis, the same at all places, [m^2];
+  /// 0 where it is not.
+  double affine_moment() const { return second_moment(basis) * cell_size * cell_size; }
   /// Nodes around a cell's own that its particles reach.
   Reach reach() const { return reach_of(basis); }
   /// Do nodes beyond walls follow their images before them?

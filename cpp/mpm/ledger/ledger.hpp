@@ -50,7 +50,7 @@ struct Ledger {
          external = 0.0, absorbed = 0.0, eroded = 0.0, left = 0.0, bounded = 0.0, mapping = 0.0,
          time_integration = 0.0;  // [J]
   double energy_floor = 0.0;      // the part of bounded that the least energy has given, <= 0 [J]
-  double damped = 0.0;            // the part of time_integration that PIC damping has taken [J]
+  double transferred = 0.0;       // kinetic energy that transfers other than FLIP have taken [J]
   double load_work = 0.0;         // the part of external that loads have done [J]
   double gone_recoverable = 0.0;  // the part of eroded and left that was internal [J]
   double start = 0.0;             // kinetic and internal energy at the start [J]
@@ -61,17 +61,17 @@ struct Ledger {
   double prescribed_kinetic = 0.0;              // of the bodies with prescribed motion [J]
   std::array<double, 3> prescribed_momentum{};  // [kg m/s]
 
-  double numerical() const { return mapping + time_integration; }
+  double numerical() const { return mapping + time_integration + transferred; }
   double residual() const {
     return kinetic + internal + plastic + viscous + friction + contact + absorbed + eroded + left +
            bounded + numerical() - external - start;
   }
   /// Energy made by numerics, as a fraction of the largest energy brought in; 0 while there is
-  /// none. What PIC damping takes does not hide what is made.
+  /// none. What transfers take does not hide what is made.
   double growth() const { return largest > 0.0 ? std::max(0.0, made()) / largest : 0.0; }
   /// Energy made by numerics so far, lost if negative; that which an energy below absolute zero was
   /// given is made as well [J].
-  double made() const { return damped - numerical() - contact - energy_floor; }
+  double made() const { return -(mapping + time_integration) - contact - energy_floor; }
 
   /// Count a patch of a body with prescribed motion at the start.
   template <int D>
@@ -85,10 +85,11 @@ struct Ledger {
   }
 
   /// Take over the sums of a step; `forces_follow` if the stress was updated before the forces
-  /// (USF).
+  /// (USF), `affine` if the transfer is.
   template <int D>
   void add(const std::vector<PatchSums<D>>& patches, const ContactSums& contacts,
-           const Removed<D>& by_erosion, const Removed<D>& out_of_region, bool forces_follow) {
+           const Removed<D>& by_erosion, const Removed<D>& out_of_region, bool forces_follow,
+           bool affine) {
     const PatchSums<D> s = total_of(patches);
     const double motion = s.prescribed.kinetic - prescribed_kinetic - s.prescribed.work;
     prescribed_kinetic = s.prescribed.kinetic;
@@ -118,8 +119,14 @@ struct Ledger {
     const double second = s.second_order - s.gravity_second - s.load_second - s.dashpot_second;
     const double at_end = forces_follow ? 0.0 : 2.0 * second;
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
-    damped += s.damped;
-    time_integration += s.made_rigid + s.damped;
+    transferred += s.transferred;
+    // Of affine transfers, the work of all forces at the velocities that were mapped, before
+    // (6)-(7), and the second order: what the energies of free particles should have changed by.
+    if (affine)
+      transferred += s.force_work + s.gravity_first + s.load_first + s.dashpot_first +
+                     s.second_order - s.prescribed.work -
+                     (contacts.energy + contacts.friction_first + contacts.force_work);
+    time_integration += s.made_rigid;
     time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous + s.stress.bounded -
                         s.stress.force_power + second + contacts.friction -
                         contacts.friction_first - at_end;

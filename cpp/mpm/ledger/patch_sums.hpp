@@ -23,11 +23,14 @@ template <int D>
 struct PatchSums {
   StressSums stress;
   double kinetic = 0.0;       // of the particles after the step [J]
-  double second_order = 0.0;  // half sum of m_p (change of v_p)^2 [J]
-  double damped = 0.0;        // kinetic energy that PIC damping has taken [J]
+  double second_order = 0.0;  // half sum of m_p (change of v_p)^2 [J]; of affine transfers that of
+                              // the nodes, node_second
+  double transferred = 0.0;   // kinetic energy that the transfer has taken against FLIP; of affine
+                              // transfers all that particles lack against the start of the step [J]
   double momentum[D] = {};    // of the particles after the step [kg m/s]
   double force_work =
       0.0;  // time step x sum over nodes of internal and contact force . velocity [J]
+  double node_second = 0.0;  // half sum of m_i (change of v_i)^2 [J]; of this patch, not summed
   double made_rigid =
       0.0;  // kinetic energy that rigid bodies' increments had beyond a rigid motion [J]
   double gravity_first = 0.0;   // time step x sum over nodes of gravity . velocity [J]
@@ -41,7 +44,7 @@ struct PatchSums {
   void for_each(F&& f) {
     for (double* const x :
          {&stress.internal, &stress.plastic, &stress.viscous, &stress.bounded, &stress.energy_floor,
-          &stress.force_power, &kinetic, &second_order, &damped, &force_work, &made_rigid,
+          &stress.force_power, &kinetic, &second_order, &transferred, &force_work, &made_rigid,
           &gravity_first, &gravity_second, &prescribed.kinetic, &prescribed.work, &load_first,
           &load_second, &dashpot_first, &dashpot_second})
       f(*x);

@@ -94,9 +94,10 @@ void check_finite(std::span<const double> values, const std::string& what) {
 }
 
 template <int D>
-ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid) {
+ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid, bool affine) {
   ParticlePool<D> pool;
   add_columns(pool, material, grid.outflow_box.exist);
+  if (affine) pool.affine = pool.columns.add("affine_velocity", "1/s", D * D, Precision::rounded);
   // One particle, to ask for the speed of its waves.
   pool.columns.allocate(1);
   for (int a = 0; a < D; ++a) pool.v(a)[0] = Storage{0.0};
@@ -172,8 +173,8 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
   }
 }
 
-template ParticlePool<2> make_pool<2>(const Material&, const TileGrid<2>&);
-template ParticlePool<3> make_pool<3>(const Material&, const TileGrid<3>&);
+template ParticlePool<2> make_pool<2>(const Material&, const TileGrid<2>&, bool);
+template ParticlePool<3> make_pool<3>(const Material&, const TileGrid<3>&, bool);
 template Body<2> make_body<2>(const std::string&, const Material&, const ParticlePool<2>&,
                               std::span<const double>, std::span<const double>,
                               std::span<const double>);

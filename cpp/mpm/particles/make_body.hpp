@@ -10,9 +10,10 @@
 namespace mpm {
 
 /// The pool of a material, with its columns declared and no particles. A wave's speed depends on
-/// the size of the grid's cells where the material is viscous.
+/// the size of the grid's cells where the material is viscous. `affine`: with a column for the
+/// affine part of the velocity.
 template <int D>
-ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid);
+ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid, bool affine = false);
 
 /// A body of particles at `positions` (n, D) [m] with `velocities` (n, D) or (1, D) [m/s] and
 /// `volumes` (n,) or (1,) [m^3], with the pool of its material, which it does not enter yet. Throws

@@ -22,9 +22,10 @@ struct RemovedRow {
 template <int D>
 struct ParticlePool {
   Columns columns;
-  int position = 0;                  // first component of each column; position [m], D components
-  MaterialColumns at{};              // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
-  double sound_speed = 0.0;          // of its material at the start [m/s]
+  int position = 0;          // first component of each column; position [m], D components
+  int affine = -1;           // affine part of the velocity [1/s], D x D; -1: the transfer has none
+  MaterialColumns at{};      // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
+  double sound_speed = 0.0;  // of its material at the start [m/s]
   std::vector<std::uint32_t> id;     // number of each particle in its body, as the user gave them
   std::vector<std::uint32_t> piece;  // 1 + number of its first SurfacePiece, or 0; empty: no loads
   std::vector<std::uint32_t> order;  // rows by cell, then by id, in the range that each patch owns
@@ -40,6 +41,9 @@ struct ParticlePool {
   const double* mass() const { return columns.component(at.mass); }
   double* volume() { return columns.component(at.volume); }
   const double* volume() const { return columns.component(at.volume); }
+  /// Component C_ij of the affine part of the velocity, k = D i + j [1/s].
+  Storage* affine_part(int k) { return columns.rounded(affine + k); }
+  const Storage* affine_part(int k) const { return columns.rounded(affine + k); }
   const Storage* stress(int k) const { return columns.rounded(at.stress + k); }
   Vec<double, D> position_of(std::size_t row) const {
     Vec<double, D> place;
@@ -57,6 +61,18 @@ struct ParticlePool {
            removed.capacity() * sizeof(RemovedRow);
   }
 };
+
+/// Kinetic energy of a particle [J]; with an affine part m D C:C / 2 of it, D = `affine_moment`
+/// [m^2].
+template <int D>
+double kinetic_energy(const ParticlePool<D>& pool, std::uint32_t row, double affine_moment) {
+  const double m = pool.mass()[row];
+  double sum = 0.0;
+  for (int a = 0; a < D; ++a) sum += 0.5 * m * pool.v(a)[row] * pool.v(a)[row];
+  for (int k = 0; k < (pool.affine < 0 ? 0 : D * D); ++k)
+    sum += 0.5 * m * affine_moment * pool.affine_part(k)[row] * pool.affine_part(k)[row];
+  return sum;
+}
 
 /// How many entries of its pool's lists a patch with so many particles gets: some come and go.
 constexpr std::uint32_t room_for(std::uint32_t count) { return count + count / 16 + 1; }

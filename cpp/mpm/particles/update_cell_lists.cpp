@@ -77,15 +77,12 @@ void count_changes(std::vector<Body<D>>& bodies, ListScratch<D>& scratch) {
 /// Take what a particle has out of the sums of those that take part.
 template <int D>
 void take_out(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row,
-              Removed<D>& sums) {
+              double affine_moment, Removed<D>& sums) {
   const double m = pool.mass()[row];
   ++sums.count;
   sums.mass += m;
-  for (int a = 0; a < D; ++a) {
-    const double v = pool.v(a)[row];
-    sums.kinetic += 0.5 * m * v * v;
-    sums.momentum[a] += m * v;
-  }
+  sums.kinetic += kinetic_energy(pool, row, affine_moment);
+  for (int a = 0; a < D; ++a) sums.momentum[a] += m * pool.v(a)[row];
   const double energy = pool.columns.component(pool.at.recoverable)[row];
   // Energies are kept per initial volume, m / rho_0.
   sums.recoverable += energy * m / body.initial_density;
@@ -94,12 +91,13 @@ void take_out(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t ro
 /// Those of a patch's particles that take no part any more.
 template <int D>
 void remove_particles(Body<D>& body, ParticlePool<D>& pool, const Patch<D>& patch,
-                      const std::uint8_t* mark, Removed<D>& eroded, Removed<D>& outflow) {
+                      const std::uint8_t* mark, double affine_moment, Removed<D>& eroded,
+                      Removed<D>& outflow) {
   // By one thread, in the order of the lists: sums of doubles, and rows that are pushed back.
   for (const std::uint32_t row : pool.rows(patch)) {
     const std::uint8_t now = *mark++;
     if (now != CellMark::eroded && now != CellMark::left) continue;
-    take_out(body, pool, row, now == CellMark::left ? outflow : eroded);
+    take_out(body, pool, row, affine_moment, now == CellMark::left ? outflow : eroded);
     if (now == CellMark::left) pool.columns.component(pool.at.failed)[row] = left_region;
     pool.removed.push_back({row, patch.body});
     ++body.removed;
@@ -219,7 +217,7 @@ bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
     if (change.removed == 0) continue;
     const Patch<D>& patch = grid.patches[p];
     remove_particles(body_of(patch), pool_of(patch), patch, scratch.marks + change.first_mark,
-                     eroded, outflow);
+                     grid.affine_moment(), eroded, outflow);
   }
   write_lists(grid, bodies, pools, threads, scratch);
   // They lie in the memory of the nodes, which gets its blocks now.

@@ -60,6 +60,10 @@ void find_contacts(Step<D>& step) {
 /// p_r' = p_r - a n, p_s' = p_s + a n with a = (m_s p_r - m_r p_s) . n / (m_r + m_s) > 0.
 template <int D>
 void contact_momentum(Step<D>& step, Vec<double, D> Node<D>::* velocity) {
+  const bool mapped = velocity == &Node<D>::v;  // else remapped, which particles take no part in
+  for (Body<D>& b : step.bodies)
+    for (auto& [i, node] : b.nodes)
+      if (mapped) node.v_corrected = node.v;
   for (Contact<D>& c : step.contacts) {
     const double approach = dot(c.r->*velocity - c.s->*velocity, c.n);
     c.touching = approach >= 0.0;
@@ -70,6 +74,8 @@ void contact_momentum(Step<D>& step, Vec<double, D> Node<D>::* velocity) {
   for (Body<D>& b : step.bodies) {
     step.reflect(b, velocity);
     if (b.prescribed()) set_prescribed_velocities(step, b, velocity);  // whatever pushes it
+    for (auto& [i, node] : b.nodes)
+      if (mapped) node.v_corrected = node.v - node.v_corrected;
   }
 }
 

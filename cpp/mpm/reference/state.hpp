@@ -14,6 +14,7 @@ struct Particle {
   Vec<double, D> x, v;   // position [m], velocity [m/s]
   double m, V;           // mass [kg], volume [m^3]
   Sym<double, D> sigma;  // stress [Pa]
+  Mat<double, D> C{};    // affine part of the velocity [1/s]
 };
 
 template <int D>
@@ -22,9 +23,10 @@ struct Node {
   Vec<double, D> v = Vec<double, D>::zero();       // velocity [m/s]; a momentum while it is summed
   Vec<double, D> f = Vec<double, D>::zero();       // force [N]
   Vec<double, D> f_load = Vec<double, D>::zero();  // the part of it of loads on surfaces [N]
-  Vec<double, D> f_absorb = Vec<double, D>::zero();  // and that of absorbing walls [N]
-  Vec<double, D> dv = Vec<double, D>::zero();        // change of the velocity in this step [m/s]
-  Vec<double, D> v_new = Vec<double, D>::zero();     // remapped velocity [m/s]
+  Vec<double, D> f_absorb = Vec<double, D>::zero();     // and that of absorbing walls [N]
+  Vec<double, D> dv = Vec<double, D>::zero();           // change of the velocity in this step [m/s]
+  Vec<double, D> v_corrected = Vec<double, D>::zero();  // by how much eqs. (6)-(7) have changed v
+  Vec<double, D> v_new = Vec<double, D>::zero();        // remapped velocity [m/s]
 };
 
 /// A body; every body has its own velocity field on the common grid.

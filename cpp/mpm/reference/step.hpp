@@ -23,6 +23,7 @@ struct Step {
   Vec<double, D> g = Vec<double, D>::zero();  // gravity [m/s^2]
   double mu = 0.0;                            // coefficient of friction
   double pic = 0.0;                           // share of the grid's velocity that particles take
+  double moment = 0.0;                        // D of an affine transfer [m^2]; 0 for none
   std::function<ShapeValue(double)> S;        // shape function along an axis, of d [cells]
   double half_width = 0.0;  // of the box over which it is the mean of the hat [cells]
   Walls<D> walls{};         // the grid's node 0 is the lower corner of the box
@@ -54,6 +55,19 @@ struct Step {
     });
   }
 
+  /// v_p + C_p (x_i - x_p), the velocity that a particle gives to a node (Jiang et al. 2015).
+  Vec<double, D> given(const Particle<D>& p, const Index<D>& i) const {
+    Vec<double, D> v = p.v;
+    for (int a = 0; a < D; ++a)
+      for (int c = 0; c < D; ++c) v[a] += p.C[a][c] * arm(p, i)[c];
+    return v;
+  }
+  Vec<double, D> arm(const Particle<D>& p, const Index<D>& i) const {
+    Vec<double, D> d;
+    for (int a = 0; a < D; ++a) d[a] = h * i[static_cast<std::size_t>(a)] - p.x[a];
+    return d;
+  }
+
   /// m_i = sum m_p N_ip, eq. (2); p_i = sum m_p v_p N_ip, eq. (3); v_i = p_i / m_i.
   void map_momentum() {
     for (Body<D>& b : bodies) {
@@ -61,7 +75,7 @@ struct Step {
       for (const Particle<D>& p : b.particles)
         for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>&) {
           b.nodes[i].m += p.m * N;
-          b.nodes[i].v += p.m * N * p.v;
+          b.nodes[i].v += p.m * N * given(p, i);
         });
       fold(b, [](Node<D>& node, Node<D>& image, auto&& mirrored) {
         image.m += node.m;
@@ -103,17 +117,26 @@ struct Step {
     }
   }
 
-  /// v_p += sum dv_i N_ip, eq. (17); of a share `pic` the velocity of the grid takes the place.
+  /// v_p += sum dv_i N_ip, eq. (17); of a share `pic` the velocity of the grid takes the place,
+  /// that before eqs. (6)-(7) and with the increment. C_p = sum N_ip v_i (x_i - x_p) / D of the
+  /// same.
   void advance_particles() {
     for (Body<D>& b : bodies) {
       if (b.prescribed()) continue;
       for (Particle<D>& p : b.particles) {
         Vec<double, D> of_grid = Vec<double, D>::zero();
+        Mat<double, D> C{};
         for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>&) {
+          const Vec<double, D> v = b.nodes[i].v - b.nodes[i].v_corrected;
           p.v += N * b.nodes[i].dv;
-          of_grid += N * b.nodes[i].v;
+          of_grid += N * v;
+          if (moment > 0.0)
+            for (int a = 0; a < D; ++a)
+              for (int c = 0; c < D; ++c) C[a][c] += N * v[a] * arm(p, i)[c] / moment;
         });
-        if (b.deforms()) p.v += pic * (of_grid - p.v);
+        if (!b.deforms()) continue;
+        p.v += pic * (of_grid - p.v);
+        p.C = C;
       }
     }
   }
@@ -124,7 +147,7 @@ struct Step {
       for (auto& [i, node] : b.nodes) node.v_new = Vec<double, D>::zero();
       for (const Particle<D>& p : b.particles)
         for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>&) {
-          b.nodes[i].v_new += p.m * N * p.v;
+          b.nodes[i].v_new += p.m * N * given(p, i);
         });
       fold(b, [](Node<D>& node, Node<D>& image, auto&& mirrored) {
         image.v_new += mirrored(node.v_new);

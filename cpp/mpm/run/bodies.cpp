@@ -7,6 +7,7 @@
 
 #include "mpm/particles/make_body.hpp"
 #include "mpm/run/measures.hpp"
+#include "mpm/run/start_affine.hpp"
 #include "mpm/run/time_step.hpp"
 
 namespace mpm {
@@ -31,7 +32,8 @@ int add_material(Simulation<D>& simulation, const MaterialChoice& choice) {
   require(simulation, Phase::building, "materials must be added before prepare()");
   Domain<D>& domain = simulation.domain;
   domain.materials.push_back(make_material(choice));
-  domain.pools.push_back(make_pool(domain.materials.back(), domain.grid));
+  domain.pools.push_back(
+      make_pool(domain.materials.back(), domain.grid, is_affine(domain.transfer)));
   return static_cast<int>(domain.materials.size()) - 1;
 }
 
@@ -124,6 +126,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
       pool.v(static_cast<int>(a))[row] = static_cast<Storage>(velocities[pool.id[row] * D + a]);
   });
   project_rigid_velocities(domain);
+  start_affine(domain);
   Ledger& ledger = domain.ledger;
   ledger.external += kinetic_energy(domain) - before;
   ledger.kinetic = kinetic_energy(domain);

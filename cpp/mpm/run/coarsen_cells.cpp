@@ -7,6 +7,7 @@
 
 #include "mpm/contact/candidates.hpp"
 #include "mpm/grid/blocks.hpp"
+#include "mpm/run/measures.hpp"
 #include "mpm/run/time_step.hpp"
 
 namespace mpm {
@@ -34,6 +35,7 @@ void coarsen_cells(Simulation<D>& simulation) {
   Domain<D>& domain = simulation.domain;
   TileGrid<D>& grid = domain.grid;
   ++simulation.coarsenings;
+  const double before = kinetic_energy(domain);
   grid.cell_size *= 2.0;
   for (int& cells : grid.walls.cells) cells /= 2;
   release_nodes(grid);
@@ -41,6 +43,9 @@ void coarsen_cells(Simulation<D>& simulation) {
   for (Patch<D>& patch : grid.patches) patch.left_cell = true;  // what has just failed still leaves
   invalidate_pairs(domain.contact);
   if (domain.has_contact()) connect_tiles(domain.contact, grid, domain.bodies);
+  // The affine part of velocities stays; its energy goes with the square of the cells.
+  domain.ledger.kinetic = kinetic_energy(domain);
+  domain.ledger.transferred += before - domain.ledger.kinetic;
   probe_speeds(domain);
   simulation.next_time_step = stable_time_step(domain, simulation.settings.run.cfl);
 }

@@ -18,7 +18,7 @@ template <int D>
 double kinetic_energy(const Domain<D>& domain) {
   ExactSum total;
   domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
-    for (int a = 0; a < D; ++a) total.add(0.5 * of.mass()[row] * of.v(a)[row] * of.v(a)[row]);
+    total.add(mpm::kinetic_energy(of, row, domain.grid.affine_moment()));
   });
   return total.value();
 }

@@ -7,6 +7,7 @@
 #include "mpm/particles/make_body.hpp"
 #include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
+#include "mpm/run/start_affine.hpp"
 #include "mpm/run/time_step.hpp"
 
 namespace mpm {
@@ -71,6 +72,7 @@ void prepare(Simulation<D>& simulation) {
   list_kinds(domain);
   start_motions(domain);
   project_rigid_velocities(domain);
+  start_affine(domain);
   probe_speeds(domain);
   const double cfl = simulation.settings.run.cfl;
   simulation.next_time_step = stable_time_step(domain, cfl);

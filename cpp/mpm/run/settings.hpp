@@ -63,6 +63,7 @@ struct RunSettings {
   double cfl = 0.25;
   std::array<TimeFunction, 3> gravity{};
   TransferId transfer = Transfers::id_of<Flip>();
+  std::optional<double> flip_share;
   double pic_damping = 0.0;
   double energy_growth_limit = 1.0;
   double outside_limit = 0.05;
@@ -83,8 +84,14 @@ struct RunSettings {
               "m/s^2"},
       Setting{
           "transfer", &Self::transfer,
-          "how particles take the velocity of the grid: \"flip\", the paper's, or \"pic\", which "
-          "takes all motion of a cell's size away, turning too; for one body, or bonded ones"},
+          "how particles take the velocity of the grid: \"flip\", the paper's; \"apic\", which "
+          "smooths and keeps turning; \"aflip\", which smooths less; or \"pic\", which takes all "
+          "motion of a cell's size away, turning too"},
+      Setting{"flip_share", &Self::flip_share,
+              "share of a step's velocity that \"flip\" and \"aflip\" take as FLIP does, the rest "
+              "being "
+              "the grid's; default 1 in \"flip\", 0.97 in \"aflip\"",
+              Rule::share},
       Setting{"pic_damping", &Self::pic_damping,
               "rate at which particles take over the velocity of the grid [1/s], a share of PIC in "
               "\"flip\"; takes away noise that the grid does not see, over very long runs",
@@ -103,6 +110,11 @@ struct RunSettings {
               "that have failed do not count; 1 for never",
               Rule::fraction}};
 };
+
+/// The share of FLIP in its transfer, if that has one.
+inline double flip_share(const RunSettings& run) {
+  return run.flip_share.value_or(run.transfer == Transfers::id_of<Aflip>() ? 0.97 : 1.0);
+}
 
 /// What moves no bit of the results.
 struct ExecutionSettings {

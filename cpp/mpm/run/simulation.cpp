@@ -6,12 +6,22 @@
 namespace mpm {
 namespace {
 
+/// Does the transfer go with the basis, and what is given for it with it?
+void check_transfer(const Settings& s) {
+  if (is_affine(s.run.transfer) && second_moment(s.grid.basis) == 0.0)
+    throw std::invalid_argument(
+        "run.transfer: an affine transfer needs a basis whose second moment is the same "
+        "everywhere: "
+        "grid.basis = \"quadratic_bspline\"");
+}
+
 /// The settings, if all are in range.
 const Settings& checked(const Settings& s) {
   check_settings(s.grid);
   if (s.grid.coarsening) check_settings(*s.grid.coarsening);
   check_settings(s.run);
   check_settings(s.contact);
+  check_transfer(s);
   check_settings(s.execution);
   for (std::size_t a = 0; a < 3; ++a) {
     if (!std::isfinite(s.grid.origin[a])) throw std::invalid_argument("origin must be finite");
@@ -19,6 +29,13 @@ const Settings& checked(const Settings& s) {
     if (!problem.empty()) throw std::invalid_argument("gravity " + problem);
   }
   return s;
+}
+
+/// Do particles take velocities of nodes that eqs. (6)-(7) correct?
+bool releases(const Settings& s) {
+  const bool takes = takes_grid_velocity(s.run.transfer) || s.run.pic_damping > 0.0 ||
+                     s.run.flip_share.value_or(1.0) < 1.0;
+  return takes && s.contact.enabled && !s.contact.bonded;
 }
 
 template <int D>
@@ -44,11 +61,13 @@ void set_grid(TileGrid<D>& grid, const GridSettings& given) {
 
 template <int D>
 Simulation<D>::Simulation(const Settings& given)
-    : settings(checked(given)), stages(stages_of<D>(given.run.scheme, given.execution.fused)) {
+    : settings(checked(given)),
+      stages(stages_of<D>(given.run.scheme, given.execution.fused, releases(given))) {
   set_grid(domain.grid, given.grid);
   domain.grid.bonded = given.contact.bonded;
   domain.gravity_of_time = given.run.gravity;
   domain.transfer = given.run.transfer;
+  domain.flip_share = flip_share(given.run);
   domain.pic_damping = given.run.pic_damping;
   domain.disorder = given.execution.disorder;
   domain.contact_settings = given.contact;

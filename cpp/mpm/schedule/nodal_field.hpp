@@ -3,6 +3,7 @@
 #include <array>
 
 #include "mpm/layout/node_records.hpp"
+#include "mpm/math/tensor.hpp"
 #include "mpm/schedule/weights.hpp"
 
 namespace mpm {
@@ -57,6 +58,32 @@ class NodalField {
       });
     });
     return g;
+  }
+
+  /// The vector at number `at` of the records, and its first moments sum N_i f_i (x_i - x) [cells]:
+  /// [i][j] of component i along axis j.
+  template <int at, class T>
+  void value_and_moments(const Weights<T, D, count>& w, const Moments<T, D, count>& M,
+                         Vec<T, D>& total, Mat<T, D>& moments) const {
+    total = Vec<T, D>::zero();
+    for (auto& row : moments.c)
+      for (T& each : row) each = T(0.0);
+    // As gradients, with M in place of dN; the sums along x with N serve the value too.
+    for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
+      T N = w.axis[1].N[y], My = M.axis[1][y], Mz(0.0);
+      if constexpr (D == 3) {
+        Mz = N * M.axis[D - 1][z];
+        N *= w.axis[D - 1].N[z];
+        My *= w.axis[D - 1].N[z];
+      }
+      unrolled<D>([&](auto i) MPM_INLINE {
+        const T value = along(row.at(at + i), w.axis[0].N);
+        total[i] = fma(N, value, total[i]);
+        moments[i][0] = fma(N, along(row.at(at + i), M.axis[0]), moments[i][0]);
+        moments[i][1] = fma(My, value, moments[i][1]);
+        if constexpr (D == 3) moments[i][2] = fma(Mz, value, moments[i][2]);
+      });
+    });
   }
 
  private:

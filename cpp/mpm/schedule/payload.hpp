@@ -7,8 +7,9 @@
 namespace mpm {
 
 /// What is scattered: a sum of these. Forces come with neither or with both of the others; MUSL's
-/// remap gives momentum alone, onto the mass of the first mapping.
-enum Gives : unsigned { gives_mass = 1, gives_momentum = 2, gives_forces = 4 };
+/// remap gives momentum alone, onto the mass of the first mapping. With the momentum may come its
+/// affine part.
+enum Gives : unsigned { gives_mass = 1, gives_momentum = 2, gives_forces = 4, gives_affine = 8 };
 
 /// Of some particles of a cell, one after another, as far as it is scattered: where nodes are the
 /// lanes. Columns, since registers of particles are written as they are and single numbers are
@@ -41,6 +42,7 @@ struct PayloadRecords {
   double mass[room];                                         // [kg]
   alignas(alignment) double velocity[room][half_record];     // behind a one, if mass is given
   alignas(alignment) double traction[D][room][half_record];  // a column of the tensor each
+  alignas(alignment) double affine[D][room][half_record];    // likewise of m_p C_p h, behind a zero
 
   template <unsigned what, class T>
   void add(int at, T m, const Vec<T, D>& v) {
@@ -51,6 +53,22 @@ struct PayloadRecords {
       lay_out(velocity + at, T(1.0), v[0], v[1], z);
     else
       lay_out(velocity + at, v[0], v[1], z, none);
+  }
+  /// With the affine part, G = C h: all with the mass in, m (1, v) and m (0, column of G).
+  template <unsigned what, class T>
+  void add(int at, T m, const Vec<T, D>& v, const Mat<T, D>& G) {
+    add<what>(at, m, v);
+    const auto with_mass = [&](double (*to)[half_record], T first, auto&& component) MPM_INLINE {
+      const T none(0.0), z = D == 3 ? component(D - 1) : none;
+      if constexpr ((what & gives_mass) != 0)
+        lay_out(to + at, first, component(0), component(1), z);
+      else
+        lay_out(to + at, component(0), component(1), z, none);
+    };
+    with_mass(velocity, m, [&](int a) MPM_INLINE { return m * v[a]; });
+    unrolled<D>([&](auto b) MPM_INLINE {
+      with_mass(affine[b], T(0.0), [&](int a) MPM_INLINE { return m * G[a][b]; });
+    });
   }
   template <class T>
   void add_tractions(int at, const Sym<T, D>& t) {

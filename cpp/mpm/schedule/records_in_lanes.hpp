@@ -24,7 +24,7 @@ struct Gradient {
   double z, y, x, dz, dy, dx;
 };
 template <int D>
-struct Traction {
+struct Tensor {
   Half column[D];
 };
 /// Of one node: part x.
@@ -49,7 +49,7 @@ MPM_INLINE inline Scaled operator*(const Function<D>& scale, const Half& v) {
   return {(scale.z * v) * scale.y, scale.x};
 }
 template <int D>
-MPM_INLINE inline Force operator*(const Traction<D>& t, const Gradient<D>& N) {
+MPM_INLINE inline Force operator*(const Tensor<D>& t, const Gradient<D>& N) {
   // What a layer shares: N_z, but dN_z for the column along z.
   const auto in_layer = [&](int b) MPM_INLINE {
     return D == 3 ? t.column[b] * Half(b == 2 ? N.dz : N.z) : t.column[b];
@@ -58,6 +58,21 @@ MPM_INLINE inline Force operator*(const Traction<D>& t, const Gradient<D>& N) {
   Half across = in_layer(1) * Half(N.dy);
   if constexpr (D == 3) across = fma(in_layer(2), y, across);
   return {in_layer(0) * y, across, N.x, N.dx};
+}
+/// A vector times N, and the sum with a tensor times first moments: N is one for a row but for N_x.
+template <int D>
+struct Product {
+  Half v;
+  const Function<D>& N;
+};
+template <int D>
+MPM_INLINE inline Product<D> operator*(const Half& v, const Function<D>& N) {
+  return {v, N};
+}
+template <int D>
+MPM_INLINE inline Force operator+(const Product<D>& p, const Force& f) {
+  const Half in_layer = D == 3 ? p.v * Half(p.N.z) : p.v;
+  return {f.along, fma(in_layer, Half(p.N.y), f.across), f.x, f.dx};
 }
 /// The half record of a node, while particles are summed.
 struct HalfSum {
@@ -83,9 +98,16 @@ struct Momentum {
   double m;
   Half v;
 };
+/// Momentum and its gradient; the mass is in both.
+template <int D>
+struct AffineMomentum {
+  double m;
+  Half mv;
+  Tensor<D> mC;
+};
 template <int D>
 struct Stress {
-  Traction<D> traction;
+  Tensor<D> traction;
 };
 }  // namespace records_in_lanes
 
@@ -99,6 +121,7 @@ class RecordsInLanes {
   template <int room>
   struct Places {
     double N[D][count][room], dN[D][count][room];
+    double M[D][count][room];  // first moments, for an affine part only
   };
   template <unsigned what, int room, class T>
   static void put(Places<room>& places, int at, const Weights<T, D, count>& w) {
@@ -108,6 +131,12 @@ class RecordsInLanes {
         if constexpr ((what & gives_forces) != 0)
           store_lanes(places.dN[a][k] + at, w.axis[a].dN[k]);
       });
+    });
+  }
+  template <int room, class T>
+  static void put_moments(Places<room>& places, int at, const Moments<T, D, count>& M) {
+    unrolled<D>([&](auto a) {
+      unrolled<count>([&](auto k) { store_lanes(places.M[a][k] + at, M.axis[a][k]); });
     });
   }
 
@@ -120,30 +149,53 @@ class RecordsInLanes {
             int n) const {
     // Momentum and forces one after another and not in one pass: each has the 9 sums of a layer,
     // and both would be more than the 16 registers of AVX2.
-    if constexpr (what != gives_forces)
+    if constexpr ((what & gives_affine) != 0)
       give_sums(nodes, n, [&](int k, auto x, auto y, auto z, Half& sum) MPM_INLINE {
-        // In 2D there is one layer, with N_z = 1 and no derivative along z.
-        const records_in_lanes::Momentum p{payload.mass[k], Half::load(payload.velocity[k])};
-        const records_in_lanes::Function<D> N{D == 3 ? places.N[D - 1][z][k] : 1.0,
-                                              places.N[1][y][k], places.N[0][x][k]};
+        records_in_lanes::AffineMomentum<D> p{payload.mass[k], Half::load(payload.velocity[k]), {}};
+        unrolled<D>([&](auto b) MPM_INLINE { p.mC.column[b] = Half::load(payload.affine[b][k]); });
+        const records_in_lanes::Function<D> N = functions(places, k, x, y, z);
+        const records_in_lanes::Gradient<D> M{N.z,
+                                              N.y,
+                                              N.x,
+                                              D == 3 ? places.M[D - 1][z][k] : 0.0,
+                                              places.M[1][y][k],
+                                              places.M[0][x][k]};
         records_in_lanes::NodeSum node{{}, {sum}, {sum}};
-        Mapping::give_momentum(p, N, node);
+        Mapping::give_momentum(p, N, M, node);
+      });
+    else if constexpr (what != gives_forces)
+      give_sums(nodes, n, [&](int k, auto x, auto y, auto z, Half& sum) MPM_INLINE {
+        const records_in_lanes::Momentum p{payload.mass[k], Half::load(payload.velocity[k])};
+        records_in_lanes::NodeSum node{{}, {sum}, {sum}};
+        Mapping::give_momentum(p, functions(places, k, x, y, z), node);
       });
     if constexpr ((what & gives_forces) != 0)
       give_sums(nodes.at(force_at), n, [&](int k, auto x, auto y, auto z, Half& sum) MPM_INLINE {
         records_in_lanes::Stress<D> p;
         unrolled<D>([&](auto b)
                         MPM_INLINE { p.traction.column[b] = Half::load(payload.traction[b][k]); });
-        const records_in_lanes::Gradient<D> N{
-            D == 3 ? places.N[D - 1][z][k] : 1.0,  places.N[1][y][k],  places.N[0][x][k],
-            D == 3 ? places.dN[D - 1][z][k] : 0.0, places.dN[1][y][k], places.dN[0][x][k]};
+        const records_in_lanes::Function<D> N = functions(places, k, x, y, z);
+        const records_in_lanes::Gradient<D> dN{N.z,
+                                               N.y,
+                                               N.x,
+                                               D == 3 ? places.dN[D - 1][z][k] : 0.0,
+                                               places.dN[1][y][k],
+                                               places.dN[0][x][k]};
         records_in_lanes::NodeSum node{{}, {sum}, {sum}};
-        Mapping::give_force(p, N, node);
+        Mapping::give_force(p, dN, node);
       });
   }
 
  private:
   using Half = records_in_lanes::Half;
+
+  /// Of particle k at a node. In 2D there is one layer, with N_z = 1 and no derivative along z.
+  template <int room>
+  [[gnu::always_inline]] static records_in_lanes::Function<D> functions(const Places<room>& places,
+                                                                        int k, int x, int y,
+                                                                        int z) {
+    return {D == 3 ? places.N[D - 1][z][k] : 1.0, places.N[1][y][k], places.N[0][x][k]};
+  }
 
   /// Layer by layer: give(k, x, y, z, sum) adds to the sum of a node what particle k gives. The 9
   /// sums of a layer fit into registers, the 27 of all do not (decision 0022), so the particles are

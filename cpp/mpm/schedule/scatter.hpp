@@ -27,6 +27,12 @@ class CellBuffer {
   void add(T m, const Vec<T, D>& v) {
     payload_.template add<what>(count_, m, v);
   }
+  /// With the affine part, G = C h, before the particles are placed.
+  template <class T>
+  void add(T m, const Vec<T, D>& v, const Mat<T, D>& G, const Moments<T, D, B::nodes>& M) {
+    Scatter<B, D>::put_moments(places_, count_, M);
+    payload_.template add<what>(count_, m, v, G);
+  }
   /// -V_p (sigma_p - q_p 1) / h [N].
   template <class T>
   void add_tractions(const Sym<T, D>& t) {
@@ -92,6 +98,28 @@ class DoubleBuffer {
   Nodes<width> patch_;
 };
 
+/// The affine part C of the velocity of particles, the column `affine` of a pool.
+template <int D>
+class AffineVelocity {
+ public:
+  AffineVelocity() = default;
+  AffineVelocity(const TileGrid<D>& grid, const ParticlePool<D>& pool)
+      : cell_size_(grid.cell_size) {
+    for (int k = 0; k < D * D; ++k) columns_[k] = pool.affine_part(k);
+  }
+  /// C h, the change of the velocity over a cell [m/s].
+  template <class T, class Rows>
+  Mat<T, D> in_cells(const Rows& rows) const {
+    Mat<T, D> G;
+    unrolled<D * D>([&](auto k) { G[k / D][k % D] = T(cell_size_) * load(columns_[k], rows); });
+    return G;
+  }
+
+ private:
+  double cell_size_ = 0.0;
+  const Storage* columns_[D * D] = {};
+};
+
 /// Takes what particles give out of the columns of a pool. Pointers to columns and 1 / h are found
 /// once a patch (decision 0015).
 template <unsigned what, int D>
@@ -99,6 +127,7 @@ class ParticleReader {
  public:
   ParticleReader(const TileGrid<D>& grid, const ParticlePool<D>& pool)
       : local_position_(grid, pool), minus_per_cell_size_(-1.0 / grid.cell_size) {
+    if constexpr ((what & gives_affine) != 0) affine_ = AffineVelocity<D>(grid, pool);
     mass_ = pool.mass();
     volume_ = pool.volume();
     if (const int q = pool.at.viscosity_pressure; q >= 0) q_ = pool.columns.component(q);
@@ -110,6 +139,9 @@ class ParticleReader {
   void add(CellBuffer<what, D, B>& to, const CellRange<D>& cell, const Rows& rows,
            const B& basis) const {
     using T = Batch<Rows::lanes>;
+    // Their position is that of the start of the step.
+    const Vec<T, D> xi = local_position_(cell, rows);
+    const Weights<T, D, B::nodes> w = weights_at(basis, xi);
     // -V_p (sigma_p - q_p 1) / h: the sign and the volume V_p = m_p / rho_p of eq. (9), with 1 / h
     // as gradients are in cells. Stress is positive in tension, q in compression, hence the
     // difference, on the diagonal alone: its components come first in `Sym`. In 2D zz is carried
@@ -127,10 +159,13 @@ class ParticleReader {
     if constexpr ((what & gives_momentum) != 0) {
       Vec<T, D> v;
       unrolled<D>([&](auto a) { v[a] = load(velocity_[a], rows); });
-      to.add(load(mass_, rows), v);
+      if constexpr ((what & gives_affine) != 0)
+        to.add(load(mass_, rows), v, affine_.template in_cells<T>(rows), moments_at<B>(xi, w));
+      else
+        to.add(load(mass_, rows), v);
     }
-    // Last, as it counts the particles. Their position is that of the start of the step.
-    to.place(weights_at(basis, local_position_(cell, rows)), rows.count);
+    // Last, as it counts the particles.
+    to.place(w, rows.count);
   }
 
  private:
@@ -138,6 +173,7 @@ class ParticleReader {
   double minus_per_cell_size_;
   const double *mass_, *volume_, *q_ = nullptr;
   const Storage *velocity_[D], *stress_[Sym<double, D>::size];
+  AffineVelocity<D> affine_{};
 };
 
 /// Scatter from all particles of a patch to its nodes (CellBuffer::give). A function of its own for

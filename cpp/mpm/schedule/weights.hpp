@@ -30,6 +30,24 @@ template <BasisModel B, class T, int D>
     }(std::make_integer_sequence<int, D>{});
 }
 
+/// First moments N_i (x_i - x) along each axis [cells]; one of the space is such a factor along its
+/// axis and N along the others.
+template <class T, int D, int count>
+struct Moments {
+  T axis[D][count];
+};
+template <BasisModel B, class T, int D>
+[[gnu::always_inline]] inline Moments<T, D, B::nodes> moments_at(const Vec<T, D>& xi,
+                                                                 const Weights<T, D, B::nodes>& w) {
+  Moments<T, D, B::nodes> M;
+  unrolled<D>([&](auto a) MPM_INLINE {
+    unrolled<B::nodes>([&](auto k) MPM_INLINE {
+      M.axis[a][k] = w.axis[a].N[k] * (T(B::own_node + k - B::before) - xi[a]);
+    });
+  });
+  return M;
+}
+
 /// From a node of a block to the next along y, and along z; x is the fastest, as in BlockShape. In
 /// 2D a layer is 0, so that `to` and `to_first` serve both.
 template <int D>

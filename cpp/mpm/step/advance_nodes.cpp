@@ -45,7 +45,7 @@ void advance_nodes(Domain<D>& domain) {
     ownership(patch, block.count, own);
     // What moves beyond a wall is the image's: its mass and force have been folded there.
     for_each_ghost_node(grid, patch, [&](int node, int, const WallImage<D>&) { own[node] = 0.0; });
-    double work = 0.0, gravity_first = 0.0, gravity_second = 0.0;
+    double work = 0.0, gravity_first = 0.0, gravity_second = 0.0, second = 0.0;
     for (int n = 0; n < block.count; ++n) {
       double* const numbers = block.records[n];
       // Nodes without mass stay at rest. Tiny masses have huge increments; that particles take them
@@ -60,6 +60,7 @@ void advance_nodes(Domain<D>& domain) {
         work += own[n] * f * v;
         gravity_first += own[n] * weight * v;
         gravity_second += own[n] * weight * dv;
+        second += own[n] * m * dv * dv;
         v += dv;
         numbers[increment_at + a] = dv;
       }
@@ -85,6 +86,7 @@ void advance_nodes(Domain<D>& domain) {
     // What is left is work of internal and contact forces; loads, dashpots and gravity have terms
     // of their own in the ledger, with the velocity in the middle of the step.
     sums.force_work = dt * (work + weight_first) - loads.first - dashpots.first;
+    sums.node_second = 0.5 * second;
     sums.load_first = loads.first;
     sums.load_second = loads.second;
     sums.dashpot_first = dashpots.first;

@@ -1,4 +1,5 @@
 #include "mpm/schedule/scatter.hpp"
+#include "mpm/step/affine_velocity.hpp"
 #include "mpm/step/move.hpp"
 #include "mpm/step/node_loops.hpp"
 #include "mpm/step/patch_loops.hpp"
@@ -16,7 +17,7 @@ enum class Also { nothing, remap, move };
 /// are brought together once at the end, in one order (decision 0038).
 template <class T, int D>
 struct LaneSums {
-  T kinetic{0.0}, second_order{0.0}, lost{0.0};
+  T kinetic{0.0}, second_order{0.0}, transferred{0.0};
   Vec<T, D> momentum = Vec<T, D>::zero();
 
   /// Masses m with velocities v after a change dv: K, and S = 1/2 sum m dv^2, by which the
@@ -34,7 +35,7 @@ struct LaneSums {
   void write(PatchSums<D>& sums) const {
     sums.kinetic = 0.5 * sum(kinetic);
     sums.second_order = 0.5 * sum(second_order);
-    sums.damped = 0.5 * sum(lost);
+    sums.transferred = 0.5 * sum(transferred);
     for (int a = 0; a < D; ++a) sums.momentum[a] = sum(momentum[a]);
   }
 };
@@ -71,30 +72,35 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * half_record : 1];
   if constexpr (also == Also::remap) std::fill_n(remapped, block.count * half_record, 0.0);
   const NodeStrides<D> stride(patch.shape);
-  DoubleBuffer<Mapping<typename Transfer::Gives>, gives_momentum, D, B, half_record> cells(
-      stride, {remapped});
+  constexpr unsigned what = gives_momentum | (Transfer::affine ? gives_affine : 0u);
+  DoubleBuffer<Mapping<typename Transfer::Gives>, what, D, B, half_record> cells(stride,
+                                                                                 {remapped});
+  [[maybe_unused]] TakingAffine<T, D> affine(grid, pool);
 
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
     if constexpr (also == Also::remap) cells.begin(cell);
     for_each_group<W>(cell, [&](const auto& rows) {
-      const auto w = weights_at(basis, local_position(cell, rows));
+      const Vec<T, D> xi = local_position(cell, rows);
+      const auto w = weights_at(basis, xi);
       const T all = load(mass, rows), m = of_valid(rows, all);
-      const Vec<T, D> dv = nodes.template vector<increment_at>(w);
-      Vec<T, D> of_grid, v;
-      if constexpr (Transfer::takes_grid_velocity) of_grid = nodes.template vector<velocity_at>(w);
+      Vec<T, D> dv = Vec<T, D>::zero(), of_grid = dv, v;
+      if constexpr (Transfer::takes_increment) dv = nodes.template vector<increment_at>(w);
+      if constexpr (Transfer::affine)
+        affine.take(nodes, rows, w, moments_at<B>(xi, w), m, of_grid, sums);
+      else if constexpr (Transfer::takes_grid_velocity)
+        of_grid = nodes.template vector<velocity_at>(w);
       unrolled<D>([&](auto a) {
         const T before = load(velocities[a], rows);
-        if constexpr (Transfer::takes_grid_velocity)
+        if constexpr (Transfer::takes_grid_velocity) {
           v[a] = transfer.take(before, dv[a], of_grid[a]);
-        else
+          // m (|v_p + dv_p|^2 - |v_p'|^2), halved at the end: what particles lose against FLIP,
+          // with all of the change; of affine transfers against the start (docs/theory/step.md).
+          const T kept = Transfer::affine ? before : before + dv[a];
+          sums.transferred += m * kept * kept;
+          sums.transferred -= m * v[a] * v[a];
+        } else {
           v[a] = transfer.take(before, dv[a]);
-        if constexpr (Transfer::takes_energy) {
-          // m (|v_p + dv_p|^2 - |v_p'|^2), halved at the end: what PIC takes goes to the ledger's T
-          // (docs/theory/step.md).
-          const T kept = before + dv[a];  // with all of the change, as FLIP does
-          sums.lost += m * kept * kept;
-          sums.lost -= m * v[a] * v[a];
         }
         store(velocities[a], rows, v[a]);
       });
@@ -103,7 +109,10 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {
         auto& particles = cells.next();
-        particles.add(all, v);
+        if constexpr (Transfer::affine)
+          particles.add(all, v, affine.in_cells(), moments_at<B>(xi, w));
+        else
+          particles.add(all, v);
         particles.place(w, rows.count);
       }
     });
@@ -115,20 +124,40 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   }
   if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
   sums.write(domain.sums[p]);
+  if constexpr (Transfer::affine) domain.sums[p].second_order = domain.sums[p].node_second;
+}
+
+/// Kinetic energy of a patch's particles [J].
+template <int D>
+double kinetic_energy_of(const Domain<D>& domain, const Patch<D>& patch) {
+  const ParticlePool<D>& pool = domain.pool_of(patch);
+  double sum = 0.0;
+  for (const std::uint32_t row : pool.rows(patch))
+    sum += kinetic_energy(pool, row, domain.grid.affine_moment());
+  return sum;
 }
 
 /// Rigid bodies are only advanced: their velocities are not final yet, so they are neither moved
 /// nor remapped, and FLIP alone: PIC would damp their turning.
+template <int W, int D, BasisModel B>
+void advance_rigid_patch(Domain<D>& domain, std::size_t p, const B& basis) {
+  // Where others have an affine transfer the ledger wants the change from all.
+  const bool affine = is_affine(domain.transfer);
+  const double before = affine ? kinetic_energy_of(domain, domain.grid.patches[p]) : 0.0;
+  advance_patch<W, Also::nothing>(domain, p, basis, Flip());
+  if (affine) domain.sums[p].transferred = before - domain.sums[p].kinetic;
+}
+
 template <Also also, int D>
 void advance(Domain<D>& domain) {
   for_each_patch(domain, deformable | free_rigid, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     const Body<D>& body = domain.body_of(patch);
-    with_basis_and_lanes(domain.grid, body, patch, [&](const auto& basis, auto lanes) {
+    with_basis_and_lanes(domain.grid, body, patch, [&]<BasisModel B>(const B& basis, auto lanes) {
       if (!body.deforms())
-        advance_patch<lanes, Also::nothing>(domain, p, basis, Flip());
+        advance_rigid_patch<lanes>(domain, p, basis);
       else
-        with_transfer(domain, [&](const auto& transfer) {
+        with_transfer_for<B>(domain, [&](const auto& transfer) {
           advance_patch<lanes, also>(domain, p, basis, transfer);
         });
     });

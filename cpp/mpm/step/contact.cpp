@@ -40,6 +40,20 @@ void contact_forces(Domain<D>& domain) {
 }
 
 template <int D>
+void release_from_contact(Domain<D>& domain) {
+  if (!domain.has_contact()) return;
+  release_particles(domain.contact, domain.grid, domain.threads);
+  reflect(domain, velocity_at);
+}
+
+template <int D>
+void restore_contact(Domain<D>& domain) {
+  if (!domain.has_contact()) return;
+  restore_nodes(domain.contact, domain.grid, domain.threads);
+  reflect(domain, velocity_at);
+}
+
+template <int D>
 void contact_remapped(Domain<D>& domain) {
   if (!domain.has_contact()) return;
   // The particles have kept v_i when they were advanced by increments, so what approach (6)-(7)
@@ -52,6 +66,10 @@ template void contact_momentum<2>(Domain<2>&);
 template void contact_momentum<3>(Domain<3>&);
 template void contact_forces<2>(Domain<2>&);
 template void contact_forces<3>(Domain<3>&);
+template void release_from_contact<2>(Domain<2>&);
+template void release_from_contact<3>(Domain<3>&);
+template void restore_contact<2>(Domain<2>&);
+template void restore_contact<3>(Domain<3>&);
 template void contact_remapped<2>(Domain<2>&);
 template void contact_remapped<3>(Domain<3>&);
 

@@ -1,6 +1,5 @@
-#include "mpm/schedule/scatter.hpp"
+#include "mpm/step/scatter_momentum.hpp"
 #include "mpm/step/stages.hpp"
-#include "mpm/step/transfer/transfer.hpp"
 #include "mpm/walls/mirror.hpp"
 
 namespace mpm {
@@ -34,13 +33,11 @@ void map_patch(Domain<D>& domain, std::size_t p) {
   for_each_weight([](double& weight, double& force) { weight = std::exchange(force, 0.0); });
   // Every instance writes to this patch's block alone; nodes that others hold too are incomplete
   // until the exchange.
-  with_transfer(domain, [&]<class Transfer>(const Transfer&) {
-    using Gives = Mapping<typename Transfer::Gives>;
-    if (body.deforms())
-      scatter<Gives, what>(grid, body, domain.pool_of(patch), patch, block.records);
-    else if constexpr (momentum)  // It has no stress.
-      scatter<Gives, what & ~gives_forces>(grid, body, domain.pool_of(patch), patch, block.records);
-  });
+  if (body.deforms())
+    scatter_by_transfer<what>(domain, patch, block.records);
+  else if constexpr (momentum)  // It has no stress, and moves as FLIP does.
+    scatter<Mapping<Flip>, what & ~gives_forces>(grid, body, domain.pool_of(patch), patch,
+                                                 block.records);
   for_each_weight([](double weight, double& force) { force += weight; });
   // Now, as the mass is still what this patch's own particles gave. Gravity does not act on a body
   // whose motion is prescribed.

@@ -1,8 +1,7 @@
-#include "mpm/schedule/scatter.hpp"
 #include "mpm/step/node_loops.hpp"
 #include "mpm/step/patch_loops.hpp"
+#include "mpm/step/scatter_momentum.hpp"
 #include "mpm/step/stages.hpp"
-#include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm {
 namespace {
@@ -21,10 +20,11 @@ void remap(Domain<D>& domain, Kinds kinds) {
     // changed since it was mapped.
     clear(block.records.at(remapped_at), block.count, half_record);
     if (body.is_prescribed()) return;
-    with_transfer(domain, [&]<class Transfer>(const Transfer&) {
-      scatter<Mapping<typename Transfer::Gives>, gives_momentum>(
-          grid, body, domain.pool_of(patch), patch, block.records.at(remapped_at));
-    });
+    if (body.deforms())
+      scatter_by_transfer<gives_momentum>(domain, patch, block.records.at(remapped_at));
+    else
+      scatter<Mapping<Flip>, gives_momentum>(grid, body, domain.pool_of(patch), patch,
+                                             block.records.at(remapped_at));
   });
 }
 

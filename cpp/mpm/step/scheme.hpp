@@ -40,8 +40,10 @@ struct Schemes {
       S::absorb,
       S::contact_forces,
       S::advance_nodes,
+      S::release,
       S::advance_particles,
       S::hold_rigid,
+      S::restore,
       S::move_particles,
       S::move_rigid,
       S::record_contacts,
@@ -65,8 +67,10 @@ struct Schemes {
       S::absorb,
       S::contact_forces,
       S::advance_nodes,
+      S::release,
       S::advance_particles,
       S::hold_rigid,
+      S::restore,
       S::update_last,
       S::move_particles,
       S::move_rigid,
@@ -92,10 +96,12 @@ struct Schemes {
       S::absorb,
       S::contact_forces,
       S::advance_nodes,
+      S::release,
       S::advance_particles,
       S::hold_rigid,
       S::remap_momentum,
       S::remap_rigid,
+      S::restore,
       S::fold_remapped,
       S::exchange_remapped,
       S::find_remapped,
@@ -110,29 +116,37 @@ struct Schemes {
   // clang-format on
   // With USF the stress lies between momentum and forces, which is why these are not mapped at once
   // (decision 0034).
-  static constexpr StageList<D> usf_fused = fuse(usf, S::advance_and_move);
   static constexpr StageList<D> usl_fused =
       fuse(usl, S::map_both, S::exchange_both, S::update_last_and_move);
   static constexpr StageList<D> musl_fused =
       fuse(musl, S::map_both, S::exchange_both, S::advance_and_remap, S::update_remapped_and_move);
 
-  static constexpr const StageList<D>& of(Scheme scheme, bool fused) {
-    switch (scheme) {
-      case Scheme::usf:
-        return fused ? usf_fused : usf;
-      case Scheme::usl:
-        return fused ? usl_fused : usl;
-      case Scheme::musl:
-        break;
-    }
-    return fused ? musl_fused : musl;
+  /// For transfers that take increments alone, as FLIP does, which have nothing of the correction.
+  static constexpr StageList<D> without_release(const StageList<D>& list) {
+    return without(without(list, S::release), S::restore);
+  }
+  static constexpr std::array<StageList<D>, 3> released = {usf, usl, musl};
+  // Particles are moved with the corrected velocity and advanced with another: with USF they are
+  // read twice.
+  static constexpr std::array<StageList<D>, 3> released_fused = {usf, usl_fused, musl_fused};
+  static constexpr std::array<StageList<D>, 3> plain = {without_release(usf), without_release(usl),
+                                                        without_release(musl)},
+                                               plain_fused = {fuse(plain[0], S::advance_and_move),
+                                                              without_release(usl_fused),
+                                                              without_release(musl_fused)};
+
+  static constexpr const StageList<D>& of(Scheme scheme, bool fused, bool releases) {
+    const auto k = static_cast<std::size_t>(scheme);
+    if (releases) return fused ? released_fused[k] : released[k];
+    return fused ? plain_fused[k] : plain[k];
   }
 };
 
-/// The stages of a step, as a scheme lists them or with neighbours fused, to the same bits.
+/// The stages of a step, as a scheme lists them or with neighbours fused, to the same bits;
+/// `releases`: the transfer takes the velocity of the grid, and bodies may meet.
 template <int D>
-std::span<const Stage<D>> stages_of(Scheme scheme, bool fused) {
-  const StageList<D>& list = Schemes<D>::of(scheme, fused);
+std::span<const Stage<D>> stages_of(Scheme scheme, bool fused, bool releases = false) {
+  const StageList<D>& list = Schemes<D>::of(scheme, fused, releases);
   return {list.stages.data(), list.count};
 }
 

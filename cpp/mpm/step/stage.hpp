@@ -93,6 +93,15 @@ struct StageList {
   }
 };
 
+/// The list without a stage.
+template <int D>
+constexpr StageList<D> without(const StageList<D>& list, const Stage<D>& stage) {
+  StageList<D> rest;
+  for (std::size_t k = 0; k < list.count; ++k)
+    if (k != list.find(stage)) rest.add(list.stages[k]);
+  return rest;
+}
+
 /// Two stages that can be done at once, by one that is faster.
 template <int D>
 struct Fusion {

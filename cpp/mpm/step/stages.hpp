@@ -66,6 +66,13 @@ void contact_forces(Domain<D>& domain);
 template <int D>
 void advance_nodes(Domain<D>& domain);
 
+/// For transfers that take the velocity of the grid: at nodes in contact that without eqs. (6)-(7)
+/// while particles are advanced, and the corrected one again (decision 0046).
+template <int D>
+void release_from_contact(Domain<D>& domain);
+template <int D>
+void restore_contact(Domain<D>& domain);
+
 /// Particle velocities, eq. (17).
 template <int D>
 void advance_particles(Domain<D>& domain);
@@ -181,6 +188,11 @@ struct Stages : Data {
                                      lists | position | load_pieces | node_mass | node_velocity |
                                          node_force | node_dashpots | patch_sums,
                                      node_velocity | node_increments | patch_sums};
+  static constexpr Row release{"release from contact", mpm::release_from_contact<D>,
+                               node_velocity | node_increments | contacts,
+                               node_velocity | contacts};
+  static constexpr Row restore{"restore contact", mpm::restore_contact<D>, node_velocity | contacts,
+                               node_velocity | contacts};
   static constexpr Row advance_particles{
       "advance particles", mpm::advance_particles<D>,
       lists | of_particles | of_rigid | node_velocity | node_increments | patch_sums,

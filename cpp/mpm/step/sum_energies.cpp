@@ -1,5 +1,6 @@
 #include "mpm/contact/record.hpp"
 #include "mpm/step/stages.hpp"
+#include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm {
 
@@ -16,7 +17,8 @@ void record_contacts(Domain<D>& domain) {
 template <int D, bool forces_follow>
 void sum_energies(Domain<D>& domain) {
   // All sums over patches at once, exactly: no order of patches matters (decision 0038).
-  domain.ledger.add(domain.sums, domain.contact_sums, domain.eroded, domain.outflow, forces_follow);
+  domain.ledger.add(domain.sums, domain.contact_sums, domain.eroded, domain.outflow, forces_follow,
+                    is_affine(domain.transfer));
 }
 
 template void record_contacts<2>(Domain<2>&);

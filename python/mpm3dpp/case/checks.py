@@ -73,18 +73,21 @@ def _bodies_together(case: Case) -> Found:
 
 
 def _transfer(case: Case) -> Found:
-    """Refuse what takes more from the nodes than contact has given them by its forces."""
-    run, contact = case.run, case.contact
-    if run.transfer == "flip":
-        return
-    alone = len(case.body) == 1 and not case.grains
-    if contact.enabled and not contact.bonded and not alone:
-        rule = "goes with one body, or bonded ones: contact counts what FLIP's particles take"
-        remedy = 'use "flip", with run.pic_damping if it must be damped'
+    """Refuse what does not go with the transfer."""
+    run, basis = case.run, case.grid.basis
+    row = _core.transfers[run.transfer]
+    if row["affine"] and not _core.bases[basis]["second_moment"]:
+        known = [name for name, each in _core.bases.items() if each["second_moment"]]
+        rule = f'does not go with grid.basis = "{basis}", whose second moment differs from place to place'
+        remedy = f'use grid.basis = "{known[0]}"'
         yield violation(rule, remedy, value=run.transfer, path=("run", "transfer"))
-    if run.pic_damping > 0:
+    if run.pic_damping > 0 and run.transfer != "flip":
         rule, path = 'is for the transfer "flip"', ("run", "pic_damping")
         yield violation(rule, "leave it out", value=run.pic_damping, path=path)
+    if run.flip_share is not None and not row["shares"]:
+        known = [name for name, each in _core.transfers.items() if each["shares"]]
+        rule, path = f'is for the transfers {" and ".join(known)}', ("run", "flip_share")
+        yield violation(rule, "leave it out", value=run.flip_share, path=path)
 
 
 def _pairs(case: Case) -> Found:

@@ -32,6 +32,20 @@ class Run(_Run):
     end_time: Time
     viscosity: Viscosity | None = None
 
+    @model_validator(mode="before")
+    @classmethod
+    def _transfer_with_share(cls, given: Any) -> Any:
+        """Take `{ aflip = 0.97 }` as the two keys that it stands for."""
+        if not isinstance(given, dict) or not isinstance(given.get("transfer"), dict):
+            return given
+        table = given["transfer"]
+        if len(table) != 1 or "flip_share" in given:
+            rule = "must be a word, or a table of one word with its share"
+            remedy = "for example { aflip = 0.97 }"
+            raise violation(rule, remedy, value=table, path=("transfer",))
+        [(word, share)] = table.items()
+        return {**given, "transfer": word, "flip_share": share}
+
 
 class Output(CaseModel):
     """What is written.

@@ -53,6 +53,8 @@ class Comparison {
            if (meet) contact_forces(step);
          }},
         {"advance nodes", [&] { step.advance_nodes(), forced_ = false, add_works(); }},
+        {"release from contact", [] {}},
+        {"restore contact", [] {}},
         {"advance particles", [&] { step.advance_particles(); }},
         {"advance and move particles", [&] { step.advance_particles(), step.move_particles(); }},
         {"advance and remap particles", [&] { step.advance_particles(), pending_ |= remapped; }},
@@ -169,6 +171,8 @@ class Comparison {
           if (stage.find("move") != stage.npos) CHECK_CLOSE(pool.x(a)[k], p.x[a], 1e-12);
           CHECK_CLOSE(pool.v(a)[k], p.v[a], 1e-10);
         }
+        for (int c = 0; c < (pool.affine < 0 ? 0 : D * D); ++c)
+          CHECK_CLOSE(pool.affine_part(c)[k], p.C[c / D][c % D], 1e-9);
         CHECK_CLOSE(pool.volume()[k], p.V, 1e-12 * p.V);
         for (int c = 0; c < Sym<double, D>::size; ++c)
           CHECK_CLOSE(pool.stress(c)[k], p.sigma.c[c], 1e-11 * 1e8);
@@ -202,6 +206,8 @@ class Comparison {
     for (const auto& body : twin_.reference.bodies)
       for (const auto& p : body.particles) {
         kinetic += 0.5 * p.m * dot(p.v, p.v);
+        for (int c = 0; c < D * D; ++c)
+          kinetic += 0.5 * p.m * twin_.reference.moment * p.C[c / D][c % D] * p.C[c / D][c % D];
         momentum += p.m * p.v;
         if (!body.prescribed()) continue;
         prescribed += 0.5 * p.m * dot(p.v, p.v);

@@ -27,6 +27,7 @@ struct Choice {
   bool load = false;                     // a pressure and a traction on the second body
   BodyKind kind = BodyKind::deformable;  // of the first body
   double pic_damping = 0.0;              // [1/s]
+  double flip_share = 1.0;
   TransferId transfer = Transfers::id_of<Flip>();
   std::array<Wall, 2 * D> walls{};
 };
@@ -55,8 +56,11 @@ struct Twin {
     domain.time_step = reference.dt = 1e-5;
     domain.pic_damping = choice.pic_damping;
     domain.transfer = choice.transfer;
-    const bool pic = choice.transfer == Transfers::id_of<Pic>();
-    reference.pic = pic ? 1.0 : choice.pic_damping * domain.time_step;
+    domain.flip_share = choice.flip_share;
+    const bool flips =
+        choice.transfer == Transfers::id_of<Flip>() || choice.transfer == Transfers::id_of<Aflip>();
+    reference.pic = flips ? 1.0 - choice.flip_share + choice.pic_damping * domain.time_step : 1.0;
+    if (is_affine(choice.transfer)) reference.moment = grid.affine_moment();
     for (int a = 0; a < D; ++a) domain.gravity[a] = reference.g[a] = 1e4 * any();
     domain.contact_settings.enabled = choice.contact;
     domain.contact_settings.detection = Detections::id_of<VelocityDetection>();
@@ -108,7 +112,7 @@ struct Twin {
     choice.density = density;
     choice.strength = {"elastic", {{"E", E}, {"nu", nu}}};
     domain.materials.push_back(make_material(choice));
-    domain.pools.push_back(make_pool(domain.materials[0], domain.grid));
+    domain.pools.push_back(make_pool(domain.materials[0], domain.grid, is_affine(domain.transfer)));
   }
   /// Two bodies that overlap: the second begins at two fifths of the box along x.
   void add_body(int k, BodyKind kind) {
@@ -188,8 +192,7 @@ struct Twin {
     for (const Patch<D>& patch : domain.grid.patches) {
       const ParticlePool<D>& pool = domain.pool_of(patch);
       for (const std::uint32_t row : pool.rows(patch))
-        for (int a = 0; a < D; ++a)
-          ledger.start += 0.5 * pool.mass()[row] * pool.v(a)[row] * pool.v(a)[row];
+        ledger.start += kinetic_energy(pool, row, domain.grid.affine_moment());
       if (domain.body_of(patch).is_prescribed()) ledger.add_prescribed(pool, patch);
     }
     ledger.kinetic = ledger.start;
@@ -206,6 +209,8 @@ struct Twin {
         p.v[a] = pool.v(a)[i];
       }
       p.m = pool.mass()[i];
+      for (int c = 0; c < (pool.affine < 0 || !other.deforms() ? 0 : D * D); ++c)
+        p.C[c / D][c % D] = pool.affine_part(c)[i] = static_cast<Storage>(200.0 * any());
       p.V = pool.volume()[i];
       for (int c = 0; c < Sym<double, D>::size; ++c)
         p.sigma.c[c] = pool.columns.rounded(pool.at.stress + c)[i] =

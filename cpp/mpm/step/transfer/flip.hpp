@@ -10,8 +10,9 @@ struct Flip {
   static constexpr std::string_view name = "flip";  // the word in a case file
   static constexpr std::string_view doc = "they take the change of the grid's velocity";
   static constexpr std::string_view source = "Brackbill & Ruppel 1986";
-  static constexpr bool takes_grid_velocity = false, takes_energy = false;
-  using Gives = Flip;  // whose `give` it has
+  static constexpr bool takes_increment = true, takes_grid_velocity = false, affine = false;
+  static constexpr bool has_share = true;  // run.flip_share
+  using Gives = Flip;                      // whose `give` it has
 
   /// From particle p to node i: m_i += m_p N_ip, eq. (2); p_i += m_p N_ip v_p, eq. (3).
   template <class P, class N, class Node>

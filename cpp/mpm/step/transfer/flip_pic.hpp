@@ -6,7 +6,7 @@ namespace mpm {
 /// FLIP of which a share `pic` is PIC: so much of the grid's velocity itself takes the place of the
 /// particle's (Harlow 1964), and what the grid does not see dies away.
 struct FlipPic : Flip {
-  static constexpr bool takes_grid_velocity = true, takes_energy = true;
+  static constexpr bool takes_grid_velocity = true;
 
   double pic;
 

@@ -9,7 +9,7 @@ struct Pic : Flip {
   static constexpr std::string_view name = "pic";
   static constexpr std::string_view doc = "they take the velocity of the grid";
   static constexpr std::string_view source = "Harlow 1964";
-  static constexpr bool takes_grid_velocity = true, takes_energy = true;
+  static constexpr bool takes_grid_velocity = true, has_share = false;
 
   /// A component of v_p after the step: v_p = sum v_i N_ip, of which `of_grid` is the sum.
   template <class T>

@@ -5,6 +5,7 @@
 
 #include "mpm/catalogue/choice_list.hpp"
 #include "mpm/domain.hpp"
+#include "mpm/step/transfer/aflip.hpp"
 #include "mpm/step/transfer/flip_pic.hpp"
 #include "mpm/step/transfer/pic.hpp"
 
@@ -18,6 +19,11 @@ struct Mapping {
   MPM_INLINE static void give_momentum(const P& p, const N& N_ip, Node& node) {
     Transfer::give(p, N_ip, node);
   }
+  /// With first moments, for an affine part.
+  template <class P, class N, class M, class Node>
+  MPM_INLINE static void give_momentum(const P& p, const N& N_ip, const M& M_ip, Node& node) {
+    Transfer::give(p, N_ip, M_ip, node);
+  }
   /// f_i -= V_p sigma_p . grad N_ip, eq. (9); p.traction is -V_p (sigma_p - q_p 1), with the
   /// artificial viscosity's pressure q.
   template <class P, class G, class Node>
@@ -26,35 +32,66 @@ struct Mapping {
   }
 };
 
-/// `take` has the sum of the velocities too if `takes_grid_velocity`. With `takes_energy` what
-/// particles lose against FLIP goes to the ledger. `Gives` is the transfer whose `give` it has.
+/// `take` has the velocity of the particle, the sum of the increments, if `takes_increment`, and
+/// that of the velocities, if `takes_grid_velocity`: what particles lose against FLIP then goes to
+/// the ledger. With `affine` particles have a column for the affine part of the velocity, and
+/// `give` has first moments. `Gives` is the transfer whose `give` it has.
 template <class T>
 concept TransferModel = requires {
   { T::name } -> std::convertible_to<std::string_view>;
   { T::doc } -> std::convertible_to<std::string_view>;
   { T::source } -> std::convertible_to<std::string_view>;
   { T::takes_grid_velocity } -> std::convertible_to<bool>;
-  { T::takes_energy } -> std::convertible_to<bool>;
+  { T::takes_increment } -> std::convertible_to<bool>;
+  { T::affine } -> std::convertible_to<bool>;
+  { T::has_share } -> std::convertible_to<bool>;
   typename T::Gives;
 };
 
 template <TransferModel... T>
 using TransferList = ChoiceList<TransferId, T...>;
-using Transfers = TransferList<Flip, Pic>;
+using Transfers = TransferList<Flip, Pic, Apic, Aflip>;
 template <>
 inline constexpr auto words<TransferId> = Transfers::words_of();
+
+template <class... T>
+constexpr bool is_affine(ChoiceList<TransferId, T...> /*all*/, TransferId id) {
+  constexpr bool found[] = {T::affine...};
+  return found[static_cast<std::size_t>(id)];
+}
+template <class... T>
+constexpr bool takes_grid_velocity(ChoiceList<TransferId, T...> /*all*/, TransferId id) {
+  constexpr bool found[] = {T::takes_grid_velocity...};
+  return found[static_cast<std::size_t>(id)];
+}
+/// Have its particles an affine part of the velocity?
+constexpr bool is_affine(TransferId id) { return is_affine(Transfers{}, id); }
+/// Do they take the velocity of the grid?
+constexpr bool takes_grid_velocity(TransferId id) { return takes_grid_velocity(Transfers{}, id); }
 
 /// f(transfer) for that of the run.
 template <int D, class F>
 void with_transfer(const Domain<D>& domain, F&& f) {
   // A rate times the step, so that the damping in time does not depend on the steps' length; 1 is
   // PIC.
-  const double share = std::min(domain.pic_damping * domain.time_step, 1.0);
+  const double share =
+      std::min(domain.pic_damping * domain.time_step + 1.0 - domain.flip_share, 1.0);
   Transfers::with(domain.transfer, [&]<class T>(const T& transfer) {
     if constexpr (std::is_same_v<T, Flip>)
       // Without damping the grid's velocity is not even read.
       if (share > 0.0) return f(FlipPic(share));
-    f(transfer);
+    if constexpr (std::is_same_v<T, Aflip>)
+      f(Aflip(domain.flip_share));
+    else
+      f(transfer);
+  });
+}
+
+/// f(transfer) likewise, of a basis with which it goes: others were refused.
+template <BasisModel B, int D, class F>
+void with_transfer_for(const Domain<D>& domain, F&& f) {
+  with_transfer(domain, [&]<class T>(const T& transfer) {
+    if constexpr (!T::affine || B::second_moment > 0.0) f(transfer);
   });
 }
 

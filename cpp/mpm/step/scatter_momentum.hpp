@@ -1,0 +1,22 @@
+#pragma once
+// From particles to nodes, as the transfer of the run says.
+#include "mpm/schedule/scatter.hpp"
+#include "mpm/step/transfer/transfer.hpp"
+
+namespace mpm {
+
+/// Scatter from the particles of a patch that deforms, as the transfer of the run says.
+template <unsigned what, int D>
+void scatter_by_transfer(const Domain<D>& domain, const Patch<D>& patch, const NodeRecords& nodes) {
+  const TileGrid<D>& grid = domain.grid;
+  with_basis_and_lanes(
+      grid, domain.body_of(patch), patch, [&]<BasisModel B>(const B& basis, auto lanes) {
+        with_transfer_for<B>(domain, [&]<class Transfer>(const Transfer&) {
+          constexpr bool affine = Transfer::affine && (what & gives_momentum) != 0;
+          scatter_by<Mapping<typename Transfer::Gives>, what | (affine ? gives_affine : 0u), lanes>(
+              basis, grid, domain.pool_of(patch), patch, nodes);
+        });
+      });
+}
+
+}  // namespace mpm

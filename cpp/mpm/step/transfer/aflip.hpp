@@ -1,0 +1,26 @@
+#pragma once
+#include "mpm/step/transfer/apic.hpp"
+
+namespace mpm {
+
+/// AFLIP: FLIP with the affine part of APIC. Of the velocity a share alpha is FLIP's.
+struct Aflip : Apic {
+  static constexpr std::string_view name = "aflip";
+  static constexpr std::string_view doc =
+      "\"flip\" with the affine part of \"apic\"; keeps what the grid does not see, as much as "
+      "`flip_share` says";
+  static constexpr std::string_view source = "Fei et al. 2021, eq. 19 with no change of position";
+  static constexpr bool takes_increment = true, has_share = true;
+
+  double alpha;
+
+  explicit Aflip(double share = 1.0) : alpha(share) {}
+
+  /// v_p = alpha (v_p + sum dv_i N_ip) + (1 - alpha) sum v_i N_ip.
+  template <class T>
+  MPM_INLINE T take(T v, T dv, T of_grid) const {
+    return fma(T(alpha), (v + dv) - of_grid, of_grid);
+  }
+};
+
+}  // namespace mpm
