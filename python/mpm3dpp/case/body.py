@@ -6,8 +6,9 @@ from __future__ import annotations
 from pydantic import model_validator
 
 from mpm3dpp.base.errors import violation
+from mpm3dpp.base.expression import SpinField, VelocityField
 from mpm3dpp.base.model import CaseModel, Count, Text
-from mpm3dpp.base.units import PositiveLength, Spin, VelocityVector
+from mpm3dpp.base.units import PositiveLength
 from mpm3dpp.shapes.base import MaybeShape
 
 from .grid import Grid
@@ -27,9 +28,9 @@ class Body(CaseModel):
         particles_per_cell: particles per cell along each direction; default 2.
         spacing: distance of the particles [m], in place of `particles_per_cell`. Either way they
             stand on a lattice that is aligned with the grid's origin.
-        velocity: initial velocity [m/s], D numbers; default zero.
-        angular_velocity: initial spin about the mass centre [rad/s]: one number in 2D, three in
-            3D; default zero. Stored as a tuple.
+        velocity: initial velocity [m/s], D numbers or formulas of x, y, z, r; default zero.
+        angular_velocity: initial spin about the mass centre [rad/s]: one number or formula in 2D,
+            three in 3D; default zero. Stored as a tuple.
         motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
             then; None for a body that is free to move.
     """
@@ -39,8 +40,8 @@ class Body(CaseModel):
     particles: AnyParticles = None
     particles_per_cell: Count | None = None
     spacing: PositiveLength | None = None
-    velocity: VelocityVector = ()
-    angular_velocity: Spin = ()
+    velocity: VelocityField = ()
+    angular_velocity: SpinField = ()
     motion: MaybeMotion = None
 
     @model_validator(mode="after")

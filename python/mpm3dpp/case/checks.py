@@ -11,6 +11,8 @@ from pydantic_core import PydanticCustomError
 
 from mpm3dpp import _core
 from mpm3dpp.base.errors import Path, nearest, report, violation
+from mpm3dpp.base.expression import Expression
+from mpm3dpp.base.model import plain
 from mpm3dpp.base.outputs import COLUMNS, STANDARD
 
 from .detonation import check_detonations
@@ -148,7 +150,7 @@ def _check_vector(owner: object, name: str, dimension: int, path: Path) -> Found
     if vector and len(vector) != dimension:
         rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
         remedy = f"it has {len(vector)}, give {dimension}"
-        yield violation(rule, remedy, value=list(vector), path=(*path, name))
+        yield violation(rule, remedy, value=plain(vector), path=(*path, name))
         return
     owner.__dict__[name] = vector or (0.0,) * dimension
 
@@ -176,15 +178,26 @@ def _check_motion(case: Case, body: Body | Grains, path: Path) -> Found:
         rule, remedy = "is not a material of this case", nearest(body.material, case.material)
         yield violation(rule, remedy, value=body.material, path=(*path, "material"))
     yield from _check_vector(body, "velocity", dimension, path)
+    yield from _formulas(body, dimension, path)
     spin, wanted = body.angular_velocity, 1 if dimension == 2 else 3
     if spin and len(spin) != wanted:
         numbers = "one number" if wanted == 1 else "three numbers"
         rule = f"must be {numbers}, as grid.dimension = {dimension}"
         example = '"10 rad/s"' if wanted == 1 else '[0, 0, "10 rad/s"]'
         remedy = f"for example {example}"
-        yield violation(rule, remedy, value=list(spin), path=(*path, "angular_velocity"))
+        yield violation(rule, remedy, value=plain(spin), path=(*path, "angular_velocity"))
         return
     body.__dict__["angular_velocity"] = spin or (0.0,) * wanted
+
+
+def _formulas(body: Body | Grains, dimension: int, path: Path) -> Found:
+    """Yield the formulas of places that there are in 3D only."""
+    for name in ("velocity", "angular_velocity"):
+        for index, value in enumerate(getattr(body, name)):
+            if isinstance(value, Expression) and dimension == 2 and value.variables & {"z", "Z"}:
+                rule = "is a formula of z, as grid.dimension = 2"
+                where = (*path, name, index, "expression")
+                yield violation(rule, "leave z out", value=value.text, path=where)
 
 
 def _check_body(case: Case, body: Body, path: Path) -> Found:
