@@ -59,12 +59,12 @@ class World:
             part = filled.parts[filled.bodies.index(name)]
             entry: Any = here.grains[part] if part in here.grains else here.body[part]
             positions = filled.column(name, "position")
-            velocity = np.array(entry.velocity or (0.0,) * d)
+            there = self.order(len(positions))
+            velocities = (filled.column(name, "velocity") @ q.T)[there]
             bodies[name] = Body(
                 material=entry.material,
-                particles=Particles((positions @ q.T)[self.order(len(positions))]),
+                particles=Particles((positions @ q.T)[there], velocities=velocities),
                 spacing=entry.particle_spacing(here.grid),
-                velocity=tuple((q @ velocity).tolist()),
             )
         grid = here.grid.model_copy(update={"box": self._box(here)})
         gravity = tuple((q @ np.array([float(g) for g in here.run.gravity or (0.0,) * d])).tolist())

@@ -23,8 +23,8 @@ class Body(CaseModel):
         material: name of its material.
         shape: any shape of `mpm3dpp.shapes`; in place of `particles`.
         particles: a CSV file beside the case file with the columns x, y, z and, if it likes,
-            volume, in SI units, or `{ file = "points.csv", unit = "mm" }` (in Python:
-            `mpm3dpp.Particles`); in place of `shape`.
+            volume and vx, vy, vz, in SI units, or `{ file = "points.csv", unit = "mm" }`, the unit
+            of its lengths (in Python: `mpm3dpp.Particles`); in place of `shape`.
         particles_per_cell: particles per cell along each direction; default 2.
         spacing: distance of the particles [m], in place of `particles_per_cell`. Either way they
             stand on a lattice that is aligned with the grid's origin.

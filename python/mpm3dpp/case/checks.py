@@ -214,6 +214,11 @@ def _check_body(case: Case, body: Body, path: Path) -> Found:
     yield from _check_motion(case, body, path)
     if body.motion is not None:
         yield from check_motion(case, body, path)
+    if body.particles is not None and body.particles.velocities is not None:
+        given = [name for name in ("velocity", "angular_velocity") if any(getattr(body, name))]
+        for name in [*given, *(["motion"] if body.motion is not None else [])]:
+            rule = "must not be given together with particles that have velocities"
+            yield violation(rule, "keep one of the two", path=(*path, name))
 
 
 def _columns(case: Case, material: str) -> list[str]:

@@ -22,7 +22,7 @@ def start_velocities(case: Case, part: str, positions: Array, volumes: Array) ->
     """Return v + w x (x - x_mass centre) of each particle of a body [m/s].
 
     Args:
-        case: gives v and the spin w, or the prescribed motion.
+        case: gives v and the spin w, or the prescribed motion, or velocities one by one.
         part: name of the body, or of the entry of grains that it belongs to.
         positions: [m], shape (n, D).
         volumes: [m^3; in 2D m^2], shape (n,).
@@ -36,6 +36,10 @@ def start_velocities(case: Case, part: str, positions: Array, volumes: Array) ->
     entry = case.parts()[part]
     if isinstance(entry, Body) and entry.motion is not None:
         return entry.motion.velocities(0.0, positions, entry.motion.middle(positions, volumes))
+    if isinstance(entry, Body) and entry.particles is not None:
+        given = entry.particles.velocities
+        if given is not None:
+            return given
     equal = bool(np.all(volumes == volumes[0]))
     arm = positions - np.average(positions, axis=0, weights=None if equal else volumes)
     dimension = positions.shape[1]
