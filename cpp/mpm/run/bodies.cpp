@@ -130,7 +130,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
   ledger.momentum = momentum(domain);
   simulation.watch.steps.start_from(ledger.made(), ledger.load_work);
   probe_speeds(domain);
-  simulation.next_time_step = stable_time_step(domain, simulation.settings.run.cfl);
+  update_time_step(simulation);
   invalidate_pairs(domain.contact);  // gaps change with the velocities that particles had
 }
 

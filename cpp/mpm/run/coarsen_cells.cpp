@@ -42,7 +42,7 @@ void coarsen_cells(Simulation<D>& simulation) {
   invalidate_pairs(domain.contact);
   if (domain.has_contact()) connect_tiles(domain.contact, grid, domain.bodies);
   probe_speeds(domain);
-  simulation.next_time_step = stable_time_step(domain, simulation.settings.run.cfl);
+  update_time_step(simulation);
 }
 
 template bool must_coarsen<2>(const Simulation<2>&);

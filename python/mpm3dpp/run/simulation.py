@@ -103,8 +103,17 @@ class Simulation:
         try:
             self.core.prepare()
         except ValueError as error:
-            raise CaseError(str(error), "bring the bodies together, or give larger cells") from None
+            raise self._refusal(str(error)) from None
         self.summary: dict[str, Any] = {}
+
+    def _refusal(self, sentence: str) -> CaseError:
+        """Return the mistake for what the core says of bodies that are all there."""
+        key, step = "run.time_step", self.case.run.time_step
+        if not sentence.startswith(key):
+            return CaseError(sentence, "bring the bodies together, or give larger cells")
+        rule = sentence.partition(" s ")[2]
+        remedy = "give a smaller one, or leave it out"
+        return self.case.error(("run", "time_step"), rule, remedy, value=step)
 
     def _set_motion(self, number: int, motion: Motion, centre: np.ndarray) -> None:
         spin = motion.angular_velocity
