@@ -96,7 +96,7 @@ BAD = [
     ("9" * 1001, "", "has 1,001 characters", "shorter"),
     ("+".join(["(x"] * 40) + ")" * 40, "", "is nested too deeply", "simpler"),
     ("(" * 300 + "x" + ")" * 300, "", "is not a formula|is nested", ""),
-    ("z", "", "is a formula of z, as grid.dimension = 2", "leave z out"),
+    ("z", "", "is a formula of z, and grid.dimension = 2", "leave z out"),
     ("t", "", 'has the name "t"', "valid here"),
     ("1 / (x - x)", "", "gives inf at x = 0.00225 m", "has a value there"),
     ("sqrt(-r)", "", "gives -?nan at x = 0.00225 m", "has a value there"),

@@ -130,6 +130,21 @@ def test_a_field_of_velocities_is_the_same_in_another_world(dimension: int) -> N
     check_worlds(Case.from_text(text), 600, "")
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_body_forces_are_the_same_in_another_world(dimension: int) -> None:
+    """Of every variable, large enough to be seen beside the impact."""
+    text = RINGS if dimension == 2 else IMPACT
+    size = 2e3 if dimension == 2 else 1e7
+    forces = [
+        f"{size} * sin(40 * X + 30 * y)",
+        f"{size} * x / (0.1 + Y)",
+        f"-{size} * cos(8e4 * t)",
+    ]
+    field = ", ".join(f'{{ expression = "{force}" }}' for force in forces[:dimension])
+    text = text.replace("shape = ", f"body_force = [{field}]\nshape = ")
+    check_worlds(Case.from_text(text), 1800 if dimension == 2 else 300, "")
+
+
 def check_worlds(case: Case, steps: int, text: str, meet: bool = True) -> None:
     """Run a case, and the same in other worlds, and compare."""
     filled, here = Simulation(case), Simulation(case)

@@ -76,7 +76,7 @@ inline constexpr auto history_terms = std::to_array<HistoryTerm>({
      [](const StepState& s) { return s.ledger.mapping; }, Role::other, "numerical"},
     {"numerical_time", "J", "its other part, of the integration in time",
      [](const StepState& s) { return s.ledger.time_integration; }, Role::other, "numerical"},
-    {"load_work", "J", "the part of `external` that loads on surfaces have done",
+    {"load_work", "J", "the part of `external` that loads on surfaces and body forces have done",
      [](const StepState& s) { return s.ledger.load_work; }, Role::other, "external"},
     {"cell_size", "m", "edge of the cells; it grows where `grid.coarsening` is given",
      [](const StepState& s) { return s.cell_size; }},

@@ -120,9 +120,19 @@ class Expression:
         rows = np.array([places[name] for name in places], dtype=float)
         return np.asarray(_core.evaluate(list(self.program), list(places), rows))[:, 0]
 
+    @property
+    def is_of_start(self) -> bool:
+        """Whether it is a formula of the place at the start."""
+        return bool(self.variables & {"X", "Y", "Z"})
+
     def table(self) -> dict[str, str]:
         """Return the table of a case file."""
         return self.written
+
+
+def program_of(value: float | Expression) -> list[tuple[str, float]]:
+    """Return a number or a formula as a program for the core."""
+    return list(value.program) if isinstance(value, Expression) else [("number", float(value))]
 
 
 def _factor(unit: Any, key: str, si: str) -> float:
@@ -251,6 +261,10 @@ class Field(Vector):
 
 _AT_START = ("x", "y", "z", "r")
 VelocityField = Annotated[tuple[float | Expression, ...], Field("m/s", variables=_AT_START)]
+ForceField = Annotated[
+    tuple[float | Expression, ...],
+    Field("m/s^2", variables=("x", "y", "z", "X", "Y", "Z", "t")),
+]
 SpinField = Annotated[
     tuple[float | Expression, ...], Field("rad/s", scalar=True, variables=_AT_START)
 ]

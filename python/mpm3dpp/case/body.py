@@ -6,7 +6,7 @@ from __future__ import annotations
 from pydantic import model_validator
 
 from mpm3dpp.base.errors import violation
-from mpm3dpp.base.expression import SpinField, VelocityField
+from mpm3dpp.base.expression import ForceField, SpinField, VelocityField
 from mpm3dpp.base.model import CaseModel, Count, Text
 from mpm3dpp.base.units import PositiveLength
 from mpm3dpp.shapes.base import MaybeShape
@@ -31,6 +31,8 @@ class Body(CaseModel):
         velocity: initial velocity [m/s], D numbers or formulas of x, y, z, r; default zero.
         angular_velocity: initial spin about the mass centre [rad/s]: one number or formula in 2D,
             three in 3D; default zero. Stored as a tuple.
+        body_force: force per mass beside gravity [m/s^2], D numbers or formulas of the present
+            place x, y, z, the place at the start X, Y, Z and the time t; None for none.
         motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
             then; None for a body that is free to move.
     """
@@ -42,6 +44,7 @@ class Body(CaseModel):
     spacing: PositiveLength | None = None
     velocity: VelocityField = ()
     angular_velocity: SpinField = ()
+    body_force: ForceField | None = None
     motion: MaybeMotion = None
 
     @model_validator(mode="after")

@@ -71,6 +71,7 @@ def _bodies_together(case: Case) -> Found:
         yield violation(rule, "give one another strength", path=path)
     yield from check_detonations(case)
     yield from check_loads(case)
+    yield from _body_forces(case)
     yield from _transfer(case)
 
 
@@ -192,12 +193,29 @@ def _check_motion(case: Case, body: Body | Grains, path: Path) -> Found:
 
 def _formulas(body: Body | Grains, dimension: int, path: Path) -> Found:
     """Yield the formulas of places that there are in 3D only."""
-    for name in ("velocity", "angular_velocity"):
-        for index, value in enumerate(getattr(body, name)):
+    for name in ("velocity", "angular_velocity", "body_force"):
+        for index, value in enumerate(getattr(body, name) or ()):
             if isinstance(value, Expression) and dimension == 2 and value.variables & {"z", "Z"}:
-                rule = "is a formula of z, as grid.dimension = 2"
+                rule = "is a formula of z, and grid.dimension = 2"
                 where = (*path, name, index, "expression")
                 yield violation(rule, "leave z out", value=value.text, path=where)
+
+
+def _body_forces(case: Case) -> Found:
+    """Yield the body forces with too few or too many numbers, or of bodies that do not deform."""
+    dimension = case.grid.dimension
+    for name, part in case.parts().items():
+        path = (*case.part_path(name), "body_force")
+        if part.body_force is None:
+            continue
+        if len(part.body_force) != dimension:
+            rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
+            remedy = f"it has {len(part.body_force)}, give {dimension}"
+            yield violation(rule, remedy, value=plain(part.body_force), path=path)
+        if case.is_rigid(name):
+            rule = "is of a body that does not deform, and acts on bodies that do"
+            remedy = "remove it, or give the body another material and no motion"
+            yield violation(rule, remedy, path=path)
 
 
 def _check_body(case: Case, body: Body, path: Path) -> Found:
@@ -223,9 +241,13 @@ def _check_body(case: Case, body: Body, path: Path) -> Found:
 
 def _columns(case: Case, material: str) -> list[str]:
     """Return the names of the columns that the core has for particles of a material."""
+    forces = [part.body_force for part in case.parts().values() if part.material == material]
+    given = [value for force in forces if force is not None for value in force]
     return _core.column_names(
         dimension=case.grid.dimension,
         may_leave=case.grid.outflow_box is not None,
+        forced=bool(given),
+        of_start=any(isinstance(value, Expression) and value.is_of_start for value in given),
         viscosity=case.viscosity_of(material),
         **case.material[material].for_core(),
     )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 
 from mpm3dpp.base.errors import CaseError, Path, violation
-from mpm3dpp.base.expression import SpinField, VelocityField
+from mpm3dpp.base.expression import ForceField, SpinField, VelocityField
 from mpm3dpp.base.machine import BODY_BYTES, MEMORY, memory_text
 from mpm3dpp.base.model import MOST, CaseModel, Choice, Count, Exactly, Text
 from mpm3dpp.base.units import Point, PositiveLength, Quantity, Vector
@@ -166,6 +166,8 @@ class Grains(CaseModel):
         velocity: initial velocity of all [m/s], D numbers or formulas of x, y, z, r; default zero.
         angular_velocity: initial spin of each about its own centre [rad/s]: one number or formula
             in 2D, three in 3D; default zero. Stored as a tuple.
+        body_force: force per mass of all beside gravity [m/s^2], D numbers or formulas of x, y, z,
+            the place at the start X, Y, Z and the time t; None for none.
     """
 
     material: Text
@@ -177,6 +179,7 @@ class Grains(CaseModel):
     align: Annotated[str, Choice(("between", "particle", "grid"))] = "between"
     velocity: VelocityField = ()
     angular_velocity: SpinField = ()
+    body_force: ForceField | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> Grains:

@@ -12,6 +12,7 @@ import numpy as np
 from mpm3dpp import _core
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError, RunError, nearest
+from mpm3dpp.base.expression import program_of
 from mpm3dpp.base.machine import thread_count
 from mpm3dpp.base.settings import fill_core_table, functions
 from mpm3dpp.case.case import Case
@@ -98,6 +99,11 @@ class Simulation:
                 if load.body == body.name:
                     found = pieces(case, name, body.positions, body.spacing)
                     add_load(self.core, case, name, number, found)
+        for name, part in case.parts().items():
+            if part.body_force is not None:
+                self.core.add_body_force(
+                    self._numbers(name), list(map(program_of, part.body_force))
+                )
         for a, b, friction in case.frictions():
             self.core.set_friction(a, b, friction)
         try:

@@ -36,7 +36,7 @@ void check_all(Report& report) {
   Bases::for_each([&](BasisId basis, const auto&) {
     Choice<D> choice;
     choice.basis = basis;
-    choice.load = true;
+    choice.load = choice.body_force = true;
     check_schemes(report, choice);
     choice.transfer = Transfers::id_of<Pic>();
     check_schemes(report, choice);
