@@ -21,13 +21,16 @@ struct CatalogueModel {
   std::string eos;  // of a strength model: "never", "may", "must"
 };
 
-/// The names of the columns of particles of a material; `may_leave`: there is an outflow box.
+/// The names of the columns of particles of a material; `may_leave`: there is an outflow box,
+/// `forced`: a body force, which is a formula `of_start`, of places at the start.
 template <int D>
-std::vector<std::string> columns_of(const Material& material, bool may_leave) {
+std::vector<std::string> columns_of(const Material& material, bool may_leave, bool forced,
+                                    bool of_start) {
   TileGrid<D> grid;
   grid.cell_size = 1.0;
   grid.outflow_box.exist = may_leave;
-  const ParticlePool<D> pool = make_pool(material, grid);
+  ParticlePool<D> pool = make_pool(material, grid);
+  if (forced) add_force_columns(pool, of_start);
   std::vector<std::string> names;
   for (const ColumnInfo& info : pool.columns.infos()) names.push_back(info.name);
   return names;
@@ -84,18 +87,19 @@ void add_materials(nb::module_& m) {
   m.def("catalogue", &catalogue);
   m.def(
       "column_names",
-      [](int dimension, bool may_leave, double density, const std::string& strength,
-         const Parameters& parameters, const std::optional<Named>& eos,
+      [](int dimension, bool may_leave, bool forced, bool of_start, double density,
+         const std::string& strength, const Parameters& parameters, const std::optional<Named>& eos,
          const std::vector<NamedFailure>& failures, Viscosity viscosity) {
         const Material material =
             make_material(choice_of(density, strength, parameters, eos, failures, viscosity));
-        return dimension == 2 ? columns_of<2>(material, may_leave)
-                              : columns_of<3>(material, may_leave);
+        return dimension == 2 ? columns_of<2>(material, may_leave, forced, of_start)
+                              : columns_of<3>(material, may_leave, forced, of_start);
       },
-      nb::arg("dimension"), nb::arg("may_leave"), nb::arg("density"), nb::arg("strength"),
-      nb::arg("parameters"), nb::arg("eos").none(), nb::arg("failures"), nb::arg("viscosity"),
+      nb::arg("dimension"), nb::arg("may_leave"), nb::arg("forced"), nb::arg("of_start"),
+      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
+      nb::arg("failures"), nb::arg("viscosity"),
       "The names of the columns that particles of a material have; `may_leave`: there is an "
-      "outflow box");
+      "outflow box, `forced`: a body force, which is a formula `of_start`, of places at the start");
 
   m.def(
       "drive_material",

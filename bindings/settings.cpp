@@ -5,6 +5,7 @@
 
 #include "catalogue.hpp"
 #include "mpm/ledger/history.hpp"
+#include "mpm/math/expression.hpp"
 #include "mpm/run/derived_fields.hpp"
 
 namespace mpm::bindings {
@@ -73,6 +74,13 @@ nb::dict all_load_kinds() {
     kinds[text(Kind::name)] = row;
   });
   return kinds;
+}
+
+/// What formulas may do, and with how many numbers.
+nb::dict all_operations() {
+  nb::dict found;
+  for (const Operation& operation : operations) found[text(operation.name)] = operation.operands;
+  return found;
 }
 
 /// Of each stage: its name, what it reads and writes, and whether it goes through all particles.
@@ -152,6 +160,17 @@ void add_settings(nb::module_& m) {
   m.attr("history_terms") = all_history_terms();
   m.attr("load_kinds") = all_load_kinds();
   m.attr("derived_fields") = all_derived_fields();
+  m.attr("operations") = all_operations();
+  m.def(
+      "evaluate",
+      [](const Expression::Program& program, const std::vector<std::string>& names,
+         const Input& values) {
+        if (values.ndim() != 2) throw std::invalid_argument("values must be (variables, n)");
+        return to_numpy(evaluate_rows(Expression(program), names, span_of(values), values.shape(1)),
+                        1);
+      },
+      nb::arg("program"), nb::arg("names"), nb::arg("values"),
+      "The values of a formula, (n, 1), of variables by their names, (variables, n)");
   m.def("stages", &stage_rows, nb::arg("scheme"), nb::arg("fused"),
         "Of each stage: its name, what it reads and writes, and whether it goes through all "
         "particles");

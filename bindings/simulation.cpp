@@ -80,6 +80,12 @@ void def_building(SimulationClass& simulation) {
            }),
            nb::arg("name"), nb::arg("body"), nb::arg("kind"), nb::arg("value"),
            nb::arg("particles"), nb::arg("areas"), nb::arg("sizes"), nb::arg("arms"))
+      .def("add_body_force",
+           of_any([](auto& s, const std::vector<int>& bodies,
+                     const std::vector<Expression::Program>& value) {
+             add_body_force(s, bodies, value);
+           }),
+           nb::arg("bodies"), nb::arg("value"))
       .def("set_group", of_any([](auto& s, int body, int first) { set_group(s, body, first); }),
            nb::arg("body"), nb::arg("first"))
       .def("set_friction",

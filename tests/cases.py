@@ -99,7 +99,8 @@ def box(dimension: int, cells: int, walls: Any) -> dict[str, Any]:
 
 
 # Nearly all that a step can hold: walls that mirror and that absorb, gravity, contact with
-# friction, a load, viscosity, PIC damping, a rigid body that is free and one that is led.
+# friction, a load, a body force, viscosity, PIC damping, a rigid body that is free and one that is
+# led.
 EVERYTHING = """
 [grid]
 dimension = {dimension}
@@ -132,6 +133,7 @@ shape = {{ box = {{ lower = {zero}, upper = {bed} }} }}
 [body.block]
 material = "metal"
 velocity = {falling}
+body_force = {forcing}
 shape = {{ box = {{ lower = {low_block}, upper = {high_block} }} }}
 [body.ball]
 material = "stone"
@@ -146,6 +148,9 @@ body = "bed"
 side = "x_max"
 pressure = "1 kPa"
 """
+
+
+WAVING = '{ expression = "9 * sin(80 * x + 50 * Y - 300 * t)" }'
 
 
 def everything(tmp_path: Path, dimension: int, scheme: str, basis: str, left: str) -> Case:
@@ -164,6 +169,7 @@ def everything(tmp_path: Path, dimension: int, scheme: str, basis: str, left: st
         box=vector(0.4, 0.3, 0.08),
         gravity=vector(1.0, -10.0, 2.0),
         bed=vector(0.2, 0.06, 0.08),
+        forcing=f"[{', '.join([WAVING, '1.5', '-0.3'][:dimension])}]",
         falling=vector(0.5, -2.0, 0.2),
         low_block=vector(0.02, 0.061, 0.01),
         high_block=vector(0.07, 0.11, 0.07),

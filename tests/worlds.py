@@ -7,6 +7,7 @@ their order. So a run there differs from the one here by the rounding of sums al
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mpm3dpp import Body, Case, GridBox, Particles, Simulation, Walls
+from mpm3dpp.base.expression import Expression
 
 Array = NDArray[np.float64]
 PLACES = {
@@ -59,12 +61,13 @@ class World:
             part = filled.parts[filled.bodies.index(name)]
             entry: Any = here.grains[part] if part in here.grains else here.body[part]
             positions = filled.column(name, "position")
-            velocity = np.array(entry.velocity or (0.0,) * d)
+            there = self.order(len(positions))
+            velocities = (filled.column(name, "velocity") @ q.T)[there]
             bodies[name] = Body(
                 material=entry.material,
-                particles=Particles((positions @ q.T)[self.order(len(positions))]),
+                particles=Particles((positions @ q.T)[there], velocities=velocities),
                 spacing=entry.particle_spacing(here.grid),
-                velocity=tuple((q @ velocity).tolist()),
+                body_force=self._force(entry.body_force),
             )
         grid = here.grid.model_copy(update={"box": self._box(here)})
         gravity = tuple((q @ np.array([float(g) for g in here.run.gravity or (0.0,) * d])).tolist())
@@ -75,6 +78,19 @@ class World:
             material=here.material,
             body=bodies,
         )
+
+    def _force(self, force: Any) -> Any:
+        """A body force there: its components, as formulas of the places there."""
+        if force is None:
+            return None
+        names = {}  # What a place here is there: x = -y', say.
+        for k, (axis, sign) in enumerate(self.axes):
+            for letters in ("xyz", "XYZ"):
+                names[letters[axis]] = f"({sign}*{letters[k]})"
+        texts = [value.text if isinstance(value, Expression) else repr(value) for value in force]
+        return [
+            {"expression": f"{sign}*({_renamed(texts[axis], names)})"} for axis, sign in self.axes
+        ]
 
     def _box(self, here: Case) -> GridBox | None:
         box = here.grid.box
@@ -109,6 +125,10 @@ class World:
             return np.stack([tensor[:, i, j] for i, j in places], axis=1)
         assert components == 1, "a column that no test has had yet"
         return back
+
+
+def _renamed(text: str, names: dict[str, str]) -> str:
+    return re.sub(r"\b[xyzXYZ]\b", lambda found: names[found.group()], text)
 
 
 def largest_differences(here: Simulation, there: Simulation, world: World) -> dict[str, float]:

@@ -16,6 +16,7 @@ LAYERS = {
     "loads/kinds": 1,
     "loads/load_kinds.hpp": 2,
     "loads/surface_load.hpp": 3,
+    "loads/body_force.hpp": 1,
     "fields": 1,
     "basis": 1,
     "layout": 2,

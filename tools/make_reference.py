@@ -134,6 +134,10 @@ def case_page() -> str:
         '`{ sine = { amplitude = 5, frequency = "50 Hz" } }`, with `period` in place of',
         "`frequency`, and `phase`, `mean` (default 0) if needed;",
         '`{ ramp = { to = 5, end = "1 ms" } }`, with `from`, `start` (default 0) if needed.',
+        "",
+        "A formula is a table of the formula, the unit of its value and that of the lengths in it;",
+        'units may be left out where they are SI: `{ expression = "2 * sin(pi * x / 50)", unit =',
+        '"mm/s", length = "mm" }`.',
     ]
     for heading, model, note in TABLES:
         about, _ = docstring(model)

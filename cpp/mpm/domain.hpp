@@ -8,6 +8,7 @@
 #include "mpm/contact/contact.hpp"
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/ledger/ledger.hpp"
+#include "mpm/loads/body_force.hpp"
 #include "mpm/loads/surface_load.hpp"
 #include "mpm/materials/material_block.hpp"
 #include "mpm/parallel/threads.hpp"
@@ -49,7 +50,8 @@ struct Domain {
   ListScratch<D> list_scratch;
   Removed<D> eroded, outflow;  // by failure; out of the region that is kept
   std::vector<SurfaceLoad<D>> loads;
-  std::vector<SurfacePiece<D>> pieces;     // of all loads
+  std::vector<SurfacePiece<D>> pieces;  // of all loads
+  std::vector<BodyForce<D>> body_forces;
   std::vector<Vec<double, D>> load_parts;  // scratch: force by patch and load [N]
   std::vector<RigidMotion> rigid;          // one per entry of rigid_bodies
   std::vector<RigidMotion> rigid_before;
@@ -75,6 +77,7 @@ struct Domain {
   bool has_rigid() const { return !rigid_bodies.empty(); }
   bool has_prescribed() const { return !prescribed.empty(); }
   bool has_loads() const { return !loads.empty(); }
+  bool has_body_forces() const { return !body_forces.empty(); }
   bool has_contact() const {
     return contact_settings.enabled && !contact_settings.bonded && bodies.size() > 1;
   }

@@ -92,6 +92,10 @@ def test_the_hash_is_that_of_the_content(tmp_path: Path) -> None:
         ("x,y\n1,2\n1,nan\n", "must have finite numbers, in line 3"),
         ("x,y,volume\n1,2,3\n1,2,0\n", "must have a volume > 0, in line 3"),
         ("x,y,z\n1,2,3\n", "must have 2 coordinates"),
+        ("x,y,vx\n1,2,3\n", "or with vx,vy,vz behind them (in 2D without z)"),
+        ("x,y,vx,vy,volume\n1,2,3,4,5\n", "must name its columns"),
+        ("x,y,vx [mm/s],vy\n1,2,3,4\n", "gives vx in [mm/s] in line 1 but must be in m/s"),
+        ("x,y,vx,vy\n1,2,3,4\n1,2,inf,4\n", "must have finite numbers, in line 3"),
         (b"\xff\xfe", "cannot be read as a text file"),
         (None, "is not a file"),
     ],
@@ -150,14 +154,59 @@ def test_bad_arrays(positions: object, volumes: object, part: str) -> None:
         Particles(positions, volumes)
 
 
+@pytest.mark.parametrize(
+    ("velocities", "part"),
+    [([1.0, 2.0], "the shape of the positions, (1, 2)"), ([[1.0, np.nan]], "finite")],
+)
+def test_bad_velocities(velocities: object, part: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        Particles([[1.0, 2.0]], None, velocities)
+    assert part in str(caught.value)
+
+
+def test_velocities_of_a_file(tmp_path: Path) -> None:
+    """In m/s, whatever the unit of lengths; with volumes or without; they count in the hash."""
+    text = CASE.replace("velocity = [1, 0]\n", "")
+    millimetres = text.replace('"rod.csv"', '{ file = "rod.csv", unit = "mm" }')
+    cases = [
+        ("x,y,volume,vx,vy\n1e-4,1e-4,4e-8,1,2\n3e-4,1e-4,4e-8,3,-4\n", text),
+        ("x [mm],y,volume [mm^2],vx [m/s],vy\n0.1,0.1,0.04,1,2\n0.3,0.1,0.04,3,-4\n", millimetres),
+        ("x,y,vx,vy\n1e-4,1e-4,1,2\n3e-4,1e-4,3,-4\n", text + 'spacing = "0.2 mm"\n'),
+        ("x,y,volume,vx,vy\n1e-4,1e-4,4e-8,1,2\n3e-4,1e-4,4e-8,3,-5\n", text),
+    ]
+    hashes = []
+    for points, given in cases:
+        case = load_case(write(tmp_path, points, given))
+        simulation = Simulation(case, threads=1)
+        last = -5.0 if "-5" in points else -4.0
+        assert simulation.column("rod", "velocity").tolist() == [[1.0, 2.0], [3.0, last]]
+        assert simulation.column("rod", "position").tolist() == [[1e-4, 1e-4], [3e-4, 1e-4]]
+        hashes.append(case.case_hash)
+    assert hashes[0] == hashes[1] and len(set(hashes)) == 3
+
+
+@pytest.mark.parametrize("key", ["velocity = [1, 0]", "angular_velocity = 2", 'motion = "fixed"'])
+def test_velocities_take_the_place_of_keys(tmp_path: Path, key: str) -> None:
+    text = CASE.replace("velocity = [1, 0]", key)
+    with pytest.raises(CaseError, match="together with particles that have velocities") as caught:
+        load_case(write(tmp_path, "x,y,vx,vy\n1,2,3,4\n", text))
+    assert caught.value.key == f"body.rod.{key.split(' ')[0]}"
+
+
 def test_numbers_come_back_to_the_last_bit(tmp_path: Path) -> None:
     random = np.random.default_rng(7)
-    given = Particles(random.normal(size=(50, 3)) * 1e-3, random.uniform(1e-12, 1e-9, 50))
+    given = Particles(
+        random.normal(size=(50, 3)) * 1e-3,
+        random.uniform(1e-12, 1e-9, 50),
+        random.normal(size=(50, 3)),
+    )
     write_particles(tmp_path / "p.csv", given, "two\nlines")
     found = read_particles(tmp_path / "p.csv")
     assert found.volumes is not None
     assert np.array_equal(found.positions, given.positions)
     assert np.array_equal(found.volumes, given.volumes)
+    assert found.velocities is not None
+    assert np.array_equal(found.velocities, given.velocities)
     assert found.digest == given.digest
 
 

@@ -11,6 +11,7 @@ from pydantic import TypeAdapter
 from mpm3dpp import _core
 from mpm3dpp.base import units
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.expression import SpinField
 from mpm3dpp.base.rules import Bounds, holds, requirement, within
 
 
@@ -78,7 +79,7 @@ def test_pint_quantity() -> None:
 def test_annotated_types_check_and_convert() -> None:
     assert TypeAdapter(units.Length).validate_python("30 mm") == 0.03
     assert TypeAdapter(units.Point).validate_python(["30 mm", 0.1]) == (0.03, 0.1)
-    assert TypeAdapter(units.Spin).validate_python("2 rad/s") == (2.0,)
+    assert TypeAdapter(SpinField).validate_python("2 rad/s") == (2.0,)
     with pytest.raises(ValueError, match="must be > 0"):
         TypeAdapter(units.Density).validate_python("-1 kg/m^3")
 

@@ -116,6 +116,35 @@ def test_another_world_is_the_same_with_pic() -> None:
     check_worlds(Case.from_text(text), 1800, text, meet=False)
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_field_of_velocities_is_the_same_in_another_world(dimension: int) -> None:
+    """Formulas here, and there the velocities that they give, particle by particle."""
+    text = RINGS if dimension == 2 else IMPACT
+    for given in ('["30 m/s", 0]', '["300 m/s", "200 m/s", "-300 m/s"]'):
+        field = ", ".join(
+            f'{{ expression = "{text}", length = "mm" }}'
+            for text in ("-60 * sin(x / 50)", "5 * sin(r / 20) - y", "-200 + z")[:dimension]
+        )
+        text = text.replace(f"velocity = {given}", f"velocity = [{field}]")
+    assert "expression" in text
+    check_worlds(Case.from_text(text), 600, "")
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_body_forces_are_the_same_in_another_world(dimension: int) -> None:
+    """Of every variable, large enough to be seen beside the impact."""
+    text = RINGS if dimension == 2 else IMPACT
+    size = 2e3 if dimension == 2 else 1e7
+    forces = [
+        f"{size} * sin(40 * X + 30 * y)",
+        f"{size} * x / (0.1 + Y)",
+        f"-{size} * cos(8e4 * t)",
+    ]
+    field = ", ".join(f'{{ expression = "{force}" }}' for force in forces[:dimension])
+    text = text.replace("shape = ", f"body_force = [{field}]\nshape = ")
+    check_worlds(Case.from_text(text), 1800 if dimension == 2 else 300, "")
+
+
 def check_worlds(case: Case, steps: int, text: str, meet: bool = True) -> None:
     """Run a case, and the same in other worlds, and compare."""
     filled, here = Simulation(case), Simulation(case)

@@ -17,6 +17,7 @@
   X(tensor) \
   X(cholesky) \
   X(time_function) \
+  X(expression) \
   X(eigen) \
   X(threads) \
   X(memory) \

@@ -79,7 +79,7 @@ inline constexpr auto history_terms = std::to_array<HistoryTerm>({
     {"numerical_transfer", "J",
      "its part that transfers other than FLIP have taken: what they smooth away",
      [](const StepState& s) { return s.ledger.transferred; }, Role::other, "numerical"},
-    {"load_work", "J", "the part of `external` that loads on surfaces have done",
+    {"load_work", "J", "the part of `external` that loads on surfaces and body forces have done",
      [](const StepState& s) { return s.ledger.load_work; }, Role::other, "external"},
     {"cell_size", "m", "edge of the cells; it grows where `grid.coarsening` is given",
      [](const StepState& s) { return s.cell_size; }},

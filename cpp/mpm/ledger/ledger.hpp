@@ -20,9 +20,9 @@
 //
 // A body whose motion is prescribed gets the work that this takes: the change of its kinetic energy
 // and what contact takes from it, at the mean velocity of the step. Gravity does not act on it.
-// The work of gravity, of loads on surfaces and of walls which absorb waves (their loss is the term
-// absorbed) is taken with the velocity in the middle of the step, so that their part of 1/2 m dv^2
-// is no error.
+// The work of gravity, of loads on surfaces, of body forces and of walls which absorb waves (their
+// loss is the term absorbed) is taken with the velocity in the middle of the step, so that their
+// part of 1/2 m dv^2 is no error.
 //
 // Eroded particles take their kinetic and recoverable energy at the start of a step to the term
 // eroded, and their momentum out of the sum; the dissipated energies stay where they are. Particles
@@ -51,7 +51,7 @@ struct Ledger {
          time_integration = 0.0;  // [J]
   double energy_floor = 0.0;      // the part of bounded that the least energy has given, <= 0 [J]
   double transferred = 0.0;       // kinetic energy that transfers other than FLIP have taken [J]
-  double load_work = 0.0;         // the part of external that loads have done [J]
+  double load_work = 0.0;         // the part of external that loads and body forces have done [J]
   double gone_recoverable = 0.0;  // the part of eroded and left that was internal [J]
   double start = 0.0;             // kinetic and internal energy at the start [J]
   double largest = 0.0;           // largest energy brought in so far [J]

@@ -36,7 +36,7 @@ struct PatchSums {
   double gravity_first = 0.0;   // time step x sum over nodes of gravity . velocity [J]
   double gravity_second = 0.0;  // the part of second_order that is the work of gravity [J]
   PrescribedSums<D> prescribed;
-  double load_first = 0.0, load_second = 0.0;        // the same of loads on surfaces [J]
+  double load_first = 0.0, load_second = 0.0;        // the same of loads, body forces too [J]
   double dashpot_first = 0.0, dashpot_second = 0.0;  // the same of walls that absorb [J]
 
   /// f(number) for all that are summed over the patches, in one order.

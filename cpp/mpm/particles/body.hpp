@@ -39,6 +39,7 @@ struct Body {
   double total_mass = 0.0;       // [kg]
   BodyKind kind = BodyKind::deformable;
   int rigid = -1;                            // place among Domain::rigid, if it is rigid and free
+  int force = -1;                            // place among Domain::body_forces, if it has one
   std::unique_ptr<PrescribedMotion> motion;  // none for the thousands of bodies that are free
   double pressure_impedance = 0.0, shear_impedance = 0.0;  // rho c of the start [kg/(m^2 s)]
   std::size_t moved = 0;  // changes of cell since its rows were last sorted

@@ -1,5 +1,6 @@
 #include "mpm/particles/make_body.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -110,6 +111,13 @@ ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid, boo
 }
 
 template <int D>
+void add_force_columns(ParticlePool<D>& pool, bool of_start) {
+  if (pool.body_force < 0) pool.body_force = pool.columns.add("body_force", "m/s^2", D);
+  if (of_start && pool.start_position < 0)
+    pool.start_position = pool.columns.add("start_position", "m", D);
+}
+
+template <int D>
 Body<D> make_body(const std::string& name, const Material& material, const ParticlePool<D>& pool,
                   std::span<const double> positions, std::span<const double> velocities,
                   std::span<const double> volumes) {
@@ -160,6 +168,9 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
   for (std::size_t m = 0; m < pools.size(); ++m)
     if (pools[m].count() > 0)
       start_material_columns<D>(materials[m], pools[m].columns, pools[m].at);
+  for (ParticlePool<D>& pool : pools)
+    for (int a = 0; a < (pool.start_position < 0 ? 0 : D); ++a)
+      std::copy_n(pool.x(a), pool.count(), pool.columns.component(pool.start_position + a));
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     ParticlePool<D>& pool = pool_of(bodies[b]);
     const std::size_t first = patches[b].begin;
@@ -175,6 +186,8 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
 
 template ParticlePool<2> make_pool<2>(const Material&, const TileGrid<2>&, bool);
 template ParticlePool<3> make_pool<3>(const Material&, const TileGrid<3>&, bool);
+template void add_force_columns<2>(ParticlePool<2>&, bool);
+template void add_force_columns<3>(ParticlePool<3>&, bool);
 template Body<2> make_body<2>(const std::string&, const Material&, const ParticlePool<2>&,
                               std::span<const double>, std::span<const double>,
                               std::span<const double>);

@@ -15,6 +15,11 @@ namespace mpm {
 template <int D>
 ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid, bool affine = false);
 
+/// Declare the columns of particles with a body force, and their places at the start if it is a
+/// formula of these; before the pool is filled.
+template <int D>
+void add_force_columns(ParticlePool<D>& pool, bool of_start);
+
 /// A body of particles at `positions` (n, D) [m] with `velocities` (n, D) or (1, D) [m/s] and
 /// `volumes` (n,) or (1,) [m^3], with the pool of its material, which it does not enter yet. Throws
 /// std::invalid_argument with the body's name if they do not fit each other.

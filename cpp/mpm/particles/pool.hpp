@@ -22,10 +22,12 @@ struct RemovedRow {
 template <int D>
 struct ParticlePool {
   Columns columns;
-  int position = 0;          // first component of each column; position [m], D components
-  int affine = -1;           // affine part of the velocity [1/s], D x D; -1: the transfer has none
-  MaterialColumns at{};      // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
-  double sound_speed = 0.0;  // of its material at the start [m/s]
+  int position = 0;                  // first component of each column; position [m], D components
+  MaterialColumns at{};              // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
+  int affine = -1;                   // affine part of the velocity [1/s], D x D; -1: none
+  int body_force = -1;               // force per mass [m/s^2], D components; -1: none
+  int start_position = -1;           // [m], D components; -1: none
+  double sound_speed = 0.0;          // of its material at the start [m/s]
   std::vector<std::uint32_t> id;     // number of each particle in its body, as the user gave them
   std::vector<std::uint32_t> piece;  // 1 + number of its first SurfacePiece, or 0; empty: no loads
   std::vector<std::uint32_t> order;  // rows by cell, then by id, in the range that each patch owns

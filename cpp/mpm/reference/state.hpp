@@ -1,6 +1,7 @@
 #pragma once
 // What the reference step works on: particles, nodes, bodies, and what acts on them.
 #include <array>
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace mpm::reference {
 template <int D>
 struct Particle {
   Vec<double, D> x, v;   // position [m], velocity [m/s]
+  Vec<double, D> X;      // position at the start [m]
   double m, V;           // mass [kg], volume [m^3]
   Sym<double, D> sigma;  // stress [Pa]
   Mat<double, D> C{};    // affine part of the velocity [1/s]
@@ -23,6 +25,7 @@ struct Node {
   Vec<double, D> v = Vec<double, D>::zero();       // velocity [m/s]; a momentum while it is summed
   Vec<double, D> f = Vec<double, D>::zero();       // force [N]
   Vec<double, D> f_load = Vec<double, D>::zero();  // the part of it of loads on surfaces [N]
+  Vec<double, D> f_body = Vec<double, D>::zero();  // and of the body force, a part of f_load [N]
   Vec<double, D> f_absorb = Vec<double, D>::zero();     // and that of absorbing walls [N]
   Vec<double, D> dv = Vec<double, D>::zero();           // change of the velocity in this step [m/s]
   Vec<double, D> v_corrected = Vec<double, D>::zero();  // by how much eqs. (6)-(7) have changed v
@@ -39,6 +42,8 @@ struct Body {
   // Of a body whose motion is prescribed: that of the step before, and what it is given as.
   RigidMotion last_motion;
   std::array<TimeFunction, 3> velocity{}, spin{};  // [m/s], [rad/s]
+  // Force per mass [m/s^2], of the present place, that at the start [m] and the time [s]; or none.
+  std::function<Vec<double, D>(const Vec<double, D>&, const Vec<double, D>&, double)> force;
   std::map<Index<D>, Node<D>> nodes;
 
   bool deforms() const { return kind == BodyKind::deformable; }

@@ -34,7 +34,8 @@ void make_step(Simulation<D>& simulation, double time_after) {
   simulation.history.add(step_state(domain));
   find_failure(simulation);
   if (simulation.failure) return;
-  simulation.next_time_step = stable_time_step(domain, simulation.settings.run.cfl);
+  update_time_step(simulation);
+  if (simulation.failure) return;
   watch_step(simulation);
   if (domain.step % look_every == 0) look(simulation);
   if (must_coarsen(simulation)) coarsen_cells(simulation);

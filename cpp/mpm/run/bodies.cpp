@@ -73,6 +73,8 @@ void set_motion(Simulation<D>& simulation, int number, const std::array<TimeFunc
   for (const SurfaceLoad<D>& load : domain.loads)
     if (load.body == number)
       throw std::invalid_argument(b.name + ": it has a load, which acts on bodies that deform");
+  if (b.force >= 0)
+    throw std::invalid_argument(b.name + ": it has a body force, which acts on those that deform");
   check_functions(velocity, b.name + ": velocity");
   check_functions(spin, b.name + ": spin");
   check_finite(centre, b.name + ": centre");
@@ -133,7 +135,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
   ledger.momentum = momentum(domain);
   simulation.watch.steps.start_from(ledger.made(), ledger.load_work);
   probe_speeds(domain);
-  simulation.next_time_step = stable_time_step(domain, simulation.settings.run.cfl);
+  update_time_step(simulation);
   invalidate_pairs(domain.contact);  // gaps change with the velocities that particles had
 }
 

@@ -47,7 +47,7 @@ void coarsen_cells(Simulation<D>& simulation) {
   domain.ledger.kinetic = kinetic_energy(domain);
   domain.ledger.transferred += before - domain.ledger.kinetic;
   probe_speeds(domain);
-  simulation.next_time_step = stable_time_step(domain, simulation.settings.run.cfl);
+  update_time_step(simulation);
 }
 
 template bool must_coarsen<2>(const Simulation<2>&);

@@ -31,7 +31,16 @@ void find_failure(Simulation<D>& simulation) {
   for (const Patch<D>& patch : domain.grid.patches) {
     const auto b = static_cast<std::size_t>(patch.body);
     const ParticlePool<D>& of = domain.pool_of(patch);
+    const bool forced = domain.body_of(patch).force >= 0;
     for (const std::uint32_t i : of.rows(patch)) {
+      for (int a = 0; a < (forced ? D : 0); ++a) {
+        const double force = of.columns.component(of.body_force + a)[i];
+        if (moves_within_cell(force, domain.time_step, domain.grid.cell_size)) continue;
+        std::ostringstream text;
+        text << "its body_force is " << force << " m/s^2 along " << "xyz"[a]
+             << ", no finite number or one that moves it past a cell in a step";
+        return fail("body force", b, i, text.str());
+      }
       bool finite = true;
       for (int c = 0; c < of.columns.component_count(); ++c)
         finite = finite && std::isfinite(of.columns.value(c, i));

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mpm/particles/make_body.hpp"
+
 namespace mpm {
 
 template <int D>
@@ -52,6 +54,27 @@ void add_load(Simulation<D>& simulation, const std::string& name, int number,
 }
 
 template <int D>
+void add_body_force(Simulation<D>& simulation, const std::vector<int>& bodies,
+                    const std::vector<Expression::Program>& value) {
+  Domain<D>& domain = simulation.domain;
+  require(simulation, Phase::building, "body forces must be added before prepare()");
+  if (value.size() != D) throw std::invalid_argument("a body force must have D formulas");
+  BodyForce<D> force;
+  for (std::size_t a = 0; a < D; ++a) force.value[a] = Expression(value[a]);
+  for (const int number : bodies) {
+    Body<D>& body = domain.body_at(number);
+    const auto check = [&](bool condition, const char* rule) {
+      if (!condition) throw std::invalid_argument(body.name + rule);
+    };
+    check(body.deforms(), ": it is rigid, and a body force acts on bodies that deform");
+    check(body.force < 0, ": it has a body force already");
+    body.force = static_cast<int>(domain.body_forces.size());
+    add_force_columns(domain.pool_of(body), force.is_of_start());
+  }
+  domain.body_forces.push_back(std::move(force));
+}
+
+template <int D>
 void place_pieces(Domain<D>& domain) {
   for (std::size_t k = 0; k < domain.pieces.size(); ++k) {
     SurfacePiece<D>& piece = domain.pieces[k];
@@ -93,6 +116,10 @@ template void add_load<2>(Simulation<2>&, const std::string&, int, const std::st
                           const std::array<TimeFunction, 3>&, const Pieces&);
 template void add_load<3>(Simulation<3>&, const std::string&, int, const std::string&,
                           const std::array<TimeFunction, 3>&, const Pieces&);
+template void add_body_force<2>(Simulation<2>&, const std::vector<int>&,
+                                const std::vector<Expression::Program>&);
+template void add_body_force<3>(Simulation<3>&, const std::vector<int>&,
+                                const std::vector<Expression::Program>&);
 template void place_pieces<2>(Domain<2>&);
 template void place_pieces<3>(Domain<3>&);
 template std::vector<LoadRecord> load_records<2>(const Domain<2>&);

@@ -15,6 +15,12 @@ template <int D>
 void add_load(Simulation<D>& simulation, const std::string& name, int body, const std::string& kind,
               const std::array<TimeFunction, 3>& value, const Pieces& pieces);
 
+/// Give bodies a force per mass [m/s^2], a formula along each axis; before prepare(). Throws
+/// std::invalid_argument, in one sentence, for what makes no sense.
+template <int D>
+void add_body_force(Simulation<D>& simulation, const std::vector<int>& bodies,
+                    const std::vector<Expression::Program>& value);
+
 /// Tell the particles which pieces they carry; each body's lie in one patch yet, as they were
 /// given.
 template <int D>

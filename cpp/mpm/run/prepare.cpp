@@ -74,9 +74,11 @@ void prepare(Simulation<D>& simulation) {
   project_rigid_velocities(domain);
   start_affine(domain);
   probe_speeds(domain);
+  const std::string problem = choose_time_step(simulation);
+  check(problem.empty(), problem.c_str());
+  // The fastest speed of all, whatever steps are made.
   const double cfl = simulation.settings.run.cfl;
-  simulation.next_time_step = stable_time_step(domain, cfl);
-  const double fastest = cfl * domain.grid.cell_size / simulation.next_time_step;
+  const double fastest = cfl * domain.grid.cell_size / stable_time_step(domain, cfl);
   domain.contact.records.set_scale(total_mass(domain), fastest);
   start_ledger(domain);
   simulation.watch.sights.resize(domain.bodies.size());

@@ -61,6 +61,7 @@ struct GridSettings {
 struct RunSettings {
   Scheme scheme = Scheme::musl;
   double cfl = 0.25;
+  std::optional<double> time_step, largest_time_step;
   std::array<TimeFunction, 3> gravity{};
   TransferId transfer = Transfers::id_of<Flip>();
   std::optional<double> flip_share;
@@ -79,6 +80,12 @@ struct RunSettings {
               Rule::fraction,
               {},
               "time_step_factor"},
+      Setting{"time_step", &Self::time_step,
+              "length of all steps, but for the last two, in place of the share `cfl` of the "
+              "largest stable one; the run does not start, or stops, where it is larger than that",
+              Rule::positive, "s"},
+      Setting{"largest_time_step", &Self::largest_time_step,
+              "no step is longer than this; default: no bound beyond `cfl`", Rule::positive, "s"},
       Setting{"gravity", &Self::gravity,
               "acceleration [m/s^2], D numbers or functions of time; default zero", Rule::any,
               "m/s^2"},

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+
+#include "mpm/run/find_failure.hpp"
 
 namespace mpm {
 namespace {
@@ -55,6 +58,38 @@ double stable_time_step(const Domain<D>& domain, double cfl) {
 }
 
 template <int D>
+std::string choose_time_step(Simulation<D>& simulation) {
+  const RunSettings& run = simulation.settings.run;
+  if (run.time_step) {
+    simulation.next_time_step = *run.time_step;
+    const double stable = stable_time_step(simulation.domain, 1.0);
+    if (*run.time_step <= stable) return {};
+    std::ostringstream text;
+    text << "run.time_step = " << *run.time_step
+         << " s is larger than the largest stable step, in which the fastest wave or particle "
+            "passes a cell, "
+         << stable << " s";
+    return text.str();
+  }
+  simulation.next_time_step = stable_time_step(simulation.domain, run.cfl);
+  if (run.largest_time_step)
+    simulation.next_time_step = std::min(simulation.next_time_step, *run.largest_time_step);
+  return {};
+}
+
+template <int D>
+void update_time_step(Simulation<D>& simulation) {
+  const std::string problem = choose_time_step(simulation);
+  if (problem.empty()) return;
+  const Domain<D>& domain = simulation.domain;
+  const Limiter fastest = find_limiter(domain);
+  const int body = std::max(fastest.body, 0);
+  const std::size_t row = fastest.body < 0 ? 0 : row_of(domain, body, fastest.particle);
+  simulation.failure =
+      failure_at(domain, "time step", static_cast<std::size_t>(body), row, problem);
+}
+
+template <int D>
 Limiter find_limiter(const Domain<D>& domain) {
   Limiter result;
   if (domain.sums.empty() || domain.sums.size() != domain.grid.patches.size()) return result;
@@ -75,6 +110,10 @@ template void probe_speeds<2>(Domain<2>&);
 template void probe_speeds<3>(Domain<3>&);
 template double stable_time_step<2>(const Domain<2>&, double);
 template double stable_time_step<3>(const Domain<3>&, double);
+template std::string choose_time_step<2>(Simulation<2>&);
+template std::string choose_time_step<3>(Simulation<3>&);
+template void update_time_step<2>(Simulation<2>&);
+template void update_time_step<3>(Simulation<3>&);
 template Limiter find_limiter<2>(const Domain<2>&);
 template Limiter find_limiter<3>(const Domain<3>&);
 

@@ -1,7 +1,8 @@
 #pragma once
 // The time step that is stable, and the particle that limits it.
-#include "mpm/domain.hpp"
-#include "mpm/run/records.hpp"
+#include <string>
+
+#include "mpm/run/simulation.hpp"
 
 namespace mpm {
 
@@ -9,9 +10,19 @@ namespace mpm {
 template <int D>
 void probe_speeds(Domain<D>& domain);
 
-/// The share `cfl` of the time in which the fastest wave or particle passes a cell [s].
+/// The share `cfl` of the time in which the fastest wave or particle passes a cell [s]: of the
+/// largest stable step.
 template <int D>
 double stable_time_step(const Domain<D>& domain, double cfl);
+
+/// Choose the next step by `run.time_step`, `run.cfl` and `run.largest_time_step`. Returns what is
+/// wrong with it, in one sentence; empty if nothing.
+template <int D>
+std::string choose_time_step(Simulation<D>& simulation);
+
+/// The same; what is wrong is a failure of the run.
+template <int D>
+void update_time_step(Simulation<D>& simulation);
 
 template <int D>
 Limiter find_limiter(const Domain<D>& domain);

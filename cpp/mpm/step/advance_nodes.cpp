@@ -1,3 +1,4 @@
+#include "mpm/loads/body_forces.hpp"
 #include "mpm/loads/carry_loads.hpp"
 #include "mpm/rigid/prescribed_bodies.hpp"
 #include "mpm/step/patch_loops.hpp"
@@ -82,6 +83,7 @@ void advance_nodes(Domain<D>& domain) {
     // After the reflection, as a piece may load a node beyond a wall: a force and a velocity that
     // are both turned do the same work as those of the image, which has the force.
     if (loaded) loads = work_of_loads(domain, p);
+    if (domain.has_body_forces()) loads += work_of_body_force(domain, p);
     PatchSums<D>& sums = domain.sums[p];
     // What is left is work of internal and contact forces; loads, dashpots and gravity have terms
     // of their own in the ledger, with the velocity in the middle of the step.

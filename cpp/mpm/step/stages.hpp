@@ -49,9 +49,11 @@ void find_remapped(Domain<D>& domain);
 template <int D>
 void contact_momentum(Domain<D>& domain);
 
-/// Loads on surfaces, and the factors of walls that absorb.
+/// Loads on surfaces, body forces, and the factors of walls that absorb.
 template <int D>
 void load_surfaces(Domain<D>& domain);
+template <int D>
+void add_body_forces(Domain<D>& domain);
 template <int D>
 void place_dashpots(Domain<D>& domain);
 /// Forces of walls that absorb.
@@ -141,11 +143,12 @@ struct Stages : Data {
                                  of_rigid = rigid_position | rigid_velocity;
 
   // The nodes are written as their memory is lent to the lists until momentum is mapped.
-  static constexpr Row activate{
-      "activate tiles", mpm::activate_tiles<D>,
-      of_particles | of_rigid | volume | stress | load_pieces | lists | left_cells | patch_sums,
-      of_particles | of_rigid | volume | stress | load_pieces | lists | left_cells | patch_sums |
-          node_mass | node_velocity | node_force};
+  static constexpr Row activate{"activate tiles", mpm::activate_tiles<D>,
+                                of_particles | of_rigid | volume | stress | load_pieces |
+                                    body_force | lists | left_cells | patch_sums,
+                                of_particles | of_rigid | volume | stress | load_pieces |
+                                    body_force | lists | left_cells | patch_sums | node_mass |
+                                    node_velocity | node_force};
   static constexpr Row map_momentum{
       "map momentum", mpm::map_momentum<D>, lists | of_particles | of_rigid,
       node_mass | node_momentum | ghost_weights | node_dashpots, true};
@@ -169,6 +172,9 @@ struct Stages : Data {
   static constexpr Row load_surfaces{"load surfaces", mpm::load_surfaces<D>,
                                      lists | position | load_pieces | node_force,
                                      load_pieces | node_force};
+  static constexpr Row add_body_forces{"body forces", mpm::add_body_forces<D>,
+                                       lists | position | mass | body_force | node_force,
+                                       body_force | node_force};
   // Between the mappings and the exchange, as dashpots and loads are sums over particles as well.
   static constexpr Row place_dashpots{"place dashpots", mpm::place_dashpots<D>,
                                       lists | position | mass | node_dashpots, node_dashpots};
@@ -183,10 +189,11 @@ struct Stages : Data {
   static constexpr Row contact_forces{"contact forces", mpm::contact_forces<D>,
                                       node_mass | node_velocity | node_force | contacts,
                                       node_force | contacts};
-  // It reads the pieces for the work of loads, once increments are known.
+  // It reads pieces and body forces for the work of these, once increments are known.
   static constexpr Row advance_nodes{"advance nodes", mpm::advance_nodes<D>,
-                                     lists | position | load_pieces | node_mass | node_velocity |
-                                         node_force | node_dashpots | patch_sums,
+                                     lists | position | mass | load_pieces | body_force |
+                                         node_mass | node_velocity | node_force | node_dashpots |
+                                         patch_sums,
                                      node_velocity | node_increments | patch_sums};
   static constexpr Row release{"release from contact", mpm::release_from_contact<D>,
                                node_velocity | node_increments | contacts,

@@ -7,6 +7,12 @@ namespace mpm {
 /// increment; both together are the work with the velocity in the middle of the step.
 struct Work {
   double first = 0.0, second = 0.0;  // [J]
+
+  Work& operator+=(const Work& other) {
+    first += other.first;
+    second += other.second;
+    return *this;
+  }
 };
 
 }  // namespace mpm

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""CSV files of points: coordinates and one more number each, with a line of names at the top.
+"""CSV files of points: coordinates and some more numbers each, with a line of names at the top.
 
-Blank lines and lines that begin with `#` are skipped. Numbers are in SI units, or in those of the
-length that the case names, `{ file = "points.csv", unit = "mm" }`; a unit in brackets behind a
-name, `x [mm]`, must say the same.
+Blank lines and lines that begin with `#` are skipped. Numbers are in SI units; lengths, areas and
+volumes in those of the length that the case names, `{ file = "points.csv", unit = "mm" }`. A unit
+in brackets behind a name, `x [mm]`, must say the same.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from .reading import open_file, unreadable
 from .units import to_si
 
 Array = NDArray[np.float64]
+VELOCITIES = ("vx", "vy", "vz")
 _COLUMN = re.compile(r"\s*(\w+)\s*(?:\[\s*(.*?)\s*\])?\s*")
 _LONGEST = 10_000  # Characters of a line; four numbers need a hundred.
 _ROWS = 1 << 16  # Of numbers that are made text at once.
@@ -38,9 +39,10 @@ class Layout:
     """What a file of points holds beside the coordinates.
 
     Attributes:
-        extra: name of the last column.
+        extra: name of the column behind the coordinates.
         powers: the power of a length that it is, in 2D and 3D.
         needed: whether it must be there.
+        velocities: whether columns vx, vy, vz [m/s] may follow.
         thing: what a line is, for messages.
         give: remedy that tells where the columns are described.
         bytes_each: memory that a line of it needs in a run, about.
@@ -49,9 +51,24 @@ class Layout:
     extra: str
     powers: tuple[int, int]
     needed: bool
+    velocities: bool
     thing: str
     give: str
     bytes_each: float
+
+    def choices(self, dimension: int) -> list[list[str]]:
+        """Return the names of columns that a file may have."""
+        axes = "xyz"[:dimension]
+        found = [[*axes, self.extra]] if self.needed else [[*axes], [*axes, self.extra]]
+        moving = [[*names, *(f"v{axis}" for axis in axes)] for names in found]
+        return found + moving if self.velocities else found
+
+    def unit_of(self, name: str, dimension: int, length: str) -> str:
+        """Return the unit of a column, of a unit of length."""
+        if name in VELOCITIES:
+            return "m/s"
+        power = self.powers[dimension - 2] if name == self.extra else 1
+        return f"{length}^{power}" if power > 1 else length
 
 
 @dataclass(frozen=True)
@@ -59,14 +76,26 @@ class Points:
     """The numbers of a file.
 
     Attributes:
-        table: in SI units, shape (n, columns).
+        columns: by their names, in SI units, shape (n,) each.
         dimension: 2 or 3.
         line: gives the line that holds a row, its number and its text.
     """
 
-    table: Array
+    columns: dict[str, Array]
     dimension: int
     line: Callable[[int], tuple[int, str]]
+
+    @property
+    def positions(self) -> Array:
+        """The coordinates [m], shape (n, D)."""
+        return np.stack([self.columns[axis] for axis in "xyz"[: self.dimension]], axis=1)
+
+    @property
+    def velocities(self) -> Array | None:
+        """The velocities [m/s], shape (n, D); None without such columns."""
+        if "vx" not in self.columns:
+            return None
+        return np.stack([self.columns[name] for name in VELOCITIES[: self.dimension]], axis=1)
 
 
 def read_points(path: Path, name: str, layout: Layout, unit: str = "m") -> Points:
@@ -89,8 +118,8 @@ def read_points(path: Path, name: str, layout: Layout, unit: str = "m") -> Point
             first = next(lines, None)
             if first is None:
                 raise CaseError("is empty", layout.give, value=name)
-            width, dimension = _header(*first, name, layout, unit)
-            table = _numbers(path, lines, width, name, layout)
+            names, dimension = _header(*first, name, layout, unit)
+            table = _numbers(path, lines, len(names), name, layout)
     except FileNotFoundError:
         raise CaseError(f"is not a file ({path})", "check the path", value=name) from None
     except UnicodeDecodeError:
@@ -99,10 +128,11 @@ def read_points(path: Path, name: str, layout: Layout, unit: str = "m") -> Point
         raise CaseError(unreadable(error).rule, "check the file", value=name) from None
     except CaseError as error:
         raise CaseError(error.rule, error.remedy, value=name) from None
-    powers = np.array([1] * dimension + [layout.powers[dimension - 2]])[:width]
+    columns = dict(zip(names, table.T, strict=True))
     if unit != "m":
-        for column, power in enumerate(powers.tolist()):
-            table[:, column] = _scaled(table[:, column], to_si(f"1 {unit}", "m"), power)
+        for column in (name for name in names if name not in VELOCITIES):
+            power = layout.powers[dimension - 2] if column == layout.extra else 1
+            columns[column] = _scaled(columns[column], to_si(f"1 {unit}", "m"), power)
 
     def line_of(row: int) -> tuple[int, str]:
         with _text(path) as again:
@@ -110,7 +140,7 @@ def read_points(path: Path, name: str, layout: Layout, unit: str = "m") -> Point
             next(rows)
             return next(found for k, found in enumerate(rows) if k == row)
 
-    return Points(table, dimension, line_of)
+    return Points(columns, dimension, line_of)
 
 
 def _scaled(values: Array, factor: float, power: int) -> Array:
@@ -151,26 +181,28 @@ def _lines(file: io.TextIOWrapper, name: str) -> Iterator[tuple[int, str]]:
             yield number, line
 
 
-def _header(number: int, line: str, name: str, layout: Layout, length: str) -> tuple[int, int]:
-    """Return the number of columns and the dimension that the line of names tells."""
+def _header(
+    number: int, line: str, name: str, layout: Layout, length: str
+) -> tuple[list[str], int]:
+    """Return the names of the columns and the dimension that the line of names tells."""
     matches = [_COLUMN.fullmatch(word) for word in line.split(",")]
     names = [match.group(1) if match else "?" for match in matches]
     units = [match.group(2) if match else None for match in matches]
     for dimension in (2, 3):
-        wanted = [*"xyz"[:dimension], layout.extra]
-        if names == wanted or (names == wanted[:-1] and not layout.needed):
-            power = layout.powers[dimension - 2]
-            right = [*[length] * dimension, f"{length}^{power}" if power > 1 else length]
-            for unit, own, word in zip(units, right, names, strict=False):
-                if unit not in (None, own):
-                    rule = f"gives {word} in [{unit}] in line {number} but must be in {own}"
-                    remedy = f'name the unit, {{ file = "{name}", unit = "{unit}" }}'
-                    if word not in "xyz":
-                        remedy = "convert the column"
-                    raise CaseError(rule, remedy, value=name)
-            return len(names), dimension
+        if names not in layout.choices(dimension):
+            continue
+        for unit, word in zip(units, names, strict=True):
+            own = layout.unit_of(word, dimension, length)
+            if unit not in (None, own):
+                rule = f"gives {word} in [{unit}] in line {number} but must be in {own}"
+                remedy = f'name the unit, {{ file = "{name}", unit = "{unit}" }}'
+                if word not in "xyz":
+                    remedy = "convert the column"
+                raise CaseError(rule, remedy, value=name)
+        return names, dimension
     choices = f"x,y,z,{layout.extra}" if layout.needed else f"x,y,z or x,y,z,{layout.extra}"
-    rule = f"must name its columns {choices} (in 2D without z) in line {number}"
+    more = f", or with {','.join(VELOCITIES)} behind them" if layout.velocities else ""
+    rule = f"must name its columns {choices}{more} (in 2D without z) in line {number}"
     raise CaseError(f"{rule}, which is: {short(line)}", layout.give, value=name)
 
 

@@ -9,14 +9,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from .errors import CaseError, Path, nearest, violation
-from .units import DIMENSIONS, Quantity, to_si
+from .units import Quantity, Vector, to_si
 
 FORMS = ("times", "sine", "ramp")
 _EXAMPLE = '{ times = ["0 s", "1 ms"], values = [...] }'
@@ -215,47 +215,18 @@ class Timed:
 
 
 @dataclass(frozen=True)
-class TimedVector:
-    """Annotation of a field: two (2D) or three (3D) quantities that may depend on time, a tuple.
+class TimedVector(Vector):
+    """Annotation of a field: two or three quantities that may depend on time, stored as a tuple."""
 
-    With `scalar`, one quantity alone is taken too, as a tuple of one.
-    """
+    things: ClassVar[str] = "numbers or functions of time"
 
-    unit: str
-    scalar: bool = False
+    def item(self, value: Any) -> float | TimeFunction:
+        """Return the number or the function, or raise the violation that pydantic collects."""
+        return TimeFunction.parse(value, self.unit)
 
-    def parse(self, value: Any) -> tuple[float | TimeFunction, ...]:
-        """Return the components, or raise the violation that pydantic collects."""
-        example = DIMENSIONS[self.unit][1]
-        remedy = f"give a list such as [{example}, {example}]"
-        alone = isinstance(value, str | dict | TimeFunction) or not hasattr(value, "__len__")
-        if alone and self.scalar:
-            return (TimeFunction.parse(value, self.unit),)
-        if alone:
-            raise violation("must be a list of numbers or functions of time", remedy, value=value)
-        if len(value) not in ((0, 1, 2, 3) if self.scalar else (2, 3)):
-            rule = "must have two numbers in 2D and three in 3D"
-            raise violation(rule, remedy, value=value)
-        return tuple(self._component(item, k) for k, item in enumerate(value))
-
-    def _component(self, item: Any, index: int) -> float | TimeFunction:
-        try:
-            return TimeFunction.parse(item, self.unit)
-        except ValueError as error:
-            context: Callable[[str], Any] = error.context.get  # type: ignore[attr-defined]
-            path = (index, *context("path"))
-            value = context("value")
-            raise violation(context("rule"), context("remedy"), value=value, path=path) from None
-
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
-        from pydantic_core import core_schema
-
-        return core_schema.no_info_plain_validator_function(self.parse)
-
-    def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
-        item = Timed(self.unit).__get_pydantic_json_schema__(None, None)
-        vector = {"type": "array", "items": item, "minItems": 2, "maxItems": 3}
-        return {"anyOf": [item, vector]} if self.scalar else vector
+    def item_schema(self) -> dict[str, Any]:
+        """Return the JSON schema of a component."""
+        return Timed(self.unit).__get_pydantic_json_schema__(None, None)
 
 
 TimedAcceleration = Annotated[tuple[float | TimeFunction, ...], TimedVector("m/s^2")]

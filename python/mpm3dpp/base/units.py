@@ -15,9 +15,9 @@ import re
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import lru_cache
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
-from .errors import NO_VALUE, CaseError, report, violation
+from .errors import NO_VALUE, CaseError, below, report, violation
 from .rules import Bounds, holds, requirement, within
 
 # What a quantity of an SI unit is called, and an example of it.
@@ -233,29 +233,42 @@ class Vector(Quantity):
 
     scalar: bool = False
 
-    def parse(self, value: Any) -> tuple[float, ...]:  # type: ignore[override]
-        """Return the numbers in SI units, or raise the violation that pydantic collects."""
-        if isinstance(value, str) or not hasattr(value, "__len__"):
+    things: ClassVar[str] = "numbers"
+
+    def item(self, value: Any) -> Any:
+        """Return a component in SI units, or raise the violation that pydantic collects."""
+        try:
+            return to_si(value, self.unit)
+        except CaseError as error:
+            shown = NO_VALUE if isinstance(value, dict) else value
+            raise violation(error.rule, error.remedy, value=shown) from None
+
+    def parse(self, value: Any) -> tuple[Any, ...]:  # type: ignore[override]
+        """Return the components in SI units, or raise the violation that pydantic collects."""
+        if isinstance(value, str | dict) or not hasattr(value, "__len__"):
             if self.scalar:
-                return (super().parse(value),)
-            raise violation("must be a list of numbers", _give_vector(self.unit), value=value)
-        if not (len(value) in (2, 3) or (self.scalar and len(value) in (0, 1))) or isinstance(
-            value, dict
-        ):
+                return (self.item(value),)
+            raise violation(
+                f"must be a list of {self.things}", _give_vector(self.unit), value=value
+            )
+        if len(value) not in ((0, 1, 2, 3) if self.scalar else (2, 3)):
             rule = "must have two numbers in 2D and three in 3D"
             raise violation(rule, _give_vector(self.unit), value=value)
-        numbers_found, mistakes = [], []
+        found, mistakes = [], []
         for index, item in enumerate(value):
             try:
-                numbers_found.append(to_si(item, self.unit))
-            except CaseError as error:
-                shown = NO_VALUE if isinstance(item, dict) else item
-                mistakes.append(violation(error.rule, error.remedy, value=shown, path=(index,)))
+                found.append(self.item(item))
+            except ValueError as error:
+                mistakes += below(error, (index,))
         report(mistakes)
-        return tuple(numbers_found)
+        return tuple(found)
+
+    def item_schema(self) -> dict[str, Any]:
+        """Return the JSON schema of a component."""
+        return super().__get_pydantic_json_schema__(None, None)
 
     def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
-        item = super().__get_pydantic_json_schema__(_schema, _handler)
+        item = self.item_schema()
         vector = {"type": "array", "items": item, "minItems": 2, "maxItems": 3}
         return {"anyOf": [item, vector]} if self.scalar else vector
 
@@ -277,7 +290,5 @@ Angle = Annotated[float, Quantity("rad")]
 Number = Annotated[float, Quantity("")]
 NonNegative = Annotated[float, Quantity("", ">= 0")]
 Point = Annotated[tuple[float, ...], Vector("m")]
-VelocityVector = Annotated[tuple[float, ...], Vector("m/s")]
 AccelerationVector = Annotated[tuple[float, ...], Vector("m/s^2")]
 Direction = Annotated[tuple[float, ...], Vector("")]
-Spin = Annotated[tuple[float, ...], Vector("rad/s", scalar=True)]

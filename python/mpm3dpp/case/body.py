@@ -6,8 +6,9 @@ from __future__ import annotations
 from pydantic import model_validator
 
 from mpm3dpp.base.errors import violation
+from mpm3dpp.base.expression import ForceField, SpinField, VelocityField
 from mpm3dpp.base.model import CaseModel, Count, Text
-from mpm3dpp.base.units import PositiveLength, Spin, VelocityVector
+from mpm3dpp.base.units import PositiveLength
 from mpm3dpp.shapes.base import MaybeShape
 
 from .grid import Grid
@@ -22,14 +23,16 @@ class Body(CaseModel):
         material: name of its material.
         shape: any shape of `mpm3dpp.shapes`; in place of `particles`.
         particles: a CSV file beside the case file with the columns x, y, z and, if it likes,
-            volume, in SI units, or `{ file = "points.csv", unit = "mm" }` (in Python:
-            `mpm3dpp.Particles`); in place of `shape`.
+            volume and vx, vy, vz, in SI units, or `{ file = "points.csv", unit = "mm" }`, the unit
+            of its lengths (in Python: `mpm3dpp.Particles`); in place of `shape`.
         particles_per_cell: particles per cell along each direction; default 2.
         spacing: distance of the particles [m], in place of `particles_per_cell`. Either way they
             stand on a lattice that is aligned with the grid's origin.
-        velocity: initial velocity [m/s], D numbers; default zero.
-        angular_velocity: initial spin about the mass centre [rad/s]: one number in 2D, three in
-            3D; default zero. Stored as a tuple.
+        velocity: initial velocity [m/s], D numbers or formulas of x, y, z, r; default zero.
+        angular_velocity: initial spin about the mass centre [rad/s]: one number or formula in 2D,
+            three in 3D; default zero. Stored as a tuple.
+        body_force: force per mass beside gravity [m/s^2], D numbers or formulas of the present
+            place x, y, z, the place at the start X, Y, Z and the time t; None for none.
         motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
             then; None for a body that is free to move.
     """
@@ -39,8 +42,9 @@ class Body(CaseModel):
     particles: AnyParticles = None
     particles_per_cell: Count | None = None
     spacing: PositiveLength | None = None
-    velocity: VelocityVector = ()
-    angular_velocity: Spin = ()
+    velocity: VelocityField = ()
+    angular_velocity: SpinField = ()
+    body_force: ForceField | None = None
     motion: MaybeMotion = None
 
     @model_validator(mode="after")

@@ -11,6 +11,8 @@ from pydantic_core import PydanticCustomError
 
 from mpm3dpp import _core
 from mpm3dpp.base.errors import Path, nearest, report, violation
+from mpm3dpp.base.expression import Expression
+from mpm3dpp.base.model import plain
 from mpm3dpp.base.outputs import COLUMNS, STANDARD
 
 from .detonation import check_detonations
@@ -69,6 +71,7 @@ def _bodies_together(case: Case) -> Found:
         yield violation(rule, "give one another strength", path=path)
     yield from check_detonations(case)
     yield from check_loads(case)
+    yield from _body_forces(case)
     yield from _transfer(case)
 
 
@@ -151,7 +154,7 @@ def _check_vector(owner: object, name: str, dimension: int, path: Path) -> Found
     if vector and len(vector) != dimension:
         rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
         remedy = f"it has {len(vector)}, give {dimension}"
-        yield violation(rule, remedy, value=list(vector), path=(*path, name))
+        yield violation(rule, remedy, value=plain(vector), path=(*path, name))
         return
     owner.__dict__[name] = vector or (0.0,) * dimension
 
@@ -179,15 +182,43 @@ def _check_motion(case: Case, body: Body | Grains, path: Path) -> Found:
         rule, remedy = "is not a material of this case", nearest(body.material, case.material)
         yield violation(rule, remedy, value=body.material, path=(*path, "material"))
     yield from _check_vector(body, "velocity", dimension, path)
+    yield from _formulas(body, dimension, path)
     spin, wanted = body.angular_velocity, 1 if dimension == 2 else 3
     if spin and len(spin) != wanted:
         numbers = "one number" if wanted == 1 else "three numbers"
         rule = f"must be {numbers}, as grid.dimension = {dimension}"
         example = '"10 rad/s"' if wanted == 1 else '[0, 0, "10 rad/s"]'
         remedy = f"for example {example}"
-        yield violation(rule, remedy, value=list(spin), path=(*path, "angular_velocity"))
+        yield violation(rule, remedy, value=plain(spin), path=(*path, "angular_velocity"))
         return
     body.__dict__["angular_velocity"] = spin or (0.0,) * wanted
+
+
+def _formulas(body: Body | Grains, dimension: int, path: Path) -> Found:
+    """Yield the formulas of places that there are in 3D only."""
+    for name in ("velocity", "angular_velocity", "body_force"):
+        for index, value in enumerate(getattr(body, name) or ()):
+            if isinstance(value, Expression) and dimension == 2 and value.variables & {"z", "Z"}:
+                rule = "is a formula of z, and grid.dimension = 2"
+                where = (*path, name, index, "expression")
+                yield violation(rule, "leave z out", value=value.text, path=where)
+
+
+def _body_forces(case: Case) -> Found:
+    """Yield the body forces with too few or too many numbers, or of bodies that do not deform."""
+    dimension = case.grid.dimension
+    for name, part in case.parts().items():
+        path = (*case.part_path(name), "body_force")
+        if part.body_force is None:
+            continue
+        if len(part.body_force) != dimension:
+            rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
+            remedy = f"it has {len(part.body_force)}, give {dimension}"
+            yield violation(rule, remedy, value=plain(part.body_force), path=path)
+        if case.is_rigid(name):
+            rule = "is of a body that does not deform, and acts on bodies that do"
+            remedy = "remove it, or give the body another material and no motion"
+            yield violation(rule, remedy, path=path)
 
 
 def _check_body(case: Case, body: Body, path: Path) -> Found:
@@ -204,13 +235,22 @@ def _check_body(case: Case, body: Body, path: Path) -> Found:
     yield from _check_motion(case, body, path)
     if body.motion is not None:
         yield from check_motion(case, body, path)
+    if body.particles is not None and body.particles.velocities is not None:
+        given = [name for name in ("velocity", "angular_velocity") if any(getattr(body, name))]
+        for name in [*given, *(["motion"] if body.motion is not None else [])]:
+            rule = "must not be given together with particles that have velocities"
+            yield violation(rule, "keep one of the two", path=(*path, name))
 
 
 def _columns(case: Case, material: str) -> list[str]:
     """Return the names of the columns that the core has for particles of a material."""
+    forces = [part.body_force for part in case.parts().values() if part.material == material]
+    given = [value for force in forces if force is not None for value in force]
     return _core.column_names(
         dimension=case.grid.dimension,
         may_leave=case.grid.outflow_box is not None,
+        forced=bool(given),
+        of_start=any(isinstance(value, Expression) and value.is_of_start for value in given),
         viscosity=case.viscosity_of(material),
         **case.material[material].for_core(),
     )

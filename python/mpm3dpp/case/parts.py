@@ -46,6 +46,13 @@ class Run(_Run):
         [(word, share)] = table.items()
         return {**given, "transfer": word, "flip_share": share}
 
+    @model_validator(mode="after")
+    def _one_step(self) -> Run:
+        if self.time_step is not None and self.largest_time_step is not None:
+            rule = "must not be given together with time_step"
+            raise violation(rule, "keep one of the two", path=("largest_time_step",))
+        return self
+
 
 class Output(CaseModel):
     """What is written.

@@ -34,7 +34,21 @@ def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
         *_detonations(case, bodies),
         *_walls(case),
     ]
-    return found + _speeds(case, bodies)
+    return found + _speeds(case, bodies) + _time_step(case, bodies)
+
+
+def fastest(case: Case, bodies: list[FilledBody]) -> float:
+    """Return the largest sum of the speeds of a wave and of a particle at the start [m/s]."""
+    sound = {
+        name: 0.0 if case.is_rigid(name) else case.material[part.material].sound_speed()
+        for name, part in case.parts().items()
+    }
+    found = 0.0
+    for name, members in by_part(bodies).items():
+        v = np.concatenate([body.velocities for body in members])
+        speed = float(np.sqrt(np.einsum("ij,ij->i", v, v).max()))
+        found = max(found, sound[name] + speed)
+    return found
 
 
 def _renamed(case: Case) -> list[str]:
@@ -121,6 +135,17 @@ def _speeds(case: Case, bodies: list[FilledBody]) -> list[str]:
                 "velocity (a plain number is in m/s) and at the stiffness"
             )
     return found
+
+
+def _time_step(case: Case, bodies: list[FilledBody]) -> list[str]:
+    """A time step with which the run does not start."""
+    given, stable = case.run.time_step, case.grid.cell_size / fastest(case, bodies)
+    if given is None or given <= stable:
+        return []
+    return [
+        f"run.time_step = {given:g} s is larger than the largest stable step, about {stable:.3g} s "
+        "at the start; the run will not begin with it"
+    ]
 
 
 def _detonations(case: Case, bodies: list[FilledBody]) -> list[str]:

@@ -18,6 +18,7 @@ from mpm3dpp.shapes import fill, reference_volume
 
 from .capacity import capacity_mistakes
 from .placement import box_mistakes, overlap_mistakes
+from .velocities import start_velocities
 
 MASS_WARNING = 0.05  # Relative mass error above which a run warns ...
 MASS_ERROR = 0.5  # ... and above which it does not start.
@@ -146,30 +147,32 @@ def _filled_grains(case: Case, part: str, grains: Grains) -> list[FilledBody]:
     made: dict[float, Array] = {}
     try:
         centres, radii = grains.place(grid.dimension)
-        volumes = ball_volume(radii, grid.dimension).tolist()
-        for k, name in enumerate(grains.names(part)):
-            radius = float(radii[k])
-            positions = fill_grain(centres[k], radius, spacing, grains.align, grid, made)
-            particle_volumes = np.broadcast_to(spacing**grid.dimension, (len(positions),))
-            volume = len(positions) * spacing**grid.dimension
-            bodies.append(
-                FilledBody(
-                    name=name,
-                    part=part,
-                    material=grains.material,
-                    positions=positions,
-                    velocities=initial_velocities(grains, positions, particle_volumes),
-                    volumes=particle_volumes,
-                    spacing=spacing,
-                    mass=volume * density,
-                    shape_volume=volumes[k],
-                    volume_is_exact=True,
-                    mass_error=volume / volumes[k] - 1,
-                    ball=(centres[k], radius),
-                )
-            )
+        placed = [
+            fill_grain(centre, float(radius), spacing, grains.align, grid, made)
+            for centre, radius in zip(centres, radii, strict=True)
+        ]
     except CaseError as error:
         raise case.error((*path, grains.filling), error.rule, error.remedy) from None
+    volumes = ball_volume(radii, grid.dimension).tolist()
+    for k, (name, positions) in enumerate(zip(grains.names(part), placed, strict=True)):
+        particle_volumes = np.broadcast_to(spacing**grid.dimension, (len(positions),))
+        volume = len(positions) * spacing**grid.dimension
+        bodies.append(
+            FilledBody(
+                name=name,
+                part=part,
+                material=grains.material,
+                positions=positions,
+                velocities=start_velocities(case, part, positions, particle_volumes),
+                volumes=particle_volumes,
+                spacing=spacing,
+                mass=volume * density,
+                shape_volume=volumes[k],
+                volume_is_exact=True,
+                mass_error=volume / volumes[k] - 1,
+                ball=(centres[k], float(radii[k])),
+            )
+        )
     worst = max((body.mass_error for body in bodies), key=abs)
     if abs(worst) > MASS_ERROR:
         rule = f"is filled too coarsely: particles have {worst:+.0%} of the mass of a grain"
@@ -201,7 +204,7 @@ def _filled(case: Case, name: str, body: Body) -> FilledBody:
         part=name,
         material=body.material,
         positions=positions,
-        velocities=_start(body, positions, volumes),
+        velocities=start_velocities(case, name, positions, volumes),
         volumes=volumes,
         spacing=body.particle_spacing(case.grid),
         mass=volume * case.material[body.material].density,
@@ -209,33 +212,3 @@ def _filled(case: Case, name: str, body: Body) -> FilledBody:
         volume_is_exact=exact,
         mass_error=mass_error,
     )
-
-
-def initial_velocities(body: Body | Grains, positions: Array, volumes: Array) -> Array:
-    """Return v + w x (x - x_mass centre) of each particle [m/s].
-
-    Args:
-        body: gives v and the spin w.
-        positions: [m], shape (n, D).
-        volumes: [m^3; in 2D m^2], shape (n,).
-
-    Returns:
-        Shape (1, D) without spin, else (n, D).
-    """
-    dimension = positions.shape[1]
-    velocity = np.asarray(body.velocity or (0.0,) * dimension)
-    spin = body.angular_velocity
-    if not any(spin):
-        return velocity.reshape(1, dimension).copy()
-    equal = bool(np.all(volumes == volumes[0]))
-    arm = positions - np.average(positions, axis=0, weights=None if equal else volumes)
-    if dimension == 2:
-        return velocity + spin[0] * np.column_stack([-arm[:, 1], arm[:, 0]])
-    return velocity + np.cross(np.asarray(spin), arm)
-
-
-def _start(body: Body, positions: Array, volumes: Array) -> Array:
-    """Return the velocities at the start, those of a prescribed motion included."""
-    if body.motion is None:
-        return initial_velocities(body, positions, volumes)
-    return body.motion.velocities(0.0, positions, body.motion.middle(positions, volumes))

@@ -23,7 +23,7 @@ from mpm3dpp.base.machine import BODY_BYTES
 Array = NDArray[np.float64]
 _LARGEST = 1e100
 _GIVE = "see the how-to page of many grains for its columns"
-_LAYOUT = Layout("radius", (1, 1), True, "grain", _GIVE, BODY_BYTES)
+_LAYOUT = Layout("radius", (1, 1), True, False, "grain", _GIVE, BODY_BYTES)
 
 
 class GrainCentres:
@@ -101,8 +101,7 @@ def read_centres(path: Path, name: str = "", unit: str = "m") -> GrainCentres:
     name = name or str(path)
     points = read_points(path, name, _LAYOUT, unit)
     found = GrainCentres.__new__(GrainCentres)  # Checked below, where the line is known.
-    found.centres = np.ascontiguousarray(points.table[:, : points.dimension])
-    found.radii = np.ascontiguousarray(points.table[:, points.dimension])
+    found.centres, found.radii = points.positions, points.columns["radius"].copy()
     found.file, found.unit = name, unit
     wrong = found.first_wrong()
     if wrong is not None:

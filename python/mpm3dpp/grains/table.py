@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 
 from mpm3dpp.base.errors import CaseError, Path, violation
+from mpm3dpp.base.expression import ForceField, SpinField, VelocityField
 from mpm3dpp.base.machine import BODY_BYTES, MEMORY, memory_text
 from mpm3dpp.base.model import MOST, CaseModel, Choice, Count, Exactly, Text
-from mpm3dpp.base.units import Point, PositiveLength, Quantity, Spin, Vector, VelocityVector
+from mpm3dpp.base.units import Point, PositiveLength, Quantity, Vector
 
 from .centres import AnyCentres
 from .packing import MOST_GRAINS, draw_radii, pack
@@ -162,9 +163,11 @@ class Grains(CaseModel):
         align: how the particles stand in each grain: "between" (its centre is in the middle
             between particles) and "particle" (a particle at its centre) fill equal grains alike;
             "grid" (on the grid's lattice, as bodies) does not.
-        velocity: initial velocity of all [m/s], D numbers; default zero.
-        angular_velocity: initial spin of each about its own centre [rad/s]: one number in 2D,
-            three in 3D; default zero. Stored as a tuple.
+        velocity: initial velocity of all [m/s], D numbers or formulas of x, y, z, r; default zero.
+        angular_velocity: initial spin of each about its own centre [rad/s]: one number or formula
+            in 2D, three in 3D; default zero. Stored as a tuple.
+        body_force: force per mass of all beside gravity [m/s^2], D numbers or formulas of x, y, z,
+            the place at the start X, Y, Z and the time t; None for none.
     """
 
     material: Text
@@ -174,8 +177,9 @@ class Grains(CaseModel):
     particles_per_cell: Count | None = None
     spacing: PositiveLength | None = None
     align: Annotated[str, Choice(("between", "particle", "grid"))] = "between"
-    velocity: VelocityVector = ()
-    angular_velocity: Spin = ()
+    velocity: VelocityField = ()
+    angular_velocity: SpinField = ()
+    body_force: ForceField | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> Grains:

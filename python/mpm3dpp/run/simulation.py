@@ -12,6 +12,7 @@ import numpy as np
 from mpm3dpp import _core
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError, RunError, nearest
+from mpm3dpp.base.expression import program_of
 from mpm3dpp.base.machine import thread_count
 from mpm3dpp.base.settings import fill_core_table, functions
 from mpm3dpp.case.case import Case
@@ -98,13 +99,27 @@ class Simulation:
                 if load.body == body.name:
                     found = pieces(case, name, body.positions, body.spacing)
                     add_load(self.core, case, name, number, found)
+        for name, part in case.parts().items():
+            if part.body_force is not None:
+                self.core.add_body_force(
+                    self._numbers(name), list(map(program_of, part.body_force))
+                )
         for a, b, friction in case.frictions():
             self.core.set_friction(a, b, friction)
         try:
             self.core.prepare()
         except ValueError as error:
-            raise CaseError(str(error), "bring the bodies together, or give larger cells") from None
+            raise self._refusal(str(error)) from None
         self.summary: dict[str, Any] = {}
+
+    def _refusal(self, sentence: str) -> CaseError:
+        """Return the mistake for what the core says of bodies that are all there."""
+        key, step = "run.time_step", self.case.run.time_step
+        if not sentence.startswith(key):
+            return CaseError(sentence, "bring the bodies together, or give larger cells")
+        rule = sentence.partition(" s ")[2]
+        remedy = "give a smaller one, or leave it out"
+        return self.case.error(("run", "time_step"), rule, remedy, value=step)
 
     def _set_motion(self, number: int, motion: Motion, centre: np.ndarray) -> None:
         spin = motion.angular_velocity

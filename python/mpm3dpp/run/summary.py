@@ -11,7 +11,7 @@ import numpy as np
 from mpm3dpp import _core
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.loads import pieces
-from mpm3dpp.fill.advisories import notes
+from mpm3dpp.fill.advisories import fastest, notes
 from mpm3dpp.fill.build import FilledBody, by_part, warnings
 from mpm3dpp.fill.point_warnings import point_warnings
 from mpm3dpp.io.background import FRAME_SHARE
@@ -35,17 +35,11 @@ numpy 2.4 and h5py 3.16 on Linux."""
 
 
 def time_step(case: Case, bodies: list[FilledBody]) -> float:
-    """Return the expected first time step f h / max(c + |v|) [s]."""
-    sound = {
-        name: 0.0 if case.is_rigid(name) else case.material[part.material].sound_speed()
-        for name, part in case.parts().items()
-    }
-    fastest = 0.0
-    for name, members in by_part(bodies).items():
-        v = np.concatenate([body.velocities for body in members])
-        speed = float(np.sqrt(np.einsum("ij,ij->i", v, v).max()))
-        fastest = max(fastest, sound[name] + speed)
-    return case.run.cfl * case.grid.cell_size / fastest
+    """Return the expected first time step [s]: that given, or f h / max(c + |v|) as bounded."""
+    if case.run.time_step is not None:
+        return float(case.run.time_step)
+    bound = case.run.largest_time_step or math.inf
+    return min(case.run.cfl * case.grid.cell_size / fastest(case, bodies), bound)
 
 
 def steps_in_words(case: Case, bodies: list[FilledBody]) -> str:
@@ -55,7 +49,8 @@ def steps_in_words(case: Case, bodies: list[FilledBody]) -> str:
     bodies become faster (gravity).
     """
     compressible = any(case.material[body.material].eos is not None for body in bodies)
-    word = "at least" if compressible or any(case.run.gravity) else "about"
+    may_fall = case.run.time_step is None and (compressible or any(case.run.gravity))
+    word = "at least" if may_fall else "about"
     return f"{word} {math.ceil(case.run.end_time / time_step(case, bodies)):,} steps"
 
 

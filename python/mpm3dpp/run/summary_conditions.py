@@ -6,16 +6,19 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from mpm3dpp.base.expression import Expression
 from mpm3dpp.base.time_functions import TimeFunction
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.grid import FACES, GridCoarsening
 from mpm3dpp.plots.labels import scaled
 
-Quantity = float | TimeFunction
+Quantity = float | TimeFunction | Expression
 
 
 def in_words(value: Quantity, unit: str) -> str:
-    """Return a quantity that may depend on time: `2 mm/s`, `0 Pa to 5 MPa from 0 s to 1 ms`."""
+    """Return a quantity: `2 mm/s`, `0 Pa to 5 MPa from 0 s to 1 ms`, `2 * x mm/s`."""
+    if isinstance(value, Expression):
+        return f"{value.text} {value.unit}"
     if not isinstance(value, TimeFunction):
         return _number(value, unit)
     parts = []
@@ -37,7 +40,7 @@ def in_words(value: Quantity, unit: str) -> str:
 
 
 def vector_in_words(values: Sequence[Quantity], unit: str) -> str:
-    """Return the components of a vector that may depend on time."""
+    """Return the components of a vector that may depend on time or place."""
     return f"({', '.join(in_words(value, unit) for value in values)})"
 
 
@@ -104,6 +107,10 @@ def condition_lines(case: Case) -> list[str]:
         )
     if any(case.run.gravity):
         lines.append(f"gravity: {vector_in_words(case.run.gravity, 'm/s^2')}")
+    for name, part in case.parts().items():
+        if part.body_force is not None:
+            force = vector_in_words(part.body_force, "m/s^2")
+            lines.append(f"body force on {name}: {force}")
     for pair in case.contact.pair if case.contact_enabled else ():
         names = pair.bodies or [f"all {name}" for name in pair.materials or ()]
         lines.append(f"friction: {pair.friction:g} between {' and '.join(names)}")

@@ -28,7 +28,7 @@ class Comparison {
     const auto v = scheme == Scheme::musl ? &Node::v_new : &Node::v;  // that strains the material
     const bool meet = twin_.domain.has_contact();
     const auto later = [&](unsigned data) { return [this, data] { pending_ |= data; }; };
-    const auto map_forces = [&] { step.map_forces(), load_surfaces(step); };
+    const auto map_forces = [&] { step.map_forces(), load_surfaces(step), add_body_forces(step); };
     const auto update_stress = [&] { carry_loads(step, v), step.update_stress(v); };
     const std::map<std::string_view, std::function<void()>> stages = {
         {"activate tiles", [&] { lists(); }},
@@ -44,6 +44,7 @@ class Comparison {
          }},
         {"map forces", later(forces)},
         {"load surfaces", later(forces)},
+        {"body forces", later(forces)},
         {"place dashpots", later(dashpots)},
         {"fold forces", later(forces)},
         {"exchange forces", [&] { map_forces(), forced_ = true; }},

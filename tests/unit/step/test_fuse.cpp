@@ -29,6 +29,7 @@ void check_lists(mpm::testing::Report& report) {
     const std::size_t exchange = place<D>(scheme, true, "exchange momentum and forces");
     CHECK_EQUAL(place<D>(scheme, true, "fold forces") + 1, exchange);
     CHECK(place<D>(scheme, true, "load surfaces") < place<D>(scheme, true, "fold forces"));
+    CHECK(place<D>(scheme, true, "body forces") < place<D>(scheme, true, "fold forces"));
     CHECK(exchange < place<D>(scheme, true, "contact momentum"));
   }
   // Fields that share a place: who writes one takes the others.
@@ -47,5 +48,5 @@ void test_fuse(mpm::testing::Report& report) {
   check_lists<2>(report);
   check_lists<3>(report);
   for (std::size_t k = 0; k < data_names.size(); ++k) CHECK(!data_names[k].empty(), k);
-  CHECK_EQUAL(std::size_t{1} << (data_names.size() - 1), std::size_t{Data::left_cells});
+  CHECK_EQUAL(std::size_t{1} << (data_names.size() - 1), std::size_t{Data::body_force});
 }

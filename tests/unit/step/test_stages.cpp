@@ -66,7 +66,7 @@ void check_all(Report& report) {
     check_transfers<D>(report, basis);
     Choice<D> choice;
     choice.basis = basis;
-    choice.load = true;
+    choice.load = choice.body_force = true;
     check_schemes(report, choice);
     choice.pic_damping = 1e3;
     for (const BodyKind kind : {BodyKind::rigid, BodyKind::prescribed})

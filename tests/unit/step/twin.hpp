@@ -6,6 +6,7 @@
 #include "mpm/contact/candidates.hpp"
 #include "mpm/particles/make_body.hpp"
 #include "mpm/reference/absorb.hpp"
+#include "mpm/reference/body_forces.hpp"
 #include "mpm/reference/contact.hpp"
 #include "mpm/reference/loads.hpp"
 #include "mpm/reference/prescribed.hpp"
@@ -25,6 +26,7 @@ struct Choice {
   BasisId basis = basis_id<Linear>;
   bool contact = false;
   bool load = false;                     // a pressure and a traction on the second body
+  bool body_force = false;               // on the second body
   BodyKind kind = BodyKind::deformable;  // of the first body
   double pic_damping = 0.0;              // [1/s]
   double flip_share = 1.0;
@@ -70,6 +72,7 @@ struct Twin {
     domain.threads.resize(1);
     add_material();
     for (int k = 0; k < 2; ++k) add_body(k, k == 0 ? choice.kind : BodyKind::deformable);
+    if (choice.body_force) add_body_force();
     fill_pools(domain.pools, domain.materials, domain.bodies, grid.patches);
     for (Patch<D>& patch : grid.patches) disturb(patch);  // one a body, the rows as they were given
     if (choice.load)
@@ -187,6 +190,34 @@ struct Twin {
       other.pieces.push_back({i, piece.size, piece.area, piece.arm});
     }
   }
+  /// b_a = s sin(3 x_a + X_0 + 1e5 t) y, s as large as gravity, the phase within its step: three
+  /// steps are 3 radians.
+  void add_body_force() {
+    constexpr double size = 1e4;
+    BodyForce<D>& force = domain.body_forces.emplace_back();
+    for (std::size_t a = 0; a < D; ++a)
+      force.value[a] = Expression({{"number", 3.0},
+                                   {std::string(expression_variables[a]), 0.0},
+                                   {"multiply", 0.0},
+                                   {"X", 0.0},
+                                   {"add", 0.0},
+                                   {"number", 1e5},
+                                   {"t", 0.0},
+                                   {"multiply", 0.0},
+                                   {"add", 0.0},
+                                   {"sin", 0.0},
+                                   {"y", 0.0},
+                                   {"multiply", 0.0},
+                                   {"number", size},
+                                   {"multiply", 0.0}});
+    domain.bodies[1].force = 0;
+    add_force_columns(domain.pools[0], force.is_of_start());
+    reference.bodies[1].force = [](const auto& x, const auto& X, double t) {
+      Vec<double, D> b;
+      for (int a = 0; a < D; ++a) b[a] = size * x[1] * std::sin(3.0 * x[a] + X[0] + 1e5 * t);
+      return b;
+    };
+  }
   void start_ledger() {
     Ledger& ledger = domain.ledger;
     for (const Patch<D>& patch : domain.grid.patches) {
@@ -208,6 +239,7 @@ struct Twin {
         p.x[a] = pool.x(a)[i];
         p.v[a] = pool.v(a)[i];
       }
+      p.X = p.x;
       p.m = pool.mass()[i];
       for (int c = 0; c < (pool.affine < 0 || !other.deforms() ? 0 : D * D); ++c)
         p.C[c / D][c % D] = pool.affine_part(c)[i] = static_cast<Storage>(200.0 * any());

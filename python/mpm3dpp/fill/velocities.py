@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Velocities of particles at the start: numbers, formulas of place, or a prescribed motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mpm3dpp.base.errors import Path as KeyPath
+from mpm3dpp.base.expression import Expression
+from mpm3dpp.case.body import Body
+from mpm3dpp.case.case import Case
+
+Array = NDArray[np.float64]
+_LARGEST = 1e100  # As of all quantities in a case.
+
+
+def start_velocities(case: Case, part: str, positions: Array, volumes: Array) -> Array:
+    """Return v + w x (x - x_mass centre) of each particle of a body [m/s].
+
+    Args:
+        case: gives v and the spin w, or the prescribed motion, or velocities one by one.
+        part: name of the body, or of the entry of grains that it belongs to.
+        positions: [m], shape (n, D).
+        volumes: [m^3; in 2D m^2], shape (n,).
+
+    Returns:
+        Shape (1, D) if all are equal by the case, else (n, D).
+
+    Raises:
+        CaseError: a formula gives no finite number at a particle.
+    """
+    entry = case.parts()[part]
+    if isinstance(entry, Body) and entry.motion is not None:
+        return entry.motion.velocities(0.0, positions, entry.motion.middle(positions, volumes))
+    if isinstance(entry, Body) and entry.particles is not None:
+        given = entry.particles.velocities
+        if given is not None:
+            return given
+    equal = bool(np.all(volumes == volumes[0]))
+    arm = positions - np.average(positions, axis=0, weights=None if equal else volumes)
+    dimension = positions.shape[1]
+    places = dict(zip("xyz", positions.T, strict=False))
+    places["r"] = np.sqrt((arm**2).sum(axis=1))
+
+    def values(name: str) -> list[Any]:
+        path = (*case.part_path(part), name)
+        given = enumerate(getattr(entry, name))
+        return [_value(case, value, places, (*path, index)) for index, value in given]
+
+    velocity = np.stack(np.broadcast_arrays(*values("velocity")), axis=-1)
+    velocity = velocity.reshape(-1, dimension).copy()
+    if not any(entry.angular_velocity):
+        return velocity
+    spin = values("angular_velocity")
+    if dimension == 2:
+        return velocity + np.asarray(spin[0])[..., None] * np.column_stack([-arm[:, 1], arm[:, 0]])
+    return velocity + np.cross(np.stack(np.broadcast_arrays(*spin), axis=-1), arm)
+
+
+def _value(
+    case: Case, value: float | Expression, places: Mapping[str, Array], path: KeyPath
+) -> float | Array:
+    """Return a number, or the values of a formula at particles, shape (n,)."""
+    if not isinstance(value, Expression):
+        return value
+    found = value.at(places)
+    good = np.abs(found) < _LARGEST
+    if good.all():
+        return found
+    worst = int(np.argmin(good))
+    where = ", ".join(f"{name} = {at[worst]:g} m" for name, at in places.items())
+    rule = f"gives {found[worst]:g} at {where}, which is no finite number"
+    raise case.error(
+        (*path, "expression"), rule, "write one that has a value there", value=value.text
+    )
