@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from mpm3dpp.base.errors import CaseError, first_of
 from mpm3dpp.case.body import Body
 from mpm3dpp.case.case import Case
-from mpm3dpp.grains import Grains, fill_grain
+from mpm3dpp.grains import Grains, fill_grains
 from mpm3dpp.grains.packing import ball_volume
 from mpm3dpp.shapes import fill, reference_volume
+from mpm3dpp.shapes.shells import SHELLS
 
 from .capacity import capacity_mistakes
 from .placement import box_mistakes, overlap_mistakes
@@ -36,7 +37,8 @@ class FilledBody:
         positions: [m], shape (n, D).
         velocities: [m/s], shape (1, D) if all are equal, else (n, D).
         volumes: [m^3; in 2D m^2 times 1 m], shape (n,); all equal if a shape was filled.
-        spacing: distance of neighbours [m].
+        spacing: distance of neighbours [m], in shells about that.
+        fill: "lattice" or "shells"; "" for particles given one by one.
         mass: sum over the particles [kg; in 2D per metre of thickness].
         shape_volume: the shape's volume [m^3; in 2D m^2]; None for particles given one by one.
         volume_is_exact: whether that is a closed form, else a fine lattice gave it.
@@ -51,6 +53,7 @@ class FilledBody:
     velocities: Array
     volumes: Array
     spacing: float
+    fill: str
     mass: float
     shape_volume: float | None
     volume_is_exact: bool
@@ -143,15 +146,15 @@ def _filled_grains(case: Case, part: str, grains: Grains) -> list[FilledBody]:
     path, grid = ("grains", part), case.grid
     spacing, density = grains.particle_spacing(grid), case.material[grains.material].density
     bodies: list[FilledBody] = []
-    made: dict[float, Array] = {}
+    way, cube = case.filled_by(part), spacing**grid.dimension
     try:
         centres, radii = grains.place(grid.dimension)
         volumes = ball_volume(radii, grid.dimension).tolist()
-        for k, name in enumerate(grains.names(part)):
-            radius = float(radii[k])
-            positions = fill_grain(centres[k], radius, spacing, grains.align, grid, made)
-            particle_volumes = np.broadcast_to(spacing**grid.dimension, (len(positions),))
-            volume = len(positions) * spacing**grid.dimension
+        filled = fill_grains(centres, radii, spacing, grid, way, grains.align or "between")
+        for k, (name, positions) in enumerate(zip(grains.names(part), filled, strict=True)):
+            each = volumes[k] / len(positions) if way == SHELLS else cube
+            particle_volumes = np.broadcast_to(each, (len(positions),))
+            volume = len(positions) * each
             bodies.append(
                 FilledBody(
                     name=name,
@@ -161,11 +164,12 @@ def _filled_grains(case: Case, part: str, grains: Grains) -> list[FilledBody]:
                     velocities=initial_velocities(grains, positions, particle_volumes),
                     volumes=particle_volumes,
                     spacing=spacing,
+                    fill=way,
                     mass=volume * density,
                     shape_volume=volumes[k],
                     volume_is_exact=True,
                     mass_error=volume / volumes[k] - 1,
-                    ball=(centres[k], radius),
+                    ball=(centres[k], float(radii[k])),
                 )
             )
     except CaseError as error:
@@ -180,7 +184,7 @@ def _filled_grains(case: Case, part: str, grains: Grains) -> list[FilledBody]:
 
 def _filled(case: Case, name: str, body: Body) -> FilledBody:
     try:
-        positions, volumes = fill(body, case.grid)
+        positions, volumes = fill(body, case.grid, case.filled_by(name))
     except CaseError as error:
         raise case.error(("body", name, body.filling), error.rule, error.remedy) from None
     shape_volume, exact, mass_error = None, True, 0.0
@@ -204,6 +208,7 @@ def _filled(case: Case, name: str, body: Body) -> FilledBody:
         velocities=_start(body, positions, volumes),
         volumes=volumes,
         spacing=body.particle_spacing(case.grid),
+        fill=case.filled_by(name) if body.shape is not None else "",
         mass=volume * case.material[body.material].density,
         shape_volume=shape_volume,
         volume_is_exact=exact,
