@@ -59,11 +59,13 @@ class World:
             part = filled.parts[filled.bodies.index(name)]
             entry: Any = here.grains[part] if part in here.grains else here.body[part]
             positions = filled.column(name, "position")
+            density = here.material[entry.material].density
+            volumes = filled.column(name, "mass")[:, 0] / density
+            order = self.order(len(positions))
             velocity = np.array(entry.velocity or (0.0,) * d)
             bodies[name] = Body(
                 material=entry.material,
-                particles=Particles((positions @ q.T)[self.order(len(positions))]),
-                spacing=entry.particle_spacing(here.grid),
+                particles=Particles((positions @ q.T)[order], volumes[order]),
                 velocity=tuple((q @ velocity).tolist()),
             )
         grid = here.grid.model_copy(update={"box": self._box(here)})

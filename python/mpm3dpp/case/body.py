@@ -29,9 +29,9 @@ class Body(CaseModel):
             `mpm3dpp.Particles`); in place of `shape`.
         particles_per_cell: particles per cell along each direction; default 2.
         spacing: distance of the particles [m], in place of `particles_per_cell`.
-        fill: how particles fill the shape: "lattice", a lattice that is aligned with the grid's
-            origin, or "shells", circles and spheres about the middle, for a disc, ring, sphere,
-            cylinder or tube, also moved or turned. Default: lattice.
+        fill: how particles fill the shape: "shells", circles and spheres about the middle, the
+            default for a disc, ring, sphere, cylinder or tube, also moved or turned; or "lattice",
+            a lattice that is aligned with the grid's origin, for all others.
         velocity: initial velocity [m/s], D numbers; default zero.
         angular_velocity: initial spin about the mass centre [rad/s]: one number in 2D, three in
             3D; default zero. Stored as a tuple.

@@ -161,8 +161,8 @@ class Grains(CaseModel):
             `mpm3dpp.GrainCentres`).
         particles_per_cell: particles per cell along each direction; default 2.
         spacing: distance of the particles of a grain [m], in place of `particles_per_cell`.
-        fill: "lattice", or "shells": circles or spheres about the middle of each grain, turned
-            differently from grain to grain. Default: lattice.
+        fill: "shells": circles or spheres about the middle of each grain, turned differently from
+            grain to grain, the default without `align`; or "lattice".
         align: how a lattice stands in each grain: "between" (its centre is in the middle between
             particles, the default) and "particle" (a particle at its centre) fill equal grains
             alike; "grid" (on the grid's lattice, as bodies) does not.

@@ -24,7 +24,7 @@ from .turns import turned
 SHELLS, LATTICE = WAYS = ("shells", "lattice")
 """How particles may fill a shape."""
 
-DEFAULT = LATTICE
+DEFAULT = SHELLS
 """What fills what is round where a case does not say."""
 
 FEWEST = {2: 4, 3: 6}
