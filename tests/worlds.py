@@ -61,12 +61,13 @@ class World:
             part = filled.parts[filled.bodies.index(name)]
             entry: Any = here.grains[part] if part in here.grains else here.body[part]
             positions = filled.column(name, "position")
+            density = here.material[entry.material].density
+            volumes = filled.column(name, "mass")[:, 0] / density
             there = self.order(len(positions))
             velocities = (filled.column(name, "velocity") @ q.T)[there]
             bodies[name] = Body(
                 material=entry.material,
-                particles=Particles((positions @ q.T)[there], velocities=velocities),
-                spacing=entry.particle_spacing(here.grid),
+                particles=Particles((positions @ q.T)[there], volumes[there], velocities),
                 body_force=self._force(entry.body_force),
             )
         grid = here.grid.model_copy(update={"box": self._box(here)})

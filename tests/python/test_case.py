@@ -169,7 +169,7 @@ def test_coarse_filling_warns() -> None:
     shape = Disc(centre=(0.05, 0.05), radius=0.09)
     case = cube(
         grid=Grid(dimension=2, cell_size=0.1),
-        body={"disc": Body(material="any", shape=shape)},
+        body={"disc": Body(material="any", shape=shape, fill="lattice")},
     )
     bodies = build(case)
     assert abs(bodies[0].mass_error) > 0.05

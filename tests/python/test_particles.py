@@ -277,6 +277,7 @@ def test_points_inside_another_body(tmp_path: Path) -> None:
     disc = (
         '[body.disc]\nmaterial = "steel"\n'
         'shape = { disc = { centre = ["14.25 mm", "5.25 mm"], radius = "5 mm" } }\n'
+        'fill = "lattice"\n'
     )
     # Half-way between the disc's particles, which stand at multiples of half a millimetre + 0.25.
     path = write(tmp_path, lattice(20, 0.5e-3, 0.25e-3), CASE + disc)

@@ -138,7 +138,9 @@ def test_ring_is_the_difference_of_discs() -> None:
     discs = Disc(centre=middle, radius=0.5) - Disc(centre=middle, radius=0.3)
     grid = Grid(dimension=2, cell_size=0.1)
     for spacing in (0.02, 0.03, 0.1):
-        one, other = (fill(body(s, spacing=spacing), grid)[0] for s in (ring, discs))
+        one, other = (
+            fill(body(s, spacing=spacing, fill="lattice"), grid)[0] for s in (ring, discs)
+        )
         assert np.array_equal(one, other)
     radii = np.hypot(*(one - middle).T)
     assert radii.min() > 0.3 + 1e-9
@@ -159,7 +161,8 @@ def test_a_polygon_is_the_box_of_its_corners() -> None:
 
 def test_particles_stand_on_the_lattice_of_the_grid() -> None:
     grid = Grid(dimension=2, cell_size="1 mm", origin=("0.3 mm", "-0.4 mm"))
-    positions, volumes = fill(body(FLAT[1].model_copy(update={"radius": 0.01})), grid)
+    disc = body(FLAT[1].model_copy(update={"radius": 0.01}), fill="lattice")
+    positions, volumes = fill(disc, grid)
     steps = (positions - np.array(grid.origin)) / 0.0005 - 0.5
     # Rounding of coordinates below 0.4 m, in units of the spacing of 0.5 mm.
     assert np.abs(steps - np.round(steps)).max() < 4 * np.finfo(float).eps * 0.4 / 0.0005
@@ -172,7 +175,7 @@ def test_particles_stand_on_the_lattice_of_the_grid() -> None:
 def test_a_centred_ring_fills_symmetrically(middle: float, per_cell: int) -> None:
     ring = Ring(centre=(middle, 0.05), inner_radius=0.03, outer_radius=0.04)
     grid = Grid(dimension=2, cell_size=0.0008, origin=(middle - 0.05, 0.0))
-    positions, _ = fill(body(ring, particles_per_cell=per_cell), grid)
+    positions, _ = fill(body(ring, particles_per_cell=per_cell, fill="lattice"), grid)
     steps = np.round((positions - (middle, 0.05)) / (0.0004 / per_cell)).astype(int)
     found = {tuple(step) for step in steps}
     assert len(found) == len(positions)
@@ -185,7 +188,9 @@ def test_two_rings_are_mirror_images() -> None:
     left, right = (
         fill(
             body(
-                Ring(centre=(x, 0.05), inner_radius=0.03, outer_radius=0.04), particles_per_cell=3
+                Ring(centre=(x, 0.05), inner_radius=0.03, outer_radius=0.04),
+                particles_per_cell=3,
+                fill="lattice",
             ),
             grid,
         )[0]
@@ -213,16 +218,16 @@ def test_sphere_of_five_spacings_holds_552() -> None:
     a, b, c = np.meshgrid(odd, odd, odd)
     assert (a**2 + b**2 + c**2 < 100).sum() == 552
     grid = Grid(dimension=3, cell_size=2.0)
-    positions, _ = fill(body(Sphere(centre=(6, 6, 6), radius=5)), grid)
+    positions, _ = fill(body(Sphere(centre=(6, 6, 6), radius=5), fill="lattice"), grid)
     assert len(positions) == 552
 
 
 def test_slabs_do_not_change_the_filling(monkeypatch: pytest.MonkeyPatch) -> None:
     grid = Grid(dimension=3, cell_size=0.2)
-    whole, _ = fill(body(SOLID[1]), grid)
+    whole, _ = fill(body(SOLID[1], fill="lattice"), grid)
     for chunk in (7, 100, 1000):
         monkeypatch.setattr(filling, "_CHUNK", chunk)
-        parts, _ = fill(body(SOLID[1]), grid)
+        parts, _ = fill(body(SOLID[1], fill="lattice"), grid)
         assert {tuple(p) for p in parts} == {tuple(p) for p in whole}
         assert len(parts) == len(whole)
 

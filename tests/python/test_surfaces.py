@@ -126,8 +126,14 @@ def test_the_nearest_particle_is_the_nearest() -> None:
     lattice = np.stack(np.meshgrid(*[np.arange(6)] * 3, indexing="ij"), -1).reshape(-1, 3)
     positions = 0.1 * (lattice + 0.5)
     points = rng.uniform(0.0, 0.6, (200, 3))
-    found = nearest_particles(positions, points, 0.1)
+    numbers, found = nearest_particles(positions, points, 0.1)
+    assert (numbers == np.arange(200)).all()
     gaps = np.linalg.norm(points[:, None] - positions[None], axis=2)
     assert (found == gaps.argmin(axis=1)).all()
     far = nearest_particles(positions, np.array([[2.0, 0.0, 0.0]]), 0.1)
-    assert far.tolist() == [-1]
+    assert [len(part) for part in far] == [0, 0]
+    # Half way between two particles, and in the middle of a cube of eight.
+    middles = np.array([[0.1, 0.05, 0.05], [0.1, 0.1, 0.1]])
+    numbers, found = nearest_particles(positions, middles, 0.1)
+    assert np.bincount(numbers).tolist() == [2, 8]
+    assert found[:2].tolist() == [0, 36]

@@ -131,7 +131,8 @@ def test_a_ring_under_pressure_from_within(basis: str) -> None:
     """Lame's solution in plane strain (Timoshenko & Goodier 1970, art. 28), radii 10 and 20 cells.
 
     Means over two periods of breathing after a slow ramp: the shift of the outer rim, and the
-    hoop stress away from the rims; 3 % for the steps of the inner rim, a sixth of its radius high.
+    hoop stress away from the rims. Measured: 0.6 % and 3.2 % with the linear basis, which scatters
+    by a sixth where particles do not stand on a lattice.
     """
     inner, outer, p = 10 * CELL, 20 * CELL, 2000.0
     ring = Body(
@@ -150,12 +151,13 @@ def test_a_ring_under_pressure_from_within(basis: str) -> None:
     shift = (1 + NU) / YOUNG * scale * ((1 - 2 * NU) * r + outer**2 / r)
     moved = ((x - start) * n).sum(axis=1)
     rim = r > 18 * CELL
-    assert moved[rim].mean() == pytest.approx(shift[rim].mean(), rel=0.03)
+    off = 0.04 if basis == "linear" else 0.01
+    assert moved[rim].mean() == pytest.approx(shift[rim].mean(), rel=off)
     hoop = stress[:, 0] * n[:, 1] ** 2 + stress[:, 1] * n[:, 0] ** 2
     hoop -= 2 * stress[:, 5] * n[:, 0] * n[:, 1]
     within = (r > 12 * CELL) & (r < 18 * CELL)
     expected = scale * (1 + outer**2 / r**2)
-    assert hoop[within].mean() == pytest.approx(expected[within].mean(), rel=0.03)
+    assert hoop[within].mean() == pytest.approx(expected[within].mean(), rel=0.01)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -2,7 +2,7 @@
 """Contact does not care which way the world is turned, nor how bodies and particles are numbered.
 
 Bodies are filled as a case file fills them, and the particles so placed are then mirrored or
-turned: what a lattice makes of a shape there may differ, but not what contact makes of them.
+turned: where a lattice fills a shape it may differ there, but not what contact makes of it.
 The runs are longer than contact needs to act everywhere, and shorter than it takes the rounding of
 sums, 1e-16, to grow to what is tolerated: bodies that collide with friction are chaotic.
 """
@@ -72,7 +72,7 @@ end_time = "50 us"
 friction = 0.2
 [material.copper]
 library = "copper_ofhc"
-failure = { plastic_strain = { limit = 1.5, action = "erode" } }
+failure = { plastic_strain = { limit = 1.2, action = "erode" } }
 [body.ball]
 material = "copper"
 shape = { sphere = { centre = ["1 mm", "0.5 mm", "5 mm"], radius = "4 mm" } }

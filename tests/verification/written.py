@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Problems as a user writes them: a case file with default settings, filled by the grid's lattice.
+"""Problems as a user writes them: a case file with default settings, but the grid's lattice.
 
 The same problems elsewhere in this folder fill discs and spheres with rings and shells of points,
 which are rounder: a lattice has steps of half a spacing on the surface.

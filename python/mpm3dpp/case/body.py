@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from pydantic import model_validator
 
 from mpm3dpp.base.errors import violation
 from mpm3dpp.base.expression import ForceField, SpinField, VelocityField
-from mpm3dpp.base.model import CaseModel, Count, Text
+from mpm3dpp.base.model import CaseModel, Choice, Count, Text
 from mpm3dpp.base.units import PositiveLength
 from mpm3dpp.shapes.base import MaybeShape
+from mpm3dpp.shapes.shells import LATTICE, SHELLS, WAYS, default_way, takes_shells, unmoved
 
 from .grid import Grid
 from .motion import MaybeMotion
@@ -26,8 +29,10 @@ class Body(CaseModel):
             volume and vx, vy, vz, in SI units, or `{ file = "points.csv", unit = "mm" }`, the unit
             of its lengths (in Python: `mpm3dpp.Particles`); in place of `shape`.
         particles_per_cell: particles per cell along each direction; default 2.
-        spacing: distance of the particles [m], in place of `particles_per_cell`. Either way they
-            stand on a lattice that is aligned with the grid's origin.
+        spacing: distance of the particles [m], in place of `particles_per_cell`.
+        fill: how particles fill the shape: "shells", circles and spheres about the middle, the
+            default for a disc, ring, sphere, cylinder or tube, also moved or turned; or "lattice",
+            a lattice that is aligned with the grid's origin, for all others.
         velocity: initial velocity [m/s], D numbers or formulas of x, y, z, r; default zero.
         angular_velocity: initial spin about the mass centre [rad/s]: one number or formula in 2D,
             three in 3D; default zero. Stored as a tuple.
@@ -42,6 +47,7 @@ class Body(CaseModel):
     particles: AnyParticles = None
     particles_per_cell: Count | None = None
     spacing: PositiveLength | None = None
+    fill: Annotated[str, Choice(WAYS)] | None = None
     velocity: VelocityField = ()
     angular_velocity: SpinField = ()
     body_force: ForceField | None = None
@@ -70,6 +76,24 @@ class Body(CaseModel):
             remedy = "add this key, or particles, the name of a file"
             raise violation("is missing", remedy, path=("shape",))
         return self
+
+    @model_validator(mode="after")
+    def _fill_suits_shape(self) -> Body:
+        if self.fill is not None and self.shape is None:
+            rule = "must not be given together with particles"
+            raise violation(rule, "remove it", value=self.fill, path=("fill",))
+        if self.fill == SHELLS and self.shape is not None and not takes_shells(self.shape):
+            kind = unmoved(self.shape).kind
+            rule = f"is for a disc, ring, sphere, cylinder or tube, and the shape is a {kind}"
+            remedy = f'write fill = "{LATTICE}", or leave it out'
+            raise violation(rule, remedy, value=self.fill, path=("fill",))
+        return self
+
+    def filled_by(self, preset: str | None = None) -> str:
+        """Return "shells" or "lattice": what fills the shape in a case of a preset."""
+        if self.fill is not None or self.shape is None:
+            return self.fill or LATTICE
+        return LATTICE if preset is not None else default_way(self.shape)
 
     @property
     def filling(self) -> str:

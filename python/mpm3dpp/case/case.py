@@ -19,13 +19,14 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError, from_validation, key_text
 from mpm3dpp.base.errors import Path as KeyPath
-from mpm3dpp.base.model import CaseModel, Text
+from mpm3dpp.base.model import CaseModel, Choice, Text
 from mpm3dpp.grains import Grains
 from mpm3dpp.shapes.base import KINDS
 
 from . import file as case_file
 from .body import Body
 from .checks import check_case
+from .content import PRESETS, content_of, with_preset
 from .detonation import Detonation
 from .grid import Grid
 from .loads import Load
@@ -38,6 +39,8 @@ class Case(CaseModel):
 
     Attributes:
         title: one line for pictures and results.
+        preset: "paper" for the choices of Ma, Zhang & Huang (2010) where the case says nothing:
+            the linear basis, and lattices of particles.
         material, body, grains: by name, in the order of the file. The bodies of `grains` are
             numbered after those of `body`.
         load: pressures and tractions on surfaces, by name.
@@ -48,6 +51,7 @@ class Case(CaseModel):
     """
 
     title: Text = ""
+    preset: Annotated[str, Choice(PRESETS)] | None = None
     grid: Grid
     run: Run
     output: Output = Field(default_factory=Output)
@@ -62,6 +66,11 @@ class Case(CaseModel):
     _source: Path | None = PrivateAttr(None)
     _file_path: str = PrivateAttr("")
     _lines: dict[KeyPath, int] = PrivateAttr(default_factory=dict)
+
+    @classmethod
+    def complete(cls, data: Any) -> Any:
+        """Return the tables with what the preset adds to them."""
+        return with_preset(data)
 
     @model_validator(mode="after")
     def _whole(self) -> Case:
@@ -149,21 +158,18 @@ class Case(CaseModel):
     def content(self) -> dict[str, Any]:
         """Return what a run writes, when it was asked for: the table, numbers to 12 digits.
 
-        Hashes stand in place of names of files, and when checkpoints are written is left out.
+        Hashes stand in place of names of files, and what fills the shapes in place of a preset;
+        when checkpoints are written is left out.
         """
-        table = self.table()
-        for name, body in self.body.items():
-            if body.particles is not None:
-                table["body"][name]["particles"] = body.particles.digest
-        for name, grains in self.grains.items():
-            if grains.file is not None:
-                table["grains"][name]["file"] = grains.file.digest
-        del table["output"]["checkpoint_interval"]
-        return dict(_rounded(table))
+        return content_of(self)
 
     def parts(self) -> dict[str, Body | Grains]:
         """Return the entries of `body` and `grains` by name, in the order of their bodies."""
         return {**self.body, **self.grains}
+
+    def filled_by(self, part: str) -> str:
+        """Return "shells" or "lattice": what fills an entry of `body` or `grains`."""
+        return self.parts()[part].filled_by(self.preset)
 
     def part_path(self, name: str) -> KeyPath:
         """Return the path of an entry of `body` or `grains`."""
@@ -258,15 +264,6 @@ class Case(CaseModel):
         }
         definitions["Body"]["properties"]["shape"] = {"$ref": "#/$defs/shape"}
         return schema
-
-
-def _rounded(value: Any) -> Any:
-    """Return plain data with every float rounded to 12 significant digits."""
-    if isinstance(value, float):
-        return float(f"{value:.12g}")
-    if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    return [_rounded(item) for item in value] if isinstance(value, list) else value
 
 
 def load_case(path: str | Path) -> Case:

@@ -81,7 +81,7 @@ def _transfer(case: Case) -> Found:
     row = _core.transfers[run.transfer]
     if row["affine"] and not _core.bases[basis]["second_moment"]:
         known = [name for name, each in _core.bases.items() if each["second_moment"]]
-        rule = f'does not go with grid.basis = "{basis}", whose second moment differs from place to place'
+        rule = f'does not go with grid.basis = "{basis}", whose second moment is not constant'
         remedy = f'use grid.basis = "{known[0]}"'
         yield violation(rule, remedy, value=run.transfer, path=("run", "transfer"))
     if run.pic_damping > 0 and run.transfer != "flip":
@@ -89,7 +89,7 @@ def _transfer(case: Case) -> Found:
         yield violation(rule, "leave it out", value=run.pic_damping, path=path)
     if run.flip_share is not None and not row["shares"]:
         known = [name for name, each in _core.transfers.items() if each["shares"]]
-        rule, path = f'is for the transfers {" and ".join(known)}', ("run", "flip_share")
+        rule, path = f"is for the transfers {' and '.join(known)}", ("run", "flip_share")
         yield violation(rule, "leave it out", value=run.flip_share, path=path)
 
 

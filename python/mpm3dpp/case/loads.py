@@ -17,6 +17,7 @@ from mpm3dpp.base.errors import nearest, violation
 from mpm3dpp.base.model import Text
 from mpm3dpp.base.settings import functions, table_of_rows
 from mpm3dpp.base.time_functions import Timed, TimedVector, TimeFunction
+from mpm3dpp.shapes.shells import LATTICE, SHELLS
 from mpm3dpp.shapes.surfaces import Surface, sides, surface
 
 if TYPE_CHECKING:
@@ -24,7 +25,9 @@ if TYPE_CHECKING:
     from .case import Case
 
 Array = NDArray[np.float64]
-_FINER = {2: 8, 3: 4}  # Points of a surface for each spacing of the particles.
+# Points of a surface for each spacing of the particles: on a circle the more the evener its load.
+_FINER = {(2, LATTICE): 8, (2, SHELLS): 64, (3, LATTICE): 4, (3, SHELLS): 4}
+_SAME = 1e-9  # Distances that differ by less than this share of the spacing are equal.
 
 
 def _kind_field(row: dict[str, Any]) -> tuple[Any, Any]:
@@ -139,8 +142,9 @@ def _kind(body: Body) -> str:
 def pieces(case: Case, name: str, positions: Array, spacing: float) -> Pieces:
     """Share the side that a load acts on among the particles of its body.
 
-    Each point of the side belongs to the particle nearest to it, so that the particles' areas add
-    up to that of the side as it is drawn, and the pieces lie on it.
+    Each point of the side belongs to the particle nearest to it, or in equal parts to those that
+    are, so that the particles' areas add up to that of the side as it is drawn, and the pieces lie
+    on it.
 
     Args:
         case: a checked case.
@@ -155,9 +159,10 @@ def pieces(case: Case, name: str, positions: Array, spacing: float) -> Pieces:
     dimension = positions.shape[1]
     shape = case.body[load.body].shape
     assert shape is not None
-    side = surface(shape, load.side, spacing / _FINER[dimension])
-    owner = nearest_particles(positions, side.points, spacing)
-    lost = owner < 0
+    finer = _FINER[dimension, case.filled_by(load.body)]
+    side = surface(shape, load.side, spacing / finer)
+    points, owner = nearest_particles(positions, side.points, spacing)
+    lost = np.bincount(points, minlength=len(side.points)) == 0
     if lost.any():
         share = np.linalg.norm(side.areas[lost], axis=1).sum()
         share /= np.linalg.norm(side.areas, axis=1).sum()
@@ -166,7 +171,8 @@ def pieces(case: Case, name: str, positions: Array, spacing: float) -> Pieces:
         )
         remedy = "give a smaller grid.cell_size or more particles_per_cell"
         raise case.error(("load", name, "side"), rule, remedy, value=load.side)
-    return _share(side, owner, positions)
+    parts = np.bincount(points)[points][:, None]
+    return _share(Surface(side.points[points], side.areas[points] / parts), owner, positions)
 
 
 def _share(side: Surface, owner: NDArray[np.int64], positions: Array) -> Pieces:
@@ -183,8 +189,10 @@ def _share(side: Surface, owner: NDArray[np.int64], positions: Array) -> Pieces:
     return Pieces(particles.astype(np.uint32), added(side.areas), sizes, arms)
 
 
-def nearest_particles(positions: Array, points: Array, spacing: float) -> NDArray[np.int64]:
-    """Return the number of the particle nearest to each point, or -1 if none is within reach.
+def nearest_particles(
+    positions: Array, points: Array, spacing: float
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return pairs of a point and the particle nearest to it; none if that is out of reach.
 
     Args:
         positions: of particles [m], shape (n, D).
@@ -192,12 +200,19 @@ def nearest_particles(positions: Array, points: Array, spacing: float) -> NDArra
         spacing: distance of neighbouring particles [m].
 
     Returns:
-        Numbers, shape (m,); the reach is two and a half spacings.
+        Numbers of points and of particles, shape (pairs,) each. A point that is as near to two
+        particles or more has a pair with each, so that a symmetric body is loaded symmetrically.
+        The reach is two and a half spacings.
     """
     from scipy.spatial import cKDTree
 
-    away, owner = cKDTree(positions).query(points, distance_upper_bound=2.5 * spacing)
-    return np.where(np.isfinite(away), owner, -1)
+    most = min(2 ** positions.shape[1], len(positions))
+    away, owner = cKDTree(positions).query(
+        points, k=range(1, most + 1), distance_upper_bound=2.5 * spacing
+    )
+    near = np.isfinite(away) & (away <= away[:, :1] + _SAME * spacing)
+    numbers, _ = np.nonzero(near)
+    return numbers, owner[near]
 
 
 def add_load(core: Any, case: Case, name: str, body: int, found: Pieces) -> None:

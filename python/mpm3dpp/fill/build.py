@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from mpm3dpp.base.errors import CaseError, first_of
 from mpm3dpp.case.body import Body
 from mpm3dpp.case.case import Case
-from mpm3dpp.grains import Grains, fill_grain
+from mpm3dpp.grains import Grains, fill_grains
 from mpm3dpp.grains.packing import ball_volume
 from mpm3dpp.shapes import fill, reference_volume
+from mpm3dpp.shapes.shells import SHELLS
 
 from .capacity import capacity_mistakes
 from .placement import box_mistakes, overlap_mistakes
@@ -37,7 +38,8 @@ class FilledBody:
         positions: [m], shape (n, D).
         velocities: [m/s], shape (1, D) if all are equal, else (n, D).
         volumes: [m^3; in 2D m^2 times 1 m], shape (n,); all equal if a shape was filled.
-        spacing: distance of neighbours [m].
+        spacing: distance of neighbours [m], in shells about that.
+        fill: "lattice" or "shells"; "" for particles given one by one.
         mass: sum over the particles [kg; in 2D per metre of thickness].
         shape_volume: the shape's volume [m^3; in 2D m^2]; None for particles given one by one.
         volume_is_exact: whether that is a closed form, else a fine lattice gave it.
@@ -52,6 +54,7 @@ class FilledBody:
     velocities: Array
     volumes: Array
     spacing: float
+    fill: str
     mass: float
     shape_volume: float | None
     volume_is_exact: bool
@@ -144,19 +147,17 @@ def _filled_grains(case: Case, part: str, grains: Grains) -> list[FilledBody]:
     path, grid = ("grains", part), case.grid
     spacing, density = grains.particle_spacing(grid), case.material[grains.material].density
     bodies: list[FilledBody] = []
-    made: dict[float, Array] = {}
+    way, cube = case.filled_by(part), spacing**grid.dimension
     try:
         centres, radii = grains.place(grid.dimension)
-        placed = [
-            fill_grain(centre, float(radius), spacing, grains.align, grid, made)
-            for centre, radius in zip(centres, radii, strict=True)
-        ]
+        filled = fill_grains(centres, radii, spacing, grid, way, grains.align or "between")
     except CaseError as error:
         raise case.error((*path, grains.filling), error.rule, error.remedy) from None
     volumes = ball_volume(radii, grid.dimension).tolist()
-    for k, (name, positions) in enumerate(zip(grains.names(part), placed, strict=True)):
-        particle_volumes = np.broadcast_to(spacing**grid.dimension, (len(positions),))
-        volume = len(positions) * spacing**grid.dimension
+    for k, (name, positions) in enumerate(zip(grains.names(part), filled, strict=True)):
+        each = volumes[k] / len(positions) if way == SHELLS else cube
+        particle_volumes = np.broadcast_to(each, (len(positions),))
+        volume = len(positions) * each
         bodies.append(
             FilledBody(
                 name=name,
@@ -166,6 +167,7 @@ def _filled_grains(case: Case, part: str, grains: Grains) -> list[FilledBody]:
                 velocities=start_velocities(case, part, positions, particle_volumes),
                 volumes=particle_volumes,
                 spacing=spacing,
+                fill=way,
                 mass=volume * density,
                 shape_volume=volumes[k],
                 volume_is_exact=True,
@@ -183,7 +185,7 @@ def _filled_grains(case: Case, part: str, grains: Grains) -> list[FilledBody]:
 
 def _filled(case: Case, name: str, body: Body) -> FilledBody:
     try:
-        positions, volumes = fill(body, case.grid)
+        positions, volumes = fill(body, case.grid, case.filled_by(name))
     except CaseError as error:
         raise case.error(("body", name, body.filling), error.rule, error.remedy) from None
     shape_volume, exact, mass_error = None, True, 0.0
@@ -207,6 +209,7 @@ def _filled(case: Case, name: str, body: Body) -> FilledBody:
         velocities=start_velocities(case, name, positions, volumes),
         volumes=volumes,
         spacing=body.particle_spacing(case.grid),
+        fill=case.filled_by(name) if body.shape is not None else "",
         mass=volume * case.material[body.material].density,
         shape_volume=shape_volume,
         volume_is_exact=exact,

@@ -9,12 +9,12 @@ import numpy as np
 
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.machine import BODY_BYTES, MEMORY, PARTICLE_BYTES_WITH_GRID, memory_text
-from mpm3dpp.case.body import Body
 from mpm3dpp.case.case import Case
 from mpm3dpp.grains import Grains
 from mpm3dpp.grains.packing import ball_volume
 from mpm3dpp.shapes.base import Shape
 from mpm3dpp.shapes.filling import LENGTHS_REMEDY, reference_volume
+from mpm3dpp.shapes.shells import SHELLS, ball_count, shell_count
 
 MANY = 1e6
 """Particles from which it is worth while to look whether a shape is inside the box, before it is
@@ -24,7 +24,7 @@ _SAMPLE = 1 << 16  # Points of a shape that are looked at.
 
 def capacity_mistakes(case: Case) -> Iterator[CaseError]:
     """Yield what makes it senseless to fill a case: too much for the memory, or out of the box."""
-    counts = {name: _particles(case, part) for name, part in case.parts().items()}
+    counts = {name: _particles(case, name) for name in case.parts()}
     bodies = {n: p.count if isinstance(p, Grains) else 1 for n, p in case.parts().items()}
     needs = {n: counts[n] * PARTICLE_BYTES_WITH_GRID + bodies[n] * BODY_BYTES for n in counts}
     total = sum(needs.values())
@@ -48,14 +48,20 @@ def capacity_mistakes(case: Case) -> Iterator[CaseError]:
             yield case.error(path, rule, f"move the {part.filling}, or enlarge the box")
 
 
-def _particles(case: Case, part: Body | Grains) -> float:
+def _particles(case: Case, name: str) -> float:
     """Return about how many particles an entry will have, or a bound, if that is small."""
-    dimension, cube = case.grid.dimension, part.particle_spacing(case.grid) ** case.grid.dimension
+    part, dimension = case.parts()[name], case.grid.dimension
+    spacing = part.particle_spacing(case.grid)
+    cube, in_shells = spacing**dimension, case.filled_by(name) == SHELLS
     if isinstance(part, Grains):
+        if in_shells:
+            return ball_count(part.radii(), dimension, spacing)
         return max(float(ball_volume(part.radii(), dimension).sum()) / cube, part.count)
     if part.particles is not None:
         return len(part.particles.positions)
     assert part.shape is not None
+    if in_shells:
+        return shell_count(part.shape, spacing)
     lower, upper = part.shape.bounds()
     bound = float(np.prod(np.maximum(upper - lower, 0.0))) / cube
     if bound * PARTICLE_BYTES_WITH_GRID <= MEMORY:

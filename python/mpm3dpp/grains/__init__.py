@@ -2,7 +2,7 @@
 """Many round bodies from one entry of a case: where they stand and how they are filled."""
 
 from .centres import GrainCentres
-from .filling import fill_grain
+from .filling import fill_grains
 from .table import GrainLattice, GrainPacking, Grains
 
-__all__ = ["GrainCentres", "GrainLattice", "GrainPacking", "Grains", "fill_grain"]
+__all__ = ["GrainCentres", "GrainLattice", "GrainPacking", "Grains", "fill_grains"]

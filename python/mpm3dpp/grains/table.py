@@ -15,6 +15,8 @@ from mpm3dpp.base.expression import ForceField, SpinField, VelocityField
 from mpm3dpp.base.machine import BODY_BYTES, MEMORY, memory_text
 from mpm3dpp.base.model import MOST, CaseModel, Choice, Count, Exactly, Text
 from mpm3dpp.base.units import Point, PositiveLength, Quantity, Vector
+from mpm3dpp.shapes.shells import DEFAULT, LATTICE, SHELLS
+from mpm3dpp.shapes.shells import WAYS as FILLS
 
 from .centres import AnyCentres
 from .packing import MOST_GRAINS, draw_radii, pack
@@ -160,9 +162,11 @@ class Grains(CaseModel):
             `mpm3dpp.GrainCentres`).
         particles_per_cell: particles per cell along each direction; default 2.
         spacing: distance of the particles of a grain [m], in place of `particles_per_cell`.
-        align: how the particles stand in each grain: "between" (its centre is in the middle
-            between particles) and "particle" (a particle at its centre) fill equal grains alike;
-            "grid" (on the grid's lattice, as bodies) does not.
+        fill: "shells": circles or spheres about the middle of each grain, turned differently from
+            grain to grain, the default without `align`; or "lattice".
+        align: how a lattice stands in each grain: "between" (its centre is in the middle between
+            particles, the default) and "particle" (a particle at its centre) fill equal grains
+            alike; "grid" (on the grid's lattice, as bodies) does not.
         velocity: initial velocity of all [m/s], D numbers or formulas of x, y, z, r; default zero.
         angular_velocity: initial spin of each about its own centre [rad/s]: one number or formula
             in 2D, three in 3D; default zero. Stored as a tuple.
@@ -176,7 +180,8 @@ class Grains(CaseModel):
     file: AnyCentres = None
     particles_per_cell: Count | None = None
     spacing: PositiveLength | None = None
-    align: Annotated[str, Choice(("between", "particle", "grid"))] = "between"
+    fill: Annotated[str, Choice(FILLS)] | None = None
+    align: Annotated[str, Choice(("between", "particle", "grid"))] | None = None
     velocity: VelocityField = ()
     angular_velocity: SpinField = ()
     body_force: ForceField | None = None
@@ -193,6 +198,9 @@ class Grains(CaseModel):
             raise violation(rule, "keep one of the two", path=("spacing",))
         if self.particles_per_cell is None and self.spacing is None:
             self.__dict__["particles_per_cell"] = 2
+        if self.fill == SHELLS and self.align is not None:
+            rule = f'goes with fill = "{LATTICE}" only'
+            raise violation(rule, "remove one of the two", value=self.align, path=("align",))
         need = self.count * BODY_BYTES
         if self.count > MOST_GRAINS or need > MEMORY:
             rule = f"would be more than {MOST_GRAINS:,} grains"
@@ -204,6 +212,11 @@ class Grains(CaseModel):
             remedy = "give fewer, or write lengths with their unit (a plain number is in metres)"
             raise violation(rule, remedy, path=(self.filling,))
         return self
+
+    def filled_by(self, preset: str | None = None) -> str:
+        """Return "shells" or "lattice": what fills the grains in a case of a preset."""
+        said = LATTICE if preset is not None or self.align is not None else DEFAULT
+        return self.fill or said
 
     @property
     def filling(self) -> str:

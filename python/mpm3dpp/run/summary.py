@@ -17,6 +17,7 @@ from mpm3dpp.fill.point_warnings import point_warnings
 from mpm3dpp.io.background import FRAME_SHARE
 from mpm3dpp.materials import Failure, catalogue, state_columns
 from mpm3dpp.plots.labels import scaled
+from mpm3dpp.shapes.shells import SHELLS
 
 from .summary_conditions import condition_lines, load_in_words, motion_in_words
 
@@ -125,14 +126,24 @@ def material_lines(case: Case) -> list[str]:
 
 def _body_line(case: Case, body: FilledBody, per_metre: str) -> str:
     against = "exact" if body.volume_is_exact else "measured on a fine lattice"
-    source = f"{body.mass_error:+.3%} of the shape's ({against})"
+    source = f"{_off(body.mass_error)} of the shape's ({against})"
     if body.shape_volume is None:
         source = "given one by one"
     return (
-        f"body {body.name}: {len(body.positions):,} particles {body.spacing:.4g} m apart, "
+        f"body {body.name}: {len(body.positions):,} particles {_apart(body)}, "
         f"{body.material}, mass {body.mass:.6g} kg{per_metre}, {source}"
         f"{motion_in_words(case, body.name)}"
     )
+
+
+def _apart(body: FilledBody) -> str:
+    """Return how far apart the particles of a body are, and whether they stand in shells."""
+    return f"{body.spacing:.4g} m apart" + (f" in {SHELLS}" if body.fill == SHELLS else "")
+
+
+def _off(error: float) -> str:
+    """Return a relative error as text; one of rounding is none, of either sign."""
+    return f"{round(error, 12) + 0.0:+.3%}"
 
 
 def _grains_line(name: str, grains: list[FilledBody], per_metre: str) -> str:
@@ -144,8 +155,8 @@ def _grains_line(name: str, grains: list[FilledBody], per_metre: str) -> str:
     exact = sum(grain.mass / (1.0 + grain.mass_error) for grain in grains)
     return (
         f"grains {name}: {len(grains):,} bodies, {sum(counts):,} particles ({each}) "
-        f"{grains[0].spacing:.4g} m apart, {grains[0].material}, mass {mass:.6g} kg{per_metre}, "
-        f"{mass / exact - 1.0:+.3%} of the shapes' (exact)"
+        f"{_apart(grains[0])}, {grains[0].material}, mass {mass:.6g} kg{per_metre}, "
+        f"{_off(mass / exact - 1.0)} of the shapes' (exact)"
     )
 
 

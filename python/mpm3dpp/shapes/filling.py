@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Filling a shape with particles on a regular lattice, and its volume when no formula exists."""
+"""Filling a shape with particles, on a lattice or in shells; its volume without a formula."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.machine import MOST_PARTICLES
 
 from .base import SURFACE_TOLERANCE, Points, Shape
+from .shells import SHELLS, shell_count, shell_points
 
 _CHUNK = 1 << 18  # Points looked at together: some 20 MB of temporary arrays.
 LENGTHS_REMEDY = (
@@ -33,9 +34,7 @@ class _Lattice:
         count = np.ceil((upper - origin) / spacing - 0.5) - first + 1
         points = float(np.prod(np.maximum(count, 0.0)))
         if not points < _MOST:
-            size = " x ".join(f"{x:.3g} m" for x in upper - lower)
-            rule = f"is {size} in size and would need some {points:.0e} particles"
-            raise CaseError(rule, LENGTHS_REMEDY, key="shape")
+            raise _too_many(shape, points)
         self.axes = [
             origin[d] + (first[d] + np.arange(int(count[d])) + 0.5) * spacing[d]
             for d in range(len(lower))
@@ -60,6 +59,13 @@ class _Lattice:
                 mesh = np.meshgrid(*slab, indexing="ij", copy=False)
                 points = np.stack([x.ravel() for x in mesh], axis=1)
                 yield slab, self.shape.inside(points, -self.tolerance)
+
+
+def _too_many(shape: Shape, points: float) -> CaseError:
+    lower, upper = shape.bounds()
+    size = " x ".join(f"{x:.3g} m" for x in upper - lower)
+    rule = f"is {size} in size and would need some {points:.0e} particles"
+    return CaseError(rule, LENGTHS_REMEDY, key="shape")
 
 
 def fill_shape(shape: Shape, origin: Any, spacing: float) -> Points:
@@ -95,12 +101,29 @@ def fill_shape(shape: Shape, origin: Any, spacing: float) -> Points:
     return positions
 
 
-def fill(body: Any, grid: Any) -> tuple[Points, Points]:
+def fill_round(shape: Shape, spacing: float) -> Points:
+    """Return the particles that fill a round shape in shells, of equal volume, shape (n, D) [m].
+
+    Args:
+        shape: one that takes shells.
+        spacing: about the distance of the particles [m].
+
+    Raises:
+        CaseError: the particles would not fit into the memory of this machine.
+    """
+    points = shell_count(shape, spacing)
+    if not points < MOST_PARTICLES:
+        raise _too_many(shape, points)
+    return shell_points(shape, spacing)
+
+
+def fill(body: Any, grid: Any, way: str = "") -> tuple[Points, Points]:
     """Return the particles of a body.
 
     Args:
         body: a `case.Body`: its shape or particles, and `particles_per_cell` or `spacing`.
         grid: a `case.Grid`: its dimension, origin and cell size.
+        way: "shells" or "lattice"; by default what the body says.
 
     Returns:
         Positions [m], shape (n, D), and volumes [m^3; in 2D m^2 times 1 m], shape (n,) (of a
@@ -121,14 +144,19 @@ def fill(body: Any, grid: Any) -> tuple[Points, Points]:
 
         raise CaseError(wrong[1], wrong[2], key=key_text(wrong[0]))
     spacing = body.particle_spacing(grid)
-    positions = fill_shape(body.shape, grid.origin, spacing)
+    in_shells = (way or body.filled_by()) == SHELLS
+    if in_shells:
+        positions = fill_round(body.shape, spacing)
+    else:
+        positions = fill_shape(body.shape, grid.origin, spacing)
     if len(positions) == 0:
         lower, upper = body.shape.bounds()
         edges = " x ".join(f"{edge:.4g}" for edge in upper - lower)
         rule = f"holds no particle: it measures {edges} m and particles are {spacing:.4g} m apart"
         remedy = "give a smaller grid.cell_size, more particles_per_cell, or a larger shape"
         raise CaseError(rule, remedy, key="shape")
-    return positions, np.broadcast_to(spacing**grid.dimension, (len(positions),))
+    each = body.shape.volume() / len(positions) if in_shells else spacing**grid.dimension
+    return positions, np.broadcast_to(each, (len(positions),))
 
 
 def reference_volume(shape: Shape) -> tuple[float, bool]:

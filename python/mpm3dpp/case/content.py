@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What of a case its results depend on, and presets: choices for where a case says nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from mpm3dpp.grains import Grains
+from mpm3dpp.shapes.shells import SHELLS
+
+from .grid import Grid
+
+if TYPE_CHECKING:
+    from .body import Body
+    from .case import Case
+
+PRESETS = ("paper",)
+_PAPER_BASIS = "linear"
+
+
+def with_preset(data: Any) -> Any:
+    """Return the tables of a case with the basis of its preset, where none is given.
+
+    What fills its shapes is asked of its entries, see `Case.filled_by`.
+    """
+    if not isinstance(data, dict) or data.get("preset") not in PRESETS:
+        return data
+    grid = data.get("grid")
+    if isinstance(grid, dict) and "basis" not in grid:
+        return {**data, "grid": {**grid, "basis": _PAPER_BASIS}}
+    if isinstance(grid, Grid) and "basis" not in grid.model_fields_set:
+        return {**data, "grid": grid.model_copy(update={"basis": _PAPER_BASIS})}
+    return data
+
+
+def content_of(case: Case) -> dict[str, Any]:
+    """Return `Case.content`."""
+    table = case.table()
+    table.pop("preset", None)
+    for name, body in case.body.items():
+        _note_fill(table["body"][name], body, case.preset)
+        if body.particles is not None:
+            table["body"][name]["particles"] = body.particles.digest
+    for name, grains in case.grains.items():
+        _note_fill(table["grains"][name], grains, case.preset)
+        if grains.file is not None:
+            table["grains"][name]["file"] = grains.file.digest
+    del table["output"]["checkpoint_interval"]
+    return dict(_rounded(table))
+
+
+def _note_fill(table: dict[str, Any], part: Body | Grains, preset: str | None) -> None:
+    """Note in an entry's table what fills it; a lattice as it was before there was a choice."""
+    table.pop("fill", None)
+    if part.filled_by(preset) == SHELLS:
+        table["fill"] = SHELLS
+    elif isinstance(part, Grains):
+        table["align"] = part.align or "between"
+
+
+def _rounded(value: Any) -> Any:
+    """Return plain data with every float rounded to 12 significant digits."""
+    if isinstance(value, float):
+        return float(f"{value:.12g}")
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    return [_rounded(item) for item in value] if isinstance(value, list) else value
