@@ -150,7 +150,8 @@ def _filled_grains(case: Case, part: str, grains: Grains) -> list[FilledBody]:
     way, cube = case.filled_by(part), spacing**grid.dimension
     try:
         centres, radii = grains.place(grid.dimension)
-        filled = fill_grains(centres, radii, spacing, grid, way, grains.align or "between")
+        align = grains.align or "between"
+        filled = list(fill_grains(centres, radii, spacing, grid, way, align))
     except CaseError as error:
         raise case.error((*path, grains.filling), error.rule, error.remedy) from None
     volumes = ball_volume(radii, grid.dimension).tolist()

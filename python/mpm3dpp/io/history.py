@@ -42,7 +42,7 @@ PAIRS = "contact_pairs.csv"
 
 _AXES = ("x", "y", "z")
 _MOMENTUM = tuple(f"momentum_{x}" for x in _AXES)
-_NEEDED = ("time", "step", "dt", *ENERGIES, *_MOMENTUM, *ERROR_PARTS)  # By summaries and pictures.
+_NEEDED = ("time", "step", "dt", *ENERGIES, *_MOMENTUM)  # By summaries and pictures.
 _LARGEST = ("residual", "numerical", "external")  # of which the largest size is kept
 
 

@@ -99,7 +99,8 @@ def _ledger(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray]) -> Non
     scale = _scale(history)
     least = 1e-18
     colours = cycle(PALETTE)
-    for name in (*_OTHERS, "numerical", *ERROR_PARTS):
+    parts = [name for name in ERROR_PARTS if name in history]  # Older tables have fewer.
+    for name in (*_OTHERS, "numerical", *parts):
         curve = np.abs(history[name]) / scale
         if curve.max(initial=0.0) > least:
             style = (0, (1, 1)) if name in ERROR_PARTS else "-"
