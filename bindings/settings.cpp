@@ -7,6 +7,7 @@
 #include "mpm/ledger/history.hpp"
 #include "mpm/math/expression.hpp"
 #include "mpm/run/derived_fields.hpp"
+#include "mpm/run/part_sums.hpp"
 
 namespace mpm::bindings {
 namespace {
@@ -51,6 +52,13 @@ nb::dict all_history_terms() {
     terms[text(term.name)] = row;
   }
   return terms;
+}
+
+nb::dict all_part_columns() {
+  nb::dict columns;
+  for (const PartColumn& column : part_columns)
+    columns[text(column.name)] = nb::make_tuple(text(column.unit), text(column.meaning));
+  return columns;
 }
 
 nb::dict all_derived_fields() {
@@ -158,6 +166,7 @@ void add_settings(nb::module_& m) {
   m.attr("bases") = all_bases();
   m.attr("transfers") = all_transfers();
   m.attr("history_terms") = all_history_terms();
+  m.attr("part_columns") = all_part_columns();
   m.attr("load_kinds") = all_load_kinds();
   m.attr("derived_fields") = all_derived_fields();
   m.attr("operations") = all_operations();

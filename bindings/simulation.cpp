@@ -9,6 +9,7 @@
 #include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/pair_groups.hpp"
+#include "mpm/run/part_sums.hpp"
 #include "mpm/run/prepare.hpp"
 #include "mpm/run/save.hpp"
 #include "mpm/run/time_step.hpp"
@@ -194,6 +195,10 @@ void def_records(SimulationClass& simulation) {
   simulation
       .def("history",
            of_any([](auto& s) { return to_numpy(s.history.take(), history_terms.size()); }))
+      .def("part_sums", of_any([](auto& s) {
+             require(s, Phase::ready, "call prepare() before part_sums()");
+             return to_numpy(part_sums(s.domain), part_columns.size());
+           }))
       .def("contact_pairs", of_any([](auto& s) { return s.domain.contact.records.all(); }))
       .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))
       .def("contact_summary", of_any([](auto& s) {

@@ -17,7 +17,8 @@ from mpm3dpp.case.detonation import Detonation
 from mpm3dpp.case.loads import Load
 from mpm3dpp.case.motion import Motion
 from mpm3dpp.grains import GrainLattice, GrainPacking, Grains
-from mpm3dpp.io.history import PAIR_LIMIT, PAIR_MEANINGS, PAIRS, TERMS
+from mpm3dpp.io import history as terms
+from mpm3dpp.io import part_cells
 from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
 from mpm3dpp.materials.catalogue import catalogue
 from mpm3dpp.materials.chosen import ACTIONS
@@ -267,14 +268,24 @@ def history_page() -> str:
         "ledger](../theory/step.md#the-energy-ledger). In Python `mpm3dpp.io.read_history` reads",
         "the file.",
         "",
-        *table({name: (term["unit"], term["meaning"]) for name, term in TERMS.items()}),
+        *table({name: (term["unit"], term["meaning"]) for name, term in terms.TERMS.items()}),
+        "",
+        "Some 16 steps apart, and where a frame is written, a row has these too, those after the",
+        "first three for each body A (all grains of an entry count as one) if there are no more",
+        f"than {part_cells.PART_LIMIT}:",
+        "",
+        *table(
+            part_cells.TOTALS
+            | {f"body_A_{key}": row for key, row in part_cells.PART_COLUMNS.items()}
+        ),
         "",
         "A run with contact has these too, for each pair of bodies; all grains of an entry count",
         "as one body. At the start they are empty.",
-        f"With more than {PAIR_LIMIT} pairs they are in `{PAIRS}`, one row for each pair",
-        "that touches, with the columns `step`, `time`, `body_a`, `body_b`, `contact_force_x`, ...",
+        f"With more than {terms.PAIR_LIMIT} pairs they are in `{terms.PAIRS}`, one row for each",
+        "pair that touches, with the columns `step`, `time`, `body_a`, `body_b`,",
+        "`contact_force_x`, ...",
         "",
-        *table(PAIR_MEANINGS),
+        *table(terms.PAIR_MEANINGS),
     ]
     return "\n".join(lines) + "\n"
 

@@ -4,7 +4,7 @@
 import importlib
 import re
 import sys
-from itertools import combinations
+from itertools import combinations, product
 from pathlib import Path
 
 import pytest
@@ -56,13 +56,16 @@ def test_every_column_of_the_history_is_described(tool, tmp_path, dimension):
     run_case(case, tmp_path, threads=1, pictures=False)
     written = list(read_history(tmp_path))
     for a, b in combinations(case.body, 2):
-        for name, (unit, _) in tool.PAIR_MEANINGS.items():
+        for name, (unit, _) in tool.terms.PAIR_MEANINGS.items():
             assert unit and name.endswith("_A_B_x")
             for axis in "xyz":
                 written.remove(name.replace("_A_B_x", f"_{a}_{b}_{axis}"))
+    for name, column in product(case.body, tool.part_cells.PART_COLUMNS):
+        written.remove(f"body_{name}_{column}")
+    written += [f"body_A_{column}" for column in tool.part_cells.PART_COLUMNS]
     page = (ROOT / "docs" / "reference" / "history.md").read_text()
     described = re.findall(r"^\| `(\w+)` \| \S.* \| \S.* \|$", page, re.M)
-    assert described == [*written, *tool.PAIR_MEANINGS]
+    assert described == [*written, *tool.terms.PAIR_MEANINGS]
 
 
 def test_attributes_of_a_docstring(tool):

@@ -17,6 +17,7 @@ from mpm3dpp.base.disk import checksum, make_folder
 from mpm3dpp.base.errors import CaseError
 
 from .fields import numbered
+from .part_cells import PartCells
 from .table import Table
 
 TERMS: dict[str, dict[str, str]] = _core.history_terms
@@ -76,8 +77,8 @@ class HistoryWriter:
     """Writes `history.csv` and, with very many bodies, `contact_pairs.csv` beside it.
 
     The pairs' columns are `contact_force_<a>_<b>_x/y/z` [N] and `contact_impulse_<a>_<b>_x/y/z`
-    [N s], both on the first body (per metre of thickness in 2D). They stand in the last row
-    of each block given to `append`; cells of the rows before it stay empty (unknown).
+    [N s], both on the first body (per metre of thickness in 2D). They and the columns of bodies
+    stand in the last row of each block given to `append`; cells of the rows before it stay empty.
 
     Args:
         path: the file; its folder is made, an old file replaced.
@@ -85,6 +86,8 @@ class HistoryWriter:
         bodies: name of each body. Bodies of one name, grains, are taken together, and what they
             do to each other has no columns.
         contact: whether the run has contact; without it there are no pairs' columns.
+        parts: whether there are columns of bodies, `body_<a>_mass` and so on, and of the angular
+            momentum of all.
         every: keep the rows whose step is a multiple of this, and the last of each block.
         state: of a run that goes on, `state()` then; the files have what it says
             (`check_history`), and rows written later are cut off.
@@ -101,6 +104,7 @@ class HistoryWriter:
         columns: Sequence[str],
         bodies: Sequence[str],
         contact: bool = True,
+        parts: bool = False,
         every: int = 1,
         state: Mapping[str, Any] | None = None,
         anew: bool = False,
@@ -113,6 +117,9 @@ class HistoryWriter:
         pairs = list(itertools.combinations(firsts, 2)) if contact else []
         self._pairs = {pair: k for k, pair in enumerate(pairs)} if len(pairs) <= PAIR_LIMIT else {}
         header = list(columns)
+        self._parts = PartCells(names) if parts else None
+        self._part_cells = self._parts.header if self._parts else []
+        header += self._part_cells
         for a, b in self._pairs:
             for kind in ("force", "impulse"):
                 both = f"{self._bodies[a]}_{self._bodies[b]}"
@@ -129,27 +136,33 @@ class HistoryWriter:
         self._summary: dict[str, Any] = dict(state["summary"] or {}) if state else {}
         self._momentum = np.array(state["momentum"] if state else [])
 
-    def append(self, rows: np.ndarray, pairs: Sequence[Any] = ()) -> None:
+    def append(
+        self,
+        rows: np.ndarray,
+        pairs: Sequence[Any] | None = (),
+        parts: np.ndarray | None = None,
+    ) -> None:
         """Write the rows of the steps made since the last call, and flush.
 
         Args:
             rows: the core's `history()`, shape (steps, columns).
-            pairs: the core's `contact_groups()` after the last of these steps.
+            pairs: the core's `contact_groups()` after the last of these steps; None: not known.
+            parts: its `part_sums()` then, shape (bodies, PART_COLUMNS); None: not asked for.
         """
         if len(rows) == 0:
             return
         table = np.asarray(rows, dtype=float)
         self._note(table)
-        empty = [""] * (6 * len(self._pairs))
+        empty = [""] * (len(self._part_cells) + 6 * len(self._pairs))
         lines = []
         for k, row in enumerate(table.tolist()):
             last = k == len(table) - 1
             if not last and int(row[0]) % self._every:
                 continue
             cells = [repr(int(row[0])), *map(repr, row[1:])]
-            lines.append(cells + (self._pair_cells(pairs) if last else empty))
+            lines.append(cells + (self._last_cells(pairs, parts) if last else empty))
         self._table.append(lines)
-        if self._long is not None:
+        if self._long is not None and pairs is not None:
             self._long.append(self._pair_lines(table[-1], pairs))
 
     def state(self) -> dict[str, Any]:
@@ -179,6 +192,13 @@ class HistoryWriter:
 
     def __exit__(self, *about: object) -> None:
         self.close()
+
+    def _last_cells(self, pairs: Sequence[Any] | None, parts: np.ndarray | None) -> list[str]:
+        """Return the cells of bodies and of pairs, empty where nothing is known."""
+        of_parts, of_pairs = [""] * len(self._part_cells), [""] * (6 * len(self._pairs))
+        if self._parts and parts is not None:
+            of_parts = self._parts.cells(parts)
+        return of_parts + (of_pairs if pairs is None else self._pair_cells(pairs))
 
     def _pair_cells(self, pairs: Sequence[Any]) -> list[str]:
         values = np.zeros((len(self._pairs), 6))

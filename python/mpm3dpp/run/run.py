@@ -157,6 +157,7 @@ def _write_run(
         columns=core.history_columns,
         bodies=simulation.parts,
         contact=contact,
+        parts=True,
         every=case.output.history_every,
         state=before.history if before else None,
         anew=history_anew,

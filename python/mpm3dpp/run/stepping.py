@@ -18,6 +18,7 @@ from .simulation import Simulation
 
 _NO_STATE = ("non-finite", "negative volume")  # Failures after which particles have no values.
 _BLOCK = 64  # Steps between two looks at the clock, without contact.
+_PARTS_EVERY = 16  # Steps between two rows with the sums of bodies, at least.
 
 
 def step_to_end(
@@ -43,20 +44,25 @@ def step_to_end(
     frames = [t for t in case.frame_times() if t > core.time]
     touched = _touched(core.contact_groups()) if contact else 0
     told = len(core.warnings())  # Those of the parts of the run before.
+    sums_every = max(_PARTS_EVERY, case.output.history_every)
+    if core.step == 0:
+        history.append(core.history(), None, core.part_sums())
     while core.time < case.run.end_time:
-        failed = None
+        failed, before = None, core.step
         try:
             simulation.advance(_steps(most, frames, core))
         except RunError as error:
             failed = str(error)
         told = _tell_new(progress, core, told)
         rows, pairs = core.history(), core.contact_groups() if contact else []
-        history.append(rows, pairs)
+        due = bool(frames) and core.time >= frames[0]
+        # By the steps' numbers, so that a run that goes on has them in the same rows.
+        summed = due or core.step // sums_every > before // sums_every
+        history.append(rows, pairs, core.part_sums() if summed else None)
         if failed is not None:
             if core.failure.kind not in _NO_STATE:  # Else the last frame is the last good one.
                 results.write(core)
             return "failed", failed
-        due = bool(frames) and core.time >= frames[0]
         while frames and core.time >= frames[0]:
             frames.pop(0)
         results.check()
