@@ -117,6 +117,33 @@ void set_walls(GridSettings& grid, const std::array<std::string, 6>& given) {
     grid.walls[k] = choice_named<Wall>("a wall", given[k]);
 }
 
+/// What there is to choose from, and formulas.
+void add_catalogues(nb::module_& m) {
+  m.attr("walls") = words_of<Wall>();
+  m.attr("failure_actions") = words_of<FailureAction>();
+  m.attr("schemes") = words_of<Scheme>()[0];
+  m.attr("bases") = all_bases();
+  m.attr("transfers") = all_transfers();
+  m.attr("history_terms") = all_history_terms();
+  m.attr("part_columns") = all_part_columns();
+  m.attr("load_kinds") = all_load_kinds();
+  m.attr("derived_fields") = all_derived_fields();
+  m.attr("operations") = all_operations();
+  m.def(
+      "evaluate",
+      [](const Expression::Program& program, const std::vector<std::string>& names,
+         const Input& values) {
+        if (values.ndim() != 2) throw std::invalid_argument("values must be (variables, n)");
+        return to_numpy(evaluate_rows(Expression(program), names, span_of(values), values.shape(1)),
+                        1);
+      },
+      nb::arg("program"), nb::arg("names"), nb::arg("values"),
+      "The values of a formula, (n, 1), of variables by their names, (variables, n)");
+  m.def("stages", &stage_rows, nb::arg("scheme"), nb::arg("fused"),
+        "Of each stage: its name, what it reads and writes, and whether it goes through all "
+        "particles");
+}
+
 }  // namespace
 
 void add_settings(nb::module_& m) {
@@ -160,29 +187,7 @@ void add_settings(nb::module_& m) {
       .def_rw("execution", &Settings::execution);
 
   m.attr("settings") = tables;
-  m.attr("walls") = words_of<Wall>();
-  m.attr("failure_actions") = words_of<FailureAction>();
-  m.attr("schemes") = words_of<Scheme>()[0];
-  m.attr("bases") = all_bases();
-  m.attr("transfers") = all_transfers();
-  m.attr("history_terms") = all_history_terms();
-  m.attr("part_columns") = all_part_columns();
-  m.attr("load_kinds") = all_load_kinds();
-  m.attr("derived_fields") = all_derived_fields();
-  m.attr("operations") = all_operations();
-  m.def(
-      "evaluate",
-      [](const Expression::Program& program, const std::vector<std::string>& names,
-         const Input& values) {
-        if (values.ndim() != 2) throw std::invalid_argument("values must be (variables, n)");
-        return to_numpy(evaluate_rows(Expression(program), names, span_of(values), values.shape(1)),
-                        1);
-      },
-      nb::arg("program"), nb::arg("names"), nb::arg("values"),
-      "The values of a formula, (n, 1), of variables by their names, (variables, n)");
-  m.def("stages", &stage_rows, nb::arg("scheme"), nb::arg("fused"),
-        "Of each stage: its name, what it reads and writes, and whether it goes through all "
-        "particles");
+  add_catalogues(m);
 }
 
 }  // namespace mpm::bindings

@@ -27,6 +27,37 @@ void hold_at_walls(const Domain<D>& domain, const Patch<D>& patch, const NodeBlo
   });
 }
 
+/// Sums over the nodes that a patch owns, with v before the step: A + B and G of the ledger, twice
+/// S_g, all but for the time step, and sum m_i |dv_i|^2.
+struct NodeWork {
+  double work = 0.0, gravity_first = 0.0, gravity_second = 0.0, second = 0.0;
+};
+
+/// Eq. (8) for the nodes of a block.
+template <int D>
+NodeWork advance_block(const NodeBlock<D>& block, const double* own, const Vec<double, D>& gravity,
+                       double dt) {
+  NodeWork done;
+  for (int n = 0; n < block.count; ++n) {
+    double* const numbers = block.records[n];
+    // Nodes without mass stay at rest. Tiny masses have huge increments; that particles take them
+    // weighed with N_ip is what keeps them harmless, except in USL (docs/theory/step.md).
+    const double m = numbers[mass_at], impulse = m > 0.0 ? dt / m : 0.0;
+    for (int a = 0; a < D; ++a) {
+      double& v = numbers[velocity_at + a];
+      const double f = numbers[force_at + a], weight = m * gravity[a];
+      const double dv = impulse * (f + weight);
+      done.work += own[n] * f * v;
+      done.gravity_first += own[n] * weight * v;
+      done.gravity_second += own[n] * weight * dv;
+      done.second += own[n] * m * dv * dv;
+      v += dv;
+      numbers[increment_at + a] = dv;
+    }
+  }
+  return done;
+}
+
 }  // namespace
 
 /// Eq. (8), m_i dv_i = (f_i + m_i g) dt, with eq. (10) in the form m_i g: exact as gravity is
@@ -46,26 +77,7 @@ void advance_nodes(Domain<D>& domain) {
     ownership(patch, block.count, own);
     // What moves beyond a wall is the image's: its mass and force have been folded there.
     for_each_ghost_node(grid, patch, [&](int node, int, const WallImage<D>&) { own[node] = 0.0; });
-    double work = 0.0, gravity_first = 0.0, gravity_second = 0.0, second = 0.0;
-    for (int n = 0; n < block.count; ++n) {
-      double* const numbers = block.records[n];
-      // Nodes without mass stay at rest. Tiny masses have huge increments; that particles take them
-      // weighed with N_ip is what keeps them harmless, except in USL (docs/theory/step.md).
-      const double m = numbers[mass_at], impulse = m > 0.0 ? dt / m : 0.0;
-      for (int a = 0; a < D; ++a) {
-        double& v = numbers[velocity_at + a];
-        const double f = numbers[force_at + a], weight = m * domain.gravity[a];
-        const double dv = impulse * (f + weight);
-        // With v before the step: A + B and G of the ledger, and twice S_g, all but for the time
-        // step.
-        work += own[n] * f * v;
-        gravity_first += own[n] * weight * v;
-        gravity_second += own[n] * weight * dv;
-        second += own[n] * m * dv * dv;
-        v += dv;
-        numbers[increment_at + a] = dv;
-      }
-    }
+    const NodeWork done = advance_block(block, own, domain.gravity, dt);
     Work loads, dashpots;
     if (absorb && patch.at_wall) dashpots = work_of_dashpots(block, own, dt);
     // The mirrored weight went into the force (ghost_weight, subtracted); it is work of gravity, so
@@ -87,14 +99,14 @@ void advance_nodes(Domain<D>& domain) {
     PatchSums<D>& sums = domain.sums[p];
     // What is left is work of internal and contact forces; loads, dashpots and gravity have terms
     // of their own in the ledger, with the velocity in the middle of the step.
-    sums.force_work = dt * (work + weight_first) - loads.first - dashpots.first;
-    sums.node_second = 0.5 * second;
+    sums.force_work = dt * (done.work + weight_first) - loads.first - dashpots.first;
+    sums.node_second = 0.5 * done.second;
     sums.load_first = loads.first;
     sums.load_second = loads.second;
     sums.dashpot_first = dashpots.first;
     sums.dashpot_second = dashpots.second;
-    sums.gravity_first = dt * (gravity_first - weight_first);
-    sums.gravity_second = 0.5 * dt * (gravity_second - weight_second);
+    sums.gravity_first = dt * (done.gravity_first - weight_first);
+    sums.gravity_second = 0.5 * dt * (done.gravity_second - weight_second);
   });
 }
 

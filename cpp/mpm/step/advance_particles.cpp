@@ -40,6 +40,31 @@ struct LaneSums {
   }
 };
 
+/// The new velocities of the particles in the lanes, as the transfer says, stored; `dv` and
+/// `of_grid` are the sums over the nodes.
+template <class Transfer, class Rows, class T, int D>
+MPM_INLINE inline Vec<T, D> take(const Transfer& transfer, Storage* const (&velocities)[D],
+                                 const Rows& rows, const T& m, const Vec<T, D>& dv,
+                                 const Vec<T, D>& of_grid, LaneSums<T, D>& sums) {
+  Vec<T, D> v;
+  unrolled<D>([&](auto a) MPM_INLINE {
+    const T before = load(velocities[a], rows);
+    if constexpr (Transfer::takes_grid_velocity) {
+      v[a] = transfer.take(before, dv[a], of_grid[a]);
+      // m (|v_p + dv_p|^2 - |v_p'|^2), halved at the end: what particles lose against FLIP, with
+      // all of the change; of affine transfers against the start (docs/theory/step.md).
+      const T kept = Transfer::affine ? before : before + dv[a];
+      sums.transferred += m * kept * kept;
+      sums.transferred -= m * v[a] * v[a];
+    } else {
+      v[a] = transfer.take(before, dv[a]);
+    }
+    store(velocities[a], rows, v[a]);
+  });
+  sums.add(m, v, dv);
+  return v;
+}
+
 /// Velocities of a patch's particles, eq. (17), as the transfer says. Taken from the increments of
 /// the nodes, v_p is smoothed by no mapping to the grid and back; the nodes are advanced, so v_i is
 /// that of the end of the step. A function of its own for each basis, width and transfer (decision
@@ -84,27 +109,13 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       const Vec<T, D> xi = local_position(cell, rows);
       const auto w = weights_at(basis, xi);
       const T all = load(mass, rows), m = of_valid(rows, all);
-      Vec<T, D> dv = Vec<T, D>::zero(), of_grid = dv, v;
+      Vec<T, D> dv = Vec<T, D>::zero(), of_grid = dv;
       if constexpr (Transfer::takes_increment) dv = nodes.template vector<increment_at>(w);
       if constexpr (Transfer::affine)
         affine.take(nodes, rows, w, moments_at<B>(xi, w), m, of_grid, sums);
       else if constexpr (Transfer::takes_grid_velocity)
         of_grid = nodes.template vector<velocity_at>(w);
-      unrolled<D>([&](auto a) {
-        const T before = load(velocities[a], rows);
-        if constexpr (Transfer::takes_grid_velocity) {
-          v[a] = transfer.take(before, dv[a], of_grid[a]);
-          // m (|v_p + dv_p|^2 - |v_p'|^2), halved at the end: what particles lose against FLIP,
-          // with all of the change; of affine transfers against the start (docs/theory/step.md).
-          const T kept = Transfer::affine ? before : before + dv[a];
-          sums.transferred += m * kept * kept;
-          sums.transferred -= m * v[a] * v[a];
-        } else {
-          v[a] = transfer.take(before, dv[a]);
-        }
-        store(velocities[a], rows, v[a]);
-      });
-      sums.add(m, v, dv);
+      const Vec<T, D> v = take(transfer, velocities, rows, m, dv, of_grid, sums);
       // USF: eq. (16) with the same weights, which are those of the positions before.
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {
