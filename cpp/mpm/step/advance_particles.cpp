@@ -111,9 +111,12 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       const T all = load(mass, rows), m = of_valid(rows, all);
       Vec<T, D> dv = Vec<T, D>::zero(), of_grid = dv;
       if constexpr (Transfer::takes_increment) dv = nodes.template vector<increment_at>(w);
-      if constexpr (Transfer::affine)
-        affine.take(nodes, rows, w, moments_at<B>(xi, w), m, of_grid, sums);
-      else if constexpr (Transfer::takes_grid_velocity)
+      Moments<T, D, B::nodes> moments;
+      if constexpr (Transfer::affine) {
+        moments = moments_at<B>(xi, w);
+        affine.take(nodes, rows, w, moments, m, of_grid, sums);
+      }
+      if constexpr (Transfer::takes_grid_velocity && !Transfer::affine)
         of_grid = nodes.template vector<velocity_at>(w);
       const Vec<T, D> v = take(transfer, velocities, rows, m, dv, of_grid, sums);
       // USF: eq. (16) with the same weights, which are those of the positions before.
@@ -121,7 +124,7 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       if constexpr (also == Also::remap) {
         auto& particles = cells.next();
         if constexpr (Transfer::affine)
-          particles.add(all, v, affine.in_cells(), moments_at<B>(xi, w));
+          particles.add(all, v, affine.in_cells(), moments);
         else
           particles.add(all, v);
         particles.place(w, rows.count);
