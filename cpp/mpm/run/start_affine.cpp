@@ -55,10 +55,11 @@ double take_affine(Domain<D>& domain, std::size_t p, const B& basis) {
 template <int D>
 void start_affine(Domain<D>& domain) {
   if (!is_affine(domain.transfer)) return;
-  domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
-    auto& pool = const_cast<ParticlePool<D>&>(of);
-    for (int k = 0; k < D * D; ++k) pool.affine_part(k)[row] = Storage{0.0};
-  });
+  for (const Patch<D>& patch : domain.grid.patches) {
+    ParticlePool<D>& pool = domain.pool_of(patch);
+    for (const std::uint32_t row : pool.rows(patch))
+      for (int k = 0; k < D * D; ++k) pool.affine_part(k)[row] = Storage{0.0};
+  }
   // Within a body the first pass is as good as the last; at its surface, where nodes have particles
   // on one side only, each takes away a part of the error.
   constexpr int most = 200;

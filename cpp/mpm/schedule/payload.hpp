@@ -57,7 +57,7 @@ struct PayloadRecords {
   /// With the affine part, G = C h: all with the mass in, m (1, v) and m (0, column of G).
   template <unsigned what, class T>
   void add(int at, T m, const Vec<T, D>& v, const Mat<T, D>& G) {
-    add<what>(at, m, v);
+    store_lanes(mass + at, m);
     const auto with_mass = [&](double (*to)[half_record], T first, auto&& component) MPM_INLINE {
       const T none(0.0), z = D == 3 ? component(D - 1) : none;
       if constexpr ((what & gives_mass) != 0)

@@ -33,6 +33,15 @@ void check_schemes(Report& report, const Choice<D>& choice) {
   }
 }
 
+/// One of each kind.
+template <int D>
+void put_walls(Choice<D>& choice) {
+  choice.walls.fill(Wall::slip);
+  choice.walls[0] = Wall::fixed;
+  choice.walls[1] = Wall::absorbing;
+  choice.walls[3] = Wall::free;
+}
+
 /// Every transfer that goes with the basis: alone, in contact, with other kinds of bodies and
 /// walls.
 template <int D>
@@ -50,10 +59,7 @@ void check_transfers(Report& report, BasisId basis) {
       choice.kind = kind;
       check_schemes(report, choice);
     }
-    choice.walls.fill(Wall::slip);
-    choice.walls[0] = Wall::fixed;
-    choice.walls[1] = Wall::absorbing;
-    choice.walls[3] = Wall::free;
+    put_walls(choice);
     check_schemes(report, choice);
     choice.kind = BodyKind::prescribed;
     check_schemes(report, choice);
@@ -75,10 +81,7 @@ void check_all(Report& report) {
         choice.contact = contact;
         check_schemes(report, choice);
       }
-    choice.walls.fill(Wall::slip);
-    choice.walls[0] = Wall::fixed;
-    choice.walls[1] = Wall::absorbing;
-    choice.walls[3] = Wall::free;
+    put_walls(choice);
     check_schemes(report, choice);
     choice.kind = BodyKind::deformable;
     check_schemes(report, choice);

@@ -1,6 +1,7 @@
 #pragma once
 // What passes between particles and nodes: the transfers, one line in all, and the internal force.
 #include <algorithm>
+#include <array>
 #include <type_traits>
 
 #include "mpm/catalogue/choice_list.hpp"
@@ -49,25 +50,20 @@ concept TransferModel = requires {
 };
 
 template <TransferModel... T>
-using TransferList = ChoiceList<TransferId, T...>;
+struct TransferList : ChoiceList<TransferId, T...> {
+  static constexpr std::array<bool, sizeof...(T)> affine = {T::affine...};
+  static constexpr std::array<bool, sizeof...(T)> takes_grid_velocity = {T::takes_grid_velocity...};
+};
 using Transfers = TransferList<Flip, Pic, Apic, Aflip>;
 template <>
 inline constexpr auto words<TransferId> = Transfers::words_of();
 
-template <class... T>
-constexpr bool is_affine(ChoiceList<TransferId, T...> /*all*/, TransferId id) {
-  constexpr bool found[] = {T::affine...};
-  return found[static_cast<std::size_t>(id)];
-}
-template <class... T>
-constexpr bool takes_grid_velocity(ChoiceList<TransferId, T...> /*all*/, TransferId id) {
-  constexpr bool found[] = {T::takes_grid_velocity...};
-  return found[static_cast<std::size_t>(id)];
-}
 /// Have its particles an affine part of the velocity?
-constexpr bool is_affine(TransferId id) { return is_affine(Transfers{}, id); }
+constexpr bool is_affine(TransferId id) { return Transfers::affine[static_cast<std::size_t>(id)]; }
 /// Do they take the velocity of the grid?
-constexpr bool takes_grid_velocity(TransferId id) { return takes_grid_velocity(Transfers{}, id); }
+constexpr bool takes_grid_velocity(TransferId id) {
+  return Transfers::takes_grid_velocity[static_cast<std::size_t>(id)];
+}
 
 /// f(transfer) for that of the run.
 template <int D, class F>
