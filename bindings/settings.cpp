@@ -175,7 +175,13 @@ void add_settings(nb::module_& m) {
       .def_rw("outflow_lower", &GridSettings::outflow_lower)
       .def_rw("outflow_upper", &GridSettings::outflow_upper)
       .def_rw("coarsening", &GridSettings::coarsening, nb::arg("coarsening").none());
-  add_table<RunSettings>(m, "RunSettings", tables);
+  add_table<TransferSettings>(m, "TransferSettings", tables)
+      .def_prop_rw(
+          "word", [](const TransferSettings& t) { return std::string(word_of(t.word)); },
+          [](TransferSettings& t, const std::string& word) {
+            t.word = choice_named<TransferId>("run.transfer", word);
+          });
+  add_table<RunSettings>(m, "RunSettings", tables).def_rw("transfer", &RunSettings::transfer);
   add_table<BulkViscosity>(m, "BulkViscosity", tables);
   add_table<ContactSettings>(m, "ContactSettings", tables);
   add_table<ExecutionSettings>(m, "ExecutionSettings", tables);

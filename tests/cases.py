@@ -114,7 +114,7 @@ cfl = 0.3
 energy_growth_limit = 1e9
 gravity = {gravity}
 viscosity = {{}}
-pic_damping = "5 1/s"
+transfer = {{ flip = 1.0, pic_rate = "5 1/s" }}
 [contact]
 friction = 0.3
 [material.soft]

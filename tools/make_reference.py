@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm3dpp.base.rules import requirement
-from mpm3dpp.case import body, case, grid, parts
+from mpm3dpp.case import body, case, grid, parts, transfer
 from mpm3dpp.case.detonation import Detonation
 from mpm3dpp.case.loads import Load
 from mpm3dpp.case.motion import Motion
@@ -35,6 +35,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ("grid.outflow_box", grid.GridOutflowBox, ""),
     ("grid.coarsening", grid.GridCoarsening, ""),
     ("run", parts.Run, ""),
+    ("run.transfer", transfer.Transfer, "The key with a transfer's name chooses it."),
     ("run.viscosity", parts.Viscosity, "`viscosity = {}` takes both defaults."),
     ("output", parts.Output, ""),
     ("contact", parts.Contact, ""),

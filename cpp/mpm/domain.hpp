@@ -36,8 +36,8 @@ struct Domain {
 
   double disorder = disorder_that_pays;  // share of a body's particles at which it is sorted
   TransferId transfer{};
-  double flip_share = 1.0;   // of the velocity, in "flip" and "aflip"; the rest is the grid's
-  double pic_damping = 0.0;  // rate at which particles take over the velocity of the grid [1/s]
+  double flip_share = 1.0;  // of the velocity, in "flip" and "aflip"; the rest is the grid's
+  double pic_rate = 0.0;    // at which particles take over the velocity of the grid [1/s]
 
   double time = 0.0;        // [s]
   double time_after = 0.0;  // of the step being made [s]

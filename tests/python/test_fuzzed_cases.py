@@ -43,7 +43,7 @@ end_time = "1 us"
 cfl = 0.5
 gravity = ["0 m/s^2", { sine = { amplitude = "1 m/s^2", period = "1 ms" } }]
 viscosity = { quadratic = 1.5, linear = 0.06 }
-pic_damping = "1 1/s"
+transfer = { flip = 1.0, pic_rate = "1 1/s" }
 [output]
 interval = "0.5 us"
 history_every = 2

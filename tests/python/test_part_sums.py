@@ -25,7 +25,7 @@ def expected(sim: Simulation, name: str) -> dict[str, np.ndarray]:
     centre, momentum = m @ x / m.sum(), m @ v
     angular = m @ np.cross(x - centre, v)
     kinetic = 0.5 * m @ np.sum(v**2, axis=1)
-    if sim.case.run.transfer == "apic":
+    if sim.case.run.transfer.word == "apic":
         d = sim.case.grid.dimension
         C = sim.column(name, "affine_velocity").reshape(-1, d, d)
         moment = 0.25 * CELL**2

@@ -62,4 +62,4 @@ def test_what_pic_takes_is_no_reason_for_smaller_steps() -> None:
     told = manifest({"kinetic": 100.0}, {"kinetic": 50.0, "numerical": 50.0})
     assert energy_line(told).endswith("; a smaller run.cfl or smaller cells may help")
     told.case = {"run": {"transfer": "pic"}}
-    assert energy_line(told).endswith("; what run.transfer or run.pic_damping takes is in it")
+    assert energy_line(told).endswith("; what run.transfer takes is in it")

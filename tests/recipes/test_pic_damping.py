@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from cases import CELL, SCHEMES, block, materials
-from mpm3dpp import Case, CaseError, Contact, Grid, Run, Simulation
+from mpm3dpp import Case, Contact, Grid, Run, Simulation
 
 RATE, TIME_STEP_FACTOR = 50.0, 0.2
 
@@ -21,7 +21,7 @@ def simulation(dimension: int, scheme: str, rate: float) -> Simulation:
         end_time=1.0,
         scheme=scheme,
         cfl=TIME_STEP_FACTOR,
-        pic_damping=rate,
+        transfer={"flip": 1.0, "pic_rate": rate},
         energy_growth_limit=1e9,
     )
     case = Case(
@@ -87,8 +87,3 @@ def test_noise_decays_over_time() -> None:
         left[rate] = np.abs(sim.column("body", "velocity")).max() / 0.01
     assert left[RATE] <= 1.2 * math.exp(-1.0)
     assert left[0.0] > 2.0 * left[RATE]
-
-
-def test_a_negative_rate() -> None:
-    with pytest.raises(CaseError, match=r"run\.pic_damping"):
-        Run(end_time=1.0, pic_damping=-1.0)

@@ -29,7 +29,7 @@ def short() -> Case:
 def run(threads: int, damped: bool = True) -> Simulation:
     case = short()
     if not damped:
-        case.run.pic_damping = 0.0
+        case.run.transfer = "flip"
     simulation = Simulation(case, threads)
     simulation.advance(STEPS)
     return simulation

@@ -13,7 +13,7 @@ from cases import CELL, SCHEMES, block, everything, materials
 from mpm3dpp import Case, CaseError, Contact, Grid, Run, Simulation, _core
 from mpm3dpp.io import result_hash
 
-TRANSFERS = tuple(_core.settings["run"]["transfer"]["words"][0])
+TRANSFERS = tuple(_core.transfers)
 
 
 def bases_of(transfer: str) -> list[str]:
@@ -68,8 +68,8 @@ def test_bits_do_not_depend_on_threads_fusion_and_restarts(
     dimension: int, transfer: str, tmp_path: Path
 ) -> None:
     case = everything(tmp_path, dimension, "musl", bases_of(transfer)[0], "absorbing")
-    case.run.pic_damping *= transfer == "flip"
-    case.run.transfer = transfer
+    if transfer != "flip":  # Which has PIC damping there.
+        case.run.transfer = transfer
     found = set()
     for threads, fused, restarts in ((1, True, False), (2, False, False), (2, True, True)):
         sim = Simulation(case, threads=threads, fused=fused)
@@ -144,21 +144,47 @@ def test_affine_transfers_keep_turning(scheme: str, transfer: str, left: float) 
 
 
 def test_what_goes_with_a_transfer() -> None:
-    """A basis without a constant second moment, damping beside it, shares: a sentence each."""
+    """A basis without a constant second moment, numbers of other transfers: a sentence each."""
     body = {"a": block((0, 0), (4, 4), material="solid")}
+    grid = Grid(dimension=2, cell_size=CELL, basis="gimp")
+    with pytest.raises(CaseError, match=r'run\.transfer = "apic" does not go with grid\.basis'):
+        Case(grid=grid, run=Run(end_time=1, transfer="apic"), material=materials(), body=body)
 
-    def keys(basis: str = "quadratic_bspline", **run: object) -> set[str]:
-        grid = Grid(dimension=2, cell_size=CELL, basis=basis)
-        with pytest.raises(CaseError) as raised:
-            Case(grid=grid, run=Run(end_time=1.0, **run), material=materials(), body=body)
-        return {error.key for error in (raised.value, *raised.value.others)}
 
-    assert keys("gimp", transfer="apic", pic_damping=1) == {
-        "case.run.transfer",
-        "case.run.pic_damping",
-    }
-    assert keys(transfer="apic", flip_share=0.5) == {"case.run.flip_share"}
-    run = Run(end_time=1.0, transfer={"aflip": 0.9})
-    assert (run.transfer, run.flip_share) == ("aflip", 0.9)
-    with pytest.raises(CaseError, match=r"aflip = 0\.97"):
-        Run(end_time=1.0, transfer={"aflip": 0.9, "flip": 1})
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"aflip": 0.9, "flip": 1}, r"run\.transfer must be a word, .*\{ aflip = 0\.97 \}"),
+        ({"pic_rate": 1}, r"run\.transfer must be a word, .*\{ aflip = 0\.97 \}"),
+        (3, r"run\.transfer = 3 must be a word, .*\{ aflip = 0\.97 \}"),
+        ("flipp", r'run\.transfer = "flipp" is not a known choice; did you mean "flip"'),
+        ({"apic": 1}, r'run\.transfer\.apic = 1 has no number; write transfer = "apic"'),
+        ({"flip": 1.5}, r"run\.transfer\.flip = 1\.5 must obey 0 <= f <= 1"),
+        ({"flip": 1, "pic_rate": -1}, r"run\.transfer\.pic_rate = -1 must be >= 0"),
+        ({"flip": 1, "rate": 1}, r"run\.transfer\.rate is not a known key; did you mean"),
+    ],
+)
+def test_mistakes_in_a_transfer(given: object, said: str) -> None:
+    with pytest.raises(CaseError, match=said):
+        Run(end_time=1.0, transfer=given)
+
+
+def test_a_transfer_is_written_as_it_is_given() -> None:
+    forms = ["pic", "aflip", {"flip": 0.9}, {"flip": 1.0, "pic_rate": 5.0}]
+    for form in forms:
+        run = Run(end_time=1.0, transfer=form)
+        assert run.table()["transfer"] == form
+        assert run.transfer.word == (form if isinstance(form, str) else next(iter(form)))
+    assert Run(end_time=1.0, transfer={"aflip": 0.97}).table()["transfer"] == "aflip"
+    run = Run(end_time=1.0, transfer="pic")
+    with pytest.raises(CaseError, match=r"pic_rate = 5\.0 goes with flip and aflip, and not with"):
+        run.transfer.pic_rate = 5.0
+
+
+@pytest.mark.parametrize(
+    ("key", "form"), [("pic_damping", r"\{ flip = 1\.0, pic_rate"), ("flip_share", r"\{ flip = ")]
+)
+def test_keys_of_before_name_the_table(key: str, form: str) -> None:
+    said = rf"run\.{key} = 0\.5 is a number of run\.transfer now; write transfer = {form}"
+    with pytest.raises(CaseError, match=said):
+        Run(end_time=1.0, **{key: 0.5})

@@ -58,14 +58,32 @@ struct GridSettings {
   std::optional<CoarseningSettings> coarsening;
 };
 
+/// The transfer's word, and the numbers that go with it: `aflip = 0.97` names it too.
+struct TransferSettings {
+  TransferId word = Transfers::id_of<Flip>();
+  double flip = 1.0, aflip = 0.97, pic_rate = 0.0;
+
+  static constexpr std::string_view table = "run.transfer";
+  using Self = TransferSettings;
+  static constexpr auto settings = std::tuple{
+      Setting{"flip", &Self::flip, "FLIP's share of a step's velocity, the rest being the grid's",
+              Rule::share},
+      Setting{"aflip", &Self::aflip, "the same of AFLIP", Rule::share},
+      Setting{"pic_rate", &Self::pic_rate,
+              "rate at which particles take over the velocity of the grid [1/s], beside \"flip\" "
+              "or \"aflip\"; takes away noise that the grid does not see, over very long runs",
+              Rule::not_negative, "1/s"}};
+
+  /// FLIP's share of a step's velocity, where the transfer has one.
+  double flip_share() const { return word == Transfers::id_of<Aflip>() ? aflip : flip; }
+};
+
 struct RunSettings {
   Scheme scheme = Scheme::musl;
   double cfl = 0.25;
   std::optional<double> time_step, largest_time_step;
   std::array<TimeFunction, 3> gravity{};
-  TransferId transfer = Transfers::id_of<Flip>();
-  std::optional<double> flip_share;
-  double pic_damping = 0.0;
+  TransferSettings transfer;
   double energy_growth_limit = 1.0;
   double outside_limit = 0.05;
   double volume_limit = 0.2;
@@ -89,20 +107,6 @@ struct RunSettings {
       Setting{"gravity", &Self::gravity,
               "acceleration [m/s^2], D numbers or functions of time; default zero", Rule::any,
               "m/s^2"},
-      Setting{
-          "transfer", &Self::transfer,
-          "how particles take the velocity of the grid: \"flip\", the paper's; \"apic\", which "
-          "smooths and keeps turning; \"aflip\", which smooths less; or \"pic\", which takes all "
-          "motion of a cell's size away, turning too"},
-      Setting{"flip_share", &Self::flip_share,
-              "share of a step's velocity that \"flip\" and \"aflip\" take as FLIP does, the rest "
-              "being "
-              "the grid's; default 1 in \"flip\", 0.97 in \"aflip\"",
-              Rule::share},
-      Setting{"pic_damping", &Self::pic_damping,
-              "rate at which particles take over the velocity of the grid [1/s], a share of PIC in "
-              "\"flip\"; takes away noise that the grid does not see, over very long runs",
-              Rule::not_negative, "1/s"},
       Setting{"energy_growth_limit", &Self::energy_growth_limit,
               "the run stops when the numerical error has created this share of the largest energy "
               "seen",
@@ -117,11 +121,6 @@ struct RunSettings {
               "that have failed do not count; 1 for never",
               Rule::fraction}};
 };
-
-/// The share of FLIP in its transfer, if that has one.
-inline double flip_share(const RunSettings& run) {
-  return run.flip_share.value_or(run.transfer == Transfers::id_of<Aflip>() ? 0.97 : 1.0);
-}
 
 /// What moves no bit of the results.
 struct ExecutionSettings {

@@ -8,7 +8,7 @@ namespace {
 
 /// Does the transfer go with the basis, and what is given for it with it?
 void check_transfer(const Settings& s) {
-  if (is_affine(s.run.transfer) && second_moment(s.grid.basis) == 0.0)
+  if (is_affine(s.run.transfer.word) && second_moment(s.grid.basis) == 0.0)
     throw std::invalid_argument(
         "run.transfer: an affine transfer needs a basis whose second moment is the same "
         "everywhere: "
@@ -20,6 +20,7 @@ const Settings& checked(const Settings& s) {
   check_settings(s.grid);
   if (s.grid.coarsening) check_settings(*s.grid.coarsening);
   check_settings(s.run);
+  check_settings(s.run.transfer);
   check_settings(s.contact);
   check_transfer(s);
   check_settings(s.execution);
@@ -33,8 +34,9 @@ const Settings& checked(const Settings& s) {
 
 /// Do particles take velocities of nodes that eqs. (6)-(7) correct?
 bool releases(const Settings& s) {
-  const bool takes = takes_grid_velocity(s.run.transfer) || s.run.pic_damping > 0.0 ||
-                     s.run.flip_share.value_or(1.0) < 1.0;
+  const TransferSettings& transfer = s.run.transfer;
+  const bool takes =
+      takes_grid_velocity(transfer.word) || transfer.pic_rate > 0.0 || transfer.flip_share() < 1.0;
   return takes && s.contact.enabled && !s.contact.bonded;
 }
 
@@ -66,9 +68,9 @@ Simulation<D>::Simulation(const Settings& given)
   set_grid(domain.grid, given.grid);
   domain.grid.bonded = given.contact.bonded;
   domain.gravity_of_time = given.run.gravity;
-  domain.transfer = given.run.transfer;
-  domain.flip_share = flip_share(given.run);
-  domain.pic_damping = given.run.pic_damping;
+  domain.transfer = given.run.transfer.word;
+  domain.flip_share = given.run.transfer.flip_share();
+  domain.pic_rate = given.run.transfer.pic_rate;
   domain.disorder = given.execution.disorder;
   domain.contact_settings = given.contact;
   domain.threads.resize(given.execution.threads);

@@ -77,20 +77,12 @@ def _bodies_together(case: Case) -> Found:
 
 def _transfer(case: Case) -> Found:
     """Refuse what does not go with the transfer."""
-    run, basis = case.run, case.grid.basis
-    row = _core.transfers[run.transfer]
-    if row["affine"] and not _core.bases[basis]["second_moment"]:
+    word, basis = case.run.transfer.word, case.grid.basis
+    if _core.transfers[word]["affine"] and not _core.bases[basis]["second_moment"]:
         known = [name for name, each in _core.bases.items() if each["second_moment"]]
         rule = f'does not go with grid.basis = "{basis}", whose second moment is not constant'
         remedy = f'use grid.basis = "{known[0]}"'
-        yield violation(rule, remedy, value=run.transfer, path=("run", "transfer"))
-    if run.pic_damping > 0 and run.transfer != "flip":
-        rule, path = 'is for the transfer "flip"', ("run", "pic_damping")
-        yield violation(rule, "leave it out", value=run.pic_damping, path=path)
-    if run.flip_share is not None and not row["shares"]:
-        known = [name for name, each in _core.transfers.items() if each["shares"]]
-        rule, path = f"is for the transfers {' and '.join(known)}", ("run", "flip_share")
-        yield violation(rule, "leave it out", value=run.flip_share, path=path)
+        yield violation(rule, remedy, value=word, path=("run", "transfer"))
 
 
 def _pairs(case: Case) -> Found:

@@ -12,6 +12,8 @@ from mpm3dpp.base.model import CaseModel, Count, Exactly, Flag, Text
 from mpm3dpp.base.settings import core_table
 from mpm3dpp.base.units import NonNegative, Quantity, Time
 
+from .transfer import Transfer, WordOrTable
+
 _Viscosity: Any = core_table("run.viscosity")
 _Run: Any = core_table("run")
 _Contact: Any = core_table("contact")
@@ -26,25 +28,28 @@ class Run(_Run):
 
     Attributes:
         end_time: [s].
+        transfer: how particles take the velocity of the grid: "flip", the paper's; "apic", which
+            smooths and keeps turning; "aflip", which smooths less; or "pic", which takes all motion
+            of a cell's size away, turning too.
         viscosity: artificial bulk viscosity; None for none.
     """
 
     end_time: Time
+    transfer: Annotated[Transfer, WordOrTable()] = Field(default="flip", validate_default=True)
     viscosity: Viscosity | None = None
 
-    @model_validator(mode="before")
     @classmethod
-    def _transfer_with_share(cls, given: Any) -> Any:
-        """Take `{ aflip = 0.97 }` as the two keys that it stands for."""
-        if not isinstance(given, dict) or not isinstance(given.get("transfer"), dict):
-            return given
-        table = given["transfer"]
-        if len(table) != 1 or "flip_share" in given:
-            rule = "must be a word, or a table of one word with its share"
-            remedy = "for example { aflip = 0.97 }"
-            raise violation(rule, remedy, value=table, path=("transfer",))
-        [(word, share)] = table.items()
-        return {**given, "transfer": word, "flip_share": share}
+    def complete(cls, data: Any) -> Any:
+        """Refuse keys that are in the table of the transfer now."""
+        moved = {
+            "pic_damping": 'transfer = { flip = 1.0, pic_rate = "200 1/s" }',
+            "flip_share": "transfer = { flip = 0.99 } or { aflip = 0.97 }",
+        }
+        for key in moved if isinstance(data, dict) else ():
+            if key in data:
+                rule, remedy = "is a number of run.transfer now", f"write {moved[key]}"
+                raise violation(rule, remedy, value=data[key], path=(key,))
+        return data
 
     @model_validator(mode="after")
     def _one_step(self) -> Run:

@@ -65,9 +65,8 @@ def energy_line(manifest: Manifest) -> str:
     numerical = (final["numerical"] + final["contact"]) / whole
     word = "lost" if numerical >= 0.0 else "made"
     line = f"energy: numerical terms and normal contact {word} {abs(numerical):.2%} of {of_what}"
-    run = manifest.case.get("run", {})
-    if run.get("transfer", "flip") != "flip" or run.get("pic_damping", 0.0) > 0.0:
-        line += "; what run.transfer or run.pic_damping takes is in it"
+    if manifest.case.get("run", {}).get("transfer", "flip") != "flip":
+        line += "; what run.transfer takes is in it"
     elif abs(numerical) > _NUMERICAL_WARNING:
         line += "; a smaller run.cfl or smaller cells may help"
     return line

@@ -26,7 +26,7 @@ void check_step(Report& report, const Choice<D>& choice, Scheme scheme,
 template <int D>
 void check_schemes(Report& report, const Choice<D>& choice) {
   for (const Scheme scheme : {Scheme::usf, Scheme::usl, Scheme::musl}) {
-    const bool takes = takes_grid_velocity(choice.transfer) || choice.pic_damping > 0.0;
+    const bool takes = takes_grid_velocity(choice.transfer) || choice.pic_rate > 0.0;
     const bool releases = choice.contact && (takes || choice.flip_share < 1.0);
     check_step(report, choice, scheme, stages_of<D>(scheme, false, releases));
     check_step(report, choice, scheme, stages_of<D>(scheme, true, releases));
@@ -52,7 +52,7 @@ void check_transfers(Report& report, BasisId basis) {
     choice.basis = basis;
     choice.transfer = transfer;
     choice.load = true;
-    if (Transfer::has_share) choice.flip_share = 0.9;
+    if (Transfer::has_share) choice.flip_share = 0.9, choice.pic_rate = 1e3;
     check_schemes(report, choice);
     choice.contact = true;
     for (const BodyKind kind : {BodyKind::rigid, BodyKind::prescribed, BodyKind::deformable}) {
@@ -74,7 +74,7 @@ void check_all(Report& report) {
     choice.basis = basis;
     choice.load = choice.body_force = true;
     check_schemes(report, choice);
-    choice.pic_damping = 1e3;
+    choice.pic_rate = 1e3;
     for (const BodyKind kind : {BodyKind::rigid, BodyKind::prescribed})
       for (const bool contact : {false, true}) {
         choice.kind = kind;

@@ -130,7 +130,7 @@ void check_choice(mpm::testing::Report& report) {
   Domain<D> domain;
   domain.time_step = 0.01;
   for (const double damping : {0.0, 30.0, 1e4}) {
-    domain.pic_damping = damping;
+    domain.pic_rate = damping;
     int called = 0;
     with_transfer(domain, [&]<class Transfer>(const Transfer& transfer) {
       ++called;

@@ -28,7 +28,7 @@ struct Choice {
   bool load = false;                     // a pressure and a traction on the second body
   bool body_force = false;               // on the second body
   BodyKind kind = BodyKind::deformable;  // of the first body
-  double pic_damping = 0.0;              // [1/s]
+  double pic_rate = 0.0;                 // [1/s]
   double flip_share = 1.0;
   TransferId transfer = Transfers::id_of<Flip>();
   std::array<Wall, 2 * D> walls{};
@@ -56,12 +56,12 @@ struct Twin {
     reference.S = shape(choice.basis);
     reference.half_width = half_width(choice.basis, edge);
     domain.time_step = reference.dt = 1e-5;
-    domain.pic_damping = choice.pic_damping;
+    domain.pic_rate = choice.pic_rate;
     domain.transfer = choice.transfer;
     domain.flip_share = choice.flip_share;
     const bool flips =
         choice.transfer == Transfers::id_of<Flip>() || choice.transfer == Transfers::id_of<Aflip>();
-    reference.pic = flips ? 1.0 - choice.flip_share + choice.pic_damping * domain.time_step : 1.0;
+    reference.pic = flips ? 1.0 - choice.flip_share + choice.pic_rate * domain.time_step : 1.0;
     if (is_affine(choice.transfer)) reference.moment = grid.affine_moment();
     for (int a = 0; a < D; ++a) domain.gravity[a] = reference.g[a] = 1e4 * any();
     domain.contact_settings.enabled = choice.contact;

@@ -8,7 +8,7 @@ struct Aflip : Apic {
   static constexpr std::string_view name = "aflip";
   static constexpr std::string_view doc =
       "\"flip\" with the affine part of \"apic\"; keeps what the grid does not see, as much as "
-      "`flip_share` says";
+      "its share says";
   static constexpr std::string_view source = "Fei et al. 2021, eq. 19 with no change of position";
   static constexpr bool takes_increment = true, has_share = true;
 

@@ -11,7 +11,7 @@ struct Flip {
   static constexpr std::string_view doc = "they take the change of the grid's velocity";
   static constexpr std::string_view source = "Brackbill & Ruppel 1986";
   static constexpr bool takes_increment = true, takes_grid_velocity = false, affine = false;
-  static constexpr bool has_share = true;  // run.flip_share
+  static constexpr bool has_share = true;  // of FLIP beside the grid's velocity, and pic_rate
   using Gives = Flip;                      // whose `give` it has
 
   /// From particle p to node i: m_i += m_p N_ip, eq. (2); p_i += m_p N_ip v_p, eq. (3).

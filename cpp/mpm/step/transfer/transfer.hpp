@@ -70,14 +70,14 @@ template <int D, class F>
 void with_transfer(const Domain<D>& domain, F&& f) {
   // A rate times the step, so that the damping in time does not depend on the steps' length; 1 is
   // PIC.
-  const double share =
-      std::min(domain.pic_damping * domain.time_step + 1.0 - domain.flip_share, 1.0);
+  const double damped = domain.pic_rate * domain.time_step;
+  const double share = std::min(damped + 1.0 - domain.flip_share, 1.0);
   Transfers::with(domain.transfer, [&]<class T>(const T& transfer) {
     if constexpr (std::is_same_v<T, Flip>)
       // Without damping the grid's velocity is not even read.
       if (share > 0.0) return f(FlipPic(share));
     if constexpr (std::is_same_v<T, Aflip>)
-      f(Aflip(domain.flip_share));
+      f(Aflip(std::max(domain.flip_share - damped, 0.0)));
     else
       f(transfer);
   });
