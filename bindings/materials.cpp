@@ -2,6 +2,7 @@
 #include "catalogue.hpp"
 #include "mpm/particles/make_body.hpp"
 #include "mpm/run/drive_material.hpp"
+#include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm::bindings {
 namespace {
@@ -24,12 +25,12 @@ struct CatalogueModel {
 /// The names of the columns of particles of a material; `may_leave`: there is an outflow box,
 /// `forced`: a body force, which is a formula `of_start`, of places at the start.
 template <int D>
-std::vector<std::string> columns_of(const Material& material, bool may_leave, bool forced,
-                                    bool of_start) {
+std::vector<std::string> names_of_columns(const Material& material, bool may_leave, bool forced,
+                                          bool of_start, TransferId transfer) {
   TileGrid<D> grid;
   grid.cell_size = 1.0;
   grid.outflow_box.exist = may_leave;
-  ParticlePool<D> pool = make_pool(material, grid);
+  ParticlePool<D> pool = make_pool(material, grid, columns_of(transfer));
   if (forced) add_force_columns(pool, of_start);
   std::vector<std::string> names;
   for (const ColumnInfo& info : pool.columns.infos()) names.push_back(info.name);
@@ -87,17 +88,19 @@ void add_materials(nb::module_& m) {
   m.def("catalogue", &catalogue);
   m.def(
       "column_names",
-      [](int dimension, bool may_leave, bool forced, bool of_start, double density,
-         const std::string& strength, const Parameters& parameters, const std::optional<Named>& eos,
-         const std::vector<NamedFailure>& failures, Viscosity viscosity) {
+      [](int dimension, bool may_leave, bool forced, bool of_start, const std::string& transfer,
+         double density, const std::string& strength, const Parameters& parameters,
+         const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
+         Viscosity viscosity) {
         const Material material =
             make_material(choice_of(density, strength, parameters, eos, failures, viscosity));
-        return dimension == 2 ? columns_of<2>(material, may_leave, forced, of_start)
-                              : columns_of<3>(material, may_leave, forced, of_start);
+        const TransferId id = choice_named<TransferId>("transfer", transfer);
+        return dimension == 2 ? names_of_columns<2>(material, may_leave, forced, of_start, id)
+                              : names_of_columns<3>(material, may_leave, forced, of_start, id);
       },
       nb::arg("dimension"), nb::arg("may_leave"), nb::arg("forced"), nb::arg("of_start"),
-      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
-      nb::arg("failures"), nb::arg("viscosity"),
+      nb::arg("transfer"), nb::arg("density"), nb::arg("strength"), nb::arg("parameters"),
+      nb::arg("eos").none(), nb::arg("failures"), nb::arg("viscosity"),
       "The names of the columns that particles of a material have; `may_leave`: there is an "
       "outflow box, `forced`: a body force, which is a formula `of_start`, of places at the start");
 

@@ -36,6 +36,7 @@ nb::dict all_transfers() {
     known["source"] = text(T::source);
     known["affine"] = T::affine;
     known["shares"] = T::has_share;
+    known["filters"] = T::filters;
     transfers[text(T::name)] = known;
   });
   return transfers;

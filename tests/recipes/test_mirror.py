@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -20,7 +22,7 @@ def block(lower: list[float], upper: list[float], velocity: list[float]) -> Body
 
 def run(
     bodies: dict[str, Body], low: float, basis: str, scheme: str, gravity: float,
-    steps: int = 20, factor: float = 0.25,
+    steps: int = 20, factor: float = 0.25, transfer: Any = "flip",
 ) -> Simulation:  # fmt: skip
     """Run bodies in a box from x = `low`, a slip wall there if it is zero."""
     walls = Walls(x_min="slip" if low == 0.0 else "free", y_min="slip")
@@ -31,7 +33,7 @@ def run(
             basis=basis,
             box=GridBox(lower=[low, 0.0], upper=[2.0, 2.0], walls=walls),
         ),
-        run=Run(end_time=1.0, scheme=scheme, gravity=[0.0, gravity], cfl=factor),
+        run=Run(end_time=1.0, scheme=scheme, gravity=[0.0, gravity], cfl=factor, transfer=transfer),
         contact=Contact(bonded=True),
         material={
             "solid": Material(density=1000.0, strength={"neo_hookean": {"K": 1e6, "G": 5e5}})
@@ -44,13 +46,17 @@ def run(
 
 
 @pytest.mark.parametrize("basis", BASES)
-@pytest.mark.parametrize("scheme", ["musl", "usf"])
-def test_half_a_body_at_a_wall_is_half_of_a_whole_one(basis: str, scheme: str) -> None:
+@pytest.mark.parametrize(
+    ("scheme", "transfer"), [("musl", "flip"), ("usf", "flip"), ("musl", "xpic")]
+)
+def test_half_a_body_at_a_wall_is_half_of_a_whole_one(
+    basis: str, scheme: str, transfer: str
+) -> None:
     """Thrown at the wall fast enough that particles come within half a particle of it."""
     right = block([0.0, 0.3], [0.5, 0.9], [-12.0, -3.0])
     left = block([-0.5, 0.3], [0.0, 0.9], [12.0, -3.0])
-    half = run({"right": right}, 0.0, basis, scheme, gravity=-10.0)
-    whole = run({"left": left, "right": right}, -2.0, basis, scheme, gravity=-10.0)
+    half = run({"right": right}, 0.0, basis, scheme, -10.0, transfer=transfer)
+    whole = run({"left": left, "right": right}, -2.0, basis, scheme, -10.0, transfer=transfer)
     assert half.step == whole.step == 20
     here, there = half.column("right", "position"), whole.column("right", "position")
     assert here[:, 0].min() < 0.25 * CELL  # a particle's reach is beyond the wall

@@ -116,6 +116,16 @@ def test_another_world_is_the_same_with_pic() -> None:
     check_worlds(Case.from_text(text), 1800, text, meet=False)
 
 
+@pytest.mark.parametrize(
+    ("text", "steps"), [(RINGS, 1800), (IMPACT, 600)], ids=["two rings", "impact with erosion"]
+)
+def test_another_world_is_the_same_with_xpic(text: str, steps: int) -> None:
+    given = "[run]\ntransfer = { xpic = 3, every = 2 }"
+    # Less noise, less plastic strain: so that particles erode all the same.
+    case = Case.from_text(text.replace("[run]", given).replace("limit = 1.2", "limit = 0.6"))
+    check_worlds(case, steps, text)
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_field_of_velocities_is_the_same_in_another_world(dimension: int) -> None:
     """Formulas here, and there the velocities that they give, particle by particle."""

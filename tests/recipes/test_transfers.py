@@ -62,12 +62,14 @@ def test_a_translation_is_kept(transfer: str) -> None:
     assert np.abs(sim.column("body", "velocity") - v).max() <= 1e-12  # 50 steps of 20 roundings
 
 
-@pytest.mark.parametrize("transfer", TRANSFERS)
+@pytest.mark.parametrize("transfer", [*TRANSFERS, {"xpic": 3, "every": 4}], ids=str)
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_bits_do_not_depend_on_threads_fusion_and_restarts(
-    dimension: int, transfer: str, tmp_path: Path
+    dimension: int, transfer: str | dict[str, int], tmp_path: Path
 ) -> None:
-    case = everything(tmp_path, dimension, "musl", bases_of(transfer)[0], "absorbing")
+    """The restart comes after 15 steps, with one of a filter that three others go before."""
+    basis = bases_of(transfer)[0] if isinstance(transfer, str) else "gimp"
+    case = everything(tmp_path, dimension, "musl", basis, "absorbing")
     if transfer != "flip":  # Which has PIC damping there.
         case.run.transfer = transfer
     found = set()
@@ -161,6 +163,10 @@ def test_what_goes_with_a_transfer() -> None:
         ({"apic": 1}, r'run\.transfer\.apic = 1 has no number; write transfer = "apic"'),
         ({"flip": 1.5}, r"run\.transfer\.flip = 1\.5 must obey 0 <= f <= 1"),
         ({"flip": 1, "pic_rate": -1}, r"run\.transfer\.pic_rate = -1 must be >= 0"),
+        ({"xpic": 0}, r"run\.transfer\.xpic = 0 must be >= 1"),
+        ({"xpic": 2.5}, r"run\.transfer\.xpic = 2\.5 must be a whole number"),
+        ({"xpic": 2, "every": 0}, r"run\.transfer\.every = 0 must be >= 1"),
+        ({"flip": 1, "every": 2}, r"transfer\.every = 2 goes with xpic, and not with flip; remove"),
         ({"flip": 1, "rate": 1}, r"run\.transfer\.rate is not a known key; did you mean"),
     ],
 )
@@ -170,7 +176,7 @@ def test_mistakes_in_a_transfer(given: object, said: str) -> None:
 
 
 def test_a_transfer_is_written_as_it_is_given() -> None:
-    forms = ["pic", "aflip", {"flip": 0.9}, {"flip": 1.0, "pic_rate": 5.0}]
+    forms = ["pic", "aflip", {"flip": 0.9}, {"flip": 1.0, "pic_rate": 5.0}, {"xpic": 4, "every": 2}]
     for form in forms:
         run = Run(end_time=1.0, transfer=form)
         assert run.table()["transfer"] == form

@@ -95,10 +95,14 @@ void check_finite(std::span<const double> values, const std::string& what) {
 }
 
 template <int D>
-ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid, bool affine) {
+ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
+                          const TransferColumns& transfer) {
   ParticlePool<D> pool;
   add_columns(pool, material, grid.outflow_box.exist);
-  if (affine) pool.affine = pool.columns.add("affine_velocity", "1/s", D * D, Precision::rounded);
+  if (transfer.affine)
+    pool.affine = pool.columns.add("affine_velocity", "1/s", D * D, Precision::rounded);
+  if (transfer.unseen)
+    pool.unseen = pool.columns.add("unseen_velocity", "m/s", D, Precision::rounded);
   // One particle, to ask for the speed of its waves.
   pool.columns.allocate(1);
   for (int a = 0; a < D; ++a) pool.v(a)[0] = Storage{0.0};
@@ -171,6 +175,9 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
   for (ParticlePool<D>& pool : pools)
     for (int a = 0; a < (pool.start_position < 0 ? 0 : D); ++a)
       std::copy_n(pool.x(a), pool.count(), pool.columns.component(pool.start_position + a));
+  for (ParticlePool<D>& pool : pools)
+    for (int a = 0; a < (pool.unseen < 0 ? 0 : D); ++a)
+      std::fill_n(pool.unseen_velocity(a), pool.count(), Storage{0.0});
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     ParticlePool<D>& pool = pool_of(bodies[b]);
     const std::size_t first = patches[b].begin;
@@ -184,8 +191,8 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
   }
 }
 
-template ParticlePool<2> make_pool<2>(const Material&, const TileGrid<2>&, bool);
-template ParticlePool<3> make_pool<3>(const Material&, const TileGrid<3>&, bool);
+template ParticlePool<2> make_pool<2>(const Material&, const TileGrid<2>&, const TransferColumns&);
+template ParticlePool<3> make_pool<3>(const Material&, const TileGrid<3>&, const TransferColumns&);
 template void add_force_columns<2>(ParticlePool<2>&, bool);
 template void add_force_columns<3>(ParticlePool<3>&, bool);
 template Body<2> make_body<2>(const std::string&, const Material&, const ParticlePool<2>&,

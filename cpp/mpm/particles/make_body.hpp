@@ -10,10 +10,10 @@
 namespace mpm {
 
 /// The pool of a material, with its columns declared and no particles. A wave's speed depends on
-/// the size of the grid's cells where the material is viscous. `affine`: with a column for the
-/// affine part of the velocity.
+/// the size of the grid's cells where the material is viscous.
 template <int D>
-ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid, bool affine = false);
+ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
+                          const TransferColumns& transfer = {});
 
 /// Declare the columns of particles with a body force, and their places at the start if it is a
 /// formula of these; before the pool is filled.

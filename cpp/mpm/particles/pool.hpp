@@ -19,12 +19,18 @@ struct RemovedRow {
   int body;
 };
 
+/// What a transfer keeps of particles beside their velocity.
+struct TransferColumns {
+  bool affine = false, unseen = false;  // the affine part; what a filter takes of the velocity
+};
+
 template <int D>
 struct ParticlePool {
   Columns columns;
   int position = 0;                  // first component of each column; position [m], D components
   MaterialColumns at{};              // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
   int affine = -1;                   // affine part of the velocity [1/s], D x D; -1: none
+  int unseen = -1;                   // what a filter takes of the velocity [m/s], D; -1: none
   int body_force = -1;               // force per mass [m/s^2], D components; -1: none
   int start_position = -1;           // [m], D components; -1: none
   double sound_speed = 0.0;          // of its material at the start [m/s]
@@ -46,6 +52,9 @@ struct ParticlePool {
   /// Component C_ij of the affine part of the velocity, k = D i + j [1/s].
   Storage* affine_part(int k) { return columns.rounded(affine + k); }
   const Storage* affine_part(int k) const { return columns.rounded(affine + k); }
+  /// What a filter takes of component a of the velocity [m/s].
+  Storage* unseen_velocity(int a) { return columns.rounded(unseen + a); }
+  const Storage* unseen_velocity(int a) const { return columns.rounded(unseen + a); }
   const Storage* stress(int k) const { return columns.rounded(at.stress + k); }
   Vec<double, D> position_of(std::size_t row) const {
     Vec<double, D> place;

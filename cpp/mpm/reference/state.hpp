@@ -12,11 +12,12 @@ namespace mpm::reference {
 
 template <int D>
 struct Particle {
-  Vec<double, D> x, v;   // position [m], velocity [m/s]
-  Vec<double, D> X;      // position at the start [m]
-  double m, V;           // mass [kg], volume [m^3]
-  Sym<double, D> sigma;  // stress [Pa]
-  Mat<double, D> C{};    // affine part of the velocity [1/s]
+  Vec<double, D> x, v;                             // position [m], velocity [m/s]
+  Vec<double, D> X;                                // position at the start [m]
+  double m, V;                                     // mass [kg], volume [m^3]
+  Sym<double, D> sigma;                            // stress [Pa]
+  Mat<double, D> C{};                              // affine part of the velocity [1/s]
+  Vec<double, D> unseen = Vec<double, D>::zero();  // of v, to be taken away in this step [m/s]
 };
 
 template <int D>

@@ -118,8 +118,8 @@ struct Step {
   }
 
   /// v_p += sum dv_i N_ip, eq. (17); of a share `pic` the velocity of the grid takes the place,
-  /// that before eqs. (6)-(7) and with the increment. C_p = sum N_ip v_i (x_i - x_p) / D of the
-  /// same.
+  /// that before eqs. (6)-(7) and with the increment; what a filter has found is taken away. C_p =
+  /// sum N_ip v_i (x_i - x_p) / D of the same.
   void advance_particles() {
     for (Body<D>& b : bodies) {
       if (b.prescribed()) continue;
@@ -136,6 +136,7 @@ struct Step {
         });
         if (!b.deforms()) continue;
         p.v += pic * (of_grid - p.v);
+        p.v -= p.unseen;
         p.C = C;
       }
     }

@@ -33,7 +33,7 @@ int add_material(Simulation<D>& simulation, const MaterialChoice& choice) {
   Domain<D>& domain = simulation.domain;
   domain.materials.push_back(make_material(choice));
   domain.pools.push_back(
-      make_pool(domain.materials.back(), domain.grid, is_affine(domain.transfer)));
+      make_pool(domain.materials.back(), domain.grid, columns_of(domain.transfer)));
   return static_cast<int>(domain.materials.size()) - 1;
 }
 

@@ -62,6 +62,8 @@ struct GridSettings {
 struct TransferSettings {
   TransferId word = Transfers::id_of<Flip>();
   double flip = 1.0, aflip = 0.97, pic_rate = 0.0;
+  int xpic = 4;
+  std::int64_t every = 1;
 
   static constexpr std::string_view table = "run.transfer";
   using Self = TransferSettings;
@@ -72,7 +74,16 @@ struct TransferSettings {
       Setting{"pic_rate", &Self::pic_rate,
               "rate at which particles take over the velocity of the grid [1/s], beside \"flip\" "
               "or \"aflip\"; takes away noise that the grid does not see, over very long runs",
-              Rule::not_negative, "1/s"}};
+              Rule::not_negative, "1/s"},
+      Setting{
+          "xpic", &Self::xpic,
+          "order of XPIC, how often velocities are mapped to the grid and back in a step: with "
+          "1 it is \"pic\"; the larger, the less it takes of what the grid sees, and the longer "
+          "a step takes",
+          Rule{1.0, 1000.0, false, false}},
+      Setting{"every", &Self::every,
+              "steps from one with XPIC to the next; the others are \"flip\"",
+              Rule{1.0, 1e15, false, false}}};
 
   /// FLIP's share of a step's velocity, where the transfer has one.
   double flip_share() const { return word == Transfers::id_of<Aflip>() ? aflip : flip; }

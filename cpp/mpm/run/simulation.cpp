@@ -32,12 +32,14 @@ const Settings& checked(const Settings& s) {
   return s;
 }
 
-/// Do particles take velocities of nodes that eqs. (6)-(7) correct?
-bool releases(const Settings& s) {
+/// What the transfer needs beside FLIP's stages.
+Extra extra_stages(const Settings& s) {
   const TransferSettings& transfer = s.run.transfer;
+  if (filters(transfer.word)) return Extra::filter;
+  // Do particles take velocities of nodes that eqs. (6)-(7) correct?
   const bool takes =
       takes_grid_velocity(transfer.word) || transfer.pic_rate > 0.0 || transfer.flip_share() < 1.0;
-  return takes && s.contact.enabled && !s.contact.bonded;
+  return takes && s.contact.enabled && !s.contact.bonded ? Extra::release : Extra::none;
 }
 
 template <int D>
@@ -64,13 +66,15 @@ void set_grid(TileGrid<D>& grid, const GridSettings& given) {
 template <int D>
 Simulation<D>::Simulation(const Settings& given)
     : settings(checked(given)),
-      stages(stages_of<D>(given.run.scheme, given.execution.fused, releases(given))) {
+      stages(stages_of<D>(given.run.scheme, given.execution.fused, extra_stages(given))) {
   set_grid(domain.grid, given.grid);
   domain.grid.bonded = given.contact.bonded;
   domain.gravity_of_time = given.run.gravity;
   domain.transfer = given.run.transfer.word;
   domain.flip_share = given.run.transfer.flip_share();
   domain.pic_rate = given.run.transfer.pic_rate;
+  domain.filter_order = given.run.transfer.xpic;
+  domain.filter_every = given.run.transfer.every;
   domain.disorder = given.execution.disorder;
   domain.contact_settings = given.contact;
   domain.threads.resize(given.execution.threads);

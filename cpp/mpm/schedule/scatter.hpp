@@ -120,18 +120,19 @@ class AffineVelocity {
   const Storage* columns_[D * D] = {};
 };
 
-/// Takes what particles give out of the columns of a pool. Pointers to columns and 1 / h are found
+/// Takes what particles give out of the columns of a pool, with a velocity whose first component is
+/// that of its columns. Pointers to columns and 1 / h are found
 /// once a patch (decision 0015).
 template <unsigned what, int D>
 class ParticleReader {
  public:
-  ParticleReader(const TileGrid<D>& grid, const ParticlePool<D>& pool)
+  ParticleReader(const TileGrid<D>& grid, const ParticlePool<D>& pool, int velocity)
       : local_position_(grid, pool), minus_per_cell_size_(-1.0 / grid.cell_size) {
     if constexpr ((what & gives_affine) != 0) affine_ = AffineVelocity<D>(grid, pool);
     mass_ = pool.mass();
     volume_ = pool.volume();
     if (const int q = pool.at.viscosity_pressure; q >= 0) q_ = pool.columns.component(q);
-    for (int a = 0; a < D; ++a) velocity_[a] = pool.v(a);
+    for (int a = 0; a < D; ++a) velocity_[a] = pool.columns.rounded(velocity + a);
     for (int c = 0; c < Sym<double, D>::size; ++c) stress_[c] = pool.stress(c);
   }
 
@@ -181,9 +182,9 @@ class ParticleReader {
 /// left innermost loops as calls (decision 0018).
 template <class Mapping, unsigned what, int lanes, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void scatter_by(const B& basis, const TileGrid<D>& grid,
-                                                const ParticlePool<D>& pool, const Patch<D>& patch,
-                                                const NodeRecords& nodes) {
-  const ParticleReader<what, D> reader(grid, pool);
+                                                const ParticlePool<D>& pool, int velocity,
+                                                const Patch<D>& patch, const NodeRecords& nodes) {
+  const ParticleReader<what, D> reader(grid, pool, velocity);
   DoubleBuffer<Mapping, what, D, B, record> cells(NodeStrides<D>(patch.shape), nodes);
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     cells.begin(cell);
@@ -199,7 +200,7 @@ template <class Mapping, unsigned what, int D>
 void scatter(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
              const Patch<D>& patch, const NodeRecords& nodes) {
   with_basis_and_lanes(grid, body, patch, [&](const auto& basis, auto lanes) {
-    scatter_by<Mapping, what, lanes>(basis, grid, pool, patch, nodes);
+    scatter_by<Mapping, what, lanes>(basis, grid, pool, pool.at.velocity, patch, nodes);
   });
 }
 

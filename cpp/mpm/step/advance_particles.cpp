@@ -40,17 +40,17 @@ struct LaneSums {
   }
 };
 
-/// The new velocities of the particles in the lanes, as the transfer says, stored; `dv` and
-/// `of_grid` are the sums over the nodes.
+/// The new velocities of the particles in the lanes, as the transfer says, stored; `dv` is the sum
+/// over the nodes, and `beside` that of their velocities, or what the grid has not seen.
 template <class Transfer, class Rows, class T, int D>
 MPM_INLINE inline Vec<T, D> take(const Transfer& transfer, Storage* const (&velocities)[D],
                                  const Rows& rows, const T& m, const Vec<T, D>& dv,
-                                 const Vec<T, D>& of_grid, LaneSums<T, D>& sums) {
+                                 const Vec<T, D>& beside, LaneSums<T, D>& sums) {
   Vec<T, D> v;
   unrolled<D>([&](auto a) MPM_INLINE {
     const T before = load(velocities[a], rows);
-    if constexpr (Transfer::takes_grid_velocity) {
-      v[a] = transfer.take(before, dv[a], of_grid[a]);
+    if constexpr (Transfer::takes_grid_velocity || Transfer::filters) {
+      v[a] = transfer.take(before, dv[a], beside[a]);
       // m (|v_p + dv_p|^2 - |v_p'|^2), halved at the end: what particles lose against FLIP, with
       // all of the change; of affine transfers against the start (docs/theory/step.md).
       const T kept = Transfer::affine ? before : before + dv[a];
@@ -93,6 +93,8 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   const double* mass = pool.mass();
   Storage* velocities[D];
   for (int a = 0; a < D; ++a) velocities[a] = pool.v(a);
+  [[maybe_unused]] const Storage* unseen[D];
+  for (int a = 0; a < (Transfer::filters ? D : 0); ++a) unseen[a] = pool.unseen_velocity(a);
   alignas(
       cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * half_record : 1];
   if constexpr (also == Also::remap) std::fill_n(remapped, block.count * half_record, 0.0);
@@ -109,16 +111,18 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       const Vec<T, D> xi = local_position(cell, rows);
       const auto w = weights_at(basis, xi);
       const T all = load(mass, rows), m = of_valid(rows, all);
-      Vec<T, D> dv = Vec<T, D>::zero(), of_grid = dv;
+      Vec<T, D> dv = Vec<T, D>::zero(), beside = dv;
       if constexpr (Transfer::takes_increment) dv = nodes.template vector<increment_at>(w);
       Moments<T, D, B::nodes> moments;
       if constexpr (Transfer::affine) {
         moments = moments_at<B>(xi, w);
-        affine.take(nodes, rows, w, moments, m, of_grid, sums);
+        affine.take(nodes, rows, w, moments, m, beside, sums);
       }
       if constexpr (Transfer::takes_grid_velocity && !Transfer::affine)
-        of_grid = nodes.template vector<velocity_at>(w);
-      const Vec<T, D> v = take(transfer, velocities, rows, m, dv, of_grid, sums);
+        beside = nodes.template vector<velocity_at>(w);
+      if constexpr (Transfer::filters)
+        unrolled<D>([&](auto a) MPM_INLINE { beside[a] = load(unseen[a], rows); });
+      const Vec<T, D> v = take(transfer, velocities, rows, m, dv, beside, sums);
       // USF: eq. (16) with the same weights, which are those of the positions before.
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {

@@ -17,6 +17,10 @@ inline constexpr auto words<Scheme> = std::to_array<Word<Scheme>>(
      {"usl", Scheme::usl, "last (Sulsky, Chen & Schreyer 1994)"},
      {"musl", Scheme::musl, "last, with remapped velocities (Sulsky, Zhou & Schreyer 1995)"}});
 
+/// Stages that are there for some transfers alone. Release: they take the velocity of the grid, and
+/// bodies may meet. Filter: a part of the particles' velocity is taken away.
+enum class Extra { none, release, filter };
+
 template <int D>
 struct Schemes {
   using S = Stages<D>;
@@ -26,6 +30,7 @@ struct Schemes {
   /// so that this step's forces are those of the new stress, and both do the same work.
   static constexpr StageList<D> usf = std::array{
       S::activate,
+      S::filter,
       S::map_momentum,
       S::fold_momentum,
       S::exchange_momentum,
@@ -55,6 +60,7 @@ struct Schemes {
   /// particles enter empty cells, as dv_i is huge at a node of almost no mass.
   static constexpr StageList<D> usl = std::array{
       S::activate,
+      S::filter,
       S::map_momentum,
       S::fold_momentum,
       S::exchange_momentum,
@@ -85,6 +91,7 @@ struct Schemes {
   /// with v_i + dv_i all the same, eq. (16).
   static constexpr StageList<D> musl = std::array{
       S::activate,
+      S::filter,
       S::map_momentum,
       S::fold_momentum,
       S::exchange_momentum,
@@ -124,32 +131,33 @@ struct Schemes {
   static constexpr StageList<D> musl_fused =
       fuse(musl, S::map_both, S::exchange_both, S::advance_and_remap, S::update_remapped_and_move);
 
-  /// For transfers that take increments alone, as FLIP does, which have nothing of the correction.
-  static constexpr StageList<D> without_release(const StageList<D>& list) {
-    return without(without(list, S::release), S::restore);
+  /// The list as a transfer wants it: those of the velocity of the grid release particles from
+  /// contact's correction, XPIC filters.
+  static constexpr StageList<D> with(const StageList<D>& list, Extra extra) {
+    StageList<D> rest = list;
+    if (extra != Extra::filter) rest = without(rest, S::filter);
+    if (extra != Extra::release) rest = without(without(rest, S::release), S::restore);
+    return rest;
   }
-  static constexpr std::array<StageList<D>, 3> released = {usf, usl, musl};
-  // Particles are moved with the corrected velocity and advanced with another: with USF they are
-  // read twice.
-  static constexpr std::array<StageList<D>, 3> released_fused = {usf, usl_fused, musl_fused};
-  static constexpr std::array<StageList<D>, 3> plain = {without_release(usf), without_release(usl),
-                                                        without_release(musl)},
-                                               plain_fused = {fuse(plain[0], S::advance_and_move),
-                                                              without_release(usl_fused),
-                                                              without_release(musl_fused)};
-
-  static constexpr const StageList<D>& of(Scheme scheme, bool fused, bool releases) {
-    const auto k = static_cast<std::size_t>(scheme);
-    if (releases) return fused ? released_fused[k] : released[k];
-    return fused ? plain_fused[k] : plain[k];
+  using Lists = std::array<StageList<D>, 3>;  // by extra
+  static constexpr Lists with_each(const StageList<D>& list) {
+    return {with(list, Extra::none), with(list, Extra::release), with(list, Extra::filter)};
   }
+  static constexpr std::array<Lists, 3> plain = {with_each(usf), with_each(usl), with_each(musl)};
+  // Particles that are released are moved with the corrected velocity and advanced with another:
+  // with USF they are read twice.
+  static constexpr std::array<Lists, 3> fused = {
+      Lists{fuse(with(usf, Extra::none), S::advance_and_move), with(usf, Extra::release),
+            fuse(with(usf, Extra::filter), S::advance_and_move)},
+      with_each(usl_fused), with_each(musl_fused)};
 };
 
-/// The stages of a step, as a scheme lists them or with neighbours fused, to the same bits;
-/// `releases`: the transfer takes the velocity of the grid, and bodies may meet.
+/// The stages of a step, as a scheme lists them or with neighbours fused, to the same bits.
 template <int D>
-std::span<const Stage<D>> stages_of(Scheme scheme, bool fused, bool releases = false) {
-  const StageList<D>& list = Schemes<D>::of(scheme, fused, releases);
+std::span<const Stage<D>> stages_of(Scheme scheme, bool fused, Extra extra = Extra::none) {
+  const auto& lists = fused ? Schemes<D>::fused : Schemes<D>::plain;
+  const StageList<D>& list =
+      lists[static_cast<std::size_t>(scheme)][static_cast<std::size_t>(extra)];
   return {list.stages.data(), list.count};
 }
 

@@ -10,6 +10,10 @@ namespace mpm {
 template <int D>
 void activate_tiles(Domain<D>& domain);
 
+/// What the grid does not see of the particles' velocities, for transfers that take it away: XPIC.
+template <int D>
+void filter_velocities(Domain<D>& domain);
+
 /// Nodal mass and momentum from the particles, eqs. (2)-(3). Clears all fields of the nodes, and
 /// leaves what walls with images mirror of the weight (ghost weights).
 template <int D>
@@ -145,10 +149,14 @@ struct Stages : Data {
   // The nodes are written as their memory is lent to the lists until momentum is mapped.
   static constexpr Row activate{"activate tiles", mpm::activate_tiles<D>,
                                 of_particles | of_rigid | volume | stress | load_pieces |
-                                    body_force | lists | left_cells | patch_sums,
+                                    body_force | unseen | lists | left_cells | patch_sums,
                                 of_particles | of_rigid | volume | stress | load_pieces |
-                                    body_force | lists | left_cells | patch_sums | node_mass |
-                                    node_velocity | node_force};
+                                    body_force | unseen | lists | left_cells | patch_sums |
+                                    node_mass | node_velocity | node_force};
+  // Before momentum is mapped, so that it has the nodes for itself and nothing of contact's
+  // correction; velocities stay until they are advanced, as the energies are those of FLIP's step.
+  static constexpr Row filter{"filter velocities", mpm::filter_velocities<D>, lists | of_particles,
+                              unseen | node_mass | node_velocity, true};
   static constexpr Row map_momentum{
       "map momentum", mpm::map_momentum<D>, lists | of_particles | of_rigid,
       node_mass | node_momentum | ghost_weights | node_dashpots, true};
@@ -202,7 +210,7 @@ struct Stages : Data {
                                node_velocity | contacts};
   static constexpr Row advance_particles{
       "advance particles", mpm::advance_particles<D>,
-      lists | of_particles | of_rigid | node_velocity | node_increments | patch_sums,
+      lists | of_particles | of_rigid | unseen | node_velocity | node_increments | patch_sums,
       velocity | rigid_velocity | patch_sums, true};
   // Before anything takes their velocities: the remap in MUSL, the end of the step in the others.
   static constexpr Row hold_rigid{"project rigid velocities", mpm::project_rigid_velocities<D>,

@@ -243,6 +243,7 @@ def _columns(case: Case, material: str) -> list[str]:
         may_leave=case.grid.outflow_box is not None,
         forced=bool(given),
         of_start=any(isinstance(value, Expression) and value.is_of_start for value in given),
+        transfer=case.run.transfer.word,
         viscosity=case.viscosity_of(material),
         **case.material[material].for_core(),
     )

@@ -29,8 +29,9 @@ class Run(_Run):
     Attributes:
         end_time: [s].
         transfer: how particles take the velocity of the grid: "flip", the paper's; "apic", which
-            smooths and keeps turning; "aflip", which smooths less; or "pic", which takes all motion
-            of a cell's size away, turning too.
+            smooths and keeps turning; "aflip", which smooths less; "xpic", which takes noise that
+            the grid does not see; or "pic", which takes all motion of a cell's size away, turning
+            too.
         viscosity: artificial bulk viscosity; None for none.
     """
 

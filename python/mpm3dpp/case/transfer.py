@@ -12,7 +12,10 @@ from mpm3dpp.base.errors import nearest, report, violation
 from mpm3dpp.base.settings import core_table
 
 _Transfer: Any = core_table("run.transfer")
-_GOES_WITH = {"pic_rate": "shares"}  # Key -> the property of the transfers that it goes with.
+_GOES_WITH = {
+    "pic_rate": "shares",
+    "every": "filters",
+}  # Key -> the property of the transfers that it goes with.
 _FORM = "for example { aflip = 0.97 }"
 
 
@@ -20,7 +23,8 @@ class Transfer(_Transfer):
     """How particles take the velocity of the grid.
 
     A word, `transfer = "apic"`, or a table of a word with its number and what goes with it,
-    `{ flip = 1.0, pic_rate = "200 1/s" }`. Equations: docs/theory/step.md, transfers.
+    `{ flip = 1.0, pic_rate = "200 1/s" }` or `{ xpic = 4, every = 10 }`.
+    Equations: docs/theory/step.md, transfers.
     """
 
     _word: str = PrivateAttr("flip")

@@ -61,6 +61,7 @@ struct Motion3 {
   const char* name;
   std::array<double, 3> velocity, gravity;
   bool plate;  // the body below shakes as prescribed
+  TransferId transfer = Transfers::id_of<Flip>();
 };
 
 /// Two blocks side by side on a third, elastic and neo-Hookean (E about 1e7 Pa, waves of 100 m/s),
@@ -71,6 +72,7 @@ std::unique_ptr<Simulation<D>> stack(Scheme scheme, const Motion3& motion, int t
   settings.grid.dimension = D;
   settings.grid.cell_size = 1.0;
   settings.run.scheme = scheme;
+  settings.run.transfer.word = motion.transfer;
   settings.grid.basis = scheme == Scheme::usf ? basis_id<Linear> : basis_id<Gimp>;
   settings.run.cfl = 0.3;
   for (std::size_t a = 0; a < 3; ++a) settings.run.gravity[a] = motion.gravity[a];
@@ -126,9 +128,11 @@ std::size_t allocations_of(Simulation<D>& simulation, std::int64_t steps) {
 
 // Together through many tiles; and resting on a floor, sliding, the contacts loaded in every step,
 // with a pressure, in a region that is kept, before a wall that absorbs.
-constexpr Motion3 motions[] = {{"through tiles", {40.0, 40.0, 40.0}, {0.0, 0.0, 0.0}, false},
-                               {"on a floor", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, false},
-                               {"on a plate", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, true}};
+constexpr Motion3 motions[] = {
+    {"through tiles", {40.0, 40.0, 40.0}, {0.0, 0.0, 0.0}, false},
+    {"on a floor", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, false},
+    {"on a plate", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, true},
+    {"on a plate, filtered", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, true, Transfers::id_of<Xpic>()}};
 
 template <int D>
 void check_steps(mpm::testing::Report& report, Scheme scheme, const Motion3& motion) {

@@ -32,6 +32,7 @@ class Comparison {
     const auto update_stress = [&] { carry_loads(step, v), step.update_stress(v); };
     const std::map<std::string_view, std::function<void()>> stages = {
         {"activate tiles", [&] { lists(); }},
+        {"filter velocities", [&] { filter(); }},
         {"map momentum", later(momentum)},
         {"map momentum and forces", later(momentum | forces)},
         {"fold momentum", later(momentum)},
@@ -133,6 +134,23 @@ class Comparison {
         f(patch, block, n, i, twin_.reference.bodies[static_cast<std::size_t>(patch.body)]);
       }
     }
+  }
+  /// In each step whose number `filter_every` divides, counted from 1.
+  void filter() {
+    const Domain<D>& domain = twin_.domain;
+    const bool now = (++steps_) % domain.filter_every == 0;
+    filter_velocities(twin_.reference, now ? domain.filter_order : 0);
+    for (reference::Body<D>& body : twin_.reference.bodies)
+      for (reference::Particle<D>& p : body.particles)
+        if (!now || !body.deforms()) p.unseen = Vec<double, D>::zero();
+    if (!now) return;
+    const ParticlePool<D>& pool = domain.pools[0];
+    for (const Patch<D>& patch : domain.grid.patches)
+      for (const std::uint32_t k : pool.rows(patch)) {
+        const auto& body = twin_.reference.bodies[static_cast<std::size_t>(patch.body)];
+        for (int a = 0; a < D; ++a)
+          CHECK_CLOSE(pool.unseen_velocity(a)[k], body.particles[pool.id[k]].unseen[a], 1e-10);
+      }
   }
   /// Every particle is in the list of the cell in which the reference has it.
   void lists() {
@@ -248,8 +266,9 @@ class Comparison {
 
   Report& report;
   Twin<D>& twin_;
-  unsigned pending_ = 0;  // data that has been written and not yet compared
-  bool forced_ = false;   // the nodes have all forces, and not yet increments
+  std::int64_t steps_ = 0;  // with a filter or not
+  unsigned pending_ = 0;    // data that has been written and not yet compared
+  bool forced_ = false;     // the nodes have all forces, and not yet increments
   // Of all steps so far.
   double external_ = 0.0, load_work_ = 0.0, absorbed_ = 0.0, motion_work_ = 0.0;
   Vec<double, D> pushed_ = Vec<double, D>::zero();

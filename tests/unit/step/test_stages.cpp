@@ -26,10 +26,11 @@ void check_step(Report& report, const Choice<D>& choice, Scheme scheme,
 template <int D>
 void check_schemes(Report& report, const Choice<D>& choice) {
   for (const Scheme scheme : {Scheme::usf, Scheme::usl, Scheme::musl}) {
+    Extra extra = filters(choice.transfer) ? Extra::filter : Extra::none;
     const bool takes = takes_grid_velocity(choice.transfer) || choice.pic_rate > 0.0;
-    const bool releases = choice.contact && (takes || choice.flip_share < 1.0);
-    check_step(report, choice, scheme, stages_of<D>(scheme, false, releases));
-    check_step(report, choice, scheme, stages_of<D>(scheme, true, releases));
+    if (choice.contact && (takes || choice.flip_share < 1.0)) extra = Extra::release;
+    check_step(report, choice, scheme, stages_of<D>(scheme, false, extra));
+    check_step(report, choice, scheme, stages_of<D>(scheme, true, extra));
   }
 }
 
@@ -54,12 +55,14 @@ void check_transfers(Report& report, BasisId basis) {
     choice.load = true;
     if (Transfer::has_share) choice.flip_share = 0.9, choice.pic_rate = 1e3;
     check_schemes(report, choice);
+    if (Transfer::filters) choice.filter_order = 3, choice.filter_every = 2;
     choice.contact = true;
     for (const BodyKind kind : {BodyKind::rigid, BodyKind::prescribed, BodyKind::deformable}) {
       choice.kind = kind;
       check_schemes(report, choice);
     }
     put_walls(choice);
+    choice.filter_every = 1;
     check_schemes(report, choice);
     choice.kind = BodyKind::prescribed;
     check_schemes(report, choice);

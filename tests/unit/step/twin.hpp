@@ -8,6 +8,7 @@
 #include "mpm/reference/absorb.hpp"
 #include "mpm/reference/body_forces.hpp"
 #include "mpm/reference/contact.hpp"
+#include "mpm/reference/filter.hpp"
 #include "mpm/reference/loads.hpp"
 #include "mpm/reference/prescribed.hpp"
 #include "mpm/reference/works.hpp"
@@ -31,6 +32,8 @@ struct Choice {
   double pic_rate = 0.0;                 // [1/s]
   double flip_share = 1.0;
   TransferId transfer = Transfers::id_of<Flip>();
+  int filter_order = 1;
+  std::int64_t filter_every = 1;
   std::array<Wall, 2 * D> walls{};
 };
 
@@ -59,8 +62,10 @@ struct Twin {
     domain.pic_rate = choice.pic_rate;
     domain.transfer = choice.transfer;
     domain.flip_share = choice.flip_share;
+    domain.filter_order = choice.filter_order;
+    domain.filter_every = choice.filter_every;
     const bool flips =
-        choice.transfer == Transfers::id_of<Flip>() || choice.transfer == Transfers::id_of<Aflip>();
+        choice.transfer != Transfers::id_of<Pic>() && choice.transfer != Transfers::id_of<Apic>();
     reference.pic = flips ? 1.0 - choice.flip_share + choice.pic_rate * domain.time_step : 1.0;
     if (is_affine(choice.transfer)) reference.moment = grid.affine_moment();
     for (int a = 0; a < D; ++a) domain.gravity[a] = reference.g[a] = 1e4 * any();
@@ -115,7 +120,8 @@ struct Twin {
     choice.density = density;
     choice.strength = {"elastic", {{"E", E}, {"nu", nu}}};
     domain.materials.push_back(make_material(choice));
-    domain.pools.push_back(make_pool(domain.materials[0], domain.grid, is_affine(domain.transfer)));
+    domain.pools.push_back(
+        make_pool(domain.materials[0], domain.grid, columns_of(domain.transfer)));
   }
   /// Two bodies that overlap: the second begins at two fifths of the box along x.
   void add_body(int k, BodyKind kind) {

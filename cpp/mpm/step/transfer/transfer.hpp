@@ -9,6 +9,7 @@
 #include "mpm/step/transfer/aflip.hpp"
 #include "mpm/step/transfer/flip_pic.hpp"
 #include "mpm/step/transfer/pic.hpp"
+#include "mpm/step/transfer/xpic.hpp"
 
 namespace mpm {
 
@@ -34,9 +35,11 @@ struct Mapping {
 };
 
 /// `take` has the velocity of the particle, the sum of the increments, if `takes_increment`, and
-/// that of the velocities, if `takes_grid_velocity`: what particles lose against FLIP then goes to
-/// the ledger. With `affine` particles have a column for the affine part of the velocity, and
-/// `give` has first moments. `Gives` is the transfer whose `give` it has.
+/// that of the velocities, if `takes_grid_velocity`; if it `filters`, what the grid has not seen of
+/// the particle's velocity before the step, for which there is a column and a stage. What particles
+/// lose against FLIP by the last two goes to the ledger. With `affine` particles have a column for
+/// the affine part of the velocity, and `give` has first moments. `Gives` is the transfer whose
+/// `give` it has.
 template <class T>
 concept TransferModel = requires {
   { T::name } -> std::convertible_to<std::string_view>;
@@ -45,6 +48,7 @@ concept TransferModel = requires {
   { T::takes_grid_velocity } -> std::convertible_to<bool>;
   { T::takes_increment } -> std::convertible_to<bool>;
   { T::affine } -> std::convertible_to<bool>;
+  { T::filters } -> std::convertible_to<bool>;
   { T::has_share } -> std::convertible_to<bool>;
   typename T::Gives;
 };
@@ -52,9 +56,10 @@ concept TransferModel = requires {
 template <TransferModel... T>
 struct TransferList : ChoiceList<TransferId, T...> {
   static constexpr std::array<bool, sizeof...(T)> affine = {T::affine...};
+  static constexpr std::array<bool, sizeof...(T)> filters = {T::filters...};
   static constexpr std::array<bool, sizeof...(T)> takes_grid_velocity = {T::takes_grid_velocity...};
 };
-using Transfers = TransferList<Flip, Pic, Apic, Aflip>;
+using Transfers = TransferList<Flip, Pic, Apic, Aflip, Xpic>;
 template <>
 inline constexpr auto words<TransferId> = Transfers::words_of();
 
@@ -63,6 +68,14 @@ constexpr bool is_affine(TransferId id) { return Transfers::affine[static_cast<s
 /// Do they take the velocity of the grid?
 constexpr bool takes_grid_velocity(TransferId id) {
   return Transfers::takes_grid_velocity[static_cast<std::size_t>(id)];
+}
+/// Is a part of their velocity filtered out?
+constexpr bool filters(TransferId id) { return Transfers::filters[static_cast<std::size_t>(id)]; }
+constexpr TransferColumns columns_of(TransferId id) { return {is_affine(id), filters(id)}; }
+/// Is it in the step being made? Steps count from the start of the run, restarts or not.
+template <int D>
+bool filters_now(const Domain<D>& domain) {
+  return filters(domain.transfer) && (domain.step + 1) % domain.filter_every == 0;
 }
 
 /// f(transfer) for that of the run.
@@ -76,6 +89,8 @@ void with_transfer(const Domain<D>& domain, F&& f) {
     if constexpr (std::is_same_v<T, Flip>)
       // Without damping the grid's velocity is not even read.
       if (share > 0.0) return f(FlipPic(share));
+    if constexpr (T::filters)
+      if (!filters_now(domain)) return f(Flip());
     if constexpr (std::is_same_v<T, Aflip>)
       f(Aflip(std::max(domain.flip_share - damped, 0.0)));
     else
