@@ -120,9 +120,8 @@ class AffineVelocity {
   const Storage* columns_[D * D] = {};
 };
 
-/// Takes what particles give out of the columns of a pool, with a velocity whose first component is
-/// that of its columns. Pointers to columns and 1 / h are found
-/// once a patch (decision 0015).
+/// Takes what particles give out of the columns of a pool; `velocity` is the first component of the
+/// velocity among them. Pointers to columns and 1 / h are found once a patch (decision 0015).
 template <unsigned what, int D>
 class ParticleReader {
  public:

@@ -38,6 +38,14 @@ void check_lists(mpm::testing::Report& report) {
   const Stage<D> other{"other", nullptr, Data::mass, Data::node_velocity};
   CHECK(!independent(reader, writer) && !independent(writer, reader));
   CHECK(independent(reader, other));
+  // Stages that some transfers want cost the others nothing.
+  for (const Scheme scheme : {Scheme::usf, Scheme::usl, Scheme::musl})
+    for (const bool fused : {false, true}) {
+      const std::size_t plain = stages_of<D>(scheme, fused).size();
+      CHECK_EQUAL(place<D>(scheme, fused, "filter velocities"), plain);
+      CHECK_EQUAL(stages_of<D>(scheme, fused, Extra::filter).size(), plain + 1);
+      CHECK(stages_of<D>(scheme, fused, Extra::release).size() >= plain + 2);
+    }
   CHECK_EQUAL(stages_of<D>(Scheme::musl, false).size(),
               stages_of<D>(Scheme::musl, true).size() + 4);
 }
