@@ -17,8 +17,10 @@ from mpm3dpp.base.errors import nearest, violation
 from mpm3dpp.base.model import Text
 from mpm3dpp.base.settings import functions, table_of_rows
 from mpm3dpp.base.time_functions import Timed, TimedVector, TimeFunction
-from mpm3dpp.shapes.shells import LATTICE, SHELLS
-from mpm3dpp.shapes.surfaces import Surface, sides, surface
+from mpm3dpp.shapes.particle_faces import faces
+from mpm3dpp.shapes.shells import LATTICE, SHELLS, unmoved
+from mpm3dpp.shapes.surface_parts import Surface
+from mpm3dpp.shapes.surfaces import AXIS_NAMES, sides, surface
 
 if TYPE_CHECKING:
     from .body import Body
@@ -48,8 +50,12 @@ class Load(_LoadValues):
 
     Attributes:
         body: its name.
-        side: of the body's shape: `x_min` to `z_max` of a box; `outer` of what is round, `inner`
-            of a ring or tube, `lower` and `upper` of a cylinder or tube; `all`.
+        side: of the body's shape: `x_min` to `z_max` of a box, or of a body that is given by its
+            particles; `outer` of what is round, `inner` of a ring, tube or funnel, `lower` and
+            `upper` of a cylinder, tube, frustum or funnel; `nose`, `outer`, `end` of an ogive rod;
+            `side_0`, from the first corner to the second, and so on of a polygon; `1.outer`, side
+            `outer` of the shape with the number 1, from 0, of a union, difference or intersection,
+            as far as it is on the surface of all; `all`.
     """
 
     body: Text
@@ -115,14 +121,8 @@ def check_loads(case: Case) -> Iterator[PydanticCustomError]:
             rule = "does not deform, and a load acts on bodies that do"
             remedy = "give its material another strength, remove its motion, or load another body"
             yield violation(rule, remedy, value=load.body, path=(*path, "body"))
-        known = sides(body.shape, dimension) if body.shape is not None else []
-        if not known:
-            given = "given particle by particle"
-            what = f"a {body.shape.kind}" if body.shape is not None else given
-            rule = f"cannot be found: body.{load.body} is {what}, which has no named sides"
-            remedy = "give the body as one box, disc, ring, sphere, cylinder or tube"
-            yield violation(rule, remedy, value=load.side, path=(*path, "side"))
-        elif load.side not in known:
+        known = sides_of(body, dimension)
+        if load.side not in known:
             rule = f"is not a side of the {_kind(body)} body.{load.body}"
             yield violation(rule, nearest(load.side, known), value=load.side, path=(*path, "side"))
         kind, value = load.value()
@@ -132,11 +132,15 @@ def check_loads(case: Case) -> Iterator[PydanticCustomError]:
             yield violation(rule, remedy, path=(*path, kind))
 
 
+def sides_of(body: Body, dimension: int) -> list[str]:
+    """Return the names of the sides of a body that can be loaded."""
+    if body.shape is not None:
+        return sides(body.shape)
+    return [f"{a}_{end}" for a in AXIS_NAMES[:dimension] for end in ("min", "max")] + ["all"]
+
+
 def _kind(body: Body) -> str:
-    shape: Any = body.shape
-    while hasattr(shape, "shape"):
-        shape = shape.shape
-    return str(shape.kind)
+    return unmoved(body.shape).kind if body.shape is not None else "set of particles"
 
 
 def pieces(case: Case, name: str, positions: Array, spacing: float) -> Pieces:
@@ -158,9 +162,14 @@ def pieces(case: Case, name: str, positions: Array, spacing: float) -> Pieces:
     load = case.load[name]
     dimension = positions.shape[1]
     shape = case.body[load.body].shape
-    assert shape is not None
     finer = _FINER[dimension, case.filled_by(load.body)]
-    side = surface(shape, load.side, spacing / finer)
+    if shape is not None:
+        side = surface(shape, load.side, spacing / finer)
+    else:
+        side = faces(positions, spacing, load.side)
+    if not len(side.points):
+        rule = "is nowhere on the surface: the other shapes cover it or cut it off"
+        raise case.error(("load", name, "side"), rule, "load another side", value=load.side)
     points, owner = nearest_particles(positions, side.points, spacing)
     lost = np.bincount(points, minlength=len(side.points)) == 0
     if lost.any():

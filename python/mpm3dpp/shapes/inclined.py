@@ -56,6 +56,10 @@ class Polygon(Shape):
         b = np.roll(a, -1, axis=0)
         return float(0.5 * np.sum(a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]))
 
+    def is_anticlockwise(self) -> bool:
+        """Return in which sense the corners run."""
+        return self._signed() > 0.0
+
     def _crossing(self) -> tuple[int, int] | None:
         """Return the numbers of two sides, not neighbours, that meet; side k starts at point k."""
         a = self._corners()
@@ -183,31 +187,32 @@ class Funnel(Shape):
             raise violation("must be x or y in 2D", "leave it out for y", path=("axis",))
         return self
 
-    def _up(self) -> int:
+    def up(self) -> int:
+        """Return the number of its axis."""
         return AXES[self.axis] if self.axis is not None else len(self.centre) - 1
 
-    def _across(self) -> float:
+    def across(self) -> float:
         """Return the thickness of the wall of the cone, measured away from the axis [m]."""
         slope = (self.inlet_radius - self.outlet_radius) / self.height
         return self.thickness * math.hypot(1.0, slope)
 
     def bounds(self) -> Bounds:
-        half = np.full(len(self.centre), self.inlet_radius + self._across())
+        half = np.full(len(self.centre), self.inlet_radius + self.across())
         lower, upper = np.array(self.centre) - half, np.array(self.centre) + half
-        up = self._up()
+        up = self.up()
         lower[up], upper[up] = self.centre[up] - self.stem, self.centre[up] + self.height
         return lower, upper
 
     def inside(self, points: Points, grow: float) -> Mask:
-        height, distance = _arm(points, self.centre, self._up())
+        height, distance = _arm(points, self.centre, self.up())
         slope = (self.inlet_radius - self.outlet_radius) / self.height
         radius = self.outlet_radius + slope * np.maximum(height, 0.0)
         wide = grow * math.hypot(1.0, slope)
-        between = (distance > radius - wide) & (distance < radius + self._across() + wide)
+        between = (distance > radius - wide) & (distance < radius + self.across() + wide)
         return between & (height > -self.stem - grow) & (height < self.height + grow)
 
     def volume(self) -> float:
-        across, a, b = self._across(), self.outlet_radius, self.inlet_radius
+        across, a, b = self.across(), self.outlet_radius, self.inlet_radius
         if len(self.centre) == 2:
             return 2.0 * across * (self.height + self.stem)
         cone = math.pi * across * (a + b + across) * self.height

@@ -59,19 +59,19 @@ class OgiveRod(Shape):
         """Length of the nose [m]: radius sqrt(4 crh - 1), where the arc is tangent to the rod."""
         return self.radius * math.sqrt(4.0 * self.crh - 1.0)
 
-    def _axis(self) -> tuple[int, float]:
+    def axis(self) -> tuple[int, float]:
         """Return the axis's number and the sign of the way from the tip to the flat end."""
         return "xyz".index(self.towards[-1]), 1.0 if self.towards[0] == "-" else -1.0
 
     def bounds(self) -> Bounds:
-        axis, sign = self._axis()
+        axis, sign = self.axis()
         lower, upper = np.array(self.tip) - self.radius, np.array(self.tip) + self.radius
         ends = sorted((self.tip[axis], self.tip[axis] + sign * self.length))
         lower[axis], upper[axis] = ends
         return lower, upper
 
     def inside(self, points: Points, grow: float) -> Mask:
-        axis, sign = self._axis()
+        axis, sign = self.axis()
         along = sign * (points[:, axis] - self.tip[axis])
         off = points - np.array(self.tip)
         off[:, axis] = 0.0
