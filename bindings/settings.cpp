@@ -55,9 +55,9 @@ nb::dict all_history_terms() {
   return terms;
 }
 
-nb::dict all_part_columns() {
+nb::dict described(std::span<const PartColumn> rows) {
   nb::dict columns;
-  for (const PartColumn& column : part_columns)
+  for (const PartColumn& column : rows)
     columns[text(column.name)] = nb::make_tuple(text(column.unit), text(column.meaning));
   return columns;
 }
@@ -126,7 +126,8 @@ void add_catalogues(nb::module_& m) {
   m.attr("bases") = all_bases();
   m.attr("transfers") = all_transfers();
   m.attr("history_terms") = all_history_terms();
-  m.attr("part_columns") = all_part_columns();
+  m.attr("part_columns") = described(part_columns);
+  m.attr("total_columns") = described(total_columns);
   m.attr("load_kinds") = all_load_kinds();
   m.attr("derived_fields") = all_derived_fields();
   m.attr("operations") = all_operations();

@@ -197,7 +197,9 @@ void def_records(SimulationClass& simulation) {
            of_any([](auto& s) { return to_numpy(s.history.take(), history_terms.size()); }))
       .def("part_sums", of_any([](auto& s) {
              require(s, Phase::ready, "call prepare() before part_sums()");
-             return to_numpy(part_sums(s.domain), part_columns.size());
+             const auto parts = part_sums(s.domain);
+             return nb::make_tuple(balance_row(s.domain.ledger.angular, angular_totals(parts)),
+                                   to_numpy(rows_of(parts), part_columns.size()));
            }))
       .def("contact_pairs", of_any([](auto& s) { return s.domain.contact.records.all(); }))
       .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))

@@ -271,9 +271,10 @@ def history_page() -> str:
         "",
         *table({name: (term["unit"], term["meaning"]) for name, term in terms.TERMS.items()}),
         "",
-        "Some 16 steps apart, and where a frame is written, a row has these too, those after the",
-        "first three for each body A (all grains of an entry count as one) if there are no more",
-        f"than {part_cells.PART_LIMIT}:",
+        "Some 16 steps apart, and where a frame is written, a row has these too, those with",
+        "`body_A` for each body A (all grains of an entry count as one) if there are no more",
+        f"than {part_cells.PART_LIMIT}. How angular momentum adds up: [its",
+        "balance](../theory/step.md#the-balance-of-angular-momentum).",
         "",
         *table(
             part_cells.TOTALS

@@ -61,7 +61,7 @@ def test_sums_of_bodies(dimension: int, transfer: str) -> None:
             v = np.random.default_rng(seed).uniform(-1, 1, sim.column(name, "velocity").shape)
             sim.set_velocity(name, v)
         sim.advance(5)
-        found.append(sim.core.part_sums())
+        found.append(sim.core.part_sums()[1])
     assert np.array_equal(found[0], found[1])
     for row, name in zip(found[0], blocks, strict=True):
         sums = dict(zip(PART_COLUMNS, row, strict=True))

@@ -26,7 +26,8 @@ def outcome(simulation: Simulation) -> tuple[object, ...]:
     limiter = core.limiter()
     return (
         *(core.step, core.time, core.dt, core.eroded(), core.left(), states, pairs, summary, loads),
-        *(limiter.body, limiter.particle, core.history().tobytes(), result_hash(core)),
+        *(limiter.body, limiter.particle, core.history().tobytes(), core.part_sums()[0]),
+        result_hash(core),
     )
 
 

@@ -7,6 +7,7 @@
 #include "mpm/grid/shared_lists.hpp"
 #include "mpm/layout/node_bits.hpp"
 #include "mpm/layout/node_records.hpp"
+#include "mpm/math/vec.hpp"
 
 namespace mpm {
 
@@ -27,6 +28,12 @@ struct NodeBlock {
   NodeField<record> remapped(int a) const { return {records.data + remapped_at + a}; }    // [m/s]
   NodeField<half_record> dashpot_factor(int a) const { return {dashpots().data + a}; }    // [kg/s]
   NodeField<half_record> dashpot_force(int a) const { return {dashpots().data + a}; }     // [N]
+  /// The vector at number `at` of a node's record.
+  Vec<double, D> vector(int node, int at) const {
+    Vec<double, D> v;
+    for (int a = 0; a < D; ++a) v[a] = records[node][at + a];
+    return v;
+  }
   HalfRecords dashpots() const { return {records[count]}; }  // behind the records
 };
 

@@ -60,6 +60,7 @@ struct Ledger {
   std::array<double, 3> motion_impulse{};       // that they have given [N s]
   double prescribed_kinetic = 0.0;              // of the bodies with prescribed motion [J]
   std::array<double, 3> prescribed_momentum{};  // [kg m/s]
+  AngularLedger angular;
 
   double numerical() const { return mapping + time_integration + transferred; }
   double residual() const {
@@ -131,6 +132,8 @@ struct Ledger {
                         s.stress.force_power + second + contacts.friction -
                         contacts.friction_first - at_end;
     largest = std::max({largest, std::abs(start), std::abs(external)});
+    angular.add(patches);
+    angular.removed = by_erosion.angular_momentum + out_of_region.angular_momentum;
   }
 };
 

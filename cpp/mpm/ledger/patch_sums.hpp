@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "mpm/ledger/angular_ledger.hpp"
 #include "mpm/materials/material_block.hpp"
 #include "mpm/math/exact_sum.hpp"
 
@@ -38,6 +39,7 @@ struct PatchSums {
   PrescribedSums<D> prescribed;
   double load_first = 0.0, load_second = 0.0;        // the same of loads, body forces too [J]
   double dashpot_first = 0.0, dashpot_second = 0.0;  // the same of walls that absorb [J]
+  AngularImpulses angular;                           // in the step; summed by AngularLedger
 
   /// f(number) for all that are summed over the patches, in one order.
   template <class F>

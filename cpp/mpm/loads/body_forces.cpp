@@ -63,6 +63,23 @@ void evaluate_force(const Domain<D>& domain, const BodyForce<D>& force, const Pa
   }
 }
 
+/// Angular impulse of the body force on a patch's particles; what is not added is not counted.
+template <int D>
+Vector3 angular_impulse(const Domain<D>& domain, const Patch<D>& patch,
+                        const ParticlePool<D>& pool) {
+  Vector3 moment = Vector3::zero();
+  for (const std::uint32_t row : pool.rows(patch)) {
+    Vec<double, D> force;
+    for (int a = 0; a < D; ++a) {
+      const double b = pool.columns.component(pool.body_force + a)[row];
+      const bool added = moves_within_cell(b, domain.time_step, domain.grid.cell_size);
+      force[a] = added ? pool.mass()[row] * b : 0.0;
+    }
+    moment += cross(in_space<D>(pool.position_of(row)), in_space<D>(force));
+  }
+  return domain.time_step * moment;
+}
+
 }  // namespace
 
 /// f_i += sum m_p b_p N_ip, beside eq. (9), with b_p at the particle in the middle of the step.
@@ -76,6 +93,7 @@ void add_body_forces(Domain<D>& domain) {
     if (number < 0) return;
     ParticlePool<D>& pool = domain.pool_of(patch);
     evaluate_force(domain, domain.body_forces[static_cast<std::size_t>(number)], patch, pool);
+    domain.sums[p].angular.loads += angular_impulse(domain, patch, pool);
     const NodeBlock<D> block = domain.grid.block(p);
     for_each_weight(domain, patch, [&](std::uint32_t row, int node, double N) {
       for (int a = 0; a < D; ++a) {

@@ -8,10 +8,10 @@
 namespace mpm {
 namespace {
 
-/// f(force [N], nodes) for the pieces of a load that a patch's particles carry; nodes(g) calls
-/// g(node, N) for the nodes around the middle of the piece with their linear functions there. The
-/// force and, once nodes are advanced, its work go through this one loop, at the same places, so
-/// that the work is exactly that of the force given: particles move later.
+/// f(force [N], nodes, place [m]) for the pieces of a load that a patch's particles carry; nodes(g)
+/// calls g(node, N) for the nodes around the middle of the piece with their linear functions there.
+/// The force and, once nodes are advanced, its work go through this one loop, at the same places,
+/// so that the work is exactly that of the force given: particles move later.
 template <int D, class F>
 void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& f) {
   const TileGrid<D>& grid = domain.grid;
@@ -45,13 +45,19 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
       }
       const int first = around.first + patch.shape.distance(shift);
       assert(first >= 0 && first + patch.shape.corner_offset.back() < patch.shape.node_count);
-      f(load.force_on(piece), [&](auto&& g) {
+      Vec<double, D> place;
+      for (int a = 0; a < D; ++a) {
+        const auto k = static_cast<std::size_t>(a);
+        place[a] = grid.origin[a] + grid.cell_size * (around.lower[k] + shift[k] + xi[a]);
+      }
+      const auto each_node = [&](auto&& g) {
         for (int corner = 0; corner < Tile<D>::corners; ++corner) {
           double N = 1.0;
           for (int a = 0; a < D; ++a) N *= corner >> a & 1 ? xi[a] : 1.0 - xi[a];
           g(first + patch.shape.corner_offset[static_cast<std::size_t>(corner)], N);
         }
-      });
+      };
+      f(load.force_on(piece), each_node, place);
     });
   });
 }
@@ -79,13 +85,16 @@ void scatter_loads(Domain<D>& domain, std::size_t p) {
   const NodeBlock<D> block = domain.grid.block(p);
   for (std::size_t l = 0; l < domain.loads.size(); ++l) {
     Vec<double, D>& total = domain.load_parts[p * domain.loads.size() + l];
-    for_each_loaded_piece(domain, p, l, [&](const Vec<double, D>& force, auto&& nodes) {
-      // Per patch and load, so that no thread adds to another's; summed exactly below.
-      total += force;
-      nodes([&](int node, double N) {
-        for (int a = 0; a < D; ++a) block.force(a)[node] += N * force[a];
-      });
-    });
+    for_each_loaded_piece(
+        domain, p, l, [&](const Vec<double, D>& force, auto&& nodes, const Vec<double, D>& place) {
+          // Per patch and load, so that no thread adds to another's; summed exactly below.
+          total += force;
+          domain.sums[p].angular.loads +=
+              domain.time_step * cross(in_space<D>(place), in_space<D>(force));
+          nodes([&](int node, double N) {
+            for (int a = 0; a < D; ++a) block.force(a)[node] += N * force[a];
+          });
+        });
   }
 }
 
@@ -96,17 +105,18 @@ Work work_of_loads(Domain<D>& domain, std::size_t p) {
   const NodeBlock<D> block = domain.grid.block(p);
   Work work;
   for (std::size_t l = 0; l < domain.loads.size(); ++l)
-    for_each_loaded_piece(domain, p, l, [&](const Vec<double, D>& force, auto&& nodes) {
-      nodes([&](int node, double N) {
-        for (int a = 0; a < D; ++a) {
-          // Before the step the velocity was v - dv; first and half of second together are the work
-          // in the middle of the step.
-          const double f = N * force[a], dv = block.increment(a)[node];
-          work.first += f * (block.velocity(a)[node] - dv);
-          work.second += f * dv;
-        }
-      });
-    });
+    for_each_loaded_piece(domain, p, l,
+                          [&](const Vec<double, D>& force, auto&& nodes, const Vec<double, D>&) {
+                            nodes([&](int node, double N) {
+                              for (int a = 0; a < D; ++a) {
+                                // Before the step the velocity was v - dv; first and half of second
+                                // together are the work in the middle of the step.
+                                const double f = N * force[a], dv = block.increment(a)[node];
+                                work.first += f * (block.velocity(a)[node] - dv);
+                                work.second += f * dv;
+                              }
+                            });
+                          });
   return {domain.time_step * work.first, 0.5 * domain.time_step * work.second};
 }
 

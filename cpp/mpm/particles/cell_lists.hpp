@@ -31,9 +31,10 @@ struct Arrival {
 template <int D>
 struct Removed {
   std::size_t count = 0;
-  double mass = 0.0;                        // [kg]
-  double kinetic = 0.0, recoverable = 0.0;  // [J]
-  double momentum[D] = {};                  // [kg m/s]
+  double mass = 0.0;                           // [kg]
+  double kinetic = 0.0, recoverable = 0.0;     // [J]
+  double momentum[D] = {};                     // [kg m/s]
+  Vector3 angular_momentum = Vector3::zero();  // about the origin [N m s]
 };
 
 /// Reused from step to step, so that a step allocates nothing, and shared by all bodies.

@@ -85,6 +85,30 @@ double kinetic_energy(const ParticlePool<D>& pool, std::uint32_t row, double aff
   return sum;
 }
 
+/// The axial vector of the affine part of a particle's velocity, eps_kab C_ba [1/s].
+template <int D>
+Vector3 turning(const ParticlePool<D>& pool, std::uint32_t row) {
+  Vector3 w = Vector3::zero();
+  if (pool.affine < 0) return w;
+  const auto C = [&](int i, int j) { return double{pool.affine_part(D * i + j)[row]}; };
+  w[2] = C(1, 0) - C(0, 1);
+  if constexpr (D == 3) {
+    w[0] = C(2, 1) - C(1, 2);
+    w[1] = C(0, 2) - C(2, 0);
+  }
+  return w;
+}
+
+/// Angular momentum of a particle about a point [N m s], with that of the affine part.
+template <int D>
+Vector3 angular_momentum(const ParticlePool<D>& pool, std::uint32_t row, double affine_moment,
+                         const Vector3& about) {
+  Vec<double, D> v;
+  for (int a = 0; a < D; ++a) v[a] = pool.v(a)[row];
+  const Vector3 arm = in_space<D>(pool.position_of(row)) - about;
+  return pool.mass()[row] * (cross(arm, in_space<D>(v)) + affine_moment * turning(pool, row));
+}
+
 /// How many entries of its pool's lists a patch with so many particles gets: some come and go.
 constexpr std::uint32_t room_for(std::uint32_t count) { return count + count / 16 + 1; }
 /// How many entries there are behind the ranges of all patches, for those that outgrow theirs.

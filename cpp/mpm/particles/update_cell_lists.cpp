@@ -83,6 +83,7 @@ void take_out(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t ro
   sums.mass += m;
   sums.kinetic += kinetic_energy(pool, row, affine_moment);
   for (int a = 0; a < D; ++a) sums.momentum[a] += m * pool.v(a)[row];
+  sums.angular_momentum += angular_momentum(pool, row, affine_moment, Vector3::zero());
   const double energy = pool.columns.component(pool.at.recoverable)[row];
   // Energies are kept per initial volume, m / rho_0.
   sums.recoverable += energy * m / body.initial_density;

@@ -67,8 +67,12 @@ void advance_prescribed_nodes(Domain<D>& domain, std::size_t p) {
   for (int n = 0; n < patch.shape.node_count; ++n) {
     Index<D> node = patch.shape.index(n);
     for (int a = 0; a < D; ++a) node[a] += first[a];
-    const Vector3 dv = motion.increment_at(in_space<D>(grid.position_of(node)));
+    const Vector3 place = in_space<D>(grid.position_of(node));
+    const Vector3 dv = motion.increment_at(place);
     const bool own = patch.owned[n];
+    if (own)
+      sums.angular.on_prescribed +=
+          domain.time_step * cross(place, in_space<D>(block.vector(n, force_at)));
     for (int a = 0; a < D; ++a) {
       // The force here is that of contact alone, as no stress is mapped and no gravity added: with
       // the time step J_i, which is finite though the mass counts as infinite.

@@ -129,6 +129,7 @@ void find_rigid_motion(Domain<D>& domain) {
     motion.velocity = (1.0 / sums.mass) * sums.momentum;
     motion.inertia = sums.inertia;
     const unsigned constrained = constrained_axes(domain, body, sums.extent);
+    const Vector3 before = cross(motion.centre, sums.momentum) + sums.angular;
     // In the plane about z alone.
     motion.free_axes = D == 2 ? 4u : 7u;
     for (int a = 0; a < 3; ++a) {
@@ -138,6 +139,14 @@ void find_rigid_motion(Domain<D>& domain) {
       if (constrained & ~(1u << a)) motion.free_axes &= ~(1u << a);
     }
     motion.spin = spin_of(motion.inertia, sums.angular, motion.free_axes);
+    if (constrained == 0) return;
+    // Of the body as a whole: with the sums of the first of its patches.
+    const auto patches =
+        patches_of<D>(domain.grid.patches, static_cast<int>(domain.rigid_bodies[k]));
+    const Vector3 after =
+        cross(motion.centre, sums.mass * motion.velocity) + motion.inertia * motion.spin;
+    domain.sums[static_cast<std::size_t>(&patches[0] - &domain.grid.patches[0])].angular.walls +=
+        after - before;
   });
 }
 

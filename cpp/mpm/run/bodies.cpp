@@ -7,6 +7,7 @@
 
 #include "mpm/particles/make_body.hpp"
 #include "mpm/run/measures.hpp"
+#include "mpm/run/part_sums.hpp"
 #include "mpm/run/start_affine.hpp"
 #include "mpm/run/time_step.hpp"
 
@@ -122,6 +123,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
   }
   require(simulation, Phase::ready, "");
   const double before = kinetic_energy(domain);
+  const Vector3 turned = angular_totals(part_sums(domain)).all;
   ParticlePool<D>& pool = domain.pool_of(b);
   for_each_row(domain.grid.patches, pool, number, b.removed, [&](std::uint32_t row) {
     for (std::size_t a = 0; a < D; ++a)
@@ -133,6 +135,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
   ledger.external += kinetic_energy(domain) - before;
   ledger.kinetic = kinetic_energy(domain);
   ledger.momentum = momentum(domain);
+  ledger.angular.start += angular_totals(part_sums(domain)).all - turned;
   simulation.watch.steps.start_from(ledger.made(), ledger.load_work);
   probe_speeds(domain);
   update_time_step(simulation);

@@ -197,6 +197,9 @@ void check_rest(const Simulation<D>& simulation) {
   check(simulation.history.plausible(), "its history is damaged");
   check(finite(domain.ledger.kinetic) && finite(domain.ledger.residual()),
         "its energies are damaged");
+  const AngularLedger& angular = domain.ledger.angular;
+  const AngularBalance balance = balance_of(angular, angular.start, angular.prescribed_start);
+  check(finite(balance.numerical) && finite(balance.motion), "its angular momentum is damaged");
   const Watch<D>& watch = simulation.watch;
   check(watch.steps.plausible() && watch.looked <= domain.step, "its warnings are damaged");
   const auto number_of = [&](int n) { return n >= 0 && std::cmp_less(n, domain.bodies.size()); };

@@ -52,24 +52,10 @@ Vector3 velocity(const ParticlePool<D>& pool, std::uint32_t row) {
   return in_space<D>(v);
 }
 
-/// The axial vector of the affine part, eps_kab C_ba [1/s].
-template <int D>
-Vector3 turning(const ParticlePool<D>& pool, std::uint32_t row) {
-  Vector3 w = Vector3::zero();
-  if (pool.affine < 0) return w;
-  const auto C = [&](int i, int j) { return double{pool.affine_part(D * i + j)[row]}; };
-  w[2] = C(1, 0) - C(0, 1);
-  if constexpr (D == 3) {
-    w[0] = C(2, 1) - C(1, 2);
-    w[1] = C(0, 2) - C(2, 0);
-  }
-  return w;
-}
-
 }  // namespace
 
 template <int D>
-std::vector<double> part_sums(Domain<D>& domain) {
+std::vector<PartSums> part_sums(Domain<D>& domain) {
   const double moment = domain.grid.affine_moment();
   const auto [numbers, groups] = number_groups(domain);
   const auto linear = sum_groups<8>(
@@ -78,32 +64,62 @@ std::vector<double> part_sums(Domain<D>& domain) {
         const Vector3 x = m * in_space<D>(pool.position_of(row)), p = m * velocity(pool, row);
         return std::array{m, x[0], x[1], x[2], p[0], p[1], p[2], kinetic_energy(pool, row, moment)};
       });
-  const auto centre_of = [&](std::size_t group) {
-    const auto& s = linear[group];
-    return (s[0] > 0.0 ? 1.0 / s[0] : 0.0) * Vector3{s[1], s[2], s[3]};
-  };
-  const auto angular = sum_groups<3>(
-      domain, numbers, groups,
-      [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t group) {
-        const Vector3 arm = in_space<D>(pool.position_of(row)) - centre_of(group);
-        const Vector3 L =
-            pool.mass()[row] * (cross(arm, velocity(pool, row)) + moment * turning(pool, row));
-        return std::array{L[0], L[1], L[2]};
-      });
-  std::vector<double> rows;
+  std::vector<PartSums> parts(groups);
   for (std::size_t g = 0; g < groups; ++g) {
     const auto& s = linear[g];
-    const Vector3 x = centre_of(g);
-    const double per_mass = s[0] > 0.0 ? 1.0 / s[0] : 0.0;
-    for (const double value :
-         {s[0], x[0], x[1], x[2], per_mass * s[4], per_mass * s[5], per_mass * s[6], s[4], s[5],
-          s[6], s[7], angular[g][0], angular[g][1], angular[g][2]})
-      rows.push_back(value);
+    parts[g].mass = s[0];
+    parts[g].centre = (s[0] > 0.0 ? 1.0 / s[0] : 0.0) * Vector3{s[1], s[2], s[3]};
+    parts[g].momentum = {s[4], s[5], s[6]};
+    parts[g].kinetic = s[7];
+  }
+  const auto angular =
+      sum_groups<3>(domain, numbers, groups,
+                    [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t group) {
+                      const Vector3 L = angular_momentum(pool, row, moment, parts[group].centre);
+                      return std::array{L[0], L[1], L[2]};
+                    });
+  for (std::size_t g = 0; g < groups; ++g)
+    parts[g].angular_momentum = {angular[g][0], angular[g][1], angular[g][2]};
+  for (std::size_t b = 0; b < numbers.size(); ++b)
+    parts[numbers[b]].prescribed = domain.bodies[b].is_prescribed();
+  return parts;
+}
+
+std::vector<double> rows_of(const std::vector<PartSums>& parts) {
+  std::vector<double> rows;
+  rows.reserve(parts.size() * part_columns.size());
+  for (const PartSums& part : parts) {
+    const Vector3 velocity = (part.mass > 0.0 ? 1.0 / part.mass : 0.0) * part.momentum;
+    rows.push_back(part.mass);
+    for (const Vector3& vector : {part.centre, velocity, part.momentum})
+      for (int a = 0; a < 3; ++a) rows.push_back(vector[a]);
+    rows.push_back(part.kinetic);
+    for (int a = 0; a < 3; ++a) rows.push_back(part.angular_momentum[a]);
   }
   return rows;
 }
 
-template std::vector<double> part_sums<2>(Domain<2>&);
-template std::vector<double> part_sums<3>(Domain<3>&);
+AngularTotals angular_totals(const std::vector<PartSums>& parts) {
+  AngularTotals totals;
+  for (const PartSums& part : parts) {
+    const Vector3 about_origin = part.angular_momentum + cross(part.centre, part.momentum);
+    totals.all += about_origin;
+    if (part.prescribed) totals.prescribed += about_origin;
+  }
+  return totals;
+}
+
+std::vector<double> balance_row(const AngularLedger& ledger, const AngularTotals& totals) {
+  const AngularBalance b = balance_of(ledger, totals.all, totals.prescribed);
+  std::vector<double> row;
+  row.reserve(total_columns.size());
+  for (const Vector3& term :
+       {b.momentum, b.gravity, b.loads, b.walls, b.motion, b.removed, b.numerical})
+    for (int a = 0; a < 3; ++a) row.push_back(term[a]);
+  return row;
+}
+
+template std::vector<PartSums> part_sums<2>(Domain<2>&);
+template std::vector<PartSums> part_sums<3>(Domain<3>&);
 
 }  // namespace mpm

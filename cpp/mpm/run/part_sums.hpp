@@ -1,6 +1,6 @@
 #pragma once
 // What each body has: mass, centre, momentum, energy, angular momentum. Bodies of one group, the
-// grains of an entry, count as one.
+// grains of an entry, count as one. And the balance of the angular momentum of all.
 #include <array>
 #include <string_view>
 #include <vector>
@@ -30,9 +30,56 @@ inline constexpr auto part_columns = std::to_array<PartColumn>({
     {"angular_momentum_z", "N m s", "likewise"},
 });
 
-/// Those numbers of each group, in the order of the groups' first bodies, row by row; zeros for one
-/// without particles. They depend on no order of patches or threads.
+/// The balance of angular momentum about the origin (ledger/angular_ledger.hpp), likewise.
+inline constexpr auto total_columns = std::to_array<PartColumn>({
+    {"angular_momentum_x", "N m s", "of all that takes part, about the origin; 0 in 2D"},
+    {"angular_momentum_y", "N m s", "likewise"},
+    {"angular_momentum_z", "N m s", "likewise"},
+    {"angular_impulse_gravity_x", "N m s", "that gravity has given it so far"},
+    {"angular_impulse_gravity_y", "N m s", "likewise"},
+    {"angular_impulse_gravity_z", "N m s", "likewise"},
+    {"angular_impulse_loads_x", "N m s", "that loads on surfaces and body forces have given"},
+    {"angular_impulse_loads_y", "N m s", "likewise"},
+    {"angular_impulse_loads_z", "N m s", "likewise"},
+    {"angular_impulse_walls_x", "N m s", "that walls have given, absorbing ones too"},
+    {"angular_impulse_walls_y", "N m s", "likewise"},
+    {"angular_impulse_walls_z", "N m s", "likewise"},
+    {"angular_impulse_motion_x", "N m s", "that prescribed motions have given"},
+    {"angular_impulse_motion_y", "N m s", "likewise"},
+    {"angular_impulse_motion_z", "N m s", "likewise"},
+    {"angular_momentum_removed_x", "N m s",
+     "that eroded particles and those that left took with them"},
+    {"angular_momentum_removed_y", "N m s", "likewise"},
+    {"angular_momentum_removed_z", "N m s", "likewise"},
+    {"angular_momentum_numerical_x", "N m s",
+     "that the method has lost, negative: made; what the start and the impulses leave"},
+    {"angular_momentum_numerical_y", "N m s", "likewise"},
+    {"angular_momentum_numerical_z", "N m s", "likewise"},
+});
+
+struct PartSums {
+  double mass = 0.0;                           // [kg]
+  Vector3 centre, momentum;                    // [m]; [kg m/s]
+  double kinetic = 0.0;                        // [J]
+  Vector3 angular_momentum = Vector3::zero();  // about the centre [N m s]
+  bool prescribed = false;                     // is its motion
+};
+
+/// Of each group, in the order of the groups' first bodies; zeros for one without particles. They
+/// depend on no order of patches or threads.
 template <int D>
-std::vector<double> part_sums(Domain<D>& domain);
+std::vector<PartSums> part_sums(Domain<D>& domain);
+
+/// As `part_columns`, row by row.
+std::vector<double> rows_of(const std::vector<PartSums>& parts);
+
+/// Angular momentum about the origin of all, and of bodies whose motion is prescribed [N m s].
+struct AngularTotals {
+  Vector3 all = Vector3::zero(), prescribed = Vector3::zero();
+};
+AngularTotals angular_totals(const std::vector<PartSums>& parts);
+
+/// As `total_columns`.
+std::vector<double> balance_row(const AngularLedger& ledger, const AngularTotals& totals);
 
 }  // namespace mpm

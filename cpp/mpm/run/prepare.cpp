@@ -7,6 +7,7 @@
 #include "mpm/particles/make_body.hpp"
 #include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
+#include "mpm/run/part_sums.hpp"
 #include "mpm/run/start_affine.hpp"
 #include "mpm/run/time_step.hpp"
 
@@ -51,6 +52,9 @@ void start_ledger(Domain<D>& domain) {
   ledger.internal = initial_internal_energy(domain);
   ledger.start = ledger.kinetic + ledger.internal;
   ledger.momentum = momentum(domain);
+  const AngularTotals angular = angular_totals(part_sums(domain));
+  ledger.angular.start = angular.all;
+  ledger.angular.prescribed_start = angular.prescribed;
   for (const Patch<D>& patch : domain.grid.patches)
     if (domain.body_of(patch).is_prescribed()) ledger.add_prescribed(domain.pool_of(patch), patch);
 }

@@ -4,16 +4,33 @@
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
 #include "mpm/walls/absorb.hpp"
-#include "mpm/walls/mirror.hpp"
+#include "mpm/walls/reactions.hpp"
 
 namespace mpm {
 namespace {
 
-/// 1 at the nodes that a patch owns, 0 at those that another patch counts: as factors, so that the
-/// loop over nodes has no branch and each shared node enters the ledger once.
+/// First moment of the mass that a patch's particles have given, sum m_i x_i over the nodes it owns
+/// [kg m]. By rows along the first axis, with the indices within the block until the end.
 template <int D>
-void ownership(const Patch<D>& patch, int node_count, double* own) {
-  for (int n = 0; n < node_count; ++n) own[n] = patch.owned[n] ? 1.0 : 0.0;
+Vector3 first_moment(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block,
+                     const double* own) {
+  const Index<D>& nodes = patch.shape.nodes;
+  double mass = 0.0;
+  Vec<double, D> indices = Vec<double, D>::zero();
+  Index<D> row{};
+  for (int n = 0; n < block.count; n += nodes[0]) {
+    double of_row = 0.0, along = 0.0;
+    for (int i = 0; i < nodes[0]; ++i) {
+      const double m = own[n + i] * block.records[n + i][mass_at];
+      of_row += m;
+      along += i * m;
+    }
+    mass += of_row;
+    indices[0] += along;
+    for (std::size_t a = 1; a < D; ++a) indices[static_cast<int>(a)] += row[a] * of_row;
+    for (std::size_t a = 1; a < D && ++row[a] == nodes[a]; ++a) row[a] = 0;
+  }
+  return mass * place_of(grid, patch, patch.shape.low) + grid.cell_size * in_space<D>(indices);
 }
 
 /// Walls take up the force along the axes they hold. It becomes -m g, the product that gravity adds
@@ -58,6 +75,43 @@ NodeWork advance_block(const NodeBlock<D>& block, const double* own, const Vec<d
   return done;
 }
 
+/// Angular impulse of the walls on the nodes that they hold: they take up force and weight along
+/// these axes. Before `hold_at_walls`.
+template <int D>
+Vector3 impulse_of_holding(const Domain<D>& domain, const Patch<D>& patch,
+                           const NodeBlock<D>& block, const double* own) {
+  const Vector3 moment = moment_held(domain.grid, patch, own, [&](int node) {
+    return block.vector(node, force_at) + block.mass()[node] * domain.gravity;
+  });
+  return -domain.time_step * moment;
+}
+
+/// Angular impulses on the nodes of a patch, once these and those beyond walls have their
+/// increments.
+template <int D>
+void add_angular_impulses(const Domain<D>& domain, const Patch<D>& patch, const NodeBlock<D>& block,
+                          const double* own, AngularImpulses& sums) {
+  const double dt = domain.time_step;
+  const auto& grid = domain.grid;
+  const bool has_gravity = dot(domain.gravity, domain.gravity) > 0.0;
+  Vector3 mass_moment = Vector3::zero();
+  if (has_gravity) mass_moment = first_moment(grid, patch, block, own);
+  if (patch.at_wall) {
+    // What is left of the moment of folding (walls/reactions.hpp), by who owns the node beyond.
+    sums.walls += moment_of_folding(grid, patch, [&](int node) {
+      const double m = patch.owned[node] ? block.mass()[node] : 0.0;
+      return m * (dt * domain.gravity - block.vector(node, increment_at));
+    });
+    if (grid.walls.absorb()) sums.walls += dt * moment_of_dashpots(grid, patch, block, own);
+    // The mass of a node beyond a wall is with that of its image too.
+    for_each_ghost_node(grid, patch, [&](int node, int image, const WallImage<D>&) {
+      const double m = patch.owned[node] ? block.mass()[node] : 0.0;
+      mass_moment += m * (place_of(grid, patch, node) - place_of(grid, patch, image));
+    });
+  }
+  if (has_gravity) sums.gravity += dt * cross(mass_moment, in_space<D>(domain.gravity));
+}
+
 }  // namespace
 
 /// Eq. (8), m_i dv_i = (f_i + m_i g) dt, with eq. (10) in the form m_i g: exact as gravity is
@@ -72,11 +126,11 @@ void advance_nodes(Domain<D>& domain) {
   for_each_patch(domain, deformable | free_rigid, [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
-    hold_at_walls(domain, patch, block);
     double own[BlockShape<D>::nodes_max];
-    ownership(patch, block.count, own);
-    // What moves beyond a wall is the image's: its mass and force have been folded there.
-    for_each_ghost_node(grid, patch, [&](int node, int, const WallImage<D>&) { own[node] = 0.0; });
+    own_nodes(grid, patch, own);
+    PatchSums<D>& sums = domain.sums[p];
+    if (patch.at_wall) sums.angular.walls += impulse_of_holding(domain, patch, block, own);
+    hold_at_walls(domain, patch, block);
     const NodeWork done = advance_block(block, own, domain.gravity, dt);
     Work loads, dashpots;
     if (absorb && patch.at_wall) dashpots = work_of_dashpots(block, own, dt);
@@ -96,7 +150,7 @@ void advance_nodes(Domain<D>& domain) {
     // are both turned do the same work as those of the image, which has the force.
     if (loaded) loads = work_of_loads(domain, p);
     if (domain.has_body_forces()) loads += work_of_body_force(domain, p);
-    PatchSums<D>& sums = domain.sums[p];
+    add_angular_impulses(domain, patch, block, own, sums.angular);
     // What is left is work of internal and contact forces; loads, dashpots and gravity have terms
     // of their own in the ledger, with the velocity in the middle of the step.
     sums.force_work = dt * (done.work + weight_first) - loads.first - dashpots.first;

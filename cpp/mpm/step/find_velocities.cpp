@@ -1,7 +1,9 @@
 // From the momenta that have been summed to velocities: v_i = p_i / m_i.
 #include "mpm/rigid/prescribed_bodies.hpp"
+#include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
-#include "mpm/walls/mirror.hpp"
+#include "mpm/step/transfer/transfer.hpp"
+#include "mpm/walls/reactions.hpp"
 
 namespace mpm {
 namespace {
@@ -26,10 +28,48 @@ void find(Domain<D>& domain, int at, F&& prescribed) {
   });
 }
 
+/// f(patch, block, its sum) for the patches at walls of bodies that take the velocity of the grid,
+/// to count what walls change of their angular momentum; a part of it was counted when momenta were
+/// folded.
+template <int D, class F>
+void for_each_mapped_at_walls(Domain<D>& domain, F&& f) {
+  if (grid_share(domain) == 0.0) return;
+  for_each_patch(domain, deformable, [&](std::size_t p) {
+    const Patch<D>& patch = domain.grid.patches[p];
+    if (patch.at_wall) f(patch, domain.grid.block(p), domain.sums[p].angular.mapped);
+  });
+}
+
+/// Nodes that walls hold lose their momentum.
+template <int D>
+void add_moments_held(Domain<D>& domain) {
+  for_each_mapped_at_walls(
+      domain, [&](const Patch<D>& patch, const NodeBlock<D>& block, Vector3& sum) {
+        double own[BlockShape<D>::nodes_max];
+        own_nodes(domain.grid, patch, own);
+        sum -= grid_share(domain) * moment_held(domain.grid, patch, own, [&](int node) {
+                 return block.vector(node, momentum_at);
+               });
+      });
+}
+
+/// Nodes beyond walls get the velocity of their images.
+template <int D>
+void add_moments_beyond(Domain<D>& domain) {
+  for_each_mapped_at_walls(
+      domain, [&](const Patch<D>& patch, const NodeBlock<D>& block, Vector3& sum) {
+        sum -= grid_share(domain) * moment_of_folding(domain.grid, patch, [&](int node) {
+                 const double m = patch.owned[node] ? block.mass()[node] : 0.0;
+                 return m * block.vector(node, velocity_at);
+               });
+      });
+}
+
 }  // namespace
 
 template <int D>
 void find_velocities(Domain<D>& domain) {
+  add_moments_held(domain);
   find(domain, velocity_at,
        [&](const Body<D>& body, const Patch<D>& patch, const NodeBlock<D>& block) {
          // That of the last step: in (6)-(7) a body has the velocity with which it arrives, in
@@ -37,6 +77,7 @@ void find_velocities(Domain<D>& domain) {
          // (docs/theory/motion.md).
          set_rigid_velocity(domain.grid, patch, block, body.motion->before);
        });
+  add_moments_beyond(domain);
 }
 
 template <int D>

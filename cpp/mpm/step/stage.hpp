@@ -38,15 +38,19 @@ struct Data {
     left_cells = 1u << 21,  // whether particles have left the cells of their lists
     body_force = 1u << 22,  // of particles, and their places at the start
     unseen = 1u << 23,      // what is filtered out of their velocities
+    // Of the patches' sums the angular impulses: of forces; of walls on mapped velocities.
+    impulses = 1u << 24,
+    mapped_impulses = 1u << 25,
   };
 };
 /// Their names, in the order of the bits.
 inline constexpr auto data_names = std::to_array<std::string_view>(
-    {"position",       "velocity",       "mass",          "volume",         "stress",
-     "rigid position", "rigid velocity", "lists",         "load pieces",    "node mass",
-     "node momentum",  "node velocity",  "ghost weights", "node force",     "node increments",
-     "node remapped",  "node dashpots",  "contacts",      "patch sums",     "records",
-     "energies",       "left cells",     "body force",    "unseen velocity"});
+    {"position",       "velocity",       "mass",          "volume",          "stress",
+     "rigid position", "rigid velocity", "lists",         "load pieces",     "node mass",
+     "node momentum",  "node velocity",  "ghost weights", "node force",      "node increments",
+     "node remapped",  "node dashpots",  "contacts",      "patch sums",      "records",
+     "energies",       "left cells",     "body force",    "unseen velocity", "impulses",
+     "mapped impulses"});
 
 /// The data and what shares its place (layout/node_records.hpp): who writes one takes the others.
 constexpr std::uint32_t places_of(std::uint32_t data) {

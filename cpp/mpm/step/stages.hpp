@@ -147,12 +147,13 @@ struct Stages : Data {
                                  of_rigid = rigid_position | rigid_velocity;
 
   // The nodes are written as their memory is lent to the lists until momentum is mapped.
-  static constexpr Row activate{"activate tiles", mpm::activate_tiles<D>,
-                                of_particles | of_rigid | volume | stress | load_pieces |
-                                    body_force | unseen | lists | left_cells | patch_sums,
-                                of_particles | of_rigid | volume | stress | load_pieces |
-                                    body_force | unseen | lists | left_cells | patch_sums |
-                                    node_mass | node_velocity | node_force};
+  static constexpr Row activate{
+      "activate tiles", mpm::activate_tiles<D>,
+      of_particles | of_rigid | volume | stress | load_pieces | body_force | unseen | lists |
+          left_cells | patch_sums | impulses | mapped_impulses,
+      of_particles | of_rigid | volume | stress | load_pieces | body_force | unseen | lists |
+          left_cells | patch_sums | impulses | mapped_impulses | node_mass | node_velocity |
+          node_force};
   // Before momentum is mapped, so that it has the nodes for itself and nothing of contact's
   // correction; velocities stay until they are advanced, as the energies are those of FLIP's step.
   static constexpr Row filter{"filter velocities", mpm::filter_velocities<D>, lists | of_particles,
@@ -161,13 +162,15 @@ struct Stages : Data {
       "map momentum", mpm::map_momentum<D>, lists | of_particles | of_rigid,
       node_mass | node_momentum | ghost_weights | node_dashpots, true};
   static constexpr Row fold_momentum{"fold momentum", mpm::fold_momentum<D>,
-                                     node_mass | node_momentum, node_mass | node_momentum};
+                                     node_mass | node_momentum | mapped_impulses,
+                                     node_mass | node_momentum | mapped_impulses};
   // The mass with the momentum: v_i of a node that patches share is the mean over all its
   // particles.
   static constexpr Row exchange_momentum{"exchange momentum", mpm::exchange_momentum<D>,
                                          node_mass | node_momentum, node_mass | node_momentum};
   static constexpr Row find_velocities{"find velocities", mpm::find_velocities<D>,
-                                       node_mass | node_momentum, node_velocity};
+                                       node_mass | node_momentum | mapped_impulses,
+                                       node_velocity | mapped_impulses};
   // Volumes and positions for gaps and normals, eq. (5); it changes velocities and no mass.
   static constexpr Row contact_momentum{
       "contact momentum", mpm::contact_momentum<D>,
@@ -178,15 +181,16 @@ struct Stages : Data {
                                   lists | position | volume | stress | ghost_weights, node_force,
                                   true};
   static constexpr Row load_surfaces{"load surfaces", mpm::load_surfaces<D>,
-                                     lists | position | load_pieces | node_force,
-                                     load_pieces | node_force};
+                                     lists | position | load_pieces | node_force | impulses,
+                                     load_pieces | node_force | impulses};
   static constexpr Row add_body_forces{"body forces", mpm::add_body_forces<D>,
-                                       lists | position | mass | body_force | node_force,
-                                       body_force | node_force};
+                                       lists | position | mass | body_force | node_force | impulses,
+                                       body_force | node_force | impulses};
   // Between the mappings and the exchange, as dashpots and loads are sums over particles as well.
   static constexpr Row place_dashpots{"place dashpots", mpm::place_dashpots<D>,
                                       lists | position | mass | node_dashpots, node_dashpots};
-  static constexpr Row fold_forces{"fold forces", mpm::fold_forces<D>, node_force, node_force};
+  static constexpr Row fold_forces{"fold forces", mpm::fold_forces<D>, node_force | impulses,
+                                   node_force | impulses};
   static constexpr Row exchange_forces{"exchange forces", mpm::exchange_forces<D>,
                                        node_force | node_dashpots, node_force | node_dashpots};
   // After the exchange, as the force of a dashpot is not linear in C_i and m_i; before contact,
@@ -201,8 +205,8 @@ struct Stages : Data {
   static constexpr Row advance_nodes{"advance nodes", mpm::advance_nodes<D>,
                                      lists | position | mass | load_pieces | body_force |
                                          node_mass | node_velocity | node_force | node_dashpots |
-                                         patch_sums,
-                                     node_velocity | node_increments | patch_sums};
+                                         patch_sums | impulses,
+                                     node_velocity | node_increments | patch_sums | impulses};
   static constexpr Row release{"release from contact", mpm::release_from_contact<D>,
                                node_velocity | node_increments | contacts,
                                node_velocity | contacts};
@@ -214,7 +218,8 @@ struct Stages : Data {
       velocity | rigid_velocity | patch_sums, true};
   // Before anything takes their velocities: the remap in MUSL, the end of the step in the others.
   static constexpr Row hold_rigid{"project rigid velocities", mpm::project_rigid_velocities<D>,
-                                  lists | of_rigid | patch_sums, rigid_velocity | patch_sums};
+                                  lists | of_rigid | patch_sums | impulses,
+                                  rigid_velocity | patch_sums | impulses};
   static constexpr Row remap_momentum{"remap momentum", mpm::remap_momentum<D>,
                                       lists | of_particles, node_remapped, true};
   // Apart from that of others, so that theirs can be fused with eq. (17) while rigid bodies wait
@@ -241,7 +246,8 @@ struct Stages : Data {
                                        node_mass | contacts | records, records};
   template <bool forces_follow>
   static constexpr Row sum_energies{"sum energies", mpm::sum_energies<D, forces_follow>,
-                                    patch_sums | records | energies, energies};
+                                    patch_sums | impulses | mapped_impulses | records | energies,
+                                    energies};
 
   static constexpr Row update_first =
       update_stress_row<D>(mpm::update_stress_first<D>, node_velocity);

@@ -1,8 +1,10 @@
 // Nodes beyond walls that belong to mirrored bodies (decision 0010). Each patch folds what its own
 // particles have given, before the exchange adds the images up: folding is linear, so the two may
 // come in this order.
+#include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
-#include "mpm/walls/mirror.hpp"
+#include "mpm/step/transfer/transfer.hpp"
+#include "mpm/walls/reactions.hpp"
 
 namespace mpm {
 namespace {
@@ -17,15 +19,32 @@ void fold(Domain<D>& domain, int at) {
   });
 }
 
+/// What folding does to the moment of the vector at number `at` of the records, times a factor,
+/// into the patches' sums; before it is folded.
+template <int D>
+void add_moments(Domain<D>& domain, Kinds kinds, int at, double factor,
+                 Vector3 AngularImpulses::* sum) {
+  auto& grid = domain.grid;
+  if (!grid.has_ghosts() || factor == 0.0) return;
+  for_each_patch(domain, kinds, [&](std::size_t p) {
+    const NodeBlock<D> block = grid.block(p);
+    domain.sums[p].angular.*sum += factor * moment_of_folding(grid, grid.patches[p], [&](int node) {
+                                     return block.vector(node, at);
+                                   });
+  });
+}
+
 }  // namespace
 
 template <int D>
 void fold_momentum(Domain<D>& domain) {
+  add_moments(domain, deformable, momentum_at, grid_share(domain), &AngularImpulses::mapped);
   fold(domain, momentum_at);
 }
 
 template <int D>
 void fold_forces(Domain<D>& domain) {
+  add_moments(domain, deformable | free_rigid, force_at, domain.time_step, &AngularImpulses::walls);
   fold(domain, force_at);
 }
 

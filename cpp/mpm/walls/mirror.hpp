@@ -27,6 +27,15 @@ void for_each_ghost_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) 
   }
 }
 
+/// 1 at the nodes that a patch owns, 0 at those that another patch counts and at those beyond
+/// walls, of which mass and force have been folded to their images: as factors, so that a loop over
+/// nodes has no branch and each shared node enters the ledger once.
+template <int D>
+void own_nodes(const TileGrid<D>& grid, const Patch<D>& patch, double* own) {
+  for (int n = 0; n < patch.shape.node_count; ++n) own[n] = patch.owned[n] ? 1.0 : 0.0;
+  for_each_ghost_node(grid, patch, [&](int node, int, const WallImage<D>&) { own[node] = 0.0; });
+}
+
 /// Before the shared nodes are summed: move the vector at number `at` of the records from beyond
 /// the walls to the images; with the velocity, the mass as well.
 template <int D>

@@ -17,7 +17,7 @@ from mpm3dpp.base.disk import checksum, make_folder
 from mpm3dpp.base.errors import CaseError
 
 from .fields import numbered
-from .part_cells import PartCells
+from .part_cells import PartCells, Sums
 from .table import Table
 
 TERMS: dict[str, dict[str, str]] = _core.history_terms
@@ -140,14 +140,14 @@ class HistoryWriter:
         self,
         rows: np.ndarray,
         pairs: Sequence[Any] | None = (),
-        parts: np.ndarray | None = None,
+        parts: Sums | None = None,
     ) -> None:
         """Write the rows of the steps made since the last call, and flush.
 
         Args:
             rows: the core's `history()`, shape (steps, columns).
             pairs: the core's `contact_groups()` after the last of these steps; None: not known.
-            parts: its `part_sums()` then, shape (bodies, PART_COLUMNS); None: not asked for.
+            parts: its `part_sums()` then; None: not asked for.
         """
         if len(rows) == 0:
             return
@@ -193,7 +193,7 @@ class HistoryWriter:
     def __exit__(self, *about: object) -> None:
         self.close()
 
-    def _last_cells(self, pairs: Sequence[Any] | None, parts: np.ndarray | None) -> list[str]:
+    def _last_cells(self, pairs: Sequence[Any] | None, parts: Sums | None) -> list[str]:
         """Return the cells of bodies and of pairs, empty where nothing is known."""
         of_parts, of_pairs = [""] * len(self._part_cells), [""] * (6 * len(self._pairs))
         if self._parts and parts is not None:

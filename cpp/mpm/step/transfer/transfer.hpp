@@ -98,6 +98,16 @@ void with_transfer(const Domain<D>& domain, F&& f) {
   });
 }
 
+/// The share of the grid's velocity in that which particles take; the rest is FLIP.
+template <int D>
+double grid_share(const Domain<D>& domain) {
+  double share = 0.0;
+  with_transfer(domain, [&]<class T>(const T& transfer) {
+    if constexpr (T::takes_grid_velocity) share = transfer.take(0.0, 0.0, 1.0);
+  });
+  return share;
+}
+
 /// f(transfer) likewise, of a basis with which it goes: others were refused.
 template <BasisModel B, int D, class F>
 void with_transfer_for(const Domain<D>& domain, F&& f) {
