@@ -94,3 +94,29 @@ def test_history_has_them(tmp_path: Path) -> None:
         everything = np.array([history[f"momentum_{axis}"][k] for axis in "xyz"])
         scale = np.abs(everything).max() + np.abs(momentum).max()
         assert np.abs(momentum - everything).max() <= 1e-10 * max(scale, 1e-12)
+
+
+def test_the_balance_of_angular_momentum_is_in_the_history(tmp_path: Path) -> None:
+    """In each row that has it the terms add up to what there was at the start."""
+    run = {"end_time": 1e-3, "gravity": [0.0, -9.81, 0.0], "transfer": "apic"}
+    case = three_blocks(3, run=run, grid={"basis": "quadratic_bspline"})
+    run_case(case, tmp_path, threads=1, pictures=False)
+    history = read_history(tmp_path)
+    told = np.isfinite(history["angular_momentum_x"])
+    assert told.sum() > 2
+    for axis in "xyz":
+        total = sum(
+            sign * history[f"angular_{name}_{axis}"][told]
+            for name, sign in (
+                ("momentum", 1.0),
+                ("momentum_removed", 1.0),
+                ("momentum_numerical", 1.0),
+                ("impulse_gravity", -1.0),
+                ("impulse_loads", -1.0),
+                ("impulse_walls", -1.0),
+                ("impulse_motion", -1.0),
+            )
+        )
+        scale = np.abs(history[f"angular_momentum_{axis}"][told]).max()
+        assert np.abs(total - total[0]).max() < 1e-14 * scale
+    assert history["angular_impulse_gravity_z"][told][-1] < 0.0

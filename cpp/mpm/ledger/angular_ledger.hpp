@@ -38,17 +38,23 @@ struct AngularLedger {
   Vector3 start = Vector3::zero();    // of all at the start, with what was set from outside later
   Vector3 prescribed_start = Vector3::zero();  // of the bodies with prescribed motion
 
-  /// Take over the impulses of a step, each `impulses_of(patch's sums)`.
+  /// Take over the impulses of a step, of the patches' sums.
   template <class Sums>
   void add(const std::vector<Sums>& patches) {
-    for (const auto part : AngularImpulses::all())
-      for (int a = 0; a < 3; ++a) {
-        // No order of patches matters (decision 0038). Most have nothing of most.
-        ExactSum sum;
-        for (const Sums& patch : patches)
-          if (const double x = (patch.angular.*part)[a]; x != 0.0) sum.add(x);
-        (impulses.*part)[a] += sum.value();
-      }
+    constexpr auto parts = AngularImpulses::all();
+    // No order of patches matters (decision 0038). Most have nothing of most.
+    std::array<std::array<ExactSum, 3>, parts.size()> sums;
+    std::array<std::array<bool, 3>, parts.size()> any{};
+    for (const Sums& patch : patches)
+      for (std::size_t k = 0; k < parts.size(); ++k)
+        for (std::size_t a = 0; a < 3; ++a)
+          if (const double x = (patch.angular.*parts[k]).c[a]; x != 0.0) {
+            sums[k][a].add(x);
+            any[k][a] = true;
+          }
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      for (std::size_t a = 0; a < 3; ++a)
+        if (any[k][a]) (impulses.*parts[k]).c[a] += sums[k][a].value();
   }
 };
 
