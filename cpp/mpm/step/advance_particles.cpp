@@ -40,30 +40,44 @@ struct LaneSums {
   }
 };
 
-/// The new velocities of the particles in the lanes, as the transfer says, stored; `dv` is the sum
-/// over the nodes, and `beside` that of their velocities, or what the grid has not seen.
-template <class Transfer, class Rows, class T, int D>
-MPM_INLINE inline Vec<T, D> take(const Transfer& transfer, Storage* const (&velocities)[D],
-                                 const Rows& rows, const T& m, const Vec<T, D>& dv,
-                                 const Vec<T, D>& beside, LaneSums<T, D>& sums) {
-  Vec<T, D> v;
-  unrolled<D>([&](auto a) MPM_INLINE {
-    const T before = load(velocities[a], rows);
-    if constexpr (Transfer::takes_grid_velocity || Transfer::filters) {
-      v[a] = transfer.take(before, dv[a], beside[a]);
-      // m (|v_p + dv_p|^2 - |v_p'|^2), halved at the end: what particles lose against FLIP, with
-      // all of the change; of affine transfers against the start (docs/theory/step.md).
-      const T kept = Transfer::affine ? before : before + dv[a];
-      sums.transferred += m * kept * kept;
-      sums.transferred -= m * v[a] * v[a];
-    } else {
-      v[a] = transfer.take(before, dv[a]);
+/// The columns of a pool that hold the particles' velocities; for a transfer that filters also what
+/// the grid has not seen of them.
+template <class Transfer, int D>
+struct VelocityColumns {
+  Storage* v[D];
+  const Storage* unseen[D];
+
+  explicit VelocityColumns(ParticlePool<D>& pool) {
+    for (int a = 0; a < D; ++a) {
+      v[a] = pool.v(a);
+      unseen[a] = Transfer::filters ? pool.unseen_velocity(a) : nullptr;
     }
-    store(velocities[a], rows, v[a]);
-  });
-  sums.add(m, v, dv);
-  return v;
-}
+  }
+  /// The new velocities of the particles in the lanes, as the transfer says, stored; `dv` is the
+  /// sum over the nodes, `beside` that of their velocities.
+  template <class Rows, class T>
+  MPM_INLINE Vec<T, D> take(const Transfer& transfer, const Rows& rows, const T& m,
+                            const Vec<T, D>& dv, Vec<T, D> beside, LaneSums<T, D>& sums) const {
+    Vec<T, D> taken;
+    unrolled<D>([&](auto a) MPM_INLINE {
+      const T before = load(v[a], rows);
+      if constexpr (Transfer::filters) beside[a] = load(unseen[a], rows);
+      if constexpr (Transfer::takes_grid_velocity || Transfer::filters) {
+        taken[a] = transfer.take(before, dv[a], beside[a]);
+        // m (|v_p + dv_p|^2 - |v_p'|^2), halved at the end: what particles lose against FLIP, with
+        // all of the change; of affine transfers against the start (docs/theory/step.md).
+        const T kept = Transfer::affine ? before : before + dv[a];
+        sums.transferred += m * kept * kept;
+        sums.transferred -= m * taken[a] * taken[a];
+      } else {
+        taken[a] = transfer.take(before, dv[a]);
+      }
+      store(v[a], rows, taken[a]);
+    });
+    sums.add(m, taken, dv);
+    return taken;
+  }
+};
 
 /// Velocities of a patch's particles, eq. (17), as the transfer says. Taken from the increments of
 /// the nodes, v_p is smoothed by no mapping to the grid and back; the nodes are advanced, so v_i is
@@ -91,10 +105,7 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   const LocalPosition<D> local_position(grid, pool);
   Moving<D> moving(grid, pool, domain.time_step);
   const double* mass = pool.mass();
-  Storage* velocities[D];
-  for (int a = 0; a < D; ++a) velocities[a] = pool.v(a);
-  [[maybe_unused]] const Storage* unseen[D];
-  for (int a = 0; a < (Transfer::filters ? D : 0); ++a) unseen[a] = pool.unseen_velocity(a);
+  const VelocityColumns<Transfer, D> velocities(pool);
   alignas(
       cache_line) double remapped[also == Also::remap ? BlockShape<D>::nodes_max * half_record : 1];
   if constexpr (also == Also::remap) std::fill_n(remapped, block.count * half_record, 0.0);
@@ -120,9 +131,7 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       }
       if constexpr (Transfer::takes_grid_velocity && !Transfer::affine)
         beside = nodes.template vector<velocity_at>(w);
-      if constexpr (Transfer::filters)
-        unrolled<D>([&](auto a) MPM_INLINE { beside[a] = load(unseen[a], rows); });
-      const Vec<T, D> v = take(transfer, velocities, rows, m, dv, beside, sums);
+      const Vec<T, D> v = velocities.take(transfer, rows, m, dv, beside, sums);
       // USF: eq. (16) with the same weights, which are those of the positions before.
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {
