@@ -144,6 +144,7 @@ struct StressWork {
 template <class T, int D>
 struct StepKinematics {
   StrainIncrement<T, D> motion;
+  Sym<T, D> given;   // symmetric part of L dt as the nodes gave it
   Sym<T, D> strain;  // of the step, referred to its middle
   VolumeChange<T> volume_change;
 
@@ -155,22 +156,25 @@ struct StepKinematics {
   /// of volume as it is, from which the trace of the strain differs by the third order.
   StressWork<T> work(const StressSettings& settings, const Sym<T, D>& before,
                      const Sym<T, D>& after) const {
-    const Sym<T, D> both = before + after, rate = symmetric_part(motion.gradient);
+    const Sym<T, D> both = before + after;
     const T volume = T(0.5) * (volume_change.before + volume_change.after);
     // dev(s) : dev(e) = s : e - tr(s) tr(e) / 3, of the mean of both stresses.
     const T deviatoric =
         T(0.5) * volume * (inner(both, strain) - T(1.0 / 3.0) * trace(both) * trace(strain));
-    return {deviatoric, settings.forces_follow ? volume_change.after * inner(after, rate)
-                                               : volume_change.before * inner(before, rate)};
+    return {deviatoric, settings.forces_follow ? volume_change.after * inner(after, given)
+                                               : volume_change.before * inner(before, given)};
   }
 
  private:
   StepKinematics(const Group<T, D>& group, const Mat<T, D>& gradient,
                  const BlockColumns<D>& columns, double density, const StressSettings& settings)
-      : motion{gradient, T(1.0), settings.time_step, settings.time, settings.cell_size},
-        strain(symmetric_part(mid_step(gradient))),
-        volume_change(volume_change_of(gradient, group.read(columns.mass),
+      : motion{settings.forces_follow ? seen_from_start(gradient) : gradient, T(1.0),
+               settings.time_step, settings.time, settings.cell_size},
+        given(symmetric_part(gradient)),
+        strain(symmetric_part(mid_step(motion.gradient))),
+        volume_change(volume_change_of(motion.gradient, group.read(columns.mass),
                                        group.read(columns.volume), density)) {
+    volume_change.dilation = trace(given);
     motion.J = volume_change.J;
   }
   static Mat<T, D> gradient_of(const Group<T, D>& group, const MaterialBlock<D>& block) {

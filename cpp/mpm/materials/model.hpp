@@ -66,6 +66,27 @@ MPM_HD Mat<T, D> mid_step(const Mat<T, D>& gradient) {
   return middle;
 }
 
+/// A gradient on the configuration at the end of the step, seen from its start: L (1 - L)^-1. Where
+/// x' = x + dt v, F^-1 = 1 - L at the end, and F - 1 is the gradient that `StrainIncrement` means.
+/// By Cayley and Hamilton the adjugate of 1 - L needs L^2 alone, in 2D not even that.
+template <class T>
+MPM_HD Mat<T, 2> seen_from_start(const Mat<T, 2>& L) {
+  const T det = determinant(L), per = T(1.0) / (T(1.0) - L[0][0] - L[1][1] + det);
+  return {{{(L[0][0] - det) * per, L[0][1] * per}, {L[1][0] * per, (L[1][1] - det) * per}}};
+}
+template <class T>
+MPM_HD Mat<T, 3> seen_from_start(const Mat<T, 3>& L) {
+  const Mat<T, 3> square = L * L;
+  const T det = determinant(L), first = L[0][0] + L[1][1] + L[2][2];
+  const T second = T(0.5) * (first * first - square[0][0] - square[1][1] - square[2][2]);
+  const T per = T(1.0) / (T(1.0) - first + second - det);
+  Mat<T, 3> seen;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      seen[i][j] = (fma(-first, L[i][j], L[i][j]) + square[i][j] + (i == j ? det : T(0.0))) * per;
+  return seen;
+}
+
 /// Names, parameters and preparation, which models of every kind have. `problem` is a sentence
 /// about parameters that do not go together, empty if they do.
 template <class M>

@@ -158,8 +158,9 @@ struct Step {
   }
 
   /// Strain, rotation and stress by the gradient dt sum v_i grad N_ip, eqs. (18)-(20); USF and USL
-  /// take the nodes' velocities `v`, MUSL the remapped ones.
-  void update_stress(Vec<double, D> Node<D>::* velocity) {
+  /// take the nodes' velocities `v`, MUSL the remapped ones. Those of USF have brought the
+  /// particles here: L is on the configuration at the end of what it strains, F = (1 - L dt)^-1.
+  void update_stress(Vec<double, D> Node<D>::* velocity, bool at_end) {
     for (Body<D>& b : bodies) {
       if (!b.deforms()) continue;
       for (Particle<D>& p : b.particles) {
@@ -169,6 +170,7 @@ struct Step {
             for (int c = 0; c < D; ++c)
               motion.gradient[a][c] += dt * (b.nodes[i].*velocity)[a] * dN[c];
         });
+        if (at_end) motion.gradient = seen_from_start(motion.gradient);
         b.material.update(motion, p.sigma);
         Mat<double, D> f = motion.gradient;
         for (int a = 0; a < D; ++a) f[a][a] += 1.0;

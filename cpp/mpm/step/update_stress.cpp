@@ -10,7 +10,8 @@ namespace {
 /// block. The nodal velocity that strains is the vector at number `straining_at` of the records;
 /// with `moves` the particles move as well, eq. (16). L dt is handed on whole: the material refers
 /// it to the middle of the step and splits it into strain, eq. (18), and vorticity, eq. (19)
-/// (materials/jaumann.hpp).
+/// (materials/jaumann.hpp). With `forces_follow` (USF) the velocities have brought the particles
+/// here, and L is on the configuration at the end of what it strains (decision 0047).
 template <int W, bool moves, int straining_at, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void update_patch(Domain<D>& domain, std::size_t p, const B& basis,
                                                   bool forces_follow) {

@@ -45,6 +45,22 @@ void check_cayley(mpm::testing::Report& report) {
     }
 }
 
+/// A gradient on the configuration at the end: (1 + seen)(1 - L) = 1.
+template <int D>
+void check_seen_from_start(mpm::testing::Report& report) {
+  Mat<double, D> L{}, inverse{};
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) L[i][j] = 0.07 * (i + 1) - 0.11 * j + 0.05 * i * j;
+  Mat<double, D> F = seen_from_start(L);
+  for (int i = 0; i < D; ++i) {
+    F[i][i] += 1.0;
+    for (int j = 0; j < D; ++j) inverse[i][j] = (i == j ? 1.0 : 0.0) - L[i][j];
+  }
+  const Mat<double, D> unit = F * inverse;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) CHECK_CLOSE(unit[i][j], i == j ? 1.0 : 0.0, 8 * eps);
+}
+
 /// A finite rotation R as one step, gradient R - 1, strains nothing up to the third order of its
 /// angle.
 template <int D>
@@ -70,6 +86,8 @@ void check_rotation(mpm::testing::Report& report) {
 void test_jaumann(mpm::testing::Report& report) {
   check_cayley<2>(report);
   check_cayley<3>(report);
+  check_seen_from_start<2>(report);
+  check_seen_from_start<3>(report);
   check_rotation<2>(report);
   check_rotation<3>(report);
 }

@@ -29,7 +29,8 @@ class Comparison {
     const bool meet = twin_.domain.has_contact();
     const auto later = [&](unsigned data) { return [this, data] { pending_ |= data; }; };
     const auto map_forces = [&] { step.map_forces(), load_surfaces(step), add_body_forces(step); };
-    const auto update_stress = [&] { carry_loads(step, v), step.update_stress(v); };
+    const bool at_end = scheme == Scheme::usf;
+    const auto update_stress = [&] { carry_loads(step, v), step.update_stress(v, at_end); };
     const std::map<std::string_view, std::function<void()>> stages = {
         {"activate tiles", [&] { lists(); }},
         {"filter velocities", [&] { filter(); }},
