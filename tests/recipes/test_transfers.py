@@ -145,6 +145,67 @@ def test_affine_transfers_keep_turning(scheme: str, transfer: str, left: float) 
     assert abs(turning() / before - 1) <= left
 
 
+def test_a_velocity_given_on_the_way_is_that_of_one_body() -> None:
+    """After steps that have moved the particles out of their cells: it is the field's gradient."""
+    case = Case(
+        grid=Grid(dimension=2, cell_size=CELL, basis="quadratic_bspline"),
+        run=Run(end_time=1.0, transfer="apic", cfl=0.9),
+        material=materials(),
+        body={
+            name: block((k, 0), (4, 4), material="solid")
+            for k, name in ((0, "turned"), (9, "kept"))
+        },
+    )
+    sim = Simulation(case, threads=1)
+    for name in sim.bodies:
+        sim.set_velocity(name, np.tile([400.0, 300.0], (len(sim.column(name, "mass")), 1)))
+    sim.advance(7)
+    x = sim.column("turned", "position")
+    kept = sim.column("kept", "affine_velocity").tobytes()
+    gradient = np.array([[3.0, -50.0], [20.0, -7.0]])
+    sim.set_velocity("turned", (x - x[0]) @ gradient.T)
+    C = sim.column("turned", "affine_velocity")
+    assert np.abs(C - gradient.ravel()).max() <= 1e-10 * 50.0
+    assert sim.column("kept", "affine_velocity").tobytes() == kept
+
+
+@pytest.mark.parametrize("transfer", ["flip", "apic", "aflip"])
+def test_nothing_is_made_by_a_disc_that_rests(transfer: str) -> None:
+    """On a floor, for ten of its vibrations: what numerics make is a share of gravity's work.
+
+    A share of a node's change of velocity that no particle has would be many times that work.
+    """
+    case = Case.from_text(RESTING.format(transfer=transfer))
+    sim = Simulation(case, threads=1)
+    sim.advance(10**6)
+    rows = dict(zip(sim.core.history_columns, sim.core.history().T, strict=True))
+    assert -rows["numerical_time"][-1] < 0.75 * np.abs(rows["external"]).max()
+
+
+RESTING = """
+[grid]
+dimension = 2
+cell_size = 0.0125
+basis = "quadratic_bspline"
+[run]
+end_time = 0.4
+scheme = "usf"
+cfl = 0.5
+gravity = [0, -9.81]
+transfer = "{transfer}"
+[material.rubber]
+density = 1000.0
+strength = {{ elastic = {{ E = 1e6, nu = 0.3 }} }}
+[body.disc]
+material = "rubber"
+shape = {{ disc = {{ centre = [0, 0.1], radius = 0.1 }} }}
+[body.floor]
+material = "rubber"
+shape = {{ box = {{ lower = [-0.2, -0.05], upper = [0.2, 0] }} }}
+motion = "fixed"
+"""
+
+
 def test_what_goes_with_a_transfer() -> None:
     """A basis without a constant second moment, numbers of other transfers: a sentence each."""
     body = {"a": block((0, 0), (4, 4), material="solid")}

@@ -24,14 +24,12 @@ template <int D>
 struct PatchSums {
   StressSums stress;
   double kinetic = 0.0;       // of the particles after the step [J]
-  double second_order = 0.0;  // half sum of m_p (change of v_p)^2 [J]; of affine transfers that of
-                              // the nodes, node_second
+  double second_order = 0.0;  // half sum of m_p (sum of dv_i N_ip)^2 [J]
   double transferred = 0.0;   // kinetic energy that the transfer has taken against FLIP; of affine
                               // transfers all that particles lack against the start of the step [J]
   double momentum[D] = {};    // of the particles after the step [kg m/s]
   double force_work =
       0.0;  // time step x sum over nodes of internal and contact force . velocity [J]
-  double node_second = 0.0;  // half sum of m_i (change of v_i)^2 [J]; of this patch, not summed
   double made_rigid =
       0.0;  // kinetic energy that rigid bodies' increments had beyond a rigid motion [J]
   double gravity_first = 0.0;   // time step x sum over nodes of gravity . velocity [J]

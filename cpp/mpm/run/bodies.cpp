@@ -10,6 +10,8 @@
 #include "mpm/run/part_sums.hpp"
 #include "mpm/run/start_affine.hpp"
 #include "mpm/run/time_step.hpp"
+#include "mpm/step/stages.hpp"
+#include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm {
 namespace {
@@ -122,6 +124,8 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
     return;
   }
   require(simulation, Phase::ready, "");
+  // The affine part is found on the nodes around the particles, which the last step has moved.
+  if (is_affine(domain.transfer)) activate_tiles(domain);
   const double before = kinetic_energy(domain);
   const Vector3 turned = angular_totals(part_sums(domain)).all;
   ParticlePool<D>& pool = domain.pool_of(b);
@@ -130,7 +134,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
       pool.v(static_cast<int>(a))[row] = static_cast<Storage>(velocities[pool.id[row] * D + a]);
   });
   project_rigid_velocities(domain);
-  start_affine(domain);
+  start_affine(domain, number);
   Ledger& ledger = domain.ledger;
   ledger.external += kinetic_energy(domain) - before;
   ledger.kinetic = kinetic_energy(domain);

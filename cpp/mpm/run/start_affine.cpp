@@ -53,9 +53,13 @@ double take_affine(Domain<D>& domain, std::size_t p, const B& basis) {
 }  // namespace
 
 template <int D>
-void start_affine(Domain<D>& domain) {
+void start_affine(Domain<D>& domain, int body) {
   if (!is_affine(domain.transfer)) return;
+  const auto is_meant = [&](const Patch<D>& patch) {
+    return domain.body_of(patch).deforms() && (body == all_bodies || patch.body == body);
+  };
   for (const Patch<D>& patch : domain.grid.patches) {
+    if (!is_meant(patch)) continue;
     ParticlePool<D>& pool = domain.pool_of(patch);
     for (const std::uint32_t row : pool.rows(patch))
       for (int k = 0; k < D * D; ++k) pool.affine_part(k)[row] = Storage{0.0};
@@ -71,9 +75,9 @@ void start_affine(Domain<D>& domain) {
     find_velocities(domain);
     double change = 0.0;
     for (std::size_t p = 0; p < domain.grid.patches.size(); ++p) {
-      const Body<D>& body = domain.body_of(domain.grid.patches[p]);
-      if (!body.deforms()) continue;
-      with_basis(domain.grid, body, [&]<BasisModel B>(const B& basis) {
+      const Patch<D>& patch = domain.grid.patches[p];
+      if (!is_meant(patch)) continue;
+      with_basis(domain.grid, domain.body_of(patch), [&]<BasisModel B>(const B& basis) {
         if constexpr (B::second_moment > 0.0)
           change = std::max(change, take_affine(domain, p, basis));
       });
@@ -83,7 +87,7 @@ void start_affine(Domain<D>& domain) {
   }
 }
 
-template void start_affine<2>(Domain<2>&);
-template void start_affine<3>(Domain<3>&);
+template void start_affine<2>(Domain<2>&, int);
+template void start_affine<3>(Domain<3>&, int);
 
 }  // namespace mpm

@@ -44,10 +44,10 @@ void hold_at_walls(const Domain<D>& domain, const Patch<D>& patch, const NodeBlo
   });
 }
 
-/// Sums over the nodes that a patch owns, with v before the step: A + B and G of the ledger, twice
-/// S_g, all but for the time step, and sum m_i |dv_i|^2.
+/// Sums over the nodes that a patch owns, with v before the step: A + B and G of the ledger and
+/// twice S_g, all but for the time step.
 struct NodeWork {
-  double work = 0.0, gravity_first = 0.0, gravity_second = 0.0, second = 0.0;
+  double work = 0.0, gravity_first = 0.0, gravity_second = 0.0;
 };
 
 /// Eq. (8) for the nodes of a block.
@@ -67,7 +67,6 @@ NodeWork advance_block(const NodeBlock<D>& block, const double* own, const Vec<d
       done.work += own[n] * f * v;
       done.gravity_first += own[n] * weight * v;
       done.gravity_second += own[n] * weight * dv;
-      done.second += own[n] * m * dv * dv;
       v += dv;
       numbers[increment_at + a] = dv;
     }
@@ -154,7 +153,6 @@ void advance_nodes(Domain<D>& domain) {
     // What is left is work of internal and contact forces; loads, dashpots and gravity have terms
     // of their own in the ledger, with the velocity in the middle of the step.
     sums.force_work = dt * (done.work + weight_first) - loads.first - dashpots.first;
-    sums.node_second = 0.5 * done.second;
     sums.load_first = loads.first;
     sums.load_second = loads.second;
     sums.dashpot_first = dashpots.first;

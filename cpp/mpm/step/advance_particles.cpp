@@ -122,8 +122,8 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       const Vec<T, D> xi = local_position(cell, rows);
       const auto w = weights_at(basis, xi);
       const T all = load(mass, rows), m = of_valid(rows, all);
-      Vec<T, D> dv = Vec<T, D>::zero(), beside = dv;
-      if constexpr (Transfer::takes_increment) dv = nodes.template vector<increment_at>(w);
+      const Vec<T, D> dv = nodes.template vector<increment_at>(w);
+      Vec<T, D> beside = Vec<T, D>::zero();
       Moments<T, D, B::nodes> moments;
       if constexpr (Transfer::affine) {
         moments = moments_at<B>(xi, w);
@@ -151,7 +151,6 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   }
   if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
   sums.write(domain.sums[p]);
-  if constexpr (Transfer::affine) domain.sums[p].second_order = domain.sums[p].node_second;
 }
 
 /// Kinetic energy of a patch's particles [J].

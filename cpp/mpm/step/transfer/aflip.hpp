@@ -10,7 +10,7 @@ struct Aflip : Apic {
       "\"flip\" with the affine part of \"apic\"; keeps what the grid does not see, as much as "
       "its share says";
   static constexpr std::string_view source = "Fei et al. 2021, eq. 19 with no change of position";
-  static constexpr bool takes_increment = true, has_share = true;
+  static constexpr bool has_share = true;
 
   double alpha;
 

@@ -11,8 +11,7 @@ struct Apic : Flip {
   static constexpr std::string_view doc =
       "they take the velocity of the grid and its affine part, which keeps angular momentum";
   static constexpr std::string_view source = "Jiang et al. 2015";
-  static constexpr bool takes_increment = false, takes_grid_velocity = true, affine = true,
-                        has_share = false;
+  static constexpr bool takes_grid_velocity = true, affine = true, has_share = false;
   using Gives = Apic;
 
   /// From particle p to node i: m_i += m_p N_ip, eq. (2); p_i += N_ip m_p (v_p + C_p (x_i - x_p)),

@@ -10,8 +10,7 @@ struct Flip {
   static constexpr std::string_view name = "flip";  // the word in a case file
   static constexpr std::string_view doc = "they take the change of the grid's velocity";
   static constexpr std::string_view source = "Brackbill & Ruppel 1986";
-  static constexpr bool takes_increment = true, takes_grid_velocity = false, affine = false,
-                        filters = false;
+  static constexpr bool takes_grid_velocity = false, affine = false, filters = false;
   static constexpr bool has_share = true;  // of FLIP beside the grid's velocity, and pic_rate
   using Gives = Flip;                      // whose `give` it has
 

@@ -34,8 +34,8 @@ struct Mapping {
   }
 };
 
-/// `take` has the velocity of the particle, the sum of the increments, if `takes_increment`, and
-/// that of the velocities, if `takes_grid_velocity`; if it `filters`, what the grid has not seen of
+/// `take` has the velocity of the particle, the sum of the increments and that of the
+/// velocities, if `takes_grid_velocity`; if it `filters`, what the grid has not seen of
 /// the particle's velocity before the step, for which there is a column and a stage. What particles
 /// lose against FLIP by the last two goes to the ledger. With `affine` particles have a column for
 /// the affine part of the velocity, and `give` has first moments. `Gives` is the transfer whose
@@ -46,7 +46,6 @@ concept TransferModel = requires {
   { T::doc } -> std::convertible_to<std::string_view>;
   { T::source } -> std::convertible_to<std::string_view>;
   { T::takes_grid_velocity } -> std::convertible_to<bool>;
-  { T::takes_increment } -> std::convertible_to<bool>;
   { T::affine } -> std::convertible_to<bool>;
   { T::filters } -> std::convertible_to<bool>;
   { T::has_share } -> std::convertible_to<bool>;

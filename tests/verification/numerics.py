@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Basis, transfer and time step of a run, named by one string."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from mpm3dpp import Case, _core
+
+
+@dataclass(frozen=True)
+class Numerics:
+    """What a basis' name stands for: "gimp", "quadratic_bspline+apic", "gimp+xpic=4@0.5".
+
+    Attributes:
+        basis: its name in the core.
+        transfer: its word in the core.
+        number: of the transfer, where the name gives one.
+        factor: of the critical time step, where the name gives one: instead of the problem's.
+    """
+
+    basis: str
+    transfer: str = "flip"
+    number: float | None = None
+    factor: float | None = None
+
+    @classmethod
+    def named(cls, name: str) -> Numerics:
+        """Take a name apart."""
+        name, _, factor = name.partition("@")
+        basis, _, transfer = name.partition("+")
+        word, _, number = (transfer or "flip").partition("=")
+        return cls(
+            basis, word, float(number) if number else None, float(factor) if factor else None
+        )
+
+    def table(self) -> Any:
+        """Return `run.transfer` of a case file."""
+        if self.number is None:
+            return self.transfer
+        return {self.transfer: int(self.number) if self.transfer == "xpic" else self.number}
+
+    def give_case(self, case: Case) -> None:
+        """Give a case this basis and transfer, and this factor if there is one."""
+        case.grid.basis, case.run.transfer = self.basis, self.table()
+        case.run.cfl = self.factor or case.run.cfl
+
+    def give_core(self, settings: _core.Settings, factor: float) -> None:
+        """Give settings of the core this basis and transfer, and this factor or else `factor`."""
+        settings.grid.basis, settings.run.transfer.word = self.basis, self.transfer
+        if self.number is not None:
+            table = self.table()
+            setattr(settings.run.transfer, self.transfer, table[self.transfer])
+        settings.run.cfl = self.factor or factor
