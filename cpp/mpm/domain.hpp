@@ -42,10 +42,11 @@ struct Domain {
   int filter_order = 1;           // how often velocities are mapped to the grid and back ...
   std::int64_t filter_every = 1;  // ... in each step whose number this divides
 
-  double time = 0.0;        // [s]
-  double time_after = 0.0;  // of the step being made [s]
-  double time_step = 0.0;   // of the step being made [s]
-  std::int64_t step = 0;    // steps made
+  double time = 0.0;         // [s]
+  double time_after = 0.0;   // of the step being made [s]
+  double time_step = 0.0;    // of the step being made [s]
+  double step_before = 0.0;  // the one before [s]; 0 in the first
+  std::int64_t step = 0;     // steps made
 
   std::vector<PatchSums<D>> sums;  // one per patch
   ContactSums contact_sums;        // of the step

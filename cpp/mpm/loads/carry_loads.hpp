@@ -24,14 +24,15 @@ void for_each_piece(Domain<D>& domain, int load, const ParticlePool<D>& pool,
 
 /// Take the pieces of a patch's particles along; the nodal velocity that strains the material is
 /// the vector at number `at` of the records, so that surface and material deform by the same L. One
-/// by one and apart from the loop over all particles, as few of them carry a piece.
+/// by one and apart from the loop over all particles, as few of them carry a piece. `duration` [s]:
+/// of the motion that they follow.
 template <int at, int D>
-[[gnu::noinline]] void carry_loads(Domain<D>& domain, std::size_t p) {
+[[gnu::noinline]] void carry_loads(Domain<D>& domain, std::size_t p, double duration) {
   const auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   const Body<D>& body = domain.body_of(patch);
   const ParticlePool<D>& pool = domain.pool_of(patch);
-  const double scale = domain.time_step / grid.cell_size;
+  const double scale = duration / grid.cell_size;
   for (int l = 0; l < static_cast<int>(domain.loads.size()); ++l) {
     // A piece per load: where two loads meet on a particle each carries its own along.
     if (domain.loads[static_cast<std::size_t>(l)].body != patch.body) continue;

@@ -53,17 +53,17 @@ void load_surfaces(Step<D>& step) {
 /// The pieces go with their particles: da' = cof(F) da (Nanson), dx' = F dx, F = (1 - L/2)^-1
 /// (1 + L/2) the deformation of the step (Hughes & Winget 1980), L = dt sum v_i grad N_ip.
 template <int D>
-void carry_loads(Step<D>& step, Vec<double, D> Node<D>::* velocity) {
+void carry_loads(Step<D>& step, Vec<double, D> Node<D>::* velocity, bool at_end) {
   for (Load<D>& load : step.loads)
     for (Piece<D>& piece : load.pieces) {
       Body<D>& b = step.bodies[load.body];
       Mat<double, D> L{};
-      step.for_each_node(b.particles[piece.particle].x,
-                         [&](const Index<D>& i, double, const Vec<double, D>& dN) {
-                           for (int a = 0; a < D; ++a)
-                             for (int c = 0; c < D; ++c)
-                               L[a][c] += step.dt * (b.nodes[i].*velocity)[a] * dN[c];
-                         });
+      step.for_each_node(
+          b.particles[piece.particle].x, [&](const Index<D>& i, double, const Vec<double, D>& dN) {
+            for (int a = 0; a < D; ++a)
+              for (int c = 0; c < D; ++c)
+                L[a][c] += (at_end ? step.dt_before : step.dt) * (b.nodes[i].*velocity)[a] * dN[c];
+          });
       const Mat<double, D> F = deformation(L);
       const double before = norm(piece.a);
       piece.a = product(cofactor(F), piece.a);

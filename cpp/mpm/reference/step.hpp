@@ -20,6 +20,7 @@ void set_prescribed_velocities(const Step<D>& step, Body<D>& b, Vec<double, D> N
 template <int D>
 struct Step {
   double h = 0.0, t = 0.0, dt = 0.0;          // cell size [m], time [s], time step [s]
+  double dt_before = 0.0;                     // the step before [s]; 0 in the first
   Vec<double, D> g = Vec<double, D>::zero();  // gravity [m/s^2]
   double mu = 0.0;                            // coefficient of friction
   double pic = 0.0;                           // share of the grid's velocity that particles take
@@ -168,7 +169,8 @@ struct Step {
         for_each_node(p.x, [&](const Index<D>& i, double, const Vec<double, D>& dN) {
           for (int a = 0; a < D; ++a)
             for (int c = 0; c < D; ++c)
-              motion.gradient[a][c] += dt * (b.nodes[i].*velocity)[a] * dN[c];
+              motion.gradient[a][c] +=
+                  (at_end ? dt_before : dt) * (b.nodes[i].*velocity)[a] * dN[c];
         });
         if (at_end) motion.gradient = seen_from_start(motion.gradient);
         b.material.update(motion, p.sigma);

@@ -54,6 +54,7 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
     const double left = end_time - domain.time;
     const bool last = simulation.next_time_step >= left;
     // Two last steps of equal length rather than a tiny one, in which forces would be rounding.
+    domain.step_before = domain.time_step;
     domain.time_step = last ? left : std::min(simulation.next_time_step, 0.5 * left);
     make_step(simulation, last ? end_time : domain.time + domain.time_step);
     ++made;

@@ -20,14 +20,17 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   Patch<D>& patch = domain.grid.patches[p];
   ParticlePool<D>& pool = domain.pool_of(patch);
   // Before particles move: the pieces go with L at the positions that the gradients belong to.
-  if (domain.has_loads()) carry_loads<straining_at>(domain, p);
+  // USF: the way here took the step before; in the first step there has been none.
+  const double duration = forces_follow ? domain.step_before : domain.time_step;
+  if (domain.has_loads()) carry_loads<straining_at>(domain, p, duration);
   const Material& material = domain.material_of(patch);
-  const StressSettings settings{domain.time_step, domain.time + domain.time_step, grid.cell_size,
-                                material.viscosity, forces_follow};
+  const StressSettings settings{duration > 0.0 ? duration : domain.time_step,
+                                domain.time + domain.time_step, grid.cell_size, material.viscosity,
+                                forces_follow};
   const NodeRecords records = domain.grid.block(p).records;
   const NodeStrides<D> stride(patch.shape);
   // Gradients come with respect to xi, in cells: 1 / h of eq. (20) and dt of eqs. (18)-(19) in one.
-  const T scale(domain.time_step / grid.cell_size);
+  const T scale(duration / grid.cell_size);
   const LocalPosition<D> local_position(grid, pool);
   Moving<D> moving(grid, pool, domain.time_step);
   MaterialBlock<D> block;
@@ -61,6 +64,9 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
     });
   });
   if (block.count > 0) flush();
+  // The power of the forces of this step, as long as they act.
+  if (forces_follow && duration > 0.0)
+    domain.sums[p].stress.force_power *= domain.time_step / duration;
   if constexpr (moves) patch.left_cell = moving.left_cell();
 }
 

@@ -30,7 +30,7 @@ class Comparison {
     const auto later = [&](unsigned data) { return [this, data] { pending_ |= data; }; };
     const auto map_forces = [&] { step.map_forces(), load_surfaces(step), add_body_forces(step); };
     const bool at_end = scheme == Scheme::usf;
-    const auto update_stress = [&] { carry_loads(step, v), step.update_stress(v, at_end); };
+    const auto update_stress = [&] { carry_loads(step, v, at_end), step.update_stress(v, at_end); };
     const std::map<std::string_view, std::function<void()>> stages = {
         {"activate tiles", [&] { lists(); }},
         {"filter velocities", [&] { filter(); }},

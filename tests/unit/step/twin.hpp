@@ -59,6 +59,7 @@ struct Twin {
     reference.S = shape(choice.basis);
     reference.half_width = half_width(choice.basis, edge);
     domain.time_step = reference.dt = 1e-5;
+    domain.step_before = reference.dt_before = 0.9e-5;
     domain.pic_rate = choice.pic_rate;
     domain.transfer = choice.transfer;
     domain.flip_share = choice.flip_share;
