@@ -11,6 +11,7 @@ import numpy as np
 from mpm3dpp import Case, Eos, RunError, Simulation, load_case
 
 from .figure import Figure, judge, reference, report
+from .numerics import Numerics
 from .scene import Failed
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -21,7 +22,8 @@ Array = np.ndarray
 def case_of(name: str, scheme: str, basis: str, file: str = "case.toml") -> Case:
     """Return the case of an example with another scheme or basis."""
     case = load_case(EXAMPLES / name / file)
-    case.run.scheme, case.grid.basis = scheme, basis
+    case.run.scheme = scheme
+    Numerics.named(basis).give_case(case)
     return case
 
 

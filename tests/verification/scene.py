@@ -11,6 +11,7 @@ import numpy as np
 from mpm3dpp import _core
 
 from .figure import Figure, judge, report
+from .numerics import Numerics
 
 Array = np.ndarray
 
@@ -25,7 +26,8 @@ class Scene:
     Args:
         scheme: "usf", "usl" or "musl".
         dimension: 2 (plane strain) or 3.
-        basis: "linear", or another basis that the core has.
+        basis: "linear", or another basis that the core has; also with transfer and factor
+            (numerics.py).
         cell_size: [m].
         factor: of the critical time step.
         box: lower corner [m] and upper corner [m] of the box of walls; whole cells.
@@ -35,6 +37,8 @@ class Scene:
         contact: are there contacts between bodies?
         settings: any other setting of the core's settings.
     """
+
+    steps_made = 0  # of all scenes
 
     def __init__(
         self,
@@ -52,8 +56,8 @@ class Scene:
         **settings: Any,
     ) -> None:
         s = _core.Settings()
-        s.grid.dimension, s.grid.cell_size, s.grid.basis = dimension, cell_size, basis
-        s.run.scheme, s.run.cfl = scheme, factor
+        s.grid.dimension, s.grid.cell_size, s.run.scheme = dimension, cell_size, scheme
+        Numerics.named(basis).give_core(s, factor)
         if box is not None:
             lower, upper = box
             cells = [round((u - o) / cell_size) for o, u in zip(lower, upper, strict=True)]
@@ -94,6 +98,7 @@ class Scene:
     def step(self, steps: int, end: float = 1e30) -> int:
         """Make up to `steps` steps; return how many. Raises Failed."""
         made = self.core.advance(steps, end)
+        Scene.steps_made += made
         self.rows.append(self.core.history())
         if self.core.failure is not None:
             raise Failed(self.core.failure.message)
