@@ -107,7 +107,7 @@ class World:
             upper.append(high)
         return GridBox(lower=lower, upper=upper, walls=Walls(**sides))
 
-    def seen_from_here(self, column: Array) -> Array:
+    def seen_from_here(self, column: Array, name: str = "") -> Array:
         """A column of a body there, as it would be here."""
         q = self.matrix()
         d, components = len(q), column.shape[1] if column.ndim > 1 else 1
@@ -115,6 +115,9 @@ class World:
         back[self.order(len(column))] = column
         if components == d:
             return back @ q
+        if name == "affine_velocity":  # a gradient, which is not symmetric
+            gradient: Array = q.T @ back.reshape(-1, d, d) @ q
+            return gradient.reshape(len(back), -1)
         if components in PLACES:
             places = PLACES[components]
             whole = np.eye(3)
@@ -139,7 +142,7 @@ def largest_differences(here: Simulation, there: Simulation, world: World) -> di
     for number, name in enumerate(here.bodies):
         for column in here.core.columns(number):
             mine = here.column(name, column.name)
-            theirs = world.seen_from_here(there.column(name, column.name))
+            theirs = world.seen_from_here(there.column(name, column.name), column.name)
             sizes[column.name] = max(sizes.get(column.name, 0.0), float(np.abs(mine).max()))
             difference = float(np.abs(mine - theirs).max())
             apart[column.name] = max(apart.get(column.name, 0.0), difference)

@@ -126,6 +126,24 @@ def test_another_world_is_the_same_with_xpic(text: str, steps: int) -> None:
     check_worlds(case, steps, text)
 
 
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [(RINGS, 900), (GRAINS, 750), (IMPACT, 500)],
+    ids=["two rings", "fifty grains", "impact with erosion"],
+)
+@pytest.mark.parametrize(
+    "given",
+    ['{ aflip = 0.97 }\nscheme = "usf"', '"apic"'],
+    ids=["aflip, usf", "apic, musl"],
+)
+def test_another_world_is_the_same_with_affine_transfers(text: str, steps: int, given: str) -> None:
+    text = text.replace(
+        "[run]", f'basis = "quadratic_bspline"\n[run]\ncfl = 0.5\ntransfer = {given}'
+    )
+    # Less noise, less plastic strain: so that particles erode all the same.
+    check_worlds(Case.from_text(text.replace("limit = 1.2", "limit = 0.6")), steps, text)
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_field_of_velocities_is_the_same_in_another_world(dimension: int) -> None:
     """Formulas here, and there the velocities that they give, particle by particle."""
