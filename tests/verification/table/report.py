@@ -70,7 +70,7 @@ def picture(rows: Rows, file: Path) -> None:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    found, figure = means(rows), plt.figure(figsize=(8, 5), layout="constrained")
+    found, figure = means(rows), plt.figure(figsize=(9, 4.5), layout="constrained")
     axes = figure.subplots()
     pairs = list(dict.fromkeys(key[0] for key in found))
     for pair, scheme in dict.fromkeys(key[:2] for key in found):
@@ -82,5 +82,5 @@ def picture(rows: Rows, file: Path) -> None:
         )  # fmt: skip
     axes.set_xlabel("processor time of all problems [s]")
     axes.set_ylabel("geometric mean of the errors")
-    axes.legend(fontsize=6, ncols=2)
+    figure.legend(fontsize=7, loc="outside right center")
     figure.savefig(file, dpi=120)
