@@ -63,6 +63,8 @@ material = "soft"
 shape = { box = { lower = ["30 mm", "10 mm", "0 mm"], upper = ["60 mm", "40 mm", "30 mm"] } }
 velocity = ["-5 m/s", "0 m/s", "0 m/s"]
 """
+AFFINE = SPACE.replace("[run]", 'basis = "quadratic_bspline"\n[run]\ntransfer = "aflip"')
+CASES = pytest.mark.parametrize("text", [PLANE, SPACE, AFFINE], ids=["2D", "3D", "affine"])
 
 
 def stepped(folder: Path, text: str, steps: int) -> Path:
@@ -83,14 +85,14 @@ def outcomes(folder: Path, text: str, count: int) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize("text", [PLANE, SPACE], ids=["2D", "3D"])
+@CASES
 def test_damaged_states(tmp_path: Path, text: str) -> None:
     found = outcomes(tmp_path, text, 150)
     assert found["wrong"] == [] and found["outcomes"]["refused"] > 20
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("text", [PLANE, SPACE], ids=["2D", "3D"])
+@CASES
 def test_very_many_damaged_states(tmp_path: Path, text: str) -> None:
     assert outcomes(tmp_path, text, 5000)["wrong"] == []
 

@@ -181,12 +181,15 @@ void check_rest(const Simulation<D>& simulation) {
             domain.time >= 0.0 && finite(domain.time_step) && simulation.next_time_step > 0.0 &&
             finite(domain.gravity),
         "its time is damaged");
+  const auto check_speed = [&](double v) {  // The next step is infinite where none moves.
+    check(v == 0.0 || std::abs(v) * simulation.next_time_step < farthest * grid.cell_size,
+          "its particles are damaged");
+  };
+  const bool affine = is_affine(domain.transfer);
   domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
-    for (int a = 0; a < D; ++a) {
-      const double v = of.v(a)[row];  // The next step is infinite where none moves.
-      check(v == 0.0 || std::abs(v) * simulation.next_time_step < farthest * grid.cell_size,
-            "its particles are damaged");
-    }
+    for (int a = 0; a < D; ++a) check_speed(of.v(a)[row]);
+    // What it gives to a node a cell away.
+    for (int k = 0; affine && k < D * D; ++k) check_speed(of.affine_part(k)[row] * grid.cell_size);
   });
   check(domain.sums.size() == grid.patches.size(), "its sums are damaged");
   for (const PatchSums<D>& s : domain.sums) {
