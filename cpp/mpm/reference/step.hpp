@@ -120,14 +120,16 @@ struct Step {
 
   /// v_p += sum dv_i N_ip, eq. (17); of a share `pic` the velocity of the grid takes the place,
   /// that before eqs. (6)-(7) and with the increment; what a filter has found is taken away. C_p =
-  /// sum N_ip v_i (x_i - x_p) / D of the same.
+  /// sum N_ip v_i (x_i - x_p) / D of the same; with it, all of the grid's at fixed walls.
   void advance_particles() {
     for (Body<D>& b : bodies) {
       if (b.prescribed()) continue;
       for (Particle<D>& p : b.particles) {
         Vec<double, D> of_grid = Vec<double, D>::zero();
         Mat<double, D> C{};
+        bool held = false;
         for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>&) {
+          held = held || (moment > 0.0 && walls.fixes_near(i, 0, 0));
           const Vec<double, D> v = b.nodes[i].v - b.nodes[i].v_corrected;
           p.v += N * b.nodes[i].dv;
           of_grid += N * v;
@@ -136,7 +138,7 @@ struct Step {
               for (int c = 0; c < D; ++c) C[a][c] += N * v[a] * arm(p, i)[c] / moment;
         });
         if (!b.deforms()) continue;
-        p.v += pic * (of_grid - p.v);
+        p.v += (held ? 1.0 : pic) * (of_grid - p.v);
         p.v -= p.unseen;
         p.C = C;
       }

@@ -1,5 +1,6 @@
 #include "mpm/schedule/scatter.hpp"
 #include "mpm/step/affine_velocity.hpp"
+#include "mpm/step/fixed_walls.hpp"
 #include "mpm/step/move.hpp"
 #include "mpm/step/node_loops.hpp"
 #include "mpm/step/patch_loops.hpp"
@@ -114,9 +115,11 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   DoubleBuffer<Mapping<typename Transfer::Gives>, what, D, B, half_record> cells(stride,
                                                                                  {remapped});
   [[maybe_unused]] TakingAffine<T, D> affine(grid, pool);
+  FixedWalls<Transfer, T, D> walls(transfer, grid, patch, pool);
 
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
+    const Transfer here = walls.transfer_of(cell);
     if constexpr (also == Also::remap) cells.begin(cell);
     for_each_group<W>(cell, [&](const auto& rows) {
       const Vec<T, D> xi = local_position(cell, rows);
@@ -131,7 +134,8 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       }
       if constexpr (Transfer::takes_grid_velocity && !Transfer::affine)
         beside = nodes.template vector<velocity_at>(w);
-      const Vec<T, D> v = velocities.take(transfer, rows, m, dv, beside, sums);
+      walls.add(rows, m, dv, beside);
+      const Vec<T, D> v = velocities.take(here, rows, m, dv, beside, sums);
       // USF: eq. (16) with the same weights, which are those of the positions before.
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {
@@ -151,6 +155,7 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   }
   if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
   sums.write(domain.sums[p]);
+  walls.write(domain.sums[p]);
 }
 
 /// Kinetic energy of a patch's particles [J].

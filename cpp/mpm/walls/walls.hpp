@@ -58,6 +58,16 @@ struct Walls {
     return axes;
   }
 
+  /// Lies a node from `before` this one to `after` it, along any axis, on a fixed face or beyond?
+  bool fixes_near(const Index<D>& node, int before, int after) const {
+    if (!exist) return false;
+    for (int a = 0; a < D; ++a)
+      if ((face[a][0] == Wall::fixed && depth_beyond(node, a, 0) >= -before) ||
+          (face[a][1] == Wall::fixed && depth_beyond(node, a, 1) >= -after))
+        return true;
+    return false;
+  }
+
   /// Of a node beyond a slip face, which is a plane of symmetry, or beyond a fixed one if that is
   /// odd: where it is mirrored to, as deep before the face. Beyond two faces, at an edge of the
   /// box, it is mirrored twice; a component that is turned twice is as it was (hence ^=).
