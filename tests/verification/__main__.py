@@ -9,6 +9,7 @@ import re
 from pathlib import Path
 
 from .figure import Figure
+from .numerics import DEFAULT
 from .runs import RUNS, Run
 
 ABOUT = Path(__file__).parent / "about.md"
@@ -86,15 +87,13 @@ def page(rows: list[tuple[str, list[str]]], total: str) -> str:
 
 
 def summary(lines: list[str]) -> str:
-    """Return a table of how many figures pass, by scheme and basis."""
-    text = "\n| passed, of those with a tolerance | gimp | linear |\n| --- | --- | --- |\n"
-    for scheme in ("musl", "usf", "usl"):
-        text += f"| {scheme} "
-        for basis in ("gimp", "linear"):
-            own = [line for line in lines if re.match(rf"\| [^|]* {scheme} \dD {basis} \|", line)]
-            passed, failed = (sum(f"| {v} |" in line for line in own) for v in ("pass", "**FAIL**"))
-            text += f"| {passed} of {passed + failed} "
-        text += "|\n"
+    """Return a table of how many figures pass, by basis and scheme."""
+    kinds = list(dict.fromkeys((run.basis, run.scheme) for run in RUNS if run.basis != "-"))
+    text = "\n| basis, scheme | passed, of those with a tolerance |\n| --- | --- |\n"
+    for basis, scheme in sorted(kinds, key=lambda kind: (kind[0] != DEFAULT, kind)):
+        own = [line for line in lines if re.match(rf"\| [^|]* {scheme} \dD {basis} \|", line)]
+        passed, failed = (sum(f"| {v} |" in line for line in own) for v in ("pass", "**FAIL**"))
+        text += f"| {basis}, {scheme} | {passed} of {passed + failed} |\n"
     return text
 
 

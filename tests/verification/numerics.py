@@ -7,11 +7,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from mpm3dpp import Case, _core
+from mpm3dpp.case import choices
+
+DEFAULT = "default"
 
 
 @dataclass(frozen=True)
 class Numerics:
     """What a basis' name stands for: "gimp", "quadratic_bspline+apic", "gimp+xpic=4@0.5".
+
+    "default" stands for what a case gets that says nothing, but for the scheme.
 
     Attributes:
         basis: its name in the core.
@@ -28,6 +33,8 @@ class Numerics:
     @classmethod
     def named(cls, name: str) -> Numerics:
         """Take a name apart."""
+        if name == DEFAULT:
+            return cls(choices.BASIS, choices.TRANSFER, None, choices.AFFINE["cfl"])
         name, _, factor = name.partition("@")
         basis, _, transfer = name.partition("+")
         word, _, number = (transfer or "flip").partition("=")
@@ -42,9 +49,10 @@ class Numerics:
         return {self.transfer: int(self.number) if self.transfer == "xpic" else self.number}
 
     def give_case(self, case: Case) -> None:
-        """Give a case this basis and transfer, and this factor if there is one."""
+        """Give a case this basis and transfer, and this factor; without one its own, or 0.25."""
+        own = case.run.cfl if "cfl" in case.run.model_fields_set else choices.OTHERS["cfl"]
         case.grid.basis, case.run.transfer = self.basis, self.table()
-        case.run.cfl = self.factor or case.run.cfl
+        case.run.cfl = self.factor or own
 
     def give_core(self, settings: _core.Settings, factor: float) -> None:
         """Give settings of the core this basis and transfer, and this factor or else `factor`."""

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
+
+from mpm3dpp.case import choices
 
 from . import (
     bars,
@@ -25,9 +27,11 @@ from . import (
     written,
 )
 from .figure import Figure
+from .numerics import DEFAULT
 from .scene import Failed
 
 BASES = ("linear", "gimp")
+LATTICE = {"fill": "lattice"}
 
 
 @dataclass(frozen=True)
@@ -126,20 +130,24 @@ def _runs() -> Iterator[Run]:
         yield Run("S3", examples.sod_tube, scheme, 2, "gimp")
         yield Run("S5", examples.spall, scheme, 2, "gimp")
     yield Run("E4", point.simple_shear, "-", 3, "-")
-    yield Run("E3", written.spinning_disc, "musl", 2, "gimp", {"cells": 10})
-    yield Run("E3", written.spinning_disc, "musl", 2, "gimp", {"cells": 10, "points": 3})
-    yield Run("E9", written.rolling_disc, "musl", 2, "gimp", {"cells": 8})
+    for more in ({}, LATTICE):
+        yield Run("E3", written.spinning_disc, "musl", 2, "gimp", {"cells": 10} | more)
+        yield Run("E3", written.spinning_disc, "musl", 2, "gimp", {"cells": 10, "points": 3} | more)
+        yield Run("E9", written.rolling_disc, "musl", 2, "gimp", {"cells": 8} | more)
     yield from _slow_runs()
 
 
 def _slow_runs() -> Iterator[Run]:
     for cells in (10, 20):
         yield Run("C1", grains.hertz_wall, "musl", 3, "gimp", {"cells": cells}, slow=True)
-        yield Run("C1", written.hertz_spheres, "musl", 3, "gimp", {"cells": cells}, slow=True)
-    yield Run("E3", written.spinning_disc, "musl", 2, "gimp", {"cells": 20}, slow=True)
-    more = {"cells": 20, "points": 3}
-    yield Run("E3", written.spinning_disc, "musl", 2, "gimp", more, slow=True)
-    yield Run("E9", written.rolling_disc, "musl", 2, "gimp", {"cells": 16}, slow=True)
+    for more in ({}, LATTICE):
+        for cells in (10, 20):
+            filled = {"cells": cells} | more
+            yield Run("C1", written.hertz_spheres, "musl", 3, "gimp", filled, slow=True)
+        yield Run("E3", written.spinning_disc, "musl", 2, "gimp", {"cells": 20} | more, slow=True)
+        filled = {"cells": 20, "points": 3} | more
+        yield Run("E3", written.spinning_disc, "musl", 2, "gimp", filled, slow=True)
+        yield Run("E9", written.rolling_disc, "musl", 2, "gimp", {"cells": 16} | more, slow=True)
     for cells in (16, 32):
         yield Run("C5", rolling.rolling_on_discs, "musl", 2, "gimp", {"cells": cells}, slow=True)
     for cells in (10, 40):
@@ -175,4 +183,16 @@ def _slow_runs() -> Iterator[Run]:
             yield Run("E10", groups.offset_spheres, "musl", 3, basis, more, True)
 
 
-RUNS = list(_runs())
+def _with_defaults(runs: list[Run]) -> Iterator[Run]:
+    """Return what has been run with GIMP, FLIP and MUSL once more as a case gets it."""
+    for run in runs:
+        options = {key: value for key, value in run.options.items() if key != "factor"}
+        lattice = options.get("fill") == LATTICE["fill"]
+        if (run.basis, run.scheme) == ("gimp", "musl") and not lattice:
+            scheme = choices.AFFINE["scheme"]
+            yield replace(run, basis=DEFAULT, scheme=scheme, options=options)
+
+
+_WRITTEN = list(_runs())
+# Runs that differ in their factor alone are one with the default's.
+RUNS = list({run.title: run for run in [*_WRITTEN, *_with_defaults(_WRITTEN)]}.values())

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Problems as a user writes them: a case file with default settings, but the grid's lattice.
+"""Problems as a user writes them: case files, filled by default, or else by the grid's lattice.
 
-The same problems elsewhere in this folder fill discs and spheres with rings and shells of points,
-which are rounder: a lattice has steps of half a spacing on the surface.
+A lattice has steps of half a spacing on the surface of discs and spheres.
 """
 
 from __future__ import annotations
@@ -22,13 +21,17 @@ from .scene import Array, Failed, slope
 CASES = Path(__file__).parent / "cases"
 
 
-def _case(name: str, scheme: str, dimension: int, basis: str, cells: int, radius: float) -> Case:
+def _case(
+    name: str, scheme: str, dimension: int, basis: str, cells: int, radius: float, fill: str | None
+) -> Case:
     """Return a case file with so many cells a radius [m], all else as it is written."""
     case = load_case(CASES / f"{name}.toml")
     assert case.grid.dimension == dimension
     case.run.scheme = scheme
     Numerics.named(basis).give_case(case)
     case.grid.cell_size = radius / cells
+    for body in case.body.values():
+        body.fill = fill if body.motion is None else None
     return case
 
 
@@ -56,10 +59,11 @@ def _watched(case: Case, body: str, every: int) -> Array:
 
 
 def spinning_disc(
-    scheme: str, dimension: int, basis: str, cells: int = 10, points: int | None = None
-) -> list[Figure]:
+    scheme: str, dimension: int, basis: str, cells: int = 10, points: int | None = None,
+    fill: str | None = None,
+) -> list[Figure]:  # fmt: skip
     """E3: a disc spins 3.2 times; with so many points a cell along each axis, or the default."""
-    case = _case("spin", scheme, dimension, basis, cells, 1.0)
+    case = _case("spin", scheme, dimension, basis, cells, 1.0, fill)
     case.body["disc"].particles_per_cell = points
     simulation = Simulation(case)
 
@@ -76,9 +80,11 @@ def spinning_disc(
     return spin_figures(state()[0] / momentum, energy, cells, judged=True)
 
 
-def rolling_disc(scheme: str, dimension: int, basis: str, cells: int = 8) -> list[Figure]:
+def rolling_disc(
+    scheme: str, dimension: int, basis: str, cells: int = 8, fill: str | None = None
+) -> list[Figure]:
     """E9: a disc rolls down an incline; the first 0.1 s, while it settles, does not count."""
-    said = _watched(_case("rolling", scheme, dimension, basis, cells, 0.1), "disc", 20)
+    said = _watched(_case("rolling", scheme, dimension, basis, cells, 0.1, fill), "disc", 20)
     time, drift, turn = said[:, 0], said[:, 3], said[:, 5]
     late = time > 0.1
     acceleration = slope(time[late], drift[late])
@@ -89,11 +95,13 @@ def rolling_disc(scheme: str, dimension: int, basis: str, cells: int = 8) -> lis
     ]
 
 
-def hertz_spheres(scheme: str, dimension: int, basis: str, cells: int = 20) -> list[Figure]:
+def hertz_spheres(
+    scheme: str, dimension: int, basis: str, cells: int = 20, fill: str | None = None
+) -> list[Figure]:
     """C1: a sphere of `cells` a diameter and its mirror image meet at 1 and at 0.5 m/s each."""
     found = {}
     for speed in (1.0, 0.5):
-        case = _case("hertz", scheme, dimension, basis, cells, 2 * RADIUS)
+        case = _case("hertz", scheme, dimension, basis, cells, 2 * RADIUS, fill)
         away = RADIUS + 0.1 * case.grid.cell_size
         for body, side in (("left", -1.0), ("right", 1.0)):
             case.body[body].velocity = (-side * speed, 0.0, 0.0)

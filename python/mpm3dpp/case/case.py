@@ -26,6 +26,7 @@ from mpm3dpp.shapes.base import KINDS
 from . import file as case_file
 from .body import Body
 from .checks import check_case
+from .choices import with_choices
 from .content import PRESETS, content_of, with_preset
 from .detonation import Detonation
 from .grid import Grid
@@ -74,6 +75,7 @@ class Case(CaseModel):
 
     @model_validator(mode="after")
     def _whole(self) -> Case:
+        self.__dict__["run"] = with_choices(self.run, self.grid.basis)
         check_case(self)
         return self
 

@@ -16,6 +16,8 @@ from mpm3dpp.base.model import CaseModel
 from mpm3dpp.base.settings import choice, core_table
 from mpm3dpp.base.units import Point
 
+from . import choices
+
 FACES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 MOST_CELLS = 2**30
 """Of a box along an axis: the core counts cells with 32 bits, and needs some beyond it."""
@@ -66,7 +68,7 @@ class GridBox(CaseModel):
 
 
 _Coarsening: Any = core_table("grid.coarsening")
-_Grid: Any = core_table("grid")
+_Grid: Any = core_table("grid", basis=choices.BASIS)
 
 
 class GridCoarsening(_Coarsening):

@@ -12,10 +12,11 @@ from mpm3dpp.base.model import CaseModel, Count, Exactly, Flag, Text
 from mpm3dpp.base.settings import core_table
 from mpm3dpp.base.units import NonNegative, Quantity, Time
 
+from . import choices
 from .transfer import Transfer, WordOrTable
 
 _Viscosity: Any = core_table("run.viscosity")
-_Run: Any = core_table("run")
+_Run: Any = core_table("run", **choices.AFFINE)
 _Contact: Any = core_table("contact")
 
 
@@ -25,6 +26,9 @@ class Viscosity(_Viscosity):
 
 class Run(_Run):
     """How time advances.
+
+    With grid.basis = "gimp" or "linear" the default transfer is "flip"; with "flip", "pic" and
+    "xpic" the default scheme is "musl", and cfl 0.25.
 
     Attributes:
         end_time: [s].
@@ -36,7 +40,9 @@ class Run(_Run):
     """
 
     end_time: Time
-    transfer: Annotated[Transfer, WordOrTable()] = Field(default="flip", validate_default=True)
+    transfer: Annotated[Transfer, WordOrTable()] = Field(
+        default=choices.TRANSFER, validate_default=True
+    )
     viscosity: Viscosity | None = None
 
     @classmethod

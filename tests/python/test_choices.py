@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Basis, transfer, scheme and step of a case that does not say them."""
+
+from __future__ import annotations
+
+import pytest
+
+from mpm3dpp import Body, Case, CaseError, Grid, Material, Run, shapes
+
+CASE = """
+{preset}
+[grid]
+dimension = 2
+cell_size = "1 mm"
+{grid}
+[run]
+end_time = "1 ms"
+{run}
+[material.soft]
+density = 1000
+strength = {{ elastic = {{ E = "1 MPa", nu = 0.3 }} }}
+[body.disc]
+material = "soft"
+shape = {{ disc = {{ centre = [0, 0], radius = "5 mm" }} }}
+"""
+AFLIP, FLIP = ("aflip", "usf", 0.5), ("flip", "musl", 0.25)
+
+
+@pytest.mark.parametrize(
+    ("preset", "grid", "run", "basis", "chosen"),
+    [
+        ("", "", "", "quadratic_bspline", AFLIP),
+        ("", 'basis = "gimp"', "", "gimp", FLIP),
+        ("", 'basis = "linear"', "", "linear", FLIP),
+        ("", "", 'transfer = "flip"', "quadratic_bspline", FLIP),
+        ("", "", "transfer = { flip = 0.98 }", "quadratic_bspline", ({"flip": 0.98}, "musl", 0.25)),
+        ("", "", 'transfer = "pic"', "quadratic_bspline", ("pic", "musl", 0.25)),
+        ("", "", 'transfer = "apic"', "quadratic_bspline", ("apic", "usf", 0.5)),
+        ("", "", 'scheme = "musl"', "quadratic_bspline", ("aflip", "musl", 0.5)),
+        ("", "", "cfl = 0.1", "quadratic_bspline", ("aflip", "usf", 0.1)),
+        ("", 'basis = "gimp"', 'scheme = "usf"\ncfl = 0.1', "gimp", ("flip", "usf", 0.1)),
+        ('preset = "paper"', "", "", "linear", FLIP),
+        ('preset = "paper"', 'basis = "quadratic_bspline"', "", "quadratic_bspline", AFLIP),
+    ],
+)
+def test_what_is_not_said_follows_what_is(preset, grid, run, basis, chosen) -> None:
+    case = Case.from_text(CASE.format(preset=preset, grid=grid, run=run))
+    assert case.grid.basis == basis
+    assert (case.run.transfer.table(), case.run.scheme, case.run.cfl) == chosen
+
+
+def test_a_run_that_serves_two_cases_is_chosen_for_each() -> None:
+    run = Run(end_time=1.0)
+    body = Body(material="soft", shape=shapes.Disc(centre=[0.0, 0.0], radius=0.005))
+    soft = Material(density=1000.0, strength={"elastic": {"E": 1e6, "nu": 0.3}})
+
+    def case(**grid: str) -> Case:
+        return Case(
+            grid=Grid(dimension=2, cell_size=1e-3, **grid),
+            run=run,
+            material={"soft": soft},
+            body={"disc": body},
+        )
+
+    first, second = case(basis="gimp"), case()
+    assert (first.run.scheme, second.run.scheme) == ("musl", "usf")
+    assert (first.run.cfl, second.run.cfl) == (0.25, 0.5)
+
+
+def test_an_affine_transfer_on_another_basis_is_refused() -> None:
+    text = CASE.format(preset="", grid='basis = "gimp"', run='transfer = "aflip"')
+    with pytest.raises(CaseError, match="does not go with grid.basis"):
+        Case.from_text(text)
