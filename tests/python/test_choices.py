@@ -69,5 +69,5 @@ def test_a_run_that_serves_two_cases_is_chosen_for_each() -> None:
 
 def test_an_affine_transfer_on_another_basis_is_refused() -> None:
     text = CASE.format(preset="", grid='basis = "gimp"', run='transfer = "aflip"')
-    with pytest.raises(CaseError, match="does not go with grid.basis"):
+    with pytest.raises(CaseError, match="does not go with grid"):
         Case.from_text(text)

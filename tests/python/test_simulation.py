@@ -255,7 +255,8 @@ def test_an_unknown_column_or_body_is_one_sentence() -> None:
 
 
 def test_set_velocity() -> None:
-    simulation = Simulation(one_block(2, {}, {}, velocity=(7.0, 0.0)), threads=1)
+    flip = {"transfer": "flip"}  # whose particles have no energy beside that of their velocity
+    simulation = Simulation(one_block(2, {}, flip, velocity=(7.0, 0.0)), threads=1)
     simulation.advance(150)  # far enough that the columns have been sorted anew
     x = simulation.column("block", "position")
     given = np.column_stack([1e2 * x[:, 1], -1e2 * x[:, 0]])
@@ -287,7 +288,7 @@ def test_history_has_a_row_for_each_step() -> None:
     assert row["time"][-1] == simulation.time == 1e-3  # exactly
     assert simulation.advance(5) == 0
     assert history(simulation)["step"].size == 0  # rows are handed out once
-    parts = row["numerical_mapping"] + row["numerical_time"]
+    parts = sum(row[f"numerical_{part}"] for part in ("mapping", "time", "transfer"))
     assert np.allclose(row["numerical"], parts, rtol=1e-12, atol=0.0)
 
 

@@ -23,7 +23,12 @@ def disc(walls: Any = "fixed", speed: float = 300.0, end: float = 1e-3, **run: A
     """Return an elastic disc, waves of 37 m/s, that flies against a wall of a box."""
     return Case.model_validate(
         {
-            "grid": {"dimension": 2, "cell_size": 2e-3, "box": BOX | {"walls": walls}},
+            "grid": {
+                "dimension": 2,
+                "cell_size": 2e-3,
+                "box": BOX | {"walls": walls},
+                "basis": "gimp",
+            },
             "run": {"end_time": end} | run,
             "material": {"soft": SOFT},
             "body": {
@@ -44,6 +49,7 @@ def block(traction: Any, end: float, **run: Any) -> Case:
             "grid": {
                 "dimension": 2,
                 "cell_size": 10e-3,
+                "basis": "gimp",
                 "box": {"lower": [-1, 0], "upper": [9, 9], "walls": {"y_min": "fixed"}},
             },
             "run": {"end_time": end} | run,
@@ -130,6 +136,7 @@ def test_the_command_fails_and_keeps_what_was_computed(tmp_path: Path) -> None:
 [grid]
 dimension = 2
 cell_size = "2 mm"
+basis = "gimp"
 box = { lower = [0, 0], upper = ["80 mm", "80 mm"], walls = "fixed" }
 [run]
 end_time = "1 ms"
@@ -233,7 +240,7 @@ def test_many_bodies_at_a_node_are_told_and_do_not_hold_up_a_step() -> None:
     lattice = {"lower": [0.0, 0.0], "count": [count, count], "radius": 1e-3 / count}
     case = Case.model_validate(
         {
-            "grid": {"dimension": 2, "cell_size": 12e-3},
+            "grid": {"dimension": 2, "cell_size": 12e-3, "basis": "gimp"},
             "run": {"end_time": 1.0},
             "contact": {"friction": 0.3},
             "material": {"soft": SOFT},

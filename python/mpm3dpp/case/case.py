@@ -75,9 +75,17 @@ class Case(CaseModel):
 
     @model_validator(mode="after")
     def _whole(self) -> Case:
+        self.complete_and_check()
+        return self
+
+    def complete_and_check(self) -> None:
+        """Choose what the case leaves out, and check it; again where its tables were changed.
+
+        Raises:
+            ValueError: a violation, of which the sentence is made where the case is read or run.
+        """
         self.__dict__["run"] = with_choices(self.run, self.grid.basis)
         check_case(self)
-        return self
 
     @property
     def text(self) -> str:

@@ -73,10 +73,9 @@ def build(case: Case) -> list[FilledBody]:
             place; or the case is too large. There may be `others`.
     """
     from mpm3dpp.base.errors import from_violation
-    from mpm3dpp.case.checks import check_case
 
     try:
-        check_case(case)  # Again: objects may have been changed since the case was made.
+        case.complete_and_check()  # Again: objects may have been changed since the case was made.
     except ValueError as error:
         raise from_violation(error) from None
     bodies = fill_all(case)
