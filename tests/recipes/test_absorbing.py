@@ -27,7 +27,7 @@ def bar(cells: tuple[int, ...], walls: Walls, lengths: float, **more: Any) -> Ca
     grid_box = GridBox(lower=(0.0,) * d, upper=upper, walls=walls)
     return Case(
         grid=Grid(dimension=d, cell_size=CELL, basis=basis, box=grid_box),
-        run=Run(**{"end_time": lengths * CELL / PRESSURE_WAVE} | more),
+        run=Run(**{"end_time": lengths * CELL / PRESSURE_WAVE, "cfl": 0.25} | more),
         material={"solid": materials()["solid"]},
         body={"bar": block((0,) * d, cells, material="solid")},
     )

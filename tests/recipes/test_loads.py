@@ -27,7 +27,7 @@ def loaded(
     grid = {"dimension": dimension, "cell_size": CELL} | (grid or {})
     return Case(
         grid=Grid(**grid),
-        run=Run(**{"end_time": lengths * TIME} | run),
+        run=Run(**{"end_time": lengths * TIME, "cfl": 0.25} | run),
         material={"solid": materials()["solid"]},
         body={"body": body},
         load=loads,

@@ -105,7 +105,8 @@ WORLDS = {
 )
 @pytest.mark.parametrize("basis", ["gimp", "quadratic_bspline"])
 def test_another_world_is_the_same_to_rounding(text: str, steps: int, basis: str) -> None:
-    check_worlds(Case.from_text(text.replace("[run]", f'basis = "{basis}"\n[run]')), steps, text)
+    given = f'basis = "{basis}"\n[run]\ntransfer = "flip"'
+    check_worlds(Case.from_text(text.replace("[run]", given)), steps, text)
 
 
 def test_another_world_is_the_same_with_pic() -> None:

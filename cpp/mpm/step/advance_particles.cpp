@@ -115,11 +115,10 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   DoubleBuffer<Mapping<typename Transfer::Gives>, what, D, B, half_record> cells(stride,
                                                                                  {remapped});
   [[maybe_unused]] TakingAffine<T, D> affine(grid, pool);
-  FixedWalls<Transfer, T, D> walls(transfer, grid, patch, pool);
 
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
-    const Transfer here = walls.transfer_of(cell);
+    const Transfer here = transfer_of_cell(transfer, grid, patch, cell.cell);
     if constexpr (also == Also::remap) cells.begin(cell);
     for_each_group<W>(cell, [&](const auto& rows) {
       const Vec<T, D> xi = local_position(cell, rows);
@@ -134,7 +133,6 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       }
       if constexpr (Transfer::takes_grid_velocity && !Transfer::affine)
         beside = nodes.template vector<velocity_at>(w);
-      walls.add(rows, m, dv, beside);
       const Vec<T, D> v = velocities.take(here, rows, m, dv, beside, sums);
       // USF: eq. (16) with the same weights, which are those of the positions before.
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
@@ -155,7 +153,6 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   }
   if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
   sums.write(domain.sums[p]);
-  walls.write(domain.sums[p]);
 }
 
 /// Kinetic energy of a patch's particles [J].

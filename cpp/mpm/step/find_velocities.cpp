@@ -1,8 +1,8 @@
 // From the momenta that have been summed to velocities: v_i = p_i / m_i.
 #include "mpm/rigid/prescribed_bodies.hpp"
+#include "mpm/step/fixed_walls.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
-#include "mpm/step/transfer/transfer.hpp"
 #include "mpm/walls/reactions.hpp"
 
 namespace mpm {
@@ -47,9 +47,9 @@ void add_moments_held(Domain<D>& domain) {
       domain, [&](const Patch<D>& patch, const NodeBlock<D>& block, Vector3& sum) {
         double own[BlockShape<D>::nodes_max];
         own_nodes(domain.grid, patch, own);
-        sum -= grid_share(domain) * moment_held(domain.grid, patch, own, [&](int node) {
-                 return block.vector(node, momentum_at);
-               });
+        sum -= moment_held(domain.grid, patch, own, [&](int node) {
+          return grid_share_at(domain, patch, node) * block.vector(node, momentum_at);
+        });
       });
 }
 
@@ -58,10 +58,10 @@ template <int D>
 void add_moments_beyond(Domain<D>& domain) {
   for_each_mapped_at_walls(
       domain, [&](const Patch<D>& patch, const NodeBlock<D>& block, Vector3& sum) {
-        sum -= grid_share(domain) * moment_of_folding(domain.grid, patch, [&](int node) {
-                 const double m = patch.owned[node] ? block.mass()[node] : 0.0;
-                 return m * block.vector(node, velocity_at);
-               });
+        sum -= moment_of_folding(domain.grid, patch, [&](int node) {
+          const double m = patch.owned[node] ? block.mass()[node] : 0.0;
+          return grid_share_at(domain, patch, node) * m * block.vector(node, velocity_at);
+        });
       });
 }
 

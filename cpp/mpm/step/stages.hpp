@@ -212,11 +212,10 @@ struct Stages : Data {
                                node_velocity | contacts};
   static constexpr Row restore{"restore contact", mpm::restore_contact<D>, node_velocity | contacts,
                                node_velocity | contacts};
-  static constexpr Row advance_particles{"advance particles", mpm::advance_particles<D>,
-                                         lists | of_particles | of_rigid | unseen | node_velocity |
-                                             node_increments | patch_sums | mapped_impulses,
-                                         velocity | rigid_velocity | patch_sums | mapped_impulses,
-                                         true};
+  static constexpr Row advance_particles{
+      "advance particles", mpm::advance_particles<D>,
+      lists | of_particles | of_rigid | unseen | node_velocity | node_increments | patch_sums,
+      velocity | rigid_velocity | patch_sums, true};
   // Before anything takes their velocities: the remap in MUSL, the end of the step in the others.
   static constexpr Row hold_rigid{"project rigid velocities", mpm::project_rigid_velocities<D>,
                                   lists | of_rigid | patch_sums | impulses,

@@ -1,9 +1,9 @@
 // Nodes beyond walls that belong to mirrored bodies (decision 0010). Each patch folds what its own
 // particles have given, before the exchange adds the images up: folding is linear, so the two may
 // come in this order.
+#include "mpm/step/fixed_walls.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
-#include "mpm/step/transfer/transfer.hpp"
 #include "mpm/walls/reactions.hpp"
 
 namespace mpm {
@@ -19,18 +19,18 @@ void fold(Domain<D>& domain, int at) {
   });
 }
 
-/// What folding does to the moment of the vector at number `at` of the records, times a factor,
-/// into the patches' sums; before it is folded.
-template <int D>
-void add_moments(Domain<D>& domain, Kinds kinds, int at, double factor,
-                 Vector3 AngularImpulses::* sum) {
+/// What folding does to the moment of the vector at number `at` of the records, times
+/// factor(patch, node), into the patches' sums; before it is folded.
+template <int D, class F>
+void add_moments(Domain<D>& domain, Kinds kinds, int at, Vector3 AngularImpulses::* sum,
+                 F&& factor) {
   auto& grid = domain.grid;
-  if (!grid.has_ghosts() || factor == 0.0) return;
+  if (!grid.has_ghosts()) return;
   for_each_patch(domain, kinds, [&](std::size_t p) {
     const NodeBlock<D> block = grid.block(p);
-    domain.sums[p].angular.*sum += factor * moment_of_folding(grid, grid.patches[p], [&](int node) {
-                                     return block.vector(node, at);
-                                   });
+    const Patch<D>& patch = grid.patches[p];
+    domain.sums[p].angular.*sum += moment_of_folding(
+        grid, patch, [&](int node) { return factor(patch, node) * block.vector(node, at); });
   });
 }
 
@@ -38,13 +38,17 @@ void add_moments(Domain<D>& domain, Kinds kinds, int at, double factor,
 
 template <int D>
 void fold_momentum(Domain<D>& domain) {
-  add_moments(domain, deformable, momentum_at, grid_share(domain), &AngularImpulses::mapped);
+  if (grid_share(domain) > 0.0)
+    add_moments(
+        domain, deformable, momentum_at, &AngularImpulses::mapped,
+        [&](const Patch<D>& patch, int node) { return grid_share_at(domain, patch, node); });
   fold(domain, momentum_at);
 }
 
 template <int D>
 void fold_forces(Domain<D>& domain) {
-  add_moments(domain, deformable | free_rigid, force_at, domain.time_step, &AngularImpulses::walls);
+  add_moments(domain, deformable | free_rigid, force_at, &AngularImpulses::walls,
+              [&](const Patch<D>&, int) { return domain.time_step; });
   fold(domain, force_at);
 }
 
