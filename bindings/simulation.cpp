@@ -47,12 +47,13 @@ void def_building(SimulationClass& simulation) {
       .def("add_material",
            of_any([](auto& s, double density, const std::string& strength,
                      const Parameters& parameters, const std::optional<Named>& eos,
-                     const std::vector<NamedFailure>& failures, Viscosity viscosity) {
-             return add_material(
-                 s, choice_of(density, strength, parameters, eos, failures, viscosity));
+                     const std::vector<NamedFailure>& failures, Viscosity viscosity,
+                     bool volume_averaging) {
+             return add_material(s, choice_of(density, strength, parameters, eos, failures,
+                                              viscosity, volume_averaging));
            }),
            nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
-           nb::arg("failures"), nb::arg("viscosity"))
+           nb::arg("failures"), nb::arg("viscosity"), nb::arg("volume_averaging"))
       .def("add_body",
            of_any([](auto& s, const std::string& name, int material, const Input& positions,
                      const Input& velocities, const Input& volumes) {

@@ -78,6 +78,10 @@ struct Domain {
   const Material& material_of(const Patch<D>& patch) const {
     return materials[static_cast<std::size_t>(body_of(patch).material)];
   }
+  bool averages_volume() const {
+    return std::any_of(materials.begin(), materials.end(),
+                       [](const Material& m) { return m.averages_volume; });
+  }
   bool has_rigid() const { return !rigid_bodies.empty(); }
   bool has_prescribed() const { return !prescribed.empty(); }
   bool has_loads() const { return !loads.empty(); }

@@ -145,6 +145,24 @@ def test_another_world_is_the_same_with_affine_transfers(text: str, steps: int, 
     check_worlds(Case.from_text(text.replace("limit = 1.2", "limit = 0.6")), steps, text)
 
 
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [(RINGS, 1500), (GRAINS, 750), (IMPACT, 500)],
+    ids=["two rings", "fifty grains", "impact with erosion"],
+)
+@pytest.mark.parametrize(
+    "given",
+    ['"quadratic_bspline"\n[run]\nscheme = "usf"\ntransfer = { aflip = 0.97 }', '"gimp"\n[run]'],
+    ids=["aflip, usf", "gimp, musl"],
+)
+def test_another_world_is_the_same_with_averaged_volumes(text: str, steps: int, given: str) -> None:
+    text = text.replace("[run]", f"basis = {given}").replace("limit = 1.2", "limit = 0.6")
+    case = Case.from_text(text)
+    for material in case.material.values():
+        material.volume_averaging = True
+    check_worlds(case, steps, text)
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_field_of_velocities_is_the_same_in_another_world(dimension: int) -> None:
     """Formulas here, and there the velocities that they give, particle by particle."""

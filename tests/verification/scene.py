@@ -76,8 +76,9 @@ class Scene:
     def material(self, density: float, model: str, **parameters: float) -> int:
         """Add a material."""
         return self.core.add_material(
-            density, model, parameters, eos=None, failures=[], viscosity=(0.0, 0.0)
-        )
+            density, model, parameters, eos=None, failures=[], viscosity=(0.0, 0.0),
+            volume_averaging=False,
+        )  # fmt: skip
 
     def body(
         self, material: int, points: Array, velocity: Sequence[float] | Array, volume: Any

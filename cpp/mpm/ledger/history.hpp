@@ -95,6 +95,9 @@ inline constexpr auto history_terms = std::to_array<HistoryTerm>({
      [](const StepState& s) { return s.ledger.motion_impulse[2]; }},
     {"energy_floor", "J", "the part of `bounded` that energies below absolute zero were given",
      [](const StepState& s) { return s.ledger.energy_floor; }, Role::other, "bounded"},
+    {"numerical_averaging", "J",
+     "the part of `numerical_mapping` that `volume_averaging` has; of the second order in a step",
+     [](const StepState& s) { return s.ledger.averaging; }, Role::other, "numerical_mapping"},
 });
 
 }  // namespace mpm

@@ -50,6 +50,7 @@ struct Ledger {
          external = 0.0, absorbed = 0.0, eroded = 0.0, left = 0.0, bounded = 0.0, mapping = 0.0,
          time_integration = 0.0;  // [J]
   double energy_floor = 0.0;      // the part of bounded that the least energy has given, <= 0 [J]
+  double averaging = 0.0;         // the part of mapping that averaging volumes has [J]
   double transferred = 0.0;       // kinetic energy that transfers other than FLIP have taken [J]
   double load_work = 0.0;         // the part of external that loads and body forces have done [J]
   double gone_recoverable = 0.0;  // the part of eroded and left that was internal [J]
@@ -120,6 +121,7 @@ struct Ledger {
     const double second = s.second_order - s.gravity_second - s.load_second - s.dashpot_second;
     const double at_end = forces_follow ? 0.0 : 2.0 * second;
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
+    averaging -= s.stress.averaging;
     transferred += s.transferred;
     // Of affine transfers, the work of all forces at the velocities that were mapped, before
     // (6)-(7), and the second order: what the energies of free particles should have changed by.

@@ -43,10 +43,11 @@ struct PatchSums {
   template <class F>
   void for_each(F&& f) {
     for (double* const x :
-         {&stress.internal, &stress.plastic, &stress.viscous, &stress.bounded, &stress.energy_floor,
-          &stress.force_power, &kinetic, &second_order, &transferred, &force_work, &made_rigid,
-          &gravity_first, &gravity_second, &prescribed.kinetic, &prescribed.work, &load_first,
-          &load_second, &dashpot_first, &dashpot_second})
+         {&stress.internal,     &stress.plastic,     &stress.viscous,     &stress.bounded,
+          &stress.energy_floor, &stress.force_power, &stress.averaging,   &kinetic,
+          &second_order,        &transferred,        &force_work,         &made_rigid,
+          &gravity_first,       &gravity_second,     &prescribed.kinetic, &prescribed.work,
+          &load_first,          &load_second,        &dashpot_first,      &dashpot_second})
       f(*x);
     for (int a = 0; a < D; ++a) {
       f(momentum[a]);
@@ -54,7 +55,7 @@ struct PatchSums {
       f(prescribed.impulse[a]);
     }
   }
-  static constexpr std::size_t numbers = 19 + 3 * D;  // of for_each
+  static constexpr std::size_t numbers = 20 + 3 * D;  // of for_each
 };
 
 /// The sums over all patches, which depend on no order.

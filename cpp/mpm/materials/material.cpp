@@ -139,6 +139,13 @@ Material make_material(const MaterialChoice& choice) {
     if (!row.rule.allows(factor)) refuse("viscosity", factor, row.rule.text());
   });
   material.viscosity = choice.viscosity;
+  if (choice.volume_averaging && material.moves_as_one())
+    throw std::invalid_argument(choice.strength.name +
+                                " does not deform and takes no volume_averaging");
+  if (choice.volume_averaging && material.burns())
+    throw std::invalid_argument(choice.strength.name +
+                                " takes no volume_averaging: its front is sharper than a cell");
+  material.averages_volume = choice.volume_averaging;
   material.bounds = bounds_of(material);
   return material;
 }

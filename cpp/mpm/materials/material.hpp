@@ -87,6 +87,7 @@ struct Material {
   std::vector<Failing> failures;
   BulkViscosity viscosity{0.0, 0.0};  // none
   EosBounds bounds{};
+  bool averages_volume = false;  // over a cell's particles (step/volume_averaging.hpp)
 
   bool moves_as_one() const {
     return std::visit([]<class M>(const M&) { return requires { M::moves_as_one; }; }, strength);
@@ -125,6 +126,7 @@ struct MaterialChoice {
   std::optional<ModelChoice> eos;
   std::vector<FailureChoice> failures;
   BulkViscosity viscosity{0.0, 0.0};  // none
+  bool volume_averaging = false;
 };
 
 /// Throws std::invalid_argument, in one sentence, for an unknown model or parameter, one that is

@@ -32,6 +32,7 @@ void add_material_columns(const Material& material, Columns& columns, MaterialCo
   std::visit([&](const auto& model) { add(at.state, model); }, material.strength);
   if (material.viscosity.active())
     at.viscosity_pressure = columns.add("viscosity_pressure", "Pa", 1);
+  if (material.averages_volume) at.force_pressure = columns.add("force_pressure", "Pa", 1);
   at.energy = material.eos ? columns.add("internal_energy", "J/m^3", 1) : -1;
   if (material.failures.empty()) return;
   if (material.erodes()) at.recoverable = columns.add("recoverable_energy", "J/m^3", 1);

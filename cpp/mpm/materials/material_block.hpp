@@ -37,6 +37,7 @@ struct MaterialColumns {
   int velocity, mass, volume, stress;
   int state = -1;               // of the strength model
   int viscosity_pressure = -1;  // of the artificial viscosity
+  int force_pressure = -1;      // that nodal forces add to the stress; with averaged volumes
   int energy = -1;              // internal, per initial volume; with an EOS
   int recoverable = -1;         // energy per initial volume; where particles may be taken out
   int failed = -1;              // FailureAction; with failure models, or where particles may leave
@@ -58,6 +59,7 @@ struct StressSums {
   double bounded = 0.0;       // taken by the bounds of an equation of state; negative: given
   double energy_floor = 0.0;  // the part that the least energy has, never positive
   double force_power = 0.0;   // work over this strain of the stress that the nodal forces use
+  double averaging = 0.0;     // the part that averaging volumes has made, beyond the forces' own
   double fastest = 0.0;       // largest c + |v| [m/s]
   bool negative_volume = false;
   bool eroded = false;  // some particle is to be eroded

@@ -16,6 +16,7 @@ struct Particle {
   Vec<double, D> X;                                // position at the start [m]
   double m, V;                                     // mass [kg], volume [m^3]
   Sym<double, D> sigma;                            // stress [Pa]
+  Mat<double, D> gradient{};                       // of a step's velocity x dt, at its start
   Mat<double, D> C{};                              // affine part of the velocity [1/s]
   Vec<double, D> unseen = Vec<double, D>::zero();  // of v, to be taken away in this step [m/s]
 };

@@ -3,6 +3,7 @@
 // node at a time, in doubles, without tiles, vectors or threads. Read it first. It is slow; what
 // runs is in step/, and tests hold the stages there to it (tests/unit/step).
 #include <functional>
+#include <optional>
 
 #include "mpm/reference/shape.hpp"
 #include "mpm/reference/state.hpp"
@@ -12,6 +13,10 @@ namespace mpm::reference {
 
 template <int D>
 struct Step;
+template <int D>
+void average_forces(const Step<D>& step, Body<D>& b);
+template <int D>
+void average_gradients(const Step<D>& step, Body<D>& b);
 template <int D>
 void set_prescribed_velocities(const Step<D>& step, Body<D>& b, Vec<double, D> Node<D>::* velocity);
 
@@ -26,8 +31,9 @@ struct Step {
   double pic = 0.0;                           // share of the grid's velocity that particles take
   double moment = 0.0;                        // D of an affine transfer [m^2]; 0 for none
   std::function<ShapeValue(double)> S;        // shape function along an axis, of d [cells]
-  double half_width = 0.0;  // of the box over which it is the mean of the hat [cells]
-  Walls<D> walls{};         // the grid's node 0 is the lower corner of the box
+  std::optional<double> averages;  // volumes over cells that begin so far before nodes [cells]
+  double half_width = 0.0;         // of the box over which it is the mean of the hat [cells]
+  Walls<D> walls{};                // the grid's node 0 is the lower corner of the box
   std::vector<Body<D>> bodies;
   std::vector<Load<D>> loads;
   std::vector<Contact<D>> contacts;  // of this step
@@ -98,6 +104,7 @@ struct Step {
             for (int c = 0; c < D; ++c) b.nodes[i].f[a] -= p.V * p.sigma(a, c) * dN[c];
           }
         });
+      if (averages) average_forces(*this, b);
       fold(b, [](Node<D>& node, Node<D>& image, auto&& mirrored) { image.f += mirrored(node.f); });
       for (auto& [i, node] : b.nodes) hold(i, node.f);
     }
@@ -167,14 +174,18 @@ struct Step {
     for (Body<D>& b : bodies) {
       if (!b.deforms()) continue;
       for (Particle<D>& p : b.particles) {
-        StrainIncrement<double, D> motion{};
+        p.gradient = Mat<double, D>{};
         for_each_node(p.x, [&](const Index<D>& i, double, const Vec<double, D>& dN) {
           for (int a = 0; a < D; ++a)
             for (int c = 0; c < D; ++c)
-              motion.gradient[a][c] +=
-                  (at_end ? dt_before : dt) * (b.nodes[i].*velocity)[a] * dN[c];
+              p.gradient[a][c] += (at_end ? dt_before : dt) * (b.nodes[i].*velocity)[a] * dN[c];
         });
-        if (at_end) motion.gradient = seen_from_start(motion.gradient);
+        if (at_end) p.gradient = seen_from_start(p.gradient);
+      }
+      if (averages) average_gradients(*this, b);
+      for (Particle<D>& p : b.particles) {
+        StrainIncrement<double, D> motion{};
+        motion.gradient = p.gradient;
         b.material.update(motion, p.sigma);
         Mat<double, D> f = motion.gradient;
         for (int a = 0; a < D; ++a) f[a][a] += 1.0;

@@ -21,6 +21,7 @@ struct Point {
   double dissipated = 0.0, work = 0.0, sound_speed = 0.0, viscous = 0.0;
 
   explicit Point(const MaterialChoice& choice) : material(make_material(choice)) {
+    material.averages_volume = false;  // A point is its own mean.
     at.velocity = columns.add("velocity", "m/s", 3, Precision::rounded);
     at.mass = columns.add("mass", "kg", 1);
     at.volume = columns.add("volume", "m^3", 1);

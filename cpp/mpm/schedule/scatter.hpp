@@ -130,7 +130,9 @@ class ParticleReader {
     if constexpr ((what & gives_affine) != 0) affine_ = AffineVelocity<D>(grid, pool);
     mass_ = pool.mass();
     volume_ = pool.volume();
-    if (const int q = pool.at.viscosity_pressure; q >= 0) q_ = pool.columns.component(q);
+    // With averaged volumes a column holds q and what the cell's mean pressure changes.
+    const int q = pool.at.force_pressure >= 0 ? pool.at.force_pressure : pool.at.viscosity_pressure;
+    if (q >= 0) q_ = pool.columns.component(q);
     for (int a = 0; a < D; ++a) velocity_[a] = pool.columns.rounded(velocity + a);
     for (int c = 0; c < Sym<double, D>::size; ++c) stress_[c] = pool.stress(c);
   }

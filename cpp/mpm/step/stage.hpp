@@ -41,16 +41,17 @@ struct Data {
     // Of the patches' sums the angular impulses: of forces; of walls on mapped velocities.
     impulses = 1u << 24,
     mapped_impulses = 1u << 25,
+    force_pressure = 1u << 26,  // of particles with averaged volumes, for one mapping of forces
   };
 };
 /// Their names, in the order of the bits.
 inline constexpr auto data_names = std::to_array<std::string_view>(
-    {"position",       "velocity",       "mass",          "volume",          "stress",
-     "rigid position", "rigid velocity", "lists",         "load pieces",     "node mass",
-     "node momentum",  "node velocity",  "ghost weights", "node force",      "node increments",
-     "node remapped",  "node dashpots",  "contacts",      "patch sums",      "records",
-     "energies",       "left cells",     "body force",    "unseen velocity", "impulses",
-     "mapped impulses"});
+    {"position",        "velocity",       "mass",          "volume",          "stress",
+     "rigid position",  "rigid velocity", "lists",         "load pieces",     "node mass",
+     "node momentum",   "node velocity",  "ghost weights", "node force",      "node increments",
+     "node remapped",   "node dashpots",  "contacts",      "patch sums",      "records",
+     "energies",        "left cells",     "body force",    "unseen velocity", "impulses",
+     "mapped impulses", "force pressure"});
 
 /// The data and what shares its place (layout/node_records.hpp): who writes one takes the others.
 constexpr std::uint32_t places_of(std::uint32_t data) {

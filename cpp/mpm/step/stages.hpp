@@ -18,6 +18,9 @@ void filter_velocities(Domain<D>& domain);
 /// leaves what walls with images mirror of the weight (ghost weights).
 template <int D>
 void map_momentum(Domain<D>& domain);
+/// The pressure of each cell, for materials whose volume is averaged over it.
+template <int D>
+void average_pressure(Domain<D>& domain);
 /// Internal nodal forces, eq. (9). (Gravity, eq. (10), is added where the nodes are advanced.)
 template <int D>
 void map_forces(Domain<D>& domain);
@@ -149,11 +152,11 @@ struct Stages : Data {
   // The nodes are written as their memory is lent to the lists until momentum is mapped.
   static constexpr Row activate{
       "activate tiles", mpm::activate_tiles<D>,
-      of_particles | of_rigid | volume | stress | load_pieces | body_force | unseen | lists |
-          left_cells | patch_sums | impulses | mapped_impulses,
-      of_particles | of_rigid | volume | stress | load_pieces | body_force | unseen | lists |
-          left_cells | patch_sums | impulses | mapped_impulses | node_mass | node_velocity |
-          node_force};
+      of_particles | of_rigid | volume | stress | load_pieces | body_force | unseen |
+          force_pressure | lists | left_cells | patch_sums | impulses | mapped_impulses,
+      of_particles | of_rigid | volume | stress | load_pieces | body_force | unseen |
+          force_pressure | lists | left_cells | patch_sums | impulses | mapped_impulses |
+          node_mass | node_velocity | node_force};
   // Before momentum is mapped, so that it has the nodes for itself and nothing of contact's
   // correction; velocities stay until they are advanced, as the energies are those of FLIP's step.
   static constexpr Row filter{"filter velocities", mpm::filter_velocities<D>, lists | of_particles,
@@ -176,10 +179,12 @@ struct Stages : Data {
       "contact momentum", mpm::contact_momentum<D>,
       lists | position | rigid_position | mass | volume | node_mass | node_velocity | contacts,
       node_velocity | contacts};
+  static constexpr Row average_pressure{"average pressure", mpm::average_pressure<D>,
+                                        lists | volume | stress, force_pressure};
   // The weights it reads are in the places of the forces, and stay in the sum (map_to_nodes.cpp).
-  static constexpr Row map_forces{"map forces", mpm::map_forces<D>,
-                                  lists | position | volume | stress | ghost_weights, node_force,
-                                  true};
+  static constexpr Row map_forces{
+      "map forces", mpm::map_forces<D>,
+      lists | position | volume | stress | force_pressure | ghost_weights, node_force, true};
   static constexpr Row load_surfaces{"load surfaces", mpm::load_surfaces<D>,
                                      lists | position | load_pieces | node_force | impulses,
                                      load_pieces | node_force | impulses};

@@ -2,9 +2,38 @@
 #include "mpm/step/move.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stages.hpp"
+#include "mpm/step/volume_averaging.hpp"
 
 namespace mpm {
 namespace {
+
+/// The means of a cell, of gradients found as those of the particles are.
+template <int W, int straining_at, int D, BasisModel B>
+[[gnu::noinline, gnu::flatten]] CellMean<D> mean_of_cell(const ParticlePool<D>& pool,
+                                                         const CellRange<D>& cell,
+                                                         const Field<B, D>& nodes, const B& basis,
+                                                         const LocalPosition<D>& local_position,
+                                                         double scale, bool at_end) {
+  const Averaged<D> takes_part(pool);
+  CellMean<D> mean;
+  for_each_group<W>(cell, [&](const auto& rows) {
+    const auto gradients =
+        nodes.template gradients<straining_at>(weights_at(basis, local_position(cell, rows)));
+    double lanes[D][D][W];
+    unrolled<D>([&](auto i) {
+      unrolled<D>([&](auto j) { (Batch<W>(scale) * gradients[i][j]).store(lanes[i][j]); });
+    });
+    for (int k = 0; k < rows.count; ++k) {
+      if (!takes_part(rows[k])) continue;
+      Mat<double, D> gradient;
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < D; ++j) gradient[i][j] = lanes[i][j][k];
+      mean.add(pool.volume()[rows[k]], gradient, at_end);
+    }
+  });
+  mean.finish();
+  return mean;
+}
 
 /// Velocity gradients, eqs. (18)-(20), of a patch's particles, handed to the material block by
 /// block. The nodal velocity that strains is the vector at number `straining_at` of the records;
@@ -37,13 +66,22 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   // Blocks of up to 128 across cells, in full registers however few particles a cell has; one
   // indirect call for each part of the material and block (material_block.hpp). No particle's
   // result depends on its neighbours in the lanes (decision 0026).
+  const bool averages = material.averages_volume;
+  const Averaged<D> takes_part(pool);
+  StrainBeyond<D> beyond;
   auto flush = [&] {
-    update_block<Batch<native_lanes>>(material, pool.columns, pool.at, block, settings,
-                                      domain.sums[p].stress);
+    StressSums& sums = domain.sums[p].stress;
+    if (averages && !forces_follow) sums.averaging += beyond.work(pool, block);
+    update_block<Batch<native_lanes>>(material, pool.columns, pool.at, block, settings, sums);
+    if (averages && forces_follow) sums.averaging += beyond.work(pool, block);
     block.count = 0;
   };
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto nodes = field_of<B>(records.from(cell.first_node), stride);
+    CellMean<D> mean;
+    if (averages)
+      mean = mean_of_cell<W, straining_at>(pool, cell, nodes, basis, local_position,
+                                           duration / grid.cell_size, forces_follow);
     for_each_group<W>(cell, [&](const auto& rows) {
       // Whole registers are stored, so W places have to be free.
       if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
@@ -56,6 +94,8 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
             [&](auto j) { (scale * gradients[i][j]).store(block.gradient[i][j] + block.count); });
       });
       unrolled<W>([&](auto k) { block.row[block.count + k] = rows[k]; });
+      if (averages)
+        average_gradients(block, block.count, rows.count, mean, takes_part, forces_follow, beyond);
       // Lanes past the end are overwritten by the next group.
       block.count += static_cast<std::size_t>(rows.count);
       // The velocity of the advanced nodes, not that which strains: in MUSL these are two. x is not
@@ -65,8 +105,10 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   });
   if (block.count > 0) flush();
   // The power of the forces of this step, as long as they act.
-  if (forces_follow && duration > 0.0)
+  if (forces_follow && duration > 0.0) {
     domain.sums[p].stress.force_power *= domain.time_step / duration;
+    domain.sums[p].stress.averaging *= domain.time_step / duration;
+  }
   if constexpr (moves) patch.left_cell = moving.left_cell();
 }
 

@@ -35,6 +35,9 @@ class Material(CaseModel):
             models with "no_tension", or `{"library": {"action": "erode"}}`.
         artificial_viscosity: bulk viscosity of this material in place of `run.viscosity`, with the
             same keys; both 0 for none.
+        volume_averaging: whether all particles of a body in a cell take the mean of the changes of
+            their volumes, and the nodes the mean of their pressures, so that nearly incompressible
+            matter, also that which flows plastically, does not lock (Coombs et al. 2018).
     """
 
     model_config = ConfigDict(json_schema_extra=either_library_or_own)
@@ -46,6 +49,7 @@ class Material(CaseModel):
     eos: AnyEos = None
     failure: AnyFailure = Field(default_factory=list)
     artificial_viscosity: Viscosity | None = None
+    volume_averaging: bool = False
 
     @classmethod
     def complete(cls, data: Any) -> Any:
@@ -65,6 +69,8 @@ class Material(CaseModel):
             table["failure"] = {k: v for f in self.failure for k, v in f.table().items()}
         if self.artificial_viscosity is not None:
             table["artificial_viscosity"] = self.artificial_viscosity.table()
+        if self.volume_averaging:
+            table["volume_averaging"] = True
         return table
 
     @property
@@ -99,6 +105,7 @@ class Material(CaseModel):
             "parameters": self.strength.parameters,
             "eos": None if self.eos is None else (self.eos.model, self.eos.parameters),
             "failures": [(f.model, f.parameters, f.action) for f in self.failure],
+            "volume_averaging": self.volume_averaging,
         }
 
 

@@ -24,6 +24,7 @@ def drive_point(
     eos: tuple[str, Mapping[str, float]] | None = None,
     failures: Sequence[tuple[str, Mapping[str, float], str]] = (),
     viscosity: tuple[float, float] = (0.0, 0.0),
+    volume_averaging: bool = False,
     cell_size: float = 1.0,
     state: Mapping[str, float] | None = None,
 ) -> tuple[np.ndarray, list[str], list[str]]:
@@ -39,6 +40,7 @@ def drive_point(
         eos: name and parameters of an equation of state.
         failures: name, parameters and action of failure models.
         viscosity: quadratic and linear factor of the artificial viscosity.
+        volume_averaging: of no effect, as a point is its own mean; refused where a material is.
         cell_size: h [m]; also that of a detonation's front and of a viscous fluid's time step.
         state: values at the start by column, `{"burn_fraction": 0.5}`; the others are those of a
             point at rest. A row without the columns COUNTED goes on from there.
@@ -65,6 +67,7 @@ def drive_point(
         time_step=time_step,
         cell_size=cell_size,
         viscosity=viscosity,
+        volume_averaging=volume_averaging,
         state=dict(state or {}),
         lanes=lanes,
     )

@@ -44,6 +44,7 @@ class Comparison {
          [&] {
            if (meet) find_contacts(step), contact_momentum(step, &Node::v);
          }},
+        {"average pressure", [] {}},
         {"map forces", later(forces)},
         {"load surfaces", later(forces)},
         {"body forces", later(forces)},

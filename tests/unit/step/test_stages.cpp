@@ -34,6 +34,16 @@ void check_schemes(Report& report, const Choice<D>& choice) {
   }
 }
 
+/// With volumes averaged over cells: in contact, with loads and walls.
+template <int D>
+void check_averages(Report& report, Choice<D> choice) {
+  choice.averages = true;
+  for (const bool contact : {false, true}) {
+    choice.contact = contact;
+    check_schemes(report, choice);
+  }
+}
+
 /// One of each kind.
 template <int D>
 void put_walls(Choice<D>& choice) {
@@ -53,6 +63,7 @@ void check_transfers(Report& report, BasisId basis) {
     choice.basis = basis;
     choice.transfer = transfer;
     choice.load = true;
+    check_averages(report, choice);
     if (Transfer::has_share) choice.flip_share = 0.9, choice.pic_rate = 1e3;
     check_schemes(report, choice);
     if (Transfer::filters) choice.filter_order = 3, choice.filter_every = 2;
@@ -88,6 +99,7 @@ void check_all(Report& report) {
     check_schemes(report, choice);
     choice.kind = BodyKind::deformable;
     check_schemes(report, choice);
+    check_averages(report, choice);
   });
 }
 

@@ -6,6 +6,7 @@
 #include "mpm/contact/candidates.hpp"
 #include "mpm/particles/make_body.hpp"
 #include "mpm/reference/absorb.hpp"
+#include "mpm/reference/averaging.hpp"
 #include "mpm/reference/body_forces.hpp"
 #include "mpm/reference/contact.hpp"
 #include "mpm/reference/filter.hpp"
@@ -34,6 +35,7 @@ struct Choice {
   TransferId transfer = Transfers::id_of<Flip>();
   int filter_order = 1;
   std::int64_t filter_every = 1;
+  bool averages = false;  // volumes over cells
   std::array<Wall, 2 * D> walls{};
 };
 
@@ -76,7 +78,8 @@ struct Twin {
     domain.contact_settings.friction = 0.3;
     reference.mu = 0.3;
     domain.threads.resize(1);
-    add_material();
+    if (choice.averages) reference.averages = reach_of(choice.basis).own_node;
+    add_material(choice.averages);
     for (int k = 0; k < 2; ++k) add_body(k, k == 0 ? choice.kind : BodyKind::deformable);
     if (choice.body_force) add_body_force();
     fill_pools(domain.pools, domain.materials, domain.bodies, grid.patches);
@@ -116,8 +119,9 @@ struct Twin {
   static constexpr double density = 1000.0, E = 1e9, nu = 0.3;
 
   double any() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }
-  void add_material() {
+  void add_material(bool averages) {
     MaterialChoice choice;
+    choice.volume_averaging = averages;
     choice.density = density;
     choice.strength = {"elastic", {{"E", E}, {"nu", nu}}};
     domain.materials.push_back(make_material(choice));
