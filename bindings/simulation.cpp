@@ -87,6 +87,10 @@ void def_building(SimulationClass& simulation) {
              add_body_force(s, bodies, value);
            }),
            nb::arg("bodies"), nb::arg("value"))
+      .def("add_damping",
+           of_any([](auto& s, const std::vector<int>& bodies, const TimeFunction& mass,
+                     const TimeFunction& local) { add_damping(s, bodies, mass, local); }),
+           nb::arg("bodies"), nb::arg("mass"), nb::arg("local"))
       .def("set_group", of_any([](auto& s, int body, int first) { set_group(s, body, first); }),
            nb::arg("body"), nb::arg("first"))
       .def("set_friction",

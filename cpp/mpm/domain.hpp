@@ -9,6 +9,7 @@
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/ledger/ledger.hpp"
 #include "mpm/loads/body_force.hpp"
+#include "mpm/loads/damping.hpp"
 #include "mpm/loads/surface_load.hpp"
 #include "mpm/materials/material_block.hpp"
 #include "mpm/parallel/threads.hpp"
@@ -56,6 +57,7 @@ struct Domain {
   std::vector<SurfaceLoad<D>> loads;
   std::vector<SurfacePiece<D>> pieces;  // of all loads
   std::vector<BodyForce<D>> body_forces;
+  std::vector<Damping> dampings;           // of bodies' motion
   std::vector<Vec<double, D>> load_parts;  // scratch: force by patch and load [N]
   std::vector<RigidMotion> rigid;          // one per entry of rigid_bodies
   std::vector<RigidMotion> rigid_before;
@@ -77,6 +79,10 @@ struct Domain {
   const ParticlePool<D>& pool_of(const Patch<D>& patch) const { return pool_of(body_of(patch)); }
   const Material& material_of(const Patch<D>& patch) const {
     return materials[static_cast<std::size_t>(body_of(patch).material)];
+  }
+  /// That of a patch's body in the step being made; none if it has none.
+  StepDamping damping_of(const Patch<D>& patch) const {
+    return dampings.empty() ? StepDamping{} : damping_in(dampings, body_of(patch).damping);
   }
   bool has_rigid() const { return !rigid_bodies.empty(); }
   bool has_prescribed() const { return !prescribed.empty(); }

@@ -57,6 +57,8 @@ inline constexpr auto history_terms = std::to_array<HistoryTerm>({
      [](const StepState& s) { return s.ledger.external; }, Role::supply},
     {"absorbed", "J", "energy that absorbing walls have taken up",
      [](const StepState& s) { return s.ledger.absorbed; }, Role::energy},
+    {"damped", "J", "energy that damping of bodies' motion has taken",
+     [](const StepState& s) { return s.ledger.damped; }, Role::energy},
     {"eroded", "J", "kinetic and recoverable energy that eroded particles took with them",
      [](const StepState& s) { return s.ledger.eroded; }, Role::energy},
     {"left", "J", "the same of particles that left `grid.outflow_box`",

@@ -103,13 +103,28 @@ struct Step {
     }
   }
 
+  /// -alpha m v' - kappa |f| sgn v', v' = v + dt a / 2 with what both do to a: the local one is no
+  /// more than what brings v' to rest.
+  void find_damping(const Body<D>& b, Node<D>& node) const {
+    for (int a = 0; a < D; ++a) {
+      const double at_rest =
+          node.f[a] + 2.0 * node.m * node.v[a] / dt;  // brings v' to rest, if taken
+      const double local =
+          std::clamp(at_rest, -b.kappa * std::abs(node.f[a]), b.kappa * std::abs(node.f[a]));
+      const double middle =
+          (node.v[a] + 0.5 * dt * (node.f[a] - local) / node.m) / (1.0 + 0.5 * dt * b.alpha);
+      node.f_damp[a] = -local - b.alpha * node.m * middle;
+    }
+  }
+
   /// v_i += dt f_i / m_i, eq. (8).
   void advance_nodes() {
     for (Body<D>& b : bodies) {
       for (auto& [i, node] : b.nodes) {
         if (!b.prescribed()) {
           hold(i, node.f);  // Friction of a prescribed body may act along a wall.
-          node.dv = (dt / node.m) * node.f;
+          find_damping(b, node);
+          node.dv = (dt / node.m) * (node.f + node.f_damp);
         }
         node.v += node.dv;
       }

@@ -18,6 +18,7 @@ template <int D>
 void begin_step(Domain<D>& domain, double time_after) {
   for (std::size_t a = 0; a < D; ++a)
     domain.gravity[static_cast<int>(a)] = domain.gravity_of_time[a].mean(domain.time, time_after);
+  for (Damping& damping : domain.dampings) damping.begin_step(domain.time, time_after);
   for (const std::size_t b : domain.prescribed)
     domain.bodies[b].motion->begin_step(domain.time, time_after);
   domain.time_after = time_after;

@@ -25,6 +25,11 @@ void check_bodies(const Domain<D>& domain) {
         "all bodies are rigid, so no wave limits the time step: one must deform");
   check(!domain.grid.bonded || std::ranges::none_of(domain.bodies, is_rigid),
         "bodies are bonded, so none can be rigid");
+  const auto damped_otherwise = [&](const Body<D>& b) {
+    return b.damping != domain.bodies[0].damping;
+  };
+  check(!domain.grid.bonded || std::ranges::none_of(domain.bodies, damped_otherwise),
+        "bodies are bonded and move as one, so all must have the same damping");
 }
 
 /// Give the particles of bodies with prescribed motion their velocities at the start.

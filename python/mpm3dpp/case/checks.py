@@ -72,6 +72,7 @@ def _bodies_together(case: Case) -> Found:
     yield from check_detonations(case)
     yield from check_loads(case)
     yield from _body_forces(case)
+    yield from _dampings(case)
     yield from _transfer(case)
 
 
@@ -211,6 +212,21 @@ def _body_forces(case: Case) -> Found:
             rule = "is of a body that does not deform, and acts on bodies that do"
             remedy = "remove it, or give the body another material and no motion"
             yield violation(rule, remedy, path=path)
+
+
+def _dampings(case: Case) -> Found:
+    """Yield the damping of bodies that do not deform, or of some of those that move as one."""
+    parts = case.parts()
+    for name, part in parts.items():
+        path = (*case.part_path(name), "damping")
+        if part.damping is not None and case.is_rigid(name):
+            rule = "is of a body that does not deform, and acts on bodies that do"
+            remedy = "remove it, or give the body another material and no motion"
+            yield violation(rule, remedy, path=path)
+        other = next((one for one in parts if parts[one].damping != part.damping), None)
+        if case.contact.bonded and part.damping is not None and other is not None:
+            rule = "must be the same for all where contact.bonded = true: all bodies move as one"
+            yield violation(rule, f"that of {other} is another", path=path)
 
 
 def _check_body(case: Case, body: Body, path: Path) -> Found:

@@ -104,6 +104,10 @@ class Simulation:
                 self.core.add_body_force(
                     self._numbers(name), list(map(program_of, part.body_force))
                 )
+        for damping, names in case.dampings():
+            numbers_of = [number for name in names for number in self._numbers(name)]
+            mass, local, _ = functions((damping.mass, damping.local))
+            self.core.add_damping(numbers_of, mass, local)
         for a, b, friction in case.frictions():
             self.core.set_friction(a, b, friction)
         try:

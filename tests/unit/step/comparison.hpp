@@ -213,6 +213,8 @@ class Comparison {
     external_ += works.gravity + works.loads;
     load_work_ += works.loads;
     absorbed_ += works.absorbed;
+    damped_ += works.damped;
+    CHECK(works.damped >= 0.0);
     motion_work_ -= works.on_prescribed;
     for (const reference::Body<D>& body : twin_.reference.bodies)
       for (const auto& [i, node] : body.nodes)
@@ -240,6 +242,7 @@ class Comparison {
     CHECK_CLOSE(ledger.motion_work, work, 1e-11 * kinetic);
     CHECK_CLOSE(ledger.external, external_ + work, 1e-11 * kinetic);
     CHECK_CLOSE(ledger.absorbed, absorbed_, 1e-11 * kinetic);
+    CHECK_CLOSE(ledger.damped, damped_, 1e-11 * kinetic);
     CHECK_CLOSE(ledger.residual(), 0.0, 1e-11 * kinetic);
     for (std::size_t a = 0; a < D; ++a) {
       const int axis = static_cast<int>(a);
@@ -271,7 +274,7 @@ class Comparison {
   unsigned pending_ = 0;    // data that has been written and not yet compared
   bool forced_ = false;     // the nodes have all forces, and not yet increments
   // Of all steps so far.
-  double external_ = 0.0, load_work_ = 0.0, absorbed_ = 0.0, motion_work_ = 0.0;
+  double external_ = 0.0, load_work_ = 0.0, absorbed_ = 0.0, damped_ = 0.0, motion_work_ = 0.0;
   Vec<double, D> pushed_ = Vec<double, D>::zero();
   Vec<double, D> impulse_[2] = {Vec<double, D>::zero(), Vec<double, D>::zero()};
   double prescribed_at_start_ = 0.0;

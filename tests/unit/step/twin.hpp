@@ -29,6 +29,7 @@ struct Choice {
   bool load = false;                     // a pressure and a traction on the second body
   bool body_force = false;               // on the second body
   BodyKind kind = BodyKind::deformable;  // of the first body
+  bool damping = false;                  // of the motion of those that deform
   double pic_rate = 0.0;                 // [1/s]
   double flip_share = 1.0;
   TransferId transfer = Transfers::id_of<Flip>();
@@ -79,6 +80,7 @@ struct Twin {
     add_material();
     for (int k = 0; k < 2; ++k) add_body(k, k == 0 ? choice.kind : BodyKind::deformable);
     if (choice.body_force) add_body_force();
+    if (choice.damping) add_damping();
     fill_pools(domain.pools, domain.materials, domain.bodies, grid.patches);
     for (Patch<D>& patch : grid.patches) disturb(patch);  // one a body, the rows as they were given
     if (choice.load)
@@ -224,6 +226,17 @@ struct Twin {
       for (int a = 0; a < D; ++a) b[a] = size * x[1] * std::sin(3.0 * x[a] + X[0] + 1e5 * t);
       return b;
     };
+  }
+  /// Each body its own, so strong that the drag of a step takes a good part of the velocity.
+  void add_damping() {
+    for (std::size_t k = 0; k < domain.bodies.size(); ++k) {
+      if (!domain.bodies[k].deforms()) continue;
+      domain.bodies[k].damping = static_cast<int>(domain.dampings.size());
+      Damping& damping = domain.dampings.emplace_back();
+      damping.now = {k == 0 ? 2e4 : 5e4, k == 0 ? 0.7 : 0.4};
+      reference.bodies[k].alpha = damping.now.rate;
+      reference.bodies[k].kappa = damping.now.local;
+    }
   }
   void start_ledger() {
     Ledger& ledger = domain.ledger;
