@@ -47,12 +47,13 @@ void def_building(SimulationClass& simulation) {
       .def("add_material",
            of_any([](auto& s, double density, const std::string& strength,
                      const Parameters& parameters, const std::optional<Named>& eos,
-                     const std::vector<NamedFailure>& failures, Viscosity viscosity) {
+                     const std::vector<NamedFailure>& failures, Viscosity viscosity,
+                     double damping) {
              return add_material(
-                 s, choice_of(density, strength, parameters, eos, failures, viscosity));
+                 s, choice_of(density, strength, parameters, eos, failures, viscosity, damping));
            }),
            nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
-           nb::arg("failures"), nb::arg("viscosity"))
+           nb::arg("failures"), nb::arg("viscosity"), nb::arg("damping"))
       .def("add_body",
            of_any([](auto& s, const std::string& name, int material, const Input& positions,
                      const Input& velocities, const Input& volumes) {

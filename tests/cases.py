@@ -119,6 +119,7 @@ friction = 0.3
 [material.soft]
 density = 1000.0
 strength = {{ elastic = {{ E = "1 MPa", nu = 0.3 }} }}
+damping = {{ stiffness = "20 us" }}
 [material.metal]
 density = 2000.0
 strength = {{ j2 = {{ E = "4 MPa", nu = 0.3, Y0 = "2 kPa" }} }}

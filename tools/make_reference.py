@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from mpm3dpp.base.damping import Damping
+from mpm3dpp.base.damping import Damping, MaterialDamping
 from mpm3dpp.base.rules import requirement
 from mpm3dpp.case import body, case, grid, parts, transfer
 from mpm3dpp.case.detonation import Detonation
@@ -42,6 +42,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ("contact", parts.Contact, ""),
     ("contact.pair", parts.ContactPair, "Written `[[contact.pair]]`, once for each pair."),
     ("material.NAME", case.Material, "[Models](materials.md), and [named ones](library.md)."),
+    ("material.NAME.damping", MaterialDamping, ""),
     ("body.NAME", body.Body, ""),
     ("body.NAME.damping", Damping, "Likewise in `grains.NAME`."),
     ("body.NAME.motion", Motion, ""),

@@ -120,6 +120,59 @@ def test_mass_damping_of_a_mode(scheme: str, rate: float) -> None:
     assert found == pytest.approx(rate, abs=0.5)
 
 
+@pytest.mark.parametrize("beta", ["40 us", "0.4 ms"])
+@pytest.mark.parametrize("scheme", ["usf", "musl"])
+def test_stiffness_damping_of_a_mode(scheme: str, beta: str) -> None:
+    """A mode of the angular frequency w decays as exp(-beta w^2 t / 2)."""
+    seconds = {"40 us": 4e-5, "0.4 ms": 4e-4}[beta]
+    material = f'damping = {{ stiffness = "{beta}" }}'
+    rows = rows_to(bar(scheme, material=material, body=MODE), 0.04)
+    assert np.array_equal(rows["damped"], rows["damped_stiffness"])
+    t, k = peaks(rows)
+    assert len(t) >= 5
+    found = -np.log(k[-1] / k[0]) / (t[-1] - t[0])
+    # Cells of a fortieth of the bar, whose ends end within them: the frequency is theirs.
+    assert found == pytest.approx(seconds * FREQUENCY**2, rel=0.03)
+
+
+def test_stiffness_damping_is_a_stress_of_its_own() -> None:
+    """A bar that is drawn out evenly: damping_stress is beta C : D, stress the elastic one."""
+    body = 'velocity = [{ expression = "0.5 * x" }, { expression = "0.25 * y" }]'
+    sim = bar("musl", material='damping = { stiffness = "0.1 ms" }', body=body)
+    sim.advance(1)
+    # E = 1 MPa and nu = 0: C : D = E D. Both are of the first step's D, inside the bar.
+    inside = np.abs(sim.column("bar", "position")[:, 0] - LENGTH / 2) < LENGTH / 4
+    rates = np.array([0.5, 0.25])
+    dt = sim.time
+    damping = sim.column("bar", "damping_stress")[inside, :2]
+    stress = sim.column("bar", "stress")[inside, :2]
+    # The strain of a step is of the order 1e-5, by which finite strains differ.
+    assert damping[:, 0] == pytest.approx(1e-4 * 1e6 * rates[0] + 0 * damping[:, 0], rel=1e-9)
+    assert stress[:, 0] == pytest.approx(1e6 * rates[0] * dt + 0 * damping[:, 0], rel=1e-4)
+
+
+@pytest.mark.parametrize("beta", [1e-5, 1e-3])
+def test_stiffness_damping_shortens_the_step(beta: float) -> None:
+    """By sqrt(1 + xi^2) - xi with xi = beta c / h: the exact limit of central differences.
+
+    (Belytschko, Liu & Moran 2000, eq. 6.2.25, for the largest frequency 2 c / h.)
+    """
+    steps = [bar(material=line).core.dt for line in ("", f"damping = {{ stiffness = {beta} }}")]
+    xi = beta * SPEED_OF_SOUND / 0.005
+    assert steps[1] / steps[0] == pytest.approx(math.sqrt(1.0 + xi**2) - xi, rel=1e-12)
+
+
+@pytest.mark.parametrize("scheme", ["usf", "musl"])
+def test_stiffness_damping_is_stable(scheme: str) -> None:
+    """Noise in a bar that is damped strongly, xi = 6.3, dies away with the step that is chosen."""
+    sim = bar(scheme, run="cfl = 0.5", material='damping = { stiffness = "1 ms" }')
+    velocity = np.random.default_rng(1).uniform(-1e-3, 1e-3, sim.column("bar", "velocity").shape)
+    sim.set_velocity("bar", velocity)
+    rows = rows_to(sim, 0.01)
+    later = rows["time"] > 0.001
+    assert np.diff(rows["kinetic"][later] + rows["internal"][later]).max() <= 0.0
+
+
 @pytest.mark.parametrize("share", [0.1, 0.5])
 @pytest.mark.parametrize("scheme", ["usf", "musl"])
 def test_local_damping_of_a_mode(scheme: str, share: float) -> None:
@@ -264,3 +317,32 @@ def test_the_summary_tells_it() -> None:
     """It stands among what acts on the bodies."""
     case = Case.from_text(lines_of("damping = { mass = 3, local = 0.5 }"))
     assert "damping of bar: 3 1/s and local 0.5" in echo(case, build(case))
+
+
+@pytest.mark.parametrize(
+    ("material", "message"),
+    [
+        ("damping = { stiffness = -1 }", "must be >= 0"),
+        ("damping = { stiffness = 3, mass = 1 }", "not a known key"),
+        ("damping = {}", "must have stiffness"),
+    ],
+)
+def test_refuses_of_materials(material: str, message: str) -> None:
+    """Likewise."""
+    with pytest.raises(CaseError, match=message):
+        Case.from_text(lines_of("", material=material))
+
+
+def test_what_does_not_deform_is_not_damped() -> None:
+    """A rigid material has no stress of strain."""
+    text = (
+        LIFT.replace('"soft"', '"stone"').replace("motion", "#")
+        + """
+[material.stone]
+density = 3000
+strength = { rigid = {} }
+damping = { stiffness = "1 ms" }
+"""
+    )
+    with pytest.raises(CaseError, match="without stress takes no damping"):
+        column(text, bottom="-1 m")

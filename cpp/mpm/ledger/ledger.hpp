@@ -24,6 +24,9 @@
 // loss is the term absorbed) and of damping of motions (damped) is taken with the velocity in the
 // middle of the step, so that their part of 1/2 m dv^2 is no error.
 //
+// Damping of materials in proportion to their stiffness does work by a stress of its own, which the
+// nodal forces use beside the other; what it takes is a part of damped.
+//
 // Eroded particles take their kinetic and recoverable energy at the start of a step to the term
 // eroded, and their momentum out of the sum; the dissipated energies stay where they are. Particles
 // that leave the region that is kept take theirs to the term left.
@@ -50,6 +53,7 @@ struct Ledger {
          external = 0.0, absorbed = 0.0, damped = 0.0, eroded = 0.0, left = 0.0, bounded = 0.0,
          mapping = 0.0,
          time_integration = 0.0;  // [J]
+  double damped_stiffness = 0.0;  // the part of damped that damping of materials has taken [J]
   double energy_floor = 0.0;      // the part of bounded that the least energy has given, <= 0 [J]
   double transferred = 0.0;       // kinetic energy that transfers other than FLIP have taken [J]
   double load_work = 0.0;         // the part of external that loads and body forces have done [J]
@@ -111,6 +115,7 @@ struct Ledger {
     internal += s.stress.internal;
     plastic += s.stress.plastic;
     viscous += s.stress.viscous;
+    damped_stiffness += s.stress.damped;
     bounded += s.stress.bounded;
     energy_floor += s.stress.energy_floor;
     friction += contacts.friction;
@@ -118,7 +123,7 @@ struct Ledger {
     load_work += s.load_first + s.load_second;
     external += s.gravity_first + s.gravity_second + s.load_first + s.load_second + motion;
     absorbed -= s.dashpot_first + s.dashpot_second;
-    damped -= s.damping_first + s.damping_second;
+    damped += s.stress.damped - (s.damping_first + s.damping_second);
     const double second =
         s.second_order - s.gravity_second - s.load_second - s.dashpot_second - s.damping_second;
     const double at_end = forces_follow ? 0.0 : 2.0 * second;
@@ -131,8 +136,8 @@ struct Ledger {
                      s.damping_first + s.second_order - s.prescribed.work -
                      (contacts.energy + contacts.friction_first + contacts.force_work);
     time_integration += s.made_rigid;
-    time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous + s.stress.bounded -
-                        s.stress.force_power + second + contacts.friction -
+    time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous + s.stress.damped +
+                        s.stress.bounded - s.stress.force_power + second + contacts.friction -
                         contacts.friction_first - at_end;
     largest = std::max({largest, std::abs(start), std::abs(external)});
     angular.add(patches);

@@ -44,12 +44,12 @@ struct PatchSums {
   template <class F>
   void for_each(F&& f) {
     for (double* const x :
-         {&stress.internal,     &stress.plastic,     &stress.viscous,  &stress.bounded,
-          &stress.energy_floor, &stress.force_power, &kinetic,         &second_order,
-          &transferred,         &force_work,         &made_rigid,      &gravity_first,
-          &gravity_second,      &prescribed.kinetic, &prescribed.work, &load_first,
-          &load_second,         &dashpot_first,      &dashpot_second,  &damping_first,
-          &damping_second})
+         {&stress.internal, &stress.plastic,      &stress.viscous,     &stress.damped,
+          &stress.bounded,  &stress.energy_floor, &stress.force_power, &kinetic,
+          &second_order,    &transferred,         &force_work,         &made_rigid,
+          &gravity_first,   &gravity_second,      &prescribed.kinetic, &prescribed.work,
+          &load_first,      &load_second,         &dashpot_first,      &dashpot_second,
+          &damping_first,   &damping_second})
       f(*x);
     for (int a = 0; a < D; ++a) {
       f(momentum[a]);
@@ -57,7 +57,7 @@ struct PatchSums {
       f(prescribed.impulse[a]);
     }
   }
-  static constexpr std::size_t numbers = 21 + 3 * D;  // of for_each
+  static constexpr std::size_t numbers = 22 + 3 * D;  // of for_each
 };
 
 /// The sums over all patches, which depend on no order.

@@ -140,6 +140,14 @@ Material make_material(const MaterialChoice& choice) {
   });
   material.viscosity = choice.viscosity;
   material.bounds = bounds_of(material);
+  if (!Rule::not_negative.allows(choice.damping))
+    refuse("damping.stiffness", choice.damping, Rule::not_negative.text());
+  if (choice.damping > 0.0) {
+    if (material.moves_as_one())
+      throw std::invalid_argument("a material without stress takes no damping.stiffness");
+    const double c = sound_speed_at_start(material);
+    material.damping = {choice.damping, material.density * c * c, shear_modulus(material)};
+  }
   return material;
 }
 

@@ -16,6 +16,7 @@ struct Particle {
   Vec<double, D> X;                                // position at the start [m]
   double m, V;                                     // mass [kg], volume [m^3]
   Sym<double, D> sigma;                            // stress [Pa]
+  Sym<double, D> s = Sym<double, D>::zero();       // and that of the material's damping [Pa]
   Mat<double, D> C{};                              // affine part of the velocity [1/s]
   Vec<double, D> unseen = Vec<double, D>::zero();  // of v, to be taken away in this step [m/s]
 };
@@ -39,6 +40,7 @@ template <int D>
 struct Body {
   std::vector<Particle<D>> particles;
   Elastic material;
+  double beta = 0.0;                     // damping of the material by its stiffness [s]
   BodyKind kind = BodyKind::deformable;  // others have no stress, and their particles move as one
   RigidMotion motion;                    // of this step
   // Of a body whose motion is prescribed: that of the step before, and what it is given as.

@@ -86,7 +86,7 @@ struct Step {
     }
   }
 
-  /// f_i = sum m_p N_ip g - sum V_p sigma_p . grad N_ip, eqs. (9)-(10).
+  /// f_i = sum m_p N_ip g - sum V_p (sigma_p + s_p) . grad N_ip, eqs. (9)-(10).
   void map_forces() {
     for (Body<D>& b : bodies) {
       for (auto& [i, node] : b.nodes) node.f = Vec<double, D>::zero();
@@ -95,7 +95,7 @@ struct Step {
         for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>& dN) {
           for (int a = 0; a < D; ++a) {
             b.nodes[i].f[a] += p.m * N * g[a];
-            for (int c = 0; c < D; ++c) b.nodes[i].f[a] -= p.V * p.sigma(a, c) * dN[c];
+            for (int c = 0; c < D; ++c) b.nodes[i].f[a] -= p.V * (p.sigma + p.s)(a, c) * dN[c];
           }
         });
       fold(b, [](Node<D>& node, Node<D>& image, auto&& mirrored) { image.f += mirrored(node.f); });
@@ -178,6 +178,7 @@ struct Step {
   /// Strain, rotation and stress by the gradient dt sum v_i grad N_ip, eqs. (18)-(20); USF and USL
   /// take the nodes' velocities `v`, MUSL the remapped ones. Those of USF have brought the
   /// particles here: L is on the configuration at the end of what it strains, F = (1 - L dt)^-1.
+  /// And s_p = beta C : D, the stress of the material's damping.
   void update_stress(Vec<double, D> Node<D>::* velocity, bool at_end) {
     for (Body<D>& b : bodies) {
       if (!b.deforms()) continue;
@@ -189,6 +190,10 @@ struct Step {
               motion.gradient[a][c] +=
                   (at_end ? dt_before : dt) * (b.nodes[i].*velocity)[a] * dN[c];
         });
+        const auto strain = symmetric_part(motion.gradient);
+        const double rate = b.beta / (at_end ? dt_before : dt);
+        p.s = (2.0 * rate * b.material.G) * strain +
+              Sym<double, D>::isotropic(rate * b.material.lambda * trace(strain));
         if (at_end) motion.gradient = seen_from_start(motion.gradient);
         b.material.update(motion, p.sigma);
         Mat<double, D> f = motion.gradient;

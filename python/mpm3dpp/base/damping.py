@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Damping of a body's motion: in proportion to the mass, and local."""
+"""Damping: of materials in proportion to stiffness; of motions in proportion to mass, and local."""
 
 from __future__ import annotations
 
@@ -10,6 +10,28 @@ from pydantic import model_validator
 from .errors import violation
 from .model import CaseModel
 from .time_functions import Timed, TimeFunction, highest, lowest
+from .units import Quantity
+
+
+class MaterialDamping(CaseModel):
+    """Damping of a material: a viscous stress beside that of its models, and no part of it.
+
+    Equations: docs/theory/damping.md.
+
+    Attributes:
+        stiffness: beta of the damping in proportion to the stiffness [s], Rayleigh's: the viscous
+            stress is beta times what the elastic moduli of the start make of the rate of strain,
+            and a mode of the angular frequency w decays as exp(-beta w^2 t / 2). It makes the time
+            step shorter; default zero.
+    """
+
+    stiffness: Annotated[float, Quantity("s", ">= 0")] = 0.0
+
+    @model_validator(mode="after")
+    def _not_empty(self) -> MaterialDamping:
+        if "stiffness" not in self.model_fields_set:
+            raise violation("must have stiffness", 'for example { stiffness = "1 us" }')
+        return self
 
 
 class Damping(CaseModel):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from pydantic import ConfigDict, Field
 
+from mpm3dpp.base.damping import MaterialDamping
 from mpm3dpp.base.model import CaseModel, Text
 from mpm3dpp.base.units import Density
 from mpm3dpp.materials.chosen import AnyEos, AnyFailure, AnyStrength
@@ -35,6 +36,7 @@ class Material(CaseModel):
             models with "no_tension", or `{"library": {"action": "erode"}}`.
         artificial_viscosity: bulk viscosity of this material in place of `run.viscosity`, with the
             same keys; both 0 for none.
+        damping: in proportion to the stiffness; None for none.
     """
 
     model_config = ConfigDict(json_schema_extra=either_library_or_own)
@@ -46,6 +48,7 @@ class Material(CaseModel):
     eos: AnyEos = None
     failure: AnyFailure = Field(default_factory=list)
     artificial_viscosity: Viscosity | None = None
+    damping: MaterialDamping | None = None
 
     @classmethod
     def complete(cls, data: Any) -> Any:
@@ -65,6 +68,8 @@ class Material(CaseModel):
             table["failure"] = {k: v for f in self.failure for k, v in f.table().items()}
         if self.artificial_viscosity is not None:
             table["artificial_viscosity"] = self.artificial_viscosity.table()
+        if self.damping is not None:
+            table["damping"] = self.damping.table()
         return table
 
     @property
@@ -90,6 +95,11 @@ class Material(CaseModel):
             return None
         alone = {"strength": "fluid", "parameters": {}, "failures": []}
         return _sound_speed(**{**self.for_core(), **alone})
+
+    @property
+    def beta(self) -> float:
+        """Rayleigh's beta of its damping [s]."""
+        return 0.0 if self.damping is None else self.damping.stiffness
 
     def for_core(self) -> dict[str, Any]:
         """Return the keyword arguments with which the core makes the material."""

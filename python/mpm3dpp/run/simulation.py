@@ -134,7 +134,9 @@ class Simulation:
     def _add_material(self, name: str) -> int:
         material = self.case.material[name]
         viscosity = self.case.viscosity_of(name)
-        return self.core.add_material(**material.for_core(), viscosity=viscosity)
+        return self.core.add_material(
+            **material.for_core(), viscosity=viscosity, damping=material.beta
+        )
 
     @property
     def time(self) -> float:

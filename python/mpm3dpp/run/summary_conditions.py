@@ -111,6 +111,9 @@ def condition_lines(case: Case) -> list[str]:
         if part.body_force is not None:
             force = vector_in_words(part.body_force, "m/s^2")
             lines.append(f"body force on {name}: {force}")
+    for name in case.materials_used:
+        if beta := case.material[name].beta:
+            lines.append(f"damping of {name}: {_number(beta, 's')} times its stiffness")
     for damping, parts in case.dampings():
         words = [in_words(damping.mass, "1/s")] if highest(damping.mass) else []
         words += [f"local {in_words(damping.local, '').strip()}"] if highest(damping.local) else []

@@ -29,7 +29,7 @@ struct Choice {
   bool load = false;                     // a pressure and a traction on the second body
   bool body_force = false;               // on the second body
   BodyKind kind = BodyKind::deformable;  // of the first body
-  bool damping = false;                  // of the motion of those that deform
+  bool damping = false;                  // of the motion and the material of those that deform
   double pic_rate = 0.0;                 // [1/s]
   double flip_share = 1.0;
   TransferId transfer = Transfers::id_of<Flip>();
@@ -77,7 +77,7 @@ struct Twin {
     domain.contact_settings.friction = 0.3;
     reference.mu = 0.3;
     domain.threads.resize(1);
-    add_material();
+    add_material(choice.damping ? 1e-5 : 0.0);
     for (int k = 0; k < 2; ++k) add_body(k, k == 0 ? choice.kind : BodyKind::deformable);
     if (choice.body_force) add_body_force();
     if (choice.damping) add_damping();
@@ -118,10 +118,11 @@ struct Twin {
   static constexpr double density = 1000.0, E = 1e9, nu = 0.3;
 
   double any() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }
-  void add_material() {
+  void add_material(double beta) {
     MaterialChoice choice;
     choice.density = density;
     choice.strength = {"elastic", {{"E", E}, {"nu", nu}}};
+    choice.damping = beta;
     domain.materials.push_back(make_material(choice));
     domain.pools.push_back(
         make_pool(domain.materials[0], domain.grid, columns_of(domain.transfer)));
@@ -142,6 +143,7 @@ struct Twin {
     reference::Body<D>& other = reference.bodies.emplace_back();
     other.kind = kind;
     other.material = Elastic::of(E, nu, density);
+    other.beta = domain.materials[0].damping.beta;
     if (body.is_prescribed()) prescribe(body, other);
     domain.bodies.push_back(std::move(body));
   }
