@@ -37,6 +37,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ("grid.coarsening", grid.GridCoarsening, ""),
     ("run", parts.Run, ""),
     ("run.transfer", transfer.Transfer, "The key with a transfer's name chooses it."),
+    ("run.settle", parts.Settle, ""),
     ("run.viscosity", parts.Viscosity, "`viscosity = {}` takes both defaults."),
     ("output", parts.Output, ""),
     ("contact", parts.Contact, ""),

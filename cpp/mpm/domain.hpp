@@ -21,6 +21,9 @@ namespace mpm {
 /// Which transfer: its place in `Transfers` (step/transfer/transfer.hpp).
 enum class TransferId : std::uint8_t {};
 
+/// The time at which loads and motions are taken [s]: a run that settles does so before 0.
+inline double load_time(double time) { return std::max(time, 0.0); }
+
 template <int D>
 struct Domain {
   TileGrid<D> grid;
@@ -84,6 +87,8 @@ struct Domain {
   StepDamping damping_of(const Patch<D>& patch) const {
     return dampings.empty() ? StepDamping{} : damping_in(dampings, body_of(patch).damping);
   }
+  /// Does the run settle, under the loads of the time 0, before that?
+  bool settles() const { return time < 0.0; }
   bool has_rigid() const { return !rigid_bodies.empty(); }
   bool has_prescribed() const { return !prescribed.empty(); }
   bool has_loads() const { return !loads.empty(); }

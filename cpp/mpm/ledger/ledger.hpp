@@ -54,6 +54,7 @@ struct Ledger {
          mapping = 0.0,
          time_integration = 0.0;  // [J]
   double damped_stiffness = 0.0;  // the part of damped that damping of materials has taken [J]
+  double unbalanced = 0.0;        // forces out of balance over those applied, of a run that settles
   double energy_floor = 0.0;      // the part of bounded that the least energy has given, <= 0 [J]
   double transferred = 0.0;       // kinetic energy that transfers other than FLIP have taken [J]
   double load_work = 0.0;         // the part of external that loads and body forces have done [J]
@@ -110,6 +111,7 @@ struct Ledger {
     gone_recoverable = gone;
     eroded = by_erosion.kinetic + by_erosion.recoverable;
     left = out_of_region.kinetic + out_of_region.recoverable;
+    unbalanced = s.unbalanced > 0.0 ? s.unbalanced / s.applied : 0.0;
     kinetic = s.kinetic;
     for (std::size_t a = 0; a < D; ++a) momentum[a] = s.momentum[a];
     internal += s.stress.internal;

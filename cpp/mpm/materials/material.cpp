@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "mpm/materials/material_block.hpp"
+
 namespace mpm {
 namespace {
 

@@ -8,6 +8,7 @@
 #include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/part_sums.hpp"
+#include "mpm/run/settle.hpp"
 #include "mpm/run/start_affine.hpp"
 #include "mpm/run/time_step.hpp"
 
@@ -79,6 +80,7 @@ void prepare(Simulation<D>& simulation) {
   if (domain.has_contact()) connect_tiles(domain.contact, domain.grid, domain.bodies);
   domain.sums.resize(domain.grid.patches.size());
   list_kinds(domain);
+  start_settling(simulation);
   start_motions(domain);
   project_rigid_velocities(domain);
   start_affine(domain);

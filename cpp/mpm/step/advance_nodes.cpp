@@ -77,6 +77,7 @@ NodeWork advance_block(const NodeBlock<D>& block, const double* own, const Vec<d
 /// The same where the body's motion is damped, with the work of that and its angular impulse [N m].
 struct DampedWork {
   NodeWork done;
+  double unbalanced = 0.0, weight = 0.0;  // sums of the forces' sizes [N]
   Work damping;
   Vector3 moment = Vector3::zero();
 };
@@ -89,13 +90,14 @@ DampedWork advance_damped_block(const Domain<D>& domain, const Patch<D>& patch,
   for (int n = 0; n < block.count; ++n) {
     double* const numbers = block.records[n];
     const double m = numbers[mass_at];
-    Vec<double, D> force = Vec<double, D>::zero();
+    Vec<double, D> force = Vec<double, D>::zero(), all = force;
     for (int a = 0; a < D; ++a) {
       double& v = numbers[velocity_at + a];
       const double f = numbers[force_at + a], weight = m * domain.gravity[a];
       DampedNode node{0.0, 0.0};  // at rest without mass
       if (m > 0.0) node = advance_damped(damping, m, v, f + weight, dt);
       force[a] = own[n] * node.damping;
+      all[a] = f + weight;
       sums.done.work += own[n] * f * v;
       sums.done.gravity_first += own[n] * weight * v;
       sums.done.gravity_second += own[n] * weight * node.increment;
@@ -104,6 +106,8 @@ DampedWork advance_damped_block(const Domain<D>& domain, const Patch<D>& patch,
       v += node.increment;
       numbers[increment_at + a] = node.increment;
     }
+    sums.unbalanced += own[n] * norm(all);
+    sums.weight += own[n] * m * norm(domain.gravity);
     if (dot(force, force) > 0.0)
       sums.moment += cross(place_of(domain.grid, patch, n), in_space<D>(force));
   }
@@ -157,6 +161,10 @@ NodeWork advance(const Domain<D>& domain, const Patch<D>& patch, const NodeBlock
   sums.damping_first = damped.damping.first;
   sums.damping_second = damped.damping.second;
   sums.angular.damping += domain.time_step * damped.moment;
+  if (domain.settles()) {
+    sums.unbalanced = damped.unbalanced;
+    sums.applied += damped.weight;  // to that of loads
+  }
   return damped.done;
 }
 

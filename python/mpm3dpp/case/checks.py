@@ -73,6 +73,10 @@ def _bodies_together(case: Case) -> Found:
     yield from check_loads(case)
     yield from _body_forces(case)
     yield from _dampings(case)
+    forces = [*case.load, *(part for part in case.parts().values() if part.body_force is not None)]
+    if case.run.settle is not None and not (any(case.run.gravity) or forces):
+        rule = "needs a force to settle under: there is no gravity, load or body force"
+        yield violation(rule, "give one, or remove it", path=("run", "settle"))
     yield from _transfer(case)
 
 
@@ -113,6 +117,9 @@ def _check_material(material: Material, path: Path) -> Found:
     except ValueError as error:
         yield _refusal(material, str(error), path)
         return
+    if material.beta and not material.sound_speed():
+        rule = "is of a material that does not deform, and has no stiffness"
+        yield violation(rule, "remove it", path=(*path, "damping"))
     if material.eos is not None and not speed:
         rule = "has no stiffness at the start: its pressure does not rise when it is compressed"
         model = material.eos.model

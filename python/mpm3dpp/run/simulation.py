@@ -284,6 +284,8 @@ def _settings(case: Case, threads: int) -> _core.Settings:
     for name in ("grid", "run", "contact"):
         fill_core_table(getattr(settings, name), getattr(case, name))
     fill_core_table(settings.run.transfer, case.run.transfer).word = case.run.transfer.word
+    if case.run.settle is not None:
+        settings.run.settle = fill_core_table(_core.SettleSettings(), case.run.settle)
     given, grid = case.grid, settings.grid
     grid.origin = three(given.lower, 0.0)
     grid.box_cells = three(given.box_cells, 0) if given.box_cells else [0, 0, 0]

@@ -107,6 +107,11 @@ def condition_lines(case: Case) -> list[str]:
         )
     if any(case.run.gravity):
         lines.append(f"gravity: {vector_in_words(case.run.gravity, 'm/s^2')}")
+    if (settle := case.run.settle) is not None:
+        lines.append(
+            f"settles before t = 0, for {_number(settle.longest, 's')} at most, with local damping "
+            f"{settle.local:g} until {settle.ratio:g} of the forces are out of balance"
+        )
     for name, part in case.parts().items():
         if part.body_force is not None:
             force = vector_in_words(part.body_force, "m/s^2")
