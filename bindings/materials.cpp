@@ -91,16 +91,17 @@ void add_materials(nb::module_& m) {
       [](int dimension, bool may_leave, bool forced, bool of_start, const std::string& transfer,
          double density, const std::string& strength, const Parameters& parameters,
          const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
-         Viscosity viscosity, bool volume_averaging) {
-        const Material material = make_material(
-            choice_of(density, strength, parameters, eos, failures, viscosity, volume_averaging));
+         Viscosity viscosity, double damping, bool volume_averaging) {
+        const Material material = make_material(choice_of(
+            density, strength, parameters, eos, failures, viscosity, damping, volume_averaging));
         const TransferId id = choice_named<TransferId>("transfer", transfer);
         return dimension == 2 ? names_of_columns<2>(material, may_leave, forced, of_start, id)
                               : names_of_columns<3>(material, may_leave, forced, of_start, id);
       },
       nb::arg("dimension"), nb::arg("may_leave"), nb::arg("forced"), nb::arg("of_start"),
       nb::arg("transfer"), nb::arg("density"), nb::arg("strength"), nb::arg("parameters"),
-      nb::arg("eos").none(), nb::arg("failures"), nb::arg("viscosity"), nb::arg("volume_averaging"),
+      nb::arg("eos").none(), nb::arg("failures"), nb::arg("viscosity"), nb::arg("damping"),
+      nb::arg("volume_averaging"),
       "The names of the columns that particles of a material have; `may_leave`: there is an "
       "outflow box, `forced`: a body force, which is a formula `of_start`, of places at the start");
 
@@ -112,9 +113,10 @@ void add_materials(nb::module_& m) {
          double cell_size, const Parameters& state, bool lanes) {
         if (increments.ndim() != 3 || increments.shape(1) != 3 || increments.shape(2) != 3)
           throw std::invalid_argument("increments must have the shape (n, 3, 3)");
-        DrivenPoint point = drive_material(
-            choice_of(density, strength, parameters, eos, failures, viscosity, volume_averaging),
-            {span_of(increments), time_step, cell_size, state, lanes});
+        DrivenPoint point =
+            drive_material(choice_of(density, strength, parameters, eos, failures, viscosity, 0.0,
+                                     volume_averaging),
+                           {span_of(increments), time_step, cell_size, state, lanes});
         const std::size_t columns = point.names.size();
         return std::tuple(to_numpy(std::move(point.values), columns), point.names, point.units);
       },

@@ -183,7 +183,10 @@ void add_settings(nb::module_& m) {
           [](TransferSettings& t, const std::string& word) {
             t.word = choice_named<TransferId>("run.transfer", word);
           });
-  add_table<RunSettings>(m, "RunSettings", tables).def_rw("transfer", &RunSettings::transfer);
+  add_table<SettleSettings>(m, "SettleSettings", tables);
+  add_table<RunSettings>(m, "RunSettings", tables)
+      .def_rw("transfer", &RunSettings::transfer)
+      .def_rw("settle", &RunSettings::settle, nb::arg("settle").none());
   add_table<BulkViscosity>(m, "BulkViscosity", tables);
   add_table<ContactSettings>(m, "ContactSettings", tables);
   add_table<ExecutionSettings>(m, "ExecutionSettings", tables);

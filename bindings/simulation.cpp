@@ -47,13 +47,14 @@ void def_building(SimulationClass& simulation) {
       .def("add_material",
            of_any([](auto& s, double density, const std::string& strength,
                      const Parameters& parameters, const std::optional<Named>& eos,
-                     const std::vector<NamedFailure>& failures, Viscosity viscosity,
+                     const std::vector<NamedFailure>& failures, Viscosity viscosity, double damping,
                      bool volume_averaging) {
              return add_material(s, choice_of(density, strength, parameters, eos, failures,
-                                              viscosity, volume_averaging));
+                                              viscosity, damping, volume_averaging));
            }),
            nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
-           nb::arg("failures"), nb::arg("viscosity"), nb::arg("volume_averaging"))
+           nb::arg("failures"), nb::arg("viscosity"), nb::arg("damping"),
+           nb::arg("volume_averaging"))
       .def("add_body",
            of_any([](auto& s, const std::string& name, int material, const Input& positions,
                      const Input& velocities, const Input& volumes) {
@@ -88,6 +89,10 @@ void def_building(SimulationClass& simulation) {
              add_body_force(s, bodies, value);
            }),
            nb::arg("bodies"), nb::arg("value"))
+      .def("add_damping",
+           of_any([](auto& s, const std::vector<int>& bodies, const TimeFunction& mass,
+                     const TimeFunction& local) { add_damping(s, bodies, mass, local); }),
+           nb::arg("bodies"), nb::arg("mass"), nb::arg("local"))
       .def("set_group", of_any([](auto& s, int body, int first) { set_group(s, body, first); }),
            nb::arg("body"), nb::arg("first"))
       .def("set_friction",

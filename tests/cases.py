@@ -99,8 +99,7 @@ def box(dimension: int, cells: int, walls: Any) -> dict[str, Any]:
 
 
 # Nearly all that a step can hold: walls that mirror and that absorb, gravity, contact with
-# friction, a load, a body force, viscosity, PIC damping, a rigid body that is free and one that is
-# led.
+# friction, a load, a body force, viscosity, damping, a rigid body that is free and one that is led.
 EVERYTHING = """
 [grid]
 dimension = {dimension}
@@ -120,6 +119,7 @@ friction = 0.3
 [material.soft]
 density = 1000.0
 strength = {{ elastic = {{ E = "1 MPa", nu = 0.3 }} }}
+damping = {{ stiffness = "20 us" }}
 [material.metal]
 density = 2000.0
 strength = {{ j2 = {{ E = "4 MPa", nu = 0.3, Y0 = "2 kPa" }} }}
@@ -129,11 +129,13 @@ strength = {{ rigid = {{}} }}
 [body.bed]
 material = "soft"
 particles_per_cell = {per_axis}
+damping = {{ mass = {{ ramp = {{ from = 0, to = 20, end = "10 ms" }} }}, local = 0.2 }}
 shape = {{ box = {{ lower = {zero}, upper = {bed} }} }}
 [body.block]
 material = "metal"
 velocity = {falling}
 body_force = {forcing}
+damping = {{ mass = 3 }}
 shape = {{ box = {{ lower = {low_block}, upper = {high_block} }} }}
 [body.ball]
 material = "stone"

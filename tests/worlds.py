@@ -69,6 +69,7 @@ class World:
                 material=entry.material,
                 particles=Particles((positions @ q.T)[there], volumes[there], velocities),
                 body_force=self._force(entry.body_force),
+                damping=entry.damping,
             )
         grid = here.grid.model_copy(update={"box": self._box(here)})
         gravity = tuple((q @ np.array([float(g) for g in here.run.gravity or (0.0,) * d])).tolist())

@@ -17,6 +17,7 @@ LAYERS = {
     "loads/load_kinds.hpp": 2,
     "loads/surface_load.hpp": 3,
     "loads/body_force.hpp": 1,
+    "loads/damping.hpp": 1,
     "fields": 1,
     "basis": 1,
     "layout": 2,

@@ -11,6 +11,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+from mpm3dpp.base.damping import Damping, MaterialDamping
 from mpm3dpp.base.rules import requirement
 from mpm3dpp.case import body, case, grid, parts, transfer
 from mpm3dpp.case.detonation import Detonation
@@ -36,12 +37,15 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ("grid.coarsening", grid.GridCoarsening, ""),
     ("run", parts.Run, ""),
     ("run.transfer", transfer.Transfer, "The key with a transfer's name chooses it."),
+    ("run.settle", parts.Settle, ""),
     ("run.viscosity", parts.Viscosity, "`viscosity = {}` takes both defaults."),
     ("output", parts.Output, ""),
     ("contact", parts.Contact, ""),
     ("contact.pair", parts.ContactPair, "Written `[[contact.pair]]`, once for each pair."),
     ("material.NAME", case.Material, "[Models](materials.md), and [named ones](library.md)."),
+    ("material.NAME.damping", MaterialDamping, ""),
     ("body.NAME", body.Body, ""),
+    ("body.NAME.damping", Damping, "Likewise in `grains.NAME`."),
     ("body.NAME.motion", Motion, ""),
     (
         "grains.NAME",

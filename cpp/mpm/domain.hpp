@@ -9,6 +9,7 @@
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/ledger/ledger.hpp"
 #include "mpm/loads/body_force.hpp"
+#include "mpm/loads/damping.hpp"
 #include "mpm/loads/surface_load.hpp"
 #include "mpm/materials/material_block.hpp"
 #include "mpm/parallel/threads.hpp"
@@ -19,6 +20,9 @@ namespace mpm {
 
 /// Which transfer: its place in `Transfers` (step/transfer/transfer.hpp).
 enum class TransferId : std::uint8_t {};
+
+/// The time at which loads and motions are taken [s]: a run that settles does so before 0.
+inline double load_time(double time) { return std::max(time, 0.0); }
 
 template <int D>
 struct Domain {
@@ -56,6 +60,7 @@ struct Domain {
   std::vector<SurfaceLoad<D>> loads;
   std::vector<SurfacePiece<D>> pieces;  // of all loads
   std::vector<BodyForce<D>> body_forces;
+  std::vector<Damping> dampings;           // of bodies' motion
   std::vector<Vec<double, D>> load_parts;  // scratch: force by patch and load [N]
   std::vector<RigidMotion> rigid;          // one per entry of rigid_bodies
   std::vector<RigidMotion> rigid_before;
@@ -82,6 +87,12 @@ struct Domain {
     return std::any_of(materials.begin(), materials.end(),
                        [](const Material& m) { return m.averages_volume; });
   }
+  /// That of a patch's body in the step being made; none if it has none.
+  StepDamping damping_of(const Patch<D>& patch) const {
+    return dampings.empty() ? StepDamping{} : damping_in(dampings, body_of(patch).damping);
+  }
+  /// Does the run settle, under the loads of the time 0, before that?
+  bool settles() const { return time < 0.0; }
   bool has_rigid() const { return !rigid_bodies.empty(); }
   bool has_prescribed() const { return !prescribed.empty(); }
   bool has_loads() const { return !loads.empty(); }

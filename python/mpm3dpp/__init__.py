@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from mpm3dpp import shapes
+    from mpm3dpp.base.damping import Damping, MaterialDamping
     from mpm3dpp.base.errors import CaseError, RunError
     from mpm3dpp.base.time_functions import TimeFunction
     from mpm3dpp.case.body import Body
@@ -53,6 +54,7 @@ class _CoreFinder:
 sys.meta_path.insert(0, _CoreFinder())
 
 _HOMES = {
+    "base.damping": ("Damping", "MaterialDamping"),
     "base.errors": ("CaseError", "RunError"),
     "base.time_functions": ("TimeFunction",),
     "case": ("Case", "Material", "load_case"),
@@ -78,6 +80,7 @@ __all__ = [
     "CaseError",
     "Contact",
     "ContactPair",
+    "Damping",
     "Detonation",
     "Eos",
     "Failure",
@@ -91,6 +94,7 @@ __all__ = [
     "GridOutflowBox",
     "Load",
     "Material",
+    "MaterialDamping",
     "Motion",
     "Output",
     "Particles",

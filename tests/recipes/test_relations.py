@@ -192,6 +192,14 @@ def test_body_forces_are_the_same_in_another_world(dimension: int) -> None:
     check_worlds(Case.from_text(text), 1800 if dimension == 2 else 300, "")
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_damping_is_the_same_in_another_world(dimension: int) -> None:
+    """Local damping too, as these worlds have the axes of this one."""
+    text = RINGS if dimension == 2 else IMPACT
+    text = text.replace("shape = ", "damping = { mass = 30, local = 0.1 }\nshape = ")
+    check_worlds(Case.from_text(text), 1800 if dimension == 2 else 300, "")
+
+
 def check_worlds(case: Case, steps: int, text: str, meet: bool = True) -> None:
     """Run a case, and the same in other worlds, and compare."""
     filled, here = Simulation(case), Simulation(case)

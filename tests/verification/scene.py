@@ -77,6 +77,7 @@ class Scene:
         """Add a material."""
         return self.core.add_material(
             density, model, parameters, eos=None, failures=[], viscosity=(0.0, 0.0),
+            damping=0.0,
             volume_averaging=False,
         )  # fmt: skip
 

@@ -26,14 +26,6 @@ NodeSolution<D>& solution_of(std::span<const BodyAtNode<D>> sides,
   return solution;
 }
 
-/// Gravity along the axes that no wall holds at a node.
-template <int D>
-Vec<double, D> free_gravity(const ContactNode& node, Vec<double, D> gravity) {
-  for (int a = 0; a < D; ++a)
-    if (node.constrained_axes >> a & 1u) gravity[a] = 0.0;
-  return gravity;
-}
-
 template <bool with_friction, int D>
 void solve(Contact<D>& contact, NodeSolution<D>& solution) {
   // A count and nothing else: no order between threads is needed.
@@ -112,6 +104,25 @@ double take_impulses(TileGrid<D>& grid, std::span<const BodyAtNode<D>> sides,
   return friction_first;
 }
 
+/// Velocities and impulses from which the sides of a node start.
+template <int D>
+void start_forces(const Contact<D>& contact, TileGrid<D>& grid, const ContactStep<D>& step,
+                  const ContactNode& node, std::span<const BodyAtNode<D>> sides,
+                  NodeSolution<D>& solution) {
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    const Vec<double, D> velocity = read(grid, sides[k], velocity_at);
+    if (sides[k].prescribed) {
+      solution.sides[k].start(
+          velocity + prescribed_increment(contact, grid, step.bodies, node, sides[k]),
+          Vec<double, D>::zero());
+      continue;
+    }
+    // Drag by the velocity in the middle of the step makes a body the more inert.
+    solution.sides[k].mass *= 1.0 + step.damping_of(sides[k]).half_drag(step.time_step);
+    solution.sides[k].start(velocity, impulse_alone(grid, step, node, sides[k]));
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -143,33 +154,16 @@ void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
 }
 
 template <int D>
-void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                        const Vec<double, D>& gravity, double time_step, Threads& threads) {
+void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const ContactStep<D>& step,
+                        Threads& threads) {
   for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, ContactNode& node) {
     const auto sides = part.sides_of(node);
     const auto pairs = part.pairs_of(node);
     auto& solution =
         solution_of<D>(sides, pairs, [](const ContactPair<D>& pair) { return pair.active; });
-    // Gravity cancels from eqs. (13) and (15) between two free bodies, m_s m_r g - m_r m_s g = 0,
-    // but not against a wall or a prescribed body, where it is what presses. The nodes get it
-    // later, so it is added here.
-    const auto force_of = [&](const BodyAtNode<D>& side) {
-      Vec<double, D> f = read(grid, side, force_at) + side.mass * gravity;
-      for (int a = 0; a < D; ++a)
-        if (node.constrained_axes >> a & 1u) f[a] = 0.0;
-      return f;
-    };
-    for (std::size_t k = 0; k < sides.size(); ++k) {
-      const Vec<double, D> velocity = read(grid, sides[k], velocity_at);
-      if (sides[k].prescribed)
-        solution.sides[k].start(
-            velocity + prescribed_increment(contact, grid, bodies, node, sides[k]),
-            Vec<double, D>::zero());
-      else
-        solution.sides[k].start(velocity, time_step * force_of(sides[k]));
-    }
+    start_forces<D>(contact, grid, step, node, sides, solution);
     solve<true>(contact, solution);
-    if (contact.cache.on) move_gaps(part, node, solution, time_step);
+    if (contact.cache.on) move_gaps(part, node, solution, step.time_step);
 
     const double friction_first = take_impulses<D>(grid, sides, solution, pairs);
     double force_work = 0.0, correction = 0.0;
@@ -178,23 +172,17 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vecto
       const Vec<double, D> velocity = read(grid, side, velocity_at);
       Vec<double, D> impulse = solution.sides[k].momentum;  // of the others
       if (!side.prescribed) {
-        const Vec<double, D> change = impulse - side.mass * velocity;  // of all forces
-        // What is left are the others' impulses alone: they become the force of eqs. (11)-(12)
-        // below, which all copies of the node's record get, for no sum over patches follows.
-        impulse = change - time_step * force_of(side);
-        // The node itself has its own mass only.
-        const double own_mass = grid.nodes.record_at(side.place)[mass_at];
-        const Vec<double, D> own =
-            change - (time_step * (side.mass - own_mass)) * free_gravity(node, gravity);
+        const PushedNode<D> pushed = pushed_node(grid, step, node, side, solution.sides[k]);
+        impulse = pushed.impulse;
         // Forces change the particles' velocities, eq. (17), which have no part of the correction
         // by (6)-(7) (decision 0003): the work of the forces on that difference is lost or made by
         // contact.
-        correction -= dot(own, velocity - side.mapped);
+        correction -= dot(pushed.own, velocity - side.mapped);
       }
       force_work += dot(impulse, velocity);
       part.for_each_place(side, [&](std::uint32_t place) {
         double* const numbers = grid.nodes.record_at(place);
-        for (int a = 0; a < D; ++a) numbers[force_at + a] += (1.0 / time_step) * impulse[a];
+        for (int a = 0; a < D; ++a) numbers[force_at + a] += (1.0 / step.time_step) * impulse[a];
       });
     }
     node.force_work = force_work;
@@ -248,10 +236,8 @@ void restore_nodes(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
 
 template void remove_approach<2>(Contact<2>&, TileGrid<2>&, Threads&);
 template void remove_approach<3>(Contact<3>&, TileGrid<3>&, Threads&);
-template void add_contact_forces<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&,
-                                    const Vec<double, 2>&, double, Threads&);
-template void add_contact_forces<3>(Contact<3>&, TileGrid<3>&, const std::vector<Body<3>>&,
-                                    const Vec<double, 3>&, double, Threads&);
+template void add_contact_forces<2>(Contact<2>&, TileGrid<2>&, const ContactStep<2>&, Threads&);
+template void add_contact_forces<3>(Contact<3>&, TileGrid<3>&, const ContactStep<3>&, Threads&);
 template void remove_remapped_approach<2>(Contact<2>&, TileGrid<2>&, Threads&);
 template void remove_remapped_approach<3>(Contact<3>&, TileGrid<3>&, Threads&);
 template void release_particles<2>(Contact<2>&, TileGrid<2>&, Threads&);

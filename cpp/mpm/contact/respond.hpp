@@ -1,5 +1,5 @@
 #pragma once
-#include "mpm/contact/contact.hpp"
+#include "mpm/contact/node_forces.hpp"
 
 namespace mpm {
 
@@ -7,11 +7,10 @@ namespace mpm {
 template <int D>
 void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
 
-/// Add the contact forces, eqs. (11)-(15), to the nodal forces; `gravity` is the body force per
-/// mass.
+/// Add the contact forces, eqs. (11)-(15), to the nodal forces.
 template <int D>
-void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                        const Vec<double, D>& gravity, double time_step, Threads& threads);
+void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const ContactStep<D>& step,
+                        Threads& threads);
 
 /// Between these two the nodes have the velocity without what (6)-(7) have changed: particles that
 /// take the velocity of the grid are to take no part in it (decision 0046).

@@ -1,6 +1,6 @@
 #pragma once
 // What turns the bodies. About the origin, with M the angular momentum of all that takes part,
-//   M + removed + numerical = that of the start + gravity + loads + walls + motion.
+//   M + removed + numerical = that of the start + gravity + loads + walls + damping + motion.
 //
 // All but the last are sums of x_i x J_i over the nodes, J_i the impulse of a step at the node with
 // the place x_i. Those of the stress are zero, as the stress is symmetric and sum x_i grad N_ip =
@@ -22,14 +22,15 @@ struct AngularImpulses {
   Vector3 gravity = Vector3::zero();
   Vector3 loads = Vector3::zero();          // and body forces
   Vector3 walls = Vector3::zero();          // by forces
+  Vector3 damping = Vector3::zero();        // of motions
   Vector3 mapped = Vector3::zero();         // of walls, by what particles take of mapped velocities
   Vector3 on_prescribed = Vector3::zero();  // of contact, on bodies with prescribed motion
 
-  static constexpr std::array<Vector3 AngularImpulses::*, 5> all();
+  static constexpr std::array<Vector3 AngularImpulses::*, 6> all();
 };
-constexpr std::array<Vector3 AngularImpulses::*, 5> AngularImpulses::all() {
+constexpr std::array<Vector3 AngularImpulses::*, 6> AngularImpulses::all() {
   using A = AngularImpulses;
-  return {&A::gravity, &A::loads, &A::walls, &A::mapped, &A::on_prescribed};
+  return {&A::gravity, &A::loads, &A::walls, &A::damping, &A::mapped, &A::on_prescribed};
 }
 
 struct AngularLedger {
@@ -60,7 +61,7 @@ struct AngularLedger {
 
 /// The terms of the balance [N m s].
 struct AngularBalance {
-  Vector3 momentum, gravity, loads, walls, motion, removed, numerical;
+  Vector3 momentum, gravity, loads, walls, damping, motion, removed, numerical;
 };
 
 /// `momentum` is that of all that takes part, `prescribed` that of bodies with prescribed motion.
@@ -72,9 +73,11 @@ inline AngularBalance balance_of(const AngularLedger& ledger, const Vector3& mom
   r.gravity = given.gravity;
   r.loads = given.loads;
   r.walls = given.walls + given.mapped;
+  r.damping = given.damping;
   r.motion = prescribed - ledger.prescribed_start - given.on_prescribed;
   r.removed = ledger.removed;
-  r.numerical = ledger.start + r.gravity + r.loads + r.walls + r.motion - r.removed - momentum;
+  r.numerical =
+      ledger.start + r.gravity + r.loads + r.walls + r.damping + r.motion - r.removed - momentum;
   return r;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Where the energy and the momentum go. Every term is accumulated from its own sums:
-//   kinetic + internal + plastic + viscous + friction + contact + absorbed + eroded + left
+//   kinetic + internal + plastic + viscous + friction + contact + absorbed + damped + eroded + left
 //   + bounded + numerical - external = start + residual.
 //
 // Derivation: a particle's velocity changes by the interpolated increments
@@ -20,9 +20,12 @@
 //
 // A body whose motion is prescribed gets the work that this takes: the change of its kinetic energy
 // and what contact takes from it, at the mean velocity of the step. Gravity does not act on it.
-// The work of gravity, of loads on surfaces, of body forces and of walls which absorb waves (their
-// loss is the term absorbed) is taken with the velocity in the middle of the step, so that their
-// part of 1/2 m dv^2 is no error.
+// The work of gravity, of loads on surfaces, of body forces, of walls which absorb waves (their
+// loss is the term absorbed) and of damping of motions (damped) is taken with the velocity in the
+// middle of the step, so that their part of 1/2 m dv^2 is no error.
+//
+// Damping of materials in proportion to their stiffness does work by a stress of its own, which the
+// nodal forces use beside the other; what it takes is a part of damped.
 //
 // Eroded particles take their kinetic and recoverable energy at the start of a step to the term
 // eroded, and their momentum out of the sum; the dissipated energies stay where they are. Particles
@@ -47,8 +50,11 @@ namespace mpm {
 
 struct Ledger {
   double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0,
-         external = 0.0, absorbed = 0.0, eroded = 0.0, left = 0.0, bounded = 0.0, mapping = 0.0,
+         external = 0.0, absorbed = 0.0, damped = 0.0, eroded = 0.0, left = 0.0, bounded = 0.0,
+         mapping = 0.0,
          time_integration = 0.0;  // [J]
+  double damped_stiffness = 0.0;  // the part of damped that damping of materials has taken [J]
+  double unbalanced = 0.0;        // forces out of balance over those applied, of a run that settles
   double energy_floor = 0.0;      // the part of bounded that the least energy has given, <= 0 [J]
   double averaging = 0.0;         // the part of mapping that averaging volumes has [J]
   double transferred = 0.0;       // kinetic energy that transfers other than FLIP have taken [J]
@@ -65,8 +71,8 @@ struct Ledger {
 
   double numerical() const { return mapping + time_integration + transferred; }
   double residual() const {
-    return kinetic + internal + plastic + viscous + friction + contact + absorbed + eroded + left +
-           bounded + numerical() - external - start;
+    return kinetic + internal + plastic + viscous + friction + contact + absorbed + damped +
+           eroded + left + bounded + numerical() - external - start;
   }
   /// Energy made by numerics, as a fraction of the largest energy brought in; 0 while there is
   /// none. What transfers take does not hide what is made.
@@ -106,11 +112,13 @@ struct Ledger {
     gone_recoverable = gone;
     eroded = by_erosion.kinetic + by_erosion.recoverable;
     left = out_of_region.kinetic + out_of_region.recoverable;
+    unbalanced = s.unbalanced > 0.0 ? s.unbalanced / s.applied : 0.0;
     kinetic = s.kinetic;
     for (std::size_t a = 0; a < D; ++a) momentum[a] = s.momentum[a];
     internal += s.stress.internal;
     plastic += s.stress.plastic;
     viscous += s.stress.viscous;
+    damped_stiffness += s.stress.damped;
     bounded += s.stress.bounded;
     energy_floor += s.stress.energy_floor;
     friction += contacts.friction;
@@ -118,7 +126,9 @@ struct Ledger {
     load_work += s.load_first + s.load_second;
     external += s.gravity_first + s.gravity_second + s.load_first + s.load_second + motion;
     absorbed -= s.dashpot_first + s.dashpot_second;
-    const double second = s.second_order - s.gravity_second - s.load_second - s.dashpot_second;
+    damped += s.stress.damped - (s.damping_first + s.damping_second);
+    const double second =
+        s.second_order - s.gravity_second - s.load_second - s.dashpot_second - s.damping_second;
     const double at_end = forces_follow ? 0.0 : 2.0 * second;
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
     averaging -= s.stress.averaging;
@@ -127,11 +137,11 @@ struct Ledger {
     // (6)-(7), and the second order: what the energies of free particles should have changed by.
     if (affine)
       transferred += s.force_work + s.gravity_first + s.load_first + s.dashpot_first +
-                     s.second_order - s.prescribed.work -
+                     s.damping_first + s.second_order - s.prescribed.work -
                      (contacts.energy + contacts.friction_first + contacts.force_work);
     time_integration += s.made_rigid;
-    time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous + s.stress.bounded -
-                        s.stress.force_power + second + contacts.friction -
+    time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous + s.stress.damped +
+                        s.stress.bounded - s.stress.force_power + second + contacts.friction -
                         contacts.friction_first - at_end;
     largest = std::max({largest, std::abs(start), std::abs(external)});
     angular.add(patches);

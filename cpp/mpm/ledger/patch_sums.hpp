@@ -37,17 +37,22 @@ struct PatchSums {
   PrescribedSums<D> prescribed;
   double load_first = 0.0, load_second = 0.0;        // the same of loads, body forces too [J]
   double dashpot_first = 0.0, dashpot_second = 0.0;  // the same of walls that absorb [J]
-  AngularImpulses angular;                           // in the step; summed by AngularLedger
+  double damping_first = 0.0, damping_second = 0.0;  // the same of damping of motions [J]
+  // Sizes of the forces out of balance at the nodes and of those applied, while a run settles [N].
+  double unbalanced = 0.0, applied = 0.0;
+  AngularImpulses angular;  // in the step; summed by AngularLedger
 
   /// f(number) for all that are summed over the patches, in one order.
   template <class F>
   void for_each(F&& f) {
     for (double* const x :
-         {&stress.internal,     &stress.plastic,     &stress.viscous,     &stress.bounded,
-          &stress.energy_floor, &stress.force_power, &stress.averaging,   &kinetic,
-          &second_order,        &transferred,        &force_work,         &made_rigid,
-          &gravity_first,       &gravity_second,     &prescribed.kinetic, &prescribed.work,
-          &load_first,          &load_second,        &dashpot_first,      &dashpot_second})
+         {&stress.internal, &stress.plastic,      &stress.viscous,     &stress.damped,
+          &stress.bounded,  &stress.energy_floor, &stress.force_power, &stress.averaging,
+          &kinetic,         &second_order,        &transferred,        &force_work,
+          &made_rigid,      &gravity_first,       &gravity_second,     &prescribed.kinetic,
+          &prescribed.work, &load_first,          &load_second,        &dashpot_first,
+          &dashpot_second,  &damping_first,       &damping_second,     &unbalanced,
+          &applied})
       f(*x);
     for (int a = 0; a < D; ++a) {
       f(momentum[a]);
@@ -55,7 +60,7 @@ struct PatchSums {
       f(prescribed.impulse[a]);
     }
   }
-  static constexpr std::size_t numbers = 20 + 3 * D;  // of for_each
+  static constexpr std::size_t numbers = 25 + 3 * D;  // of for_each
 };
 
 /// The sums over all patches, which depend on no order.

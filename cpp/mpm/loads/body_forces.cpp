@@ -43,7 +43,7 @@ void evaluate_force(const Domain<D>& domain, const BodyForce<D>& force, const Pa
   constexpr std::size_t lanes = Expression::lanes, start = 4, time = 7;  // of expression_variables
   static_assert(expression_variables[start] == "X" && expression_variables[time] == "t");
   Expression::Variables variables{};
-  variables[time].fill(domain.time + 0.5 * domain.time_step);
+  variables[time].fill(load_time(domain.time + 0.5 * domain.time_step));
   Expression::Lanes result;
   const auto rows = pool.rows(patch);
   for (std::size_t first = 0; first < rows.size(); first += lanes) {
@@ -63,10 +63,11 @@ void evaluate_force(const Domain<D>& domain, const BodyForce<D>& force, const Pa
   }
 }
 
-/// Angular impulse of the body force on a patch's particles; what is not added is not counted.
+/// Angular impulse of the body force on a patch's particles; what is not added is not counted. And
+/// the sum of its sizes.
 template <int D>
-Vector3 angular_impulse(const Domain<D>& domain, const Patch<D>& patch,
-                        const ParticlePool<D>& pool) {
+Vector3 angular_impulse(const Domain<D>& domain, const Patch<D>& patch, const ParticlePool<D>& pool,
+                        double& applied) {
   Vector3 moment = Vector3::zero();
   for (const std::uint32_t row : pool.rows(patch)) {
     Vec<double, D> force;
@@ -75,6 +76,7 @@ Vector3 angular_impulse(const Domain<D>& domain, const Patch<D>& patch,
       const bool added = moves_within_cell(b, domain.time_step, domain.grid.cell_size);
       force[a] = added ? pool.mass()[row] * b : 0.0;
     }
+    if (domain.settles()) applied += norm(force);
     moment += cross(in_space<D>(pool.position_of(row)), in_space<D>(force));
   }
   return domain.time_step * moment;
@@ -93,7 +95,7 @@ void add_body_forces(Domain<D>& domain) {
     if (number < 0) return;
     ParticlePool<D>& pool = domain.pool_of(patch);
     evaluate_force(domain, domain.body_forces[static_cast<std::size_t>(number)], patch, pool);
-    domain.sums[p].angular.loads += angular_impulse(domain, patch, pool);
+    domain.sums[p].angular.loads += angular_impulse(domain, patch, pool, domain.sums[p].applied);
     const NodeBlock<D> block = domain.grid.block(p);
     for_each_weight(domain, patch, [&](std::uint32_t row, int node, double N) {
       for (int a = 0; a < D; ++a) {

@@ -66,7 +66,7 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
 template <int D>
 void start_loads(Domain<D>& domain) {
   // The mean over the step, in closed form: the impulse is exact whatever the step's length.
-  const double now = domain.time, next = domain.time + domain.time_step;
+  const double now = load_time(domain.time), next = load_time(domain.time + domain.time_step);
   for (SurfaceLoad<D>& load : domain.loads)
     for (int a = 0; a < D; ++a)
       load.stress[a] = load.value[static_cast<std::size_t>(a)].mean(now, next);
@@ -89,6 +89,7 @@ void scatter_loads(Domain<D>& domain, std::size_t p) {
         domain, p, l, [&](const Vec<double, D>& force, auto&& nodes, const Vec<double, D>& place) {
           // Per patch and load, so that no thread adds to another's; summed exactly below.
           total += force;
+          if (domain.settles()) domain.sums[p].applied += norm(force);
           domain.sums[p].angular.loads +=
               domain.time_step * cross(in_space<D>(place), in_space<D>(force));
           nodes([&](int node, double N) {

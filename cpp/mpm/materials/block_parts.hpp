@@ -14,6 +14,7 @@ struct BlockColumns {
   const Storage* velocity[D];
   Storage* stress[parts];
   double *state, *energy, *recoverable, *viscosity_pressure, *failed, *failure_state;
+  double* damping_stress[parts] = {};
 
   BlockColumns(Columns& columns, const MaterialColumns& at) : stride(columns.stride()) {
     const auto optional = [&](int c) { return c >= 0 ? columns.component(c) : nullptr; };
@@ -27,6 +28,8 @@ struct BlockColumns {
     viscosity_pressure = optional(at.viscosity_pressure);
     failed = optional(at.failed);
     failure_state = optional(at.failure_state);
+    if (at.damping_stress >= 0)
+      for (int c = 0; c < parts; ++c) damping_stress[c] = columns.component(at.damping_stress + c);
   }
 };
 
@@ -95,6 +98,17 @@ T damped_speed(T c, T Q) {
   return Q + sqrt(Q * Q + c * c);
 }
 
+/// The same with damping in proportion to the stiffness, a viscosity of beta times the modulus rho
+/// c^2 of the start; `c` may have others in it already. By the specific volume [m^3/kg].
+template <class T>
+T speed_with_damping(const Material& material, T c, T specific, double cell_size) {
+  const StiffnessDamping& damping = material.damping;
+  const T Q = T(damping.beta * damping.pressure / cell_size) * specific;
+  // Q' + sqrt(Q'^2 + c^2) grows by 2 per Q' at most: beside another viscosity a bound.
+  if (material.viscosity.active() || material.damps()) return c + T(2.0) * Q;
+  return damped_speed(c, Q);
+}
+
 /// What a step did to the volume of a group.
 template <class T>
 struct VolumeChange {
@@ -140,6 +154,19 @@ struct StressWork {
   T deviatoric, force;
 };
 
+/// The velocity gradient x time step of a group.
+template <class T, int D>
+Mat<T, D> gradient_of(const Group<T, D>& group, const MaterialBlock<D>& block) {
+  const auto valid = group.valid();
+  Mat<T, D> gradient;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j)
+      // Behind its last particle the block's arrays may hold anything: an empty lane, which repeats
+      // a particle, gets no motion.
+      gradient[i][j] = select(valid, group.get(block.gradient[i][j]), T(0.0));
+  return gradient;
+}
+
 /// The motion of a group over the step, and the volumes and mass that go with it.
 template <class T, int D>
 struct StepKinematics {
@@ -176,16 +203,6 @@ struct StepKinematics {
                                        group.read(columns.volume), density)) {
     volume_change.dilation = trace(given);
     motion.J = volume_change.J;
-  }
-  static Mat<T, D> gradient_of(const Group<T, D>& group, const MaterialBlock<D>& block) {
-    const auto valid = group.valid();
-    Mat<T, D> gradient;
-    for (int i = 0; i < D; ++i)
-      for (int j = 0; j < D; ++j)
-        // Behind its last particle the block's arrays may hold anything: an empty lane, which
-        // repeats a particle, gets no motion.
-        gradient[i][j] = select(valid, group.get(block.gradient[i][j]), T(0.0));
-    return gradient;
   }
   static VolumeChange<T> volume_change_of(const Mat<T, D>& gradient, T mass, T volume,
                                           double density) {

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "mpm/materials/material_block.hpp"
+
 namespace mpm {
 namespace {
 
@@ -147,6 +149,14 @@ Material make_material(const MaterialChoice& choice) {
                                 " takes no volume_averaging: its front is sharper than a cell");
   material.averages_volume = choice.volume_averaging;
   material.bounds = bounds_of(material);
+  if (!Rule::not_negative.allows(choice.damping))
+    refuse("damping.stiffness", choice.damping, Rule::not_negative.text());
+  if (choice.damping > 0.0) {
+    if (material.moves_as_one())
+      throw std::invalid_argument("a material without stress takes no damping.stiffness");
+    const double c = sound_speed_at_start(material);
+    material.damping = {choice.damping, material.density * c * c, shear_modulus(material)};
+  }
   return material;
 }
 

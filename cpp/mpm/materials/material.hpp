@@ -48,6 +48,15 @@ struct BulkViscosity {
   bool active() const { return quadratic > 0.0 || linear > 0.0; }
 };
 
+/// Damping in proportion to the stiffness, Rayleigh's beta: beside the stress of the models, and no
+/// part of it, acts beta C : D, with the rate of strain D and the elastic moduli C of the start.
+struct StiffnessDamping {
+  double beta = 0.0;                   // [s]
+  double pressure = 0.0, shear = 0.0;  // moduli rho c^2 of both waves [Pa]
+
+  bool active() const { return beta > 0.0; }
+};
+
 /// What an equation of state must not exceed. The pressure of a solid is linear in its energy also
 /// where a particle is debris of many times its volume, most of which is void; there an energy
 /// below zero pulls the void shut, which lowers the energy further, exponentially with the volume.
@@ -86,6 +95,7 @@ struct Material {
   std::optional<EosModels::Any> eos;
   std::vector<Failing> failures;
   BulkViscosity viscosity{0.0, 0.0};  // none
+  StiffnessDamping damping{};         // none
   EosBounds bounds{};
   bool averages_volume = false;  // over a cell's particles (step/volume_averaging.hpp)
 
@@ -126,6 +136,7 @@ struct MaterialChoice {
   std::optional<ModelChoice> eos;
   std::vector<FailureChoice> failures;
   BulkViscosity viscosity{0.0, 0.0};  // none
+  double damping = 0.0;               // beta [s]
   bool volume_averaging = false;
 };
 

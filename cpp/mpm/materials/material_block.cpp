@@ -1,5 +1,8 @@
 #include "mpm/materials/material_block.hpp"
 
+#include <limits>
+
+#include "mpm/materials/apply_damping.hpp"
 #include "mpm/materials/apply_eos.hpp"
 #include "mpm/materials/apply_failure.hpp"
 #include "mpm/materials/apply_strength.hpp"
@@ -9,7 +12,7 @@ template <class T, int D>
 void update_block(const Material& material, Columns& all, const MaterialColumns& at,
                   MaterialBlock<D>& block, const StressSettings& settings, StressSums& sums) {
   const BlockColumns<D> columns(all, at);
-  StressWriter<T, D> writer(columns, settings, material.bounds);
+  StressWriter<T, D> writer(columns, settings, material);
   std::visit(
       [&](const auto& model) { apply_strength(model, material, columns, settings, block, writer); },
       material.strength);
@@ -19,6 +22,7 @@ void update_block(const Material& material, Columns& all, const MaterialColumns&
         *material.eos);
   if (!material.failures.empty()) apply_failures(material, columns, settings, block, writer, sums);
   writer.add_to(sums);
+  if (material.damping.active()) apply_damping<T>(material, columns, settings, block, sums);
 }
 
 template <int D>
@@ -33,6 +37,8 @@ void add_material_columns(const Material& material, Columns& columns, MaterialCo
   if (material.viscosity.active())
     at.viscosity_pressure = columns.add("viscosity_pressure", "Pa", 1);
   if (material.averages_volume) at.force_pressure = columns.add("force_pressure", "Pa", 1);
+  if (material.damping.active())
+    at.damping_stress = columns.add("damping_stress", "Pa", Sym<double, D>::size);
   at.energy = material.eos ? columns.add("internal_energy", "J/m^3", 1) : -1;
   if (material.failures.empty()) return;
   if (material.erodes()) at.recoverable = columns.add("recoverable_energy", "J/m^3", 1);
@@ -75,9 +81,12 @@ void start_material_columns(const Material& material, Columns& columns, const Ma
       *material.eos);
 }
 
+namespace {
+
+/// That of the material's models, which find viscosities of their own.
 template <int D>
-double sound_speed(const Material& material, const Columns& columns, const MaterialColumns& at,
-                   std::size_t row, double cell_size) {
+double speed_of_models(const Material& material, const Columns& columns, const MaterialColumns& at,
+                       std::size_t row, double cell_size) {
   const auto value = [&](int component) { return columns.value(component, row); };
   Sym<double, D> stress;
   for (int c = 0; c < Sym<double, D>::size; ++c) stress.c[c] = value(at.stress + c);
@@ -111,6 +120,32 @@ double sound_speed(const Material& material, const Columns& columns, const Mater
         return 0.0;
       },
       material.strength);
+}
+
+}  // namespace
+
+template <int D>
+double sound_speed(const Material& material, const Columns& columns, const MaterialColumns& at,
+                   std::size_t row, double cell_size) {
+  const double c = speed_of_models<D>(material, columns, at, row, cell_size);
+  if (!material.damping.active()) return c;
+  const double specific = columns.value(at.volume, row) / columns.value(at.mass, row);
+  return speed_with_damping(material, c, specific, cell_size);
+}
+
+double sound_speed_at_start(const Material& material) {
+  Columns columns;
+  MaterialColumns at;
+  at.velocity = columns.add("velocity", "m/s", 3, Precision::rounded);
+  at.mass = columns.add("mass", "kg", 1);
+  at.volume = columns.add("volume", "m^3", 1);
+  at.stress = columns.add("stress", "Pa", Sym<double, 3>::size, Precision::rounded);
+  add_material_columns<3>(material, columns, at);
+  columns.allocate(1);
+  columns.component(at.mass)[0] = material.density;
+  columns.component(at.volume)[0] = 1.0;
+  start_material_columns<3>(material, columns, at);
+  return speed_of_models<3>(material, columns, at, 0, std::numeric_limits<double>::infinity());
 }
 
 template void update_block<Batch<native_lanes>, 2>(const Material&, Columns&,

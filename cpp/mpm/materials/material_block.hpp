@@ -38,6 +38,7 @@ struct MaterialColumns {
   int state = -1;               // of the strength model
   int viscosity_pressure = -1;  // of the artificial viscosity
   int force_pressure = -1;      // that nodal forces add to the stress; with averaged volumes
+  int damping_stress = -1;      // of the damping in proportion to the stiffness
   int energy = -1;              // internal, per initial volume; with an EOS
   int recoverable = -1;         // energy per initial volume; where particles may be taken out
   int failed = -1;              // FailureAction; with failure models, or where particles may leave
@@ -56,6 +57,7 @@ struct StressSums {
   double internal = 0.0;      // recoverable work of the stress, mean of old and new
   double plastic = 0.0;       // dissipated by plastic or viscous flow
   double viscous = 0.0;       // work of the artificial viscosity
+  double damped = 0.0;        // work of the damping in proportion to the stiffness
   double bounded = 0.0;       // taken by the bounds of an equation of state; negative: given
   double energy_floor = 0.0;  // the part that the least energy has, never positive
   double force_power = 0.0;   // work over this strain of the stress that the nodal forces use
@@ -82,5 +84,7 @@ void start_material_columns(const Material& material, Columns& columns, const Ma
 template <int D>
 double sound_speed(const Material& material, const Columns& columns, const MaterialColumns& at,
                    std::size_t row, double cell_size);
+/// The same of a body at rest at the start, without what viscosities add for the time step.
+double sound_speed_at_start(const Material& material);
 
 }  // namespace mpm

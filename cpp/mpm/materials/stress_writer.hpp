@@ -16,8 +16,8 @@ template <class T, int D>
 class StressWriter {
  public:
   StressWriter(const BlockColumns<D>& columns, const StressSettings& settings,
-               const EosBounds& bounds)
-      : columns_(columns), settings_(settings), bounds_(bounds) {}
+               const Material& material)
+      : columns_(columns), settings_(settings), material_(material), bounds_(material.bounds) {}
 
   /// `work`: with the stress at the end of the step. `mean_stress`: over the step the average of a
   /// third of the stress's trace, which works on the change of volume. `with_eos`: is there, or may
@@ -75,8 +75,12 @@ class StressWriter {
 
     Vec<T, D> v;
     for (int a = 0; a < D; ++a) v[a] = group.read(columns_.velocity[a]);
+    T speed = after.speed;
+    if (columns_.damping_stress[0])
+      speed = speed_with_damping(material_, speed, volume_change.after / volume_change.mass,
+                                 settings_.cell_size);
     // An empty lane holds a particle that is taken elsewhere, without its motion.
-    fastest_ = max(fastest_, select(valid, after.speed + sqrt(dot(v, v)), T(0.0)));
+    fastest_ = max(fastest_, select(valid, speed + sqrt(dot(v, v)), T(0.0)));
   }
   template <bool with_eos>
   void add(const Group<T, D>& group, const StepKinematics<T, D>& kinematics,
@@ -116,6 +120,7 @@ class StressWriter {
 
   const BlockColumns<D>& columns_;
   const StressSettings& settings_;
+  const Material& material_;
   const EosBounds bounds_;
   T internal_ = T(0.0), dissipated_ = T(0.0), viscous_ = T(0.0), force_power_ = T(0.0),
     bounded_ = T(0.0), floor_ = T(0.0), fastest_ = T(0.0);

@@ -36,6 +36,17 @@ struct TimeFunction {
            std::all_of(values.begin(), values.end(), [](double v) { return v == 0.0; });
   }
 
+  /// Numbers that it never falls below and never exceeds; with a sine beside a table not the
+  /// closest ones.
+  double lower_bound() const {
+    const double table = values.empty() ? 0.0 : *std::min_element(values.begin(), values.end());
+    return constant + table - std::abs(amplitude);
+  }
+  double upper_bound() const {
+    const double table = values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+    return constant + table + std::abs(amplitude);
+  }
+
   /// Value at a time [s].
   double at(double t) const { return constant + table_at(t) + amplitude * std::sin(angle(t)); }
 

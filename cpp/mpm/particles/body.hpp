@@ -40,6 +40,7 @@ struct Body {
   BodyKind kind = BodyKind::deformable;
   int rigid = -1;                            // place among Domain::rigid, if it is rigid and free
   int force = -1;                            // place among Domain::body_forces, if it has one
+  int damping = -1;                          // and among Domain::dampings
   std::unique_ptr<PrescribedMotion> motion;  // none for the thousands of bodies that are free
   double pressure_impedance = 0.0, shear_impedance = 0.0;  // rho c of the start [kg/(m^2 s)]
   std::size_t moved = 0;  // changes of cell since its rows were last sorted

@@ -109,7 +109,9 @@ ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
   pool.mass()[0] = material.density;
   pool.volume()[0] = 1.0;
   start_material_columns<D>(material, pool.columns, pool.at);
-  pool.sound_speed = sound_speed<D>(material, pool.columns, pool.at, 0, grid.cell_size);
+  Material undamped = material;  // the speed of waves, not that which limits the time step
+  undamped.damping = {};
+  pool.sound_speed = sound_speed<D>(undamped, pool.columns, pool.at, 0, grid.cell_size);
   pool.columns.allocate(0);
   return pool;
 }

@@ -80,17 +80,22 @@ void contact_momentum(Step<D>& step, Vec<double, D> Node<D>::* velocity) {
 }
 
 /// f_nor = (m_s P_r - m_r P_s) . n / ((m_r + m_s) dt) > 0 with P = m v + dt f, f_tan likewise along
-/// the slip, and of that no more than mu f_nor.
+/// the slip, and of that no more than mu f_nor. Drag by the velocity in the middle of the step
+/// makes P - dt alpha m v of P and m (1 + dt alpha / 2) of m.
 template <int D>
 void contact_forces(Step<D>& step) {
+  const auto half_drag = [&](std::size_t k) { return 0.5 * step.dt * step.bodies[k].alpha; };
   /// P / m: where a body would go without the other.
-  const auto alone = [&](const Body<D>& b, const Node<D>& i) {
-    return i.v + (b.prescribed() ? i.dv : (step.dt / i.m) * i.f);
+  const auto alone = [&](std::size_t k, const Node<D>& i) {
+    if (step.bodies[k].prescribed()) return i.v + i.dv;
+    const double drag = half_drag(k);
+    return (1.0 / (1.0 + drag)) * ((1.0 - drag) * i.v + (step.dt / i.m) * i.f);
   };
   for (Contact<D>& c : step.contacts) {
     if (!c.touching) continue;
-    const Vec<double, D> slip = alone(step.bodies[0], *c.r) - alone(step.bodies[1], *c.s);
-    const Vec<double, D> all = (1.0 / ((c.w_r + c.w_s) * step.dt)) * slip;
+    const double w = c.w_r / (1.0 + half_drag(0)) + c.w_s / (1.0 + half_drag(1));
+    const Vec<double, D> slip = alone(0, *c.r) - alone(1, *c.s);
+    const Vec<double, D> all = (1.0 / (w * step.dt)) * slip;
     const double f_nor = std::max(dot(all, c.n), 0.0);
     const Vec<double, D> tangential = all - dot(all, c.n) * c.n;
     const double f_fric = std::min(step.mu * f_nor, norm(tangential));

@@ -17,6 +17,7 @@ struct Particle {
   double m, V;                                     // mass [kg], volume [m^3]
   Sym<double, D> sigma;                            // stress [Pa]
   Mat<double, D> gradient{};                       // of a step's velocity x dt, at its start
+  Sym<double, D> s = Sym<double, D>::zero();       // and that of the material's damping [Pa]
   Mat<double, D> C{};                              // affine part of the velocity [1/s]
   Vec<double, D> unseen = Vec<double, D>::zero();  // of v, to be taken away in this step [m/s]
 };
@@ -28,8 +29,9 @@ struct Node {
   Vec<double, D> f = Vec<double, D>::zero();       // force [N]
   Vec<double, D> f_load = Vec<double, D>::zero();  // the part of it of loads on surfaces [N]
   Vec<double, D> f_body = Vec<double, D>::zero();  // and of the body force, a part of f_load [N]
-  Vec<double, D> f_absorb = Vec<double, D>::zero();     // and that of absorbing walls [N]
-  Vec<double, D> dv = Vec<double, D>::zero();           // change of the velocity in this step [m/s]
+  Vec<double, D> f_absorb = Vec<double, D>::zero();  // and that of absorbing walls [N]
+  Vec<double, D> f_damp = Vec<double, D>::zero();    // that damping of the body's motion adds [N]
+  Vec<double, D> dv = Vec<double, D>::zero();        // change of the velocity in this step [m/s]
   Vec<double, D> v_corrected = Vec<double, D>::zero();  // by how much eqs. (6)-(7) have changed v
   Vec<double, D> v_new = Vec<double, D>::zero();        // remapped velocity [m/s]
 };
@@ -39,6 +41,7 @@ template <int D>
 struct Body {
   std::vector<Particle<D>> particles;
   Elastic material;
+  double beta = 0.0;                     // damping of the material by its stiffness [s]
   BodyKind kind = BodyKind::deformable;  // others have no stress, and their particles move as one
   RigidMotion motion;                    // of this step
   // Of a body whose motion is prescribed: that of the step before, and what it is given as.
@@ -46,6 +49,7 @@ struct Body {
   std::array<TimeFunction, 3> velocity{}, spin{};  // [m/s], [rad/s]
   // Force per mass [m/s^2], of the present place, that at the start [m] and the time [s]; or none.
   std::function<Vec<double, D>(const Vec<double, D>&, const Vec<double, D>&, double)> force;
+  double alpha = 0.0, kappa = 0.0;  // damping of its motion: by the mass [1/s], local
   std::map<Index<D>, Node<D>> nodes;
 
   bool deforms() const { return kind == BodyKind::deformable; }
@@ -84,7 +88,7 @@ struct Load {
 /// What forces do in a step [J]. Of loads and absorbing walls the part of the step's energy balance
 /// that the nodes exchange with the outside; of contact what it does on prescribed bodies.
 struct Works {
-  double gravity = 0.0, loads = 0.0, absorbed = 0.0, on_prescribed = 0.0;
+  double gravity = 0.0, loads = 0.0, absorbed = 0.0, damped = 0.0, on_prescribed = 0.0;
 };
 
 }  // namespace mpm::reference

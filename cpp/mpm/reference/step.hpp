@@ -92,7 +92,7 @@ struct Step {
     }
   }
 
-  /// f_i = sum m_p N_ip g - sum V_p sigma_p . grad N_ip, eqs. (9)-(10).
+  /// f_i = sum m_p N_ip g - sum V_p (sigma_p + s_p) . grad N_ip, eqs. (9)-(10).
   void map_forces() {
     for (Body<D>& b : bodies) {
       for (auto& [i, node] : b.nodes) node.f = Vec<double, D>::zero();
@@ -101,12 +101,26 @@ struct Step {
         for_each_node(p.x, [&](const Index<D>& i, double N, const Vec<double, D>& dN) {
           for (int a = 0; a < D; ++a) {
             b.nodes[i].f[a] += p.m * N * g[a];
-            for (int c = 0; c < D; ++c) b.nodes[i].f[a] -= p.V * p.sigma(a, c) * dN[c];
+            for (int c = 0; c < D; ++c) b.nodes[i].f[a] -= p.V * (p.sigma + p.s)(a, c) * dN[c];
           }
         });
       if (averages) average_forces(*this, b);
       fold(b, [](Node<D>& node, Node<D>& image, auto&& mirrored) { image.f += mirrored(node.f); });
       for (auto& [i, node] : b.nodes) hold(i, node.f);
+    }
+  }
+
+  /// -alpha m v' - kappa |f| sgn v', v' = v + dt a / 2 with what both do to a: the local one is no
+  /// more than what brings v' to rest.
+  void find_damping(const Body<D>& b, Node<D>& node) const {
+    for (int a = 0; a < D; ++a) {
+      const double at_rest =
+          node.f[a] + 2.0 * node.m * node.v[a] / dt;  // brings v' to rest, if taken
+      const double local =
+          std::clamp(at_rest, -b.kappa * std::abs(node.f[a]), b.kappa * std::abs(node.f[a]));
+      const double middle =
+          (node.v[a] + 0.5 * dt * (node.f[a] - local) / node.m) / (1.0 + 0.5 * dt * b.alpha);
+      node.f_damp[a] = -local - b.alpha * node.m * middle;
     }
   }
 
@@ -116,7 +130,8 @@ struct Step {
       for (auto& [i, node] : b.nodes) {
         if (!b.prescribed()) {
           hold(i, node.f);  // Friction of a prescribed body may act along a wall.
-          node.dv = (dt / node.m) * node.f;
+          find_damping(b, node);
+          node.dv = (dt / node.m) * (node.f + node.f_damp);
         }
         node.v += node.dv;
       }
@@ -170,6 +185,7 @@ struct Step {
   /// Strain, rotation and stress by the gradient dt sum v_i grad N_ip, eqs. (18)-(20); USF and USL
   /// take the nodes' velocities `v`, MUSL the remapped ones. Those of USF have brought the
   /// particles here: L is on the configuration at the end of what it strains, F = (1 - L dt)^-1.
+  /// And s_p = beta C : D, the stress of the material's damping.
   void update_stress(Vec<double, D> Node<D>::* velocity, bool at_end) {
     for (Body<D>& b : bodies) {
       if (!b.deforms()) continue;
@@ -180,6 +196,10 @@ struct Step {
             for (int c = 0; c < D; ++c)
               p.gradient[a][c] += (at_end ? dt_before : dt) * (b.nodes[i].*velocity)[a] * dN[c];
         });
+        const auto strain = symmetric_part(p.gradient);
+        const double rate = b.beta / (at_end ? dt_before : dt);
+        p.s = (2.0 * rate * b.material.G) * strain +
+              Sym<double, D>::isotropic(rate * b.material.lambda * trace(strain));
         if (at_end) p.gradient = seen_from_start(p.gradient);
       }
       if (averages) average_gradients(*this, b);

@@ -34,6 +34,11 @@ struct PrescribedMotion {
       now.spin.c[a] = spin[a].mean(from, to);
     }
   }
+  /// The same of a step in which it stands still.
+  void stand_still() {
+    now.velocity = now.spin = Vector3::zero();
+    before = now;
+  }
   /// Bound of the speed of the body's particles in a step from `from` to `to` [m/s], for the time
   /// step: a function of time may jump, so the last step's speed is none.
   double speed(double from, double to) const {

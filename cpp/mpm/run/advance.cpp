@@ -7,6 +7,7 @@
 #include "mpm/run/coarsen_cells.hpp"
 #include "mpm/run/find_failure.hpp"
 #include "mpm/run/measures.hpp"
+#include "mpm/run/settle.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/watch.hpp"
 
@@ -16,10 +17,11 @@ namespace {
 /// Say when the step is, and what is a function of time in it.
 template <int D>
 void begin_step(Domain<D>& domain, double time_after) {
+  const double from = load_time(domain.time), to = load_time(time_after);
   for (std::size_t a = 0; a < D; ++a)
-    domain.gravity[static_cast<int>(a)] = domain.gravity_of_time[a].mean(domain.time, time_after);
-  for (const std::size_t b : domain.prescribed)
-    domain.bodies[b].motion->begin_step(domain.time, time_after);
+    domain.gravity[static_cast<int>(a)] = domain.gravity_of_time[a].mean(from, to);
+  for (Damping& damping : domain.dampings) damping.begin_step(from, to);
+  for (const std::size_t b : domain.prescribed) domain.bodies[b].motion->begin_step(from, to);
   domain.time_after = time_after;
 }
 
@@ -27,10 +29,13 @@ template <int D>
 void make_step(Simulation<D>& simulation, double time_after) {
   Domain<D>& domain = simulation.domain;
   begin_step(domain, time_after);
+  if (domain.settles()) begin_settling_step(simulation);
   for (std::size_t k = 0; k < simulation.stages.size(); ++k)
     simulation.timers.time(k, [&] { simulation.stages[k].run(domain); });
+  const bool settling = domain.settles();
   domain.time = time_after;
   ++domain.step;
+  if (settling) end_settling_step(simulation);
   simulation.history.add(step_state(domain));
   find_failure(simulation);
   if (simulation.failure) return;
@@ -51,12 +56,13 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
   Domain<D>& domain = simulation.domain;
   std::int64_t made = 0;
   while (made < max_steps && domain.time < end_time && !simulation.failure) {
-    const double left = end_time - domain.time;
+    const double next_stop = domain.settles() ? std::min(end_time, 0.0) : end_time;
+    const double left = next_stop - domain.time;
     const bool last = simulation.next_time_step >= left;
     // Two last steps of equal length rather than a tiny one, in which forces would be rounding.
     domain.step_before = domain.time_step;
     domain.time_step = last ? left : std::min(simulation.next_time_step, 0.5 * left);
-    make_step(simulation, last ? end_time : domain.time + domain.time_step);
+    make_step(simulation, last ? next_stop : domain.time + domain.time_step);
     ++made;
     if (stop != nullptr && stop->load(std::memory_order_relaxed)) break;
   }

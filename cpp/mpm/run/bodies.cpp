@@ -78,6 +78,8 @@ void set_motion(Simulation<D>& simulation, int number, const std::array<TimeFunc
       throw std::invalid_argument(b.name + ": it has a load, which acts on bodies that deform");
   if (b.force >= 0)
     throw std::invalid_argument(b.name + ": it has a body force, which acts on those that deform");
+  if (b.damping >= 0)
+    throw std::invalid_argument(b.name + ": it has damping, which acts on bodies that deform");
   check_functions(velocity, b.name + ": velocity");
   check_functions(spin, b.name + ": spin");
   check_finite(centre, b.name + ": centre");

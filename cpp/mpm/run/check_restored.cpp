@@ -177,9 +177,11 @@ void check_rest(const Simulation<D>& simulation) {
   for (std::size_t a = 0; a < D; ++a)
     same = same && (grid.walls.cells[a] == given.box_cells[a] >> std::min(coarsenings, 31));
   check(same, "its grid is damaged");
+  const auto& settle = simulation.settings.run.settle;
+  const double earliest = settle ? -settle->longest : 0.0;
   check(domain.step >= 0 && domain.step < std::int64_t{1} << 62 && finite(domain.time) &&
-            domain.time >= 0.0 && finite(domain.time_step) && simulation.next_time_step > 0.0 &&
-            finite(domain.gravity),
+            domain.time >= earliest && finite(domain.time_step) &&
+            simulation.next_time_step > 0.0 && finite(domain.gravity),
         "its time is damaged");
   const auto check_speed = [&](double v) {  // The next step is infinite where none moves.
     check(v == 0.0 || std::abs(v) * simulation.next_time_step < farthest * grid.cell_size,

@@ -75,6 +75,28 @@ void add_body_force(Simulation<D>& simulation, const std::vector<int>& bodies,
 }
 
 template <int D>
+void add_damping(Simulation<D>& simulation, const std::vector<int>& bodies,
+                 const TimeFunction& rate, const TimeFunction& local) {
+  Domain<D>& domain = simulation.domain;
+  require(simulation, Phase::building, "damping must be added before prepare()");
+  const auto check = [](bool condition, const std::string& rule) {
+    if (!condition) throw std::invalid_argument("damping: " + rule);
+  };
+  for (const TimeFunction& f : {rate, local})
+    check(f.problem().empty(), "its function of time " + f.problem());
+  check(rate.lower_bound() >= 0.0, "mass must be >= 0 at all times");
+  check(local.lower_bound() >= 0.0 && local.upper_bound() < 1.0,
+        "local must be >= 0 and < 1 at all times");
+  for (const int number : bodies) {
+    Body<D>& body = domain.body_at(number);
+    check(body.deforms(), body.name + " does not deform, and damping acts on bodies that do");
+    check(body.damping < 0, body.name + " has damping already");
+    body.damping = static_cast<int>(domain.dampings.size());
+  }
+  domain.dampings.push_back({rate, local, {}});
+}
+
+template <int D>
 void place_pieces(Domain<D>& domain) {
   for (std::size_t k = 0; k < domain.pieces.size(); ++k) {
     SurfacePiece<D>& piece = domain.pieces[k];
@@ -120,6 +142,10 @@ template void add_body_force<2>(Simulation<2>&, const std::vector<int>&,
                                 const std::vector<Expression::Program>&);
 template void add_body_force<3>(Simulation<3>&, const std::vector<int>&,
                                 const std::vector<Expression::Program>&);
+template void add_damping<2>(Simulation<2>&, const std::vector<int>&, const TimeFunction&,
+                             const TimeFunction&);
+template void add_damping<3>(Simulation<3>&, const std::vector<int>&, const TimeFunction&,
+                             const TimeFunction&);
 template void place_pieces<2>(Domain<2>&);
 template void place_pieces<3>(Domain<3>&);
 template std::vector<LoadRecord> load_records<2>(const Domain<2>&);

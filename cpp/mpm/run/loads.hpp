@@ -1,5 +1,5 @@
 #pragma once
-// Takes loads on surfaces in, and tells what they have done.
+// Takes loads on surfaces, body forces and damping in, and tells what loads have done.
 #include <array>
 #include <string>
 #include <vector>
@@ -20,6 +20,12 @@ void add_load(Simulation<D>& simulation, const std::string& name, int body, cons
 template <int D>
 void add_body_force(Simulation<D>& simulation, const std::vector<int>& bodies,
                     const std::vector<Expression::Program>& value);
+
+/// Damp the motion of bodies that have no damping yet: in proportion to their mass, by a rate
+/// [1/s], and to the force that is out of balance; before prepare(). Throws likewise.
+template <int D>
+void add_damping(Simulation<D>& simulation, const std::vector<int>& bodies,
+                 const TimeFunction& rate, const TimeFunction& local);
 
 /// Tell the particles which pieces they carry; each body's lie in one patch yet, as they were
 /// given.

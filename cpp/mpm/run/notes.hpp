@@ -8,9 +8,19 @@
 namespace mpm {
 
 /// Why a note is made, by its place in `note_names`.
-enum class NoteKind { time_step, energy_made, load_energy, outside, volume, left_box, crowd };
-inline constexpr std::array note_names = {
-    "time step", "energy of a step", "load", "outside walls", "volume", "left box", "crowded node"};
+enum class NoteKind {
+  time_step,
+  energy_made,
+  load_energy,
+  outside,
+  volume,
+  left_box,
+  crowd,
+  unsettled
+};
+inline constexpr std::array note_names = {"time step",     "energy of a step", "load",
+                                          "outside walls", "volume",           "left box",
+                                          "crowded node",  "unsettled"};
 
 /// Told once for each kind and body (the first of its group), then counted. Trivially copyable, so
 /// that a checkpoint holds it.

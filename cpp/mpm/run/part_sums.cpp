@@ -114,7 +114,7 @@ std::vector<double> balance_row(const AngularLedger& ledger, const AngularTotals
   std::vector<double> row;
   row.reserve(total_columns.size());
   for (const Vector3& term :
-       {b.momentum, b.gravity, b.loads, b.walls, b.motion, b.removed, b.numerical})
+       {b.momentum, b.gravity, b.loads, b.walls, b.damping, b.motion, b.removed, b.numerical})
     for (int a = 0; a < 3; ++a) row.push_back(term[a]);
   return row;
 }

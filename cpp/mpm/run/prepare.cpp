@@ -8,6 +8,7 @@
 #include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/part_sums.hpp"
+#include "mpm/run/settle.hpp"
 #include "mpm/run/start_affine.hpp"
 #include "mpm/run/time_step.hpp"
 
@@ -25,6 +26,11 @@ void check_bodies(const Domain<D>& domain) {
         "all bodies are rigid, so no wave limits the time step: one must deform");
   check(!domain.grid.bonded || std::ranges::none_of(domain.bodies, is_rigid),
         "bodies are bonded, so none can be rigid");
+  const auto damped_otherwise = [&](const Body<D>& b) {
+    return b.damping != domain.bodies[0].damping;
+  };
+  check(!domain.grid.bonded || std::ranges::none_of(domain.bodies, damped_otherwise),
+        "bodies are bonded and move as one, so all must have the same damping");
 }
 
 /// Give the particles of bodies with prescribed motion their velocities at the start.
@@ -74,6 +80,7 @@ void prepare(Simulation<D>& simulation) {
   if (domain.has_contact()) connect_tiles(domain.contact, domain.grid, domain.bodies);
   domain.sums.resize(domain.grid.patches.size());
   list_kinds(domain);
+  start_settling(simulation);
   start_motions(domain);
   project_rigid_velocities(domain);
   start_affine(domain);

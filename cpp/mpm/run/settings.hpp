@@ -89,12 +89,34 @@ struct TransferSettings {
   double flip_share() const { return word == Transfers::id_of<Aflip>() ? aflip : flip; }
 };
 
+/// The way to rest under the loads of the time 0, before that time.
+struct SettleSettings {
+  double longest = std::numeric_limits<double>::quiet_NaN();
+  double ratio = 1e-3, local = 0.8;
+
+  static constexpr std::string_view table = "run.settle";
+  using Self = SettleSettings;
+  static constexpr Rule between{.lower = 0.0, .upper = 1.0, .lower_open = true, .upper_open = true};
+  static constexpr auto settings = std::tuple{
+      Setting{"longest", &Self::longest,
+              "longest time of it [s]: the clock begins at minus that, and is set to 0 when forces "
+              "balance",
+              Rule::positive, "s"},
+      Setting{"ratio", &Self::ratio,
+              "it ends when the forces out of balance at the nodes are this share of gravity, body "
+              "forces and loads, both summed over the nodes (FLAC's ratio)",
+              between},
+      Setting{"local", &Self::local,
+              "local damping of all bodies while it lasts, in place of their own", between}};
+};
+
 struct RunSettings {
   Scheme scheme = Scheme::musl;
   double cfl = 0.25;
   std::optional<double> time_step, largest_time_step;
   std::array<TimeFunction, 3> gravity{};
   TransferSettings transfer;
+  std::optional<SettleSettings> settle;
   double energy_growth_limit = 1.0;
   double outside_limit = 0.05;
   double volume_limit = 0.2;

@@ -21,6 +21,7 @@ const Settings& checked(const Settings& s) {
   if (s.grid.coarsening) check_settings(*s.grid.coarsening);
   check_settings(s.run);
   check_settings(s.run.transfer);
+  if (s.run.settle) check_settings(*s.run.settle);
   check_settings(s.contact);
   check_transfer(s);
   check_settings(s.execution);

@@ -51,7 +51,7 @@ double stable_time_step(const Domain<D>& domain, double cfl) {
   for (const std::size_t b : domain.prescribed) {
     const PrescribedMotion& motion = *domain.bodies[b].motion;
     if (!motion.moves) continue;
-    const double speed = motion.speed(domain.time, domain.time + time_step);
+    const double speed = motion.speed(load_time(domain.time), load_time(domain.time + time_step));
     time_step = std::min(time_step, way / speed);
   }
   return time_step;

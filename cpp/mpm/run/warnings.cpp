@@ -53,6 +53,11 @@ std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded
       text << n.value << " bodies meet at one node, and the time of a step grows with the square "
            << "of their number; give smaller cells, larger grains, or one body in place of many";
       break;
+    case NoteKind::unsettled:
+      text << "run.settle.longest was over before forces balanced: those out of balance were "
+           << n.value << " of those applied, more than run.settle.ratio = " << n.against
+           << "; give a longer time, or a larger ratio";
+      break;
     case NoteKind::left_box:
       text << "particles of " << whose << " leave the box through its open face "
            << face_names[static_cast<std::size_t>(n.face)] << " (" << per_cent

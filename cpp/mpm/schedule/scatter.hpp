@@ -133,6 +133,9 @@ class ParticleReader {
     // With averaged volumes a column holds q and what the cell's mean pressure changes.
     const int q = pool.at.force_pressure >= 0 ? pool.at.force_pressure : pool.at.viscosity_pressure;
     if (q >= 0) q_ = pool.columns.component(q);
+    if (const int s = pool.at.damping_stress; s >= 0)
+      for (int c = 0; c < Sym<double, D>::size; ++c) damping_[c] = pool.columns.component(s + c);
+    viscous_ = q_ || damping_[0];
     for (int a = 0; a < D; ++a) velocity_[a] = pool.columns.rounded(velocity + a);
     for (int c = 0; c < Sym<double, D>::size; ++c) stress_[c] = pool.stress(c);
   }
@@ -144,18 +147,17 @@ class ParticleReader {
     // Their position is that of the start of the step.
     const Vec<T, D> xi = local_position_(cell, rows);
     const Weights<T, D, B::nodes> w = weights_at(basis, xi);
-    // -V_p (sigma_p - q_p 1) / h: the sign and the volume V_p = m_p / rho_p of eq. (9), with 1 / h
-    // as gradients are in cells. Stress is positive in tension, q in compression, hence the
-    // difference, on the diagonal alone: its components come first in `Sym`. In 2D zz is carried
-    // along and not used, as nothing varies along z.
+    // -V_p (sigma_p - q_p 1 + s_p) / h: the sign and the volume V_p = m_p / rho_p of eq. (9), with
+    // 1 / h as gradients are in cells; s_p is the stress of the material's damping. Stress is
+    // positive in tension, q in compression, hence the difference, on the diagonal alone: its
+    // components come first in `Sym`. In 2D zz is carried along and not used, as nothing varies
+    // along z.
     if constexpr ((what & gives_forces) != 0) {
       const T scale = T(minus_per_cell_size_) * load(volume_, rows);
-      const T q = q_ ? load(q_, rows) : T(0.0);
       Sym<T, D> tractions;
-      unrolled<Sym<T, D>::size>([&](auto c) {
-        const T stress = load(stress_[c], rows);
-        tractions.c[c] = scale * (c < D ? stress - q : stress);
-      });
+      unrolled<Sym<T, D>::size>([&](auto c) { tractions.c[c] = load(stress_[c], rows); });
+      if (viscous_) add_viscous(tractions, rows);
+      unrolled<Sym<T, D>::size>([&](auto c) { tractions.c[c] = scale * tractions.c[c]; });
       to.add_tractions(tractions);
     }
     if constexpr ((what & gives_momentum) != 0) {
@@ -171,9 +173,22 @@ class ParticleReader {
   }
 
  private:
+  /// The pressure of the artificial viscosity and the stress of the material's damping.
+  template <class T, class Rows>
+  MPM_INLINE void add_viscous(Sym<T, D>& stress, const Rows& rows) const {
+    if (q_) {
+      const T q = load(q_, rows);
+      unrolled<D>([&](auto c) { stress.c[c] = stress.c[c] - q; });
+    }
+    if (damping_[0])
+      unrolled<Sym<T, D>::size>(
+          [&](auto c) { stress.c[c] = stress.c[c] + load(damping_[c], rows); });
+  }
+
   LocalPosition<D> local_position_;
   double minus_per_cell_size_;
-  const double *mass_, *volume_, *q_ = nullptr;
+  const double *mass_, *volume_, *q_ = nullptr, *damping_[Sym<double, D>::size] = {};
+  bool viscous_ = false;  // is there any of the two?
   const Storage *velocity_[D], *stress_[Sym<double, D>::size];
   AffineVelocity<D> affine_{};
 };

@@ -74,6 +74,46 @@ NodeWork advance_block(const NodeBlock<D>& block, const double* own, const Vec<d
   return done;
 }
 
+/// The same where the body's motion is damped, with the work of that and its angular impulse [N m].
+struct DampedWork {
+  NodeWork done;
+  double unbalanced = 0.0, weight = 0.0;  // sums of the forces' sizes [N]
+  Work damping;
+  Vector3 moment = Vector3::zero();
+};
+template <int D>
+DampedWork advance_damped_block(const Domain<D>& domain, const Patch<D>& patch,
+                                const NodeBlock<D>& block, const double* own,
+                                const StepDamping& damping) {
+  DampedWork sums;
+  const double dt = domain.time_step;
+  for (int n = 0; n < block.count; ++n) {
+    double* const numbers = block.records[n];
+    const double m = numbers[mass_at];
+    Vec<double, D> force = Vec<double, D>::zero(), all = force;
+    for (int a = 0; a < D; ++a) {
+      double& v = numbers[velocity_at + a];
+      const double f = numbers[force_at + a], weight = m * domain.gravity[a];
+      DampedNode node{0.0, 0.0};  // at rest without mass
+      if (m > 0.0) node = advance_damped(damping, m, v, f + weight, dt);
+      force[a] = own[n] * node.damping;
+      all[a] = f + weight;
+      sums.done.work += own[n] * f * v;
+      sums.done.gravity_first += own[n] * weight * v;
+      sums.done.gravity_second += own[n] * weight * node.increment;
+      sums.damping.first += dt * force[a] * v;
+      sums.damping.second += 0.5 * dt * force[a] * node.increment;
+      v += node.increment;
+      numbers[increment_at + a] = node.increment;
+    }
+    sums.unbalanced += own[n] * norm(all);
+    sums.weight += own[n] * m * norm(domain.gravity);
+    if (dot(force, force) > 0.0)
+      sums.moment += cross(place_of(domain.grid, patch, n), in_space<D>(force));
+  }
+  return sums;
+}
+
 /// Angular impulse of the walls on the nodes that they hold: they take up force and weight along
 /// these axes. Before `hold_at_walls`.
 template <int D>
@@ -111,6 +151,23 @@ void add_angular_impulses(const Domain<D>& domain, const Patch<D>& patch, const 
   if (has_gravity) sums.gravity += dt * cross(mass_moment, in_space<D>(domain.gravity));
 }
 
+/// Eq. (8) for the nodes of a block, with the damping of its body, of which the sums are set.
+template <int D>
+NodeWork advance(const Domain<D>& domain, const Patch<D>& patch, const NodeBlock<D>& block,
+                 const double* own, PatchSums<D>& sums) {
+  const StepDamping damping = domain.damping_of(patch);
+  if (!damping.acts()) return advance_block(block, own, domain.gravity, domain.time_step);
+  const DampedWork damped = advance_damped_block(domain, patch, block, own, damping);
+  sums.damping_first = damped.damping.first;
+  sums.damping_second = damped.damping.second;
+  sums.angular.damping += domain.time_step * damped.moment;
+  if (domain.settles()) {
+    sums.unbalanced = damped.unbalanced;
+    sums.applied += damped.weight;  // to that of loads
+  }
+  return damped.done;
+}
+
 }  // namespace
 
 /// Eq. (8), m_i dv_i = (f_i + m_i g) dt, with eq. (10) in the form m_i g: exact as gravity is
@@ -130,7 +187,7 @@ void advance_nodes(Domain<D>& domain) {
     PatchSums<D>& sums = domain.sums[p];
     if (patch.at_wall) sums.angular.walls += impulse_of_holding(domain, patch, block, own);
     hold_at_walls(domain, patch, block);
-    const NodeWork done = advance_block(block, own, domain.gravity, dt);
+    const NodeWork done = advance(domain, patch, block, own, sums);
     Work loads, dashpots;
     if (absorb && patch.at_wall) dashpots = work_of_dashpots(block, own, dt);
     // The mirrored weight went into the force (ghost_weight, subtracted); it is work of gravity, so

@@ -35,8 +35,10 @@ void contact_momentum(Domain<D>& domain) {
 template <int D>
 void contact_forces(Domain<D>& domain) {
   if (domain.has_contact())
-    add_contact_forces(domain.contact, domain.grid, domain.bodies, domain.gravity, domain.time_step,
-                       domain.threads);
+    add_contact_forces(
+        domain.contact, domain.grid,
+        ContactStep<D>{domain.bodies, domain.dampings, domain.gravity, domain.time_step},
+        domain.threads);
 }
 
 template <int D>

@@ -94,6 +94,14 @@ class TimeFunction:
         """Return a number that the absolute value never exceeds."""
         return abs(self.mean) + abs(self.amplitude) + max(map(abs, self.values), default=0.0)
 
+    def lowest(self) -> float:
+        """Return a number that it never falls below; of a sine beside a table not the closest."""
+        return self.mean + min(self.values, default=0.0) - abs(self.amplitude)
+
+    def highest(self) -> float:
+        """Return a number that it never exceeds, likewise."""
+        return self.mean + max(self.values, default=0.0) + abs(self.amplitude)
+
     def for_core(self) -> dict[str, Any]:
         """Return what the core's `TimeFunction` is made of."""
         return {
@@ -118,6 +126,16 @@ def at(value: float | TimeFunction, time: float) -> float:
 def bound(value: float | TimeFunction) -> float:
     """Return a number that the absolute value of a quantity never exceeds."""
     return value.bound() if isinstance(value, TimeFunction) else abs(value)
+
+
+def lowest(value: float | TimeFunction) -> float:
+    """Return a number that a quantity never falls below."""
+    return value.lowest() if isinstance(value, TimeFunction) else value
+
+
+def highest(value: float | TimeFunction) -> float:
+    """Return a number that a quantity never exceeds."""
+    return value.highest() if isinstance(value, TimeFunction) else value
 
 
 def _number(value: Any, unit: str, path: Path) -> float:

@@ -28,6 +28,7 @@ ALUMINIUM: dict[str, Any] = {
     "eos": None,
     "failures": [],
     "viscosity": (0.0, 0.0),
+    "damping": 0.0,
     "volume_averaging": False,
 }
 # OFHC copper: Johnson & Cook 1983; shock data of Steinberg 1996.
@@ -41,6 +42,7 @@ COPPER: dict[str, Any] = {
     "eos": ("mie_gruneisen", {"c0": 3940.0, "s": 1.49, "gamma0": 1.96}),
     "failures": [],
     "viscosity": (0.0, 0.0),
+    "damping": 0.0,
     "volume_averaging": False,
 }  # fmt: skip
 # A wave speed below that of the translation: the cloud of `debris` hardly feels its stress.

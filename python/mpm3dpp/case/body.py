@@ -7,6 +7,7 @@ from typing import Annotated
 
 from pydantic import model_validator
 
+from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import violation
 from mpm3dpp.base.expression import ForceField, SpinField, VelocityField
 from mpm3dpp.base.model import CaseModel, Choice, Count, Text
@@ -38,6 +39,8 @@ class Body(CaseModel):
             three in 3D; default zero. Stored as a tuple.
         body_force: force per mass beside gravity [m/s^2], D numbers or formulas of the present
             place x, y, z, the place at the start X, Y, Z and the time t; None for none.
+        damping: what damps its motion beside its material, in proportion to the mass or locally;
+            None for nothing.
         motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
             then; None for a body that is free to move.
     """
@@ -51,6 +54,7 @@ class Body(CaseModel):
     velocity: VelocityField = ()
     angular_velocity: SpinField = ()
     body_force: ForceField | None = None
+    damping: Damping | None = None
     motion: MaybeMotion = None
 
     @model_validator(mode="after")

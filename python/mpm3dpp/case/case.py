@@ -17,6 +17,7 @@ from typing import Annotated, Any
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from mpm3dpp.base import arguments
+from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import CaseError, from_validation, key_text
 from mpm3dpp.base.errors import Path as KeyPath
 from mpm3dpp.base.model import CaseModel, Choice, Text
@@ -231,6 +232,19 @@ class Case(CaseModel):
                 if among_itself and sorted(ends) == sorted(pair.bodies or pair.materials or []):
                     found[first, second] = pair.friction
         return [(a, b, friction) for (a, b), friction in sorted(found.items())]
+
+    def dampings(self) -> list[tuple[Damping, list[str]]]:
+        """Return each damping of motions with the entries of `body` and `grains` that have it."""
+        found: list[tuple[Damping, list[str]]] = []
+        for name, part in self.parts().items():
+            if part.damping is None:
+                continue
+            same = next((names for damping, names in found if damping == part.damping), None)
+            if same is None:
+                found.append((part.damping, [name]))
+            else:
+                same.append(name)
+        return found
 
     def first_bodies(self) -> dict[str, int]:
         """Return the number of the first body of every entry of `body` and `grains`."""

@@ -72,6 +72,11 @@ def _bodies_together(case: Case) -> Found:
     yield from check_detonations(case)
     yield from check_loads(case)
     yield from _body_forces(case)
+    yield from _dampings(case)
+    forces = [*case.load, *(part for part in case.parts().values() if part.body_force is not None)]
+    if case.run.settle is not None and not (any(case.run.gravity) or forces):
+        rule = "needs a force to settle under: there is no gravity, load or body force"
+        yield violation(rule, "give one, or remove it", path=("run", "settle"))
     yield from _transfer(case)
 
 
@@ -112,6 +117,12 @@ def _check_material(material: Material, path: Path) -> Found:
     except ValueError as error:
         yield _refusal(material, str(error), path)
         return
+    if material.beta and not material.sound_speed():
+        rule = "is of a material that does not deform, and has no stiffness"
+        yield violation(rule, "remove it", path=(*path, "damping"))
+    if material.beta and material.volume_averaging:
+        rule = "does not go with volume_averaging, which would have to average its stress too"
+        yield violation(rule, "remove one of the two", path=(*path, "damping"))
     if material.eos is not None and not speed:
         rule = "has no stiffness at the start: its pressure does not rise when it is compressed"
         model = material.eos.model
@@ -213,6 +224,21 @@ def _body_forces(case: Case) -> Found:
             yield violation(rule, remedy, path=path)
 
 
+def _dampings(case: Case) -> Found:
+    """Yield the damping of bodies that do not deform, or of some of those that move as one."""
+    parts = case.parts()
+    for name, part in parts.items():
+        path = (*case.part_path(name), "damping")
+        if part.damping is not None and case.is_rigid(name):
+            rule = "is of a body that does not deform, and acts on bodies that do"
+            remedy = "remove it, or give the body another material and no motion"
+            yield violation(rule, remedy, path=path)
+        other = next((one for one in parts if parts[one].damping != part.damping), None)
+        if case.contact.bonded and part.damping is not None and other is not None:
+            rule = "must be the same for all where contact.bonded = true: all bodies move as one"
+            yield violation(rule, f"that of {other} is another", path=path)
+
+
 def _check_body(case: Case, body: Body, path: Path) -> Found:
     dimension = case.grid.dimension
     if body.shape is not None:
@@ -245,6 +271,7 @@ def _columns(case: Case, material: str) -> list[str]:
         of_start=any(isinstance(value, Expression) and value.is_of_start for value in given),
         transfer=case.run.transfer.word,
         viscosity=case.viscosity_of(material),
+        damping=case.material[material].beta,
         **case.material[material].for_core(),
     )
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from pydantic import ConfigDict, Field
 
-from mpm3dpp.base.model import CaseModel, Text
+from mpm3dpp.base.damping import MaterialDamping
+from mpm3dpp.base.model import CaseModel, Flag, Text
 from mpm3dpp.base.units import Density
 from mpm3dpp.materials.chosen import AnyEos, AnyFailure, AnyStrength
 from mpm3dpp.materials.library import either_library_or_own, fill_in
@@ -38,6 +39,7 @@ class Material(CaseModel):
         volume_averaging: whether all particles of a body in a cell take the mean of the changes of
             their volumes, and the nodes the mean of their pressures, so that nearly incompressible
             matter, also that which flows plastically, does not lock (Coombs et al. 2018).
+        damping: in proportion to the stiffness; None for none.
     """
 
     model_config = ConfigDict(json_schema_extra=either_library_or_own)
@@ -49,7 +51,8 @@ class Material(CaseModel):
     eos: AnyEos = None
     failure: AnyFailure = Field(default_factory=list)
     artificial_viscosity: Viscosity | None = None
-    volume_averaging: bool = False
+    volume_averaging: Flag = False
+    damping: MaterialDamping | None = None
 
     @classmethod
     def complete(cls, data: Any) -> Any:
@@ -71,6 +74,8 @@ class Material(CaseModel):
             table["artificial_viscosity"] = self.artificial_viscosity.table()
         if self.volume_averaging:
             table["volume_averaging"] = True
+        if self.damping is not None:
+            table["damping"] = self.damping.table()
         return table
 
     @property
@@ -96,6 +101,11 @@ class Material(CaseModel):
             return None
         alone = {"strength": "fluid", "parameters": {}, "failures": []}
         return _sound_speed(**{**self.for_core(), **alone})
+
+    @property
+    def beta(self) -> float:
+        """Rayleigh's beta of its damping [s]."""
+        return 0.0 if self.damping is None else self.damping.stiffness
 
     def for_core(self) -> dict[str, Any]:
         """Return the keyword arguments with which the core makes the material."""

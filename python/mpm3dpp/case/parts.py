@@ -17,11 +17,20 @@ from .transfer import Transfer, WordOrTable
 
 _Viscosity: Any = core_table("run.viscosity")
 _Run: Any = core_table("run", **choices.AFFINE)
+_Settle: Any = core_table("run.settle")
 _Contact: Any = core_table("contact")
 
 
 class Viscosity(_Viscosity):
     """Artificial bulk viscosity (von Neumann & Richtmyer 1950, Landshoff 1955), dimensionless."""
+
+
+class Settle(_Settle):
+    """The way to rest before the run, under gravity and the loads of the time 0.
+
+    Bodies with a prescribed motion stand still. When forces balance all velocities are set to
+    zero and the run begins, at the time 0. Equations: docs/theory/damping.md.
+    """
 
 
 class Run(_Run):
@@ -37,6 +46,8 @@ class Run(_Run):
             the grid does not see; or "pic", which takes all motion of a cell's size away, turning
             too.
         viscosity: artificial bulk viscosity; None for none.
+        settle: how bodies come to rest before the run; None for a run that begins with them as
+            they are filled.
     """
 
     end_time: Time
@@ -44,6 +55,7 @@ class Run(_Run):
         default=choices.TRANSFER, validate_default=True
     )
     viscosity: Viscosity | None = None
+    settle: Settle | None = None
 
     @classmethod
     def complete(cls, data: Any) -> Any:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
+from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import CaseError, Path, violation
 from mpm3dpp.base.expression import ForceField, SpinField, VelocityField
 from mpm3dpp.base.machine import BODY_BYTES, MEMORY, memory_text
@@ -172,6 +173,8 @@ class Grains(CaseModel):
             in 2D, three in 3D; default zero. Stored as a tuple.
         body_force: force per mass of all beside gravity [m/s^2], D numbers or formulas of x, y, z,
             the place at the start X, Y, Z and the time t; None for none.
+        damping: what damps their motion beside their material, in proportion to the mass or
+            locally; None for nothing.
     """
 
     material: Text
@@ -185,6 +188,7 @@ class Grains(CaseModel):
     velocity: VelocityField = ()
     angular_velocity: SpinField = ()
     body_force: ForceField | None = None
+    damping: Damping | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> Grains:

@@ -170,7 +170,7 @@ def _write_run(
             progress.note(f"warning: {sentence}")
         for sentence in [*simulation.notes, *notes]:
             progress.note(f"note: {sentence}")
-        if kept is None:
+        if kept is None and core.time >= 0.0:  # Else it settles first.
             results.write(core)
         if before is not None and (kept is None or history_anew):  # Of the new files.
             tell(progress, checkpoints.write(core, results, history))

@@ -104,6 +104,10 @@ class Simulation:
                 self.core.add_body_force(
                     self._numbers(name), list(map(program_of, part.body_force))
                 )
+        for damping, names in case.dampings():
+            numbers_of = [number for name in names for number in self._numbers(name)]
+            mass, local, _ = functions((damping.mass, damping.local))
+            self.core.add_damping(numbers_of, mass, local)
         for a, b, friction in case.frictions():
             self.core.set_friction(a, b, friction)
         try:
@@ -130,7 +134,9 @@ class Simulation:
     def _add_material(self, name: str) -> int:
         material = self.case.material[name]
         viscosity = self.case.viscosity_of(name)
-        return self.core.add_material(**material.for_core(), viscosity=viscosity)
+        return self.core.add_material(
+            **material.for_core(), viscosity=viscosity, damping=material.beta
+        )
 
     @property
     def time(self) -> float:
@@ -278,6 +284,8 @@ def _settings(case: Case, threads: int) -> _core.Settings:
     for name in ("grid", "run", "contact"):
         fill_core_table(getattr(settings, name), getattr(case, name))
     fill_core_table(settings.run.transfer, case.run.transfer).word = case.run.transfer.word
+    if case.run.settle is not None:
+        settings.run.settle = fill_core_table(_core.SettleSettings(), case.run.settle)
     given, grid = case.grid, settings.grid
     grid.origin = three(given.lower, 0.0)
     grid.box_cells = three(given.box_cells, 0) if given.box_cells else [0, 0, 0]

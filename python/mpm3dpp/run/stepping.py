@@ -48,13 +48,17 @@ def step_to_end(
     if core.step == 0:
         history.append(core.history(), None, core.part_sums())
     while core.time < case.run.end_time:
-        failed, before = None, core.step
+        failed, before, settling = None, core.step, core.time < 0.0
         try:
-            simulation.advance(_steps(most, frames, core))
+            # To the end of settling, when the clock jumps to 0: there is a frame.
+            simulation.advance(_steps(most, frames, core), 0.0 if settling else None)
         except RunError as error:
             failed = str(error)
         told = _tell_new(progress, core, told)
         rows, pairs = core.history(), core.contact_groups() if contact else []
+        if settling and core.time >= 0.0:
+            ratio = rows[rows[:, 1] >= 0.0, core.history_columns.index("unbalanced")][0]
+            progress.note(f"settled: forces out of balance are {ratio:.3g} of those applied")
         due = bool(frames) and core.time >= frames[0]
         # By the steps' numbers, so that a run that goes on has them in the same rows.
         summed = due or core.step // sums_every > before // sums_every

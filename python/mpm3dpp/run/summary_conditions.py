@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 
 from mpm3dpp.base.expression import Expression
-from mpm3dpp.base.time_functions import TimeFunction
+from mpm3dpp.base.time_functions import TimeFunction, highest
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.grid import FACES, GridCoarsening
 from mpm3dpp.plots.labels import scaled
@@ -107,10 +107,23 @@ def condition_lines(case: Case) -> list[str]:
         )
     if any(case.run.gravity):
         lines.append(f"gravity: {vector_in_words(case.run.gravity, 'm/s^2')}")
+    if (settle := case.run.settle) is not None:
+        lines.append(
+            f"settles before t = 0, for {_number(settle.longest, 's')} at most, with local damping "
+            f"{settle.local:g} until {settle.ratio:g} of the forces are out of balance"
+        )
     for name, part in case.parts().items():
         if part.body_force is not None:
             force = vector_in_words(part.body_force, "m/s^2")
             lines.append(f"body force on {name}: {force}")
+    for name in case.materials_used:
+        if beta := case.material[name].beta:
+            lines.append(f"damping of {name}: {_number(beta, 's')} times its stiffness")
+    for damping, parts in case.dampings():
+        words = [in_words(damping.mass, "1/s")] if highest(damping.mass) else []
+        words += [f"local {in_words(damping.local, '').strip()}"] if highest(damping.local) else []
+        if words:
+            lines.append(f"damping of {', '.join(parts)}: {' and '.join(words)}")
     for pair in case.contact.pair if case.contact_enabled else ():
         names = pair.bodies or [f"all {name}" for name in pair.materials or ()]
         lines.append(f"friction: {pair.friction:g} between {' and '.join(names)}")

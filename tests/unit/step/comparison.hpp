@@ -195,6 +195,8 @@ class Comparison {
         for (int c = 0; c < (pool.affine < 0 ? 0 : D * D); ++c)
           CHECK_CLOSE(pool.affine_part(c)[k], p.C[c / D][c % D], 1e-9);
         CHECK_CLOSE(pool.volume()[k], p.V, 1e-12 * p.V);
+        for (int c = 0; c < (pool.at.damping_stress < 0 ? 0 : Sym<double, D>::size); ++c)
+          CHECK_CLOSE(pool.columns.component(pool.at.damping_stress + c)[k], p.s.c[c], 1e-11 * 1e8);
         for (int c = 0; c < Sym<double, D>::size; ++c)
           CHECK_CLOSE(pool.stress(c)[k], p.sigma.c[c], 1e-11 * 1e8);
       });
@@ -214,6 +216,8 @@ class Comparison {
     external_ += works.gravity + works.loads;
     load_work_ += works.loads;
     absorbed_ += works.absorbed;
+    damped_ += works.damped;
+    CHECK(works.damped >= 0.0);
     motion_work_ -= works.on_prescribed;
     for (const reference::Body<D>& body : twin_.reference.bodies)
       for (const auto& [i, node] : body.nodes)
@@ -241,6 +245,7 @@ class Comparison {
     CHECK_CLOSE(ledger.motion_work, work, 1e-11 * kinetic);
     CHECK_CLOSE(ledger.external, external_ + work, 1e-11 * kinetic);
     CHECK_CLOSE(ledger.absorbed, absorbed_, 1e-11 * kinetic);
+    CHECK_CLOSE(ledger.damped - ledger.damped_stiffness, damped_, 1e-11 * kinetic);
     CHECK_CLOSE(ledger.residual(), 0.0, 1e-11 * kinetic);
     for (std::size_t a = 0; a < D; ++a) {
       const int axis = static_cast<int>(a);
@@ -272,7 +277,7 @@ class Comparison {
   unsigned pending_ = 0;    // data that has been written and not yet compared
   bool forced_ = false;     // the nodes have all forces, and not yet increments
   // Of all steps so far.
-  double external_ = 0.0, load_work_ = 0.0, absorbed_ = 0.0, motion_work_ = 0.0;
+  double external_ = 0.0, load_work_ = 0.0, absorbed_ = 0.0, damped_ = 0.0, motion_work_ = 0.0;
   Vec<double, D> pushed_ = Vec<double, D>::zero();
   Vec<double, D> impulse_[2] = {Vec<double, D>::zero(), Vec<double, D>::zero()};
   double prescribed_at_start_ = 0.0;

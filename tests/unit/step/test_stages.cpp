@@ -75,6 +75,9 @@ void check_transfers(Report& report, BasisId basis) {
     put_walls(choice);
     choice.filter_every = 1;
     check_schemes(report, choice);
+    choice.damping = true;
+    check_schemes(report, choice);
+    choice.damping = false;
     choice.kind = BodyKind::prescribed;
     check_schemes(report, choice);
   });
@@ -95,6 +98,8 @@ void check_all(Report& report) {
         choice.contact = contact;
         check_schemes(report, choice);
       }
+    choice.damping = true;
+    check_schemes(report, choice);
     put_walls(choice);
     check_schemes(report, choice);
     choice.kind = BodyKind::deformable;

@@ -30,6 +30,7 @@ struct Choice {
   bool load = false;                     // a pressure and a traction on the second body
   bool body_force = false;               // on the second body
   BodyKind kind = BodyKind::deformable;  // of the first body
+  bool damping = false;                  // of the motion and the material of those that deform
   double pic_rate = 0.0;                 // [1/s]
   double flip_share = 1.0;
   TransferId transfer = Transfers::id_of<Flip>();
@@ -79,9 +80,10 @@ struct Twin {
     reference.mu = 0.3;
     domain.threads.resize(1);
     if (choice.averages) reference.averages = reach_of(choice.basis).own_node;
-    add_material(choice.averages);
+    add_material(choice.damping ? 1e-5 : 0.0, choice.averages);
     for (int k = 0; k < 2; ++k) add_body(k, k == 0 ? choice.kind : BodyKind::deformable);
     if (choice.body_force) add_body_force();
+    if (choice.damping) add_damping();
     fill_pools(domain.pools, domain.materials, domain.bodies, grid.patches);
     for (Patch<D>& patch : grid.patches) disturb(patch);  // one a body, the rows as they were given
     if (choice.load)
@@ -119,11 +121,12 @@ struct Twin {
   static constexpr double density = 1000.0, E = 1e9, nu = 0.3;
 
   double any() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }
-  void add_material(bool averages) {
+  void add_material(double beta, bool averages) {
     MaterialChoice choice;
     choice.volume_averaging = averages;
     choice.density = density;
     choice.strength = {"elastic", {{"E", E}, {"nu", nu}}};
+    choice.damping = beta;
     domain.materials.push_back(make_material(choice));
     domain.pools.push_back(
         make_pool(domain.materials[0], domain.grid, columns_of(domain.transfer)));
@@ -144,6 +147,7 @@ struct Twin {
     reference::Body<D>& other = reference.bodies.emplace_back();
     other.kind = kind;
     other.material = Elastic::of(E, nu, density);
+    other.beta = domain.materials[0].damping.beta;
     if (body.is_prescribed()) prescribe(body, other);
     domain.bodies.push_back(std::move(body));
   }
@@ -228,6 +232,17 @@ struct Twin {
       for (int a = 0; a < D; ++a) b[a] = size * x[1] * std::sin(3.0 * x[a] + X[0] + 1e5 * t);
       return b;
     };
+  }
+  /// Each body its own, so strong that the drag of a step takes a good part of the velocity.
+  void add_damping() {
+    for (std::size_t k = 0; k < domain.bodies.size(); ++k) {
+      if (!domain.bodies[k].deforms()) continue;
+      domain.bodies[k].damping = static_cast<int>(domain.dampings.size());
+      Damping& damping = domain.dampings.emplace_back();
+      damping.now = {k == 0 ? 2e4 : 5e4, k == 0 ? 0.7 : 0.4};
+      reference.bodies[k].alpha = damping.now.rate;
+      reference.bodies[k].kappa = damping.now.local;
+    }
   }
   void start_ledger() {
     Ledger& ledger = domain.ledger;

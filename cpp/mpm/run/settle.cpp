@@ -1,0 +1,79 @@
+#include "mpm/run/settle.hpp"
+
+#include "mpm/run/measures.hpp"
+#include "mpm/run/part_sums.hpp"
+#include "mpm/step/stages.hpp"
+
+namespace mpm {
+namespace {
+
+/// Bring all to rest; the ledger counts it as damping.
+template <int D>
+void stop_all(Domain<D>& domain) {
+  const double before = kinetic_energy(domain);
+  const Vector3 turned = angular_totals(part_sums(domain)).all;
+  for (const Patch<D>& patch : domain.grid.patches) {
+    ParticlePool<D>& pool = domain.pool_of(patch);
+    for (const std::uint32_t row : pool.rows(patch)) {
+      for (int a = 0; a < D; ++a) pool.v(a)[row] = Storage{0.0};
+      for (int c = 0; c < (pool.affine < 0 ? 0 : D * D); ++c)
+        pool.affine_part(c)[row] = Storage{0.0};
+    }
+  }
+  project_rigid_velocities(domain);
+  Ledger& ledger = domain.ledger;
+  ledger.kinetic = kinetic_energy(domain);
+  ledger.damped += before - ledger.kinetic;
+  ledger.momentum = momentum(domain);
+  ledger.angular.impulses.damping += angular_totals(part_sums(domain)).all - turned;
+}
+
+}  // namespace
+
+template <int D>
+void start_settling(Simulation<D>& simulation) {
+  if (!simulation.settings.run.settle) return;
+  Domain<D>& domain = simulation.domain;
+  domain.time = -simulation.settings.run.settle->longest;
+  // Those that have none get one, which is nothing once the run has begun.
+  const auto none = static_cast<int>(domain.dampings.size());
+  domain.dampings.emplace_back();
+  for (Body<D>& body : domain.bodies)
+    if (body.deforms() && body.damping < 0) body.damping = none;
+}
+
+template <int D>
+void begin_settling_step(Simulation<D>& simulation) {
+  Domain<D>& domain = simulation.domain;
+  for (Damping& damping : domain.dampings)
+    damping.now = {0.0, simulation.settings.run.settle->local};
+  for (const std::size_t b : domain.prescribed) domain.bodies[b].motion->stand_still();
+}
+
+template <int D>
+void end_settling_step(Simulation<D>& simulation) {
+  Domain<D>& domain = simulation.domain;
+  const SettleSettings& settle = *simulation.settings.run.settle;
+  const double ratio = domain.ledger.unbalanced;
+  const bool balanced = ratio <= settle.ratio;
+  if (!balanced && domain.settles()) return;
+  // Rest is part of it: forces balance in the middle of a swing too, and what moves there is then
+  // at rest where it is in balance.
+  stop_all(domain);
+  domain.time = domain.time_after = 0.0;
+  if (balanced) return;
+  Note note{.kind = NoteKind::unsettled, .body = 0, .value = ratio, .against = settle.ratio};
+  note.group = domain.bodies[0].group;
+  note.step = domain.step;
+  note.count = 1;
+  simulation.watch.notes.push_back(note);
+}
+
+template void start_settling<2>(Simulation<2>&);
+template void start_settling<3>(Simulation<3>&);
+template void begin_settling_step<2>(Simulation<2>&);
+template void begin_settling_step<3>(Simulation<3>&);
+template void end_settling_step<2>(Simulation<2>&);
+template void end_settling_step<3>(Simulation<3>&);
+
+}  // namespace mpm
