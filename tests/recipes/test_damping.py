@@ -325,6 +325,7 @@ def test_the_summary_tells_it() -> None:
         ("damping = { stiffness = -1 }", "must be >= 0"),
         ("damping = { stiffness = 3, mass = 1 }", "not a known key"),
         ("damping = {}", "must have stiffness"),
+        ('damping = { stiffness = "1 us" }\nvolume_averaging = true', "volume_averaging"),
     ],
 )
 def test_refuses_of_materials(material: str, message: str) -> None:
