@@ -17,7 +17,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from verification.examples import Run, case_of, curve
+from mpm3dpp import Case, load_case
+from verification.examples import EXAMPLES, Run, curve
 
 IMAGES = Path(__file__).resolve().parents[1] / "docs" / "images"
 
@@ -36,10 +37,15 @@ def draw(name: str, x: Any, y: Any, exact: tuple[Any, Any], labels: tuple[str, s
     print(IMAGES / f"{name}.png")
 
 
+def as_written(name: str) -> Case:
+    """Return the case of an example."""
+    return load_case(EXAMPLES / name / "case.toml")
+
+
 def main() -> None:
     """Run the four examples and draw them."""
     time = 1e-6
-    found = Run(case_of("11_plate_impact", "musl", "gimp")).to(time).along_x()
+    found = Run(as_written("11_plate_impact")).to(time).along_x()
     up, us = 500.0, 4685.0
     back, front = (1000.0 - us) * time, us * time  # the shock in the flyer, seen from the target
     edges = [-5e-3 + 1000 * time, back, back, front, front, 1e-2]
@@ -48,18 +54,18 @@ def main() -> None:
     draw("plate_impact", 1e3 * found["x"], found["p"] / 1e9, exact, ("x [mm]", "pressure [GPa]"))
 
     time, c, h = 0.9e-6, 3940.0, 1.0  # acoustic; mm
-    found = Run(case_of("12_spall", "musl", "gimp")).to(time).along_x()
+    found = Run(as_written("12_spall")).to(time).along_x()
     free, half = 1e3 * found["x"].max(), 1e3 * c * (time - 0.75e-6) * h
     edges = [1e3 * found["x"].min(), free - 1 - half, free - 1 - half, free - 1 + half]
     edges += [free - 1 + half, free]
     exact = (edges, -1.76 * np.array([0, 0, 1, 1, 0, 0]))
     draw("spall", 1e3 * found["x"], found["p"] / 1e9, exact, ("x [mm]", "pressure [GPa]"))
 
-    found, table = Run(case_of("13_sod_tube", "musl", "gimp")).to(0.2).along_x(), curve("sod_t0.2")
+    found, table = Run(as_written("13_sod_tube")).to(0.2).along_x(), curve("sod_t0.2")
     draw("sod_tube", found["x"], found["rho"], (table["x"], table["rho"]), ("x", "density"))
 
     found, table = (
-        Run(case_of("14_tnt_slab", "musl", "gimp")).to(1e-5).along_x(),
+        Run(as_written("14_tnt_slab")).to(1e-5).along_x(),
         curve("tnt_taylor_wave"),
     )
     place = np.append(np.append(69.3, 69.3 * table["x_over_Dt"]), 0.0)

@@ -42,12 +42,8 @@ def test_the_energy_closes(half_empty: Simulation) -> None:
     rows = dict(zip(core.history_columns, core.history().T, strict=True))
     assert rows["friction"][-1] > 0.0 and rows["left"][-1] > 0.0
     assert np.abs(rows["residual"]).max() < 1e-11 * rows["kinetic"].max()
-    # Nothing stops it but the walls, contact, friction and the transfer, which takes vibration of
-    # grains of 4 cells; with FLIP it stays in them, half of all energy.
-    taken, kinetic = rows["numerical_transfer"][-1], rows["kinetic"].max()
-    assert 0.0 < taken < 0.4 * kinetic
-    # What is left is of time integration, in proportion to the step: 6.5 % here, 3.5 % at half of it.
-    assert abs(rows["numerical"][-1] - taken) < 0.08 * kinetic
+    # Nothing stops it but the walls, contact and friction: the method made little of it.
+    assert abs(rows["numerical"][-1]) < 0.05 * rows["kinetic"].max()
 
 
 def test_grains_leave_by_the_outlet_only(half_empty: Simulation) -> None:

@@ -135,7 +135,10 @@ def spall(scheme: str, dimension: int, basis: str) -> list[Figure]:
 
 def sod_tube(scheme: str, dimension: int, basis: str) -> list[Figure]:
     """S3 at t = 0.2: the mean error of the density, and the states between contact and waves."""
-    run = Run(case_of("13_sod_tube", scheme, basis)).to(0.2)
+    case = case_of("13_sod_tube", scheme, basis)
+    if Numerics.named(basis).factor is None:
+        case.run.cfl = 0.05  # FLIP loses energy in proportion to it where points cross cells.
+    run = Run(case).to(0.2)
     profile, exact = run.along_x(), curve("sod_t0.2")
     rho = np.interp(exact["x"], profile["x"], profile["rho"])
     x, p, u = profile["x"], profile["p"], profile["u"]
