@@ -85,9 +85,10 @@ void find_springs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const NormalSource<D>& r, const NormalSource<D>& s, const Index<D>& node,
                   double distance, ContactPair<D>& pair) {
   const auto side = [&](const NormalSource<D>& source) {
-    const double edge = bodies[static_cast<std::size_t>(source.body)].mean_edge / grid.cell_size;
-    return SpringSide<D>{source.particles, 1.0 / source.stiffness,
-                         NodeShare<D>(grid.basis, edge, grid.walls, node)};
+    const Body<D>& body = bodies[static_cast<std::size_t>(source.body)];
+    return SpringSide<D>{
+        source.particles, body.deforms() ? 1.0 / source.stiffness : 0.0,
+        NodeShare<D>(grid.basis, body.mean_edge / grid.cell_size, grid.walls, node)};
   };
   pair.spring =
       Springs<D>(side(r), side(s), pair.normal, distance / grid.cell_size).at(grid.cell_size);

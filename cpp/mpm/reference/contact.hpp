@@ -97,8 +97,9 @@ void contact_forces(Step<D>& step) {
     // In the middle of the step with the approach at its end: F + k u dt / 2.
     const double per_speed = 0.5 * step.dt * c.stiffness, w = c.w_r + c.w_s;
     const double f_nor =
-        step.springs ? std::max((c.push + per_speed * dot(slip, c.n)) / (1 + per_speed * w * step.dt), 0.0)
-                     : std::max(dot(all, c.n), 0.0);
+        step.springs
+            ? std::max((c.push + per_speed * dot(slip, c.n)) / (1 + per_speed * w * step.dt), 0.0)
+            : std::max(dot(all, c.n), 0.0);
     const Vec<double, D> tangential = all - dot(all, c.n) * c.n;
     const double f_fric = std::min(step.mu * f_nor, norm(tangential));
     c.f = f_nor * c.n + f_fric * normalised(tangential);

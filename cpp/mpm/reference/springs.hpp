@@ -67,7 +67,7 @@ void find_springs(Step<D>& step) {
         }
         if (!(overlap > 0.0)) continue;
         const double face = std::pow(2.0 * l, D - 1);
-        const double N = share_of_node(step, c.node, p.x + (l - 0.5 * overlap) * n);
+        const double N = share_of_node<D>(step, c.node, p.x + (l - 0.5 * overlap) * n);
         const double k_p = 0.5 * N * face / (2.0 * (l * give(own) + l_q * give(other)));
         c.stiffness += k_p;
         c.push += k_p * overlap;
