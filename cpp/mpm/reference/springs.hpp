@@ -1,16 +1,8 @@
 #pragma once
 // Springs between the particles of two bodies that overlap (decision 0051): the reference.
-#include "mpm/contact/tile_particles.hpp"
 #include "mpm/reference/step.hpp"
 
 namespace mpm::reference {
-
-/// Half the edge of a cube of a particle's volume, as the stages approximate it.
-template <int D>
-double half_edge(double volume, double mean_edge) {
-  using T = Batch<contact_lanes>;
-  return 0.5 * particle_edge<D>(T(volume), mean_edge)[0];
-}
 
 /// N_i(x), and for a node before a wall that mirrors what the node behind it has.
 template <int D>
@@ -55,12 +47,12 @@ void find_springs(Step<D>& step) {
       };
       for (const Particle<D>& p : own.particles) {
         if (!near(p)) continue;
-        const double l = half_edge<D>(p.V, step.mean_edge);
+        const double l = 0.5 * step.edge(p.V);
         double overlap = 0.0, l_q = 0.0;
         for (const Particle<D>& q : other.particles) {
           if (!near(q)) continue;
           const Vec<double, D> d = q.x - p.x;
-          const double half = half_edge<D>(q.V, step.mean_edge), along = dot(d, n);
+          const double half = 0.5 * step.edge(q.V), along = dot(d, n);
           const double here =
               l + half - along - (dot(d, d) - along * along) / (2.0 * cap * 2.0 * half);
           if (here > overlap) overlap = here, l_q = half;

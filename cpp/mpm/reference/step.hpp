@@ -27,7 +27,7 @@ struct Step {
   double pic = 0.0;                           // share of the grid's velocity that particles take
   double moment = 0.0;                        // D of an affine transfer [m^2]; 0 for none
   std::function<ShapeValue(double)> S;        // shape function along an axis, of d [cells]
-  double mean_edge = 0.0;                     // of the particles at the start [m], for springs
+  std::function<double(double)> edge;         // of a particle of a volume [m], for springs
   double half_width = 0.0;  // of the box over which it is the mean of the hat [cells]
   Walls<D> walls{};         // the grid's node 0 is the lower corner of the box
   std::vector<Body<D>> bodies;

@@ -77,7 +77,10 @@ struct Twin {
     domain.contact_settings.friction = 0.3;
     if (choice.springs) domain.contact_settings.response = Response::springs;
     reference.springs = choice.springs;
-    reference.mean_edge = edge * cell_size;
+    reference.edge = [](double volume) {
+      using T = Batch<contact_lanes>;
+      return particle_edge<D>(T(volume), edge * cell_size)[0];
+    };
     reference.mu = 0.3;
     domain.threads.resize(1);
     add_material();
