@@ -163,6 +163,20 @@ def test_another_world_is_the_same_with_averaged_volumes(text: str, steps: int, 
     check_worlds(case, steps, text)
 
 
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [(RINGS, 900), (GRAINS, 750), (IMPACT, 500)],
+    ids=["two rings", "fifty grains", "impact with erosion"],
+)
+def test_another_world_is_the_same_with_springs(text: str, steps: int) -> None:
+    given = 'basis = "quadratic_bspline"\n[run]\nscheme = "usf"\ncfl = 0.5'
+    text = text.replace("[run]", f"{given}\ntransfer = {{ aflip = 0.97 }}")
+    text = text.replace("limit = 1.2", "limit = 0.6")
+    case = Case.from_text(text)
+    case.contact.response = "springs"
+    check_worlds(case, steps, text)
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_field_of_velocities_is_the_same_in_another_world(dimension: int) -> None:
     """Formulas here, and there the velocities that they give, particle by particle."""

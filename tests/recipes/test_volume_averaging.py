@@ -22,6 +22,7 @@ KINDS = [(d, scheme, basis) for d in (2, 3) for scheme in SCHEMES for basis in B
 def averaged(case: Case, which: bool = True) -> Case:
     """Return the case with volumes averaged in all materials that deform."""
     for material in case.material.values():
+        material.damping = None  # which does not go with it
         material.volume_averaging = which and material.strength.model != "rigid"
     return case
 

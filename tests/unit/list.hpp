@@ -58,6 +58,7 @@
   X(two_bodies) \
   X(many_bodies) \
   X(separation) \
+  X(springs) \
   X(tile_holder) \
   X(contact_part) \
   X(derived_fields) \

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Basis, transfer and time step of a run, named by one string."""
+"""Basis, transfer, response of contact and time step of a run, named by one string."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ DEFAULT = "default"
 
 @dataclass(frozen=True)
 class Numerics:
-    """What a basis' name stands for: "gimp", "quadratic_bspline+apic", "gimp+xpic=4@0.5".
+    """What a basis' name stands for: "gimp", "quadratic_bspline+apic~springs", "gimp+xpic=4@0.5".
 
     "default" stands for what a case gets that says nothing, but for the scheme.
 
@@ -22,6 +22,7 @@ class Numerics:
         basis: its name in the core.
         transfer: its word in the core.
         number: of the transfer, where the name gives one.
+        response: `contact.response` of the core, where the name gives one.
         factor: of the critical time step, where the name gives one: instead of the problem's.
     """
 
@@ -29,17 +30,23 @@ class Numerics:
     transfer: str = "flip"
     number: float | None = None
     factor: float | None = None
+    response: str = ""
 
     @classmethod
     def named(cls, name: str) -> Numerics:
         """Take a name apart."""
-        if name == DEFAULT:
-            return cls(choices.BASIS, choices.TRANSFER, None, choices.AFFINE["cfl"])
         name, _, factor = name.partition("@")
+        name, _, response = name.partition("~")
+        if name == DEFAULT:
+            return cls(choices.BASIS, choices.TRANSFER, None, choices.AFFINE["cfl"], response)
         basis, _, transfer = name.partition("+")
         word, _, number = (transfer or "flip").partition("=")
         return cls(
-            basis, word, float(number) if number else None, float(factor) if factor else None
+            basis,
+            word,
+            float(number) if number else None,
+            float(factor) if factor else None,
+            response,
         )
 
     def table(self) -> Any:
@@ -53,6 +60,7 @@ class Numerics:
         own = case.run.cfl if "cfl" in case.run.model_fields_set else choices.OTHERS["cfl"]
         case.grid.basis, case.run.transfer = self.basis, self.table()
         case.run.cfl = self.factor or own
+        case.contact.response = self.response or case.contact.response
 
     def give_core(self, settings: _core.Settings, factor: float) -> None:
         """Give settings of the core this basis and transfer, and this factor or else `factor`."""
@@ -61,3 +69,5 @@ class Numerics:
             table = self.table()
             setattr(settings.run.transfer, self.transfer, table[self.transfer])
         settings.run.cfl = self.factor or factor
+        if self.response:
+            settings.contact.response = self.response

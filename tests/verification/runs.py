@@ -193,6 +193,24 @@ def _with_defaults(runs: list[Run]) -> Iterator[Run]:
             yield replace(run, basis=DEFAULT, scheme=scheme, options=options)
 
 
+def _with_springs() -> Iterator[Run]:
+    """Return small patches of contact, and what rolls, with springs (decision 0051)."""
+    numerics, scheme = f"{DEFAULT}~springs", choices.AFFINE["scheme"]
+    yield Run("C5", rolling.rolling_on_discs, scheme, 2, numerics, {"cells": 8})
+    yield Run("C6", chain.disc_column, scheme, 2, numerics)
+    yield Run("E9", incline.rolling, scheme, 2, numerics, {"cells": 8})
+    for cells in (10, 20):
+        yield Run("C1", grains.hertz_wall, scheme, 3, numerics, {"cells": cells}, slow=True)
+    yield Run("C2", grains.hertz_chain, scheme, 3, numerics, {"cells": 10}, slow=True)
+    yield Run("C5", rolling.rolling_on_discs, scheme, 2, numerics, {"cells": 16}, slow=True)
+    yield Run("C6", chain.disc_column, scheme, 2, numerics, {"cells": 10}, slow=True)
+    yield Run("E9", incline.rolling, scheme, 2, numerics, {"cells": 16}, slow=True)
+    more = {"cells": 6, "speed": 1.0}
+    yield Run("E10", groups.offset_spheres, scheme, 3, numerics, more, slow=True)
+
+
 _WRITTEN = list(_runs())
 # Runs that differ in their factor alone are one with the default's.
-RUNS = list({run.title: run for run in [*_WRITTEN, *_with_defaults(_WRITTEN)]}.values())
+RUNS = list(
+    {run.title: run for run in [*_WRITTEN, *_with_defaults(_WRITTEN), *_with_springs()]}.values()
+)

@@ -22,6 +22,12 @@ struct BodyAtNode {
   Vec<double, D> mapped;  // velocity mapped from the particles [m/s]
 };
 
+/// The springs between two bodies, as a node has them; none without stiffness.
+struct ContactSpring {
+  double force = 0.0;      // at the start of the step [N]
+  double stiffness = 0.0;  // by which it grows with the approach [N/m]
+};
+
 /// Two bodies at an overlapped node.
 template <int D>
 struct ContactPair {
@@ -32,6 +38,7 @@ struct ContactPair {
   double friction;        // coefficient of friction
   double gap;             // distance of the two surfaces along the normal [m]
   Vec<double, D> normal;  // from r to s
+  ContactSpring spring;   // where Response::springs
   double normal_impulse;  // over this step [N s]
   Vec<double, D> friction_impulse;  // on s, over this step [N s]
   double friction_work;             // over this step, with the mean slip [J]

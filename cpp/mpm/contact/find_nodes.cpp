@@ -186,7 +186,7 @@ void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<
     }
   for (const ContactNode& node : nodes)
     if (missing >> node.cell & 1u) {
-      find_pairs(grid, bodies, settings, around, part, node);
+      find_pairs<D>(grid, bodies, settings, around, part, node, place_of(contact, grid, node));
       if (contact.cache.on) store_pairs(contact.cache, part, node);
     }
   // Where nodes are kept none is left out, so that those of the bits are there one by one.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mpm/contact/normal.hpp"
+#include "mpm/contact/springs.hpp"
 
 namespace mpm {
 namespace {
@@ -78,6 +79,22 @@ std::span<const NormalSource<D>> sources_at(const TileGrid<D>& grid,
   return {sources.data(), sides.size()};
 }
 
+/// The springs of a pair with a normal, r's side first; it is closed where there are any.
+template <int D>
+void find_springs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                  const NormalSource<D>& r, const NormalSource<D>& s, const Index<D>& node,
+                  double distance, ContactPair<D>& pair) {
+  const auto side = [&](const NormalSource<D>& source) {
+    const Body<D>& body = bodies[static_cast<std::size_t>(source.body)];
+    return SpringSide<D>{
+        source.particles, body.deforms() ? 1.0 / source.stiffness : 0.0,
+        NodeShare<D>(grid.basis, body.mean_edge / grid.cell_size, grid.walls, node)};
+  };
+  pair.spring =
+      Springs<D>(side(r), side(s), pair.normal, distance / grid.cell_size).at(grid.cell_size);
+  pair.gap_closed = pair.active = pair.loaded = pair.spring.force > 0.0;
+}
+
 }  // namespace
 
 template <int D>
@@ -105,7 +122,7 @@ bool passes_gap_test(const ContactPair<D>& pair, const ContactSettings& settings
 template <int D>
 void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                 const ContactSettings& settings, TileBodies<D>& around, ContactPart<D>& part,
-                const ContactNode& node) {
+                const ContactNode& node, const Index<D>& place) {
   const auto sides = part.sides_of(node);
   const auto rigid = [&](std::uint32_t k) {
     return !bodies[static_cast<std::size_t>(sides[k].body)].deforms();
@@ -138,6 +155,8 @@ void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       // Also where the rule does not use it: the gap at the first contact is recorded.
       pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
       pair.gap_closed = passes_gap_test(pair, settings, grid.cell_size);
+      if (settings.response == Response::springs && dot(pair.normal, pair.normal) > 0.0)
+        find_springs<D>(grid, bodies, sources[r], sources[s], place, settings.gap_distance, pair);
     }
 }
 
@@ -148,8 +167,8 @@ template ContactPair<3> new_pair<3>(const std::vector<Body<3>>&, const ContactSe
 template bool passes_gap_test<2>(const ContactPair<2>&, const ContactSettings&, double);
 template bool passes_gap_test<3>(const ContactPair<3>&, const ContactSettings&, double);
 template void find_pairs<2>(const TileGrid<2>&, const std::vector<Body<2>>&, const ContactSettings&,
-                            TileBodies<2>&, ContactPart<2>&, const ContactNode&);
+                            TileBodies<2>&, ContactPart<2>&, const ContactNode&, const Index<2>&);
 template void find_pairs<3>(const TileGrid<3>&, const std::vector<Body<3>>&, const ContactSettings&,
-                            TileBodies<3>&, ContactPart<3>&, const ContactNode&);
+                            TileBodies<3>&, ContactPart<3>&, const ContactNode&, const Index<3>&);
 
 }  // namespace mpm

@@ -36,6 +36,18 @@ struct SolvedSide {
   Vec<double, D> end_velocity() const { return prescribed ? base : (1.0 / mass) * momentum; }
 };
 
+/// The spring between two bodies over a step: the impulse if they move as they do, and by how much
+/// it grows with their approach at the end [N s per m/s].
+struct SolvedSpring {
+  double impulse = 0.0, per_approach = 0.0;
+  bool exists = false;
+
+  /// The impulse J of both together, J = impulse + per_approach (v - J / m), given v without it.
+  double solve(double reduced_mass, double approach_without) const {
+    return (impulse + per_approach * approach_without) / (1.0 + per_approach / reduced_mass);
+  }
+};
+
 /// Two bodies at a node while its contacts are solved.
 template <int D>
 struct SolvedPair {
@@ -43,6 +55,7 @@ struct SolvedPair {
   bool takes_part;                                           // else nothing acts between the two
   double friction;                                           // coefficient of friction
   Vec<double, D> normal;                                     // from r to s
+  SolvedSpring spring = {};                                  // else the approach is stopped
   double normal_impulse = 0.0;                               // [N s]
   Vec<double, D> friction_impulse = Vec<double, D>::zero();  // on s [N s]
 };
@@ -98,7 +111,10 @@ bool solve_node(NodeSolution<D>& node) {
       // Eqs. (6)-(7): (m_s p_r - m_r p_s) . n / (m_r + m_s) = m_rs (v_r - v_s) . n. The whole
       // impulse is kept from below zero, not the change of this sweep: what other pairs have pushed
       // since may take some of it back, and only the sum must not pull.
-      const double normal = std::max(pair.normal_impulse + m_rs * dot(relative, pair.normal), 0.0);
+      double normal = std::max(pair.normal_impulse + m_rs * dot(relative, pair.normal), 0.0);
+      if (pair.spring.exists)
+        normal = std::max(
+            pair.spring.solve(m_rs, dot(relative, pair.normal) + pair.normal_impulse / m_rs), 0.0);
       Vec<double, D> impulse = (normal - pair.normal_impulse) * pair.normal;
       change = std::max(change, std::abs(normal - pair.normal_impulse));
       // The tolerance is relative to the largest impulse at the node: a light pair beside a heavy

@@ -19,8 +19,10 @@ void release_particles(Contact<D>& contact, TileGrid<D>& grid, Threads& threads)
 template <int D>
 void restore_nodes(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
 
-/// Remove the approach from the remapped velocities (3.6, step 10).
+/// The slip of the remapped velocities, for the work of friction; remove the approach from them
+/// (3.6, step 10) if it is to be stopped.
 template <int D>
-void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
+void respond_to_remapped(Contact<D>& contact, TileGrid<D>& grid, bool stop_approach,
+                         Threads& threads);
 
 }  // namespace mpm

@@ -8,6 +8,7 @@
 #include "mpm/catalogue/setting.hpp"
 #include "mpm/contact/detection.hpp"
 #include "mpm/contact/normal.hpp"
+#include "mpm/contact/response.hpp"
 
 namespace mpm {
 
@@ -16,6 +17,7 @@ struct ContactSettings {
   bool bonded = false;
   Detection detection = Detections::id_of<GapDetection>();
   NormalRule normal = NormalRules::id_of<PlaneNormal>();
+  Response response = Response::impulses;
   double friction = 0.0;
   double gap_distance = 0.0;  // D of eq. (5)
   double normal_refresh_distance =
@@ -34,6 +36,9 @@ struct ContactSettings {
       Setting{"normal", &Self::normal,
               "direction of contact: \"plane\" (separates the two bodies' points), or from "
               "gradients of mass, of both (\"pair\") or one (\"first\", \"second\", \"stiffer\")"},
+      Setting{"response", &Self::response,
+              "\"impulses\" (approach is stopped at the nodes) or \"springs\" (particles that "
+              "overlap push each other apart: for small patches of contact, and things that roll)"},
       Setting{"friction", &Self::friction, "Coulomb coefficient of all pairs not listed in `pair`",
               Rule::not_negative},
       Setting{"gap_distance", &Self::gap_distance, "bodies closer than this touch [m]",

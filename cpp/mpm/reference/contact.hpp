@@ -2,6 +2,7 @@
 // Contact of two bodies in the reference step, as the paper has it: normals from the gradients of
 // mass, and what acts where the bodies approach each other.
 #include "mpm/reference/prescribed.hpp"
+#include "mpm/reference/springs.hpp"
 #include "mpm/reference/step.hpp"
 
 namespace mpm::reference {
@@ -55,6 +56,7 @@ void find_contacts(Step<D>& step) {
                              1.0 / r.m, 1.0 / s->second.m});
   }
   find_meeting_masses(step);
+  if (step.springs) find_springs(step);
 }
 
 /// p_r' = p_r - a n, p_s' = p_s + a n with a = (m_s p_r - m_r p_s) . n / (m_r + m_s) > 0.
@@ -65,6 +67,7 @@ void contact_momentum(Step<D>& step, Vec<double, D> Node<D>::* velocity) {
     for (auto& [i, node] : b.nodes)
       if (mapped) node.v_corrected = node.v;
   for (Contact<D>& c : step.contacts) {
+    if (step.springs) continue;  // they push with forces alone
     const double approach = dot(c.r->*velocity - c.s->*velocity, c.n);
     c.touching = approach >= 0.0;
     const double a = std::max(approach, 0.0) / (c.w_r + c.w_s);
@@ -96,7 +99,12 @@ void contact_forces(Step<D>& step) {
     const double w = c.w_r / (1.0 + half_drag(0)) + c.w_s / (1.0 + half_drag(1));
     const Vec<double, D> slip = alone(0, *c.r) - alone(1, *c.s);
     const Vec<double, D> all = (1.0 / (w * step.dt)) * slip;
-    const double f_nor = std::max(dot(all, c.n), 0.0);
+    // In the middle of the step with the approach at its end: F + k u dt / 2.
+    const double per_speed = 0.5 * step.dt * c.stiffness;
+    const double f_nor =
+        step.springs
+            ? std::max((c.push + per_speed * dot(slip, c.n)) / (1 + per_speed * w * step.dt), 0.0)
+            : std::max(dot(all, c.n), 0.0);
     const Vec<double, D> tangential = all - dot(all, c.n) * c.n;
     const double f_fric = std::min(step.mu * f_nor, norm(tangential));
     c.f = f_nor * c.n + f_fric * normalised(tangential);

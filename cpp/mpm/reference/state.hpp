@@ -64,6 +64,7 @@ struct Contact {
   Vec<double, D> n;                           // unit normal from r to s
   double w_r, w_s;                            // 1/m of the masses that meet there [1/kg]
   bool touching = false;                      // the bodies approach, or rest against each other
+  double push = 0.0, stiffness = 0.0;         // of springs: force at the start [N], and [N/m]
   Vec<double, D> f = Vec<double, D>::zero();  // contact force on s [N]
 };
 

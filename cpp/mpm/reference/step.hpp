@@ -28,12 +28,14 @@ struct Step {
   double dt_before = 0.0;                     // the step before [s]; 0 in the first
   Vec<double, D> g = Vec<double, D>::zero();  // gravity [m/s^2]
   double mu = 0.0;                            // coefficient of friction
+  bool springs = false;                       // part bodies in contact, else impulses
   double pic = 0.0;                           // share of the grid's velocity that particles take
   double moment = 0.0;                        // D of an affine transfer [m^2]; 0 for none
   std::function<ShapeValue(double)> S;        // shape function along an axis, of d [cells]
-  std::optional<double> averages;  // volumes over cells that begin so far before nodes [cells]
-  double half_width = 0.0;         // of the box over which it is the mean of the hat [cells]
-  Walls<D> walls{};                // the grid's node 0 is the lower corner of the box
+  std::optional<double> averages;      // volumes over cells that begin so far before nodes [cells]
+  std::function<double(double)> edge;  // of a particle of a volume [m], for springs
+  double half_width = 0.0;             // of the box over which it is the mean of the hat [cells]
+  Walls<D> walls{};                    // the grid's node 0 is the lower corner of the box
   std::vector<Body<D>> bodies;
   std::vector<Load<D>> loads;
   std::vector<Contact<D>> contacts;  // of this step

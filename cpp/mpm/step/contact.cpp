@@ -19,6 +19,12 @@ void reflect(Domain<D>& domain, int at) {
   });
 }
 
+/// Springs push with forces alone, and leave the velocities as they are.
+template <int D>
+bool stops_approach(const Domain<D>& domain) {
+  return domain.contact_settings.response == Response::impulses;
+}
+
 }  // namespace
 
 template <int D>
@@ -28,6 +34,7 @@ void contact_momentum(Domain<D>& domain) {
   // once a step, and hold for forces and remapped velocities too, as particles move last.
   find_nodes(domain.contact, domain.grid, domain.bodies, domain.pools, domain.contact_settings,
              domain.time_step, domain.threads);
+  if (!stops_approach(domain)) return;
   remove_approach(domain.contact, domain.grid, domain.threads);
   reflect(domain, velocity_at);
 }
@@ -60,8 +67,8 @@ void contact_remapped(Domain<D>& domain) {
   if (!domain.has_contact()) return;
   // The particles have kept v_i when they were advanced by increments, so what approach (6)-(7)
   // took from the nodes is in the remapped velocities again (3.6, step 10: "readjust").
-  remove_remapped_approach(domain.contact, domain.grid, domain.threads);
-  reflect(domain, remapped_at);
+  respond_to_remapped(domain.contact, domain.grid, stops_approach(domain), domain.threads);
+  if (stops_approach(domain)) reflect(domain, remapped_at);
 }
 
 template void contact_momentum<2>(Domain<2>&);

@@ -78,6 +78,7 @@ def _bodies_together(case: Case) -> Found:
         rule = "needs a force to settle under: there is no gravity, load or body force"
         yield violation(rule, "give one, or remove it", path=("run", "settle"))
     yield from _transfer(case)
+    yield from _springs(case)
 
 
 def _transfer(case: Case) -> Found:
@@ -88,6 +89,21 @@ def _transfer(case: Case) -> Found:
         rule = f'does not go with grid.basis = "{basis}", whose second moment is not constant'
         remedy = f'use grid.basis = "{known[0]}"'
         yield violation(rule, remedy, value=word, path=("run", "transfer"))
+
+
+def _springs(case: Case) -> Found:
+    """Refuse what does not go with springs: they know where particles are, in every step."""
+    contact = case.contact
+    if contact.response != "springs":
+        return
+    with_it = 'does not go with contact.response = "springs"'
+    if contact.detection != "gap":
+        rule, remedy = f"{with_it}, which act where particles overlap", "leave it out"
+        yield violation(rule, remedy, value=contact.detection, path=("contact", "detection"))
+    if contact.normal_refresh_distance > 0.0:
+        rule, remedy = f"{with_it}, which are found in every step", "leave it out"
+        path: Path = ("contact", "normal_refresh_distance")
+        yield violation(rule, remedy, value=contact.normal_refresh_distance, path=path)
 
 
 def _pairs(case: Case) -> Found:

@@ -185,6 +185,8 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
     contact = "none, the bodies are bonded" if case.contact.bonded else "none"
     if case.contact_enabled:
         contact = f"{case.contact.detection} detection, friction {case.contact.friction:g}"
+        if case.contact.response == "springs":
+            contact += ", springs"
     lines += [
         f"total: {particles:,} particles, mass {sum(b.mass for b in bodies):.6g} kg{per_metre}, "
         f"memory about {process_bytes(case, bodies) / 2**20:,.0f} MiB, of which the core "

@@ -72,6 +72,9 @@ void check_transfers(Report& report, BasisId basis) {
       choice.kind = kind;
       check_schemes(report, choice);
     }
+    choice.springs = true;
+    check_schemes(report, choice);
+    choice.springs = false;
     put_walls(choice);
     choice.filter_every = 1;
     check_schemes(report, choice);
@@ -101,9 +104,13 @@ void check_all(Report& report) {
     choice.damping = true;
     check_schemes(report, choice);
     put_walls(choice);
-    check_schemes(report, choice);
-    choice.kind = BodyKind::deformable;
-    check_schemes(report, choice);
+    for (const bool springs : {false, true})
+      for (const BodyKind kind : {BodyKind::prescribed, BodyKind::deformable}) {
+        choice.springs = springs;
+        choice.kind = kind;
+        check_schemes(report, choice);
+      }
+    choice.springs = choice.damping = false;
     check_averages(report, choice);
   });
 }

@@ -27,6 +27,7 @@ template <int D>
 struct Choice {
   BasisId basis = basis_id<Linear>;
   bool contact = false;
+  bool springs = false;                  // part the bodies in contact, else impulses
   bool load = false;                     // a pressure and a traction on the second body
   bool body_force = false;               // on the second body
   BodyKind kind = BodyKind::deformable;  // of the first body
@@ -77,6 +78,12 @@ struct Twin {
     domain.contact_settings.detection = Detections::id_of<VelocityDetection>();
     domain.contact_settings.normal = NormalRules::id_of<PairNormal>();
     domain.contact_settings.friction = 0.3;
+    if (choice.springs) domain.contact_settings.response = Response::springs;
+    reference.springs = choice.springs;
+    reference.edge = [](double volume) {
+      using T = Batch<contact_lanes>;
+      return particle_edge<D>(T(volume), edge * cell_size)[0];
+    };
     reference.mu = 0.3;
     domain.threads.resize(1);
     if (choice.averages) reference.averages = reach_of(choice.basis).own_node;
