@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ from mpm3dpp.base.outputs import COLUMNS, STANDARD
 
 from .detonation import check_detonations
 from .loads import check_loads
+from .material_checks import check_material
 from .motion import check_motion
 
 if TYPE_CHECKING:
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     from .body import Body
     from .case import Case
-    from .material import Material
 
 
 Found = Iterator[PydanticCustomError]
@@ -55,7 +54,7 @@ def _entries(case: Case) -> Found:
                 rule = "has a character in its name that cannot be shown"
                 yield violation(rule, "leave it out", path=(table, word))
     for name, material in case.material.items():
-        yield from _check_material(material, ("material", name))
+        yield from check_material(material, ("material", name))
     dimension = case.grid.dimension
     yield from _check_vector(case.run, "gravity", dimension, ("run",))
     for name, body in case.body.items():
@@ -123,48 +122,6 @@ def _pairs(case: Case) -> Found:
                 rule = f"is not a {'body' if key == 'bodies' else 'material'} of this case"
                 path = ("contact", "pair", index, key, position)
                 yield violation(rule, nearest(word, known), value=word, path=path)
-
-
-def _check_material(material: Material, path: Path) -> Found:
-    """Yield what the core finds wrong, and if nothing would resist compression at the start."""
-    try:
-        material.sound_speed()
-        speed = material.eos_sound_speed()
-    except ValueError as error:
-        yield _refusal(material, str(error), path)
-        return
-    if material.beta and not material.sound_speed():
-        rule = "is of a material that does not deform, and has no stiffness"
-        yield violation(rule, "remove it", path=(*path, "damping"))
-    if material.beta and material.volume_averaging:
-        rule = "does not go with volume_averaging, which would have to average its stress too"
-        yield violation(rule, "remove one of the two", path=(*path, "damping"))
-    if material.eos is not None and not speed:
-        rule = "has no stiffness at the start: its pressure does not rise when it is compressed"
-        model = material.eos.model
-        remedy = f"correct its numbers; `mpm3dpp materials {model}` has an example"
-        yield violation(rule, remedy, path=(*path, "eos", model))
-
-
-def _refusal(material: Material, reason: str, path: Path) -> PydanticCustomError:
-    """Return the violation for what the core says, `johnson_cook.T_melt must be > T_room`.
-
-    The key is that of the parameter, and the others that are named have their values.
-    """
-    chosen = [("strength", material.strength), ("eos", material.eos)]
-    for kind, model in [*chosen, *(("failure", model) for model in material.failure)]:
-        found = re.match(r"(\w+)\.(\w+) (?=must)", reason)
-        if model is None or found is None or found[1] != model.model:
-            continue
-        name, rule, values = found[2], reason[found.end() :], model.parameters
-        others = [word for word in re.findall(r"\w+", rule) if word in values and word != name]
-        if name in values:
-            also = ", ".join(f"{word} = {values[word]:g}" for word in others)
-            where = (*path, kind, model.model, name)
-            remedy = "change one of the two" if others else "change it"
-            rule = f"{rule} ({also})" if also else rule
-            return violation(rule, remedy, value=values[name], path=where)
-    return violation(f"is refused: {reason}", "see `mpm3dpp materials`", path=path)
 
 
 def _check_vector(owner: object, name: str, dimension: int, path: Path) -> Found:
