@@ -68,6 +68,13 @@ void def_building(SimulationClass& simulation) {
              set_state(s, body, column, span_of(values));
            }),
            nb::arg("body"), nb::arg("column"), nb::arg("values"))
+      .def("set_group", of_any([](auto& s, int body, int first) { set_group(s, body, first); }),
+           nb::arg("body"), nb::arg("first"));
+}
+
+/// What acts on the bodies.
+void def_acting(SimulationClass& simulation) {
+  simulation
       .def("set_motion",
            of_any([](auto& s, int body, const Functions3& velocity, const Functions3& spin,
                      const std::array<double, 3>& centre) {
@@ -93,8 +100,6 @@ void def_building(SimulationClass& simulation) {
            of_any([](auto& s, const std::vector<int>& bodies, const TimeFunction& mass,
                      const TimeFunction& local) { add_damping(s, bodies, mass, local); }),
            nb::arg("bodies"), nb::arg("mass"), nb::arg("local"))
-      .def("set_group", of_any([](auto& s, int body, int first) { set_group(s, body, first); }),
-           nb::arg("body"), nb::arg("first"))
       .def("set_friction",
            of_any([](auto& s, int a, int b, double mu) { set_pair_friction(s.domain, a, b, mu); }),
            nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"))
@@ -252,6 +257,7 @@ void add_simulation(nb::module_& m) {
   SimulationClass simulation(m, "Simulation");
   simulation.nb::class_<AnySimulation>::def(nb::init<const Settings&>(), nb::arg("settings"));
   def_building(simulation);
+  def_acting(simulation);
   def_stepping(simulation);
   def_telling(simulation);
   def_columns(simulation);

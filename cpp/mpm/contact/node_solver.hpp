@@ -73,6 +73,19 @@ inline double reduced_mass(double r, double s) {
   return std::isinf(s) ? r : r * s / (r + s);
 }
 
+/// The normal impulse of a pair that has to be, with the relative velocity that all impulses so far
+/// have left.
+// Eqs. (6)-(7): (m_s p_r - m_r p_s) . n / (m_r + m_s) = m_rs (v_r - v_s) . n. The whole impulse is
+// kept from below zero, not the change of this sweep: what other pairs have pushed since may take
+// some of it back, and only the sum must not pull.
+template <int D>
+double normal_impulse_of(const SolvedPair<D>& pair, double m_rs, const Vec<double, D>& relative) {
+  const double approach = dot(relative, pair.normal);
+  if (pair.spring.exists)
+    return std::max(pair.spring.solve(m_rs, approach + pair.normal_impulse / m_rs), 0.0);
+  return std::max(pair.normal_impulse + m_rs * approach, 0.0);
+}
+
 /// Remove the approach of every pair that takes part, eqs. (6)-(7), working on
 /// SolvedSide::momentum; with friction, hold the tangential motion as far as Coulomb's law allows,
 /// eqs. (14)-(15). For two bodies this is the paper's formula; more are solved together by
@@ -108,13 +121,7 @@ bool solve_node(NodeSolution<D>& node) {
       SolvedSide<D>& s = sides[pair.s];
       const double m_rs = reduced_mass(r.mass, s.mass);
       const Vec<double, D> relative = r.working_velocity() - s.working_velocity();
-      // Eqs. (6)-(7): (m_s p_r - m_r p_s) . n / (m_r + m_s) = m_rs (v_r - v_s) . n. The whole
-      // impulse is kept from below zero, not the change of this sweep: what other pairs have pushed
-      // since may take some of it back, and only the sum must not pull.
-      double normal = std::max(pair.normal_impulse + m_rs * dot(relative, pair.normal), 0.0);
-      if (pair.spring.exists)
-        normal = std::max(
-            pair.spring.solve(m_rs, dot(relative, pair.normal) + pair.normal_impulse / m_rs), 0.0);
+      const double normal = normal_impulse_of(pair, m_rs, relative);
       Vec<double, D> impulse = (normal - pair.normal_impulse) * pair.normal;
       change = std::max(change, std::abs(normal - pair.normal_impulse));
       // The tolerance is relative to the largest impulse at the node: a light pair beside a heavy

@@ -7,12 +7,13 @@ namespace mpm::reference {
 /// f(particles) for the particles of each cell.
 template <int D, class F>
 void for_each_cell(const Step<D>& step, Body<D>& b, F&& f) {
+  const double before = step.averages.value_or(0.0);
   std::map<Index<D>, std::vector<Particle<D>*>> cells;
   for (Particle<D>& p : b.particles) {
     Index<D> cell;
     for (int a = 0; a < D; ++a)
       cell[static_cast<std::size_t>(a)] =
-          static_cast<std::int32_t>(std::floor(p.x[a] / step.h + *step.averages));
+          static_cast<std::int32_t>(std::floor(p.x[a] / step.h + before));
     cells[cell].push_back(&p);
   }
   for (auto& [cell, particles] : cells) f(particles);

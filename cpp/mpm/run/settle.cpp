@@ -44,25 +44,27 @@ void start_settling(Simulation<D>& simulation) {
 
 template <int D>
 void begin_settling_step(Simulation<D>& simulation) {
+  const auto& settle = simulation.settings.run.settle;
+  if (!settle) return;
   Domain<D>& domain = simulation.domain;
-  for (Damping& damping : domain.dampings)
-    damping.now = {0.0, simulation.settings.run.settle->local};
+  for (Damping& damping : domain.dampings) damping.now = {0.0, settle->local};
   for (const std::size_t b : domain.prescribed) domain.bodies[b].motion->stand_still();
 }
 
 template <int D>
 void end_settling_step(Simulation<D>& simulation) {
+  const auto& settle = simulation.settings.run.settle;
+  if (!settle) return;
   Domain<D>& domain = simulation.domain;
-  const SettleSettings& settle = *simulation.settings.run.settle;
   const double ratio = domain.ledger.unbalanced;
-  const bool balanced = ratio <= settle.ratio;
+  const bool balanced = ratio <= settle->ratio;
   if (!balanced && domain.settles()) return;
   // Rest is part of it: forces balance in the middle of a swing too, and what moves there is then
   // at rest where it is in balance.
   stop_all(domain);
   domain.time = domain.time_after = 0.0;
   if (balanced) return;
-  Note note{.kind = NoteKind::unsettled, .body = 0, .value = ratio, .against = settle.ratio};
+  Note note{.kind = NoteKind::unsettled, .body = 0, .value = ratio, .against = settle->ratio};
   note.group = domain.bodies[0].group;
   note.step = domain.step;
   note.count = 1;

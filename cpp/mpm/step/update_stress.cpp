@@ -35,6 +35,33 @@ template <int W, int straining_at, int D, BasisModel B>
   return mean;
 }
 
+/// Time over which the velocities strain [s].
+// USF: the way here took the step before; in the first step there has been none.
+template <int D>
+double duration_of(const Domain<D>& domain, bool forces_follow) {
+  return forces_follow ? domain.step_before : domain.time_step;
+}
+
+template <int D>
+StressSettings settings_of(const Domain<D>& domain, const Material& material, bool forces_follow) {
+  const double duration = duration_of(domain, forces_follow);
+  return {duration > 0.0 ? duration : domain.time_step, domain.time + domain.time_step,
+          domain.grid.cell_size, material.viscosity, forces_follow};
+}
+
+/// Update the particles of a block, and empty it. What averaging adds to their strains does its
+/// work with the stress that the nodal forces use.
+template <int D>
+void update_and_empty(const Material& material, ParticlePool<D>& pool, MaterialBlock<D>& block,
+                      const StressSettings& settings, const StrainBeyond<D>& beyond,
+                      StressSums& sums) {
+  const bool averages = material.averages_volume;
+  if (averages && !settings.forces_follow) sums.averaging += beyond.work(pool, block);
+  update_block<Batch<native_lanes>>(material, pool.columns, pool.at, block, settings, sums);
+  if (averages && settings.forces_follow) sums.averaging += beyond.work(pool, block);
+  block.count = 0;
+}
+
 /// Velocity gradients, eqs. (18)-(20), of a patch's particles, handed to the material block by
 /// block. The nodal velocity that strains is the vector at number `straining_at` of the records;
 /// with `moves` the particles move as well, eq. (16). L dt is handed on whole: the material refers
@@ -49,13 +76,10 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   Patch<D>& patch = domain.grid.patches[p];
   ParticlePool<D>& pool = domain.pool_of(patch);
   // Before particles move: the pieces go with L at the positions that the gradients belong to.
-  // USF: the way here took the step before; in the first step there has been none.
-  const double duration = forces_follow ? domain.step_before : domain.time_step;
+  const double duration = duration_of(domain, forces_follow);
   if (domain.has_loads()) carry_loads<straining_at>(domain, p, duration);
   const Material& material = domain.material_of(patch);
-  const StressSettings settings{duration > 0.0 ? duration : domain.time_step,
-                                domain.time + domain.time_step, grid.cell_size, material.viscosity,
-                                forces_follow};
+  const StressSettings settings = settings_of(domain, material, forces_follow);
   const NodeRecords records = domain.grid.block(p).records;
   const NodeStrides<D> stride(patch.shape);
   // Gradients come with respect to xi, in cells: 1 / h of eq. (20) and dt of eqs. (18)-(19) in one.
@@ -69,13 +93,8 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   const bool averages = material.averages_volume;
   const Averaged<D> takes_part(pool);
   StrainBeyond<D> beyond;
-  auto flush = [&] {
-    StressSums& sums = domain.sums[p].stress;
-    if (averages && !forces_follow) sums.averaging += beyond.work(pool, block);
-    update_block<Batch<native_lanes>>(material, pool.columns, pool.at, block, settings, sums);
-    if (averages && forces_follow) sums.averaging += beyond.work(pool, block);
-    block.count = 0;
-  };
+  StressSums& sums = domain.sums[p].stress;
+  auto flush = [&] { update_and_empty(material, pool, block, settings, beyond, sums); };
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto nodes = field_of<B>(records.from(cell.first_node), stride);
     CellMean<D> mean;
@@ -105,10 +124,9 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   });
   if (block.count > 0) flush();
   // The power of the forces of this step, as long as they act.
-  if (forces_follow && duration > 0.0) {
-    domain.sums[p].stress.force_power *= domain.time_step / duration;
-    domain.sums[p].stress.averaging *= domain.time_step / duration;
-  }
+  if (forces_follow && duration > 0.0)
+    for (double* const work : {&sums.force_power, &sums.averaging})
+      *work *= domain.time_step / duration;
   if constexpr (moves) patch.left_cell = moving.left_cell();
 }
 
