@@ -229,7 +229,8 @@ def test_the_area_grows_with_the_body(dimension: int, basis: str) -> None:
     """Nanson's formula: a body that flies apart evenly has the area of its stretch.
 
     In the cells at its ends the grid sees 0.625 of the gradient, as their outer nodes have
-    particles on one side only: with 12 cells 0.06 of the growth is missing along each axis.
+    particles on one side only: with 12 cells 0.06 of the growth is missing along each axis. With
+    AFLIP, the default of the B-spline, particles give their gradient: 0.01.
     """
     soft = Material(density=DENSITY, strength={"elastic": {"E": 1e-3, "nu": 0.3}})
     body = block((0,) * dimension, (12, 3, 12)[:dimension], material="solid")
@@ -242,7 +243,8 @@ def test_the_area_grows_with_the_body(dimension: int, basis: str) -> None:
     simulation.set_velocity("body", 0.2 * (x - x.mean(axis=0)))
     simulation.advance(10**6)
     [found] = simulation.core.loads()
-    area = (12 * CELL * (1 + 0.94 * 0.1)) ** (dimension - 1)
+    seen = 0.99 if basis == "quadratic_bspline" else 0.94
+    area = (12 * CELL * (1 + seen * 0.1)) ** (dimension - 1)
     assert found.area == pytest.approx(area, rel=5e-3)
     assert found.force[1] == pytest.approx(1e-9 * area, rel=5e-3)
 

@@ -127,6 +127,7 @@ def test_rigid_bodies_that_turn_and_leave(tmp_path: Path, dimension: int) -> Non
         run=Run(
             end_time=1.0,
             gravity=(0.0, {"sine": {"amplitude": 9.0, "frequency": 50.0}}, 0.0)[:dimension],
+            cfl=0.25,
         ),
         contact=Contact(friction=0.2),
         material={"stone": stone, **materials()},

@@ -68,8 +68,9 @@ def test_a_step_that_is_too_large_is_refused_at_the_start() -> None:
 def test_a_run_whose_waves_or_particles_become_too_fast_stops(tmp_path: Path) -> None:
     """A block that falls: c + v passes h / dt when it is 0.25 c fast."""
     gravity = 1000.0
+    # MUSL, which sees the velocities of the step that it has made; USF those of the one before.
     run = {"time_step": 0.8 * STABLE, "gravity": (0.0, -gravity), "end_time": 0.1}
-    case = one_block(2, {}, run, velocity=(0.0, 0.0))
+    case = one_block(2, {}, run | {"scheme": "musl"}, velocity=(0.0, 0.0))
     with pytest.raises(
         RunError, match=r"^time step at step .* run.time_step = .* s is larger than"
     ):
