@@ -26,7 +26,7 @@ UNSTABLE = CASE.replace('cell_size = "10 mm"', 'cell_size = "10 mm"\nbasis = "li
     "cfl = 0.3", 'cfl = 0.5\nscheme = "usl"'
 )
 FIRST = (
-    "step,time,dt,kinetic,internal,plastic,viscous,friction,contact,external,absorbed,"
+    "step,time,dt,kinetic,internal,plastic,viscous,friction,contact,external,absorbed,damped,"
     "eroded,left,bounded,numerical,residual,momentum_x,momentum_y,momentum_z"
 )
 KEYS = (

@@ -85,15 +85,17 @@ def _cells(case: Case, members: list[FilledBody], shift: float) -> tuple[np.ndar
 def memory_bytes(case: Case, bodies: list[FilledBody]) -> int:
     """Return about what the core will need, of particles and the nodes that each body reaches."""
     basis, total = _core.bases[case.grid.basis], 0
+    transfer, D = _core.transfers[case.run.transfer.word], case.grid.dimension
+    taken = 8 * (D * D * transfer["affine"] + D * transfer["filters"])
     reached = np.arange(basis["nodes"]) - basis["before"]  # From a cell's own node, along an axis.
     for members in by_part(bodies).values():
         state = state_columns(case.material[members[0].material].models)
-        each = _PARTICLE_BYTES[case.grid.dimension] + 8 * len(state)
+        each = _PARTICLE_BYTES[D] + taken + 8 * len(state)
         total += each * sum(len(body.positions) for body in members)
         nodes, strides = _cells(case, members, basis["own_node"])
         for stride in strides:
             nodes = np.unique(np.add.outer(stride * reached, nodes))
-        total += _NODE_BYTES[case.grid.dimension] * len(nodes)
+        total += _NODE_BYTES[D] * len(nodes)
     return total
 
 
