@@ -12,7 +12,7 @@ import pytest
 from cases import BASES, SCHEMES
 from mpm3dpp import Case, CaseError, Simulation
 from mpm3dpp.fill.build import build
-from mpm3dpp.run.summary import echo
+from mpm3dpp.run.summary import echo, time_step
 
 LENGTH, SPEED_OF_SOUND = 0.2, math.sqrt(1000.0)  # [m], [m/s]: E = 1 MPa, 1000 kg/m^3, nu = 0
 FREQUENCY = math.pi * SPEED_OF_SOUND / LENGTH  # of the first mode of a free bar [rad/s]
@@ -160,6 +160,9 @@ def test_stiffness_damping_shortens_the_step(beta: float) -> None:
     steps = [bar(material=line).core.dt for line in ("", f"damping = {{ stiffness = {beta} }}")]
     xi = beta * SPEED_OF_SOUND / 0.005
     assert steps[1] / steps[0] == pytest.approx(math.sqrt(1.0 + xi**2) - xi, rel=1e-12)
+    case = Case.from_text(lines_of("", material=f"damping = {{ stiffness = {beta} }}"))
+    first = Simulation(case, threads=1).core.dt
+    assert time_step(case, build(case)) == pytest.approx(first, rel=1e-12)  # `check` says so too
 
 
 @pytest.mark.parametrize("scheme", ["usf", "musl"])

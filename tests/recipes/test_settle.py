@@ -3,12 +3,16 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from cases import BASES, SCHEMES
+from commands import command
 from mpm3dpp import Case, CaseError, Simulation, open_results, run_case
 from mpm3dpp.fill.build import build
 from mpm3dpp.run.summary import echo
@@ -129,6 +133,24 @@ def test_goes_on_from_the_middle_of_it(tmp_path: Path) -> None:
     for column in ("position", "velocity", "stress"):
         one, other = (sim.column("column", column) for sim in sims)
         assert np.array_equal(one, other)
+
+
+def test_a_run_that_is_stopped_while_it_settles_is_unfinished(tmp_path: Path) -> None:
+    """Its checkpoint is of a time before 0, and can be read."""
+    text = case(settle='settle = { longest = "1000 s", ratio = 1e-14 }').text
+    (tmp_path / "case.toml").write_text(text)
+    line = command("run", "case.toml", "--out", "out", "--no-pictures")
+    running = subprocess.Popen(line, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    history = tmp_path / "out" / "history.csv"
+    for _ in range(600):
+        if history.exists() and history.stat().st_size > 100_000:
+            break
+        time.sleep(0.1)
+    running.send_signal(signal.SIGINT)
+    running.communicate(timeout=60)
+    again = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert again.returncode != 0 and "Traceback" not in again.stderr
+    assert "holds an unfinished run, at 0% of its time; go on with --resume" in again.stderr
 
 
 def test_a_run_tells_of_it(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -94,7 +94,8 @@ def test_a_chain_of_discs_of_ten_cells_is_no_stiffer_than_the_law() -> None:
     arrivals = [chain._arrival(times, v) for v in masses.T[:4]]
     ours = [chain._arrival(said[:, 0], v) for v in said.T[1:5]]
     speed = (arrivals[3] - arrivals[1]) / (ours[3] - ours[1])
-    assert math.isclose(speed, 1.0, abs_tol=0.1)
+    # Measured 0.949, with 16 cells 0.965: an edge of each disc is soft at the place of contact.
+    assert math.isclose(speed, 1.0, abs_tol=0.08)
     assert len(scene.core.contact_pairs()) > 4
 
 

@@ -51,7 +51,9 @@ inline constexpr auto history_terms = std::to_array<HistoryTerm>({
      [](const StepState& s) { return s.ledger.viscous; }, Role::energy},
     {"friction", "J", "work of friction so far",
      [](const StepState& s) { return s.ledger.friction; }, Role::energy},
-    {"contact", "J", "energy that normal contact has lost, negative: made; an error",
+    {"contact", "J",
+     "energy that normal contact has lost, negative: made; an error. With springs also what they "
+     "hold, which comes back",
      [](const StepState& s) { return s.ledger.contact; }, Role::error},
     {"external", "J", "work so far of gravity, loads and prescribed motions",
      [](const StepState& s) { return s.ledger.external; }, Role::supply},

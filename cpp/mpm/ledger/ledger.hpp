@@ -112,7 +112,7 @@ struct Ledger {
     gone_recoverable = gone;
     eroded = by_erosion.kinetic + by_erosion.recoverable;
     left = out_of_region.kinetic + out_of_region.recoverable;
-    unbalanced = s.unbalanced > 0.0 ? s.unbalanced / s.applied : 0.0;
+    unbalanced = s.applied > 0.0 ? s.unbalanced / s.applied : 0.0;
     kinetic = s.kinetic;
     for (std::size_t a = 0; a < D; ++a) momentum[a] = s.momentum[a];
     internal += s.stress.internal;

@@ -107,7 +107,10 @@ struct SettleSettings {
               "forces and loads, both summed over the nodes (FLAC's ratio)",
               between},
       Setting{"local", &Self::local,
-              "local damping of all bodies while it lasts, in place of their own", between}};
+              "local damping while it lasts of all bodies that deform, in place of their own; "
+              "rigid ones "
+              "that are free just fall",
+              between}};
 };
 
 struct RunSettings {

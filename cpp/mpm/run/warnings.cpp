@@ -96,12 +96,15 @@ std::vector<Warning> warnings(const Simulation<D>& simulation) {
         std::ranges::any_of(domain.loads, [&](const auto& load) { return load.body == n.body; });
     std::ostringstream text;
     text.precision(4);
-    text << what_and_remedy(n, group_name(domain, n.group), loaded) << " (body \""
-         << domain.body_at(n.body).name << "\", ";
-    if (n.particle >= 0) text << "particle " << n.particle << ", ";
-    text << "at";
-    for (std::size_t a = 0; a < D; ++a) text << ' ' << n.position[a];
-    text << " m, step " << n.step << ", t = " << n.time << " s)";
+    text << what_and_remedy(n, group_name(domain, n.group), loaded) << " (";
+    if (n.kind != NoteKind::unsettled) {  // which is of no place
+      text << "body \"" << domain.body_at(n.body).name << "\", ";
+      if (n.particle >= 0) text << "particle " << n.particle << ", ";
+      text << "at";
+      for (std::size_t a = 0; a < D; ++a) text << ' ' << n.position[a];
+      text << " m, ";
+    }
+    text << "step " << n.step << ", t = " << n.time << " s)";
     w.message = text.str();
   }
   return told;

@@ -33,7 +33,7 @@ void find(Domain<D>& domain, int at, F&& prescribed) {
 /// folded.
 template <int D, class F>
 void for_each_mapped_at_walls(Domain<D>& domain, F&& f) {
-  if (grid_share(domain) == 0.0) return;
+  if (!takes_of_grid(domain)) return;
   for_each_patch(domain, deformable, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     if (patch.at_wall) f(patch, domain.grid.block(p), domain.sums[p].angular.mapped);

@@ -21,7 +21,17 @@ Transfer transfer_of_cell(const Transfer& transfer, const TileGrid<D>& grid, con
   return transfer;
 }
 
+/// Do particles take the velocity of the grid anywhere?
+template <int D>
+bool takes_of_grid(const Domain<D>& domain) {
+  bool takes = grid_share(domain) > 0.0;
+  with_transfer(domain, [&]<class T>(const T&) { takes = takes || OtherAtFixedWalls<T>; });
+  return takes;
+}
+
 /// The share of the grid's velocity in that which the particles take that reach a node at a wall.
+// All that reach a node on a fixed wall or beyond one are in cells at it. Of a node beyond a slip
+// wall some may be, near an edge where both meet: what they take more there is not counted.
 template <int D>
 double grid_share_at(const Domain<D>& domain, const Patch<D>& patch, int node) {
   double share = grid_share(domain);

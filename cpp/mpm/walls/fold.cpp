@@ -38,7 +38,7 @@ void add_moments(Domain<D>& domain, Kinds kinds, int at, Vector3 AngularImpulses
 
 template <int D>
 void fold_momentum(Domain<D>& domain) {
-  if (grid_share(domain) > 0.0)
+  if (takes_of_grid(domain))
     add_moments(
         domain, deformable, momentum_at, &AngularImpulses::mapped,
         [&](const Patch<D>& patch, int node) { return grid_share_at(domain, patch, node); });

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from mpm3dpp import _core
+from mpm3dpp.base.model import plain
 
 from .transfer import Transfer
 
@@ -26,14 +27,19 @@ def with_choices(run: Run, basis: str) -> Run:
     """Return a run with what it leaves out of `transfer`, `scheme` and `cfl`.
 
     Args:
-        run: of a case; it stays as it is, as another case may have it too.
+        run: of a case; it stays as it is, as another case may have it too, and is returned if it
+            has all of that.
         basis: a word of `grid.basis`.
     """
-    run, given = run.model_copy(), run.model_fields_set
+    given, chosen = run.model_fields_set, {}
     if "transfer" not in given:
         affine = _core.bases[basis]["second_moment"] > 0.0
-        word = TRANSFER if affine else OTHER_TRANSFER
-        run.__dict__["transfer"] = Transfer.model_validate(word)
-    chosen = AFFINE if _core.transfers[run.transfer.word]["affine"] else OTHERS
-    run.__dict__.update({key: value for key, value in chosen.items() if key not in given})
+        chosen["transfer"] = Transfer.model_validate(TRANSFER if affine else OTHER_TRANSFER)
+    word = chosen.get("transfer", run.transfer).word
+    more = AFFINE if _core.transfers[word]["affine"] else OTHERS
+    chosen |= {key: value for key, value in more.items() if key not in given}
+    if all(plain(getattr(run, key)) == plain(value) for key, value in chosen.items()):
+        return run
+    run = run.model_copy()
+    run.__dict__.update(chosen)
     return run

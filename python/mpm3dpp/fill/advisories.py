@@ -39,10 +39,12 @@ def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
 
 def fastest(case: Case, bodies: list[FilledBody]) -> float:
     """Return the largest sum of the speeds of a wave and of a particle at the start [m/s]."""
-    sound = {
-        name: 0.0 if case.is_rigid(name) else case.material[part.material].sound_speed()
-        for name, part in case.parts().items()
-    }
+    sound = {}
+    for name, part in case.parts().items():
+        material = case.material[part.material]
+        c = 0.0 if case.is_rigid(name) else material.sound_speed()
+        q = material.beta * c**2 / case.grid.cell_size  # damped: docs/theory/damping.md
+        sound[name] = q + float(np.hypot(q, c))
     found = 0.0
     for name, members in by_part(bodies).items():
         v = np.concatenate([body.velocities for body in members])

@@ -81,7 +81,7 @@ class About(_Strict):
     """All of it."""
 
     step: Count
-    time: Annotated[FiniteFloat, Field(ge=0.0)]
+    time: FiniteFloat  # before 0 while a run settles
     wall_time: Annotated[FiniteFloat, Field(ge=0.0)]
     results: Results
     history: History

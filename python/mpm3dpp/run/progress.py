@@ -82,7 +82,7 @@ class Progress:
         now = clock.monotonic()
         if self._first is None:
             self._first = time  # a restarted run does not begin at zero
-        done = min(1.0, time / self._end) if self._end > 0 else 1.0
+        done = min(1.0, max(0.0, time / self._end)) if self._end > 0 else 1.0
         if self._bar is not None and self._task is not None:
             if now - self._shown >= _REFRESH or done >= 1.0:
                 self._shown = now

@@ -91,7 +91,7 @@ def refuse_to_begin_anew(folder: Path, case: Case) -> None:
     if not has_checkpoint(folder):
         return
     before = _first_that_can(folder, Checkpoint.of)[0]
-    done = before.time / before.case["run"]["end_time"]
+    done = max(before.time, 0.0) / before.case["run"]["end_time"]
     if done < 1.0:
         rule = f"'{folder}' holds an unfinished run, at {done:.0%} of its time"
         try:

@@ -70,9 +70,10 @@ def step_to_end(
         while frames and core.time >= frames[0]:
             frames.pop(0)
         results.check()
-        if due or _touched(pairs) > touched:  # A frame too whenever two entries first touch.
+        # A frame too whenever two entries first touch, but for those that do so while they settle.
+        if due or (_touched(pairs) > touched and core.time >= 0.0):
             results.write(core)
-            touched = _touched(pairs)
+        touched = _touched(pairs)
         overlapped = core.contact_summary()["overlapped_nodes"] if contact else None
         kinetic, internal = rows[-1, 3:5]
         progress.update(core.time, core.step, core.dt, kinetic, internal, overlapped)
