@@ -23,15 +23,17 @@ struct CatalogueModel {
 };
 
 /// The names of the columns of particles of a material; `may_leave`: there is an outflow box,
-/// `forced`: a body force, which is a formula `of_start`, of places at the start.
+/// `forced`: a body force, which is a formula `of_start`, of places at the start; `springs`: of
+/// contact.
 template <int D>
 std::vector<std::string> names_of_columns(const Material& material, bool may_leave, bool forced,
-                                          bool of_start, TransferId transfer) {
+                                          bool of_start, TransferId transfer, bool springs) {
   TileGrid<D> grid;
   grid.cell_size = 1.0;
   grid.outflow_box.exist = may_leave;
   ParticlePool<D> pool = make_pool(material, grid, columns_of(transfer));
   if (forced) add_force_columns(pool, of_start);
+  if (springs) add_set_back(pool);
   std::vector<std::string> names;
   for (const ColumnInfo& info : pool.columns.infos()) names.push_back(info.name);
   return names;
@@ -89,19 +91,20 @@ void add_materials(nb::module_& m) {
   m.def(
       "column_names",
       [](int dimension, bool may_leave, bool forced, bool of_start, const std::string& transfer,
-         double density, const std::string& strength, const Parameters& parameters,
+         bool springs, double density, const std::string& strength, const Parameters& parameters,
          const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
          Viscosity viscosity, double damping, bool volume_averaging) {
         const Material material = make_material(choice_of(
             density, strength, parameters, eos, failures, viscosity, damping, volume_averaging));
         const TransferId id = choice_named<TransferId>("transfer", transfer);
-        return dimension == 2 ? names_of_columns<2>(material, may_leave, forced, of_start, id)
-                              : names_of_columns<3>(material, may_leave, forced, of_start, id);
+        return dimension == 2
+                   ? names_of_columns<2>(material, may_leave, forced, of_start, id, springs)
+                   : names_of_columns<3>(material, may_leave, forced, of_start, id, springs);
       },
       nb::arg("dimension"), nb::arg("may_leave"), nb::arg("forced"), nb::arg("of_start"),
-      nb::arg("transfer"), nb::arg("density"), nb::arg("strength"), nb::arg("parameters"),
-      nb::arg("eos").none(), nb::arg("failures"), nb::arg("viscosity"), nb::arg("damping"),
-      nb::arg("volume_averaging"),
+      nb::arg("transfer"), nb::arg("springs"), nb::arg("density"), nb::arg("strength"),
+      nb::arg("parameters"), nb::arg("eos").none(), nb::arg("failures"), nb::arg("viscosity"),
+      nb::arg("damping"), nb::arg("volume_averaging"),
       "The names of the columns that particles of a material have; `may_leave`: there is an "
       "outflow box, `forced`: a body force, which is a formula `of_start`, of places at the start");
 

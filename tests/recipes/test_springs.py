@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mpm3dpp import Case, CaseError, Simulation
+from mpm3dpp import Body, Case, CaseError, Particles, Simulation
 from mpm3dpp.io.result_hash import result_hash
 from verification import chain
 
@@ -97,6 +97,77 @@ def test_a_chain_of_discs_of_ten_cells_is_no_stiffer_than_the_law() -> None:
     # Measured 0.949, with 16 cells 0.965: an edge of each disc is soft at the place of contact.
     assert math.isclose(speed, 1.0, abs_tol=0.08)
     assert len(scene.core.contact_pairs()) > 4
+
+
+def blocks(dimension: int, overlap: float, speed: float, fixed: bool = False) -> Case:
+    """Return two blocks, one on the other, that overlap by so many cells and approach [m/s]."""
+    low, high = [0.0] * dimension, [10e-3] * dimension
+    under = {"shape": {"box": {"lower": low, "upper": high}}, "material": "soft"}
+    sides = [np.arange(3.25e-3, 8e-3, 0.5e-3)] * (dimension - 1)
+    upwards = np.arange(10.25e-3, 15e-3, 0.5e-3) - overlap * 1e-3
+    points = np.stack(np.meshgrid(*sides, upwards), axis=-1).reshape(-1, dimension)
+    over = {
+        "particles": Particles(points, np.full(len(points), 0.5e-3**dimension)),
+        "material": "soft",
+        "velocity": [*[0.0] * (dimension - 1), -speed],
+    }
+    elastic = {"elastic": {"E": "1 MPa", "nu": 0.3}}
+    return Case.model_validate(
+        {
+            "grid": {"dimension": dimension, "cell_size": "1 mm"},
+            "run": {"end_time": "10 ms"},
+            "contact": {"friction": 0.3},
+            "material": {
+                "soft": {"density": 1000.0, "strength": elastic},
+                "steel": {"density": 7800.0, "strength": {"rigid": {}}},
+            },
+            "body": {"under": under | ({"motion": "fixed"} if fixed else {}), "over": over},
+        }
+    )
+
+
+@pytest.mark.parametrize("fixed", [False, True])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_bodies_that_overlap_at_the_start_stay_where_they_are(dimension: int, fixed: bool) -> None:
+    """Surfaces that overlap by a tenth of a cell are set back by half of it each."""
+    simulation = Simulation(blocks(dimension, 0.1, 0.0, fixed))
+    simulation.advance(100)
+    for body, at_surface in (("under", 9.75e-3), ("over", 10.15e-3)):
+        assert np.abs(simulation.column(body, "velocity")).max() == 0.0
+        x, back = simulation.column(body, "position"), simulation.column(body, "set_back")[:, 0]
+        # Away from the edges of the upper block the normal leans by less than two degrees.
+        inside = np.all((x[:, :-1] > 4e-3) & (x[:, :-1] < 7e-3), axis=1)
+        surface = np.abs(x[:, -1] - at_surface) < 1e-6
+        assert back[inside & surface] == pytest.approx(0.05e-3, rel=5e-3)
+        assert not back[~surface].any()
+    assert not history(simulation)["kinetic"].any()
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_bodies_that_overlapped_push_as_soon_as_they_come_closer(dimension: int) -> None:
+    """The impact is that of blocks that touch, but for the dents that a tenth of a cell leaves."""
+    speeds = []
+    for overlap in (0.0, 0.1):
+        simulation = Simulation(blocks(dimension, overlap, 0.5, fixed=True))
+        simulation.advance(10**9, 1.2e-3)
+        m, v = (simulation.column("over", name) for name in ("mass", "velocity"))
+        speeds.append((m * v).sum(0)[-1] / m.sum())
+    assert speeds[0] > 0.3  # it has been thrown back
+    assert speeds[1] == pytest.approx(speeds[0], rel=0.02)
+
+
+def test_a_block_flush_with_walls_is_at_rest() -> None:
+    """Its faces lie on theirs, and normals lean at its edges."""
+    case = blocks(2, 0.0, 0.0)
+    for name, x in (("left", 1e-3), ("right", 8e-3)):
+        box = {"lower": [x, 10e-3], "upper": [x + 2e-3, 18e-3]}
+        table = {"shape": {"box": box}, "material": "steel", "motion": "fixed"}
+        case.body[name] = Body.model_validate(table)
+    simulation = Simulation(case)
+    simulation.advance(100)
+    assert simulation.core.contact_pairs() == []
+    for body in simulation.bodies:
+        assert np.abs(simulation.column(body, "velocity")).max() <= 1e-15
 
 
 @pytest.mark.parametrize(

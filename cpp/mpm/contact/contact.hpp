@@ -4,6 +4,7 @@
 //   find_nodes.hpp    the overlapped nodes, and who is there;
 //   find_pairs.hpp    normals and gaps of the pairs at a node, eq. (5), by the rules of normal.hpp
 //                     and detection.hpp;
+//   set_back.hpp      before the first step, what overlaps already where there are springs;
 //   pair_cache.hpp    what of it is kept from step to step;
 //   rigid_masses.hpp  the masses with which bodies that do not deform meet others;
 //   respond.hpp       velocities and forces, eqs. (6)-(7), (11)-(15), by node_solver.hpp;

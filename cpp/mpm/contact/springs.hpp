@@ -62,6 +62,17 @@ class NodeShare {
   double sign_[D][2] = {}, to_image_[D][2] = {};
 };
 
+/// How far a particle reaches along n beyond the cap of another [cells]: the surface of a body is
+/// what lies below the caps of its particles, spheres of eight edges in radius, so that flat rows
+/// have dents of a sixty-fourth of an edge, and round bodies are hardly wider.
+template <int D>
+double overlap_of(double half, double half_of_other, const Vec<double, D>& to_other,
+                  const Vec<double, D>& n, double distance) {
+  constexpr double cap = 8.0;
+  const double along = dot(to_other, n), beside = dot(to_other, to_other) - along * along;
+  return half + half_of_other + distance - along - beside / (2.0 * cap * 2.0 * half_of_other);
+}
+
 /// One of two bodies whose particles may overlap at a node.
 template <int D>
 struct SpringSide {
@@ -136,16 +147,10 @@ class Springs {
   void press(const std::vector<Particle>& ps, const SpringSide<D>& p_side,
              const std::vector<Particle>& qs, const SpringSide<D>& q_side, const Vec<double, D>& n,
              double distance) {
-    // A surface is what lies below all its particles' caps: spheres of eight edges in radius, so
-    // that flat rows have dents of a sixty-fourth of an edge, and round bodies are hardly wider.
-    constexpr double cap = 8.0;
     for (const Particle& p : ps) {
       double overlap = 0.0, half = 0.0;
       for (const Particle& q : qs) {
-        const Vec<double, D> apart = q.x - p.x;
-        const double along = dot(apart, n), beside = dot(apart, apart) - along * along;
-        const double here =
-            p.half + q.half + distance - along - beside / (2.0 * cap * 2.0 * q.half);
+        const double here = overlap_of<D>(p.half, q.half, q.x - p.x, n, distance);
         if (here > overlap) overlap = here, half = q.half;
       }
       if (!(overlap > 0.0)) continue;

@@ -59,7 +59,7 @@ class TileParticles {
   /// Empty places in the lanes repeat a particle of the cell and have no mass.
   struct Lanes {
     Vec<T, D> xi;  // position in the cell, in [0, 1]
-    T half;        // half the particle's edge [cells]
+    T half;        // half the particle's edge, less what its surface is set back [cells]
     T mass;        // [kg]
   };
 
@@ -88,6 +88,21 @@ class TileParticles {
                     for (std::size_t a = 0; a < D; ++a) place[a] += Tile<D>::cells * offset[a];
                     read(grid, body.mean_edge, pool, grid.first_cell(tile), patch, cell, place);
                   });
+  }
+
+  /// f(patch, offset of its tile, cell) for the cells with particles from which nodes of a tile are
+  /// in reach.
+  template <class F>
+  static void for_each_cell(const TileGrid<D>& grid, std::span<const TileHolder> holders,
+                            std::uint64_t nodes, F&& f) {
+    for (const TileHolder& h : holders) {
+      const Patch<D>& patch = grid.patches[static_cast<std::size_t>(h.patch)];
+      // A holder says where the tile lies from its patch; offsets are numbered so that k and
+      // neighbours - 1 - k are opposite.
+      const Index<D> offset = Tile<D>::offset(Tile<D>::neighbours - 1 - h.neighbour);
+      std::uint64_t cells = patch.occupied & cells_in_reach<D>(nodes, offset, grid.reach());
+      for (; cells != 0; cells &= cells - 1) f(patch, offset, std::countr_zero(cells));
+    }
   }
 
   /// f(place, lanes) for the cells from which a node is in reach; `place` is the node's, as counted
@@ -147,21 +162,6 @@ class TileParticles {
     return n;
   }
 
-  /// f(patch, offset of its tile, cell) for the cells with particles from which nodes of a tile are
-  /// in reach.
-  template <class F>
-  static void for_each_cell(const TileGrid<D>& grid, std::span<const TileHolder> holders,
-                            std::uint64_t nodes, F&& f) {
-    for (const TileHolder& h : holders) {
-      const Patch<D>& patch = grid.patches[static_cast<std::size_t>(h.patch)];
-      // A holder says where the tile lies from its patch; offsets are numbered so that k and
-      // neighbours - 1 - k are opposite.
-      const Index<D> offset = Tile<D>::offset(Tile<D>::neighbours - 1 - h.neighbour);
-      std::uint64_t cells = patch.occupied & cells_in_reach<D>(nodes, offset, grid.reach());
-      for (; cells != 0; cells &= cells - 1) f(patch, offset, std::countr_zero(cells));
-    }
-  }
-
   /// Have the memory bring a cell's particles: they lie near their places in the sorted columns.
   static void fetch(const ParticlePool<D>& pool, const Patch<D>& patch, int cell) {
     const auto c = static_cast<std::size_t>(cell);
@@ -198,6 +198,8 @@ class TileParticles {
       // Zero mass is how all that follows knows an empty lane.
       p.mass = select(first_lanes<W>(rows.count), load(pool.mass(), rows), T(0.0));
       p.half = T(0.5 / grid.cell_size) * particle_edge<D>(load(pool.volume(), rows), mean_edge);
+      if (pool.set_back >= 0)
+        p.half -= T(1.0 / grid.cell_size) * load(pool.columns.component(pool.set_back), rows);
     }
     cells_[n].end = static_cast<std::uint32_t>(lanes_.size());
   }

@@ -53,7 +53,7 @@ void for_each_given(const std::vector<double>& given, std::size_t width, std::si
 /// has been taken, so that memory does not hold it twice.
 template <int D, class F>
 void take(std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches,
-          std::vector<double> GivenParticles::* member, std::size_t width, F&& f) {
+          std::vector<double> GivenParticles::*member, std::size_t width, F&& f) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     std::vector<double>& given = bodies[b].given.get()->*member;
     for_each_given(given, width, patches[b].begin, patches[b].count,
@@ -124,6 +124,11 @@ void add_force_columns(ParticlePool<D>& pool, bool of_start) {
 }
 
 template <int D>
+void add_set_back(ParticlePool<D>& pool) {
+  pool.set_back = pool.columns.add("set_back", "m", 1);
+}
+
+template <int D>
 Body<D> make_body(const std::string& name, const Material& material, const ParticlePool<D>& pool,
                   std::span<const double> positions, std::span<const double> velocities,
                   std::span<const double> volumes) {
@@ -180,6 +185,8 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
   for (ParticlePool<D>& pool : pools)
     for (int a = 0; a < (pool.unseen < 0 ? 0 : D); ++a)
       std::fill_n(pool.unseen_velocity(a), pool.count(), Storage{0.0});
+  for (ParticlePool<D>& pool : pools)
+    if (pool.set_back >= 0) std::fill_n(pool.columns.component(pool.set_back), pool.count(), 0.0);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     ParticlePool<D>& pool = pool_of(bodies[b]);
     const std::size_t first = patches[b].begin;
@@ -197,6 +204,8 @@ template ParticlePool<2> make_pool<2>(const Material&, const TileGrid<2>&, const
 template ParticlePool<3> make_pool<3>(const Material&, const TileGrid<3>&, const TransferColumns&);
 template void add_force_columns<2>(ParticlePool<2>&, bool);
 template void add_force_columns<3>(ParticlePool<3>&, bool);
+template void add_set_back<2>(ParticlePool<2>&);
+template void add_set_back<3>(ParticlePool<3>&);
 template Body<2> make_body<2>(const std::string&, const Material&, const ParticlePool<2>&,
                               std::span<const double>, std::span<const double>,
                               std::span<const double>);

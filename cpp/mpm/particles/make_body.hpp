@@ -20,6 +20,10 @@ ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
 template <int D>
 void add_force_columns(ParticlePool<D>& pool, bool of_start);
 
+/// Give a pool a column for how far surfaces are set back; before the pool is filled.
+template <int D>
+void add_set_back(ParticlePool<D>& pool);
+
 /// A body of particles at `positions` (n, D) [m] with `velocities` (n, D) or (1, D) [m/s] and
 /// `volumes` (n,) or (1,) [m^3], with the pool of its material, which it does not enter yet. Throws
 /// std::invalid_argument with the body's name if they do not fit each other.

@@ -60,6 +60,10 @@ void check_particles(const TileGrid<D>& grid, const ParticlePool<D>& pool, const
       for (int a = 0; a < D; ++a)
         fine = fine && std::isfinite(double{pool.v(a)[row]}) &&
                std::abs(grid.in_cells(x[a], a)) < farthest;
+      if (pool.set_back >= 0) {
+        const double by = pool.columns.component(pool.set_back)[row];
+        fine = fine && by >= 0.0 && by < grid.cell_size;
+      }
       check(fine, "its particles are damaged");
       check(patch.left_cell || grid.cell_of(x) == cell, "its lists are damaged");
     }

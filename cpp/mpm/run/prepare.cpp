@@ -10,6 +10,7 @@
 #include "mpm/run/part_sums.hpp"
 #include "mpm/run/settle.hpp"
 #include "mpm/run/start_affine.hpp"
+#include "mpm/run/start_contact.hpp"
 #include "mpm/run/time_step.hpp"
 
 namespace mpm {
@@ -74,6 +75,7 @@ void prepare(Simulation<D>& simulation) {
   check(!domain.bodies.empty(), "there is no body");
   check_bodies(domain);
   simulation.phase = Phase::broken;  // until all is done
+  add_contact_columns(domain);
   fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches);
   place_pieces(domain);
   build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
@@ -84,6 +86,7 @@ void prepare(Simulation<D>& simulation) {
   start_motions(domain);
   project_rigid_velocities(domain);
   start_affine(domain);
+  start_contact(domain);
   probe_speeds(domain);
   const std::string problem = choose_time_step(simulation);
   check(problem.empty(), problem.c_str());

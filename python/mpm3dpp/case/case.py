@@ -85,7 +85,7 @@ class Case(CaseModel):
         Raises:
             ValueError: a violation, of which the sentence is made where the case is read or run.
         """
-        self.__dict__["run"] = with_choices(self.run, self.grid.basis)
+        self.__dict__ |= with_choices(self.grid.basis, self.run, self.contact)
         check_case(self)
 
     @property
@@ -200,6 +200,11 @@ class Case(CaseModel):
     def contact_enabled(self) -> bool:
         """Whether contact is computed: not switched off, nor bonded, and at least two bodies."""
         return self.contact.enabled and not self.contact.bonded and self.body_count > 1
+
+    @property
+    def has_springs(self) -> bool:
+        """Whether bodies in contact push each other by springs."""
+        return self.contact_enabled and self.contact.response == "springs"
 
     def is_rigid(self, part: str) -> bool:
         """Return whether a body does not deform: by its material, or by a prescribed motion.

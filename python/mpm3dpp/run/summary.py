@@ -86,7 +86,7 @@ def memory_bytes(case: Case, bodies: list[FilledBody]) -> int:
     """Return about what the core will need, of particles and the nodes that each body reaches."""
     basis, total = _core.bases[case.grid.basis], 0
     transfer, D = _core.transfers[case.run.transfer.word], case.grid.dimension
-    taken = 8 * (D * D * transfer["affine"] + D * transfer["filters"])
+    taken = 8 * (D * D * transfer["affine"] + D * transfer["filters"] + case.has_springs)
     reached = np.arange(basis["nodes"]) - basis["before"]  # From a cell's own node, along an axis.
     for members in by_part(bodies).values():
         state = state_columns(case.material[members[0].material].models)

@@ -1,0 +1,105 @@
+// Surfaces of bodies that overlap at the start, as particles are no exact picture of a shape.
+#include "mpm/contact/set_back.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+#include "mpm/contact/springs.hpp"
+
+namespace mpm {
+namespace {
+
+/// A particle near a node.
+template <int D>
+struct Near {
+  std::uint32_t row;
+  Vec<double, D> x;  // [cells]
+  double half;       // half its edge [cells]
+};
+
+/// Those of a body from which a node of a tile is in reach.
+template <int D>
+void collect(const Contact<D>& contact, const TileGrid<D>& grid, const Body<D>& body,
+             const ParticlePool<D>& pool, const ContactNode& node, int number,
+             std::vector<Near<D>>& to) {
+  to.clear();
+  const ContactTile<D>& tile = contact.tiles[node.tile];
+  std::span<const TileHolder> holders(&contact.holders[tile.first_holder], tile.holders);
+  const auto [first, last] = std::ranges::equal_range(holders, number, {}, &TileHolder::body);
+  TileParticles<D>::for_each_cell(
+      grid, {first, last}, std::uint64_t{1} << node.cell,
+      [&](const Patch<D>& patch, const Index<D>&, int cell) {
+        const auto c = static_cast<std::size_t>(cell);
+        for (std::uint32_t k = patch.cell_begin[c]; k < patch.cell_begin[c + 1]; ++k) {
+          Near<D>& near = to.emplace_back();
+          near.row = pool.order[patch.begin + k];
+          for (int a = 0; a < D; ++a) near.x[a] = grid.in_cells(pool.x(a)[near.row], a);
+          const Batch<contact_lanes> volume(pool.volume()[near.row]);
+          near.half = 0.5 / grid.cell_size * particle_edge<D>(volume, body.mean_edge)[0];
+        }
+      });
+}
+
+/// The largest of what any node says, in whatever order: the answer is that of the case alone.
+void raise(double& value, double to) {
+  std::atomic_ref<double> shared(value);
+  double before = shared.load(std::memory_order_relaxed);
+  while (before < to && !shared.compare_exchange_weak(before, to, std::memory_order_relaxed)) {
+  }
+}
+
+template <int D>
+void set_back_at(Contact<D>& contact, ContactPart<D>& part, const ContactNode& node,
+                 const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                 std::vector<ParticlePool<D>>& pools, double distance) {
+  thread_local std::vector<Near<D>> of_r, of_s;
+  // A particle keeps a tenth of its half, so that its cap and face stay what they are.
+  constexpr double most = 0.9;
+  const auto sides = part.sides_of(node);
+  for (const ContactPair<D>& pair : part.pairs_of(node)) {
+    if (!(pair.spring.force > 0.0)) continue;
+    const int number[] = {sides[pair.r].body, sides[pair.s].body};
+    std::vector<Near<D>>* const near[] = {&of_r, &of_s};
+    ParticlePool<D>* pool[2] = {};
+    for (const std::size_t k : {0, 1}) {
+      const Body<D>& body = bodies[static_cast<std::size_t>(number[k])];
+      pool[k] = &pools[static_cast<std::size_t>(body.material)];
+      collect(contact, grid, body, *pool[k], node, number[k], *near[k]);
+    }
+    const auto set_back = [&](std::size_t k, const Near<D>& p, double overlap) {
+      const double by = std::min(0.5 * overlap, most * p.half) * grid.cell_size;
+      raise(pool[k]->columns.component(pool[k]->set_back)[p.row], by);
+    };
+    for (const Near<D>& p : of_r)
+      for (const Near<D>& q : of_s) {
+        // Under the caps of both, as each body's surface is sampled by the other's particles.
+        const double overlap =
+            std::max(overlap_of<D>(p.half, q.half, q.x - p.x, pair.normal, distance),
+                     overlap_of<D>(q.half, p.half, p.x - q.x, -1.0 * pair.normal, distance));
+        if (!(overlap > 0.0)) continue;
+        set_back(0, p, overlap);
+        set_back(1, q, overlap);
+      }
+  }
+}
+
+}  // namespace
+
+template <int D>
+void set_back_surfaces(Contact<D>& contact, const TileGrid<D>& grid,
+                       const std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>>& pools,
+                       const ContactSettings& settings, Threads& threads) {
+  threads.for_each(contact.parts.size(), [&](std::size_t p) {
+    ContactPart<D>& part = contact.parts[p];
+    for (const ContactNode& node : part.nodes)
+      set_back_at(contact, part, node, grid, bodies, pools, settings.gap_distance / grid.cell_size);
+  });
+}
+
+template void set_back_surfaces<2>(Contact<2>&, const TileGrid<2>&, const std::vector<Body<2>>&,
+                                   std::vector<ParticlePool<2>>&, const ContactSettings&, Threads&);
+template void set_back_surfaces<3>(Contact<3>&, const TileGrid<3>&, const std::vector<Body<3>>&,
+                                   std::vector<ParticlePool<3>>&, const ContactSettings&, Threads&);
+
+}  // namespace mpm
