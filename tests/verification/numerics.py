@@ -61,7 +61,8 @@ class Numerics:
         own = case.run.cfl if "cfl" in case.run.model_fields_set else choices.OTHERS["cfl"]
         case.grid.basis, case.run.transfer = self.basis, self.table()
         case.run.cfl = self.factor or own
-        case.contact.response = self.response or case.contact.response
+        if self.response:
+            case.contact.response = self.response
 
     def give_core(self, settings: _core.Settings, factor: float) -> None:
         """Give settings of the core this basis and transfer, and this factor or else `factor`."""

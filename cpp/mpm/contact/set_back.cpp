@@ -61,15 +61,16 @@ void set_back_at(Contact<D>& contact, ContactPart<D>& part, const ContactNode& n
     if (!(pair.spring.force > 0.0)) continue;
     const int number[] = {sides[pair.r].body, sides[pair.s].body};
     std::vector<Near<D>>* const near[] = {&of_r, &of_s};
-    ParticlePool<D>* pool[2] = {};
+    double* back[2];  // columns
     for (const std::size_t k : {0, 1}) {
       const Body<D>& body = bodies[static_cast<std::size_t>(number[k])];
-      pool[k] = &pools[static_cast<std::size_t>(body.material)];
-      collect(contact, grid, body, *pool[k], node, number[k], *near[k]);
+      ParticlePool<D>& pool = pools[static_cast<std::size_t>(body.material)];
+      back[k] = pool.columns.component(pool.set_back);
+      collect(contact, grid, body, pool, node, number[k], *near[k]);
     }
     const auto set_back = [&](std::size_t k, const Near<D>& p, double overlap) {
       const double by = std::min(0.5 * overlap, most * p.half) * grid.cell_size;
-      raise(pool[k]->columns.component(pool[k]->set_back)[p.row], by);
+      raise(back[k][p.row], by);
     };
     for (const Near<D>& p : of_r)
       for (const Near<D>& q : of_s) {
