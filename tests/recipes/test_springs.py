@@ -65,6 +65,10 @@ def test_momentum_and_energy(scheme: str) -> None:
     energy = rows["kinetic"] + rows["internal"]
     assert energy.max() <= energy[0] * (1 + 1e-12)
     assert np.abs(rows["residual"]).max() <= 1e-12 * energy[0]
+    # What the springs hold at the height of the impact is gone at its end, and hardly any is lost.
+    assert rows["springs"].max() > 0.01 * energy[0]
+    assert rows["springs"][-1] == 0.0
+    assert np.abs(rows["contact"]).max() < 0.04 * energy[0]  # measured 0.026 to 0.030
 
 
 def test_same_on_threads_and_after_a_restart(tmp_path: Path) -> None:
@@ -129,7 +133,7 @@ def blocks(dimension: int, overlap: float, speed: float, fixed: bool = False) ->
 @pytest.mark.parametrize("fixed", [False, True])
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_bodies_that_overlap_at_the_start_stay_where_they_are(dimension: int, fixed: bool) -> None:
-    """Surfaces that overlap by a tenth of a cell are set back by half of it each."""
+    """Surfaces that overlap by a tenth of a cell are set back by half of it: a fifth of l each."""
     simulation = Simulation(blocks(dimension, 0.1, 0.0, fixed))
     simulation.advance(100)
     for body, at_surface in (("under", 9.75e-3), ("over", 10.15e-3)):
@@ -138,41 +142,78 @@ def test_bodies_that_overlap_at_the_start_stay_where_they_are(dimension: int, fi
         # Away from the edges of the upper block the normal leans by less than two degrees.
         inside = np.all((x[:, :-1] > 4e-3) & (x[:, :-1] < 7e-3), axis=1)
         surface = np.abs(x[:, -1] - at_surface) < 1e-6
-        assert back[inside & surface] == pytest.approx(0.05e-3, rel=5e-3)
+        assert (inside & surface).sum() == 6 ** (dimension - 1)
+        assert back[inside & surface] == pytest.approx(0.2, rel=5e-3)
         assert not back[~surface].any()
     assert not history(simulation)["kinetic"].any()
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_bodies_that_overlapped_push_as_soon_as_they_come_closer(dimension: int) -> None:
-    """The impact is that of blocks that touch, but for the dents that a tenth of a cell leaves."""
-    speeds = []
+    """In the first step with a tenth of a cell of overlap, of which a half or all is not enough."""
     for overlap in (0.0, 0.1):
         simulation = Simulation(blocks(dimension, overlap, 0.5, fixed=True))
+        simulation.advance(3)
+        [pair] = simulation.core.contact_pairs()
+        assert pair.first_time <= 3 * simulation.core.dt
+        m = simulation.column("over", "mass").sum()
+        # A layer's way of a step, over half a cell, is resisted by the modulus over the face.
         simulation.advance(10**9, 1.2e-3)
-        m, v = (simulation.column("over", name) for name in ("mass", "velocity"))
-        speeds.append((m * v).sum(0)[-1] / m.sum())
-    assert speeds[0] > 0.3  # it has been thrown back
-    assert speeds[1] == pytest.approx(speeds[0], rel=0.02)
+        v = (simulation.column("over", "mass") * simulation.column("over", "velocity")).sum(0)[-1]
+        assert v / m > 0.3  # thrown back
+
+
+def test_threads_and_a_restart_keep_what_is_set_back(tmp_path: Path) -> None:
+    case = blocks(3, 0.1, 0.5)
+    one, two = Simulation(case, threads=1), Simulation(case, threads=2)
+    one.advance(10)
+    one.save(tmp_path / "state.zip")
+    again = Simulation(case, threads=2)
+    again.restore(tmp_path / "state.zip")
+    for simulation, steps in ((one, 20), (two, 30), (again, 20)):
+        simulation.advance(steps)
+        assert simulation.column("over", "set_back").max() > 0.1
+    assert one.core.contact_pairs()[0].impulse[2] != 0.0
+    assert result_hash(one.core) == result_hash(two.core) == result_hash(again.core)
+
+
+def between_walls(speed: float) -> Simulation:
+    """Return a block that lies flush between two walls and moves up along them [m/s]."""
+    case = blocks(2, 0.0, -speed)
+    case.contact.friction = 0.0
+    for name, x in (("left", 1e-3), ("right", 8e-3)):
+        box = {"lower": [x, 10e-3], "upper": [x + 2e-3, 25e-3]}
+        table = {"shape": {"box": box}, "material": "steel", "motion": "fixed"}
+        case.body[name] = Body.model_validate(table)
+    return Simulation(case)
 
 
 def test_a_block_flush_with_walls_is_at_rest() -> None:
     """Its faces lie on theirs, and normals lean at its edges."""
-    case = blocks(2, 0.0, 0.0)
-    for name, x in (("left", 1e-3), ("right", 8e-3)):
-        box = {"lower": [x, 10e-3], "upper": [x + 2e-3, 18e-3]}
-        table = {"shape": {"box": box}, "material": "steel", "motion": "fixed"}
-        case.body[name] = Body.model_validate(table)
-    simulation = Simulation(case)
+    simulation = between_walls(0.0)
     simulation.advance(100)
     assert simulation.core.contact_pairs() == []
     for body in simulation.bodies:
         assert np.abs(simulation.column(body, "velocity")).max() <= 1e-15
 
 
+def test_a_block_that_slides_flush_with_walls_is_hardly_held() -> None:
+    """As it moves by two cells normals lean elsewhere than at the start: a hundredth of its energy."""
+    simulation = between_walls(2.0)
+    simulation.advance(10**9, 1e-3)
+    rows = history(simulation)
+    v = simulation.column("over", "velocity").mean(0)
+    assert v == pytest.approx([0.0, 2.0], abs=0.01)
+    assert abs(rows["contact"][-1]) + rows["springs"].max() < 0.01 * rows["kinetic"][0]
+
+
 @pytest.mark.parametrize(
     ("given", "key"),
-    [('detection = "velocity"', "detection"), ("normal_refresh_distance = 0.1", "refresh")],
+    [
+        ('detection = "velocity"', "detection"),
+        ('normal = "stiffer"', "normal"),
+        ("normal_refresh_distance = 0.1", "refresh"),
+    ],
 )
 def test_what_springs_do_not_go_with(given: str, key: str) -> None:
     with pytest.raises(CaseError, match=f"(?s){key}.*does not go with contact.response"):

@@ -38,7 +38,7 @@ class Numerics:
         name, _, factor = name.partition("@")
         name, _, response = name.partition("~")
         if name == DEFAULT:
-            cfl = choices.AFFINE["cfl"]
+            cfl = float(factor) if factor else choices.AFFINE["cfl"]
             return cls(choices.BASIS, choices.TRANSFER, None, cfl, response or choices.RESPONSE)
         basis, _, transfer = name.partition("+")
         word, _, number = (transfer or "flip").partition("=")

@@ -194,7 +194,7 @@ def _with_defaults(runs: list[Run]) -> Iterator[Run]:
 
 
 def _with_impulses() -> Iterator[Run]:
-    """Return small patches of contact, and what rolls, without springs (decision 0051)."""
+    """Return small patches of contact, and what rolls, without springs (decision 0053)."""
     numerics, scheme = f"{DEFAULT}~{choices.OTHER_RESPONSE}", choices.AFFINE["scheme"]
     yield Run("C5", rolling.rolling_on_discs, scheme, 2, numerics, {"cells": 8})
     yield Run("C6", chain.disc_column, scheme, 2, numerics)

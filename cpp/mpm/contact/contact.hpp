@@ -4,11 +4,11 @@
 //   find_nodes.hpp    the overlapped nodes, and who is there;
 //   find_pairs.hpp    normals and gaps of the pairs at a node, eq. (5), by the rules of normal.hpp
 //                     and detection.hpp;
-//   set_back.hpp      before the first step, what overlaps already where there are springs;
 //   pair_cache.hpp    what of it is kept from step to step;
 //   rigid_masses.hpp  the masses with which bodies that do not deform meet others;
 //   respond.hpp       velocities and forces, eqs. (6)-(7), (11)-(15), by node_solver.hpp;
 //   record.hpp        what has passed between the bodies, pair by pair.
+// Before the first step set_back.hpp sees to bodies that overlap already.
 #include <atomic>
 #include <cstdint>
 
@@ -34,9 +34,10 @@ struct ContactTile {
 struct ContactSums {
   double friction = 0.0;        // lost to friction
   double friction_first = 0.0;  // the same with the slip at the start of the step
-  double energy = 0.0;          // lost in normal contact
+  double energy = 0.0;          // lost in normal contact, or stored in its springs
   double force_work =
-      0.0;  // work of contact forces at the velocities that the nodal forces work on
+      0.0;              // work of contact forces at the velocities that the nodal forces work on
+  double stored = 0.0;  // in springs, after the step
 };
 
 /// Numbers of nodes and bodies.

@@ -26,6 +26,12 @@ struct BodyAtNode {
 struct ContactSpring {
   double force = 0.0;      // at the start of the step [N]
   double stiffness = 0.0;  // by which it grows with the approach [N/m]
+  double energy = 0.0;     // that is stored at the start of the step [J]
+
+  /// What is stored after an approach by so much [m].
+  double energy_after(double way) const {
+    return force + stiffness * way > 0.0 ? energy + way * (force + 0.5 * stiffness * way) : 0.0;
+  }
 };
 
 /// Two bodies at an overlapped node.
@@ -57,6 +63,7 @@ struct ContactNode {
   std::uint32_t first_side, first_pair;
   double energy;      // work of the contact beyond friction, over this step [J]
   double force_work;  // work of the contact forces at the velocities of the force mapping [J]
+  double stored;      // in springs, after this step [J]
 };
 
 constexpr std::uint32_t pair_count(std::uint32_t sides) { return sides * (sides - 1) / 2; }

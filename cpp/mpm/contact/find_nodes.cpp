@@ -106,7 +106,7 @@ void read_sides(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<
   node.constrained_axes =
       static_cast<std::uint8_t>(grid.walls.constrained_axes(place_of(contact, grid, node)));
   // Nodes that the response passes by are still summed for the ledger.
-  node.energy = node.force_work = 0.0;
+  node.energy = node.force_work = node.stored = 0.0;
   std::uint64_t hash = 0;
   for (BodyAtNode<D>& side : part.sides_of(node)) {
     const auto b = static_cast<std::size_t>(side.body);

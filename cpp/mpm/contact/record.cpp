@@ -30,10 +30,11 @@ void sum_part(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>
            bodies[static_cast<std::size_t>(side.body)].mean_mass;
   };
   part.shares.clear();
-  part.energy = part.force_work = part.friction = part.friction_first = {};
+  part.energy = part.force_work = part.friction = part.friction_first = part.stored = {};
   for (const ContactNode& node : part.nodes) {
     part.energy.add(node.energy);
     part.force_work.add(node.force_work);
+    part.stored.add(node.stored);
     for (const ContactPair<D>& pair : part.pairs_of(node)) {
       if (!pair.loaded) continue;
       const BodyAtNode<D>& r = part.sides_of(node)[pair.r];
@@ -73,18 +74,20 @@ ContactSums record_pairs(Contact<D>& contact, TileGrid<D>& grid, const std::vect
   records.begin_step();
   threads.for_each(contact.parts.size(),
                    [&](std::size_t p) { sum_part(contact, grid, bodies, contact.parts[p], end); });
-  ExactSum energy, force_work, friction, friction_first;
+  ExactSum energy, force_work, friction, friction_first, stored;
   for (const ContactPart<D>& part : contact.parts) {
     energy.add(part.energy);
     force_work.add(part.force_work);
     friction.add(part.friction);
     friction_first.add(part.friction_first);
+    stored.add(part.stored);
     // In the order of the parts, though the sums need none (decision 0038): ties between nodes of a
     // first contact do.
     for (const PairShare& share : part.shares) records.add(share, end.step, end.time);
   }
   records.end_step(end.time_step);
-  return {friction.value(), friction_first.value(), energy.value(), force_work.value()};
+  return {friction.value(), friction_first.value(), energy.value(), force_work.value(),
+          stored.value()};
 }
 
 template ContactSums record_pairs<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&,

@@ -175,6 +175,11 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const ContactSte
     if (contact.cache.on) move_gaps(part, node, solution, step.time_step);
 
     const double friction_first = take_impulses<D>(grid, sides, solution, pairs);
+    for (const ContactPair<D>& pair : pairs) {
+      const Vec<double, D> approach =
+          solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
+      node.stored += pair.spring.energy_after(step.time_step * dot(approach, pair.normal));
+    }
     double force_work = 0.0, correction = 0.0;
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const BodyAtNode<D>& side = sides[k];

@@ -42,7 +42,7 @@ void collect(const Contact<D>& contact, const TileGrid<D>& grid, const Body<D>& 
 }
 
 /// The largest of what any node says, in whatever order: the answer is that of the case alone.
-void raise(double& value, double to) {
+void raise_to(double& value, double to) {
   std::atomic_ref<double> shared(value);
   double before = shared.load(std::memory_order_relaxed);
   while (before < to && !shared.compare_exchange_weak(before, to, std::memory_order_relaxed)) {
@@ -54,7 +54,7 @@ void set_back_at(Contact<D>& contact, ContactPart<D>& part, const ContactNode& n
                  const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                  std::vector<ParticlePool<D>>& pools, double distance) {
   thread_local std::vector<Near<D>> of_r, of_s;
-  // A particle keeps a tenth of its half, so that its cap and face stay what they are.
+  // Of half an edge; some must be left, for faces, caps and compliance are those of the rest.
   constexpr double most = 0.9;
   const auto sides = part.sides_of(node);
   for (const ContactPair<D>& pair : part.pairs_of(node)) {
@@ -69,8 +69,7 @@ void set_back_at(Contact<D>& contact, ContactPart<D>& part, const ContactNode& n
       collect(contact, grid, body, pool, node, number[k], *near[k]);
     }
     const auto set_back = [&](std::size_t k, const Near<D>& p, double overlap) {
-      const double by = std::min(0.5 * overlap, most * p.half) * grid.cell_size;
-      raise(back[k][p.row], by);
+      raise_to(back[k][p.row], std::min(0.5 * overlap / p.half, most));
     };
     for (const Near<D>& p : of_r)
       for (const Near<D>& q : of_s) {

@@ -104,14 +104,14 @@ class Springs {
   ContactSpring at(double cell_size) const {
     // Stiffness is a modulus times an area over a length.
     const double face = std::pow(cell_size, D - 1);
-    return {face * force_, face / cell_size * stiffness_};
+    return {face * force_, face / cell_size * stiffness_, face * cell_size * energy_};
   }
 
  private:
   using T = Batch<contact_lanes>;
   struct Particle {
     Vec<double, D> x;  // from the node
-    double half;       // half its edge
+    double half;       // half its edge, less what its surface is set back
   };
 
   static double furthest(const NearParticles<D>& body, const Vec<double, D>& n) {
@@ -156,18 +156,20 @@ class Springs {
       if (!(overlap > 0.0)) continue;
       double face = 1.0;
       for (int a = 0; a + 1 < D; ++a) face *= 2.0 * p.half;
-      // Where the surfaces are: both bodies get the force there, at the same nodes.
-      const double share = p_side.share.at(p.x + (p.half - 0.5 * overlap) * n);
+      // In the middle between the surfaces: both bodies get the force there, at the same nodes.
+      const double share = p_side.share.at(p.x + (p.half + 0.5 * (distance - overlap)) * n);
       // Blocks of an edge each, one behind the other, that are shortened by the overlap; half of
       // it, as the other body's particles do the same.
       const double stiffness =
           0.5 * share * face / (2.0 * (p.half * p_side.compliance + half * q_side.compliance));
       force_ += stiffness * overlap;
       stiffness_ += stiffness;
+      energy_ += 0.5 * stiffness * overlap * overlap;
     }
   }
 
   double force_ = 0.0, stiffness_ = 0.0;  // [Pa cells^(D - 1)], [Pa cells^(D - 2)]
+  double energy_ = 0.0;                   // [Pa cells^D]
 };
 
 }  // namespace mpm

@@ -198,8 +198,7 @@ class TileParticles {
       // Zero mass is how all that follows knows an empty lane.
       p.mass = select(first_lanes<W>(rows.count), load(pool.mass(), rows), T(0.0));
       p.half = T(0.5 / grid.cell_size) * particle_edge<D>(load(pool.volume(), rows), mean_edge);
-      if (pool.set_back >= 0)
-        p.half -= T(1.0 / grid.cell_size) * load(pool.columns.component(pool.set_back), rows);
+      if (pool.set_back >= 0) p.half *= T(1.0) - load(pool.columns.component(pool.set_back), rows);
     }
     cells_[n].end = static_cast<std::uint32_t>(lanes_.size());
   }

@@ -51,10 +51,10 @@ inline constexpr auto history_terms = std::to_array<HistoryTerm>({
      [](const StepState& s) { return s.ledger.viscous; }, Role::energy},
     {"friction", "J", "work of friction so far",
      [](const StepState& s) { return s.ledger.friction; }, Role::energy},
-    {"contact", "J",
-     "energy that normal contact has lost, negative: made; an error. With springs also what they "
-     "hold, which comes back",
+    {"contact", "J", "energy that normal contact has lost, negative: made; an error",
      [](const StepState& s) { return s.ledger.contact; }, Role::error},
+    {"springs", "J", "energy that springs of contact hold and give back",
+     [](const StepState& s) { return s.ledger.springs; }, Role::energy},
     {"external", "J", "work so far of gravity, loads and prescribed motions",
      [](const StepState& s) { return s.ledger.external; }, Role::supply},
     {"absorbed", "J", "energy that absorbing walls have taken up",

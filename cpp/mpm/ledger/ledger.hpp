@@ -1,7 +1,7 @@
 #pragma once
 // Where the energy and the momentum go. Every term is accumulated from its own sums:
-//   kinetic + internal + plastic + viscous + friction + contact + absorbed + damped + eroded + left
-//   + bounded + numerical - external = start + residual.
+//   kinetic + internal + plastic + viscous + friction + contact + springs + absorbed + damped
+//   + eroded + left + bounded + numerical - external = start + residual.
 //
 // Derivation: a particle's velocity changes by the interpolated increments
 // dv_p = sum N_ip f_i dt / m_i, eq. (17), so
@@ -16,7 +16,7 @@
 // - time: first-order integration, 1/2 m dv^2, and the mean stress against that which gave the
 // forces; and what rigid bodies' increments have beyond a rigid motion.
 // - contact: normal contact that does not exactly conserve energy, with dv from eqs. (11)-(15)
-// alone.
+//   alone; what springs hold after the step is no loss (springs).
 //
 // A body whose motion is prescribed gets the work that this takes: the change of its kinetic energy
 // and what contact takes from it, at the mean velocity of the step. Gravity does not act on it.
@@ -50,8 +50,8 @@ namespace mpm {
 
 struct Ledger {
   double kinetic = 0.0, internal = 0.0, plastic = 0.0, viscous = 0.0, friction = 0.0, contact = 0.0,
-         external = 0.0, absorbed = 0.0, damped = 0.0, eroded = 0.0, left = 0.0, bounded = 0.0,
-         mapping = 0.0,
+         springs = 0.0, external = 0.0, absorbed = 0.0, damped = 0.0, eroded = 0.0, left = 0.0,
+         bounded = 0.0, mapping = 0.0,
          time_integration = 0.0;  // [J]
   double damped_stiffness = 0.0;  // the part of damped that damping of materials has taken [J]
   double unbalanced = 0.0;        // forces out of balance over those applied, of a run that settles
@@ -71,8 +71,8 @@ struct Ledger {
 
   double numerical() const { return mapping + time_integration + transferred; }
   double residual() const {
-    return kinetic + internal + plastic + viscous + friction + contact + absorbed + damped +
-           eroded + left + bounded + numerical() - external - start;
+    return kinetic + internal + plastic + viscous + friction + contact + springs + absorbed +
+           damped + eroded + left + bounded + numerical() - external - start;
   }
   /// Energy made by numerics, as a fraction of the largest energy brought in; 0 while there is
   /// none. What transfers take does not hide what is made.
@@ -122,7 +122,8 @@ struct Ledger {
     bounded += s.stress.bounded;
     energy_floor += s.stress.energy_floor;
     friction += contacts.friction;
-    contact += contacts.energy;
+    contact += contacts.energy - (contacts.stored - springs);
+    springs = contacts.stored;
     load_work += s.load_first + s.load_second;
     external += s.gravity_first + s.gravity_second + s.load_first + s.load_second + motion;
     absorbed -= s.dashpot_first + s.dashpot_second;

@@ -53,7 +53,7 @@ void for_each_given(const std::vector<double>& given, std::size_t width, std::si
 /// has been taken, so that memory does not hold it twice.
 template <int D, class F>
 void take(std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches,
-          std::vector<double> GivenParticles::*member, std::size_t width, F&& f) {
+          std::vector<double> GivenParticles::* member, std::size_t width, F&& f) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     std::vector<double>& given = bodies[b].given.get()->*member;
     for_each_given(given, width, patches[b].begin, patches[b].count,
@@ -125,7 +125,7 @@ void add_force_columns(ParticlePool<D>& pool, bool of_start) {
 
 template <int D>
 void add_set_back(ParticlePool<D>& pool) {
-  pool.set_back = pool.columns.add("set_back", "m", 1);
+  pool.set_back = pool.columns.add("set_back", "1", 1);
 }
 
 template <int D>

@@ -20,7 +20,7 @@ ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
 template <int D>
 void add_force_columns(ParticlePool<D>& pool, bool of_start);
 
-/// Give a pool a column for how far surfaces are set back; before the pool is filled.
+/// Give a pool a column for how far surfaces are set back in contact; before the pool is filled.
 template <int D>
 void add_set_back(ParticlePool<D>& pool);
 

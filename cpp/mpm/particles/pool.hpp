@@ -27,13 +27,13 @@ struct TransferColumns {
 template <int D>
 struct ParticlePool {
   Columns columns;
-  int position = 0;                  // first component of each column; position [m], D components
-  MaterialColumns at{};              // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
-  int affine = -1;                   // affine part of the velocity [1/s], D x D; -1: none
-  int unseen = -1;                   // what a filter takes of the velocity [m/s], D; -1: none
-  int body_force = -1;               // force per mass [m/s^2], D components; -1: none
-  int start_position = -1;           // [m], D components; -1: none
-  int set_back = -1;                 // of the surface where bodies overlapped at the start [m]; -1
+  int position = 0;         // first component of each column; position [m], D components
+  MaterialColumns at{};     // velocity [m/s] D; mass [kg]; volume [m^3]; stress [Pa]; ...
+  int affine = -1;          // affine part of the velocity [1/s], D x D; -1: none
+  int unseen = -1;          // what a filter takes of the velocity [m/s], D; -1: none
+  int body_force = -1;      // force per mass [m/s^2], D components; -1: none
+  int start_position = -1;  // [m], D components; -1: none
+  int set_back = -1;  // share of half its edge that the surface is set back in contact; -1: none
   double sound_speed = 0.0;          // of its material at the start [m/s]
   std::vector<std::uint32_t> id;     // number of each particle in its body, as the user gave them
   std::vector<std::uint32_t> piece;  // 1 + number of its first SurfacePiece, or 0; empty: no loads

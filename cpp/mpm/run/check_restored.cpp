@@ -61,8 +61,8 @@ void check_particles(const TileGrid<D>& grid, const ParticlePool<D>& pool, const
         fine = fine && std::isfinite(double{pool.v(a)[row]}) &&
                std::abs(grid.in_cells(x[a], a)) < farthest;
       if (pool.set_back >= 0) {
-        const double by = pool.columns.component(pool.set_back)[row];
-        fine = fine && by >= 0.0 && by < grid.cell_size;
+        const double share = pool.columns.component(pool.set_back)[row];
+        fine = fine && share >= 0.0 && share < 1.0;
       }
       check(fine, "its particles are damaged");
       check(patch.left_cell || grid.cell_of(x) == cell, "its lists are damaged");

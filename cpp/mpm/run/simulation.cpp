@@ -15,6 +15,20 @@ void check_transfer(const Settings& s) {
         "grid.basis = \"quadratic_bspline\"");
 }
 
+/// Springs are found in every step, where particles overlap.
+void check_contact(const ContactSettings& s) {
+  if (s.response != Response::springs) return;
+  if (s.detection != Detections::id_of<GapDetection>())
+    throw std::invalid_argument(
+        "contact.detection: \"velocity\" does not go with springs, which act where particles "
+        "overlap: "
+        "contact.response = \"impulses\"");
+  if (s.normal_refresh_distance > 0.0)
+    throw std::invalid_argument(
+        "contact.normal_refresh_distance: does not go with springs, which are found in every step: "
+        "contact.response = \"impulses\"");
+}
+
 /// The settings, if all are in range.
 const Settings& checked(const Settings& s) {
   check_settings(s.grid);
@@ -23,6 +37,7 @@ const Settings& checked(const Settings& s) {
   check_settings(s.run.transfer);
   if (s.run.settle) check_settings(*s.run.settle);
   check_settings(s.contact);
+  check_contact(s.contact);
   check_transfer(s);
   check_settings(s.execution);
   for (std::size_t a = 0; a < 3; ++a) {
@@ -37,10 +52,12 @@ const Settings& checked(const Settings& s) {
 Extra extra_stages(const Settings& s) {
   const TransferSettings& transfer = s.run.transfer;
   if (filters(transfer.word)) return Extra::filter;
-  // Do particles take velocities of nodes that eqs. (6)-(7) correct?
+  // Do particles take velocities of nodes that eqs. (6)-(7) correct? Springs correct none.
   const bool takes =
       takes_grid_velocity(transfer.word) || transfer.pic_rate > 0.0 || transfer.flip_share() < 1.0;
-  return takes && s.contact.enabled && !s.contact.bonded ? Extra::release : Extra::none;
+  const bool corrects =
+      s.contact.enabled && !s.contact.bonded && s.contact.response == Response::impulses;
+  return takes && corrects ? Extra::release : Extra::none;
 }
 
 template <int D>

@@ -54,7 +54,8 @@ def _contact(contact: Contact, run: Run) -> Contact:
     if "response" in contact.model_fields_set:
         return contact
     # What springs do not go with has been asked for by name.
-    fits = contact.detection == "gap" and contact.normal_refresh_distance == 0.0
+    planes = contact.normal == "plane" and contact.normal_refresh_distance == 0.0
+    fits = planes and contact.detection == "gap"
     affine = _core.transfers[run.transfer.word]["affine"]
     return _with(contact, {"response": RESPONSE if fits and affine else OTHER_RESPONSE})
 

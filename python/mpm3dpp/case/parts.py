@@ -140,8 +140,8 @@ class ContactPair(CaseModel):
 class Contact(_Contact):
     """Contact between bodies.
 
-    Where run.transfer has no affine part, with detection = "velocity" and with
-    normal_refresh_distance the default response is "impulses".
+    Where run.transfer has no affine part, with detection = "velocity", with a normal other than
+    "plane" and with normal_refresh_distance the default response is "impulses".
 
     Attributes:
         pair: coefficients of single pairs; a pair of bodies wins over a pair of materials, and

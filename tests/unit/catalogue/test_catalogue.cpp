@@ -88,9 +88,10 @@ void test_catalogue(Report& report) {
   // The roles are those of the balance: each term counts in the residual as its row says.
   Ledger ledger;
   const StepState state{ledger, 0, 0.0, 0.0, 0.0, 0};
-  double* const terms[] = {&ledger.kinetic,  &ledger.internal, &ledger.plastic,  &ledger.viscous,
-                           &ledger.friction, &ledger.contact,  &ledger.external, &ledger.absorbed,
-                           &ledger.eroded,   &ledger.left,     &ledger.bounded,  &ledger.mapping};
+  double* const terms[] = {&ledger.kinetic,  &ledger.internal, &ledger.plastic, &ledger.viscous,
+                           &ledger.friction, &ledger.contact,  &ledger.springs, &ledger.external,
+                           &ledger.absorbed, &ledger.eroded,   &ledger.left,    &ledger.bounded,
+                           &ledger.mapping};
   for (double* const term : terms) {
     *term = 1.0;
     double balance = 0.0;
