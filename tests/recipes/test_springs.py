@@ -198,7 +198,7 @@ def test_a_block_flush_with_walls_is_at_rest() -> None:
 
 
 def test_a_block_that_slides_flush_with_walls_is_hardly_held() -> None:
-    """As it moves by two cells normals lean elsewhere than at the start: a hundredth of its energy."""
+    """As it moves by two cells normals lean elsewhere than at the start, which costs little."""
     simulation = between_walls(2.0)
     simulation.advance(10**9, 1e-3)
     rows = history(simulation)
