@@ -59,17 +59,17 @@ void set_back_at(Contact<D>& contact, ContactPart<D>& part, const ContactNode& n
   const auto sides = part.sides_of(node);
   for (const ContactPair<D>& pair : part.pairs_of(node)) {
     if (!(pair.spring.force > 0.0)) continue;
-    const int number[] = {sides[pair.r].body, sides[pair.s].body};
-    std::vector<Near<D>>* const near[] = {&of_r, &of_s};
-    double* back[2];  // columns
-    for (const std::size_t k : {0, 1}) {
-      const Body<D>& body = bodies[static_cast<std::size_t>(number[k])];
+    const auto collect_of = [&](std::uint16_t side, std::vector<Near<D>>& near) {
+      const int number = sides[side].body;
+      const Body<D>& body = bodies[static_cast<std::size_t>(number)];
       ParticlePool<D>& pool = pools[static_cast<std::size_t>(body.material)];
-      back[k] = pool.columns.component(pool.set_back);
-      collect(contact, grid, body, pool, node, number[k], *near[k]);
-    }
-    const auto set_back = [&](std::size_t k, const Near<D>& p, double overlap) {
-      raise_to(back[k][p.row], std::min(0.5 * overlap / p.half, most));
+      collect(contact, grid, body, pool, node, number, near);
+      return pool.columns.component(pool.set_back);
+    };
+    double* const of_r_back = collect_of(pair.r, of_r);
+    double* const of_s_back = collect_of(pair.s, of_s);
+    const auto set_back = [&](double* back, const Near<D>& p, double overlap) {
+      raise_to(back[p.row], std::min(0.5 * overlap / p.half, most));
     };
     for (const Near<D>& p : of_r)
       for (const Near<D>& q : of_s) {
@@ -78,8 +78,8 @@ void set_back_at(Contact<D>& contact, ContactPart<D>& part, const ContactNode& n
             std::max(overlap_of<D>(p.half, q.half, q.x - p.x, pair.normal, distance),
                      overlap_of<D>(q.half, p.half, p.x - q.x, -1.0 * pair.normal, distance));
         if (!(overlap > 0.0)) continue;
-        set_back(0, p, overlap);
-        set_back(1, q, overlap);
+        set_back(of_r_back, p, overlap);
+        set_back(of_s_back, q, overlap);
       }
   }
 }
