@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import time
@@ -163,12 +164,17 @@ def test_a_run_tells_of_it(tmp_path: Path, capfd: pytest.CaptureFixture[str]) ->
     assert times[0] == 0.0 and times[-1] == pytest.approx(0.02)
 
 
-def test_says_when_the_time_is_over() -> None:
+def test_says_when_the_time_is_over(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """A tenth of a period is not enough: the run begins all the same, and says what is missing."""
-    sim = Simulation(case(settle='settle = { longest = "1 ms" }'), threads=1)
+    short = case(settle='settle = { longest = "1 ms" }')
+    sim = Simulation(short, threads=1)
     sim.advance(10**6, end_time=0.001)
     assert sim.time == 0.001
     [warning] = sim.core.warnings()
+    assert "cfl 0.25, end 0.02 s" in echo(short, build(short))
+    assert re.search(r"up to [\d,]+ steps to settle, then ", echo(short, build(short)))
+    run_case(short, tmp_path, threads=1, quiet=False, pictures=False)
+    assert "not settled: forces out of balance are 0." in capfd.readouterr().err
     assert "run.settle.longest was over before forces balanced" in warning.message
 
 

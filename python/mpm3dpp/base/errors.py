@@ -122,7 +122,10 @@ def nearest(word: str, known: Iterable[str]) -> str:
         known: the words that are valid there.
     """
     words = [str(name) for name in known]
-    close = difflib.get_close_matches(word.lower(), [name.lower() for name in words], 1, 0.5)
+    lower = [name.lower() for name in words]
+    # What somebody shortens is a part of the word: "bspline" means "quadratic_bspline".
+    close = [name for name in lower if len(word) > 2 and word.lower() in name]
+    close = close or difflib.get_close_matches(word.lower(), lower, 1, 0.5)
     listing = ", ".join(words)
     if close:
         best = next(name for name in words if name.lower() == close[0])

@@ -58,7 +58,8 @@ def step_to_end(
         rows, pairs = core.history(), core.contact_groups() if contact else []
         if settling and core.time >= 0.0:
             ratio = rows[rows[:, 1] >= 0.0, core.history_columns.index("unbalanced")][0]
-            progress.note(f"settled: forces out of balance are {ratio:.3g} of those applied")
+            word = "settled" if ratio <= case.run.settle.ratio else "not settled"
+            progress.note(f"{word}: forces out of balance are {ratio:.3g} of those applied")
         due = bool(frames) and core.time >= frames[0]
         # By the steps' numbers, so that a run that goes on has them in the same rows.
         summed = due or core.step // sums_every > before // sums_every

@@ -51,8 +51,15 @@ def steps_in_words(case: Case, bodies: list[FilledBody]) -> str:
     """
     compressible = any(case.material[body.material].eos is not None for body in bodies)
     may_fall = case.run.time_step is None and (compressible or any(case.run.gravity))
-    word = "at least" if may_fall else "about"
-    return f"{word} {math.ceil(case.run.end_time / time_step(case, bodies)):,} steps"
+    word, step = "at least" if may_fall else "about", time_step(case, bodies)
+    steps = f"{word} {math.ceil(case.run.end_time / step):,} steps"
+    if case.run.settle is None:
+        return steps
+    return f"up to {math.ceil(case.run.settle.longest / step):,} steps to settle, then {steps}"
+
+
+def _step_rule(case: Case) -> str:
+    return f"cfl {case.run.cfl:g}, " if case.run.time_step is None else ""
 
 
 def frames_in_words(case: Case, particles: int) -> str:
@@ -186,9 +193,8 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
     bounds = " x ".join(str(n) for n in box) + " cells" if box else "no bounds"
     contact = "none, the bodies are bonded" if case.contact.bonded else "none"
     if case.contact_enabled:
-        contact = f"{case.contact.detection} detection, friction {case.contact.friction:g}"
-        if case.contact.response == "springs":
-            contact += ", springs"
+        contact = f"{case.contact.detection} detection, {case.contact.response}"
+        contact += f", friction {case.contact.friction:g}"
     lines += [
         f"total: {particles:,} particles, mass {sum(b.mass for b in bodies):.6g} kg{per_metre}, "
         f"memory about {process_bytes(case, bodies) / 2**20:,.0f} MiB, of which the core "
@@ -197,7 +203,7 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         f"{bounds}, {case.grid.basis} basis",
         *condition_lines(case),
         f"contact: {contact}",
-        f"time: {case.run.scheme}, {case.run.transfer.word}, end {case.run.end_time:.6g} s, "
+        f"time: {case.run.scheme}, {case.run.transfer.word}, {_step_rule(case)}end {case.run.end_time:.6g} s, "
         f"step about {time_step(case, bodies):.3g} s, "
         f"{steps_in_words(case, bodies)}, {frames_in_words(case, particles)}",
     ]
