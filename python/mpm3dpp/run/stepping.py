@@ -58,7 +58,8 @@ def step_to_end(
         rows, pairs = core.history(), core.contact_groups() if contact else []
         if settling and core.time >= 0.0:
             ratio = rows[rows[:, 1] >= 0.0, core.history_columns.index("unbalanced")][0]
-            word = "settled" if ratio <= case.run.settle.ratio else "not settled"
+            settled = case.run.settle is not None and ratio <= case.run.settle.ratio
+            word = "settled" if settled else "not settled"
             progress.note(f"{word}: forces out of balance are {ratio:.3g} of those applied")
         due = bool(frames) and core.time >= frames[0]
         # By the steps' numbers, so that a run that goes on has them in the same rows.

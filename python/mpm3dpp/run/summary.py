@@ -203,7 +203,8 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         f"{bounds}, {case.grid.basis} basis",
         *condition_lines(case),
         f"contact: {contact}",
-        f"time: {case.run.scheme}, {case.run.transfer.word}, {_step_rule(case)}end {case.run.end_time:.6g} s, "
+        f"time: {case.run.scheme}, {case.run.transfer.word}, {_step_rule(case)}"
+        f"end {case.run.end_time:.6g} s, "
         f"step about {time_step(case, bodies):.3g} s, "
         f"{steps_in_words(case, bodies)}, {frames_in_words(case, particles)}",
     ]
