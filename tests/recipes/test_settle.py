@@ -196,6 +196,8 @@ def test_refuses(line: str, message: str) -> None:
 def test_needs_a_force() -> None:
     """Nothing settles where nothing acts."""
     given = case().table()
-    given["run"]["gravity"] = [0.0, 0.0]
+    given["run"]["gravity"] = [0.0, {"ramp": {"to": -9.81, "end": 1.0}}]
     with pytest.raises(CaseError, match="needs a force to settle under"):
         Case(**given)
+    given["run"]["gravity"] = [0.0, {"ramp": {"from": -1.0, "to": -9.81, "end": 1.0}}]
+    assert Case(**given).run.settle is not None

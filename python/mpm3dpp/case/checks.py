@@ -13,6 +13,7 @@ from mpm3dpp.base.errors import Path, nearest, report, violation
 from mpm3dpp.base.expression import Expression
 from mpm3dpp.base.model import plain
 from mpm3dpp.base.outputs import COLUMNS, STANDARD
+from mpm3dpp.base.time_functions import at
 
 from .detonation import check_detonations
 from .loads import check_loads
@@ -72,12 +73,22 @@ def _bodies_together(case: Case) -> Found:
     yield from check_loads(case)
     yield from _body_forces(case)
     yield from _dampings(case)
-    forces = [*case.load, *(part for part in case.parts().values() if part.body_force is not None)]
-    if case.run.settle is not None and not (any(case.run.gravity) or forces):
-        rule = "needs a force to settle under: there is no gravity, load or body force"
+    if case.run.settle is not None and not _acts_at_first(case):
+        rule = (
+            "needs a force to settle under: at the time 0 there is no gravity, load or body force"
+        )
         yield violation(rule, "give one, or remove it", path=("run", "settle"))
     yield from _transfer(case)
     yield from _springs(case)
+
+
+def _acts_at_first(case: Case) -> bool:
+    """Return whether any force may act at the time 0, formulas by place among them."""
+    loads = (getattr(load, kind) for load in case.load.values() for kind in _core.load_kinds)
+    values = [v for load in loads for v in (load if isinstance(load, tuple) else [load])]
+    known = [v for v in [*case.run.gravity, *values] if v is not None]
+    forces = any(part.body_force is not None for part in case.parts().values())
+    return forces or any(at(value, 0.0) for value in known)
 
 
 def _transfer(case: Case) -> Found:
