@@ -106,7 +106,8 @@ void add_materials(nb::module_& m) {
       nb::arg("parameters"), nb::arg("eos").none(), nb::arg("failures"), nb::arg("viscosity"),
       nb::arg("damping"), nb::arg("volume_averaging"),
       "The names of the columns that particles of a material have; `may_leave`: there is an "
-      "outflow box, `forced`: a body force, which is a formula `of_start`, of places at the start");
+      "outflow box, `forced`: a body force, which is a formula `of_start`, of places at the start; "
+      "`springs`: of contact");
 
   m.def(
       "drive_material",

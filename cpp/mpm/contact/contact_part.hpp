@@ -36,8 +36,8 @@ struct ContactPart {
   std::size_t overlapped = 0;                 // nodes, those left out too
   int bodies_max = 0;                         // at a node
   std::vector<PairShare> shares;  // scratch: of the step; those of one pair may be several
-  ExactSum energy, force_work, friction, friction_first,
-      stored;  // scratch: ContactSums of the part
+  // Scratch: ContactSums of the part.
+  ExactSum energy, force_work, friction, friction_first, stored;
   // Where pairs are cached: of this step and the last, in the order of `nodes` and of `pairs`.
   std::vector<CachedNode> cached_nodes, last_cached_nodes;
   std::vector<CachedPair<D>> cached, last_cached;

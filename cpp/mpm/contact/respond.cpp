@@ -176,6 +176,7 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const ContactSte
 
     const double friction_first = take_impulses<D>(grid, sides, solution, pairs);
     for (const ContactPair<D>& pair : pairs) {
+      if (!(pair.spring.stiffness > 0.0)) continue;
       const Vec<double, D> approach =
           solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
       node.stored += pair.spring.energy_after(step.time_step * dot(approach, pair.normal));
