@@ -1,6 +1,7 @@
 #include "mpm/contact/candidates.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 
 namespace mpm {
@@ -37,10 +38,32 @@ void reuse_tiles(std::vector<ContactTile<D>>& last_tiles, std::vector<ContactTil
   }
 }
 
+/// The number of each tile's neighbours, -1 for those that are none of contact's.
+template <int D>
+void find_around(Contact<D>& contact) {
+  const auto& tiles = contact.tiles;
+  std::vector<std::int32_t> sorted(tiles.size());
+  std::iota(sorted.begin(), sorted.end(), 0);
+  const auto place = [&](std::int32_t t) -> const Index<D>& {
+    return tiles[static_cast<std::size_t>(t)].tile;
+  };
+  std::ranges::sort(sorted, tile_less<D>, place);
+  contact.around.resize(tiles.size());
+  for (std::size_t t = 0; t < tiles.size(); ++t)
+    for (int k = 0; k < Tile<D>::neighbours; ++k) {
+      Index<D> wanted = tiles[t].tile;
+      for (std::size_t a = 0; a < D; ++a) wanted[a] += Tile<D>::offset(k)[a];
+      const auto found = std::ranges::lower_bound(sorted, wanted, tile_less<D>, place);
+      contact.around[t][static_cast<std::size_t>(k)] =
+          found != sorted.end() && place(*found) == wanted ? *found : -1;
+    }
+}
+
 }  // namespace
 
 template <int D>
-void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies) {
+void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                   Response response) {
   auto& holders = contact.holders;
   auto& tiles = contact.tiles;
   if (grid.patches.size() > TileHolder::patches_max)
@@ -60,11 +83,13 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
     for (int a = 0; a < D; ++a) t[a] += o[a];
     return t;
   };
+  // Particles are nearer than they reach: with springs all tiles around see a patch.
+  const Reach reach = response == Response::springs ? Reach{1, 1, 0.0} : grid.reach();
   for (std::size_t p = 0; p < grid.patches.size(); ++p)
     for (int k = 0; k < Tile<D>::neighbours; ++k)
       // By tiles, not by the boxes of blocks: those change too often to sort this list each time
       // (decision 0013).
-      if (reaches<D>(grid.reach(), k)) holders.emplace_back(grid.patches[p].body, p, k);
+      if (reaches<D>(reach, k)) holders.emplace_back(grid.patches[p].body, p, k);
   std::sort(holders.begin(), holders.end(), [&](const TileHolder& x, const TileHolder& y) {
     const Index<D> tx = tile_of(x), ty = tile_of(y);
     if (tx != ty) return tile_less<D>(tx, ty);
@@ -98,9 +123,10 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
     const std::uint32_t py = holders[y.first_holder + y.holders - 1].patch;
     return px != py ? px < py : x.first_holder < y.first_holder;
   });
+  if (response == Response::springs) find_around(contact);
 }
 
-template void connect_tiles<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&);
-template void connect_tiles<3>(Contact<3>&, TileGrid<3>&, const std::vector<Body<3>>&);
+template void connect_tiles<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&, Response);
+template void connect_tiles<3>(Contact<3>&, TileGrid<3>&, const std::vector<Body<3>>&, Response);
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 #pragma once
 // What contact works on: plain data. A step goes through it in this order:
 //   candidates.hpp    the tiles whose nodes two or more bodies touch, when patches come or go;
+//   find_touches.hpp  with springs, the particles that overlap another body;
 //   find_nodes.hpp    the overlapped nodes, and who is there;
 //   find_pairs.hpp    normals and gaps of the pairs at a node, eq. (5), by the rules of normal.hpp
 //                     and detection.hpp;
@@ -9,6 +10,7 @@
 //   respond.hpp       velocities and forces, eqs. (6)-(7), (11)-(15), by node_solver.hpp;
 //   record.hpp        what has passed between the bodies, pair by pair.
 // Before the first step set_back.hpp sees to bodies that overlap already.
+#include <array>
 #include <atomic>
 #include <cstdint>
 
@@ -17,6 +19,8 @@
 #include "mpm/contact/pair_records.hpp"
 #include "mpm/contact/settings.hpp"
 #include "mpm/contact/tile_holder.hpp"
+#include "mpm/contact/tile_shares.hpp"
+#include "mpm/contact/touch.hpp"
 
 namespace mpm {
 
@@ -28,6 +32,7 @@ struct ContactTile {
   std::uint64_t cached = 0;  // the nodes that were overlapped in the last step, by Tile<D>::cell
   std::uint32_t cached_part = 0;   // where they are cached: a number of Contact::parts
   std::uint32_t first_cached = 0;  // the first of them, of ContactPart::cached_nodes
+  TouchRange touches;              // with springs: of particles in the tile, in this step
 };
 
 /// Sums over all contacts of one step, for the ledger [J].
@@ -52,6 +57,9 @@ struct Contact {
   std::vector<TileHolder> holders;  // those of each tile follow one another
   std::vector<ContactTile<D>> tiles;
   NodesWithMass<D> masses;  // of the step
+  // With springs: the numbers of the tiles around each, -1 if none; and the touches of the step.
+  std::vector<std::array<std::int32_t, Tile<D>::neighbours>> around;
+  std::vector<std::vector<Touch<D>>> touches;
   std::vector<ContactPart<D>> parts;
   PairCache cache;
   PairRecords records;
@@ -69,8 +77,9 @@ std::size_t bytes_of(const Contact<D>& contact) {
   const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   std::size_t parts = 0;
   for (const ContactPart<D>& part : contact.parts) parts += part.bytes();
+  for (const auto& touches : contact.touches) parts += size(touches);
   return contact.masses.bytes() + parts + contact.cache.bytes() + contact.records.bytes() +
-         size(contact.holders) + size(contact.tiles) + size(contact.last_tiles) +
+         size(contact.around) + size(contact.touches) + size(contact.holders) + size(contact.tiles) + size(contact.last_tiles) +
          size(contact.rigid_share);
 }
 

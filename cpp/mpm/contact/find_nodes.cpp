@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mpm/contact/find_pairs.hpp"
+#include "mpm/contact/find_touches.hpp"
 #include "mpm/contact/rigid_masses.hpp"
 
 namespace mpm {
@@ -161,6 +162,16 @@ void add_nodes(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<B
     read_sides(contact, grid, bodies, part, part.nodes[n]);
 }
 
+/// The pairs at a node where none touches.
+template <int D>
+void leave_open(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
+                ContactPart<D>& part, const ContactNode& node) {
+  ContactPair<D>* next = &part.pairs[node.first_pair];
+  for (std::uint16_t r = 0; r < node.sides; ++r)
+    for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s)
+      *next++ = new_pair<D>(bodies, settings, part.sides_of(node), r, s);
+}
+
 /// Normals, gaps and frictions of the pairs at the nodes of a tile, those of a part from the
 /// first-th on: cached ones that still hold, else found.
 template <int D>
@@ -171,8 +182,12 @@ void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<
   ContactPart<D>& part = contact.parts[p];
   const std::span<ContactNode> nodes(part.nodes.begin() + static_cast<std::ptrdiff_t>(first),
                                      part.nodes.end());
-  // Particles are gathered only around nodes where nothing is cached: most of what contact costs.
+  // Particles are gathered only where pairs are to be found: most of what contact costs.
   std::uint64_t missing = around.overlapped;
+  if (settings.response == Response::springs) {
+    around.touches.gather(contact, grid, bodies, t);
+    missing &= around.touches.nodes();
+  }
   if (contact.cache.on)
     for (const ContactNode& node : nodes)
       if (reuse_pairs(contact, bodies, settings, grid.cell_size, tile, part, node))
@@ -188,6 +203,8 @@ void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<
     if (missing >> node.cell & 1u) {
       find_pairs<D>(grid, bodies, settings, around, part, node, place_of(contact, grid, node));
       if (contact.cache.on) store_pairs(contact.cache, part, node);
+    } else if (!contact.cache.on) {
+      leave_open<D>(bodies, settings, part, node);
     }
   // Where nodes are kept none is left out, so that those of the bits are there one by one.
   tile.cached = contact.cache.on ? around.overlapped : 0;
@@ -205,19 +222,15 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
   // The bits hold for this step only: masses have just been mapped.
   contact.masses.find(grid, threads);
   if (contact.cache.on) add_displacements(contact.cache, bodies.size());
-  // Few parts, so that their sizes hardly change; enough to share them out evenly.
-  // Decision 0014. The order of the nodes is that of the tiles, however many parts there are: no
-  // sum and no solution sees where one part ends.
-  constexpr std::size_t least_tiles = 32, per_thread = 8;
-  const std::size_t parts = std::clamp(contact.tiles.size() / least_tiles, std::size_t{1},
-                                       per_thread * static_cast<std::size_t>(threads.count()));
-  const auto first_tile = [&](std::size_t p) { return p * contact.tiles.size() / parts; };
-  if (parts > contact.parts.size())
-    contact.parts.resize(parts);  // no part goes: it may know of another's tiles
+  if (settings.response == Response::springs)
+    find_touches(contact, grid, bodies, pools, settings.gap_distance / grid.cell_size, threads);
+  const TileShares shares(contact.tiles.size(), threads.count());
+  if (shares.count > contact.parts.size())
+    contact.parts.resize(shares.count);  // no part goes: it may know of another's tiles
   for (ContactPart<D>& part : contact.parts) part.start();
-  threads.for_each(parts, [&](std::size_t p) {
+  threads.for_each(shares.count, [&](std::size_t p) {
     ContactPart<D>& part = contact.parts[p];
-    for (std::size_t t = first_tile(p); t < first_tile(p + 1); ++t) {
+    for (std::size_t t = shares.first(p); t < shares.first(p + 1); ++t) {
       TileBodies<D>& around = bodies_around<D>();
       look_around(contact, grid, contact.tiles[t], around);
       if (around.overlapped == 0) {
@@ -225,7 +238,7 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
         continue;
       }
       const std::size_t first = part.nodes.size();
-      if (!contact.cache.on)
+      if (!contact.cache.on && settings.response == Response::impulses)
         fetch_particles(contact, grid, bodies, pools, around, around.overlapped);
       add_nodes(contact, grid, bodies, t, around, part);
       fill_pairs(contact, grid, bodies, pools, settings, t, around, p, first);

@@ -1,6 +1,7 @@
 // The pairs of bodies at a node: normals, gaps, eq. (5), and frictions.
 #include "mpm/contact/find_pairs.hpp"
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -79,19 +80,38 @@ std::span<const NormalSource<D>> sources_at(const TileGrid<D>& grid,
   return {sources.data(), sides.size()};
 }
 
-/// The springs of a pair with a normal, r's side first; it is closed where there are any.
+/// What a pair of bodies that push each other by springs finds at a node.
 template <int D>
 void find_springs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                  const NormalSource<D>& r, const NormalSource<D>& s, const Index<D>& node,
-                  double distance, ContactPair<D>& pair) {
+                  const ContactSettings& settings, std::span<const Touch<D>> touches,
+                  const NormalSource<D>& r, const NormalSource<D>& s, const ContactNode& node,
+                  const Index<D>& place, ContactPair<D>& pair) {
+  Vec<double, D> at;  // from the tile's first node
+  for (int a = 0; a < D; ++a) at[a] = Tile<D>::cell_index(node.cell)[static_cast<std::size_t>(a)];
+  const auto reaches = [&](const Touch<D>& touch) {
+    const double reach = touch_reach(grid, bodies, touch);
+    bool near = true;
+    for (int a = 0; a < D; ++a) near = near && std::abs(touch.x[a] - at[a]) < reach;
+    return near;
+  };
+  if (std::ranges::none_of(touches, reaches)) return;
+  NormalRules::with(settings.normal, [&]<class Rule>(const Rule&) {
+    pair.normal = Rule::normal(r, s, node.constrained_axes);
+  });
+  if (!(dot(pair.normal, pair.normal) > 0.0)) return;
+  pair.gap = gap_along(pair.normal, r, s, grid.cell_size);  // it is recorded at the first contact
   const auto side = [&](const NormalSource<D>& source) {
     const Body<D>& body = bodies[static_cast<std::size_t>(source.body)];
     return SpringSide<D>{
-        source.particles, body.deforms() ? 1.0 / source.stiffness : 0.0,
-        NodeShare<D>(grid.basis, body.mean_edge / grid.cell_size, grid.walls, node)};
+        source.body, body.deforms() ? 1.0 / source.stiffness : 0.0,
+        NodeShare<D>(grid.basis, body.mean_edge / grid.cell_size, grid.walls, place)};
   };
-  pair.spring =
-      Springs<D>(side(r), side(s), pair.normal, distance / grid.cell_size).at(grid.cell_size);
+  const SpringSide<D> of_r = side(r), of_s = side(s);
+  Springs<D> springs;
+  for (const Touch<D>& touch : touches)
+    if (reaches(touch))
+      springs.add(touch, at, of_r, of_s, pair.normal, settings.gap_distance / grid.cell_size);
+  pair.spring = springs.at(grid.cell_size);
   pair.gap_closed = pair.active = pair.loaded = pair.spring.force > 0.0;
 }
 
@@ -138,6 +158,11 @@ void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       pair = new_pair<D>(bodies, settings, sides, r, s);
       pair.gap = std::numeric_limits<double>::infinity();
       if (rigid(r) && rigid(s)) continue;  // they have no stress that could part them
+      if (settings.response == Response::springs) {
+        find_springs<D>(grid, bodies, settings, around.touches.between(sides[r].body, sides[s].body),
+                        sources[r], sources[s], node, place, pair);
+        continue;
+      }
       // Bodies that are well apart along the line between their centres need no better normal.
       // Only where the gap decides and the normal costs a fit. Where the centres coincide the gap
       // is infinite, and the pair is left here too.
@@ -155,8 +180,6 @@ void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       // Also where the rule does not use it: the gap at the first contact is recorded.
       pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
       pair.gap_closed = passes_gap_test(pair, settings, grid.cell_size);
-      if (settings.response == Response::springs && dot(pair.normal, pair.normal) > 0.0)
-        find_springs<D>(grid, bodies, sources[r], sources[s], place, settings.gap_distance, pair);
     }
 }
 

@@ -3,12 +3,10 @@
 
 namespace mpm {
 
-/// Bodies that overlap at the start do not push each other: where a particle reaches beyond one of
-/// another body along the normal of any pair with springs, the surfaces of both are set back by
-/// half of it (decision 0053). Needs the nodes of find_nodes().
+/// Bodies that overlap at the start do not push each other: the surface of each particle that
+/// overlaps another body is set back by that (decision 0053). Needs find_touches().
 template <int D>
-void set_back_surfaces(Contact<D>& contact, const TileGrid<D>& grid,
-                       const std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>>& pools,
-                       const ContactSettings& settings, Threads& threads);
+void set_back_surfaces(const Contact<D>& contact, const std::vector<Body<D>>& bodies,
+                       std::vector<ParticlePool<D>>& pools);
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 #pragma once
 // The bodies around a tile, while the tile's overlapped nodes are found.
 #include "mpm/contact/tile_particles.hpp"
+#include "mpm/contact/tile_touches.hpp"
 
 namespace mpm {
 
@@ -24,6 +25,7 @@ struct TileBodies {
   std::size_t count = 0;
   std::uint64_t overlapped = 0;    // nodes at which two or more have mass
   std::vector<HeldNodes<D>> held;  // by the holders, in the order of the tile's
+  TileTouches<D> touches;          // with springs
 
   std::span<TileBody<D>> all() { return {bodies.data(), count}; }
   std::span<const TileBody<D>> all() const { return {bodies.data(), count}; }

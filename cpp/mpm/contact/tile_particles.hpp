@@ -1,6 +1,8 @@
 #pragma once
 // The particles of a body in and around a tile, gathered once for all overlapped nodes of the tile.
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -59,30 +61,60 @@ class TileParticles {
   /// Empty places in the lanes repeat a particle of the cell and have no mass.
   struct Lanes {
     Vec<T, D> xi;  // position in the cell, in [0, 1]
-    T half;        // half the particle's edge, less what its surface is set back [cells]
+    T half;        // half the particle's edge [cells]
+    T set_back;    // how far behind that its surface is [cells]
     T mass;        // [kg]
   };
 
+  /// Cells from a tile that are gathered, if wanted.
+  static constexpr int range_max = 2;
+
   /// Place of a cell's own node in the cell along each axis.
   double own_node() const { return reach_of(basis_).own_node; }
+  /// Those of a cell that lie in a range of its pool's lists, the first of them.
+  static Lanes lanes_of(const TileGrid<D>& grid, double mean_edge, const ParticlePool<D>& pool,
+                        const Index<D>& cell, std::uint32_t begin, std::uint32_t end) {
+    constexpr int W = contact_lanes;
+    const CellCoordinates<D> coordinates = grid.coordinates();
+    const LaneRows<W> rows(pool.order.data() + begin, end - begin);
+    Lanes p;
+    for (int a = 0; a < D; ++a)
+      p.xi[a] = local_coordinate(coordinates.in_cells(load(pool.x(a), rows), a),
+                                 cell[static_cast<std::size_t>(a)]);
+    // Zero mass is how all that follows knows an empty lane.
+    p.mass = select(first_lanes<W>(rows.count), load(pool.mass(), rows), T(0.0));
+    p.half = T(0.5 / grid.cell_size) * particle_edge<D>(load(pool.volume(), rows), mean_edge);
+    p.set_back = T(0.0);
+    if (pool.set_back >= 0)
+      p.set_back = p.half * load(pool.columns.component(pool.set_back), rows);
+    return p;
+  }
+
   /// No more particles than so many are around any node.
   std::size_t most_around() const { return lanes_.size() * T::lanes; }
 
   /// Have the memory bring what is around these nodes of a tile, a bit each by Tile<D>::cell.
   static void fetch(const TileGrid<D>& grid, const ParticlePool<D>& pool,
                     std::span<const TileHolder> holders, std::uint64_t nodes) {
-    for_each_cell(grid, holders, nodes, [&](const Patch<D>& patch, const Index<D>&, int cell) {
-      fetch(pool, patch, cell);
-    });
+    for_each_cell(grid, holders, nodes, grid.reach(),
+                  [&](const Patch<D>& patch, const Index<D>&, int cell) {
+                    fetch(pool, patch, cell);
+                  });
   }
 
   /// Forget all and take what is around these nodes of another tile.
   void gather(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
               const Index<D>& tile, std::span<const TileHolder> holders, std::uint64_t nodes) {
+    gather(grid, body, pool, tile, holders, nodes, grid.reach());
+  }
+  /// Of the cells from which these would be in such a reach.
+  void gather(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
+              const Index<D>& tile, std::span<const TileHolder> holders, std::uint64_t nodes,
+              const Reach& reach) {
     basis_ = grid.basis;
     lanes_.clear();
     filled_.fill(0);
-    for_each_cell(grid, holders, nodes,
+    for_each_cell(grid, holders, nodes, reach,
                   [&](const Patch<D>& patch, const Index<D>& offset, int cell) {
                     Index<D> place = Tile<D>::cell_index(cell);
                     for (std::size_t a = 0; a < D; ++a) place[a] += Tile<D>::cells * offset[a];
@@ -90,19 +122,33 @@ class TileParticles {
                   });
   }
 
-  /// f(patch, offset of its tile, cell) for the cells with particles from which nodes of a tile are
-  /// in reach.
+  /// f(shift, lanes) for the cells up to `range` from that of a point x, counted from the tile's
+  /// first node [cells]; `shift` + xi are the positions of the particles.
   template <class F>
-  static void for_each_cell(const TileGrid<D>& grid, std::span<const TileHolder> holders,
-                            std::uint64_t nodes, F&& f) {
-    for (const TileHolder& h : holders) {
-      const Patch<D>& patch = grid.patches[static_cast<std::size_t>(h.patch)];
-      // A holder says where the tile lies from its patch; offsets are numbered so that k and
-      // neighbours - 1 - k are opposite.
-      const Index<D> offset = Tile<D>::offset(Tile<D>::neighbours - 1 - h.neighbour);
-      std::uint64_t cells = patch.occupied & cells_in_reach<D>(nodes, offset, grid.reach());
-      for (; cells != 0; cells &= cells - 1) f(patch, offset, std::countr_zero(cells));
+  void within(const Vec<double, D>& x, int range, F&& f) const {
+    Index<D> low, high;
+    for (int a = 0; a < D; ++a) {
+      const auto k = static_cast<std::size_t>(a);
+      const int cell = static_cast<int>(std::floor(x[a] + own_node()));
+      low[k] = std::max(cell - range, -before_tile);
+      high[k] = std::min(cell + range, edge - before_tile - 1);
+      if (low[k] > high[k]) return;
     }
+    Index<D> first = low, last = high;
+    last[0] = low[0];  // the cells of a row follow one another
+    const int width = high[0] - low[0] + 1;
+    for_each_index<D>(first, last, [&](Index<D> cell) {
+      const int row = number(cell);
+      std::uint64_t filled = bits_from(filled_.data(), row) & low_bits(width);
+      for (; filled != 0; filled &= filled - 1) {
+        const int k = std::countr_zero(filled);
+        Vec<double, D> shift;
+        for (int a = 0; a < D; ++a) shift[a] = cell[static_cast<std::size_t>(a)] - own_node();
+        shift[0] += k;
+        const Cell& c = cells_[static_cast<std::size_t>(row + k)];
+        for (std::uint32_t i = c.begin; i < c.end; ++i) f(shift, lanes_[i]);
+      }
+    });
   }
 
   /// f(place, lanes) for the cells from which a node is in reach; `place` is the node's, as counted
@@ -127,9 +173,9 @@ class TileParticles {
   struct Cell {
     std::uint32_t begin, end;  // of lanes_
   };
-  // Cells from which nodes of a tile may be in reach: its own, and some on each side.
-  static constexpr int before_tile = Bases::after_max;
-  static constexpr int edge = Tile<D>::cells + before_tile + Bases::before_max;
+  // Cells that may be gathered: a tile's own, and some on each side.
+  static constexpr int before_tile = std::max(Bases::after_max, range_max);
+  static constexpr int edge = Tile<D>::cells + before_tile + std::max(Bases::before_max, range_max);
   static constexpr int cell_count = power(edge, D);
 
   /// The cells from which a node is in reach, the first axis fastest.
@@ -154,6 +200,21 @@ class TileParticles {
     }
     return all;
   }();
+
+  /// f(patch, offset of its tile, cell) for the cells with particles from which nodes of a tile are
+  /// in reach.
+  template <class F>
+  static void for_each_cell(const TileGrid<D>& grid, std::span<const TileHolder> holders,
+                            std::uint64_t nodes, const Reach& reach, F&& f) {
+    for (const TileHolder& h : holders) {
+      const Patch<D>& patch = grid.patches[static_cast<std::size_t>(h.patch)];
+      // A holder says where the tile lies from its patch; offsets are numbered so that k and
+      // neighbours - 1 - k are opposite.
+      const Index<D> offset = Tile<D>::offset(Tile<D>::neighbours - 1 - h.neighbour);
+      std::uint64_t cells = patch.occupied & cells_in_reach<D>(nodes, offset, reach);
+      for (; cells != 0; cells &= cells - 1) f(patch, offset, std::countr_zero(cells));
+    }
+  }
 
   /// Of a cell, by its coordinates from the tile's first.
   static int number(const Index<D>& cell) {
@@ -180,26 +241,15 @@ class TileParticles {
   /// The particles of a patch's cell; `place` is that of the cell as counted from the tile's first.
   void read(const TileGrid<D>& grid, double mean_edge, const ParticlePool<D>& pool,
             const Index<D>& first, const Patch<D>& patch, int cell, const Index<D>& place) {
-    constexpr int W = contact_lanes;
-    const CellCoordinates<D> coordinates = grid.coordinates();
     const auto n = static_cast<std::size_t>(number(place)), c = static_cast<std::size_t>(cell);
     // Each cell is read once: tiles and patches of a body are one to one.
     filled_[n / 64] |= std::uint64_t{1} << n % 64;
     cells_[n].begin = static_cast<std::uint32_t>(lanes_.size());
-    const std::uint32_t end = patch.cell_begin[c + 1];
-    for (std::uint32_t i = patch.cell_begin[c]; i < end; i += W) {
-      const LaneRows<W> rows(pool.order.data() + patch.begin + i, end - i);
-      Lanes& p = lanes_.emplace_back();
-      for (int a = 0; a < D; ++a) {
-        const auto k = static_cast<std::size_t>(a);
-        p.xi[a] =
-            local_coordinate(coordinates.in_cells(load(pool.x(a), rows), a), first[k] + place[k]);
-      }
-      // Zero mass is how all that follows knows an empty lane.
-      p.mass = select(first_lanes<W>(rows.count), load(pool.mass(), rows), T(0.0));
-      p.half = T(0.5 / grid.cell_size) * particle_edge<D>(load(pool.volume(), rows), mean_edge);
-      if (pool.set_back >= 0) p.half *= T(1.0) - load(pool.columns.component(pool.set_back), rows);
-    }
+    Index<D> in_grid = first;
+    for (std::size_t a = 0; a < D; ++a) in_grid[a] += place[a];
+    const std::uint32_t end = patch.begin + patch.cell_begin[c + 1];
+    for (std::uint32_t i = patch.begin + patch.cell_begin[c]; i < end; i += T::lanes)
+      lanes_.push_back(lanes_of(grid, mean_edge, pool, in_grid, i, end));
     cells_[n].end = static_cast<std::uint32_t>(lanes_.size());
   }
 

@@ -103,7 +103,7 @@ Batch<W> load(const Number* column, const LaneRows<W>& rows) {
     if constexpr (std::is_same_v<Number, double>)
       return load_first<W>(first, rows.count, column[rows.row[W - 1]]);
   }
-  Batch<W> b;
+  Batch<W> b(0.0);
   for (int k = 0; k < W; ++k) b.v[k] = column[rows.row[k]];
   return b;
 }

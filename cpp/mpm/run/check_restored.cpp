@@ -62,7 +62,7 @@ void check_particles(const TileGrid<D>& grid, const ParticlePool<D>& pool, const
                std::abs(grid.in_cells(x[a], a)) < farthest;
       if (pool.set_back >= 0) {
         const double share = pool.columns.component(pool.set_back)[row];
-        fine = fine && share >= 0.0 && share < 1.0;
+        fine = fine && share >= 0.0 && std::isfinite(share);
       }
       check(fine, "its particles are damaged");
       check(patch.left_cell || grid.cell_of(x) == cell, "its lists are damaged");

@@ -1,8 +1,8 @@
 #include "mpm/run/start_contact.hpp"
 
+#include "mpm/contact/find_touches.hpp"
 #include "mpm/contact/set_back.hpp"
 #include "mpm/particles/make_body.hpp"
-#include "mpm/step/stages.hpp"
 
 namespace mpm {
 
@@ -15,13 +15,9 @@ void add_contact_columns(Domain<D>& domain) {
 template <int D>
 void start_contact(Domain<D>& domain) {
   if (!domain.has_springs()) return;
-  map_momentum(domain);
-  fold_momentum(domain);
-  exchange_momentum(domain);
-  find_velocities(domain);
-  contact_momentum(domain);
-  set_back_surfaces(domain.contact, domain.grid, domain.bodies, domain.pools,
-                    domain.contact_settings, domain.threads);
+  find_touches(domain.contact, domain.grid, domain.bodies, domain.pools,
+               domain.contact_settings.gap_distance / domain.grid.cell_size, domain.threads);
+  set_back_surfaces(domain.contact, domain.bodies, domain.pools);
 }
 
 template void add_contact_columns<2>(Domain<2>&);

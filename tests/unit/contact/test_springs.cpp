@@ -1,11 +1,13 @@
-// Springs between particles that overlap: flat layers in closed form, shares of nodes, and the
-// impulse over a step.
+// Springs between particles and bodies that overlap: the surface of flat layers, their pressure in
+// closed form, shares of nodes, and the impulse over a step.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "check.hpp"
 #include "mpm/contact/node_solver.hpp"
 #include "mpm/contact/springs.hpp"
+#include "mpm/contact/surface.hpp"
 
 namespace {
 
@@ -18,59 +20,102 @@ double quadratic(double d) {
   return x < 0.5 ? 0.75 - x * x : x < 1.5 ? 0.5 * (1.5 - x) * (1.5 - x) : 0.0;
 }
 
-/// Layers of particles half a cell wide, so many deep, around a node: they fill one side of the
-/// plane at `surface` along the last axis, towards `side`, and are moved by `shift` along it.
+/// Layers of a lattice of particles, the outermost of which a point lies over by z, all in edges of
+/// the particles: by how much it is taken to be lower than it is, of an edge.
 template <int D>
-void fill(NearParticles<D>& to, double surface, double side, double shift) {
-  using T = typename NearParticles<D>::T;
-  constexpr double reach = 1.5;
-  to.clear(1000);
+double sinks(double z, double edge, const Vec<double, D>& beside, int layers) {
+  using T = typename SurfaceSum<D>::T;
+  SurfaceSum<D> sum;
   Index<D> low, high;
   low.fill(-4), high.fill(4);
-  low[D - 1] = 0, high[D - 1] = 3;
+  low[D - 1] = 0, high[D - 1] = layers - 1;
   for_each_index<D>(low, high, [&](const Index<D>& k) {
-    Vec<T, D> x;
-    bool near = true;
-    for (int a = 0; a < D; ++a) {
-      const auto i = static_cast<std::size_t>(a);
-      const double at = a < D - 1 ? 0.5 * (k[i] + shift) : surface + side * 0.5 * (k[i] + 0.5);
-      near = near && std::abs(at) < reach;
-      x[a] = T(at);
-    }
-    if (near) to.add(x, T(0.25), select(first_lanes<T::lanes>(1), T(1.0), T(0.0)));
+    Vec<T, D> d;
+    for (int a = 0; a + 1 < D; ++a)
+      d[a] = T(edge * (k[static_cast<std::size_t>(a)] + beside[a]));
+    d[D - 1] = T(-edge * (z + k[D - 1]));
+    sum.add(d, T(0.5 * edge), select(first_lanes<T::lanes>(1), T(1.0), T(0.0)), 10.0);
   });
-  to.finish();
+  return z - sum.height(sum.half()) / edge;
 }
 
-/// Two flat bodies overlap by o: a pressure o / (e / M_r + e / M_s) with edges e, of which a node
-/// at a distance z from the middle of the overlap has N(z) per area of a cell's face.
+/// The surface of flat layers has dents of less than 0.004 of an edge, of which the mean is none;
+/// the layer below lifts it where bodies overlap, by less than a hundredth of the overlap.
+template <int D>
+void check_surface(mpm::testing::Report& report, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  for (const double z : {0.8, 0.9, 1.0}) {
+    double mean = 0.0, most = 0.0;
+    constexpr int places = 400;
+    for (int k = 0; k < places; ++k) {
+      Vec<double, D> beside;
+      for (int a = 0; a < D; ++a) beside[a] = any(random);
+      const double here = sinks<D>(z, 0.1 + any(random), beside, 1);
+      mean += here / places;
+      most = std::max(most, std::abs(here));
+      const double by_layers = sinks<D>(z, 1.0, beside, 3) - sinks<D>(z, 1.0, beside, 1);
+      CHECK_CLOSE(by_layers, 0.0, 0.01 * (1.0 - z) + 10 * eps);
+    }
+    CHECK(most < 4e-3, z, most);
+    CHECK(std::abs(mean) < 1e-3, z, mean);
+  }
+}
+
+/// A flat layer of particles, each over its other body by o, is pressed by o / (e / M_r + e / M_s)
+/// with edges e, half from either side; of this a node at a distance z from the middle of the
+/// overlap has N(z) per area of a cell's face.
 template <int D>
 void check_layers(mpm::testing::Report& report, std::mt19937_64& random) {
   std::uniform_real_distribution<double> any(0.0, 1.0);
   for (int k = 0; k < 50; ++k) {
     const double middle = 1.2 * (any(random) - 0.5), o = 0.1 * any(random), shift = any(random);
-    const double of_r = k % 5 == 0 ? 0.0 : any(random), of_s = 1.0 + any(random), h = 0.3;
-    NearParticles<D> r, s;
-    // One beside the other, so that the caps' dents play no part.
-    fill<D>(r, middle + 0.5 * o, -1.0, shift);
-    fill<D>(s, middle - 0.5 * o, 1.0, shift);
-    Vec<double, D> n = Vec<double, D>::zero();
+    const double give_r = k % 5 == 0 ? 0.0 : any(random), give_s = 1.0 + any(random), h = 0.3;
+    Vec<double, D> n = Vec<double, D>::zero(), node;
+    for (int a = 0; a < D; ++a) node[a] = any(random);
     n[D - 1] = 1.0;
     const NodeShare<D> share(spline, 0.5, Walls<D>{}, Index<D>{});
-    const SpringSide<D> side_r{r, of_r, share}, side_s{s, of_s, share};
-    const ContactSpring spring = Springs<D>(side_r, side_s, n, 0.0).at(h);
-    const double stiffness = quadratic(middle) / (0.5 * h * (of_r + of_s)) * std::pow(h, D - 1);
+    const SpringSide<D> r{0, give_r, share}, s{1, give_s, share};
+    Springs<D> springs;
+    for (const std::int32_t own : {0, 1}) {
+      Index<D> low, high;
+      low.fill(-4), high.fill(4);
+      low[D - 1] = high[D - 1] = 0;
+      for_each_index<D>(low, high, [&](const Index<D>& i) {
+        Touch<D> touch{own, 1 - own, 0, node, 0.25, 0.2, 0.25, o};  // set back by 0.05
+        for (int a = 0; a + 1 < D; ++a)
+          touch.x[a] += 0.5 * (i[static_cast<std::size_t>(a)] + shift);
+        touch.x[D - 1] += middle + (own == 0 ? -1.0 : 1.0) * (0.2 - 0.5 * o);
+        springs.add(touch, node, r, s, n, 0.0);
+      });
+    }
+    const double stiffness = quadratic(middle) / (0.5 * h * (give_r + give_s)) * std::pow(h, D - 1);
     // Some hundred terms.
+    const ContactSpring spring = springs.at(h);
     CHECK_CLOSE(spring.stiffness, stiffness, 1000 * eps * stiffness);
     CHECK_CLOSE(spring.force, stiffness * o * h, 1000 * eps * stiffness * h);
-    const ContactSpring other = Springs<D>(side_s, side_r, -1.0 * n, 0.0).at(h);
-    CHECK_CLOSE(other.force, spring.force, 1000 * eps * spring.force);
-    // They act from the given distance on.
-    const ContactSpring apart = Springs<D>(side_r, side_s, n, -1.1 * o).at(h);
-    CHECK_EQUAL(apart.force, 0.0);
-    const ContactSpring sooner = Springs<D>(side_r, side_s, n, 0.01).at(h);
-    CHECK(sooner.force > spring.force, sooner.force, spring.force);
+    CHECK_CLOSE(spring.energy, 0.5 * stiffness * o * o * h * h, 1000 * eps * stiffness * h * h);
   }
+}
+
+/// Beyond the walls of a box a body goes on: each face mirrors what is near to it.
+void check_images(mpm::testing::Report& report) {
+  Walls<2> walls;
+  walls.exist = true;
+  walls.cells = {1, 6};
+  walls.face[0][0] = walls.face[0][1] = Wall::slip;
+  walls.face[1][0] = Wall::fixed;
+  std::vector<std::pair<double, double>> images;
+  const auto find = [&](double x, double y) {
+    images.clear();
+    for_each_image<2>(walls, Vec<double, 2>{{x, y}}, 1.0,
+                      [&](const Vec<double, 2>& at) { images.emplace_back(at[0], at[1]); });
+    return images.size();
+  };
+  CHECK_EQUAL(find(0.25, 3.0), std::size_t{3});  // the box is but a cell wide
+  CHECK_EQUAL(find(0.25, 5.9), std::size_t{3});  // a free face has no image
+  CHECK_EQUAL(find(0.25, 0.5), std::size_t{6});
+  CHECK(std::ranges::count(images, std::pair{-0.25, -0.5}) == 1);
+  CHECK(std::ranges::count(images, std::pair{1.75, 0.5}) == 1);
 }
 
 /// A point before a wall with images gives all of its force to the nodes before it.
@@ -123,6 +168,9 @@ void check_impulse(mpm::testing::Report& report, std::mt19937_64& random) {
 
 void test_springs(mpm::testing::Report& report) {
   std::mt19937_64 random(5);
+  check_surface<2>(report, random);
+  check_surface<3>(report, random);
+  check_images(report);
   check_layers<2>(report, random);
   check_layers<3>(report, random);
   check_walls(report);

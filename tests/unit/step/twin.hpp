@@ -3,6 +3,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "mpm/contact/surface.hpp"
 #include "mpm/contact/candidates.hpp"
 #include "mpm/particles/make_body.hpp"
 #include "mpm/reference/absorb.hpp"
@@ -80,6 +81,7 @@ struct Twin {
     domain.contact_settings.friction = 0.3;
     if (choice.springs) domain.contact_settings.response = Response::springs;
     reference.springs = choice.springs;
+    reference.surface_range = surface_range(edge);
     reference.edge = [](double volume) {
       using T = Batch<contact_lanes>;
       return particle_edge<D>(T(volume), edge * cell_size)[0];
@@ -98,7 +100,8 @@ struct Twin {
         add_load(kind);
     build_cell_lists(grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
     list_kinds(domain);
-    if (domain.has_contact()) connect_tiles(domain.contact, grid, domain.bodies);
+    if (domain.has_contact()) connect_tiles(domain.contact, grid, domain.bodies,
+                    domain.contact_settings.response);
     domain.sums.resize(grid.patches.size());
     start_ledger();
   }

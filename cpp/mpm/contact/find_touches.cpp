@@ -1,0 +1,151 @@
+// Which particles overlap another body, and by how much (decision 0054).
+#include "mpm/contact/find_touches.hpp"
+
+#include <bit>
+#include <utility>
+
+#include "mpm/contact/surface.hpp"
+#include "mpm/contact/tile_particles.hpp"
+
+namespace mpm {
+namespace {
+
+/// A body around a tile. Cells of the tile are a bit each.
+template <int D>
+struct BodyNear {
+  std::int32_t body;
+  bool deforms;
+  int range;  // surface_range()
+  std::span<const TileHolder> holders;
+  const Patch<D>* own;   // its patch of the tile itself, if any
+  std::uint64_t near;    // cells so near to some of its particles that its surface is felt there
+  std::uint64_t wanted;  // cells with particles of other bodies for which it is looked at
+  TileParticles<D> particles;
+};
+
+/// Scratch of one thread: the bodies around a tile, the first `count`.
+template <int D>
+struct BodiesNear {
+  std::vector<BodyNear<D>> bodies;
+  std::size_t count = 0;
+  std::span<BodyNear<D>> all() { return {bodies.data(), count}; }
+};
+
+Reach reach_to(int range) { return {range, range, 0.0}; }
+
+template <int D>
+void look_around(const Contact<D>& contact, const TileGrid<D>& grid,
+                 const std::vector<Body<D>>& bodies, const ContactTile<D>& tile,
+                 BodiesNear<D>& found) {
+  found.count = 0;
+  const std::uint32_t end = tile.first_holder + tile.holders;
+  for (std::uint32_t h = tile.first_holder; h < end;) {
+    if (found.count == found.bodies.size()) found.bodies.emplace_back();
+    BodyNear<D>& at = found.bodies[found.count++];
+    at.body = contact.holders[h].body;
+    const Body<D>& body = bodies[static_cast<std::size_t>(at.body)];
+    at.deforms = body.deforms();
+    at.range = surface_range(body.mean_edge / grid.cell_size);
+    at.own = nullptr;
+    at.near = at.wanted = 0;
+    const std::uint32_t first = h;
+    for (; h < end && contact.holders[h].body == at.body; ++h) {
+      const TileHolder& holder = contact.holders[h];
+      const Patch<D>& patch = grid.patches[static_cast<std::size_t>(holder.patch)];
+      if (holder.neighbour == Tile<D>::self) at.own = &patch;
+      at.near |= cells_in_reach<D>(patch.occupied, Tile<D>::offset(holder.neighbour),
+                                   reach_to(at.range));
+    }
+    at.holders = {&contact.holders[first], h - first};
+  }
+  for (const BodyNear<D>& r : found.all())
+    for (BodyNear<D>& s : found.all())
+      // Bodies that do not deform have no stress that could part them.
+      if (r.own != nullptr && r.body != s.body && (r.deforms || s.deforms))
+        s.wanted |= r.own->occupied & s.near;
+}
+
+/// The particles of a tile's patch that overlap another body.
+template <int D>
+void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                 const ParticlePool<D>& pool, const BodyNear<D>& own, const BodyNear<D>& other,
+                 double distance, std::vector<Touch<D>>& touches) {
+  const Index<D> first = grid.first_cell(own.own->tile);
+  Vec<double, D> origin;
+  for (int a = 0; a < D; ++a) origin[a] = first[static_cast<std::size_t>(a)];
+  const double mean_edge = bodies[static_cast<std::size_t>(own.body)].mean_edge;
+  using Particles = TileParticles<D>;
+  for (std::uint64_t cells = own.own->occupied & other.near; cells != 0; cells &= cells - 1) {
+    const int c = std::countr_zero(cells);
+    const Index<D> cell = Tile<D>::cell_index(c);
+    Index<D> in_grid = first;
+    for (std::size_t a = 0; a < D; ++a) in_grid[a] += cell[a];
+    const auto k = static_cast<std::size_t>(c);
+    const std::uint32_t end = own.own->begin + own.own->cell_begin[k + 1];
+    for (std::uint32_t i = own.own->begin + own.own->cell_begin[k]; i < end; i += contact_lanes) {
+      const auto lanes = Particles::lanes_of(grid, mean_edge, pool, in_grid, i, end);
+      for (std::uint32_t lane = 0; lane < contact_lanes && i + lane < end; ++lane) {
+        const int l = static_cast<int>(lane);
+        Vec<double, D> x;
+        for (int a = 0; a < D; ++a)
+          x[a] = cell[static_cast<std::size_t>(a)] + lanes.xi[a][l] - other.particles.own_node();
+        SurfaceSum<D> sum;
+        for_each_image(grid.walls, origin + x, other.range, [&](const Vec<double, D>& image) {
+          const Vec<double, D> from_tile = image - origin;
+          other.particles.within(from_tile, other.range, [&](const auto& shift, const auto& q) {
+            Vec<Batch<contact_lanes>, D> d;
+            for (int a = 0; a < D; ++a)
+              d[a] = q.xi[a] + Batch<contact_lanes>(shift[a] - from_tile[a]);
+            sum.add(d, q.half, q.mass, other.range);
+          });
+        });
+        const double half = lanes.half[l], surface = half - lanes.set_back[l],
+                     half_of_other = sum.half();
+        if (half_of_other == 0.0) continue;
+        const double overlap =
+            surface + half_of_other + distance - sum.height(half_of_other);
+        if (overlap > 0.0)
+          touches.push_back(
+              {own.body, other.body, i + lane, x, half, surface, half_of_other, overlap});
+      }
+    }
+  }
+}
+
+}  // namespace
+
+template <int D>
+void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                  const std::vector<ParticlePool<D>>& pools, double distance, Threads& threads) {
+  const TileShares shares(contact.tiles.size(), threads.count());
+  // None goes: their memory is used again.
+  if (shares.count > contact.touches.size()) contact.touches.resize(shares.count);
+  threads.for_each(shares.count, [&](std::size_t share) {
+    thread_local BodiesNear<D> around;
+    std::vector<Touch<D>>& touches = contact.touches[share];
+    touches.clear();
+    for (std::size_t t = shares.first(share); t < shares.first(share + 1); ++t) {
+      ContactTile<D>& tile = contact.tiles[t];
+      tile.touches = {static_cast<std::uint32_t>(share),
+                      static_cast<std::uint32_t>(touches.size()), 0};
+      look_around(contact, grid, bodies, tile, around);
+      for (BodyNear<D>& s : around.all())
+        if (s.wanted != 0)
+          s.particles.gather(grid, bodies[static_cast<std::size_t>(s.body)],
+                             pools[pool_number(bodies, s.body)], tile.tile, s.holders, s.wanted,
+                             reach_to(s.range));
+      for (const BodyNear<D>& r : around.all())
+        for (const BodyNear<D>& s : around.all())
+          if (r.own != nullptr && r.body != s.body && (r.deforms || s.deforms))
+            add_touches(grid, bodies, pools[pool_number(bodies, r.body)], r, s, distance, touches);
+      tile.touches.count = static_cast<std::uint32_t>(touches.size()) - tile.touches.first;
+    }
+  });
+}
+
+template void find_touches<2>(Contact<2>&, const TileGrid<2>&, const std::vector<Body<2>>&,
+                              const std::vector<ParticlePool<2>>&, double, Threads&);
+template void find_touches<3>(Contact<3>&, const TileGrid<3>&, const std::vector<Body<3>>&,
+                              const std::vector<ParticlePool<3>>&, double, Threads&);
+
+}  // namespace mpm
