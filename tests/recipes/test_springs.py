@@ -133,19 +133,21 @@ def blocks(dimension: int, overlap: float, speed: float, fixed: bool = False) ->
 @pytest.mark.parametrize("fixed", [False, True])
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_bodies_that_overlap_at_the_start_stay_where_they_are(dimension: int, fixed: bool) -> None:
-    """Surfaces that overlap by a tenth of a cell are set back by half of it: a fifth of l each."""
+    """Surfaces that overlap by a tenth of a cell are each set back by that: 0.4 l."""
     simulation = Simulation(blocks(dimension, 0.1, 0.0, fixed))
     simulation.advance(100)
     for body, at_surface in (("under", 9.75e-3), ("over", 10.15e-3)):
-        assert np.abs(simulation.column(body, "velocity")).max() == 0.0
+        # What is left of the overlap is rounding.
+        assert np.abs(simulation.column(body, "velocity")).max() < 1e-12
         x, back = simulation.column(body, "position"), simulation.column(body, "set_back")[:, 0]
-        # Away from the edges of the upper block the normal leans by less than two degrees.
+        # Away from the edges of the upper block, where its surface is rounded.
         inside = np.all((x[:, :-1] > 4e-3) & (x[:, :-1] < 7e-3), axis=1)
         surface = np.abs(x[:, -1] - at_surface) < 1e-6
         assert (inside & surface).sum() == 6 ** (dimension - 1)
-        assert back[inside & surface] == pytest.approx(0.2, rel=5e-3)
+        # The layer below lifts the surface by a hundredth of the overlap.
+        assert back[inside & surface] == pytest.approx(0.4, rel=2e-2)
         assert not back[~surface].any()
-    assert not history(simulation)["kinetic"].any()
+    assert history(simulation)["kinetic"].max() < 1e-24
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
