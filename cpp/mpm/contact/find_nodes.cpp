@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mpm/contact/find_pairs.hpp"
+#include "mpm/contact/find_springs.hpp"
 #include "mpm/contact/find_touches.hpp"
 #include "mpm/contact/rigid_masses.hpp"
 
@@ -162,14 +163,16 @@ void add_nodes(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<B
     read_sides(contact, grid, bodies, part, part.nodes[n]);
 }
 
-/// The pairs at a node where none touches.
+/// The pairs at the nodes of a tile, number t, those of a part from the first-th on, and their
+/// springs.
 template <int D>
-void leave_open(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
-                ContactPart<D>& part, const ContactNode& node) {
-  ContactPair<D>* next = &part.pairs[node.first_pair];
-  for (std::uint16_t r = 0; r < node.sides; ++r)
-    for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s)
-      *next++ = new_pair<D>(bodies, settings, part.sides_of(node), r, s);
+void fill_springs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                  const ContactSettings& settings, std::size_t t, TileTouches<D>& touches,
+                  ContactPart<D>& part, std::size_t first) {
+  touches.gather(contact, t);
+  for (std::size_t n = first; n < part.nodes.size(); ++n)
+    find_springs<D>(grid, bodies, settings, touches, part, part.nodes[n],
+                    place_of(contact, grid, part.nodes[n]));
 }
 
 /// Normals, gaps and frictions of the pairs at the nodes of a tile, those of a part from the
@@ -182,12 +185,8 @@ void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<
   ContactPart<D>& part = contact.parts[p];
   const std::span<ContactNode> nodes(part.nodes.begin() + static_cast<std::ptrdiff_t>(first),
                                      part.nodes.end());
-  // Particles are gathered only where pairs are to be found: most of what contact costs.
+  // Particles are gathered only around nodes where nothing is cached: most of what contact costs.
   std::uint64_t missing = around.overlapped;
-  if (settings.response == Response::springs) {
-    around.touches.gather(contact, grid, bodies, t);
-    missing &= around.touches.nodes();
-  }
   if (contact.cache.on)
     for (const ContactNode& node : nodes)
       if (reuse_pairs(contact, bodies, settings, grid.cell_size, tile, part, node))
@@ -201,10 +200,8 @@ void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<
     }
   for (const ContactNode& node : nodes)
     if (missing >> node.cell & 1u) {
-      find_pairs<D>(grid, bodies, settings, around, part, node, place_of(contact, grid, node));
+      find_pairs<D>(grid, bodies, settings, around, part, node);
       if (contact.cache.on) store_pairs(contact.cache, part, node);
-    } else if (!contact.cache.on) {
-      leave_open<D>(bodies, settings, part, node);
     }
   // Where nodes are kept none is left out, so that those of the bits are there one by one.
   tile.cached = contact.cache.on ? around.overlapped : 0;
@@ -222,7 +219,8 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
   // The bits hold for this step only: masses have just been mapped.
   contact.masses.find(grid, threads);
   if (contact.cache.on) add_displacements(contact.cache, bodies.size());
-  if (settings.response == Response::springs)
+  const bool springs = settings.response == Response::springs;
+  if (springs)
     find_touches(contact, grid, bodies, pools, settings.gap_distance / grid.cell_size, threads);
   const TileShares shares(contact.tiles.size(), threads.count());
   if (shares.count > contact.parts.size())
@@ -238,10 +236,13 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
         continue;
       }
       const std::size_t first = part.nodes.size();
-      if (!contact.cache.on && settings.response == Response::impulses)
+      if (!contact.cache.on && !springs)
         fetch_particles(contact, grid, bodies, pools, around, around.overlapped);
       add_nodes(contact, grid, bodies, t, around, part);
-      fill_pairs(contact, grid, bodies, pools, settings, t, around, p, first);
+      if (springs)
+        fill_springs(contact, grid, bodies, settings, t, around.touches, part, first);
+      else
+        fill_pairs(contact, grid, bodies, pools, settings, t, around, p, first);
       // A rigid body's mass is spread over all its nodes, so they stay.
       if (!contact.cache.on)
         part.leave_out(first, [&](const ContactNode& node) {

@@ -1,12 +1,10 @@
 // The pairs of bodies at a node: normals, gaps, eq. (5), and frictions.
 #include "mpm/contact/find_pairs.hpp"
 
-#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "mpm/contact/normal.hpp"
-#include "mpm/contact/springs.hpp"
 
 namespace mpm {
 namespace {
@@ -80,41 +78,6 @@ std::span<const NormalSource<D>> sources_at(const TileGrid<D>& grid,
   return {sources.data(), sides.size()};
 }
 
-/// What a pair of bodies that push each other by springs finds at a node.
-template <int D>
-void find_springs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                  const ContactSettings& settings, std::span<const Touch<D>> touches,
-                  const NormalSource<D>& r, const NormalSource<D>& s, const ContactNode& node,
-                  const Index<D>& place, ContactPair<D>& pair) {
-  Vec<double, D> at;  // from the tile's first node
-  for (int a = 0; a < D; ++a) at[a] = Tile<D>::cell_index(node.cell)[static_cast<std::size_t>(a)];
-  const auto reaches = [&](const Touch<D>& touch) {
-    const double reach = touch_reach(grid, bodies, touch);
-    bool near = true;
-    for (int a = 0; a < D; ++a) near = near && std::abs(touch.x[a] - at[a]) < reach;
-    return near;
-  };
-  if (std::ranges::none_of(touches, reaches)) return;
-  NormalRules::with(settings.normal, [&]<class Rule>(const Rule&) {
-    pair.normal = Rule::normal(r, s, node.constrained_axes);
-  });
-  if (!(dot(pair.normal, pair.normal) > 0.0)) return;
-  pair.gap = gap_along(pair.normal, r, s, grid.cell_size);  // it is recorded at the first contact
-  const auto side = [&](const NormalSource<D>& source) {
-    const Body<D>& body = bodies[static_cast<std::size_t>(source.body)];
-    return SpringSide<D>{
-        source.body, body.deforms() ? 1.0 / source.stiffness : 0.0,
-        NodeShare<D>(grid.basis, body.mean_edge / grid.cell_size, grid.walls, place)};
-  };
-  const SpringSide<D> of_r = side(r), of_s = side(s);
-  Springs<D> springs;
-  for (const Touch<D>& touch : touches)
-    if (reaches(touch))
-      springs.add(touch, at, of_r, of_s, pair.normal, settings.gap_distance / grid.cell_size);
-  pair.spring = springs.at(grid.cell_size);
-  pair.gap_closed = pair.active = pair.loaded = pair.spring.force > 0.0;
-}
-
 }  // namespace
 
 template <int D>
@@ -142,7 +105,7 @@ bool passes_gap_test(const ContactPair<D>& pair, const ContactSettings& settings
 template <int D>
 void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                 const ContactSettings& settings, TileBodies<D>& around, ContactPart<D>& part,
-                const ContactNode& node, const Index<D>& place) {
+                const ContactNode& node) {
   const auto sides = part.sides_of(node);
   const auto rigid = [&](std::uint32_t k) {
     return !bodies[static_cast<std::size_t>(sides[k].body)].deforms();
@@ -158,11 +121,6 @@ void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       pair = new_pair<D>(bodies, settings, sides, r, s);
       pair.gap = std::numeric_limits<double>::infinity();
       if (rigid(r) && rigid(s)) continue;  // they have no stress that could part them
-      if (settings.response == Response::springs) {
-        find_springs<D>(grid, bodies, settings, around.touches.between(sides[r].body, sides[s].body),
-                        sources[r], sources[s], node, place, pair);
-        continue;
-      }
       // Bodies that are well apart along the line between their centres need no better normal.
       // Only where the gap decides and the normal costs a fit. Where the centres coincide the gap
       // is infinite, and the pair is left here too.
@@ -190,8 +148,8 @@ template ContactPair<3> new_pair<3>(const std::vector<Body<3>>&, const ContactSe
 template bool passes_gap_test<2>(const ContactPair<2>&, const ContactSettings&, double);
 template bool passes_gap_test<3>(const ContactPair<3>&, const ContactSettings&, double);
 template void find_pairs<2>(const TileGrid<2>&, const std::vector<Body<2>>&, const ContactSettings&,
-                            TileBodies<2>&, ContactPart<2>&, const ContactNode&, const Index<2>&);
+                            TileBodies<2>&, ContactPart<2>&, const ContactNode&);
 template void find_pairs<3>(const TileGrid<3>&, const std::vector<Body<3>>&, const ContactSettings&,
-                            TileBodies<3>&, ContactPart<3>&, const ContactNode&, const Index<3>&);
+                            TileBodies<3>&, ContactPart<3>&, const ContactNode&);
 
 }  // namespace mpm

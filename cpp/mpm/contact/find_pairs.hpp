@@ -14,11 +14,10 @@ template <int D>
 bool passes_gap_test(const ContactPair<D>& pair, const ContactSettings& settings, double cell_size);
 
 /// Normals, gaps and frictions of the pairs at a node whose sides are known, from the particles
-/// around; and springs, if these are what parts the bodies. `place` are the node's coordinates in
-/// the grid.
+/// around.
 template <int D>
 void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                 const ContactSettings& settings, TileBodies<D>& around, ContactPart<D>& part,
-                const ContactNode& node, const Index<D>& place);
+                const ContactNode& node);
 
 }  // namespace mpm

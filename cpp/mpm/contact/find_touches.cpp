@@ -74,6 +74,8 @@ void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   Vec<double, D> origin;
   for (int a = 0; a < D; ++a) origin[a] = first[static_cast<std::size_t>(a)];
   const double mean_edge = bodies[static_cast<std::size_t>(own.body)].mean_edge;
+  // Springs act up to half an edge from their particle.
+  const double reach = support(grid.basis, mean_edge / grid.cell_size);
   using Particles = TileParticles<D>;
   for (std::uint64_t cells = own.own->occupied & other.near; cells != 0; cells &= cells - 1) {
     const int c = std::countr_zero(cells);
@@ -90,12 +92,14 @@ void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
         for (int a = 0; a < D; ++a)
           x[a] = cell[static_cast<std::size_t>(a)] + lanes.xi[a][l] - other.particles.own_node();
         SurfaceSum<D> sum;
-        for_each_image(grid.walls, origin + x, other.range, [&](const Vec<double, D>& image) {
+        for_each_image(grid.walls, origin + x, other.range, [&](const Vec<double, D>& image,
+                                                                const Vec<double, D>& signs) {
           const Vec<double, D> from_tile = image - origin;
           other.particles.within(from_tile, other.range, [&](const auto& shift, const auto& q) {
             Vec<Batch<contact_lanes>, D> d;
             for (int a = 0; a < D; ++a)
-              d[a] = q.xi[a] + Batch<contact_lanes>(shift[a] - from_tile[a]);
+              d[a] = Batch<contact_lanes>(signs[a]) *
+                     (q.xi[a] + Batch<contact_lanes>(shift[a] - from_tile[a]));
             sum.add(d, q.half, q.mass, other.range);
           });
         });
@@ -106,7 +110,7 @@ void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
             surface + half_of_other + distance - sum.height(half_of_other);
         if (overlap > 0.0)
           touches.push_back(
-              {own.body, other.body, i + lane, x, half, surface, half_of_other, overlap});
+              {own.body, other.body, i + lane, x, sum.normal(), half, surface, half_of_other, overlap, reach + half});
       }
     }
   }

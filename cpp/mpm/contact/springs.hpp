@@ -1,6 +1,7 @@
 #pragma once
 // Springs between particles and the bodies that they overlap, what they come to at a node (decisions
 // 0051 and 0054): a force at the place where the surfaces touch, and none where they are apart.
+#include <algorithm>
 #include <cmath>
 
 #include "mpm/basis/basis.hpp"
@@ -67,19 +68,19 @@ struct SpringSide {
   NodeShare<D> share;
 };
 
-/// The springs between two bodies at a node, n from r to s. Lengths in cells.
+/// The springs between two bodies r and s at a node, each along the normal of its touch. Lengths in
+/// cells.
 template <int D>
 class Springs {
  public:
   /// Add what a particle of r or s has there. Bodies closer than `distance` touch.
   void add(const Touch<D>& touch, const Vec<double, D>& node, const SpringSide<D>& r,
-           const SpringSide<D>& s, const Vec<double, D>& n, double distance) {
+           const SpringSide<D>& s, double distance) {
     const bool of_r = touch.body == r.body;
     const SpringSide<D>&own = of_r ? r : s, &other = of_r ? s : r;
     // In the middle between the surfaces: both bodies get the force there, at the same nodes.
-    const double to_middle =
-        (of_r ? 1.0 : -1.0) * (touch.surface + 0.5 * (distance - touch.overlap));
-    const double share = own.share.at(touch.x + to_middle * n - node);
+    const double to_middle = touch.surface + 0.5 * (distance - touch.overlap);
+    const double share = own.share.at(touch.x + to_middle * touch.normal - node);
     double face = 1.0;
     for (int a = 0; a + 1 < D; ++a) face *= 2.0 * touch.half;
     // Blocks of an edge each, one behind the other, that are shortened by the overlap; half of it,
@@ -87,21 +88,40 @@ class Springs {
     const double stiffness =
         0.5 * share * face /
         (2.0 * (touch.half * own.compliance + touch.half_of_other * other.compliance));
-    force_ += stiffness * touch.overlap;
-    stiffness_ += stiffness;
+    const Vec<double, D> n = (of_r ? 1.0 : -1.0) * touch.normal;  // from r to s
+    force_ += (stiffness * touch.overlap) * n;
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b <= a; ++b) stiffness_[a][b] += stiffness * n[a] * n[b];
     energy_ += 0.5 * stiffness * touch.overlap * touch.overlap;
+    deepest_ = std::max(deepest_, touch.overlap);
   }
 
-  /// At the node, of a cell size [m].
-  ContactSpring at(double cell_size) const {
+  /// Of the force, from r to s; zero if there is none. Axes in `constrained` have no part.
+  Vec<double, D> normal(unsigned constrained) const {
+    Vec<double, D> n = force_;
+    for (int a = 0; a < D; ++a)
+      if (constrained >> a & 1u) n[a] = 0.0;
+    return normalised(n);
+  }
+  /// Along a normal, of a cell size [m].
+  ContactSpring along(const Vec<double, D>& n, double cell_size) const {
     // Stiffness is a modulus times an area over a length.
     const double face = std::pow(cell_size, D - 1);
-    return {face * force_, face / cell_size * stiffness_, face * cell_size * energy_};
+    double stiffness = 0.0;
+    for (int a = 0; a < D; ++a) {
+      stiffness += n[a] * stiffness_[a][a] * n[a];
+      for (int b = 0; b < a; ++b) stiffness += 2.0 * n[a] * stiffness_[a][b] * n[b];
+    }
+    return {face * dot(force_, n), face / cell_size * stiffness, face * cell_size * energy_};
   }
+  /// The least distance of the bodies [m].
+  double gap(double distance, double cell_size) const { return cell_size * (distance - deepest_); }
 
  private:
-  double force_ = 0.0, stiffness_ = 0.0;  // [Pa cells^(D - 1)], [Pa cells^(D - 2)]
-  double energy_ = 0.0;                   // [Pa cells^D]
+  Vec<double, D> force_ = Vec<double, D>::zero();  // [Pa cells^(D - 1)]
+  double stiffness_[D][D] = {};                    // [Pa cells^(D - 2)], the lower triangle
+  double energy_ = 0.0;                            // [Pa cells^D]
+  double deepest_ = 0.0;
 };
 
 }  // namespace mpm

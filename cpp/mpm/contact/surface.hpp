@@ -27,10 +27,12 @@ class SurfaceSum {
     T square(0.0);
     for (int a = 0; a < D; ++a) square = fma(d[a], d[a], square);
     const T end = min(T(16.0) * half * half, T(range * range));
-    const T t = max(T(1.0) - square / end, T(0.0));
-    const T t2 = t * t, weight = select(mass > T(0.0), t2 * t2 * t2, T(0.0));
+    const T scale = T(1.0) / end, t = max(fma(-square, scale, T(1.0)), T(0.0));
+    const T t2 = t * t, t5 = select(mass > T(0.0), t2 * t2 * t, T(0.0)), weight = t5 * t;
     sum_ += weight;
     halves_ = fma(weight, half, halves_);
+    const T slope = t5 * scale;
+    for (int a = 0; a < D; ++a) slope_[a] = fma(slope, d[a], slope_[a]);
   }
 
   /// Half the edge of the particles, as they count [cells]; none: 0.
@@ -42,6 +44,12 @@ class SurfaceSum {
   double height(double half) const {
     const double power = std::pow(sum(sum_) / at_an_edge(), 1.0 / exponent);
     return 4.0 * half * std::sqrt(std::max(1.0 - 0.75 * power, 0.0));
+  }
+  /// Unit vector along which the sum rises fastest, into the body; zero if there is none.
+  Vec<double, D> normal() const {
+    Vec<double, D> n;
+    for (int a = 0; a < D; ++a) n[a] = sum(slope_[a]);
+    return normalised(n);
   }
 
  private:
@@ -57,17 +65,19 @@ class SurfaceSum {
   }
 
   T sum_{0.0}, halves_{0.0};
+  Vec<T, D> slope_ = Vec<T, D>::zero();
 };
 
 /// Cells around that of a point in which the weights of a body's particles may lie: up to two
 /// edges, cut off there.
 inline int surface_range(double mean_edge) { return mean_edge < 0.51 ? 1 : 2; }
 
-/// f(image) for a point and what it is beyond the faces of the box that it is nearer to than
-/// `range`: a body goes on there as before the face. All in the grid's coordinates [cells].
+/// f(image, signs) for a point and what it is beyond the faces of the box that it is nearer to than
+/// `range`: a body goes on there as before the face. `signs` are -1 along the axes that are mirrored. All in the
+/// grid's coordinates [cells].
 template <int D, class F>
 void for_each_image(const Walls<D>& walls, const Vec<double, D>& x, double range, F&& f) {
-  double along[D][3];
+  double along[D][3], sign[3] = {1.0, -1.0, -1.0};
   Index<D> none{}, last{};
   for (int a = 0; a < D; ++a) {
     const auto k = static_cast<std::size_t>(a);
@@ -79,9 +89,13 @@ void for_each_image(const Walls<D>& walls, const Vec<double, D>& x, double range
     }
   }
   for_each_index<D>(none, last, [&](const Index<D>& chosen) {
-    Vec<double, D> image;
-    for (int a = 0; a < D; ++a) image[a] = along[a][chosen[static_cast<std::size_t>(a)]];
-    f(image);
+    Vec<double, D> image, signs;
+    for (int a = 0; a < D; ++a) {
+      const int k = chosen[static_cast<std::size_t>(a)];
+      image[a] = along[a][k];
+      signs[a] = sign[k];
+    }
+    f(image, signs);
   });
 }
 

@@ -10,22 +10,12 @@
 
 namespace mpm {
 
-/// How far along an axis nodes may be from a particle that touches, at most [cells]: its springs act
-/// up to half an edge from it.
-template <int D>
-double touch_reach(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                   const Touch<D>& touch) {
-  const double edge = bodies[static_cast<std::size_t>(touch.body)].mean_edge / grid.cell_size;
-  return support(grid.basis, edge) + touch.half;
-}
-
 template <int D>
 class TileTouches {
  public:
   /// Forget all and take those in and around another tile, number t of Contact::tiles, that reach
   /// some of its nodes.
-  void gather(const Contact<D>& contact, const TileGrid<D>& grid,
-              const std::vector<Body<D>>& bodies, std::size_t t) {
+  void gather(const Contact<D>& contact, std::size_t t) {
     touches_.clear();
     nodes_ = 0;
     for (int k = 0; k < Tile<D>::neighbours; ++k) {
@@ -38,7 +28,7 @@ class TileTouches {
            std::span(&contact.touches[range.share][range.first], range.count)) {
         Touch<D> here = touch;
         for (int a = 0; a < D; ++a) here.x[a] += Tile<D>::cells * offset[static_cast<std::size_t>(a)];
-        const std::uint64_t nodes = nodes_near(here.x, touch_reach(grid, bodies, touch));
+        const std::uint64_t nodes = nodes_near(here);
         if (nodes == 0) continue;
         nodes_ |= nodes;
         touches_.push_back(here);
@@ -60,13 +50,14 @@ class TileTouches {
   using Pair = std::pair<std::int32_t, std::int32_t>;
   static Pair pair_of(std::int32_t r, std::int32_t s) { return {std::min(r, s), std::max(r, s)}; }
   static Pair of_touch(const Touch<D>& touch) { return pair_of(touch.body, touch.other); }
-  /// Nodes of the tile, 64 in 2D and 3D, less than `reach` from a point along every axis.
-  static std::uint64_t nodes_near(const Vec<double, D>& x, double reach) {
+  /// Those of the tile's nodes, 64 in 2D and 3D, that a touch may reach.
+  static std::uint64_t nodes_near(const Touch<D>& touch) {
     std::uint64_t nodes = ~std::uint64_t{0};
     for (int a = 0; a < D; ++a) {
       std::uint64_t along = 0;
       for (int i = 0; i < Tile<D>::cells; ++i)
-        if (std::abs(x[a] - i) < reach) along |= Tile<D>::slice(static_cast<std::size_t>(a), i);
+        if (std::abs(touch.x[a] - i) < touch.reach)
+          along |= Tile<D>::slice(static_cast<std::size_t>(a), i);
       nodes &= along;
     }
     return nodes;

@@ -25,71 +25,89 @@ double share_of_node(const Step<D>& step, const Index<D>& i, const Vec<double, D
 }
 
 /// The sum over the particles of a body of (1 - d^2 / 4 e^2)^6 up to two of their edges e, at most
-/// `range`, and half their edge in that mean. Beyond the walls of the box the body goes on.
+/// `range`; half their edge in that mean; and the gradient of the sum. Beyond the walls of the box
+/// the body goes on.
+template <int D>
 struct Surface {
   double sum = 0.0, halves = 0.0;
+  Vec<double, D> gradient = Vec<double, D>::zero();
 };
 template <int D>
-Surface surface_at(const Step<D>& step, const Body<D>& body, const Vec<double, D>& x,
-                   double range) {
-  Surface surface;
-  const auto add = [&](const Vec<double, D>& image) {
-    for (const Particle<D>& q : body.particles) {
-      const double half = 0.5 * step.edge(q.V), end = std::min(4.0 * half, range);
-      const double t = 1.0 - dot(q.x - image, q.x - image) / (end * end);
-      if (!(t > 0.0)) continue;
-      surface.sum += std::pow(t, 6);
-      surface.halves += std::pow(t, 6) * half;
-    }
-  };
-  // Each axis: the point itself, and what it is beyond either wall.
+Surface<D> surface_at(const Step<D>& step, const Body<D>& body, const Vec<double, D>& x,
+                      double range) {
+  Surface<D> surface;
+  // Each axis: the particles as they are, and what they are beyond either wall.
   Index<D> low, high;
   low.fill(-1), high.fill(1);
   for_each_index<D>(low, high, [&](const Index<D>& side) {
-    Vec<double, D> image = x;
     for (int a = 0; a < D; ++a) {
       const auto k = static_cast<std::size_t>(a);
-      if (side[k] == 0) continue;
-      if (step.walls.face[k][side[k] < 0 ? 0 : 1] == Wall::free) return;
-      image[a] = (side[k] < 0 ? 0.0 : 2.0 * step.walls.cells[k] * step.h) - x[a];
+      if (side[k] != 0 && step.walls.face[k][side[k] < 0 ? 0 : 1] == Wall::free) return;
     }
-    add(image);
+    for (const Particle<D>& q : body.particles) {
+      Vec<double, D> d = q.x - x;
+      for (int a = 0; a < D; ++a) {
+        const auto k = static_cast<std::size_t>(a);
+        const double wall = side[k] < 0 ? 0.0 : step.walls.cells[k] * step.h;
+        if (side[k] != 0) d[a] = 2.0 * wall - q.x[a] - x[a];
+      }
+      const double half = 0.5 * step.edge(q.V), end = std::min(4.0 * half, range);
+      const double t = 1.0 - dot(d, d) / (end * end);
+      if (!(t > 0.0)) continue;
+      surface.sum += std::pow(t, 6);
+      surface.halves += std::pow(t, 6) * half;
+      surface.gradient += (12.0 / (end * end) * std::pow(t, 5)) * d;
+    }
   });
   return surface;
 }
 
 /// At each node, of every particle p of either body that the surface of the other lies over: the
 /// overlap is the shortening of a block of an edge of both, on p's face; half of it, as the others
-/// have their turn. A flat layer has the sum S_1 (4/3 (1 - z^2 / 4 e^2))^m at the height z.
+/// have their turn. A flat layer has the sum S_1 (4/3 (1 - z^2 / 4 e^2))^m at the height z. The
+/// normal of the node is that of the sum of the forces.
 template <int D>
 void find_springs(Step<D>& step) {
   const double m = 6.0 + 0.5 * (D - 1);
   const double S_1 = D == 2 ? 243.0 * std::sqrt(3.0) / 2002.0 : std::acos(-1.0) * 2187.0 / 28672.0;
+  const auto give = [](const Body<D>& b) {  // 1 / (rho c^2)
+    const double speed = b.material.sound_speed(1.0);
+    return b.deforms() ? 1.0 / (b.material.density * speed * speed) : 0.0;
+  };
+  struct Spring {
+    double stiffness, overlap;
+    Vec<double, D> n;  // from r to s
+  };
+  std::vector<std::vector<Spring>> springs(step.contacts.size());
   for (const std::size_t k : {0, 1}) {
     const Body<D>&own = step.bodies[k], &other = step.bodies[1 - k];
-    const auto give = [](const Body<D>& b) {  // 1 / (rho c^2)
-      const double speed = b.material.sound_speed(1.0);
-      return b.deforms() ? 1.0 / (b.material.density * speed * speed) : 0.0;
-    };
     for (const Particle<D>& p : own.particles) {
-      const Surface surface = surface_at(step, other, p.x, step.surface_range * step.h);
+      const Surface<D> surface = surface_at(step, other, p.x, step.surface_range * step.h);
       if (!(surface.sum > 0.0)) continue;
       const double l = 0.5 * step.edge(p.V), l_q = surface.halves / surface.sum;
       const double root = 1.0 - 0.75 * std::pow(surface.sum / S_1, 1.0 / m);
       const double overlap = l + l_q - 4.0 * l_q * std::sqrt(std::max(root, 0.0));
       if (!(overlap > 0.0)) continue;
       const double face = std::pow(2.0 * l, D - 1);
-      for (Contact<D>& c : step.contacts) {
-        if (!(dot(c.n, c.n) > 0.0)) continue;
-        const Vec<double, D> n = (k == 0 ? 1.0 : -1.0) * c.n;
-        const double N = share_of_node<D>(step, c.node, p.x + (l - 0.5 * overlap) * n);
+      const Vec<double, D> n = normalised(surface.gradient), x = p.x + (l - 0.5 * overlap) * n;
+      for (std::size_t i = 0; i < springs.size(); ++i) {
+        const double N = share_of_node<D>(step, step.contacts[i].node, x);
         const double k_p = 0.5 * N * face / (2.0 * (l * give(own) + l_q * give(other)));
-        c.stiffness += k_p;
-        c.push += k_p * overlap;
+        springs[i].push_back({k_p, overlap, (k == 0 ? 1.0 : -1.0) * n});
       }
     }
   }
-  for (Contact<D>& c : step.contacts) c.touching = c.push > 0.0;
+  for (std::size_t i = 0; i < springs.size(); ++i) {
+    Contact<D>& c = step.contacts[i];
+    Vec<double, D> force = Vec<double, D>::zero();
+    for (const Spring& spring : springs[i]) force += (spring.stiffness * spring.overlap) * spring.n;
+    step.hold(c.node, force);
+    c.n = normalised(force);
+    c.push = norm(force);
+    for (const Spring& spring : springs[i])
+      c.stiffness += spring.stiffness * dot(spring.n, c.n) * dot(spring.n, c.n);
+    c.touching = c.push > 0.0;
+  }
 }
 
 }  // namespace mpm::reference
