@@ -219,3 +219,60 @@ def test_a_block_that_slides_flush_with_walls_is_hardly_held() -> None:
 def test_what_springs_do_not_go_with(given: str, key: str) -> None:
     with pytest.raises(CaseError, match=f"(?s){key}.*does not go with contact.response"):
         Case.from_text(DISCS.replace("friction = 0.3", given))
+
+
+def cut_ball(dimension: int, cut: int) -> Case:
+    """Return a ball that falls on a block, of which walls cut off half along the first axes."""
+    axis = np.arange(-5.75, 6.0, 0.5) * 1e-3
+    grid = np.stack(np.meshgrid(*[axis] * dimension, indexing="ij"), axis=-1)
+    ball = grid.reshape(-1, dimension)
+    block = ball.copy()
+    ball = ball[np.linalg.norm(ball, axis=1) < 4e-3]
+    ball[:, -1] += 4e-3 - 0.2e-3
+    block[:, -1] -= 6e-3
+    # What is cut off is what the wall mirrors.
+    kept = [points[np.all(points[:, :cut] > 0.0, axis=1)] for points in (ball, block)]
+    volumes = [np.full(len(points), 0.5e-3**dimension) for points in kept]
+    material = {"density": 1000.0, "strength": {"elastic": {"E": "1 MPa", "nu": 0.3}}}
+    lower = [0.0] * cut + [-20e-3] * (dimension - cut)
+    faces = {f"{'xy'[a]}_min": "slip" for a in range(cut)}
+    return Case.model_validate(
+        {
+            "grid": {
+                "dimension": dimension,
+                "cell_size": "1 mm",
+                "box": {"lower": lower, "upper": [20e-3] * dimension, "walls": faces},
+            },
+            "run": {"end_time": "10 ms"},
+            "contact": {"response": "springs"},
+            "material": {"soft": material},
+            "body": {
+                "ball": {
+                    "particles": Particles(kept[0], volumes[0]),
+                    "material": "soft",
+                    "velocity": [0.0] * (dimension - 1) + [-1.0],
+                },
+                "block": {"particles": Particles(kept[1], volumes[1]), "material": "soft"},
+            },
+        }
+    )
+
+
+@pytest.mark.parametrize(("dimension", "cut"), [(2, 1), (3, 1), (3, 2)])
+def test_a_wall_is_a_plane_of_symmetry(dimension: int, cut: int) -> None:
+    """What is cut off along the first axes is as if it were there: the surface has no edge."""
+    whole, part = (Simulation(cut_ball(dimension, n)) for n in (0, cut))
+    for simulation in (whole, part):
+        simulation.advance(150)
+    [force], [of_part] = whole.core.contact_pairs(), part.core.contact_pairs()
+    assert whole.core.time == part.core.time
+    assert force.impulse[dimension - 1] > 0.1 * whole.column("ball", "mass").sum()  # of 1 m/s
+    assert of_part.impulse[dimension - 1] * 2**cut == pytest.approx(
+        force.impulse[dimension - 1], rel=1e-10
+    )
+    for body in ("ball", "block"):
+        x, v = whole.column(body, "position"), whole.column(body, "velocity")
+        before = Simulation(cut_ball(dimension, 0)).column(body, "position")
+        kept = np.all(before[:, :cut] > 0.0, axis=1)
+        assert part.column(body, "position") == pytest.approx(x[kept], abs=1e-13)
+        assert part.column(body, "velocity") == pytest.approx(v[kept], abs=1e-9)

@@ -145,7 +145,6 @@ void add_nodes(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<B
     part.bodies_max = std::max(part.bodies_max, static_cast<int>(here));
   }
   const auto nodes = static_cast<std::size_t>(std::popcount(around.overlapped));
-  part.overlapped += nodes;
   part.reserve(nodes, sides, pairs, places - sides);
   if (contact.cache.on) part.cached_nodes.resize(first + nodes);
   for (std::uint64_t left = around.overlapped; left != 0; left &= left - 1) {
@@ -161,18 +160,6 @@ void add_nodes(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<B
   if (contact.cache.on) part.cached.resize(part.pairs.size());
   for (std::size_t n = first; n < part.nodes.size(); ++n)
     read_sides(contact, grid, bodies, part, part.nodes[n]);
-}
-
-/// The pairs at the nodes of a tile, number t, those of a part from the first-th on, and their
-/// springs.
-template <int D>
-void fill_springs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                  const ContactSettings& settings, std::size_t t, TileTouches<D>& touches,
-                  ContactPart<D>& part, std::size_t first) {
-  touches.gather(contact, t);
-  for (std::size_t n = first; n < part.nodes.size(); ++n)
-    find_springs<D>(grid, bodies, settings, touches, part, part.nodes[n],
-                    place_of(contact, grid, part.nodes[n]));
 }
 
 /// Normals, gaps and frictions of the pairs at the nodes of a tile, those of a part from the
@@ -231,6 +218,12 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
     for (std::size_t t = shares.first(p); t < shares.first(p + 1); ++t) {
       TileBodies<D>& around = bodies_around<D>();
       look_around(contact, grid, contact.tiles[t], around);
+      part.overlapped += static_cast<std::size_t>(std::popcount(around.overlapped));
+      if (springs) {
+        around.touches.gather(contact, t);
+        // A rigid body's mass is spread over all nodes where it meets others.
+        if (!contact.has_rigid) around.overlapped &= around.touches.nodes();
+      }
       if (around.overlapped == 0) {
         contact.tiles[t].cached = 0;
         continue;
@@ -240,7 +233,9 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
         fetch_particles(contact, grid, bodies, pools, around, around.overlapped);
       add_nodes(contact, grid, bodies, t, around, part);
       if (springs)
-        fill_springs(contact, grid, bodies, settings, t, around.touches, part, first);
+        for (std::size_t n = first; n < part.nodes.size(); ++n)
+          find_springs<D>(grid, bodies, settings, around.touches, part, part.nodes[n],
+                          place_of(contact, grid, part.nodes[n]));
       else
         fill_pairs(contact, grid, bodies, pools, settings, t, around, p, first);
       // A rigid body's mass is spread over all its nodes, so they stay.

@@ -13,7 +13,7 @@ template <int D>
 SpringSide<D> side_of(const TileGrid<D>& grid, const Body<D>& body, std::int32_t number,
                       const Index<D>& node) {
   return {number, body.deforms() ? 1.0 / body.stiffness : 0.0,
-          NodeShare<D>(grid.basis, body.mean_edge / grid.cell_size, grid.walls, node)};
+          NodeShares<D>(grid.basis, body.mean_edge / grid.cell_size, grid.walls, node)};
 }
 
 }  // namespace

@@ -19,13 +19,13 @@ double shape_along(const B& basis, double x) {
   return node < 0 || node >= B::nodes ? 0.0 : basis.along(from_cell - cell).N[node];
 }
 
-/// What a point gives to a node of all that it has to give: N_i, and that of the node beyond a wall
+/// What a point gives to a node of all that it has to give: N_i, and that of the nodes beyond walls
 /// whose image the node is.
 template <int D>
-class NodeShare {
+class NodeShares {
  public:
   /// `node` in the grid's coordinates, `edge` of the particles at the start [cells].
-  NodeShare(BasisId basis, double edge, const Walls<D>& walls, const Index<D>& node)
+  NodeShares(BasisId basis, double edge, const Walls<D>& walls, const Index<D>& node)
       : basis_(basis), edge_(edge) {
     for (std::size_t a = 0; walls.exist && a < D; ++a)
       for (const int side : {0, 1}) {
@@ -34,30 +34,38 @@ class NodeShare {
         // The node itself is its own image.
         if (depth <= 0 || !(wall == Wall::slip || (wall == Wall::fixed && walls.odd_at_fixed)))
           continue;
-        sign_[a][side] = wall == Wall::slip ? 1.0 : -1.0;
-        to_image_[a][side] = (side == 0 ? 2.0 : -2.0) * depth;
+        images_[a][++last_[a]] = {(side == 0 ? 2.0 : -2.0) * depth, wall == Wall::fixed};
       }
   }
-  /// Of a point at x from the node [cells].
-  double at(const Vec<double, D>& x) const {
-    double share = 1.0;
+  /// f(share, signs) of a point at x from the node [cells], for each of these nodes; `signs` are
+  /// what the components of a vector are turned by.
+  template <class F>
+  void of(const Vec<double, D>& x, F&& f) const {
     Bases::with(basis_, edge_, [&]<BasisModel B>(const B& basis) {
-      for (int a = 0; a < D; ++a) {
-        const auto k = static_cast<std::size_t>(a);
-        double N = shape_along(basis, x[a]);
-        for (const int side : {0, 1})
-          if (sign_[k][side] != 0.0)
-            N += sign_[k][side] * shape_along(basis, x[a] + to_image_[k][side]);
-        share *= N;
-      }
+      for_each_index<D>(Index<D>{}, last_, [&](const Index<D>& chosen) {
+        double share = 1.0;
+        Vec<double, D> signs;
+        for (int a = 0; a < D; ++a) {
+          const auto k = static_cast<std::size_t>(a);
+          const Image& image = images_[k][chosen[k]];
+          share *= shape_along(basis, x[a] + image.away);
+          if (image.fixed) share = -share;
+          signs[a] = chosen[k] > 0 && !image.fixed ? -1.0 : 1.0;
+        }
+        if (share != 0.0) f(share, signs);
+      });
     });
-    return share;
   }
 
  private:
+  struct Image {
+    double away = 0.0;  // where the node lies as seen from that which it is the image of [cells]
+    bool fixed = false;
+  };
   BasisId basis_;
   double edge_;
-  double sign_[D][2] = {}, to_image_[D][2] = {};
+  Image images_[D][3];  // along each axis, the first the node itself
+  Index<D> last_{};
 };
 
 /// Body r or s of a pair at a node.
@@ -65,7 +73,7 @@ template <int D>
 struct SpringSide {
   std::int32_t body;
   double compliance;  // 1 / (rho c^2) [1/Pa]; 0 if it is rigid
-  NodeShare<D> share;
+  NodeShares<D> shares;
 };
 
 /// The springs between two bodies r and s at a node, each along the normal of its touch. Lengths in
@@ -80,20 +88,24 @@ class Springs {
     const SpringSide<D>&own = of_r ? r : s, &other = of_r ? s : r;
     // In the middle between the surfaces: both bodies get the force there, at the same nodes.
     const double to_middle = touch.surface + 0.5 * (distance - touch.overlap);
-    const double share = own.share.at(touch.x + to_middle * touch.normal - node);
     double face = 1.0;
     for (int a = 0; a + 1 < D; ++a) face *= 2.0 * touch.half;
     // Blocks of an edge each, one behind the other, that are shortened by the overlap; half of it,
     // as the other body's particles do the same.
-    const double stiffness =
-        0.5 * share * face /
-        (2.0 * (touch.half * own.compliance + touch.half_of_other * other.compliance));
-    const Vec<double, D> n = (of_r ? 1.0 : -1.0) * touch.normal;  // from r to s
-    force_ += (stiffness * touch.overlap) * n;
-    for (int a = 0; a < D; ++a)
-      for (int b = 0; b <= a; ++b) stiffness_[a][b] += stiffness * n[a] * n[b];
-    energy_ += 0.5 * stiffness * touch.overlap * touch.overlap;
-    deepest_ = std::max(deepest_, touch.overlap);
+    const double of_all =
+        0.5 * face / (2.0 * (touch.half * own.compliance + touch.half_of_other * other.compliance));
+    const double to_s = of_r ? 1.0 : -1.0;
+    own.shares.of(touch.x + to_middle * touch.normal - node,
+                  [&](double share, const Vec<double, D>& signs) {
+                    const double stiffness = share * of_all;
+                    Vec<double, D> n;  // from r to s
+                    for (int a = 0; a < D; ++a) n[a] = to_s * signs[a] * touch.normal[a];
+                    force_ += (stiffness * touch.overlap) * n;
+                    for (int a = 0; a < D; ++a)
+                      for (int b = 0; b <= a; ++b) stiffness_[a][b] += stiffness * n[a] * n[b];
+                    energy_ += 0.5 * stiffness * touch.overlap * touch.overlap;
+                    deepest_ = std::max(deepest_, touch.overlap);
+                  });
   }
 
   /// Of the force, from r to s; zero if there is none. Axes in `constrained` have no part.

@@ -4,24 +4,32 @@
 
 namespace mpm::reference {
 
-/// N_i(x), and for a node before a wall that mirrors what the node behind it has.
-template <int D>
-double share_of_node(const Step<D>& step, const Index<D>& i, const Vec<double, D>& x) {
-  double share = 1.0;
-  for (int a = 0; a < D; ++a) {
-    const auto k = static_cast<std::size_t>(a);
-    const auto N = [&](int node) { return step.S(x[a] / step.h - node).N; };
-    double of_axis = N(i[k]);
-    for (const std::size_t side : {0, 1}) {
-      const Wall wall = step.walls.face[k][side];
-      const int image = side == 0 ? -i[k] : 2 * step.walls.cells[k] - i[k];
-      if (side == 0 ? image >= 0 : image <= step.walls.cells[k]) continue;
-      if (wall == Wall::slip) of_axis += N(image);
-      if (wall == Wall::fixed && step.walls.odd_at_fixed) of_axis -= N(image);
+/// add(share, signs): N_i(x), and for a node before a wall that mirrors what the nodes behind it
+/// have, with the signs of a vector's components there.
+template <int D, class F>
+void share_of_node(const Step<D>& step, const Index<D>& i, const Vec<double, D>& x, F&& add) {
+  Index<D> low, high;
+  low.fill(-1), high.fill(1);
+  for_each_index<D>(low, high, [&](const Index<D>& side) {
+    double share = 1.0;
+    Vec<double, D> signs;
+    for (int a = 0; a < D; ++a) {
+      const auto k = static_cast<std::size_t>(a);
+      int node = i[k];
+      signs[a] = 1.0;
+      if (side[k] != 0) {
+        node = (side[k] < 0 ? 0 : 2 * step.walls.cells[k]) - i[k];
+        const bool beyond = side[k] < 0 ? node < 0 : node > step.walls.cells[k];
+        const Wall wall = step.walls.face[k][side[k] < 0 ? 0 : 1];
+        const bool odd = wall == Wall::fixed && step.walls.odd_at_fixed;
+        if (!beyond || !(odd || wall == Wall::slip)) return;
+        if (odd) share = -share;
+        if (wall == Wall::slip) signs[a] = -1.0;
+      }
+      share *= step.S(x[a] / step.h - node).N;
     }
-    share *= of_axis;
-  }
-  return share;
+    if (share != 0.0) add(share, signs);
+  });
 }
 
 /// The sum over the particles of a body of (1 - d^2 / 4 e^2)^6 up to two of their edges e, at most
@@ -91,9 +99,12 @@ void find_springs(Step<D>& step) {
       const double face = std::pow(2.0 * l, D - 1);
       const Vec<double, D> n = normalised(surface.gradient), x = p.x + (l - 0.5 * overlap) * n;
       for (std::size_t i = 0; i < springs.size(); ++i) {
-        const double N = share_of_node<D>(step, step.contacts[i].node, x);
-        const double k_p = 0.5 * N * face / (2.0 * (l * give(own) + l_q * give(other)));
-        springs[i].push_back({k_p, overlap, (k == 0 ? 1.0 : -1.0) * n});
+        share_of_node<D>(
+            step, step.contacts[i].node, x, [&](double N, const Vec<double, D>& signs) {
+              const double k_p = 0.5 * N * face / (2.0 * (l * give(own) + l_q * give(other)));
+              Spring& spring = springs[i].emplace_back(Spring{k_p, overlap, (k == 0 ? 1.0 : -1.0) * n});
+              for (int a = 0; a < D; ++a) spring.n[a] *= signs[a];
+            });
       }
     }
   }

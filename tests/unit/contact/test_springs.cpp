@@ -73,8 +73,8 @@ void check_layers(mpm::testing::Report& report, std::mt19937_64& random) {
     Vec<double, D> n = Vec<double, D>::zero(), node;
     for (int a = 0; a < D; ++a) node[a] = any(random);
     n[D - 1] = 1.0;
-    const NodeShare<D> share(spline, 0.5, Walls<D>{}, Index<D>{});
-    const SpringSide<D> r{0, give_r, share}, s{1, give_s, share};
+    const NodeShares<D> shares(spline, 0.5, Walls<D>{}, Index<D>{});
+    const SpringSide<D> r{0, give_r, shares}, s{1, give_s, shares};
     Springs<D> springs;
     for (const std::int32_t own : {0, 1}) {
       Index<D> low, high;
@@ -133,7 +133,8 @@ void check_walls(mpm::testing::Report& report) {
     double total = 0.0;
     for_each_index<2>({0, 0}, {6, 8}, [&](const Index<2>& i) {
       const Vec<double, 2> from_node{{x - i[0], point[1] - i[1]}};
-      total += NodeShare<2>(spline, 0.5, walls, i).at(from_node);
+      NodeShares<2>(spline, 0.5, walls, i)
+          .of(from_node, [&](double share, const Vec<double, 2>&) { total += share; });
     });
     CHECK_CLOSE(total, 1.0, 100 * eps);
   }
