@@ -137,8 +137,7 @@ def test_bodies_that_overlap_at_the_start_stay_where_they_are(dimension: int, fi
     simulation = Simulation(blocks(dimension, 0.1, 0.0, fixed))
     simulation.advance(100)
     for body, at_surface in (("under", 9.75e-3), ("over", 10.15e-3)):
-        # What is left of the overlap is rounding.
-        assert np.abs(simulation.column(body, "velocity")).max() < 1e-12
+        assert np.abs(simulation.column(body, "velocity")).max() == 0.0
         x, back = simulation.column(body, "position"), simulation.column(body, "set_back")[:, 0]
         # Away from the edges of the upper block, where its surface is rounded.
         inside = np.all((x[:, :-1] > 4e-3) & (x[:, :-1] < 7e-3), axis=1)
@@ -147,7 +146,7 @@ def test_bodies_that_overlap_at_the_start_stay_where_they_are(dimension: int, fi
         # The layer below lifts the surface by a hundredth of the overlap.
         assert back[inside & surface] == pytest.approx(0.4, rel=2e-2)
         assert not back[~surface].any()
-    assert history(simulation)["kinetic"].max() < 1e-24
+    assert not history(simulation)["kinetic"].any()
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -265,7 +264,7 @@ def test_a_wall_is_a_plane_of_symmetry(dimension: int, cut: int) -> None:
     for simulation in (whole, part):
         simulation.advance(150)
     [force], [of_part] = whole.core.contact_pairs(), part.core.contact_pairs()
-    assert whole.core.time == part.core.time
+    assert whole.core.time == pytest.approx(part.core.time, rel=1e-12)
     assert force.impulse[dimension - 1] > 0.1 * whole.column("ball", "mass").sum()  # of 1 m/s
     assert of_part.impulse[dimension - 1] * 2**cut == pytest.approx(
         force.impulse[dimension - 1], rel=1e-10

@@ -8,12 +8,14 @@ namespace mpm {
 template <int D>
 void set_back_surfaces(const Contact<D>& contact, const std::vector<Body<D>>& bodies,
                        std::vector<ParticlePool<D>>& pools) {
+  // [cells]; positions are good to 1e-10 at 2^19 cells: rounding must not choose what pushes at once.
+  constexpr double beyond = 1e-9;
   for (const auto& touches : contact.touches)
     for (const Touch<D>& touch : touches) {
       ParticlePool<D>& pool = pools[pool_number(bodies, touch.body)];
       double& share = pool.columns.component(pool.set_back)[pool.order[touch.entry]];
       // Of those that touch several bodies the most, in whatever order they come.
-      share = std::max(share, touch.overlap / touch.half);
+      share = std::max(share, (touch.overlap + beyond) / touch.half);
     }
 }
 
