@@ -49,6 +49,31 @@ def test_what_is_not_said_follows_what_is(preset, grid, run, basis, chosen) -> N
     assert (case.run.transfer.table(), case.run.scheme, case.run.cfl) == chosen
 
 
+@pytest.mark.parametrize(
+    ("run", "contact", "chosen"),
+    [
+        ("", "", "springs"),
+        ('transfer = "apic"', "friction = 0.1", "springs"),
+        ('transfer = "flip"', "", "impulses"),
+        ("", 'detection = "velocity"', "impulses"),
+        ("", 'normal = "pair"', "impulses"),
+        ("", "normal_refresh_distance = 0.1", "impulses"),
+        ("", 'response = "impulses"', "impulses"),
+        ('transfer = "flip"', 'response = "springs"', "springs"),
+    ],
+)
+def test_the_response_of_contact_follows_the_transfer(run, contact, chosen) -> None:
+    text = CASE.format(preset="", grid="", run=run) + f"[contact]\n{contact}\n"
+    assert Case.from_text(text).contact.response == chosen
+
+
+def test_the_response_follows_a_transfer_that_is_assigned() -> None:
+    case = Case.from_text(CASE.format(preset="", grid="", run=""))
+    case.run.transfer = "flip"
+    case.complete_and_check()
+    assert case.contact.response == "impulses"
+
+
 def test_a_run_that_serves_two_cases_is_chosen_for_each() -> None:
     run = Run(end_time=1.0)
     body = Body(material="soft", shape=shapes.Disc(centre=[0.0, 0.0], radius=0.005))

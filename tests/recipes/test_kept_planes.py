@@ -14,7 +14,7 @@ from mpm3dpp import Simulation
 
 def after(case: Any, travel: float, steps: int) -> Simulation:
     """Make so many steps of the case with planes kept for so many cells."""
-    case.contact.normal_refresh_distance = travel
+    case.contact.normal_refresh_distance, case.contact.response = travel, "impulses"
     simulation = Simulation(case, threads=1)
     simulation.advance(steps)
     return simulation

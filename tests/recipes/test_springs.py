@@ -120,7 +120,7 @@ def blocks(dimension: int, overlap: float, speed: float, fixed: bool = False) ->
         {
             "grid": {"dimension": dimension, "cell_size": "1 mm"},
             "run": {"end_time": "10 ms"},
-            "contact": {"friction": 0.3, "response": "springs"},
+            "contact": {"friction": 0.3},
             "material": {
                 "soft": {"density": 1000.0, "strength": elastic},
                 "steel": {"density": 7800.0, "strength": {"rigid": {}}},

@@ -14,7 +14,7 @@ DEFAULT = "default"
 
 @dataclass(frozen=True)
 class Numerics:
-    """What a basis' name stands for: "gimp", "quadratic_bspline+apic~springs", "gimp+xpic=4@0.5".
+    """What a basis' name stands for: "gimp", "quadratic_bspline+apic~impulses", "gimp+xpic=4@0.5".
 
     "default" stands for what a case gets that says nothing, but for the scheme.
 
@@ -39,7 +39,7 @@ class Numerics:
         name, _, response = name.partition("~")
         if name == DEFAULT:
             cfl = float(factor) if factor else choices.AFFINE["cfl"]
-            return cls(choices.BASIS, choices.TRANSFER, None, cfl, response)
+            return cls(choices.BASIS, choices.TRANSFER, None, cfl, response or choices.RESPONSE)
         basis, _, transfer = name.partition("+")
         word, _, number = (transfer or "flip").partition("=")
         return cls(

@@ -193,9 +193,9 @@ def _with_defaults(runs: list[Run]) -> Iterator[Run]:
             yield replace(run, basis=DEFAULT, scheme=scheme, options=options)
 
 
-def _with_springs() -> Iterator[Run]:
-    """Return small patches of contact, and what rolls, with springs (decision 0051)."""
-    numerics, scheme = f"{DEFAULT}~springs", choices.AFFINE["scheme"]
+def _with_impulses() -> Iterator[Run]:
+    """Return small patches of contact, and what rolls, without springs (decision 0053)."""
+    numerics, scheme = f"{DEFAULT}~{choices.OTHER_RESPONSE}", choices.AFFINE["scheme"]
     yield Run("C5", rolling.rolling_on_discs, scheme, 2, numerics, {"cells": 8})
     yield Run("C6", chain.disc_column, scheme, 2, numerics)
     yield Run("E9", incline.rolling, scheme, 2, numerics, {"cells": 8})
@@ -212,5 +212,5 @@ def _with_springs() -> Iterator[Run]:
 _WRITTEN = list(_runs())
 # Runs that differ in their factor alone are one with the default's.
 RUNS = list(
-    {run.title: run for run in [*_WRITTEN, *_with_defaults(_WRITTEN), *_with_springs()]}.values()
+    {run.title: run for run in [*_WRITTEN, *_with_defaults(_WRITTEN), *_with_impulses()]}.values()
 )

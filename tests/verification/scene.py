@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp import _core
+from mpm3dpp.case import choices
 
 from .figure import Figure, judge, report
 from .numerics import Numerics
@@ -66,6 +67,9 @@ class Scene:
         s.run.gravity = _three(gravity)
         s.contact.enabled, s.contact.friction = contact, friction
         s.run.energy_growth_limit, s.run.outside_limit, s.run.volume_limit = 5.0, 1.0, 1.0
+        planes = settings.get("normal_refresh_distance", 0.0) == 0.0
+        if settings.get("detection", "gap") != "gap" or not planes:
+            s.contact.response = choices.OTHER_RESPONSE  # As a case file has it.
         for name, value in settings.items():
             table = next(t for t in (s.grid, s.run, s.contact, s.execution) if hasattr(t, name))
             setattr(table, name, value)

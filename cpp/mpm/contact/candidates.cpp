@@ -59,6 +59,19 @@ void find_around(Contact<D>& contact) {
     }
 }
 
+/// Every patch with every tile where it may have nodes, or particles that others meet.
+template <int D>
+void list_holders(const TileGrid<D>& grid, Response response, std::vector<TileHolder>& holders) {
+  holders.clear();
+  // Particles are nearer than they reach: with springs all tiles around see a patch.
+  const Reach reach = response == Response::springs ? Reach{1, 1, 0.0} : grid.reach();
+  for (std::size_t p = 0; p < grid.patches.size(); ++p)
+    for (int k = 0; k < Tile<D>::neighbours; ++k)
+      // By tiles, not by the boxes of blocks: those change too often to sort this list each time
+      // (decision 0013).
+      if (reaches<D>(reach, k)) holders.emplace_back(grid.patches[p].body, p, k);
+}
+
 }  // namespace
 
 template <int D>
@@ -68,7 +81,6 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
   auto& tiles = contact.tiles;
   if (grid.patches.size() > TileHolder::patches_max)
     throw std::length_error("bodies lie in more than 134 million tiles; give larger cells");
-  holders.clear();
   std::swap(contact.last_tiles, tiles);
   tiles.clear();
   contact.has_rigid = false;
@@ -83,13 +95,7 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
     for (int a = 0; a < D; ++a) t[a] += o[a];
     return t;
   };
-  // Particles are nearer than they reach: with springs all tiles around see a patch.
-  const Reach reach = response == Response::springs ? Reach{1, 1, 0.0} : grid.reach();
-  for (std::size_t p = 0; p < grid.patches.size(); ++p)
-    for (int k = 0; k < Tile<D>::neighbours; ++k)
-      // By tiles, not by the boxes of blocks: those change too often to sort this list each time
-      // (decision 0013).
-      if (reaches<D>(reach, k)) holders.emplace_back(grid.patches[p].body, p, k);
+  list_holders(grid, response, holders);
   std::sort(holders.begin(), holders.end(), [&](const TileHolder& x, const TileHolder& y) {
     const Index<D> tx = tile_of(x), ty = tile_of(y);
     if (tx != ty) return tile_less<D>(tx, ty);

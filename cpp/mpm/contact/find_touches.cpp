@@ -53,8 +53,8 @@ void look_around(const Contact<D>& contact, const TileGrid<D>& grid,
       const TileHolder& holder = contact.holders[h];
       const Patch<D>& patch = grid.patches[static_cast<std::size_t>(holder.patch)];
       if (holder.neighbour == Tile<D>::self) at.own = &patch;
-      at.near |= cells_in_reach<D>(patch.occupied, Tile<D>::offset(holder.neighbour),
-                                   reach_to(at.range));
+      at.near |=
+          cells_in_reach<D>(patch.occupied, Tile<D>::offset(holder.neighbour), reach_to(at.range));
     }
     at.holders = {&contact.holders[first], h - first};
   }
@@ -65,52 +65,56 @@ void look_around(const Contact<D>& contact, const TileGrid<D>& grid,
         s.wanted |= r.own->occupied & s.near;
 }
 
+/// The surface of a body around a tile, as seen from a point x from the tile's first node.
+template <int D>
+SurfaceSum<D> surface_around(const TileGrid<D>& grid, const BodyNear<D>& body,
+                             const Vec<double, D>& tile, const Vec<double, D>& x) {
+  using T = typename SurfaceSum<D>::T;
+  SurfaceSum<D> sum;
+  for_each_image(grid.walls, tile + x, body.range,
+                 [&](const Vec<double, D>& image, const Vec<double, D>& signs) {
+                   const Vec<double, D> at = image - tile;
+                   body.particles.within(at, body.range, [&](const auto& shift, const auto& q) {
+                     Vec<T, D> d;
+                     for (int a = 0; a < D; ++a)
+                       d[a] = T(signs[a]) * (q.xi[a] + T(shift[a] - at[a]));
+                     sum.add(d, q.half, q.mass, body.range);
+                   });
+                 });
+  return sum;
+}
+
 /// The particles of a tile's patch that overlap another body.
 template <int D>
 void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                  const ParticlePool<D>& pool, const BodyNear<D>& own, const BodyNear<D>& other,
                  double distance, std::vector<Touch<D>>& touches) {
-  const Index<D> first = grid.first_cell(own.own->tile);
-  Vec<double, D> origin;
-  for (int a = 0; a < D; ++a) origin[a] = first[static_cast<std::size_t>(a)];
+  const Patch<D>& patch = *own.own;
+  const Index<D> first = grid.first_cell(patch.tile);
+  Vec<double, D> tile;
+  for (int a = 0; a < D; ++a) tile[a] = first[static_cast<std::size_t>(a)];
   const double mean_edge = bodies[static_cast<std::size_t>(own.body)].mean_edge;
   // Springs act up to half an edge from their particle.
   const double reach = support(grid.basis, mean_edge / grid.cell_size);
-  using Particles = TileParticles<D>;
-  for (std::uint64_t cells = own.own->occupied & other.near; cells != 0; cells &= cells - 1) {
-    const int c = std::countr_zero(cells);
-    const Index<D> cell = Tile<D>::cell_index(c);
+  for (std::uint64_t cells = patch.occupied & other.near; cells != 0; cells &= cells - 1) {
+    const auto c = static_cast<std::size_t>(std::countr_zero(cells));
+    const Index<D> cell = Tile<D>::cell_index(static_cast<int>(c));
     Index<D> in_grid = first;
     for (std::size_t a = 0; a < D; ++a) in_grid[a] += cell[a];
-    const auto k = static_cast<std::size_t>(c);
-    const std::uint32_t end = own.own->begin + own.own->cell_begin[k + 1];
-    for (std::uint32_t i = own.own->begin + own.own->cell_begin[k]; i < end; i += contact_lanes) {
-      const auto lanes = Particles::lanes_of(grid, mean_edge, pool, in_grid, i, end);
-      for (std::uint32_t lane = 0; lane < contact_lanes && i + lane < end; ++lane) {
-        const int l = static_cast<int>(lane);
+    const std::uint32_t end = patch.begin + patch.cell_begin[c + 1];
+    for (std::uint32_t i = patch.begin + patch.cell_begin[c]; i < end; i += contact_lanes) {
+      const auto lanes = TileParticles<D>::lanes_of(grid, mean_edge, pool, in_grid, i, end);
+      for (int k = 0; k < contact_lanes && lanes.mass[k] > 0.0; ++k) {
         Vec<double, D> x;
         for (int a = 0; a < D; ++a)
-          x[a] = cell[static_cast<std::size_t>(a)] + lanes.xi[a][l] - other.particles.own_node();
-        SurfaceSum<D> sum;
-        for_each_image(grid.walls, origin + x, other.range, [&](const Vec<double, D>& image,
-                                                                const Vec<double, D>& signs) {
-          const Vec<double, D> from_tile = image - origin;
-          other.particles.within(from_tile, other.range, [&](const auto& shift, const auto& q) {
-            Vec<Batch<contact_lanes>, D> d;
-            for (int a = 0; a < D; ++a)
-              d[a] = Batch<contact_lanes>(signs[a]) *
-                     (q.xi[a] + Batch<contact_lanes>(shift[a] - from_tile[a]));
-            sum.add(d, q.half, q.mass, other.range);
-          });
-        });
-        const double half = lanes.half[l], surface = half - lanes.set_back[l],
-                     half_of_other = sum.half();
-        if (half_of_other == 0.0) continue;
-        const double overlap =
-            surface + half_of_other + distance - sum.height(half_of_other);
+          x[a] = cell[static_cast<std::size_t>(a)] + lanes.xi[a][k] - reach_of(grid.basis).own_node;
+        const SurfaceSum<D> sum = surface_around(grid, other, tile, x);
+        const double half = lanes.half[k], surface = half - lanes.set_back[k], met = sum.half();
+        if (met == 0.0) continue;
+        const double overlap = surface + met + distance - sum.height(met);
         if (overlap > 0.0)
-          touches.push_back(
-              {own.body, other.body, i + lane, x, sum.normal(), half, surface, half_of_other, overlap, reach + half});
+          touches.push_back({own.body, other.body, i + static_cast<std::uint32_t>(k), x,
+                             sum.normal(), half, surface, met, overlap, reach + half});
       }
     }
   }
@@ -130,8 +134,8 @@ void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vecto
     touches.clear();
     for (std::size_t t = shares.first(share); t < shares.first(share + 1); ++t) {
       ContactTile<D>& tile = contact.tiles[t];
-      tile.touches = {static_cast<std::uint32_t>(share),
-                      static_cast<std::uint32_t>(touches.size()), 0};
+      tile.touches = {static_cast<std::uint32_t>(share), static_cast<std::uint32_t>(touches.size()),
+                      0};
       look_around(contact, grid, bodies, tile, around);
       for (BodyNear<D>& s : around.all())
         if (s.wanted != 0)

@@ -8,7 +8,8 @@ namespace mpm {
 template <int D>
 void set_back_surfaces(const Contact<D>& contact, const std::vector<Body<D>>& bodies,
                        std::vector<ParticlePool<D>>& pools) {
-  // [cells]; positions are good to 1e-10 at 2^19 cells: rounding must not choose what pushes at once.
+  // [cells]; positions are good to 1e-10 at 2^19 cells: rounding must not choose what pushes at
+  // once.
   constexpr double beyond = 1e-9;
   for (const auto& touches : contact.touches)
     for (const Touch<D>& touch : touches) {

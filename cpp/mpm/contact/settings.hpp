@@ -34,11 +34,12 @@ struct ContactSettings {
       Setting{"detection", &Self::detection,
               "\"gap\" (touching and approaching) or \"velocity\" (approaching only)"},
       Setting{"normal", &Self::normal,
-              "direction of contact: \"plane\" (separates the two bodies' points), or from "
-              "gradients of mass, of both (\"pair\") or one (\"first\", \"second\", \"stiffer\")"},
+              "direction of impulses: \"plane\" (separates the two bodies' points), or from "
+              "gradients of mass, of both (\"pair\") or one (\"first\", \"second\", \"stiffer\"); "
+              "springs act along the normals of the surfaces"},
       Setting{"response", &Self::response,
-              "\"impulses\" (approach is stopped at the nodes) or \"springs\" (particles that "
-              "overlap push each other apart: for small patches of contact, and things that roll)"},
+              "\"springs\" (particles push a body whose surface they overlap) or \"impulses\" "
+              "(approach is stopped at the nodes)"},
       Setting{"friction", &Self::friction, "Coulomb coefficient of all pairs not listed in `pair`",
               Rule::not_negative},
       Setting{"gap_distance", &Self::gap_distance, "bodies closer than this touch [m]",

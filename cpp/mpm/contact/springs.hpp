@@ -1,6 +1,7 @@
 #pragma once
-// Springs between particles and the bodies that they overlap, what they come to at a node (decisions
-// 0051 and 0054): a force at the place where the surfaces touch, and none where they are apart.
+// Springs between particles and the bodies that they overlap, what they come to at a node
+// (decisions 0051 and 0054): a force at the place where the surfaces touch, and none where they are
+// apart.
 #include <algorithm>
 #include <cmath>
 

@@ -61,7 +61,7 @@ class SurfaceSum {
     if constexpr (D == 2)
       return 243.0 * std::numbers::sqrt3 / 2002.0;
     else
-      return 4.0 * std::numbers::pi / 7.0 * 2187.0 / 16384.0;
+      return 2187.0 * std::numbers::pi / 28672.0;
   }
 
   T sum_{0.0}, halves_{0.0};
@@ -73,8 +73,8 @@ class SurfaceSum {
 inline int surface_range(double mean_edge) { return mean_edge < 0.51 ? 1 : 2; }
 
 /// f(image, signs) for a point and what it is beyond the faces of the box that it is nearer to than
-/// `range`: a body goes on there as before the face. `signs` are -1 along the axes that are mirrored. All in the
-/// grid's coordinates [cells].
+/// `range`: a body goes on there as before the face. `signs` are -1 along the axes that are
+/// mirrored. All in the grid's coordinates [cells].
 template <int D, class F>
 void for_each_image(const Walls<D>& walls, const Vec<double, D>& x, double range, F&& f) {
   double along[D][3], sign[3] = {1.0, -1.0, -1.0};

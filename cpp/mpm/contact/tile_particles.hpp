@@ -85,8 +85,7 @@ class TileParticles {
     p.mass = select(first_lanes<W>(rows.count), load(pool.mass(), rows), T(0.0));
     p.half = T(0.5 / grid.cell_size) * particle_edge<D>(load(pool.volume(), rows), mean_edge);
     p.set_back = T(0.0);
-    if (pool.set_back >= 0)
-      p.set_back = p.half * load(pool.columns.component(pool.set_back), rows);
+    if (pool.set_back >= 0) p.set_back = p.half * load(pool.columns.component(pool.set_back), rows);
     return p;
   }
 
@@ -96,10 +95,9 @@ class TileParticles {
   /// Have the memory bring what is around these nodes of a tile, a bit each by Tile<D>::cell.
   static void fetch(const TileGrid<D>& grid, const ParticlePool<D>& pool,
                     std::span<const TileHolder> holders, std::uint64_t nodes) {
-    for_each_cell(grid, holders, nodes, grid.reach(),
-                  [&](const Patch<D>& patch, const Index<D>&, int cell) {
-                    fetch(pool, patch, cell);
-                  });
+    for_each_cell(
+        grid, holders, nodes, grid.reach(),
+        [&](const Patch<D>& patch, const Index<D>&, int cell) { fetch(pool, patch, cell); });
   }
 
   /// Forget all and take what is around these nodes of another tile.

@@ -10,6 +10,7 @@
 
 namespace mpm {
 
+/// Here `entry` is a touch's number among these.
 template <int D>
 class TileTouches {
  public:
@@ -27,15 +28,19 @@ class TileTouches {
       for (const Touch<D>& touch :
            std::span(&contact.touches[range.share][range.first], range.count)) {
         Touch<D> here = touch;
-        for (int a = 0; a < D; ++a) here.x[a] += Tile<D>::cells * offset[static_cast<std::size_t>(a)];
+        for (int a = 0; a < D; ++a)
+          here.x[a] += Tile<D>::cells * offset[static_cast<std::size_t>(a)];
         const std::uint64_t nodes = nodes_near(here);
         if (nodes == 0) continue;
         nodes_ |= nodes;
+        here.entry = static_cast<std::uint32_t>(touches_.size());
         touches_.push_back(here);
       }
     }
-    // In the order they came within a pair: that of the tiles.
-    std::ranges::stable_sort(touches_, {}, of_touch);
+    // Within a pair they stay in the order of the tiles, so that sums are the same after a restart.
+    std::ranges::sort(touches_, {}, [](const Touch<D>& touch) {
+      return std::pair(of_touch(touch), touch.entry);
+    });
   }
 
   /// The tile's nodes that any of them may reach, a bit each by Tile<D>::cell.

@@ -12,11 +12,11 @@ namespace mpm {
 template <int D>
 struct Touch {
   std::int32_t body, other;
-  std::uint32_t entry;  // of the particle in its pool's lists
-  Vec<double, D> x;     // from the tile's first node
+  std::uint32_t entry;    // of the particle in its pool's lists
+  Vec<double, D> x;       // from the tile's first node
   Vec<double, D> normal;  // of the other body's surface, into it
-  double half;          // half its edge
-  double surface;       // from its centre to its surface: the half edge, less what it is set back
+  double half;            // half its edge
+  double surface;         // from its centre to its surface: the half edge, less what it is set back
   double half_of_other;
   double overlap;
   double reach;  // how far along an axis a node may be that gets some of its force, at most

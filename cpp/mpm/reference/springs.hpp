@@ -1,5 +1,6 @@
 #pragma once
-// Springs between particles and the body that they overlap (decisions 0051 and 0054): the reference.
+// Springs between particles and the body that they overlap (decisions 0051 and 0054): the
+// reference.
 #include "mpm/reference/step.hpp"
 
 namespace mpm::reference {
@@ -102,7 +103,8 @@ void find_springs(Step<D>& step) {
         share_of_node<D>(
             step, step.contacts[i].node, x, [&](double N, const Vec<double, D>& signs) {
               const double k_p = 0.5 * N * face / (2.0 * (l * give(own) + l_q * give(other)));
-              Spring& spring = springs[i].emplace_back(Spring{k_p, overlap, (k == 0 ? 1.0 : -1.0) * n});
+              Spring& spring =
+                  springs[i].emplace_back(Spring{k_p, overlap, (k == 0 ? 1.0 : -1.0) * n});
               for (int a = 0; a < D; ++a) spring.n[a] *= signs[a];
             });
       }

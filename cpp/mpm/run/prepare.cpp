@@ -79,8 +79,8 @@ void prepare(Simulation<D>& simulation) {
   fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches);
   place_pieces(domain);
   build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
-  if (domain.has_contact()) connect_tiles(domain.contact, domain.grid, domain.bodies,
-                    domain.contact_settings.response);
+  if (domain.has_contact())
+    connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
   domain.sums.resize(domain.grid.patches.size());
   list_kinds(domain);
   start_settling(simulation);

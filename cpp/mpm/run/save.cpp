@@ -59,8 +59,8 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
     release_nodes(domain.grid);
     connect(domain.grid);
     cut_blocks(domain.grid, domain.threads);
-    if (domain.has_contact()) connect_tiles(domain.contact, domain.grid, domain.bodies,
-                    domain.contact_settings.response);
+    if (domain.has_contact())
+      connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
   }
   if (domain.has_contact()) exchange_contact(domain.contact, stream, domain.bodies.size());
   stream(domain.time, domain.time_step, domain.step, domain.gravity);

@@ -69,8 +69,8 @@ void activate_tiles(Domain<D>& domain) {
                   domain.list_scratch);
   domain.sums.assign(domain.grid.patches.size(), {});
   // Which bodies may meet is a matter of tiles and of the blocks, so it holds until lists change.
-  if (changed && domain.has_contact()) connect_tiles(domain.contact, domain.grid, domain.bodies,
-                    domain.contact_settings.response);
+  if (changed && domain.has_contact())
+    connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
   balance(domain);
 }
 

@@ -85,7 +85,7 @@ class Case(CaseModel):
         Raises:
             ValueError: a violation, of which the sentence is made where the case is read or run.
         """
-        self.__dict__["run"] = with_choices(self.run, self.grid.basis)
+        self.__dict__ |= with_choices(self.grid.basis, self.run, self.contact)
         check_case(self)
 
     @property

@@ -111,7 +111,7 @@ def _springs(case: Case) -> Found:
         rule, remedy = f"{with_it}, which act where particles overlap", "leave it out"
         yield violation(rule, remedy, value=contact.detection, path=("contact", "detection"))
     if contact.normal != "plane":
-        rule = f"{with_it}: only a plane between the particles of both says how they overlap"
+        rule = f"{with_it}, which act along the normals of the surfaces"
         yield violation(rule, "leave it out", value=contact.normal, path=("contact", "normal"))
     if contact.normal_refresh_distance > 0.0:
         rule, remedy = f"{with_it}, which are found in every step", "leave it out"

@@ -1,45 +1,68 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Basis, transfer, scheme and step of a case that does not say them: they are chosen together.
+"""Basis, transfer, scheme, step and contact of a case that does not say them: chosen together.
 
 By what was measured on thirteen problems (docs/decisions/0048-the-table.md): a basis with which an
-affine transfer goes has AFLIP, and this has USF and steps twice as long as those of the others.
+affine transfer goes has AFLIP, and this has USF, steps twice as long as those of the others, and
+contact by springs (docs/decisions/0054-a-smooth-surface-for-springs.md).
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from mpm3dpp import _core
-from mpm3dpp.base.model import plain
+from mpm3dpp.base.model import CaseModel, plain
 
 from .transfer import Transfer
 
 if TYPE_CHECKING:
-    from .parts import Run
+    from .parts import Contact, Run
 
 BASIS, TRANSFER = "quadratic_bspline", "aflip"
 AFFINE: dict[str, Any] = {"scheme": "usf", "cfl": 0.5}
 OTHERS: dict[str, Any] = {"scheme": "musl", "cfl": 0.25}
 OTHER_TRANSFER = "flip"
+RESPONSE, OTHER_RESPONSE = "springs", "impulses"
+
+_Table = TypeVar("_Table", bound=CaseModel)
 
 
-def with_choices(run: Run, basis: str) -> Run:
-    """Return a run with what it leaves out of `transfer`, `scheme` and `cfl`.
+def with_choices(basis: str, run: Run, contact: Contact) -> dict[str, Run | Contact]:
+    """Return `run` and `contact` of a case with what they leave out, by their names.
 
     Args:
-        run: of a case; it stays as it is, as another case may have it too, and is returned if it
-            has all of that.
         basis: a word of `grid.basis`.
+        run: stays as it is, as another case may have it too, and is returned if it has all of
+            `transfer`, `scheme` and `cfl`.
+        contact: likewise, with its `response`.
     """
+    run = _run(run, basis)
+    return {"run": run, "contact": _contact(contact, run)}
+
+
+def _run(run: Run, basis: str) -> Run:
     given, chosen = run.model_fields_set, {}
     if "transfer" not in given:
         affine = _core.bases[basis]["second_moment"] > 0.0
         chosen["transfer"] = Transfer.model_validate(TRANSFER if affine else OTHER_TRANSFER)
     word = chosen.get("transfer", run.transfer).word
     more = AFFINE if _core.transfers[word]["affine"] else OTHERS
-    chosen |= {key: value for key, value in more.items() if key not in given}
-    if all(plain(getattr(run, key)) == plain(value) for key, value in chosen.items()):
-        return run
-    run = run.model_copy()
-    run.__dict__.update(chosen)
-    return run
+    return _with(run, chosen | {key: value for key, value in more.items() if key not in given})
+
+
+def _contact(contact: Contact, run: Run) -> Contact:
+    if "response" in contact.model_fields_set:
+        return contact
+    # What springs do not go with has been asked for by name.
+    planes = contact.normal == "plane" and contact.normal_refresh_distance == 0.0
+    fits = planes and contact.detection == "gap"
+    affine = _core.transfers[run.transfer.word]["affine"]
+    return _with(contact, {"response": RESPONSE if fits and affine else OTHER_RESPONSE})
+
+
+def _with(table: _Table, chosen: dict[str, Any]) -> _Table:
+    if all(plain(getattr(table, key)) == plain(value) for key, value in chosen.items()):
+        return table
+    table = table.model_copy()
+    table.__dict__.update(chosen)
+    return table

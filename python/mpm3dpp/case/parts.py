@@ -18,7 +18,7 @@ from .transfer import Transfer, WordOrTable
 _Viscosity: Any = core_table("run.viscosity")
 _Run: Any = core_table("run", **choices.AFFINE)
 _Settle: Any = core_table("run.settle")
-_Contact: Any = core_table("contact")
+_Contact: Any = core_table("contact", response=choices.RESPONSE)
 
 
 class Viscosity(_Viscosity):
@@ -139,6 +139,9 @@ class ContactPair(CaseModel):
 
 class Contact(_Contact):
     """Contact between bodies.
+
+    Where run.transfer has no affine part, with detection = "velocity", with a normal other than
+    "plane" and with normal_refresh_distance the default response is "impulses".
 
     Attributes:
         pair: coefficients of single pairs; a pair of bodies wins over a pair of materials, and

@@ -31,8 +31,7 @@ double sinks(double z, double edge, const Vec<double, D>& beside, int layers) {
   low[D - 1] = 0, high[D - 1] = layers - 1;
   for_each_index<D>(low, high, [&](const Index<D>& k) {
     Vec<T, D> d;
-    for (int a = 0; a + 1 < D; ++a)
-      d[a] = T(edge * (k[static_cast<std::size_t>(a)] + beside[a]));
+    for (int a = 0; a + 1 < D; ++a) d[a] = T(edge * (k[static_cast<std::size_t>(a)] + beside[a]));
     d[D - 1] = T(-edge * (z + k[D - 1]));
     sum.add(d, T(0.5 * edge), select(first_lanes<T::lanes>(1), T(1.0), T(0.0)), 10.0);
   });
@@ -133,8 +132,9 @@ void check_walls(mpm::testing::Report& report) {
     double total = 0.0;
     for_each_index<2>({0, 0}, {6, 8}, [&](const Index<2>& i) {
       const Vec<double, 2> from_node{{x - i[0], point[1] - i[1]}};
-      NodeShares<2>(spline, 0.5, walls, i)
-          .of(from_node, [&](double share, const Vec<double, 2>&) { total += share; });
+      NodeShares<2>(spline, 0.5, walls, i).of(from_node, [&](double share, const Vec<double, 2>&) {
+        total += share;
+      });
     });
     CHECK_CLOSE(total, 1.0, 100 * eps);
   }

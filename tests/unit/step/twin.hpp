@@ -3,8 +3,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "mpm/contact/surface.hpp"
 #include "mpm/contact/candidates.hpp"
+#include "mpm/contact/surface.hpp"
 #include "mpm/particles/make_body.hpp"
 #include "mpm/reference/absorb.hpp"
 #include "mpm/reference/averaging.hpp"
@@ -100,8 +100,8 @@ struct Twin {
         add_load(kind);
     build_cell_lists(grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
     list_kinds(domain);
-    if (domain.has_contact()) connect_tiles(domain.contact, grid, domain.bodies,
-                    domain.contact_settings.response);
+    if (domain.has_contact())
+      connect_tiles(domain.contact, grid, domain.bodies, domain.contact_settings.response);
     domain.sums.resize(grid.patches.size());
     start_ledger();
   }
