@@ -70,7 +70,7 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> str:
         "coarsening: beyond 2,000 tiles, 3 times at most, to cells of 0.08 m",
         "gravity: (0 m/s^2, -9.81 m/s^2 + 3 m/s^2 sin at 15 Hz)",
         "load push: pressure 2 kPa on x_min of block, 0.1 m^2 per metre, carried by 20 particles",
-        "contact: gap detection, impulses, friction 0.1",
+        "contact: gap detection, springs, friction 0.1",
         "friction: 0.4 between block and piston",
         "friction: 0.2 between all any and all hard",
     ],

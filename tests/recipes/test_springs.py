@@ -143,8 +143,8 @@ def test_bodies_that_overlap_at_the_start_stay_where_they_are(dimension: int, fi
         inside = np.all((x[:, :-1] > 4e-3) & (x[:, :-1] < 7e-3), axis=1)
         surface = np.abs(x[:, -1] - at_surface) < 1e-6
         assert (inside & surface).sum() == 6 ** (dimension - 1)
-        # The layer below lifts the surface by a hundredth of the overlap.
-        assert back[inside & surface] == pytest.approx(0.4, rel=2e-2)
+        # The surface of such a lattice has dents of a twentieth of the overlap.
+        assert back[inside & surface] == pytest.approx(0.4, rel=5e-2)
         assert not back[~surface].any()
     assert not history(simulation)["kinetic"].any()
 

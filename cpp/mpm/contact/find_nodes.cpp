@@ -73,6 +73,22 @@ void fetch_particles(const Contact<D>& contact, const TileGrid<D>& grid,
   }
 }
 
+/// How many nodes are overlapped, and by how many bodies at most.
+template <int D>
+void count_overlapped(const TileBodies<D>& around, ContactPart<D>& part) {
+  part.overlapped += static_cast<std::size_t>(std::popcount(around.overlapped));
+  // Nodes that no more bodies hold than were seen are left out at once.
+  int most = std::max(part.bodies_max, 1);
+  for (std::uint64_t left = around.count > static_cast<std::size_t>(most) ? around.overlapped : 0;
+       left != 0; left &= left - 1) {
+    const int cell = std::countr_zero(left);
+    int here = 0;
+    for (const TileBody<D>& at : around.all()) here += at.nodes >> cell & 1u ? 1 : 0;
+    most = std::max(most, here);
+  }
+  if (around.overlapped != 0) part.bodies_max = std::max(most, 2);
+}
+
 /// Where the sides of a node are, their masses and velocities left to be read.
 template <int D>
 void place_sides(TileGrid<D>& grid, const TileBodies<D>& around, ContactPart<D>& part,
@@ -142,7 +158,6 @@ void add_nodes(const Contact<D>& contact, TileGrid<D>& grid, const std::vector<B
     for (const TileBody<D>& at : around.all()) here += at.nodes >> cell & 1u ? 1u : 0u;
     sides += here;
     pairs += pair_count(here);
-    part.bodies_max = std::max(part.bodies_max, static_cast<int>(here));
   }
   const auto nodes = static_cast<std::size_t>(std::popcount(around.overlapped));
   part.reserve(nodes, sides, pairs, places - sides);
@@ -218,7 +233,7 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
     for (std::size_t t = shares.first(p); t < shares.first(p + 1); ++t) {
       TileBodies<D>& around = bodies_around<D>();
       look_around(contact, grid, contact.tiles[t], around);
-      part.overlapped += static_cast<std::size_t>(std::popcount(around.overlapped));
+      count_overlapped(around, part);
       if (springs) {
         around.touches.gather(contact, t);
         // A rigid body's mass is spread over all nodes where it meets others.

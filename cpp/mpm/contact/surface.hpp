@@ -12,10 +12,14 @@
 
 namespace mpm {
 
-/// The particles around a point, each with a weight (1 - d^2 / 4 e^2)^6 up to a distance d of two
-/// of its edges e. A layer of particles an edge apart then has a sum that falls with the height z
-/// over it as (1 - z^2 / 4 e^2)^m, m = 6 + (D - 1) / 2, and the layer below adds nothing at the
-/// height of an edge, where bodies touch.
+/// The particles around a point, each with a weight (1 - d^2 / R^2 e^2)^n up to a distance d of R
+/// of its edges e. A layer of particles an edge apart has a sum which in the mean falls with the
+/// height z over it [edges] as (R^2 - z^2)^m, m = n + (D - 1) / 2.
+///
+/// At a height of an edge, where bodies touch, the weights of a layer end at a = sqrt(R^2 - 1)
+/// beside the point, and what waves of a length k the lattice has in it goes by J_m(2 pi a k): R is
+/// where the longest vanishes, a = j / 2 pi with the first zero j of J_m, so that flat rows have no
+/// dents. The layer below is two edges away then, beyond all weights.
 template <int D>
 class SurfaceSum {
  public:
@@ -25,14 +29,15 @@ class SurfaceSum {
   /// `range` is where a weight ends at the latest. All in cells.
   void add(const Vec<T, D>& d, T half, T mass, double range) {
     T square(0.0);
-    for (int a = 0; a < D; ++a) square = fma(d[a], d[a], square);
-    const T end = min(T(16.0) * half * half, T(range * range));
-    const T scale = T(1.0) / end, t = max(fma(-square, scale, T(1.0)), T(0.0));
-    const T t2 = t * t, t5 = select(mass > T(0.0), t2 * t2 * t, T(0.0)), weight = t5 * t;
+    for (int k = 0; k < D; ++k) square = fma(d[k], d[k], square);
+    const T end = min(T(4.0 * (1.0 + beside)) * half * half, T(range * range));
+    const T scale = T(1.0) / end, t = max(fma(-square, scale, T(1.0)), T(0.0)), t2 = t * t;
+    const T last = select(mass > T(0.0), D == 2 ? t2 * t2 * t : t2 * t2, T(0.0));  // t^(n - 1)
+    const T weight = last * t;
     sum_ += weight;
     halves_ = fma(weight, half, halves_);
-    const T slope = t5 * scale;
-    for (int a = 0; a < D; ++a) slope_[a] = fma(slope, d[a], slope_[a]);
+    const T slope = last * scale;
+    for (int k = 0; k < D; ++k) slope_[k] = fma(slope, d[k], slope_[k]);
   }
 
   /// Half the edge of the particles, as they count [cells]; none: 0.
@@ -42,26 +47,27 @@ class SurfaceSum {
   }
   /// Height of the point over the outermost layer of particles of that half edge [cells].
   double height(double half) const {
-    const double power = std::pow(sum(sum_) / at_an_edge(), 1.0 / exponent);
-    return 4.0 * half * std::sqrt(std::max(1.0 - 0.75 * power, 0.0));
+    const double share = std::pow(sum(sum_) / at_an_edge(), 1.0 / (n + 0.5 * (D - 1)));
+    return 2.0 * half * std::sqrt(std::max(1.0 + beside * (1.0 - share), 0.0));
   }
   /// Unit vector along which the sum rises fastest, into the body; zero if there is none.
   Vec<double, D> normal() const {
-    Vec<double, D> n;
-    for (int a = 0; a < D; ++a) n[a] = sum(slope_[a]);
-    return normalised(n);
+    Vec<double, D> along;
+    for (int k = 0; k < D; ++k) along[k] = sum(slope_[k]);
+    return normalised(along);
   }
 
  private:
-  static constexpr double exponent = 6.0 + 0.5 * (D - 1);
+  static constexpr int n = D == 2 ? 6 : 5;
+  static constexpr double zero = D == 2 ? 10.512835408093999 : 9.936109524217791;  // of J_m
+  static constexpr double a = zero / (2.0 * std::numbers::pi), beside = a * a;
 
   /// The sum at the height of an edge: the mean over all places beside the layer's particles.
   static constexpr double at_an_edge() {
-    // (3/4)^m times the integral of (1 - u^2)^6, |u| < 1, over lengths or areas, of radius sqrt 3.
-    if constexpr (D == 2)
-      return 243.0 * std::numbers::sqrt3 / 2002.0;
-    else
-      return 2187.0 * std::numbers::pi / 28672.0;
+    // The integral of (1 - u^2)^n, |u| < 1, over lengths or areas.
+    double sum = D == 2 ? 2048.0 / 3003.0 * a : std::numbers::pi / 6.0 * beside;
+    for (int k = 0; k < n; ++k) sum *= beside / (1.0 + beside);
+    return sum;
   }
 
   T sum_{0.0}, halves_{0.0};

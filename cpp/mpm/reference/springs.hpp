@@ -33,9 +33,21 @@ void share_of_node(const Step<D>& step, const Index<D>& i, const Vec<double, D>&
   });
 }
 
-/// The sum over the particles of a body of (1 - d^2 / 4 e^2)^6 up to two of their edges e, at most
-/// `range`; half their edge in that mean; and the gradient of the sum. Beyond the walls of the box
-/// the body goes on.
+/// The weight (1 - d^2 / R^2 e^2)^n by which particles of an edge e make a surface, R^2 = 1 + a^2,
+/// and the sum of a flat layer at the height of an edge. 2 pi a is the first zero of the Bessel
+/// function J_m, m = n + (D - 1) / 2.
+template <int D>
+struct Weight {
+  double pi = std::acos(-1.0);
+  int n = D == 2 ? 6 : 5;
+  double m = n + 0.5 * (D - 1);
+  double a = (D == 2 ? 10.512835408093999 : 9.936109524217791) / (2.0 * pi), R2 = 1.0 + a * a;
+  double disc = D == 2 ? std::sqrt(pi) * std::tgamma(n + 1.0) / std::tgamma(n + 1.5) : pi / (n + 1);
+  double S_1 = std::pow(a * a / R2, n) * std::pow(a, D - 1) * disc;
+};
+
+/// The sum of these weights over the particles of a body, up to `range` at most; half their edge in
+/// that mean; and the gradient of the sum. Beyond the walls of the box the body goes on.
 template <int D>
 struct Surface {
   double sum = 0.0, halves = 0.0;
@@ -60,12 +72,14 @@ Surface<D> surface_at(const Step<D>& step, const Body<D>& body, const Vec<double
         const double wall = side[k] < 0 ? 0.0 : step.walls.cells[k] * step.h;
         if (side[k] != 0) d[a] = 2.0 * wall - q.x[a] - x[a];
       }
-      const double half = 0.5 * step.edge(q.V), end = std::min(4.0 * half, range);
+      const Weight<D> weight;
+      const double half = 0.5 * step.edge(q.V),
+                   end = std::min(2.0 * half * std::sqrt(weight.R2), range);
       const double t = 1.0 - dot(d, d) / (end * end);
       if (!(t > 0.0)) continue;
-      surface.sum += std::pow(t, 6);
-      surface.halves += std::pow(t, 6) * half;
-      surface.gradient += (12.0 / (end * end) * std::pow(t, 5)) * d;
+      surface.sum += std::pow(t, weight.n);
+      surface.halves += std::pow(t, weight.n) * half;
+      surface.gradient += (2.0 * weight.n / (end * end) * std::pow(t, weight.n - 1)) * d;
     }
   });
   return surface;
@@ -73,12 +87,11 @@ Surface<D> surface_at(const Step<D>& step, const Body<D>& body, const Vec<double
 
 /// At each node, of every particle p of either body that the surface of the other lies over: the
 /// overlap is the shortening of a block of an edge of both, on p's face; half of it, as the others
-/// have their turn. A flat layer has the sum S_1 (4/3 (1 - z^2 / 4 e^2))^m at the height z. The
+/// have their turn. A flat layer has the sum S_1 ((R^2 - z^2 / e^2) / a^2)^m at the height z. The
 /// normal of the node is that of the sum of the forces.
 template <int D>
 void find_springs(Step<D>& step) {
-  const double m = 6.0 + 0.5 * (D - 1);
-  const double S_1 = D == 2 ? 243.0 * std::sqrt(3.0) / 2002.0 : std::acos(-1.0) * 2187.0 / 28672.0;
+  const Weight<D> weight;
   const auto give = [](const Body<D>& b) {  // 1 / (rho c^2)
     const double speed = b.material.sound_speed(1.0);
     return b.deforms() ? 1.0 / (b.material.density * speed * speed) : 0.0;
@@ -94,8 +107,9 @@ void find_springs(Step<D>& step) {
       const Surface<D> surface = surface_at(step, other, p.x, step.surface_range * step.h);
       if (!(surface.sum > 0.0)) continue;
       const double l = 0.5 * step.edge(p.V), l_q = surface.halves / surface.sum;
-      const double root = 1.0 - 0.75 * std::pow(surface.sum / S_1, 1.0 / m);
-      const double overlap = l + l_q - 4.0 * l_q * std::sqrt(std::max(root, 0.0));
+      const double square =
+          weight.R2 - weight.a * weight.a * std::pow(surface.sum / weight.S_1, 1.0 / weight.m);
+      const double overlap = l + l_q - 2.0 * l_q * std::sqrt(std::max(square, 0.0));
       if (!(overlap > 0.0)) continue;
       const double face = std::pow(2.0 * l, D - 1);
       const Vec<double, D> n = normalised(surface.gradient), x = p.x + (l - 0.5 * overlap) * n;

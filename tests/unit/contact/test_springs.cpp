@@ -38,8 +38,9 @@ double sinks(double z, double edge, const Vec<double, D>& beside, int layers) {
   return z - sum.height(sum.half()) / edge;
 }
 
-/// The surface of flat layers has dents of less than 0.004 of an edge, of which the mean is none;
-/// the layer below lifts it where bodies overlap, by less than a hundredth of the overlap.
+/// Where bodies touch, the surface of flat layers has dents of six ten-thousandths of an
+/// edge, and of a twentieth of the overlap more where they overlap; the layer below has no part in
+/// it where they touch, and lifts it by less than a hundredth of the overlap.
 template <int D>
 void check_surface(mpm::testing::Report& report, std::mt19937_64& random) {
   std::uniform_real_distribution<double> any(0.0, 1.0);
@@ -55,7 +56,7 @@ void check_surface(mpm::testing::Report& report, std::mt19937_64& random) {
       const double by_layers = sinks<D>(z, 1.0, beside, 3) - sinks<D>(z, 1.0, beside, 1);
       CHECK_CLOSE(by_layers, 0.0, 0.01 * (1.0 - z) + 10 * eps);
     }
-    CHECK(most < 4e-3, z, most);
+    CHECK(most < 6e-4 + 0.05 * (1.0 - z), z, most);
     CHECK(std::abs(mean) < 1e-3, z, mean);
   }
 }
