@@ -2,6 +2,7 @@
 #include "mpm/contact/find_touches.hpp"
 
 #include <bit>
+#include <limits>
 #include <utility>
 
 #include "mpm/contact/surface.hpp"
@@ -84,6 +85,63 @@ SurfaceSum<D> surface_around(const TileGrid<D>& grid, const BodyNear<D>& body,
   return sum;
 }
 
+/// A plane behind which all of a body's particles around a tile lie. What is well before it touches
+/// none of them, and is passed by: whatever plane it is, what touches is the same.
+template <int D>
+class Front {
+ public:
+  using T = Batch<contact_lanes>;
+
+  /// `from` are some of the tile's cells, where the other body is.
+  Front(const TileParticles<D>& body, std::uint64_t from, double distance) {
+    Vec<T, D> moment = Vec<T, D>::zero();
+    T count(0.0), half(0.0);
+    body.for_each([&](const Vec<double, D>& shift, const auto& q) {
+      const T one = select(q.mass > T(0.0), T(1.0), T(0.0));
+      count += one;
+      half = max(half, q.half);
+      for (int a = 0; a < D; ++a) moment[a] = fma(one, q.xi[a] + T(shift[a]), moment[a]);
+    });
+    Vec<double, D> cells = Vec<double, D>::zero();
+    for (std::uint64_t left = from; left != 0; left &= left - 1)
+      for (int a = 0; a < D; ++a)
+        cells[a] += Tile<D>::cell_index(std::countr_zero(left))[static_cast<std::size_t>(a)];
+    for (int a = 0; a < D; ++a)
+      normal_[a] = sum(moment[a]) / sum(count) - cells[a] / std::popcount(from);
+    normal_ = normalised(normal_);
+    T first(std::numeric_limits<double>::infinity());
+    body.for_each([&](const Vec<double, D>& shift, const auto& q) {
+      T along(0.0);
+      for (int a = 0; a < D; ++a) along = fma(T(normal_[a]), q.xi[a] + T(shift[a]), along);
+      first = min(first, along);
+    });
+    first_ = -largest(-first);
+    margin_ = distance + beyond * largest(half);
+  }
+  /// Of particles at places from the tile's first node, those that may touch it, a bit each.
+  std::uint64_t near(const Vec<T, D>& x, T half) const {
+    T along(0.0);
+    for (int a = 0; a < D; ++a) along = fma(T(normal_[a]), x[a], along);
+    return lane_bits(along > T(first_ - margin_) - T(beyond) * half);
+  }
+
+ private:
+  // Bodies touch at the height of a half edge of both over the outermost particles. At a quarter
+  // more these would have to lie three times as densely as in a lattice.
+  static constexpr double beyond = 1.25;
+  Vec<double, D> normal_;
+  double first_ = 0.0, margin_ = 0.0;
+};
+
+/// Is any cell of a tile nearer to a face of the box than that, or beyond it?
+template <int D>
+bool near_walls(const Walls<D>& walls, const Index<D>& first, int range) {
+  bool near = false;
+  for (std::size_t a = 0; a < D; ++a)
+    near = near || first[a] <= range || first[a] + Tile<D>::cells + range >= walls.cells[a];
+  return walls.exist && near;
+}
+
 /// The particles of a tile's patch that overlap another body.
 template <int D>
 void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
@@ -94,9 +152,15 @@ void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   Vec<double, D> tile;
   for (int a = 0; a < D; ++a) tile[a] = first[static_cast<std::size_t>(a)];
   const double mean_edge = bodies[static_cast<std::size_t>(own.body)].mean_edge;
+  const double own_node = reach_of(grid.basis).own_node;
   // Springs act up to half an edge from their particle.
   const double reach = support(grid.basis, mean_edge / grid.cell_size);
-  for (std::uint64_t cells = patch.occupied & other.near; cells != 0; cells &= cells - 1) {
+  std::uint64_t cells = patch.occupied & other.near;
+  if (cells == 0) return;
+  const Front<D> front(other.particles, cells, distance);
+  // What walls mirror is not among the particles.
+  const bool all = near_walls<D>(grid.walls, first, other.range);
+  for (; cells != 0; cells &= cells - 1) {
     const auto c = static_cast<std::size_t>(std::countr_zero(cells));
     const Index<D> cell = Tile<D>::cell_index(static_cast<int>(c));
     Index<D> in_grid = first;
@@ -104,10 +168,16 @@ void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     const std::uint32_t end = patch.begin + patch.cell_begin[c + 1];
     for (std::uint32_t i = patch.begin + patch.cell_begin[c]; i < end; i += contact_lanes) {
       const auto lanes = TileParticles<D>::lanes_of(grid, mean_edge, pool, in_grid, i, end);
-      for (int k = 0; k < contact_lanes && lanes.mass[k] > 0.0; ++k) {
+      Vec<Batch<contact_lanes>, D> places;
+      for (int a = 0; a < D; ++a)
+        places[a] =
+            lanes.xi[a] + Batch<contact_lanes>(cell[static_cast<std::size_t>(a)] - own_node);
+      std::uint64_t left = lane_bits(lanes.mass > Batch<contact_lanes>(0.0));
+      if (!all) left &= front.near(places, lanes.half);
+      for (; left != 0; left &= left - 1) {
+        const int k = std::countr_zero(left);
         Vec<double, D> x;
-        for (int a = 0; a < D; ++a)
-          x[a] = cell[static_cast<std::size_t>(a)] + lanes.xi[a][k] - reach_of(grid.basis).own_node;
+        for (int a = 0; a < D; ++a) x[a] = places[a][k];
         const SurfaceSum<D> sum = surface_around(grid, other, tile, x);
         const double half = lanes.half[k], surface = half - lanes.set_back[k], met = sum.half();
         if (met == 0.0) continue;

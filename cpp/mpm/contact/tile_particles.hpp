@@ -120,8 +120,21 @@ class TileParticles {
                   });
   }
 
+  /// f(shift, lanes) for all; `shift` + xi are positions from the tile's first node [cells].
+  template <class F>
+  void for_each(F&& f) const {
+    for (std::size_t w = 0; w < filled_.size(); ++w)
+      for (std::uint64_t left = filled_[w]; left != 0; left &= left - 1) {
+        const int n = static_cast<int>(64 * w) + std::countr_zero(left);
+        Vec<double, D> shift;
+        for (int a = 0, k = n; a < D; ++a, k /= edge)
+          shift[a] = k % edge - before_tile - own_node();
+        const Cell& c = cells_[static_cast<std::size_t>(n)];
+        for (std::uint32_t i = c.begin; i < c.end; ++i) f(shift, lanes_[i]);
+      }
+  }
   /// f(shift, lanes) for the cells up to `range` from that of a point x, counted from the tile's
-  /// first node [cells]; `shift` + xi are the positions of the particles.
+  /// first node [cells].
   template <class F>
   void within(const Vec<double, D>& x, int range, F&& f) const {
     Index<D> low, high;
