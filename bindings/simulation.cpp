@@ -221,6 +221,8 @@ void def_records(SimulationClass& simulation) {
              d["overlapped_nodes_max"] = contact.counts.overlapped_max;
              d["bodies_per_node_max"] = contact.counts.bodies_max;
              d["unconverged_nodes"] = contact.unconverged.load();
+             d["set_back_particles"] = contact.set_back.particles;
+             d["set_back_most"] = contact.set_back.most;
              d["bytes"] = bytes_of(s).contact;
              return d;
            }))

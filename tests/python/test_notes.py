@@ -179,3 +179,26 @@ def test_the_lower_bound_holds_in_a_shock_tube() -> None:
     simulation = Simulation(case, threads=1)
     assert simulation.advance(100 * least) > least
     assert simulation.time == 0.02
+
+
+def test_rubber_locks_without_volume_averaging() -> None:
+    text = CASE.replace("nu = 0.3", "nu = 0.49") + LIT
+    [note] = notes_of(text)
+    assert "material.steel has nu = 0.49" in note and "volume_averaging = true" in note
+    averaged = text.replace("density = 7800", "density = 7800\nvolume_averaging = true")
+    assert notes_of(averaged) == []
+
+
+def test_springs_want_two_particles_a_cell() -> None:
+    text = CASE.replace('material = "steel"', 'material = "steel"\nspacing = "1 mm"') + LIT
+    [note] = notes_of(text)
+    assert "body.plate has particles of 1 cells" in note and 'response = "impulses"' in note
+    assert notes_of(text + '[contact]\nresponse = "impulses"\n') == []
+
+
+def test_bodies_that_overlap_at_the_start() -> None:
+    box = 'shape = { box = { lower = ["6 mm", 0], upper = ["8 mm", "4 mm"] } }'
+    assert Simulation(Case.from_text(CASE + LIT)).notes == []
+    disc = 'shape = { disc = { centre = ["5.8 mm", "2 mm"], radius = "2 mm" } }'
+    [note] = Simulation(Case.from_text(CASE.replace(box, disc) + LIT)).notes
+    assert "overlap at the start by up to 0.000" in note and "particles are set back" in note

@@ -52,6 +52,12 @@ struct ContactCounts {
   int bodies_max = 0;              // at a node, since the start
 };
 
+/// Particles whose surfaces were set back before the first step.
+struct SetBack {
+  std::size_t particles = 0;
+  double most = 0.0;  // [m]
+};
+
 template <int D>
 struct Contact {
   std::vector<TileHolder> holders;  // those of each tile follow one another
@@ -65,6 +71,7 @@ struct Contact {
   PairRecords records;
   bool has_rigid = false;  // some body does not deform
   ContactCounts counts;
+  SetBack set_back;
   /// Solutions at nodes with several bodies that stopped short of the tolerance, since the start.
   std::atomic<std::size_t> unconverged{0};
   std::vector<ContactTile<D>> last_tiles;  // scratch

@@ -6,8 +6,8 @@
 namespace mpm {
 
 template <int D>
-void set_back_surfaces(const Contact<D>& contact, const std::vector<Body<D>>& bodies,
-                       std::vector<ParticlePool<D>>& pools) {
+void set_back_surfaces(Contact<D>& contact, const std::vector<Body<D>>& bodies,
+                       std::vector<ParticlePool<D>>& pools, double cell_size) {
   // [cells]; positions are good to 1e-10 at 2^19 cells: rounding must not choose what pushes at
   // once.
   constexpr double beyond = 1e-9;
@@ -15,14 +15,16 @@ void set_back_surfaces(const Contact<D>& contact, const std::vector<Body<D>>& bo
     for (const Touch<D>& touch : touches) {
       ParticlePool<D>& pool = pools[pool_number(bodies, touch.body)];
       double& share = pool.columns.component(pool.set_back)[pool.order[touch.entry]];
+      if (share == 0.0) ++contact.set_back.particles;
+      contact.set_back.most = std::max(contact.set_back.most, touch.overlap * cell_size);
       // Of those that touch several bodies the most, in whatever order they come.
       share = std::max(share, (touch.overlap + beyond) / touch.half);
     }
 }
 
-template void set_back_surfaces<2>(const Contact<2>&, const std::vector<Body<2>>&,
-                                   std::vector<ParticlePool<2>>&);
-template void set_back_surfaces<3>(const Contact<3>&, const std::vector<Body<3>>&,
-                                   std::vector<ParticlePool<3>>&);
+template void set_back_surfaces<2>(Contact<2>&, const std::vector<Body<2>>&,
+                                   std::vector<ParticlePool<2>>&, double);
+template void set_back_surfaces<3>(Contact<3>&, const std::vector<Body<3>>&,
+                                   std::vector<ParticlePool<3>>&, double);
 
 }  // namespace mpm

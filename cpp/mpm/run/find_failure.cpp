@@ -24,7 +24,9 @@ void find_failure(Simulation<D>& simulation) {
     const std::size_t row = row_of(domain, fastest.body, fastest.particle);
     std::ostringstream text;
     text << "the numerical terms have made " << domain.ledger.growth()
-         << " of the largest energy brought in";
+         << " of the largest energy brought in (the column numerical of history.csv); halve "
+            "run.cfl, "
+            "or raise run.energy_growth_limit if that is meant";
     fail("energy growth", static_cast<std::size_t>(fastest.body), row, text.str());
     return;
   }

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from mpm3dpp.case.grid import FACES
 from .build import FilledBody, by_part
 
 _FASTEST = 10.0  # Times the speed of sound; the fastest impacts in laboratories are at 2 to 3.
+_INCOMPRESSIBLE = 0.45
+_COARSE = 0.75  # Cells.
+_SEEN = 0.1  # Cells: a fifth of an edge; a lattice stands out by less.
 _STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
 
 
@@ -33,8 +37,26 @@ def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
         *_rigid(case),
         *_detonations(case, bodies),
         *_walls(case),
+        *_locking(case),
+        *_springs(case, bodies),
     ]
     return found + _speeds(case, bodies) + _time_step(case, bodies)
+
+
+def overlap(case: Case, contact: dict[str, Any]) -> list[str]:
+    """Return a note on bodies that overlapped at the start, by more than particles' places do.
+
+    Args:
+        case: that which is run.
+        contact: `contact_summary()` of the core, with the bodies in it.
+    """
+    count, most = contact["set_back_particles"], contact["set_back_most"]
+    if most < _SEEN * case.grid.cell_size:
+        return []
+    return [
+        f"bodies overlap at the start by up to {most:.3g} m; the surfaces of {count:,} particles "
+        "are set back by that, so that contact does not throw them apart"
+    ]
 
 
 def fastest(case: Case, bodies: list[FilledBody]) -> float:
@@ -118,6 +140,33 @@ def _walls(case: Case) -> list[str]:
                 "presses on it: what stands there sinks; give slip or fixed unless that is meant"
             )
     return found
+
+
+def _locking(case: Case) -> list[str]:
+    """Solids that hardly change their volume, in cells that make them too stiff."""
+    found = []
+    for name in case.materials_used:
+        material = case.material[name]
+        nu = material.strength.parameters.get("nu", 0.0)
+        if nu > _INCOMPRESSIBLE and not material.volume_averaging:
+            found.append(
+                f"material.{name} has nu = {nu:g}, nearly incompressible, and is too stiff where "
+                f"it bends; give material.{name}.volume_averaging = true"
+            )
+    return found
+
+
+def _springs(case: Case, bodies: list[FilledBody]) -> list[str]:
+    """Particles as large as cells, between which springs of contact are coarse."""
+    if not case.has_springs:
+        return []
+    return [
+        f"{key_text(case.part_path(name))} has particles of {widest / case.grid.cell_size:.2g} "
+        "cells, and springs of contact want two a cell along each axis; give smaller particles, or "
+        'contact.response = "impulses"'
+        for name, members in by_part(bodies).items()
+        if (widest := max(body.spacing for body in members)) > _COARSE * case.grid.cell_size
+    ]
 
 
 def _speeds(case: Case, bodies: list[FilledBody]) -> list[str]:

@@ -19,7 +19,7 @@ from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import lighting_times
 from mpm3dpp.case.loads import add_load, pieces
 from mpm3dpp.case.motion import Motion
-from mpm3dpp.fill.advisories import notes
+from mpm3dpp.fill.advisories import notes, overlap
 from mpm3dpp.fill.build import build, warnings
 from mpm3dpp.fill.point_warnings import point_warnings
 from mpm3dpp.io.checkpoint import read_about, restore_checkpoint, write_checkpoint
@@ -114,6 +114,7 @@ class Simulation:
             self.core.prepare()
         except ValueError as error:
             raise self._refusal(str(error)) from None
+        self.notes += overlap(case, self.core.contact_summary())
         self.summary: dict[str, Any] = {}
 
     def _refusal(self, sentence: str) -> CaseError:
