@@ -37,4 +37,13 @@ struct TileBodies {
   }
 };
 
+/// The bodies around a tile and the nodes at which they overlap.
+template <int D>
+void look_around(const Contact<D>& contact, const TileGrid<D>& grid, const ContactTile<D>& tile,
+                 TileBodies<D>& found);
+
+/// How many of these nodes there are, and by how many bodies they are held at most.
+template <int D>
+void count_overlapped(const TileBodies<D>& around, ContactPart<D>& part);
+
 }  // namespace mpm
