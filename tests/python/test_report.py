@@ -20,7 +20,11 @@ def manifest(initial: dict[str, float], final: dict[str, float]) -> Any:
 @pytest.mark.parametrize(
     ("initial", "final", "words"),
     [
-        ({"kinetic": 100.0}, {"numerical": 2.0, "contact": 1.0}, "lost 3.00% of what came in"),
+        (
+            {"kinetic": 100.0},
+            {"numerical": 2.0, "contact": -1.0},
+            "numerical terms lost 2.00%, contact made 1.00% of what came in",
+        ),
         ({}, {"external": -50.0, "numerical": -1.0}, "made 2.00% of what came in"),
         # A gas or an explosive brings its energy with it.
         ({"internal": 400.0}, {"numerical": 2.0}, "lost 0.50% of the energy at the start"),
