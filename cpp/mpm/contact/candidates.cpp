@@ -42,7 +42,8 @@ void reuse_tiles(std::vector<ContactTile<D>>& last_tiles, std::vector<ContactTil
 template <int D>
 void find_around(Contact<D>& contact) {
   const auto& tiles = contact.tiles;
-  std::vector<std::int32_t> sorted(tiles.size());
+  auto& sorted = contact.sorted_tiles;
+  sorted.resize(tiles.size());
   std::iota(sorted.begin(), sorted.end(), 0);
   const auto place = [&](std::int32_t t) -> const Index<D>& {
     return tiles[static_cast<std::size_t>(t)].tile;
@@ -83,11 +84,13 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
     throw std::length_error("bodies lie in more than 134 million tiles; give larger cells");
   std::swap(contact.last_tiles, tiles);
   tiles.clear();
-  contact.has_rigid = false;
+  contact.has_rigid = contact.has_free_rigid = false;
   for (Patch<D>& patch : grid.patches) {
     // Set below for the patches around tiles that stay: for others no masses are looked at.
     patch.in_contact = false;
-    if (!bodies[static_cast<std::size_t>(patch.body)].deforms()) contact.has_rigid = true;
+    const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
+    if (!body.deforms()) contact.has_rigid = true;
+    if (body.is_free_rigid()) contact.has_free_rigid = true;
   }
   auto tile_of = [&](const TileHolder& h) {
     Index<D> t = grid.patches[static_cast<std::size_t>(h.patch)].tile;

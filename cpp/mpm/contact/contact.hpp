@@ -66,15 +66,18 @@ struct Contact {
   // With springs: the numbers of the tiles around each, -1 if none; and the touches of the step.
   std::vector<std::array<std::int32_t, Tile<D>::neighbours>> around;
   std::vector<std::vector<Touch<D>>> touches;
+  std::vector<std::uint8_t> surface_ranges;  // scratch, by patch: SurfaceSum::range()
   std::vector<ContactPart<D>> parts;
   PairCache cache;
   PairRecords records;
-  bool has_rigid = false;  // some body does not deform
+  bool has_rigid = false;       // some body does not deform
+  bool has_free_rigid = false;  // and moves by what pushes it
   ContactCounts counts;
   SetBack set_back;
   /// Solutions at nodes with several bodies that stopped short of the tolerance, since the start.
   std::atomic<std::size_t> unconverged{0};
   std::vector<ContactTile<D>> last_tiles;  // scratch
+  std::vector<std::int32_t> sorted_tiles;  // scratch
   std::vector<double> rigid_share;         // scratch, by body: its mass at all overlapped nodes
 };
 
@@ -86,7 +89,8 @@ std::size_t bytes_of(const Contact<D>& contact) {
   for (const ContactPart<D>& part : contact.parts) parts += part.bytes();
   for (const auto& touches : contact.touches) parts += size(touches);
   return contact.masses.bytes() + parts + contact.cache.bytes() + contact.records.bytes() +
-         size(contact.around) + size(contact.touches) + size(contact.holders) +
+         size(contact.around) + size(contact.touches) + size(contact.surface_ranges) +
+         size(contact.sorted_tiles) + size(contact.holders) +
          size(contact.tiles) + size(contact.last_tiles) + size(contact.rigid_share);
 }
 

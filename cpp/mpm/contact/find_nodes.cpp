@@ -172,6 +172,10 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
   const bool springs = settings.response == Response::springs;
   if (springs)
     find_touches(contact, grid, bodies, pools, settings.gap_distance / grid.cell_size, threads);
+  // The reach of GIMP grows with the particles at the start.
+  double widest = 0.0;
+  for (const Body<D>& body : bodies)
+    widest = std::max(widest, support(grid.basis, body.mean_edge / grid.cell_size));
   const TileShares shares(contact.tiles.size(), threads.count());
   if (shares.count > contact.parts.size())
     contact.parts.resize(shares.count);  // no part goes: it may know of another's tiles
@@ -183,9 +187,9 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
       look_around(contact, grid, contact.tiles[t], around);
       count_overlapped(around, part);
       if (springs) {
-        around.touches.gather(contact, t);
+        around.touches.gather(contact, t, widest);
         // A rigid body's mass is spread over all nodes where it meets others.
-        if (!contact.has_rigid) around.overlapped &= around.touches.nodes();
+        if (!contact.has_free_rigid) around.overlapped &= around.touches.nodes();
       }
       if (around.overlapped == 0) {
         contact.tiles[t].cached = 0;

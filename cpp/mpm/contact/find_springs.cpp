@@ -32,7 +32,7 @@ void find_springs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
       ContactPair<D>& pair = *next++;
       pair = new_pair<D>(bodies, settings, sides, r, s);
-      pair.gap = std::numeric_limits<double>::infinity();
+      pair.gap = std::numeric_limits<double>::infinity();  // none touch
       const std::int32_t body_r = sides[r].body, body_s = sides[s].body;
       const auto between = touches.between(body_r, body_s);
       if (between.empty()) continue;
@@ -42,8 +42,8 @@ void find_springs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
       const SpringSide<D> of_r = side_of<D>(grid, body(body_r), body_r, place),
                           of_s = side_of<D>(grid, body(body_s), body_s, place);
       Springs<D> springs;
-      for (const Touch<D>& touch : between)
-        if (touch.reaches(at)) springs.add(touch, at, of_r, of_s, distance);
+      for (const NearTouch<D>& touch : between)
+        if (touch.nodes >> node.cell & 1u) springs.add(touch, at, of_r, of_s);
       pair.normal = springs.normal(node.constrained_axes);
       pair.spring = springs.along(pair.normal, grid.cell_size);
       pair.gap = springs.gap(distance, grid.cell_size);

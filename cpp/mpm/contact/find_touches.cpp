@@ -16,7 +16,7 @@ template <int D>
 struct BodyNear {
   std::int32_t body;
   bool deforms;
-  int range;  // surface_range()
+  int range;  // of its widest particle here, SurfaceSum::range()
   std::span<const TileHolder> holders;
   const Patch<D>* own;   // its patch of the tile itself, if any
   std::uint64_t near;    // cells so near to some of its particles that its surface is felt there
@@ -46,10 +46,12 @@ void look_around(const Contact<D>& contact, const TileGrid<D>& grid,
     at.body = contact.holders[h].body;
     const Body<D>& body = bodies[static_cast<std::size_t>(at.body)];
     at.deforms = body.deforms();
-    at.range = surface_range(body.mean_edge / grid.cell_size);
+    at.range = 1;
+    const std::uint32_t first = h;
+    for (std::uint32_t k = h; k < end && contact.holders[k].body == at.body; ++k)
+      at.range = std::max(at.range, int{contact.surface_ranges[contact.holders[k].patch]});
     at.own = nullptr;
     at.near = at.wanted = 0;
-    const std::uint32_t first = h;
     for (; h < end && contact.holders[h].body == at.body; ++h) {
       const TileHolder& holder = contact.holders[h];
       const Patch<D>& patch = grid.patches[static_cast<std::size_t>(holder.patch)];
@@ -79,7 +81,7 @@ SurfaceSum<D> surface_around(const TileGrid<D>& grid, const BodyNear<D>& body,
                      Vec<T, D> d;
                      for (int a = 0; a < D; ++a)
                        d[a] = T(signs[a]) * (q.xi[a] + T(shift[a] - at[a]));
-                     sum.add(d, q.half, q.mass, body.range);
+                     sum.add(d, q.half, q.mass);
                    });
                  });
   return sum;
@@ -133,13 +135,31 @@ class Front {
   double first_ = 0.0, margin_ = 0.0;
 };
 
-/// Is any cell of a tile nearer to a face of the box than that, or beyond it?
+/// Is any cell of a tile nearer to a face that mirrors than that, or beyond it?
 template <int D>
 bool near_walls(const Walls<D>& walls, const Index<D>& first, int range) {
   bool near = false;
   for (std::size_t a = 0; a < D; ++a)
-    near = near || first[a] <= range || first[a] + Tile<D>::cells + range >= walls.cells[a];
+    near = near || (walls.face[a][0] != Wall::free && first[a] <= range) ||
+           (walls.face[a][1] != Wall::free &&
+            first[a] + Tile<D>::cells + range >= walls.cells[a]);
   return walls.exist && near;
+}
+
+/// How wide the surfaces of the bodies in contact are felt, patch by patch.
+template <int D>
+void find_ranges(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                 const std::vector<ParticlePool<D>>& pools, Threads& threads) {
+  contact.surface_ranges.resize(grid.patches.size());
+  threads.for_each(grid.patches.size(), [&](std::size_t p) {
+    const Patch<D>& patch = grid.patches[p];
+    if (!patch.in_contact) return;
+    const ParticlePool<D>& pool = pools[pool_number(bodies, patch.body)];
+    double widest = 0.0;
+    for (const std::uint32_t row : pool.rows(patch)) widest = std::max(widest, double{pool.volume()[row]});
+    const double edge = (D == 2 ? std::sqrt(widest) : std::cbrt(widest)) / grid.cell_size;
+    contact.surface_ranges[p] = static_cast<std::uint8_t>(SurfaceSum<D>::range(edge));
+  });
 }
 
 /// The particles of a tile's patch that overlap another body.
@@ -153,8 +173,6 @@ void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   for (int a = 0; a < D; ++a) tile[a] = first[static_cast<std::size_t>(a)];
   const double mean_edge = bodies[static_cast<std::size_t>(own.body)].mean_edge;
   const double own_node = reach_of(grid.basis).own_node;
-  // Springs act up to half an edge from their particle.
-  const double reach = support(grid.basis, mean_edge / grid.cell_size);
   std::uint64_t cells = patch.occupied & other.near;
   if (cells == 0) return;
   const Front<D> front(other.particles, cells, distance);
@@ -179,12 +197,14 @@ void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
         Vec<double, D> x;
         for (int a = 0; a < D; ++a) x[a] = places[a][k];
         const SurfaceSum<D> sum = surface_around(grid, other, tile, x);
-        const double half = lanes.half[k], surface = half - lanes.set_back[k], met = sum.half();
-        if (met == 0.0) continue;
-        const double overlap = surface + met + distance - sum.height(met);
+        const Vec<double, D> normal = sum.normal();
+        if (!(dot(normal, normal) > 0.0)) continue;  // out of reach, or in the very middle
+        const double half = lanes.half[k], surface = half - lanes.set_back[k],
+                     other_half = sum.mean_half();
+        const double overlap = surface + other_half + distance - sum.height(other_half);
         if (overlap > 0.0)
-          touches.push_back({own.body, other.body, i + static_cast<std::uint32_t>(k), x,
-                             sum.normal(), half, surface, met, overlap, reach + half});
+          touches.push_back({own.body, other.body, i + static_cast<std::uint32_t>(k), x, normal, half,
+                             surface, other_half, overlap, 0.5 * (distance - overlap) + surface});
       }
     }
   }
@@ -195,13 +215,14 @@ void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
 template <int D>
 void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<ParticlePool<D>>& pools, double distance, Threads& threads) {
+  find_ranges(contact, grid, bodies, pools, threads);
   const TileShares shares(contact.tiles.size(), threads.count());
   // None goes: their memory is used again.
   if (shares.count > contact.touches.size()) contact.touches.resize(shares.count);
+  for (auto& touches : contact.touches) touches.clear();
   threads.for_each(shares.count, [&](std::size_t share) {
     thread_local BodiesNear<D> around;
     std::vector<Touch<D>>& touches = contact.touches[share];
-    touches.clear();
     for (std::size_t t = shares.first(share); t < shares.first(share + 1); ++t) {
       ContactTile<D>& tile = contact.tiles[t];
       tile.touches = {static_cast<std::uint32_t>(share), static_cast<std::uint32_t>(touches.size()),

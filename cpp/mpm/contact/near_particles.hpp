@@ -30,7 +30,7 @@ class NearParticles {
   }
 
   /// Add those lanes that have a weight: position from the node [cells], half the particle's edge
-  /// up to its surface [cells], mass [kg].
+  /// [cells], mass [kg].
   void add(const Vec<T, D>& x, T half, T weight) {
     const std::uint64_t lanes = lane_bits(weight > T(0.0));
     double* const to = numbers_.data() + count_;
@@ -131,7 +131,7 @@ void collect_near(const TileParticles<D>& particles, const Index<D>& node, doubl
       const T to_rim = T(reach) - absolute(x[a]);
       weight *= min(max(T(1.0 / rim) * to_rim, T(0.0)), T(1.0));
     }
-    to.add(x, lanes.half - lanes.set_back, weight);
+    to.add(x, lanes.half, weight);
   });
   to.finish();
 }

@@ -4,6 +4,7 @@
 // apart.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mpm/basis/basis.hpp"
 #include "mpm/contact/contact_node.hpp"
@@ -82,13 +83,11 @@ struct SpringSide {
 template <int D>
 class Springs {
  public:
-  /// Add what a particle of r or s has there. Bodies closer than `distance` touch.
+  /// Add what a particle of r or s has there.
   void add(const Touch<D>& touch, const Vec<double, D>& node, const SpringSide<D>& r,
-           const SpringSide<D>& s, double distance) {
+           const SpringSide<D>& s) {
     const bool of_r = touch.body == r.body;
     const SpringSide<D>&own = of_r ? r : s, &other = of_r ? s : r;
-    // In the middle between the surfaces: both bodies get the force there, at the same nodes.
-    const double to_middle = touch.surface + 0.5 * (distance - touch.overlap);
     double face = 1.0;
     for (int a = 0; a + 1 < D; ++a) face *= 2.0 * touch.half;
     // Blocks of an edge each, one behind the other, that are shortened by the overlap; half of it,
@@ -96,7 +95,7 @@ class Springs {
     const double of_all =
         0.5 * face / (2.0 * (touch.half * own.compliance + touch.half_of_other * other.compliance));
     const double to_s = of_r ? 1.0 : -1.0;
-    own.shares.of(touch.x + to_middle * touch.normal - node,
+    own.shares.of(touch.place() - node,
                   [&](double share, const Vec<double, D>& signs) {
                     const double stiffness = share * of_all;
                     Vec<double, D> n;  // from r to s
@@ -127,14 +126,14 @@ class Springs {
     }
     return {face * dot(force_, n), face / cell_size * stiffness, face * cell_size * energy_};
   }
-  /// The least distance of the bodies [m].
+  /// The least distance of the bodies [m]; infinite if nothing was added.
   double gap(double distance, double cell_size) const { return cell_size * (distance - deepest_); }
 
  private:
   Vec<double, D> force_ = Vec<double, D>::zero();  // [Pa cells^(D - 1)]
   double stiffness_[D][D] = {};                    // [Pa cells^(D - 2)], the lower triangle
   double energy_ = 0.0;                            // [Pa cells^D]
-  double deepest_ = 0.0;
+  double deepest_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace mpm

@@ -3,6 +3,7 @@
 // (decision 0054). It depends on places alone, and on no node's normal.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "mpm/fields/lanes.hpp"
@@ -14,23 +15,27 @@ namespace mpm {
 
 /// The particles around a point, each with a weight (1 - d^2 / R^2 e^2)^n up to a distance d of R
 /// of its edges e. A layer of particles an edge apart has a sum which in the mean falls with the
-/// height z over it [edges] as (R^2 - z^2)^m, m = n + (D - 1) / 2.
+/// height z over it as S_1 ((R^2 - z^2 / e^2) / a^2)^m, a^2 = R^2 - 1 and m = n + (D - 1) / 2.
 ///
-/// At a height of an edge, where bodies touch, the weights of a layer end at a = sqrt(R^2 - 1)
-/// beside the point, and what waves of a length k the lattice has in it goes by J_m(2 pi a k): R is
-/// where the longest vanishes, a = j / 2 pi with the first zero j of J_m, so that flat rows have no
-/// dents. The layer below is two edges away then, beyond all weights.
+/// At a height of an edge, where bodies touch, the weights of a layer end at a edges beside the
+/// point, and what waves of a length of 1 / k edges the lattice has in it goes by J_m(2 pi a k): a
+/// is where the longest vanishes, at the first zero of J_m, so that flat rows have no dents. The
+/// layer below is two edges away then, beyond all weights.
 template <int D>
 class SurfaceSum {
  public:
   using T = Batch<contact_lanes>;
+  /// Where a weight ends at the latest [cells].
+  static constexpr double cut = 2.0;
+  /// Cells around that of a point in which weights of particles up to that edge may lie [cells].
+  static int range(double edge) { return edge * edge * (1.0 + a2) > 1.0 ? 2 : 1; }
 
   /// Particles at d from the point, half their edges, and which of them count (a mass above 0).
-  /// `range` is where a weight ends at the latest. All in cells.
-  void add(const Vec<T, D>& d, T half, T mass, double range) {
+  /// All in cells.
+  void add(const Vec<T, D>& d, T half, T mass) {
     T square(0.0);
     for (int k = 0; k < D; ++k) square = fma(d[k], d[k], square);
-    const T end = min(T(4.0 * (1.0 + beside)) * half * half, T(range * range));
+    const T end = min(T(4.0 * (1.0 + a2)) * half * half, T(cut * cut));
     const T scale = T(1.0) / end, t = max(fma(-square, scale, T(1.0)), T(0.0)), t2 = t * t;
     const T last = select(mass > T(0.0), D == 2 ? t2 * t2 * t : t2 * t2, T(0.0));  // t^(n - 1)
     const T weight = last * t;
@@ -41,13 +46,18 @@ class SurfaceSum {
   }
 
   /// Half the edge of the particles, as they count [cells]; none: 0.
-  double half() const {
+  double mean_half() const {
     const double total = sum(sum_);
     return total > 0.0 ? sum(halves_) / total : 0.0;
   }
-  /// Height of the point over the outermost layer of particles of that half edge [cells].
+  /// Height of the point over the outermost layer of particles of that half edge [cells]; of
+  /// particles so wide that what is cut off is all at the height of an edge, infinite.
   double height(double half) const {
-    const double share = std::pow(sum(sum_) / at_an_edge(), 1.0 / (n + 0.5 * (D - 1)));
+    const double ends = cut / (2.0 * half);  // edges
+    const double beside = std::min(a2, ends * ends - 1.0);
+    if (!(beside > 0.0)) return std::numeric_limits<double>::infinity();
+    const double at_edge = beside < a2 ? at_an_edge(beside) : uncut;
+    const double share = std::pow(sum(sum_) / at_edge, 1.0 / (n + 0.5 * (D - 1)));
     return 2.0 * half * std::sqrt(std::max(1.0 + beside * (1.0 - share), 0.0));
   }
   /// Unit vector along which the sum rises fastest, into the body; zero if there is none.
@@ -60,23 +70,21 @@ class SurfaceSum {
  private:
   static constexpr int n = D == 2 ? 6 : 5;
   static constexpr double zero = D == 2 ? 10.512835408093999 : 9.936109524217791;  // of J_m
-  static constexpr double a = zero / (2.0 * std::numbers::pi), beside = a * a;
+  static constexpr double a2 = zero * zero / (4.0 * std::numbers::pi * std::numbers::pi);
 
-  /// The sum at the height of an edge: the mean over all places beside the layer's particles.
-  static constexpr double at_an_edge() {
+  /// S_1, the mean over all places beside the layer's particles.
+  static double at_an_edge(double beside) {
     // The integral of (1 - u^2)^n, |u| < 1, over lengths or areas.
-    double sum = D == 2 ? 2048.0 / 3003.0 * a : std::numbers::pi / 6.0 * beside;
+    double sum =
+        D == 2 ? 2048.0 / 3003.0 * std::sqrt(beside) : std::numbers::pi / 6.0 * beside;
     for (int k = 0; k < n; ++k) sum *= beside / (1.0 + beside);
     return sum;
   }
+  static inline const double uncut = at_an_edge(a2);
 
   T sum_{0.0}, halves_{0.0};
   Vec<T, D> slope_ = Vec<T, D>::zero();
 };
-
-/// Cells around that of a point in which the weights of a body's particles may lie: up to two
-/// edges, cut off there.
-inline int surface_range(double mean_edge) { return mean_edge < 0.51 ? 1 : 2; }
 
 /// f(image, signs) for a point and what it is beyond the faces of the box that it is nearer to than
 /// `range`: a body goes on there as before the face. `signs` are -1 along the axes that are

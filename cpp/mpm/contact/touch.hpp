@@ -1,6 +1,5 @@
 #pragma once
 // A particle over which the surface of another body lies.
-#include <cmath>
 #include <cstdint>
 
 #include "mpm/math/vec.hpp"
@@ -19,13 +18,10 @@ struct Touch {
   double surface;         // from its centre to its surface: the half edge, less what it is set back
   double half_of_other;
   double overlap;
-  double reach;  // how far along an axis a node may be that gets some of its force, at most
+  double to_middle;  // from its centre to the middle between the surfaces, along the normal
 
-  bool reaches(const Vec<double, D>& node) const {
-    bool near = true;
-    for (int a = 0; a < D; ++a) near = near && std::abs(node[a] - x[a]) < reach;
-    return near;
-  }
+  /// Where it is pushed: both bodies get the force there, at the same nodes.
+  Vec<double, D> place() const { return x + to_middle * normal; }
 };
 
 /// Where a tile's touches are.
