@@ -90,8 +90,8 @@ std::size_t bytes_of(const Contact<D>& contact) {
   for (const auto& touches : contact.touches) parts += size(touches);
   return contact.masses.bytes() + parts + contact.cache.bytes() + contact.records.bytes() +
          size(contact.around) + size(contact.touches) + size(contact.surface_ranges) +
-         size(contact.sorted_tiles) + size(contact.holders) +
-         size(contact.tiles) + size(contact.last_tiles) + size(contact.rigid_share);
+         size(contact.sorted_tiles) + size(contact.holders) + size(contact.tiles) +
+         size(contact.last_tiles) + size(contact.rigid_share);
 }
 
 /// Grid coordinates of a node.

@@ -141,8 +141,7 @@ bool near_walls(const Walls<D>& walls, const Index<D>& first, int range) {
   bool near = false;
   for (std::size_t a = 0; a < D; ++a)
     near = near || (walls.face[a][0] != Wall::free && first[a] <= range) ||
-           (walls.face[a][1] != Wall::free &&
-            first[a] + Tile<D>::cells + range >= walls.cells[a]);
+           (walls.face[a][1] != Wall::free && first[a] + Tile<D>::cells + range >= walls.cells[a]);
   return walls.exist && near;
 }
 
@@ -156,7 +155,8 @@ void find_ranges(Contact<D>& contact, const TileGrid<D>& grid, const std::vector
     if (!patch.in_contact) return;
     const ParticlePool<D>& pool = pools[pool_number(bodies, patch.body)];
     double widest = 0.0;
-    for (const std::uint32_t row : pool.rows(patch)) widest = std::max(widest, double{pool.volume()[row]});
+    for (const std::uint32_t row : pool.rows(patch))
+      widest = std::max(widest, double{pool.volume()[row]});
     const double edge = (D == 2 ? std::sqrt(widest) : std::cbrt(widest)) / grid.cell_size;
     contact.surface_ranges[p] = static_cast<std::uint8_t>(SurfaceSum<D>::range(edge));
   });
@@ -203,8 +203,9 @@ void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                      other_half = sum.mean_half();
         const double overlap = surface + other_half + distance - sum.height(other_half);
         if (overlap > 0.0)
-          touches.push_back({own.body, other.body, i + static_cast<std::uint32_t>(k), x, normal, half,
-                             surface, other_half, overlap, 0.5 * (distance - overlap) + surface});
+          touches.push_back({own.body, other.body, i + static_cast<std::uint32_t>(k), x, normal,
+                             half, surface, other_half, overlap,
+                             0.5 * (distance - overlap) + surface});
       }
     }
   }

@@ -95,17 +95,16 @@ class Springs {
     const double of_all =
         0.5 * face / (2.0 * (touch.half * own.compliance + touch.half_of_other * other.compliance));
     const double to_s = of_r ? 1.0 : -1.0;
-    own.shares.of(touch.place() - node,
-                  [&](double share, const Vec<double, D>& signs) {
-                    const double stiffness = share * of_all;
-                    Vec<double, D> n;  // from r to s
-                    for (int a = 0; a < D; ++a) n[a] = to_s * signs[a] * touch.normal[a];
-                    force_ += (stiffness * touch.overlap) * n;
-                    for (int a = 0; a < D; ++a)
-                      for (int b = 0; b <= a; ++b) stiffness_[a][b] += stiffness * n[a] * n[b];
-                    energy_ += 0.5 * stiffness * touch.overlap * touch.overlap;
-                    deepest_ = std::max(deepest_, touch.overlap);
-                  });
+    own.shares.of(touch.place() - node, [&](double share, const Vec<double, D>& signs) {
+      const double stiffness = share * of_all;
+      Vec<double, D> n;  // from r to s
+      for (int a = 0; a < D; ++a) n[a] = to_s * signs[a] * touch.normal[a];
+      force_ += (stiffness * touch.overlap) * n;
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b <= a; ++b) stiffness_[a][b] += stiffness * n[a] * n[b];
+      energy_ += 0.5 * stiffness * touch.overlap * touch.overlap;
+      deepest_ = std::max(deepest_, touch.overlap);
+    });
   }
 
   /// Of the force, from r to s; zero if there is none. Axes in `constrained` have no part.

@@ -75,8 +75,7 @@ class SurfaceSum {
   /// S_1, the mean over all places beside the layer's particles.
   static double at_an_edge(double beside) {
     // The integral of (1 - u^2)^n, |u| < 1, over lengths or areas.
-    double sum =
-        D == 2 ? 2048.0 / 3003.0 * std::sqrt(beside) : std::numbers::pi / 6.0 * beside;
+    double sum = D == 2 ? 2048.0 / 3003.0 * std::sqrt(beside) : std::numbers::pi / 6.0 * beside;
     for (int k = 0; k < n; ++k) sum *= beside / (1.0 + beside);
     return sum;
   }

@@ -46,16 +46,15 @@ struct Weight {
   double S_1 = std::pow(a * a / R2, n) * std::pow(a, D - 1) * disc;
 };
 
-/// The sum of these weights over the particles of a body, up to `range` at most; half their edge in
-/// that mean; and the gradient of the sum. Beyond the walls of the box the body goes on.
+/// The sum of these weights over the particles of a body; half their edge in that mean; and the
+/// gradient of the sum. Beyond the walls of the box the body goes on.
 template <int D>
 struct Surface {
   double sum = 0.0, halves = 0.0;
   Vec<double, D> gradient = Vec<double, D>::zero();
 };
 template <int D>
-Surface<D> surface_at(const Step<D>& step, const Body<D>& body, const Vec<double, D>& x,
-                      double range) {
+Surface<D> surface_at(const Step<D>& step, const Body<D>& body, const Vec<double, D>& x) {
   Surface<D> surface;
   // Each axis: the particles as they are, and what they are beyond either wall.
   Index<D> low, high;
@@ -73,8 +72,7 @@ Surface<D> surface_at(const Step<D>& step, const Body<D>& body, const Vec<double
         if (side[k] != 0) d[a] = 2.0 * wall - q.x[a] - x[a];
       }
       const Weight<D> weight;
-      const double half = 0.5 * step.edge(q.V),
-                   end = std::min(2.0 * half * std::sqrt(weight.R2), range);
+      const double half = 0.5 * step.edge(q.V), end = 2.0 * half * std::sqrt(weight.R2);
       const double t = 1.0 - dot(d, d) / (end * end);
       if (!(t > 0.0)) continue;
       surface.sum += std::pow(t, weight.n);
@@ -104,7 +102,7 @@ void find_springs(Step<D>& step) {
   for (const std::size_t k : {0, 1}) {
     const Body<D>&own = step.bodies[k], &other = step.bodies[1 - k];
     for (const Particle<D>& p : own.particles) {
-      const Surface<D> surface = surface_at(step, other, p.x, step.surface_range * step.h);
+      const Surface<D> surface = surface_at(step, other, p.x);
       if (!(surface.sum > 0.0)) continue;
       const double l = 0.5 * step.edge(p.V), l_q = surface.halves / surface.sum;
       const double square =

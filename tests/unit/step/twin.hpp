@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "mpm/contact/candidates.hpp"
-#include "mpm/contact/surface.hpp"
 #include "mpm/particles/make_body.hpp"
 #include "mpm/reference/absorb.hpp"
 #include "mpm/reference/averaging.hpp"
@@ -81,7 +80,6 @@ struct Twin {
     domain.contact_settings.friction = 0.3;
     if (choice.springs) domain.contact_settings.response = Response::springs;
     reference.springs = choice.springs;
-    reference.surface_range = surface_range(edge);
     reference.edge = [](double volume) {
       using T = Batch<contact_lanes>;
       return particle_edge<D>(T(volume), edge * cell_size)[0];
