@@ -196,6 +196,17 @@ def test_springs_want_two_particles_a_cell() -> None:
     assert notes_of(text + '[contact]\nresponse = "impulses"\n') == []
 
 
+def test_springs_between_unequal_particles() -> None:
+    text = CASE.replace('material = "steel"', 'material = "steel"\nspacing = "0.1 mm"') + LIT
+    [note] = notes_of(text)
+    assert "body.charge has particles 5 times as large as body.plate" in note
+
+
+def test_springs_reach_no_further_than_an_edge() -> None:
+    [note] = notes_of(CASE + LIT + '[contact]\ngap_distance = "0.45 mm"\n')
+    assert "contact.gap_distance = 0.00045 m" in note
+
+
 def test_bodies_that_overlap_at_the_start() -> None:
     box = 'shape = { box = { lower = ["6 mm", 0], upper = ["8 mm", "4 mm"] } }'
     assert Simulation(Case.from_text(CASE + LIT)).notes == []

@@ -20,6 +20,8 @@ from .build import FilledBody, by_part
 _FASTEST = 10.0  # Times the speed of sound; the fastest impacts in laboratories are at 2 to 3.
 _INCOMPRESSIBLE = 0.45
 _COARSE = 0.75  # Cells.
+# Of the edge of the other's particles: R - 1 and 2 R - 1 in 3D (decision 0054), and some less.
+_WIDE_GAP, _UNEQUAL = 0.8, 2.5
 _SEEN = 0.1  # Cells: a fifth of an edge; a lattice stands out by less.
 _STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
 
@@ -157,16 +159,34 @@ def _locking(case: Case) -> list[str]:
 
 
 def _springs(case: Case, bodies: list[FilledBody]) -> list[str]:
-    """Particles as large as cells, between which springs of contact are coarse."""
+    """Sizes of particles with which springs of contact are coarse, or see bodies too late."""
     if not case.has_springs:
         return []
-    return [
-        f"{key_text(case.part_path(name))} has particles of {widest / case.grid.cell_size:.2g} "
+    sizes = {
+        name: max(body.spacing for body in members) for name, members in by_part(bodies).items()
+    }
+    found = [
+        f"{key_text(case.part_path(name))} has particles of {size / case.grid.cell_size:.2g} "
         "cells, and springs of contact want two a cell along each axis; give smaller particles, or "
         'contact.response = "impulses"'
-        for name, members in by_part(bodies).items()
-        if (widest := max(body.spacing for body in members)) > _COARSE * case.grid.cell_size
+        for name, size in sizes.items()
+        if size > _COARSE * case.grid.cell_size
     ]
+    fine, coarse = min(sizes, key=sizes.__getitem__), max(sizes, key=sizes.__getitem__)
+    if sizes[coarse] > _UNEQUAL * sizes[fine]:
+        found.append(
+            f"{key_text(case.part_path(coarse))} has particles {sizes[coarse] / sizes[fine]:.3g} "
+            f"times as large as {key_text(case.part_path(fine))}, and springs of contact between "
+            f"them lack up to half of their stiffness beyond {_UNEQUAL:g} times; give sizes that "
+            "are closer"
+        )
+    if case.contact.gap_distance > _WIDE_GAP * sizes[fine]:
+        found.append(
+            f"contact.gap_distance = {case.contact.gap_distance:g} m is more than {_WIDE_GAP:g} of "
+            f"the particles of {key_text(case.part_path(fine))} ({sizes[fine]:.3g} m), and springs "
+            "reach no further; give a smaller one, or larger particles"
+        )
+    return found
 
 
 def _speeds(case: Case, bodies: list[FilledBody]) -> list[str]:

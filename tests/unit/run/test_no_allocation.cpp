@@ -62,6 +62,7 @@ struct Motion3 {
   std::array<double, 3> velocity, gravity;
   bool plate;  // the body below shakes as prescribed
   TransferId transfer = Transfers::id_of<Flip>();
+  Response response = Response::impulses;
 };
 
 /// Two blocks side by side on a third, elastic and neo-Hookean (E about 1e7 Pa, waves of 100 m/s),
@@ -74,6 +75,8 @@ std::unique_ptr<Simulation<D>> stack(Scheme scheme, const Motion3& motion, int t
   settings.run.scheme = scheme;
   settings.run.transfer.word = motion.transfer;
   settings.grid.basis = scheme == Scheme::usf ? basis_id<Linear> : basis_id<Gimp>;
+  if (is_affine(motion.transfer)) settings.grid.basis = basis_id<QuadraticBSpline>;
+  settings.contact.response = motion.response;
   settings.run.cfl = 0.3;
   for (std::size_t a = 0; a < 3; ++a) settings.run.gravity[a] = motion.gravity[a];
   if (motion.gravity[1] != 0.0) {
@@ -132,7 +135,19 @@ constexpr Motion3 motions[] = {
     {"through tiles", {40.0, 40.0, 40.0}, {0.0, 0.0, 0.0}, false},
     {"on a floor", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, false},
     {"on a plate", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, true},
-    {"on a plate, filtered", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, true, Transfers::id_of<Xpic>()}};
+    {"on a plate, filtered", {0.0, 0.0, 0.0}, {0.0, -3.0, 0.0}, true, Transfers::id_of<Xpic>()},
+    {"through tiles, springs",
+     {40.0, 40.0, 40.0},
+     {0.0, 0.0, 0.0},
+     false,
+     Transfers::id_of<Aflip>(),
+     Response::springs},
+    {"on a plate, springs",
+     {0.0, 0.0, 0.0},
+     {0.0, -3.0, 0.0},
+     true,
+     Transfers::id_of<Aflip>(),
+     Response::springs}};
 
 template <int D>
 void check_steps(mpm::testing::Report& report, Scheme scheme, const Motion3& motion) {
