@@ -159,6 +159,26 @@ void fill_pairs(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<
   tile.first_cached = static_cast<std::uint32_t>(first);
 }
 
+/// Where shape functions end at the latest along an axis [cells]: GIMP's grow with the particles at
+/// the start.
+template <int D>
+double widest_support(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies) {
+  double widest = 0.0;
+  for (const Body<D>& body : bodies)
+    widest = std::max(widest, support(grid.basis, body.mean_edge / grid.cell_size));
+  return widest;
+}
+
+/// The pairs at the nodes of a tile, those of a part from the first-th on, by their springs.
+template <int D>
+void fill_springs(const Contact<D>& contact, const TileGrid<D>& grid,
+                  const std::vector<Body<D>>& bodies, const ContactSettings& settings,
+                  const TileTouches<D>& touches, ContactPart<D>& part, std::size_t first) {
+  for (std::size_t n = first; n < part.nodes.size(); ++n)
+    find_springs<D>(grid, bodies, settings, touches, part, part.nodes[n],
+                    place_of(contact, grid, part.nodes[n]));
+}
+
 }  // namespace
 
 template <int D>
@@ -172,10 +192,7 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
   const bool springs = settings.response == Response::springs;
   if (springs)
     find_touches(contact, grid, bodies, pools, settings.gap_distance / grid.cell_size, threads);
-  // The reach of GIMP grows with the particles at the start.
-  double widest = 0.0;
-  for (const Body<D>& body : bodies)
-    widest = std::max(widest, support(grid.basis, body.mean_edge / grid.cell_size));
+  const double widest = springs ? widest_support(grid, bodies) : 0.0;
   const TileShares shares(contact.tiles.size(), threads.count());
   if (shares.count > contact.parts.size())
     contact.parts.resize(shares.count);  // no part goes: it may know of another's tiles
@@ -200,9 +217,7 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
         fetch_particles(contact, grid, bodies, pools, around, around.overlapped);
       add_nodes(contact, grid, bodies, t, around, part);
       if (springs)
-        for (std::size_t n = first; n < part.nodes.size(); ++n)
-          find_springs<D>(grid, bodies, settings, around.touches, part, part.nodes[n],
-                          place_of(contact, grid, part.nodes[n]));
+        fill_springs(contact, grid, bodies, settings, around.touches, part, first);
       else
         fill_pairs(contact, grid, bodies, pools, settings, t, around, p, first);
       // A rigid body's mass is spread over all its nodes, so they stay.

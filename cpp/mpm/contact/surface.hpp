@@ -54,11 +54,11 @@ class SurfaceSum {
   /// particles so wide that what is cut off is all at the height of an edge, infinite.
   double height(double half) const {
     const double ends = cut / (2.0 * half);  // edges
-    const double beside = std::min(a2, ends * ends - 1.0);
-    if (!(beside > 0.0)) return std::numeric_limits<double>::infinity();
-    const double at_edge = beside < a2 ? at_an_edge(beside) : uncut;
+    if (!(ends > 1.0)) return std::numeric_limits<double>::infinity();
+    const double square = std::min(a2, ends * ends - 1.0);
+    const double at_edge = at_an_edge(square < a2 ? std::sqrt(square) : a);
     const double share = std::pow(sum(sum_) / at_edge, 1.0 / (n + 0.5 * (D - 1)));
-    return 2.0 * half * std::sqrt(std::max(1.0 + beside * (1.0 - share), 0.0));
+    return 2.0 * half * std::sqrt(std::max(1.0 + square * (1.0 - share), 0.0));
   }
   /// Unit vector along which the sum rises fastest, into the body; zero if there is none.
   Vec<double, D> normal() const {
@@ -70,16 +70,17 @@ class SurfaceSum {
  private:
   static constexpr int n = D == 2 ? 6 : 5;
   static constexpr double zero = D == 2 ? 10.512835408093999 : 9.936109524217791;  // of J_m
-  static constexpr double a2 = zero * zero / (4.0 * std::numbers::pi * std::numbers::pi);
+  static constexpr double a = zero / (2.0 * std::numbers::pi), a2 = a * a;
 
-  /// S_1, the mean over all places beside the layer's particles.
-  static double at_an_edge(double beside) {
+  /// S_1, the mean over all places beside the layer's particles, of weights that end `beside` edges
+  /// from the point there.
+  static constexpr double at_an_edge(double beside) {
+    const double square = beside * beside;
     // The integral of (1 - u^2)^n, |u| < 1, over lengths or areas.
-    double sum = D == 2 ? 2048.0 / 3003.0 * std::sqrt(beside) : std::numbers::pi / 6.0 * beside;
-    for (int k = 0; k < n; ++k) sum *= beside / (1.0 + beside);
+    double sum = D == 2 ? 2048.0 / 3003.0 * beside : std::numbers::pi / 6.0 * square;
+    for (int k = 0; k < n; ++k) sum *= square / (1.0 + square);
     return sum;
   }
-  static inline const double uncut = at_an_edge(a2);
 
   T sum_{0.0}, halves_{0.0};
   Vec<T, D> slope_ = Vec<T, D>::zero();
