@@ -71,7 +71,7 @@ STEEL = 'strength = { elastic = { E = "200 GPa", nu = 0.3 } }'
 JWL = '{ A = "371 GPa", B = "3.2 GPa", R1 = 4.15, R2 = 0.95, omega = 0.3, E0 = "7 GPa" }'
 PLASTIC = 'strength = { j2 = { E = "200 GPa", nu = 0.3, Y0 = "1 GPa" } }'
 DAMAGE = PLASTIC + "\nfailure.johnson_cook_damage = { D1 = 0.05, D2 = 3.44, D3 = SIGN2.12 }"
-SOIL = "strength.drucker_prager = { E = 1e7, nu = 0.3, q_phi = FRICTION, k_phi = 1e3 }"
+SOIL = "strength.drucker_prager = { E = 1e11, nu = 0.3, q_phi = FRICTION, k_phi = 1e3 }"
 
 
 @pytest.mark.parametrize(
@@ -187,6 +187,18 @@ def test_rubber_locks_without_volume_averaging() -> None:
     assert "material.steel has nu = 0.49" in note and "volume_averaging = true" in note
     averaged = text.replace("density = 7800", "density = 7800\nvolume_averaging = true")
     assert notes_of(averaged) == []
+
+
+def test_a_soft_body_on_a_stiff_one() -> None:
+    rubber = """
+[material.rubber]
+density = 1000
+strength = { neo_hookean = { K = "20 MPa", G = "9 MPa" } }
+"""
+    text = rubber + CASE.replace('material = "tnt"', 'material = "rubber"')
+    [note] = notes_of(text)
+    assert "waves in material.steel are" in note and "aflip = 0.999" in note
+    assert notes_of(text.replace('end_time = "1 us"', 'end_time = "1 us"\ntransfer = "flip"')) == []
 
 
 def test_springs_want_two_particles_a_cell() -> None:

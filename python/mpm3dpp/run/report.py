@@ -70,9 +70,13 @@ def energy_line(manifest: Manifest) -> str:
         if share != 0.0 or what != "contact"
     ]
     line = f"energy: {', '.join(said)} of {of_what}"
-    if manifest.case.get("run", {}).get("transfer", "flip") != "flip":
+    large = max(map(abs, shares.values())) > _NUMERICAL_WARNING
+    transfer = manifest.case.get("run", {}).get("transfer", "flip")
+    if transfer != "flip":
         line += "; what run.transfer takes is in it"
-    elif max(map(abs, shares.values())) > _NUMERICAL_WARNING:
+        if large and "aflip" in transfer:
+            line += ", and smaller cells or an aflip nearer 1 make it less"
+    elif large:
         line += "; a smaller run.cfl or smaller cells may help"
     return line
 
