@@ -35,6 +35,7 @@ struct ParticlePool {
   int start_position = -1;  // [m], D components; -1: none
   int set_back = -1;  // share of half its edge that the surface is set back in contact; -1: none
   double sound_speed = 0.0;          // of its material at the start [m/s]
+  double fastest = 0.0;              // wave and particle together, before the step [m/s]
   std::vector<std::uint32_t> id;     // number of each particle in its body, as the user gave them
   std::vector<std::uint32_t> piece;  // 1 + number of its first SurfacePiece, or 0; empty: no loads
   std::vector<std::uint32_t> order;  // rows by cell, then by id, in the range that each patch owns

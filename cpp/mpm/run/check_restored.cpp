@@ -187,6 +187,8 @@ void check_rest(const Simulation<D>& simulation) {
             domain.time >= earliest && finite(domain.time_step) &&
             simulation.next_time_step > 0.0 && finite(domain.gravity),
         "its time is damaged");
+  for (const ParticlePool<D>& pool : domain.pools)
+    check(finite(pool.fastest) && pool.fastest >= 0.0, "its time is damaged");
   const auto check_speed = [&](double v) {  // The next step is infinite where none moves.
     check(v == 0.0 || std::abs(v) * simulation.next_time_step < farthest * grid.cell_size,
           "its particles are damaged");

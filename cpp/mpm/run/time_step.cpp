@@ -57,8 +57,24 @@ double stable_time_step(const Domain<D>& domain, double cfl) {
   return time_step;
 }
 
+/// How fast each material's waves and particles are, for what takes a share in its own steps.
+template <int D>
+void note_fastest(Domain<D>& domain) {
+  for (ParticlePool<D>& pool : domain.pools) pool.fastest = 0.0;
+  double of_all = 0.0;
+  for (std::size_t p = 0; p < domain.sums.size(); ++p) {
+    double& fastest = domain.pool_of(domain.grid.patches[p]).fastest;
+    fastest = std::max(fastest, domain.sums[p].stress.fastest);
+    of_all = std::max(of_all, fastest);
+  }
+  // Bonded bodies share their nodes, and what walls take of them has one share.
+  if (domain.grid.bonded)
+    for (ParticlePool<D>& pool : domain.pools) pool.fastest = of_all;
+}
+
 template <int D>
 std::string choose_time_step(Simulation<D>& simulation) {
+  note_fastest(simulation.domain);
   const RunSettings& run = simulation.settings.run;
   if (run.time_step) {
     simulation.next_time_step = *run.time_step;

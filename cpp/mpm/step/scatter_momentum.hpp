@@ -12,7 +12,7 @@ void scatter_by_transfer(const Domain<D>& domain, const Patch<D>& patch, const N
   const ParticlePool<D>& pool = domain.pool_of(patch);
   with_basis_and_lanes(
       grid, domain.body_of(patch), patch, [&]<BasisModel B>(const B& basis, auto lanes) {
-        with_transfer_for<B>(domain, [&]<class Transfer>(const Transfer&) {
+        with_transfer_for<B>(domain, 1.0, [&]<class Transfer>(const Transfer&) {
           constexpr bool affine = Transfer::affine && (what & gives_momentum) != 0;
           scatter_by<Mapping<typename Transfer::Gives>, what | (affine ? gives_affine : 0u), lanes>(
               basis, grid, pool, pool.at.velocity, patch, nodes);

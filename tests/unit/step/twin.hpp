@@ -20,6 +20,7 @@
 namespace mpm::testing {
 
 inline constexpr double cell_size = 0.5;  // [m]
+inline constexpr double own_step = 0.7;   // the step over that of the material
 inline constexpr double edge = 0.7;       // of the particles at the start [cells]
 
 /// What a test chooses; all else is at random.
@@ -71,7 +72,10 @@ struct Twin {
     domain.filter_every = choice.filter_every;
     const bool flips =
         choice.transfer != Transfers::id_of<Pic>() && choice.transfer != Transfers::id_of<Apic>();
-    reference.pic = flips ? 1.0 - choice.flip_share + choice.pic_rate * domain.time_step : 1.0;
+    // AFLIP's share is one of the material's own step.
+    const double own = choice.transfer == Transfers::id_of<Aflip>() ? own_step : 1.0;
+    reference.pic =
+        flips ? own * (1.0 - choice.flip_share) + choice.pic_rate * domain.time_step : 1.0;
     if (is_affine(choice.transfer)) reference.moment = grid.affine_moment();
     for (int a = 0; a < D; ++a) domain.gravity[a] = reference.g[a] = 1e4 * any();
     domain.contact_settings.enabled = choice.contact;
@@ -88,6 +92,7 @@ struct Twin {
     domain.threads.resize(1);
     if (choice.averages) reference.averages = reach_of(choice.basis).own_node;
     add_material(choice.damping ? 1e-5 : 0.0, choice.averages);
+    domain.pools[0].fastest = own_step * 0.5 * cell_size / domain.time_step;
     for (int k = 0; k < 2; ++k) add_body(k, k == 0 ? choice.kind : BodyKind::deformable);
     if (choice.body_force) add_body_force();
     if (choice.damping) add_damping();

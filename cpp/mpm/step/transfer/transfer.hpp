@@ -77,9 +77,18 @@ bool filters_now(const Domain<D>& domain) {
   return filters(domain.transfer) && (domain.step + 1) % domain.filter_every == 0;
 }
 
-/// f(transfer) for that of the run.
+/// How long the step is for a material: over the time in which its fastest wave and particle
+/// together pass half a cell, its own step at the default `cfl`. One where it makes the step.
+template <int D>
+double own_step(const Domain<D>& domain, const ParticlePool<D>& pool) {
+  return domain.time_step * pool.fastest / (0.5 * domain.grid.cell_size);
+}
+
+/// f(transfer) for that of the run, of a material for which the step is that long (own_step()).
+// The share of AFLIP is a matter of its own step: where a stiff body makes steps that are short for
+// a soft one, the same share in each would take as many times more (decision 0055).
 template <int D, class F>
-void with_transfer(const Domain<D>& domain, F&& f) {
+void with_transfer(const Domain<D>& domain, double own, F&& f) {
   // A rate times the step, so that the damping in time does not depend on the steps' length; 1 is
   // PIC.
   const double damped = domain.pic_rate * domain.time_step;
@@ -91,7 +100,7 @@ void with_transfer(const Domain<D>& domain, F&& f) {
     if constexpr (T::filters)
       if (!filters_now(domain)) return f(Flip());
     if constexpr (std::is_same_v<T, Aflip>)
-      f(Aflip(std::max(domain.flip_share - damped, 0.0)));
+      f(Aflip(std::max(1.0 - (1.0 - domain.flip_share) * own - damped, 0.0)));
     else
       f(transfer);
   });
@@ -99,9 +108,9 @@ void with_transfer(const Domain<D>& domain, F&& f) {
 
 /// The share of the grid's velocity in that which particles take; the rest is FLIP.
 template <int D>
-double grid_share(const Domain<D>& domain) {
+double grid_share(const Domain<D>& domain, double own) {
   double share = 0.0;
-  with_transfer(domain, [&]<class T>(const T& transfer) {
+  with_transfer(domain, own, [&]<class T>(const T& transfer) {
     if constexpr (T::takes_grid_velocity) share = transfer.take(0.0, 0.0, 1.0);
   });
   return share;
@@ -109,8 +118,8 @@ double grid_share(const Domain<D>& domain) {
 
 /// f(transfer) likewise, of a basis with which it goes: others were refused.
 template <BasisModel B, int D, class F>
-void with_transfer_for(const Domain<D>& domain, F&& f) {
-  with_transfer(domain, [&]<class T>(const T& transfer) {
+void with_transfer_for(const Domain<D>& domain, double own, F&& f) {
+  with_transfer(domain, own, [&]<class T>(const T& transfer) {
     if constexpr (!T::affine || B::second_moment > 0.0) f(transfer);
   });
 }
