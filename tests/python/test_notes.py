@@ -189,18 +189,6 @@ def test_rubber_locks_without_volume_averaging() -> None:
     assert notes_of(averaged) == []
 
 
-def test_a_soft_body_on_a_stiff_one() -> None:
-    rubber = """
-[material.rubber]
-density = 1000
-strength = { neo_hookean = { K = "20 MPa", G = "9 MPa" } }
-"""
-    text = rubber + CASE.replace('material = "tnt"', 'material = "rubber"')
-    [note] = notes_of(text)
-    assert "waves in material.steel are" in note and "aflip = 0.999" in note
-    assert notes_of(text.replace('end_time = "1 us"', 'end_time = "1 us"\ntransfer = "flip"')) == []
-
-
 def test_springs_want_two_particles_a_cell() -> None:
     text = CASE.replace('material = "steel"', 'material = "steel"\nspacing = "1 mm"') + LIT
     [note] = notes_of(text)

@@ -70,7 +70,10 @@ struct TransferSettings {
   static constexpr auto settings = std::tuple{
       Setting{"flip", &Self::flip, "FLIP's share of a step's velocity, the rest being the grid's",
               Rule::share},
-      Setting{"aflip", &Self::aflip, "the same of AFLIP", Rule::share},
+      Setting{"aflip", &Self::aflip,
+              "the same of AFLIP, in a step in which the material's fastest wave passes half a "
+              "cell; in shorter ones it takes as much less of the grid's",
+              Rule::share},
       Setting{"pic_rate", &Self::pic_rate,
               "rate at which particles take over the velocity of the grid [1/s], beside \"flip\" "
               "or \"aflip\"; takes away noise that the grid does not see, over very long runs",

@@ -18,7 +18,7 @@ from mpm3dpp.case.grid import FACES
 from .build import FilledBody, by_part
 
 _FASTEST = 10.0  # Times the speed of sound; the fastest impacts in laboratories are at 2 to 3.
-_INCOMPRESSIBLE, _FASTER = 0.45, 5.0
+_INCOMPRESSIBLE = 0.45
 _COARSE = 0.75  # Cells.
 # Of the edge of the other's particles: R - 1 and 2 R - 1 in 3D (decision 0054), and some less.
 _WIDE_GAP, _UNEQUAL = 0.8, 2.5
@@ -40,7 +40,6 @@ def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
         *_detonations(case, bodies),
         *_walls(case),
         *_locking(case),
-        *_soft_on_stiff(case),
         *_springs(case, bodies),
     ]
     return found + _speeds(case, bodies) + _time_step(case, bodies)
@@ -160,26 +159,6 @@ def _locking(case: Case) -> list[str]:
                 f"it bends; give material.{name}.volume_averaging = true"
             )
     return found
-
-
-def _soft_on_stiff(case: Case) -> list[str]:
-    """Bodies whose waves are slow beside those that make the time step."""
-    if case.run.transfer.word != "aflip":
-        return []
-    sound = {
-        part.material: case.material[part.material].sound_speed()
-        for name, part in case.parts().items()
-        if not case.is_rigid(name)
-    }
-    slow, fast = min(sound, key=sound.__getitem__), max(sound, key=sound.__getitem__)
-    if sound[fast] < _FASTER * sound[slow]:
-        return []
-    return [
-        f"waves in material.{fast} are {sound[fast] / sound[slow]:.3g} times as fast as in "
-        f"material.{slow}, and aflip takes a share of the latter's motion in each of the short "
-        "steps; if it deforms little make the stiffer one rigid or its body fixed, or give "
-        "run.transfer = { aflip = 0.999 }"
-    ]
 
 
 def _springs(case: Case, bodies: list[FilledBody]) -> list[str]:
