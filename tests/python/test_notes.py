@@ -32,7 +32,7 @@ material = "tnt"
 shape = { box = { lower = [0, 0], upper = ["4 mm", "4 mm"] } }
 [body.plate]
 material = "steel"
-shape = { box = { lower = ["6 mm", 0], upper = ["8 mm", "4 mm"] } }
+shape = { box = { lower = ["6 mm", 0], upper = ["9 mm", "4 mm"] } }
 """
 STIFF = "[material.stiff]\ndensity = 7800\nstrength = { rigid = {} }\n[body.plate]"
 LIT = '[[detonation]]\npoint = ["0.25 mm", "0.25 mm"]\n'
@@ -208,8 +208,24 @@ def test_springs_reach_no_further_than_an_edge() -> None:
 
 
 def test_bodies_that_overlap_at_the_start() -> None:
-    box = 'shape = { box = { lower = ["6 mm", 0], upper = ["8 mm", "4 mm"] } }'
+    box = 'shape = { box = { lower = ["6 mm", 0], upper = ["9 mm", "4 mm"] } }'
     assert Simulation(Case.from_text(CASE + LIT)).notes == []
     disc = 'shape = { disc = { centre = ["5.8 mm", "2 mm"], radius = "2 mm" } }'
     [note] = Simulation(Case.from_text(CASE.replace(box, disc) + LIT)).notes
     assert "overlap at the start by up to 0.000" in note and "particles are set back" in note
+
+
+def test_a_body_of_few_cells() -> None:
+    thin = CASE.replace('upper = ["9 mm", "4 mm"]', 'upper = ["8 mm", "4 mm"]') + LIT
+    [note] = notes_of(thin)
+    assert "body.plate is 2 cells wide" in note
+    # A strip that walls hold on both sides has no width of its own.
+    walls = 'walls = { x_min = "slip", x_max = "slip" }'
+    box = f'box = {{ lower = [0, 0], upper = ["10 mm", "4 mm"], {walls} }}'
+    assert notes_of(thin.replace("[run]", f"{box}\n[run]")) == []
+
+
+def test_check_refuses_a_time_step_that_cannot_run(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(CASE.replace('"1 us"', '"1 us"\ntime_step = "1 ms"') + LIT)
+    result = CliRunner().invoke(app, ["check", str(tmp_path / "case.toml")])
+    assert result.exit_code != 0

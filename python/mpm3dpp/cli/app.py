@@ -129,11 +129,14 @@ def run(
 @app.command()
 def check(case: CaseFile, units: Units = None) -> None:
     """Check a case and say what it amounts to, without running it."""
+    from mpm3dpp.fill.advisories import refuse_time_step
     from mpm3dpp.fill.build import build
     from mpm3dpp.run.summary import echo
 
     loaded = _load(case, units)
-    typer.echo(echo(loaded, build(loaded)))
+    bodies = build(loaded)
+    typer.echo(echo(loaded, bodies))
+    refuse_time_step(loaded, bodies)
 
 
 @app.command()

@@ -19,6 +19,7 @@ from .build import FilledBody, by_part
 
 _FASTEST = 10.0  # Times the speed of sound; the fastest impacts in laboratories are at 2 to 3.
 _INCOMPRESSIBLE = 0.45
+_NARROW = 2.4  # Cells.
 _COARSE = 0.75  # Cells.
 # Of the edge of the other's particles: R - 1 and 2 R - 1 in 3D (decision 0054), and some less.
 _WIDE_GAP, _UNEQUAL = 0.8, 2.5
@@ -41,8 +42,9 @@ def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
         *_walls(case),
         *_locking(case),
         *_springs(case, bodies),
+        *_narrow(case, bodies),
     ]
-    return found + _speeds(case, bodies) + _time_step(case, bodies)
+    return found + _speeds(case, bodies)
 
 
 def overlap(case: Case, contact: dict[str, Any]) -> list[str]:
@@ -211,15 +213,43 @@ def _speeds(case: Case, bodies: list[FilledBody]) -> list[str]:
     return found
 
 
-def _time_step(case: Case, bodies: list[FilledBody]) -> list[str]:
-    """A time step with which the run does not start."""
+def refuse_time_step(case: Case, bodies: list[FilledBody]) -> None:
+    """Refuse a time step with which the run does not start.
+
+    Raises:
+        CaseError: it is larger than the largest stable step at the start.
+    """
     given, stable = case.run.time_step, case.grid.cell_size / fastest(case, bodies)
-    if given is None or given <= stable:
-        return []
-    return [
-        f"run.time_step = {given:g} s is larger than the largest stable step, about {stable:.3g} s "
-        "at the start; the run will not begin with it"
-    ]
+    if given is not None and given > stable:
+        rule = f"is larger than the largest stable step, about {stable:.3g} s at the start"
+        raise case.error(
+            ("run", "time_step"), rule, "give a smaller one, or leave it out", value=given
+        )
+
+
+def _narrow(case: Case, bodies: list[FilledBody]) -> list[str]:
+    """Bodies of so few cells that they neither bend nor rebound as they should."""
+    found = []
+    for name, members in by_part(bodies).items():
+        if case.is_rigid(name):
+            continue
+        widths = min((_widths(case, body) for body in members), key=min)
+        if min(widths) < _NARROW:
+            found.append(
+                f"{key_text(case.part_path(name))} is {min(widths):.2g} cells wide, too stiff and "
+                "a poor rebound; give smaller cells"
+            )
+    return found
+
+
+def _widths(case: Case, body: FilledBody) -> list[float]:
+    """Extents [cells] along the axes, but those along which walls of the box hold both ends."""
+    widths = [math.inf]
+    for axis in range(case.grid.dimension):
+        x = body.positions[:, axis]
+        if "free" in case.grid.walls[2 * axis : 2 * axis + 2]:
+            widths.append((float(np.ptp(x)) + body.spacing) / case.grid.cell_size)
+    return widths
 
 
 def _detonations(case: Case, bodies: list[FilledBody]) -> list[str]:
