@@ -11,7 +11,7 @@ import pytest
 
 from cases import CELL, DENSITY, YOUNG, one_block, three_blocks
 from mpm3dpp import CaseError, Run, RunError, Simulation, run_case
-from mpm3dpp.fill.advisories import notes
+from mpm3dpp.fill.advisories import refuse_time_step
 from mpm3dpp.fill.build import build
 from mpm3dpp.run.summary import time_step
 
@@ -62,7 +62,8 @@ def test_a_step_that_is_too_large_is_refused_at_the_start() -> None:
         Simulation(case)
     assert caught.value.key == "run.time_step" and caught.value.value == 1.001 * STABLE
     assert "give a smaller one" in caught.value.remedy
-    assert any("larger than the largest stable step" in note for note in notes(case, build(case)))
+    with pytest.raises(CaseError, match="is larger than the largest stable step"):  # As `check`.
+        refuse_time_step(case, build(case))
 
 
 def test_a_run_whose_waves_or_particles_become_too_fast_stops(tmp_path: Path) -> None:
