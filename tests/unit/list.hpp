@@ -59,6 +59,7 @@
   X(many_bodies) \
   X(separation) \
   X(springs) \
+  X(touches) \
   X(tile_holder) \
   X(contact_part) \
   X(derived_fields) \

@@ -35,7 +35,7 @@ struct BodiesNear {
 Reach reach_to(int range) { return {range, range, 0.0}; }
 
 template <int D>
-void look_around(const Contact<D>& contact, const TileGrid<D>& grid,
+void find_bodies(const Contact<D>& contact, const TileGrid<D>& grid,
                  const std::vector<Body<D>>& bodies, const ContactTile<D>& tile,
                  BodiesNear<D>& found) {
   found.count = 0;
@@ -228,7 +228,7 @@ void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vecto
       ContactTile<D>& tile = contact.tiles[t];
       tile.touches = {static_cast<std::uint32_t>(share), static_cast<std::uint32_t>(touches.size()),
                       0};
-      look_around(contact, grid, bodies, tile, around);
+      find_bodies(contact, grid, bodies, tile, around);
       for (BodyNear<D>& s : around.all())
         if (s.wanted != 0)
           s.particles.gather(grid, bodies[static_cast<std::size_t>(s.body)],

@@ -21,12 +21,12 @@ namespace mpm::testing {
 
 inline constexpr double cell_size = 0.5;  // [m]
 inline constexpr double own_step = 0.7;   // the step over that of the material
-inline constexpr double edge = 0.7;       // of the particles at the start [cells]
 
 /// What a test chooses; all else is at random.
 template <int D>
 struct Choice {
   BasisId basis = basis_id<Linear>;
+  double edge = 0.7;  // of the particles at the start [cells]
   bool contact = false;
   bool springs = false;                  // part the bodies in contact, else impulses
   bool load = false;                     // a pressure and a traction on the second body
@@ -47,8 +47,9 @@ struct Twin {
   Domain<D> domain;
   reference::Step<D> reference;
   std::mt19937_64 random{7};
+  double edge;
 
-  explicit Twin(const Choice<D>& choice) {
+  explicit Twin(const Choice<D>& choice) : edge(choice.edge) {
     TileGrid<D>& grid = domain.grid;
     grid.cell_size = reference.h = cell_size;
     grid.basis = choice.basis;
@@ -61,7 +62,7 @@ struct Twin {
     grid.walls.odd_at_fixed = odd_at_fixed_walls(choice.basis);
     reference.walls = grid.walls;
     grid.has_dashpots = grid.walls.absorb();
-    reference.S = shape(choice.basis);
+    reference.S = shape(choice.basis, edge);
     reference.half_width = half_width(choice.basis, edge);
     domain.time_step = reference.dt = 1e-5;
     domain.step_before = reference.dt_before = 0.9e-5;
@@ -84,7 +85,7 @@ struct Twin {
     domain.contact_settings.friction = 0.3;
     if (choice.springs) domain.contact_settings.response = Response::springs;
     reference.springs = choice.springs;
-    reference.edge = [](double volume) {
+    reference.edge = [edge = edge](double volume) {
       using T = Batch<contact_lanes>;
       return particle_edge<D>(T(volume), edge * cell_size)[0];
     };
@@ -121,10 +122,10 @@ struct Twin {
     ++domain.step;
   }
 
-  static std::function<reference::ShapeValue(double)> shape(BasisId basis) {
+  static std::function<reference::ShapeValue(double)> shape(BasisId basis, double edge) {
     if (basis == basis_id<Linear>) return reference::linear;
     if (basis == basis_id<QuadraticBSpline>) return reference::quadratic;
-    if (basis == basis_id<Gimp>) return [](double d) { return reference::gimp(d, 0.5 * edge); };
+    if (basis == basis_id<Gimp>) return [edge](double d) { return reference::gimp(d, 0.5 * edge); };
     throw std::logic_error("a basis without its function in reference/shape.hpp");
   }
 
