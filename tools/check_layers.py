@@ -11,6 +11,7 @@ LAYERS = {
     "catalogue": 0,
     "math": 0,
     "parallel": 0,
+    "comm": 0,
     "rigid/rigid_motion.hpp": 1,
     "rigid/prescribed_motion.hpp": 2,
     "loads/kinds": 1,

@@ -20,6 +20,7 @@
   X(expression) \
   X(eigen) \
   X(threads) \
+  X(threads_comm) \
   X(memory) \
   X(state_stream) \
   X(columns) \
