@@ -15,6 +15,7 @@
   X(log) \
   X(exp_and_pow) \
   X(tensor) \
+  X(hilbert) \
   X(cholesky) \
   X(time_function) \
   X(expression) \
