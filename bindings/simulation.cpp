@@ -165,8 +165,12 @@ void def_telling(SimulationClass& simulation) {
            of_any([](auto& s, int body) { return s.domain.body_at(body).count; }), nb::arg("body"))
       .def_prop_ro("particle_count", of_any([](auto& s) { return particle_count(s.domain); }))
       .def_prop_ro("total_mass", of_any([](auto& s) { return total_mass(s.domain); }))
-      .def("eroded", of_any([](auto& s) { return dict_of(sum_of(s.domain.eroded)); }))
-      .def("left", of_any([](auto& s) { return dict_of(sum_of(s.domain.outflow)); }))
+      .def("eroded", of_any([](auto& s) {
+             return dict_of(sum_of(s.domain.eroded, *s.domain.grid.partition.comm));
+           }))
+      .def("left", of_any([](auto& s) {
+             return dict_of(sum_of(s.domain.outflow, *s.domain.grid.partition.comm));
+           }))
       .def("loads", of_any([](auto& s) { return load_records(s.domain); }))
       .def_prop_ro("failure", of_any([](auto& s) { return s.failure; }))
       .def("limiter", of_any([](auto& s) { return find_limiter(s.domain); }))

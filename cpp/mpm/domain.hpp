@@ -56,9 +56,9 @@ struct Domain {
   ContactSums contact_sums;        // of the step
   Ledger ledger;
   ListScratch<D> list_scratch;
-  Removed<D> eroded, outflow;  // by failure; out of the region that is kept
+  Removed eroded, outflow;  // by failure; out of the region that is kept
+  bool may_remove = false;  // some material may fail so, or there is such a region
   std::vector<SurfaceLoad<D>> loads;
-  std::vector<SurfacePiece<D>> pieces;  // of all loads
   std::vector<BodyForce<D>> body_forces;
   std::vector<Damping> dampings;           // of bodies' motion
   std::vector<Vec<double, D>> load_parts;  // scratch: force by patch and load [N]

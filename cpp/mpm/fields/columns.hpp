@@ -1,6 +1,7 @@
 #pragma once
 // Structure of arrays: named columns of numbers, each of one or more components; a column exists
 // only if it was asked for.
+#include <algorithm>
 #include <cassert>
 #include <concepts>
 #include <cstdint>
@@ -75,6 +76,21 @@ class ColumnsIn {
         bytes += stride_ * info.number_bytes();
       }
     memory_.release_and_allocate(bytes);
+  }
+
+  /// More rows behind those that there are, which keep what they hold.
+  void grow(std::size_t rows)
+    requires std::same_as<Space, HostSpace>
+  {
+    const std::size_t kept = rows_;
+    const std::vector<std::size_t> from = begin_;
+    const AlignedArray<std::byte, Space> before = std::move(memory_);
+    allocate(rows);
+    std::size_t k = 0;
+    for (const ColumnInfo& info : infos_)
+      for (int c = 0; c < info.components; ++c, ++k)
+        std::copy_n(before.data() + from[k], kept * info.number_bytes(),
+                    memory_.data() + begin_[k]);
   }
 
   /// Columns with the same names and rows in this space, of those in the host's memory.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mpm/grid/halo.hpp"
 #include "mpm/grid/shared_nodes.hpp"
 
 namespace mpm {
@@ -30,7 +31,7 @@ bool find_shapes(TileGrid<D>& grid, Threads& threads) {
   grid.reshaped.assign(patches.size(), grid.bonded);
   threads.for_each(patches.size(), [&](std::size_t p) {
     // A look at one word of bits; blocks that stay as they are keep their lists of shared nodes.
-    const auto shape = BlockShape<D>::around(patches[p].occupied, grid.reach());
+    const auto shape = BlockShape<D>::around(patches[p].cells(), grid.reach());
     if (patches[p].shape == shape) return;
     patches[p].shape = shape;
     grid.reshaped[p] = true;
@@ -52,10 +53,12 @@ void cut_blocks(TileGrid<D>& grid, Threads& threads) {
   if (!find_shapes(grid, threads) && grid.blocks_known) return;
   grid.blocks_known = true;
   std::size_t needed = 0;
+  grid.patches_with_particles = 0;
   for (Patch<D>& patch : grid.patches) {
     // One behind another in the order of the patches. Nothing in a block outlives a step, so they
     // may move freely (decision 0013).
     patch.memory = needed;
+    grid.patches_with_particles += patch.occupied != 0;
     const auto nodes = static_cast<std::size_t>(patch.shape.node_count);
     needed += record * (nodes + (grid.has_dashpots ? (nodes + 1) / 2 : 0));  // whole cache lines
   }
@@ -67,6 +70,7 @@ void cut_blocks(TileGrid<D>& grid, Threads& threads) {
     if (patch.primary != p) patch.owned.fill(0);
   });
   list_shared_nodes(grid, threads);
+  if (!grid.partition.alone()) plan_halo(grid);
 }
 
 template void cut_blocks<2>(TileGrid<2>&, Threads&);

@@ -1,6 +1,7 @@
 #pragma once
 // Where cells, nodes and tiles are: from positions to their coordinates and back.
 #include <cmath>
+#include <utility>
 
 #include "mpm/basis/basis.hpp"
 #include "mpm/layout/tile.hpp"
@@ -84,6 +85,16 @@ struct GridGeometry {
     Index<D> c;
     for (int a = 0; a < D; ++a) c[a] = anchor[a] + tile[a] * Tile<D>::cells;
     return c;
+  }
+
+  /// The tile of a position and the number of its cell there. By the expression that all kernels
+  /// use (CellCoordinates): a particle at a face must not be in one cell here and in the next one
+  /// there.
+  std::pair<Index<D>, int> tile_and_cell(const Vec<double, D>& x) const {
+    const Index<D> cell = cell_of(x), tile = tile_of(cell);
+    Index<D> local = first_cell(tile);
+    for (std::size_t a = 0; a < D; ++a) local[a] = cell[a] - local[a];
+    return {tile, Tile<D>::cell(local)};
   }
 
   /// D of APIC: sum over the nodes of N_i (x_i - x)^2 along an axis, the same at all places, [m^2];

@@ -59,6 +59,15 @@ struct Patch {
   bool at_wall = false;   // its block has nodes on a wall
   bool left_cell = false;   // a particle has left its cell since the lists were made
   bool in_contact = false;  // its block may have nodes where bodies meet
+  bool foreign = false;     // of another rank (partition.hpp): it has nodes here, but no particles
+  int owner = 0;            // of a foreign one: that rank
+  int readers = -1;         // of an own one: number of the set of ranks that hold it; -1: not known
+  std::uint64_t foreign_cells = 0;  // of a foreign one: cells that hold particles
+
+  /// The cells about which its nodes lie.
+  std::uint64_t cells() const { return occupied | foreign_cells; }
+  /// Does the node enter sums over nodes by this patch?
+  bool counts(int node) const { return !foreign && owned[node]; }
 
   /// f(cell, first, last): every occupied cell with its range in the pool's lists.
   template <class F>

@@ -7,7 +7,7 @@
 #include "mpm/grid/geometry.hpp"
 #include "mpm/grid/node_memory.hpp"
 #include "mpm/grid/outflow_box.hpp"
-#include "mpm/grid/patch.hpp"
+#include "mpm/grid/partition.hpp"
 
 namespace mpm {
 
@@ -17,6 +17,7 @@ struct TileGrid : GridGeometry<D> {
   bool has_dashpots = false;      // the blocks have room for those of absorbing walls
   bool bonded = false;            // all bodies have one velocity field: they share their nodes
   std::vector<Patch<D>> patches;  // by body, then by tile
+  Partition<D> partition;
 
   // Made by connect().
   std::vector<std::uint32_t> by_tile;    // if bonded: all patches, by tile, then by body
@@ -26,7 +27,8 @@ struct TileGrid : GridGeometry<D> {
   NodeMemory nodes;
   SharedLists<D> shared;
   std::vector<std::uint8_t> reshaped;  // scratch: of each patch, its block is another than before
-  bool blocks_known = false;           // the blocks are those of the patches there are
+  std::size_t patches_with_particles = 0;
+  bool blocks_known = false;  // the blocks are those of the patches there are
 
   NodeBlock<D> block(const Patch<D>& patch) {
     return {{nodes.numbers.data() + patch.memory}, patch.shape.node_count};

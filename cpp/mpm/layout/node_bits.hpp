@@ -28,6 +28,10 @@ class NodeBits {
     for (int n = 0; n < count; n += 64)
       words_[word(n)] = count - n < 64 ? low_bits(count - n) : ~std::uint64_t{0};
   }
+  void set_row(int node, int count) {
+    words_[word(node)] |= low_bits(count) << node % 64;
+    if (node % 64 + count > 64) words_[word(node) + 1] |= low_bits(count) >> (64 - node % 64);
+  }
   void clear_row(int node, int count) {
     words_[word(node)] &= ~(low_bits(count) << node % 64);
     // Rows have fewer than 64 nodes, so that they lie in two words at most.

@@ -12,7 +12,7 @@
 #include <array>
 #include <vector>
 
-#include "mpm/math/exact_sum.hpp"
+#include "mpm/comm/all_sums.hpp"
 #include "mpm/rigid/rigid_motion.hpp"
 
 namespace mpm {
@@ -41,21 +41,17 @@ struct AngularLedger {
 
   /// Take over the impulses of a step, of the patches' sums.
   template <class Sums>
-  void add(const std::vector<Sums>& patches) {
+  void add(const std::vector<Sums>& patches, Comm& comm) {
     constexpr auto parts = AngularImpulses::all();
     // No order of patches matters (decision 0038). Most have nothing of most.
-    std::array<std::array<ExactSum, 3>, parts.size()> sums;
-    std::array<std::array<bool, 3>, parts.size()> any{};
+    std::array<ExactSum, 3 * parts.size()> sums;
     for (const Sums& patch : patches)
       for (std::size_t k = 0; k < parts.size(); ++k)
         for (std::size_t a = 0; a < 3; ++a)
-          if (const double x = (patch.angular.*parts[k]).c[a]; x != 0.0) {
-            sums[k][a].add(x);
-            any[k][a] = true;
-          }
+          if (const double x = (patch.angular.*parts[k]).c[a]; x != 0.0) sums[3 * k + a].add(x);
+    all_sum(comm, sums);
     for (std::size_t k = 0; k < parts.size(); ++k)
-      for (std::size_t a = 0; a < 3; ++a)
-        if (any[k][a]) (impulses.*parts[k]).c[a] += sums[k][a].value();
+      for (std::size_t a = 0; a < 3; ++a) (impulses.*parts[k]).c[a] += sums[3 * k + a].value();
   }
 };
 

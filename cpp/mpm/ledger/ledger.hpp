@@ -96,9 +96,9 @@ struct Ledger {
   /// (USF), `affine` if the transfer is.
   template <int D>
   void add(const std::vector<PatchSums<D>>& patches, const ContactSums& contacts,
-           const Removed<D>& by_erosion, const Removed<D>& out_of_region, bool forces_follow,
-           bool affine) {
-    const PatchSums<D> s = total_of(patches);
+           const RemovedTotal& by_erosion, const RemovedTotal& out_of_region, bool forces_follow,
+           bool affine, Comm& comm) {
+    const PatchSums<D> s = total_of(patches, comm);
     const double motion = s.prescribed.kinetic - prescribed_kinetic - s.prescribed.work;
     prescribed_kinetic = s.prescribed.kinetic;
     motion_work += motion;
@@ -145,7 +145,7 @@ struct Ledger {
                         s.stress.bounded - s.stress.force_power + second + contacts.friction -
                         contacts.friction_first - at_end;
     largest = std::max({largest, std::abs(start), std::abs(external)});
-    angular.add(patches);
+    angular.add(patches, comm);
     angular.removed = by_erosion.angular_momentum + out_of_region.angular_momentum;
   }
 };

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "mpm/comm/all_sums.hpp"
 #include "mpm/ledger/angular_ledger.hpp"
 #include "mpm/materials/material_block.hpp"
 #include "mpm/math/exact_sum.hpp"
@@ -63,14 +64,15 @@ struct PatchSums {
   static constexpr std::size_t numbers = 25 + 3 * D;  // of for_each
 };
 
-/// The sums over all patches, which depend on no order.
+/// The sums over all patches of all ranks, which depend on no order.
 template <int D>
-PatchSums<D> total_of(const std::vector<PatchSums<D>>& patches) {
+PatchSums<D> total_of(const std::vector<PatchSums<D>>& patches, Comm& comm) {
   std::array<ExactSum, PatchSums<D>::numbers> sums;
   for (PatchSums<D> patch : patches) {
     std::size_t k = 0;
     patch.for_each([&](double x) { sums[k++].add(x); });
   }
+  all_sum(comm, sums);
   PatchSums<D> total;
   std::size_t k = 0;
   total.for_each([&](double& x) { x = sums[k++].value(); });

@@ -14,11 +14,10 @@ Work work_of_loads(Domain<D>& domain, std::size_t patch);
 
 /// f(row, piece) for the particles of a cell that carry a piece of a load.
 template <int D, class F>
-void for_each_piece(Domain<D>& domain, int load, const ParticlePool<D>& pool,
-                    const CellRange<D>& cell, F&& f) {
+void for_each_piece(int load, ParticlePool<D>& pool, const CellRange<D>& cell, F&& f) {
   for (std::uint32_t k = 0; k < cell.count; ++k) {
     const std::uint32_t row = cell.rows[k];
-    if (SurfacePiece<D>* piece = piece_of(domain.pieces, pool.piece[row], load)) f(row, *piece);
+    if (SurfacePiece<D>* piece = piece_of(pool.pieces, pool.piece[row], load)) f(row, *piece);
   }
 }
 
@@ -31,7 +30,7 @@ template <int at, int D>
   const auto& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   const Body<D>& body = domain.body_of(patch);
-  const ParticlePool<D>& pool = domain.pool_of(patch);
+  ParticlePool<D>& pool = domain.pool_of(patch);
   const double scale = duration / grid.cell_size;
   for (int l = 0; l < static_cast<int>(domain.loads.size()); ++l) {
     // A piece per load: where two loads meet on a particle each carries its own along.
@@ -41,11 +40,11 @@ template <int at, int D>
       for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
         // With the linear basis a field is made for a whole cell, which few cells need.
         bool loaded = false;
-        for_each_piece(domain, l, pool, cell,
+        for_each_piece(l, pool, cell,
                        [&](std::uint32_t, const SurfacePiece<D>&) { loaded = true; });
         if (!loaded) return;
         const auto nodes = field_of<B>(domain.grid.block(p).records.from(cell.first_node), stride);
-        for_each_piece(domain, l, pool, cell, [&](std::uint32_t row, SurfacePiece<D>& piece) {
+        for_each_piece(l, pool, cell, [&](std::uint32_t row, SurfacePiece<D>& piece) {
           Vec<double, D> xi;
           for (int a = 0; a < D; ++a)
             xi[a] = local_coordinate(grid.in_cells(pool.x(a)[row], a), cell.cell[a]);

@@ -1,7 +1,7 @@
 #include <cassert>
 
+#include "mpm/comm/all_sums.hpp"
 #include "mpm/loads/carry_loads.hpp"
-#include "mpm/math/exact_sum.hpp"
 #include "mpm/step/nodes_around.hpp"
 #include "mpm/step/stages.hpp"
 
@@ -18,13 +18,13 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
   const Patch<D>& patch = grid.patches[p];
   const SurfaceLoad<D>& load = domain.loads[l];
   if (load.body != patch.body) return;
-  const ParticlePool<D>& pool = domain.pool_of(patch);
+  ParticlePool<D>& pool = domain.pool_of(patch);
   // The box of the particle's function. Within it the nodes around the piece are among those to
   // which the particle gives mass.
   const double reach = half_width(grid.basis, domain.body_of(patch).mean_edge / grid.cell_size);
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto number = static_cast<int>(l);
-    for_each_piece(domain, number, pool, cell, [&](std::uint32_t row, SurfacePiece<D>& piece) {
+    for_each_piece(number, pool, cell, [&](std::uint32_t row, SurfacePiece<D>& piece) {
       const NodesAround<D> around(grid, pool, patch, cell, row);
       Index<D> shift{};  // to the nodes around the piece
       double xi[D];
@@ -136,6 +136,7 @@ void load_surfaces(Domain<D>& domain) {
       ExactSum force;
       for (std::size_t k = l; k < domain.load_parts.size(); k += count)
         force.add(domain.load_parts[k][a]);
+      all_sum(*domain.grid.partition.comm, {&force, 1});
       load.force[a] = force.value();
     }
     load.impulse += domain.time_step * load.force;

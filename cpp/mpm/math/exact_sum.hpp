@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 namespace mpm {
 
@@ -48,6 +49,29 @@ class ExactSum {
     first_ = std::min(first_, other.first_);
     top_ = std::max(top_, other.top_);
     for (std::size_t k = 0; k < count; ++k) chunks_[k] += carried.chunks_[k];
+  }
+
+  /// The sum in integers: those of several sums, each added up, are those of the sum of all.
+  static constexpr std::size_t words = 71;
+  void write(std::span<std::int64_t, words> to) const {
+    ExactSum carried = *this;
+    carried.carry();
+    std::ranges::copy(carried.chunks_, to.begin());
+    to[count] = std::isnan(special_) ? 1 : 0;
+    to[count + 1] = special_ == HUGE_VAL ? 1 : 0;
+    to[count + 2] = special_ == -HUGE_VAL ? 1 : 0;
+  }
+  static ExactSum read(std::span<const std::int64_t, words> from) {
+    ExactSum sum;
+    std::copy_n(from.begin(), count, sum.chunks_.begin());
+    sum.first_ = 0;
+    sum.top_ = count - 1;
+    const bool none = from[count] > 0 || (from[count + 1] > 0 && from[count + 2] > 0);
+    if (none)
+      sum.special_ = std::nan("");
+    else if (from[count + 1] + from[count + 2] > 0)
+      sum.special_ = from[count + 1] > 0 ? HUGE_VAL : -HUGE_VAL;
+    return sum;
   }
 
   /// The double nearest to the sum; of two the even one.

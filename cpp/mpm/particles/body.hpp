@@ -30,8 +30,9 @@ struct Body {
   std::string name;
   int material = 0;  // number of the pool, too, that holds its particles
   int group = 0;     // number of the first of the bodies with which it shares frictions and reports
-  std::size_t count = 0;         // of its particles
+  std::size_t count = 0;         // of its particles, those of other ranks too
   std::size_t removed = 0;       // those that take no part any more: eroded, or left the region
+  std::size_t removed_here = 0;  // the part of them that this rank had
   double initial_density = 0.0;  // [kg/m^3]
   double stiffness = 0.0;        // rho c^2 of the start [Pa]; infinite if it is rigid
   double mean_mass = 0.0;        // of a particle at the start [kg]

@@ -31,18 +31,6 @@ std::uint64_t key_of(const Index<D>& tile, int cell) {
   return key << 6 | static_cast<std::uint64_t>(cell);
 }
 
-/// The tile of a position and the number of its cell there.
-template <int D>
-std::pair<Index<D>, int> tile_and_cell(const TileGrid<D>& grid, const Vec<double, D>& x) {
-  const Index<D> cell = grid.cell_of(x);
-  // By the expression that all kernels use (CellCoordinates): a particle at a face must not be in
-  // one cell here and in the next one there.
-  const Index<D> tile = grid.tile_of(cell);
-  Index<D> local = grid.first_cell(tile);
-  for (std::size_t a = 0; a < D; ++a) local[a] = cell[a] - local[a];
-  return {tile, Tile<D>::cell(local)};
-}
-
 template <int D>
 void find_anchor(TileGrid<D>& grid, const std::vector<Patch<D>>& patches,
                  const std::vector<Body<D>>& bodies, const std::vector<ParticlePool<D>>& pools) {
@@ -64,6 +52,11 @@ void find_anchor(TileGrid<D>& grid, const std::vector<Patch<D>>& patches,
       for (std::size_t a = 0; a < D; ++a) grid.anchor[a] = std::min(grid.anchor[a], cell[a]);
     }
   }
+  // The lowest of all ranks.
+  double highest[D];
+  for (std::size_t a = 0; a < D; ++a) highest[a] = -1.0 * grid.anchor[a];
+  grid.partition.comm->all_max(highest);
+  for (std::size_t a = 0; a < D; ++a) grid.anchor[a] = static_cast<std::int32_t>(-highest[a]);
 }
 
 /// Add the patches of a body, whose particles are given by key and number, with their lists.
@@ -71,7 +64,7 @@ template <int D>
 void add_patches(TileGrid<D>& grid, int body, const ParticlePool<D>& pool,
                  const std::vector<Key>& keys, std::vector<std::uint32_t>& order) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    const auto [tile, cell] = tile_and_cell(grid, pool.position_of(keys[i].row));
+    const auto [tile, cell] = grid.tile_and_cell(pool.position_of(keys[i].row));
     if (i == 0 || grid.patches.back().tile != tile) {
       Patch<D>& made = grid.patches.emplace_back();
       made.body = body;
@@ -107,9 +100,8 @@ void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const auto m = static_cast<std::size_t>(bodies[b].material);
     std::vector<Key> keys;
-    keys.reserve(bodies[b].active());
     for_each_active_row(before, pools[m], static_cast<int>(b), [&](std::uint32_t row) {
-      const auto [tile, cell] = tile_and_cell(grid, pools[m].position_of(row));
+      const auto [tile, cell] = grid.tile_and_cell(pools[m].position_of(row));
       keys.push_back({key_of<D>(tile, cell), pools[m].id[row], row});
     });
     // By number within a cell: sums over its particles have one order wherever rows lie (decision
@@ -129,7 +121,10 @@ void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
   // At the start there are no nodes that could lend their memory; from here on there are.
   scratch.own.release_and_allocate(0);
   connect(grid);
-  cut_blocks(grid, threads);
+  if (grid.partition.alone())
+    cut_blocks(grid, threads);
+  else
+    divide(grid, bodies, pools, threads, scratch);
 }
 
 template void build_cell_lists<2>(TileGrid<2>&, std::vector<Body<2>>&,

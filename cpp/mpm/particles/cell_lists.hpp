@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "mpm/comm/all_sums.hpp"
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/parallel/threads.hpp"
 #include "mpm/particles/pool.hpp"
@@ -27,15 +28,36 @@ struct Arrival {
   std::uint8_t cell;
 };
 
-/// What particles that take no part any more have taken with them so far.
-template <int D>
+/// What particles that take no part any more have taken with them so far; of a rank those that it
+/// had. Trivially copyable, so that a checkpoint holds it.
 struct Removed {
+  std::size_t count = 0;
+  std::array<ExactSum, 6> sums;  // that depend on no order: of the values of RemovedTotal
+
+  void add(const std::array<double, 6>& values) {
+    ++count;
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(values[k]);
+  }
+};
+
+/// The same of all ranks.
+struct RemovedTotal {
   std::size_t count = 0;
   double mass = 0.0;                           // [kg]
   double kinetic = 0.0, recoverable = 0.0;     // [J]
-  double momentum[D] = {};                     // [kg m/s]
   Vector3 angular_momentum = Vector3::zero();  // about the origin [N m s]
 };
+inline RemovedTotal total_of(Removed removed, Comm& comm) {
+  const std::int64_t count = all_sum(comm, static_cast<std::int64_t>(removed.count));
+  if (count == 0) return {};
+  all_sum(comm, removed.sums);
+  const auto& s = removed.sums;
+  return {static_cast<std::size_t>(count),
+          s[0].value(),
+          s[1].value(),
+          s[2].value(),
+          {s[3].value(), s[4].value(), s[5].value()}};
+}
 
 /// Reused from step to step, so that a step allocates nothing, and shared by all bodies.
 template <int D>
@@ -87,9 +109,10 @@ struct ListScratch {
     return own.data();
   }
   /// Of what goes with the particles; migrants and what goes with the patches is not counted.
-  std::size_t bytes() const { return own.bytes(); }
+  std::size_t bytes() const { return own.bytes() + own_lists.bytes(); }
 
   AlignedArray<std::byte> own;
+  AlignedArray<std::uint32_t> own_lists;  // `lists` where there are other ranks
 };
 
 /// Sort every body's rows by tile and cell, and make patches and lists anew, at the start or after
@@ -99,6 +122,16 @@ template <int D>
 void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                       std::vector<ParticlePool<D>>& pools, Threads& threads,
                       ListScratch<D>& scratch);
+
+/// From now on these ranks have the tiles; particles go there when lists are updated.
+template <int D>
+void take_owners(TileGrid<D>& grid, Owners<D> owners);
+
+/// Share out the tiles among the ranks by what they cost, and take the particles there. By all
+/// ranks at once.
+template <int D>
+void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>>& pools,
+            Threads& threads, ListScratch<D>& scratch);
 
 /// In the column `failed`, beside the values of FailureAction: the particle has left the region
 /// that is kept.
@@ -112,11 +145,12 @@ bool migrate_particles(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                        ListScratch<D>& scratch);
 
 /// Update the lists of patches that particles have left, and take out what has eroded or left the
-/// region that is kept; true if patches were added or removed.
+/// region that is kept, where there are sums for it; true if patches were added or removed. By all
+/// ranks at once: particles go to those that have the tiles.
 template <int D>
 bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                        std::vector<ParticlePool<D>>& pools, Threads& threads,
-                       ListScratch<D>& scratch, Removed<D>& eroded, Removed<D>& outflow);
+                       ListScratch<D>& scratch, Removed* eroded, Removed* outflow);
 
 /// Put the rows of a body into the order of its lists.
 template <int D>

@@ -40,23 +40,35 @@ void add_columns(ParticlePool<D>& pool, const Material& material, bool may_leave
   if (pool.at.failed < 0) pool.at.failed = c.add("failed", "1", 1);
 }
 
-/// f(row, values) for the particles of a body in a pool, from row `first` on; of `width` given
-/// numbers each has its own, or all have the same.
+/// The numbers of a body's particles that a rank takes: from one to the one before another.
+struct Share {
+  std::size_t first, last;
+  Share(std::size_t count, const Comm& comm) {
+    const auto rank = static_cast<std::size_t>(comm.rank()),
+               ranks = static_cast<std::size_t>(comm.size());
+    first = count * rank / ranks;
+    last = count * (rank + 1) / ranks;
+  }
+};
+
+/// f(row, values) for a share of the particles of a body in a pool, from row `row` on; of `width`
+/// given numbers each has its own, or all have the same.
 template <class F>
-void for_each_given(const std::vector<double>& given, std::size_t width, std::size_t first,
-                    std::size_t count, F&& f) {
+void for_each_given(const std::vector<double>& given, std::size_t width, std::size_t row,
+                    const Share& share, F&& f) {
   const bool one = given.size() == width;
-  for (std::size_t i = 0; i < count; ++i) f(first + i, given.data() + (one ? 0 : i * width));
+  for (std::size_t i = share.first; i < share.last; ++i)
+    f(row++, given.data() + (one ? 0 : i * width));
 }
 
 /// What all bodies give of one kind, from one member of GivenParticles, which is dropped when it
 /// has been taken, so that memory does not hold it twice.
 template <int D, class F>
-void take(std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches,
+void take(std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches, const Comm& comm,
           std::vector<double> GivenParticles::* member, std::size_t width, F&& f) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     std::vector<double>& given = bodies[b].given.get()->*member;
-    for_each_given(given, width, patches[b].begin, patches[b].count,
+    for_each_given(given, width, patches[b].begin, Share(bodies[b].count, comm),
                    [&](std::size_t row, const double* values) { f(bodies[b], row, values); });
     given = std::vector<double>();  // not {}, which keeps the memory
   }
@@ -65,19 +77,21 @@ void take(std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches,
 /// Where the particles of each body go, a patch each, and room for them.
 template <int D>
 void make_rows(std::vector<ParticlePool<D>>& pools, const std::vector<Body<D>>& bodies,
-               std::vector<Patch<D>>& patches) {
+               std::vector<Patch<D>>& patches, const Comm& comm) {
   constexpr std::size_t most =
       3'000'000'000;  // 32 bits number the entries of the lists, which have some room
   std::vector<std::size_t> rows(pools.size(), 0);
   patches.resize(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     std::size_t& next = rows[static_cast<std::size_t>(bodies[b].material)];
-    if (bodies[b].count > most - next)
+    const Share share(bodies[b].count, comm);
+    const std::size_t count = share.last - share.first;
+    if (count > most - next)
       throw std::length_error("bodies of one material have more than 3 billion particles");
     patches[b].body = static_cast<int>(b);
     patches[b].begin = static_cast<std::uint32_t>(next);
-    patches[b].count = static_cast<std::uint32_t>(bodies[b].count);
-    next += bodies[b].count;
+    patches[b].count = static_cast<std::uint32_t>(count);
+    next += count;
   }
   for (std::size_t m = 0; m < pools.size(); ++m) {
     pools[m].columns.allocate(rows[m]);
@@ -158,20 +172,20 @@ Body<D> make_body(const std::string& name, const Material& material, const Parti
 
 template <int D>
 void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>& materials,
-                std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches) {
+                std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches, const Comm& comm) {
   const auto pool_of = [&](const Body<D>& body) -> ParticlePool<D>& {
     return pools[static_cast<std::size_t>(body.material)];
   };
-  make_rows(pools, bodies, patches);
-  take(bodies, patches, &GivenParticles::positions, D,
+  make_rows(pools, bodies, patches, comm);
+  take(bodies, patches, comm, &GivenParticles::positions, D,
        [&](const Body<D>& body, std::size_t row, const double* given) {
          for (int a = 0; a < D; ++a) pool_of(body).x(a)[row] = given[a];
        });
-  take(bodies, patches, &GivenParticles::velocities, D,
+  take(bodies, patches, comm, &GivenParticles::velocities, D,
        [&](const Body<D>& body, std::size_t row, const double* given) {
          for (int a = 0; a < D; ++a) pool_of(body).v(a)[row] = static_cast<Storage>(given[a]);
        });
-  take(bodies, patches, &GivenParticles::volumes, 1,
+  take(bodies, patches, comm, &GivenParticles::volumes, 1,
        [&](const Body<D>& body, std::size_t row, const double* given) {
          pool_of(body).volume()[row] = *given;
          pool_of(body).mass()[row] = body.initial_density * *given;
@@ -190,11 +204,15 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     ParticlePool<D>& pool = pool_of(bodies[b]);
     const std::size_t first = patches[b].begin;
-    std::iota(&pool.id[first], &pool.id[first] + bodies[b].count, 0u);
+    const Share share(bodies[b].count, comm);
+    const std::size_t count = share.last - share.first;
+    std::iota(pool.id.begin() + static_cast<std::ptrdiff_t>(first),
+              pool.id.begin() + static_cast<std::ptrdiff_t>(first + count),
+              static_cast<std::uint32_t>(share.first));
     for (const auto& [component, values] : bodies[b].given->states)
       pool.columns.with_component(component, [&]<class Number>(Number* to) {
-        for (std::size_t i = 0; i < values.size(); ++i)
-          to[first + i] = static_cast<Number>(values[i]);
+        for (std::size_t i = 0; i < count; ++i)
+          to[first + i] = static_cast<Number>(values[share.first + i]);
       });
     bodies[b].given.reset();
   }
@@ -213,8 +231,8 @@ template Body<3> make_body<3>(const std::string&, const Material&, const Particl
                               std::span<const double>, std::span<const double>,
                               std::span<const double>);
 template void fill_pools<2>(std::vector<ParticlePool<2>>&, const std::vector<Material>&,
-                            std::vector<Body<2>>&, std::vector<Patch<2>>&);
+                            std::vector<Body<2>>&, std::vector<Patch<2>>&, const Comm&);
 template void fill_pools<3>(std::vector<ParticlePool<3>>&, const std::vector<Material>&,
-                            std::vector<Body<3>>&, std::vector<Patch<3>>&);
+                            std::vector<Body<3>>&, std::vector<Patch<3>>&, const Comm&);
 
 }  // namespace mpm

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "mpm/comm/comm.hpp"
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/materials/material.hpp"
 #include "mpm/particles/pool.hpp"
@@ -32,12 +33,13 @@ Body<D> make_body(const std::string& name, const Material& material, const Parti
                   std::span<const double> positions, std::span<const double> velocities,
                   std::span<const double> volumes);
 
-/// Put the given particles of all bodies into the pools of their materials; a patch for each body
-/// holds them, until lists are built. Throws std::length_error for more than 3e9 of one
-/// material.
+/// Put the given particles of all bodies, of which each rank takes its share by their numbers, into
+/// the pools of their materials; a patch for each body holds them, until lists are built. Throws
+/// std::length_error for more than 3e9 of one material.
 template <int D>
 void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>& materials,
-                std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches);
+                std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches,
+                const Comm& comm = NoOthers());
 
 /// Throws std::invalid_argument if any is not finite, with what they are.
 void check_finite(std::span<const double> values, const std::string& what);

@@ -7,6 +7,7 @@
 #include "mpm/grid/connect.hpp"
 #include "mpm/particles/cell_lists.hpp"
 #include "mpm/particles/classify.hpp"
+#include "mpm/particles/exchange_migrants.hpp"
 
 namespace mpm {
 namespace {
@@ -46,12 +47,9 @@ void find_migrants(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     Migrant<D>* to = &scratch.migrants[scratch.notes[p].first_migrant];
     for (const std::uint32_t row : pools[m].rows(patch)) {
       if (*mark++ != CellMark::outside) continue;
-      const Index<D> cell = grid.cell_of(pools[m].position_of(row)), tile = grid.tile_of(cell);
-      const Index<D> first = grid.first_cell(tile);
-      Index<D> local;
-      for (int a = 0; a < D; ++a) local[a] = cell[a] - first[a];
+      const auto [tile, cell] = grid.tile_and_cell(pools[m].position_of(row));
       *to++ = {patch.body, tile, patch_beside<D>(grid, patch, tile), row,
-               static_cast<std::uint8_t>(Tile<D>::cell(local))};
+               static_cast<std::uint8_t>(cell)};
     }
   });
 }
@@ -89,9 +87,10 @@ bool add_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
     std::iota(number.begin(), number.end(), 0);
     return false;
   }
+  const auto is_empty = [](const Patch<D>& patch) { return patch.count == 0 && !patch.foreign; };
   // Empty patches are dropped only here, where numbers change anyway: contact and neighbours go by
   // the numbers of patches, and a particle that comes back into a tile finds its patch again.
-  for (std::size_t p = 0; p < patches.size(); ++p) number[p] = patches[p].count == 0 ? -1 : 0;
+  for (std::size_t p = 0; p < patches.size(); ++p) number[p] = is_empty(patches[p]) ? -1 : 0;
   entered.clear();
   for (Migrant<D>& l : scratch.migrants) {
     // It goes to a patch that is about to be dropped, which is then made anew for it.
@@ -102,13 +101,13 @@ bool add_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
     return patch_less<D>(x.first, x.second, y.first, y.second);
   });
   entered.erase(std::unique(entered.begin(), entered.end()), entered.end());
-  std::erase_if(patches, [](const Patch<D>& patch) { return patch.count == 0; });
+  std::erase_if(patches, is_empty);
   merge<D>(patches, entered);
   // The others have kept their order, and the new ones are still empty.
   std::size_t next = 0;
   for (std::int32_t& n : number) {
     if (n < 0) continue;
-    while (patches[next].count == 0) ++next;
+    while (is_empty(patches[next])) ++next;
     n = static_cast<std::int32_t>(next++);
   }
   // Numbers have changed, and with them everyone's neighbours.
@@ -198,6 +197,7 @@ bool migrate_particles(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                        std::vector<ParticlePool<D>>& pools, Threads& threads,
                        ListScratch<D>& scratch) {
   find_migrants(grid, bodies, pools, threads, scratch);
+  if (!grid.partition.alone()) exchange_migrants(grid, bodies, pools, scratch);
   const bool changed = add_patches(grid, scratch);
   find_changes(grid, scratch);
   find_ranges(bodies, pools, scratch);

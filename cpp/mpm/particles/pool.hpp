@@ -8,6 +8,7 @@
 
 #include "mpm/fields/columns.hpp"
 #include "mpm/grid/patch.hpp"
+#include "mpm/loads/surface_load.hpp"
 #include "mpm/materials/material_block.hpp"
 #include "mpm/particles/body.hpp"
 
@@ -37,10 +38,12 @@ struct ParticlePool {
   double sound_speed = 0.0;          // of its material at the start [m/s]
   double fastest = 0.0;              // wave and particle together, before the step [m/s]
   std::vector<std::uint32_t> id;     // number of each particle in its body, as the user gave them
-  std::vector<std::uint32_t> piece;  // 1 + number of its first SurfacePiece, or 0; empty: no loads
+  std::vector<std::uint32_t> piece;  // 1 + number of its first of `pieces`, or 0; empty: no loads
+  std::vector<SurfacePiece<D>> pieces;  // of all loads; of other ranks' particles they mean nothing
   std::vector<std::uint32_t> order;  // rows by cell, then by id, in the range that each patch owns
   std::size_t used = 0;  // of `order`, by the ranges of patches, now or before; behind it is room
   std::vector<RemovedRow> removed;
+  std::vector<std::uint32_t> free_rows;  // of no particle: some have gone to other ranks
 
   std::size_t count() const { return columns.rows(); }
   double* x(int a) { return columns.component(position + a); }
@@ -71,9 +74,34 @@ struct ParticlePool {
   std::size_t bytes() const {
     return columns.bytes() +
            (id.capacity() + piece.capacity() + order.capacity()) * sizeof(std::uint32_t) +
-           removed.capacity() * sizeof(RemovedRow);
+           removed.capacity() * sizeof(RemovedRow) + free_rows.capacity() * sizeof(std::uint32_t);
   }
 };
+
+/// A row for a particle that comes from another rank.
+template <int D>
+std::uint32_t take_row(ParticlePool<D>& pool) {
+  if (pool.free_rows.empty()) {
+    // A sixteenth more, so that few comings allocate.
+    const std::size_t count = pool.count(), more = count + count / 16 + 64;
+    pool.columns.grow(more);
+    pool.id.resize(more);
+    if (!pool.piece.empty()) pool.piece.resize(more, 0);
+    for (std::size_t row = more; row > count; --row)
+      pool.free_rows.push_back(static_cast<std::uint32_t>(row - 1));
+  }
+  const std::uint32_t row = pool.free_rows.back();
+  pool.free_rows.pop_back();
+  return row;
+}
+
+/// f(piece) for the pieces of loads that a particle carries.
+template <class Pool, class F>
+void for_each_piece_of(Pool& pool, std::uint32_t row, F&& f) {
+  for (std::uint32_t k = pool.piece.empty() ? 0 : pool.piece[row]; k != 0;
+       k = pool.pieces[k - 1].next)
+    f(pool.pieces[k - 1]);
+}
 
 /// Kinetic energy of a particle [J]; with an affine part m D C:C / 2 of it, D = `affine_moment`
 /// [m^2].

@@ -46,7 +46,8 @@ void sort_columns(TileGrid<D>& grid, Body<D>& body, std::span<Patch<D>> patches,
                   ParticlePool<D>& pool, Threads& threads, ListScratch<D>& scratch) {
   // Changes are counted anew from here.
   body.moved = 0;
-  const std::size_t n = body.active();
+  std::size_t n = 0;
+  for (const Patch<D>& patch : patches) n += patch.count;
   const std::span<const Patch<D>> lists = patches;
   SortedRows rows(pool, lists, n);
   // One component at a time in the idle memory of the nodes: 8 bytes a particle, however many
@@ -95,11 +96,14 @@ void sort_disordered(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                      ListScratch<D>& scratch) {
   for (const int number : scratch.moved) {
     Body<D>& body = bodies[static_cast<std::size_t>(number)];
+    const auto patches = patches_of<D>(grid.patches, number);
+    std::size_t here = 0;
+    for (const Patch<D>& patch : patches) here += patch.count;
     // A quarter by default: a compromise between rows loaded one by one and the cost of sorting
     // (decision 0002).
-    if (static_cast<double>(body.moved) >= share * static_cast<double>(body.count))
-      sort_columns(grid, body, patches_of<D>(grid.patches, number),
-                   pools[static_cast<std::size_t>(body.material)], threads, scratch);
+    if (static_cast<double>(body.moved) >= share * static_cast<double>(here))
+      sort_columns(grid, body, patches, pools[static_cast<std::size_t>(body.material)], threads,
+                   scratch);
   }
 }
 

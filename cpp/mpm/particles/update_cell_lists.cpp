@@ -4,6 +4,7 @@
 #include <span>
 
 #include "mpm/grid/blocks.hpp"
+#include "mpm/grid/foreign_patches.hpp"
 #include "mpm/particles/cell_lists.hpp"
 #include "mpm/particles/classify.hpp"
 
@@ -34,8 +35,9 @@ bool make_scratch(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   }
   for (std::size_t m = 0; m < pools.size(); ++m) {
     all += pools[m].count();
-    // An upper bound: who arrives somewhere has left a patch of the same pool.
-    if (touched[m]) entries += pools[m].count();
+    // An upper bound: who arrives somewhere has left a patch of the same pool. From other ranks
+    // come who knows how many.
+    if (touched[m] && grid.partition.alone()) entries += pools[m].count();
   }
   // Entries before marks: those of four bytes need the alignment that the memory begins with.
   constexpr std::size_t entry = sizeof(*scratch.lists), mark = sizeof(*scratch.marks);
@@ -48,12 +50,15 @@ bool make_scratch(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
 /// Note the cells of a patch's particles, and how many go where.
 template <int D>
 void note_changes(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
-                  const Patch<D>& patch, ListScratch<D>& scratch,
+                  const Patch<D>& patch, bool removes, ListScratch<D>& scratch,
                   typename ListScratch<D>::Note& note) {
   std::uint8_t* const marks = scratch.marks + note.first_mark;
-  note.changes = static_cast<std::uint32_t>(note_cells(grid, pool, patch, marks) +
-                                            note_removed(grid, body, pool, patch, marks));
-  const std::span<const std::uint8_t> now(marks, patch.count);
+  std::size_t changes = note_cells(grid, pool, patch, marks);
+  if (removes) changes += note_removed(grid, body, pool, patch, marks);
+  note.changes = static_cast<std::uint32_t>(changes);
+  const std::span<std::uint8_t> now(marks, patch.count);
+  if (grid.partition.leaves(patch))
+    for (std::uint8_t& mark : now) mark = mark < CellMark::left ? CellMark::outside : mark;
   note.migrants = static_cast<std::uint32_t>(std::ranges::count(now, CellMark::outside));
   const auto others = static_cast<std::uint32_t>(
       std::ranges::count_if(now, [](std::uint8_t c) { return c >= CellMark::left; }));
@@ -77,23 +82,21 @@ void count_changes(std::vector<Body<D>>& bodies, ListScratch<D>& scratch) {
 /// Take what a particle has out of the sums of those that take part.
 template <int D>
 void take_out(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row,
-              double affine_moment, Removed<D>& sums) {
+              double affine_moment, Removed& sums) {
   const double m = pool.mass()[row];
-  ++sums.count;
-  sums.mass += m;
-  sums.kinetic += kinetic_energy(pool, row, affine_moment);
-  for (int a = 0; a < D; ++a) sums.momentum[a] += m * pool.v(a)[row];
-  sums.angular_momentum += angular_momentum(pool, row, affine_moment, Vector3::zero());
-  const double energy = pool.columns.component(pool.at.recoverable)[row];
   // Energies are kept per initial volume, m / rho_0.
-  sums.recoverable += energy * m / body.initial_density;
+  const double recoverable =
+      pool.columns.component(pool.at.recoverable)[row] * m / body.initial_density;
+  const Vector3 turning = angular_momentum(pool, row, affine_moment, Vector3::zero());
+  sums.add({m, kinetic_energy(pool, row, affine_moment), recoverable, turning[0], turning[1],
+            turning[2]});
 }
 
 /// Those of a patch's particles that take no part any more.
 template <int D>
 void remove_particles(Body<D>& body, ParticlePool<D>& pool, const Patch<D>& patch,
-                      const std::uint8_t* mark, double affine_moment, Removed<D>& eroded,
-                      Removed<D>& outflow) {
+                      const std::uint8_t* mark, double affine_moment, Removed& eroded,
+                      Removed& outflow) {
   // By one thread, in the order of the lists: sums of doubles, and rows that are pushed back.
   for (const std::uint32_t row : pool.rows(patch)) {
     const std::uint8_t now = *mark++;
@@ -101,8 +104,28 @@ void remove_particles(Body<D>& body, ParticlePool<D>& pool, const Patch<D>& patc
     take_out(body, pool, row, affine_moment, now == CellMark::left ? outflow : eroded);
     if (now == CellMark::left) pool.columns.component(pool.at.failed)[row] = left_region;
     pool.removed.push_back({row, patch.body});
-    ++body.removed;
+    ++body.removed_here;
   }
+}
+
+/// How many of each body's particles take no part any more, of all ranks.
+template <int D>
+void count_removed(std::vector<Body<D>>& bodies, Comm& comm) {
+  if (comm.alone()) {
+    for (Body<D>& body : bodies) body.removed = body.removed_here;
+    return;
+  }
+  std::int64_t here = 0, before = 0;
+  for (const Body<D>& body : bodies) {
+    here += static_cast<std::int64_t>(body.removed_here);
+    before += static_cast<std::int64_t>(body.removed);
+  }
+  if (all_sum(comm, here) == before) return;
+  std::vector<std::int64_t> counts;
+  for (const Body<D>& body : bodies) counts.push_back(static_cast<std::int64_t>(body.removed_here));
+  comm.all_sum(counts);
+  for (std::size_t b = 0; b < counts.size(); ++b)
+    bodies[b].removed = static_cast<std::size_t>(counts[b]);
 }
 
 /// Write a patch's new list to scratch: the particles it keeps and those that come, by cell, then
@@ -167,6 +190,10 @@ void write_lists(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     change.first_entry = entries;
     entries += change.count();
   }
+  if (!grid.partition.alone()) {
+    make_room(scratch.own_lists, entries, entries + entries / 16);
+    scratch.lists = scratch.own_lists.data();
+  }
   const auto place = [&](std::size_t p) {
     const auto& change = scratch.changes[p];
     Patch<D>& patch = grid.patches[p];
@@ -195,9 +222,11 @@ void write_lists(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
 template <int D>
 bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                        std::vector<ParticlePool<D>>& pools, Threads& threads,
-                       ListScratch<D>& scratch, Removed<D>& eroded, Removed<D>& outflow) {
+                       ListScratch<D>& scratch, Removed* eroded, Removed* outflow) {
   scratch.moved.clear();
-  if (!make_scratch(grid, bodies, pools, scratch)) return false;
+  // Others may have what comes here, though nothing has moved.
+  const bool alone = grid.partition.alone();
+  if (!make_scratch(grid, bodies, pools, scratch) && alone) return false;
   const auto body_of = [&](const Patch<D>& patch) -> Body<D>& {
     return bodies[static_cast<std::size_t>(patch.body)];
   };
@@ -207,32 +236,37 @@ bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     if (patch.left_cell)
-      note_changes(grid, body_of(patch), pool_of(patch), patch, scratch, scratch.notes[p]);
+      note_changes(grid, body_of(patch), pool_of(patch), patch, eroded != nullptr, scratch,
+                   scratch.notes[p]);
   });
   count_changes(bodies, scratch);
   // Numbers of patches mean something else from here on: `notes` has the old ones, `changes` the
   // new.
-  const bool changed = migrate_particles(grid, bodies, pools, threads, scratch);
+  bool changed = migrate_particles(grid, bodies, pools, threads, scratch);
   for (std::size_t p = 0; p < grid.patches.size(); ++p) {
     const auto& change = scratch.changes[p];
     if (change.removed == 0) continue;
     const Patch<D>& patch = grid.patches[p];
     remove_particles(body_of(patch), pool_of(patch), patch, scratch.marks + change.first_mark,
-                     grid.affine_moment(), eroded, outflow);
+                     grid.affine_moment(), *eroded, *outflow);
   }
+  const auto may_fail = [](const ParticlePool<D>& pool) { return pool.at.failed >= 0; };
+  if (eroded != nullptr && (grid.outflow_box.exist || std::ranges::any_of(pools, may_fail)))
+    count_removed(bodies, *grid.partition.comm);
   write_lists(grid, bodies, pools, threads, scratch);
   // They lie in the memory of the nodes, which gets its blocks now.
   scratch.lists = nullptr;
   scratch.marks = nullptr;
+  if (!alone && exchange_patches(grid)) changed = true;
   cut_blocks(grid, threads);
   return changed;
 }
 
 template bool update_cell_lists<2>(TileGrid<2>&, std::vector<Body<2>>&,
                                    std::vector<ParticlePool<2>>&, Threads&, ListScratch<2>&,
-                                   Removed<2>&, Removed<2>&);
+                                   Removed*, Removed*);
 template bool update_cell_lists<3>(TileGrid<3>&, std::vector<Body<3>>&,
                                    std::vector<ParticlePool<3>>&, Threads&, ListScratch<3>&,
-                                   Removed<3>&, Removed<3>&);
+                                   Removed*, Removed*);
 
 }  // namespace mpm

@@ -69,7 +69,7 @@ void advance_prescribed_nodes(Domain<D>& domain, std::size_t p) {
     for (int a = 0; a < D; ++a) node[a] += first[a];
     const Vector3 place = in_space<D>(grid.position_of(node));
     const Vector3 dv = motion.increment_at(place);
-    const bool own = patch.owned[n];
+    const bool own = patch.counts(n);
     if (own)
       sums.angular.on_prescribed +=
           domain.time_step * cross(place, in_space<D>(block.vector(n, force_at)));

@@ -54,9 +54,11 @@ void gather(Domain<D>& domain) {
     const auto patches =
         patches_of<D>(domain.grid.patches, static_cast<int>(domain.rigid_bodies[k]));
     // The patches of a body follow each other, and `parts` is in the order of the patches.
-    const RigidSums* part = &parts[static_cast<std::size_t>(&patches[0] - &domain.grid.patches[0])];
+    const std::ptrdiff_t first = patches.data() - domain.grid.patches.data();
     RigidTotal total;
-    for (std::size_t p = 0; p < patches.size(); ++p) total.add(part[p]);
+    for (std::size_t p = 0; p < patches.size(); ++p)
+      total.add(parts[static_cast<std::size_t>(first) + p]);
+    total.add_others(*domain.grid.partition.comm);
     domain.rigid_sums[k] = total.value();
   });
 }

@@ -4,8 +4,8 @@
 #include <array>
 #include <limits>
 
+#include "mpm/comm/all_sums.hpp"
 #include "mpm/math/cholesky.hpp"
-#include "mpm/math/exact_sum.hpp"
 #include "mpm/math/tensor.hpp"
 
 namespace mpm {
@@ -99,6 +99,21 @@ class RigidTotal {
     std::size_t k = 0;
     part.for_each([&](double x) { sums_[k++].add(x); });
     extent_.add(part.extent);
+  }
+  /// Of all ranks.
+  void add_others(Comm& comm) {
+    if (comm.alone()) return;
+    all_sum(comm, sums_);
+    double most[6];
+    for (int a = 0; a < 3; ++a) {
+      most[a] = -extent_.lower[a];
+      most[3 + a] = extent_.upper[a];
+    }
+    comm.all_max(most);
+    for (int a = 0; a < 3; ++a) {
+      extent_.lower[a] = -most[a];
+      extent_.upper[a] = most[3 + a];
+    }
   }
   RigidSums value() const {
     RigidSums total;

@@ -131,7 +131,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
   const double before = kinetic_energy(domain);
   const Vector3 turned = angular_totals(part_sums(domain)).all;
   ParticlePool<D>& pool = domain.pool_of(b);
-  for_each_row(domain.grid.patches, pool, number, b.removed, [&](std::uint32_t row) {
+  for_each_row(domain.grid.patches, pool, number, b.removed_here, [&](std::uint32_t row) {
     for (std::size_t a = 0; a < D; ++a)
       pool.v(static_cast<int>(a))[row] = static_cast<Storage>(velocities[pool.id[row] * D + a]);
   });

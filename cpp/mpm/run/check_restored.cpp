@@ -100,7 +100,7 @@ void check_rows(const Domain<D>& domain) {
   for (const std::vector<bool>& seen : rows)
     check(std::ranges::all_of(seen, std::identity()), "its lists are damaged");
   for (std::size_t b = 0; b < removed.size(); ++b)
-    check(removed[b] == domain.bodies[b].removed, "its lists are damaged");
+    check(removed[b] == domain.bodies[b].removed_here, "its lists are damaged");
 }
 
 /// The ranges that patches own of their pools' lists: none of another's.
@@ -129,18 +129,18 @@ void check_ranges(const Domain<D>& domain) {
 /// The chains of pieces that particles carry: each piece once, by the particle that it is of.
 template <int D>
 void check_pieces(const Domain<D>& domain) {
-  const auto& pieces = domain.pieces;
-  std::vector<bool> seen(pieces.size());
-  for (const ParticlePool<D>& pool : domain.pools)
+  for (const ParticlePool<D>& pool : domain.pools) {
+    std::vector<bool> seen(pool.pieces.size());
     for (const std::uint32_t first : pool.piece)
-      for (std::uint32_t k = first; k != 0; k = pieces[k - 1].next) {
+      for (std::uint32_t k = first; k != 0; k = pool.pieces[k - 1].next) {
         check(k <= seen.size() && !seen[k - 1], "its loads are damaged");
         seen[k - 1] = true;
       }
-  for (const SurfacePiece<D>& piece : pieces)
-    check(piece.load >= 0 && std::cmp_less(piece.load, domain.loads.size()) && finite(piece.area) &&
-              finite(piece.size) && finite(piece.arm),
-          "its loads are damaged");
+    for (const SurfacePiece<D>& piece : pool.pieces)
+      check(piece.load >= 0 && std::cmp_less(piece.load, domain.loads.size()) &&
+                finite(piece.area) && finite(piece.size) && finite(piece.arm),
+            "its loads are damaged");
+  }
 }
 
 }  // namespace

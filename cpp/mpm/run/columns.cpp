@@ -28,7 +28,7 @@ void copy_column(const Domain<D>& domain, int number, const std::string& name,
     // Plane strain keeps xx yy zz xy; the fourth becomes the sixth of xx yy zz yz xz xy.
     const auto place = static_cast<std::size_t>(name == "stress" && D == 2 && c == 3 ? 5 : c);
     of.columns.with_component(info.first + c, [&](const auto* from) {
-      for_each_row(domain.grid.patches, of, number, b.removed,
+      for_each_row(domain.grid.patches, of, number, b.removed_here,
                    [&](std::uint32_t row) { to[of.id[row] * width + place] = from[row]; });
     });
   }

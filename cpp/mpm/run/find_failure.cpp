@@ -7,97 +7,131 @@
 
 namespace mpm {
 
+namespace {
+
+/// What a particle that no step can go on from has; empty if it can go on.
+template <int D>
+std::pair<std::string, std::string> kind_and_sentence(const Domain<D>& domain,
+                                                      const Patch<D>& patch, std::uint32_t row) {
+  const ParticlePool<D>& of = domain.pool_of(patch);
+  for (int a = 0; a < (domain.body_of(patch).force >= 0 ? D : 0); ++a) {
+    const double force = of.columns.component(of.body_force + a)[row];
+    if (moves_within_cell(force, domain.time_step, domain.grid.cell_size)) continue;
+    std::ostringstream text;
+    text << "its body_force is " << force << " m/s^2 along " << "xyz"[a]
+         << ", no finite number or one that moves it past a cell in a step";
+    return {"body force", text.str()};
+  }
+  for (int c = 0; c < of.columns.component_count(); ++c)
+    if (!std::isfinite(of.columns.value(c, row)))
+      return {"non-finite", "a value of the particle is not a finite number"};
+  if (!(of.volume()[row] > 0.0))
+    return {"negative volume", "the particle has been turned inside out"};
+  return {};
+}
+
+/// The first particle of all, in the order of the patches, that no step can go on from.
+template <int D>
+Failure first_failure(const Domain<D>& domain) {
+  std::optional<Failure> found;
+  std::vector<double> key(1 + D, -std::numeric_limits<double>::infinity());
+  for (const Patch<D>& patch : domain.grid.patches) {
+    for (const std::uint32_t row : domain.pool_of(patch).rows(patch)) {
+      const auto [kind, what] = kind_and_sentence(domain, patch, row);
+      if (kind.empty()) continue;
+      found = failure_at(domain, kind, particle_at(domain.pool_of(patch), patch.body, row), what);
+      break;
+    }
+    if (!found) continue;
+    key[0] = -patch.body;
+    for (std::size_t a = 0; a < D; ++a) key[1 + a] = -patch.tile[D - 1 - a];
+    break;
+  }
+  Comm& comm = *domain.grid.partition.comm;
+  if (!any_of_all(comm, found.has_value()))
+    return failure_at(domain, "non-finite", {}, "the energy is not a finite number");
+  const int rank = rank_of_largest(comm, key);
+  std::vector<std::byte> bytes;
+  if (found) bytes = to_bytes(*found);
+  broadcast(comm, rank, bytes);
+  return comm.alone() ? *found : failure_from(bytes);
+}
+
+}  // namespace
+
 template <int D>
 void find_failure(Simulation<D>& simulation) {
   const Domain<D>& domain = simulation.domain;
-  const auto fail = [&](const char* kind, std::size_t body, std::size_t row,
-                        const std::string& what) {
-    simulation.failure = failure_at(domain, kind, body, row, what);
-  };
   bool negative = false;
   for (const PatchSums<D>& s : domain.sums) negative = negative || s.stress.negative_volume;
-  if (!negative && std::isfinite(domain.ledger.kinetic) &&
-      std::isfinite(domain.ledger.residual())) {
-    if (domain.ledger.growth() <= simulation.settings.run.energy_growth_limit) return;
-    const Limiter fastest = find_limiter(domain);
-    if (fastest.body < 0) return fail("energy growth", 0, 0, "no particle takes part any more");
-    const std::size_t row = row_of(domain, fastest.body, fastest.particle);
-    std::ostringstream text;
+  negative = any_of_all(*domain.grid.partition.comm, negative);
+  if (negative || !std::isfinite(domain.ledger.kinetic) ||
+      !std::isfinite(domain.ledger.residual())) {
+    simulation.failure = first_failure(domain);
+    return;
+  }
+  if (domain.ledger.growth() <= simulation.settings.run.energy_growth_limit) return;
+  const Limiter fastest = find_limiter(domain);
+  std::ostringstream text;
+  if (fastest.body < 0)
+    text << "no particle takes part any more";
+  else
     text << "the numerical terms have made " << domain.ledger.growth()
          << " of the largest energy brought in (the column numerical of history.csv); halve "
             "run.cfl, "
             "or raise run.energy_growth_limit if that is meant";
-    fail("energy growth", static_cast<std::size_t>(fastest.body), row, text.str());
-    return;
-  }
-  for (const Patch<D>& patch : domain.grid.patches) {
-    const auto b = static_cast<std::size_t>(patch.body);
-    const ParticlePool<D>& of = domain.pool_of(patch);
-    const bool forced = domain.body_of(patch).force >= 0;
-    for (const std::uint32_t i : of.rows(patch)) {
-      for (int a = 0; a < (forced ? D : 0); ++a) {
-        const double force = of.columns.component(of.body_force + a)[i];
-        if (moves_within_cell(force, domain.time_step, domain.grid.cell_size)) continue;
-        std::ostringstream text;
-        text << "its body_force is " << force << " m/s^2 along " << "xyz"[a]
-             << ", no finite number or one that moves it past a cell in a step";
-        return fail("body force", b, i, text.str());
-      }
-      bool finite = true;
-      for (int c = 0; c < of.columns.component_count(); ++c)
-        finite = finite && std::isfinite(of.columns.value(c, i));
-      if (!finite) {
-        fail("non-finite", b, i, "a value of the particle is not a finite number");
-        return;
-      }
-      if (!(of.volume()[i] > 0.0)) {
-        fail("negative volume", b, i, "the particle has been turned inside out");
-        return;
-      }
-    }
-  }
-  fail("non-finite", 0, 0, "the energy is not a finite number");
+  simulation.failure = failure_at(domain, "energy growth", fastest, text.str());
 }
 
 template <int D>
-Failure failure_at(const Domain<D>& domain, const std::string& kind, std::size_t b, std::size_t row,
+Failure failure_at(const Domain<D>& domain, const std::string& kind, const ParticleAt& at,
                    const std::string& what) {
-  const Body<D>& body = domain.bodies[b];
-  const ParticlePool<D>& pool = domain.pool_of(body);
-  Failure f;
-  f.kind = kind;
-  f.body = static_cast<int>(b);
-  f.particle = pool.id[row];
-  f.step = domain.step;
-  f.time = domain.time;
-  for (int a = 0; a < D; ++a) f.position[static_cast<std::size_t>(a)] = pool.x(a)[row];
+  Failure f{kind, at.body, at.particle, domain.step, domain.time, at.position, {}};
   std::ostringstream text;
-  text << kind << " at step " << f.step << ", t = " << f.time << " s: " << what << " (body \""
-       << body.name << "\", particle " << f.particle << ", at";
-  for (int a = 0; a < D; ++a) text << ' ' << pool.x(a)[row];
-  text << " m)";
+  text << kind << " at step " << f.step << ", t = " << f.time << " s: " << what;
+  if (at.body >= 0) {
+    text << " (body \"" << domain.body_at(at.body).name << "\", particle " << f.particle << ", at";
+    for (std::size_t a = 0; a < D; ++a) text << ' ' << at.position[a];
+    text << " m)";
+  }
   f.message = text.str();
   return f;
 }
 
-template <int D>
-std::size_t row_of(const Domain<D>& domain, int number, std::int64_t particle) {
-  const Body<D>& body = domain.body_at(number);
-  const ParticlePool<D>& of = domain.pool_of(body);
-  std::size_t found = 0;
-  for_each_row(domain.grid.patches, of, number, body.removed, [&](std::uint32_t row) {
-    if (static_cast<std::int64_t>(of.id[row]) == particle) found = row;
-  });
-  return found;
+std::vector<std::byte> to_bytes(const Failure& f) {
+  Letter letter;
+  for (const std::string* text : {&f.kind, &f.message}) {
+    write(letter, text->size());
+    for (const char c : *text) write(letter, c);
+  }
+  write(letter, ParticleAt{f.body, f.particle, f.position});
+  write(letter, f.step);
+  write(letter, f.time);
+  return letter.bytes;
+}
+
+Failure failure_from(std::span<const std::byte> bytes) {
+  const Letter letter{0, {bytes.begin(), bytes.end()}};
+  Reader reader(letter);
+  Failure f;
+  for (std::string* text : {&f.kind, &f.message}) {
+    text->resize(reader.read<std::size_t>());
+    for (char& c : *text) c = reader.read<char>();
+  }
+  const auto at = reader.read<ParticleAt>();
+  f.body = at.body;
+  f.particle = at.particle;
+  f.position = at.position;
+  f.step = reader.read<std::int64_t>();
+  f.time = reader.read<double>();
+  return f;
 }
 
 template void find_failure<2>(Simulation<2>&);
 template void find_failure<3>(Simulation<3>&);
-template Failure failure_at<2>(const Domain<2>&, const std::string&, std::size_t, std::size_t,
+template Failure failure_at<2>(const Domain<2>&, const std::string&, const ParticleAt&,
                                const std::string&);
-template Failure failure_at<3>(const Domain<3>&, const std::string&, std::size_t, std::size_t,
+template Failure failure_at<3>(const Domain<3>&, const std::string&, const ParticleAt&,
                                const std::string&);
-template std::size_t row_of<2>(const Domain<2>&, int, std::int64_t);
-template std::size_t row_of<3>(const Domain<3>&, int, std::int64_t);
 
 }  // namespace mpm

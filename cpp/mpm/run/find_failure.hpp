@@ -8,13 +8,13 @@ namespace mpm {
 template <int D>
 void find_failure(Simulation<D>& simulation);
 
-/// A failure at a particle, with the sentence that says so.
+/// A failure at a particle, or at none, with the sentence that says so.
 template <int D>
-Failure failure_at(const Domain<D>& domain, const std::string& kind, std::size_t body,
-                   std::size_t row, const std::string& what);
+Failure failure_at(const Domain<D>& domain, const std::string& kind, const ParticleAt& at,
+                   const std::string& what);
 
-/// The row of a particle, by its number in the order in which the user gave them.
-template <int D>
-std::size_t row_of(const Domain<D>& domain, int body, std::int64_t particle);
+/// A failure as bytes, and back.
+std::vector<std::byte> to_bytes(const Failure& failure);
+Failure failure_from(std::span<const std::byte> bytes);
 
 }  // namespace mpm

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mpm/comm/all_sums.hpp"
 #include "mpm/particles/make_body.hpp"
 
 namespace mpm {
@@ -49,7 +50,8 @@ void add_load(Simulation<D>& simulation, const std::string& name, int number,
             "areas and arms must be finite numbers");
     }
   }
-  domain.pieces.insert(domain.pieces.end(), found.begin(), found.end());
+  auto& all = domain.pool_of(on).pieces;
+  all.insert(all.end(), found.begin(), found.end());
   domain.loads.push_back(std::move(load));
 }
 
@@ -98,16 +100,19 @@ void add_damping(Simulation<D>& simulation, const std::vector<int>& bodies,
 
 template <int D>
 void place_pieces(Domain<D>& domain) {
-  for (std::size_t k = 0; k < domain.pieces.size(); ++k) {
-    SurfacePiece<D>& piece = domain.pieces[k];
-    const int on = domain.loads[static_cast<std::size_t>(piece.load)].body;
-    const Patch<D>& patch = domain.grid.patches[static_cast<std::size_t>(on)];
-    ParticlePool<D>& pool = domain.pool_of(patch);
-    pool.piece.resize(pool.count(), 0);
-    std::uint32_t& first = pool.piece[patch.begin + std::size_t{piece.particle}];
-    piece.next = first;
-    first = static_cast<std::uint32_t>(k + 1);
-  }
+  for (ParticlePool<D>& pool : domain.pools)
+    for (std::size_t k = 0; k < pool.pieces.size(); ++k) {
+      SurfacePiece<D>& piece = pool.pieces[k];
+      const int on = domain.loads[static_cast<std::size_t>(piece.load)].body;
+      const Patch<D>& patch = domain.grid.patches[static_cast<std::size_t>(on)];
+      pool.piece.resize(pool.count(), 0);
+      // A rank has a share of the particles, one behind another.
+      const std::uint32_t first_id = patch.count > 0 ? pool.id[patch.begin] : 0;
+      if (piece.particle < first_id || piece.particle - first_id >= patch.count) continue;
+      std::uint32_t& first = pool.piece[patch.begin + (piece.particle - first_id)];
+      piece.next = first;
+      first = static_cast<std::uint32_t>(k + 1);
+    }
 }
 
 template <int D>
@@ -121,16 +126,14 @@ std::vector<LoadRecord> load_records(const Domain<D>& domain) {
       record.impulse[a] = load.impulse[static_cast<int>(a)];
     }
   }
-  std::vector<bool> removed(domain.pieces.size());  // with the particles that carried them
-  for (const ParticlePool<D>& pool : domain.pools)
-    for (const RemovedRow& one : pool.removed)
-      for (std::uint32_t k = pool.piece.empty() ? 0 : pool.piece[one.row]; k != 0;
-           k = domain.pieces[k - 1].next)
-        removed[k - 1] = true;
-  for (std::size_t k = 0; k < removed.size(); ++k) {
-    const SurfacePiece<D>& piece = domain.pieces[k];
-    if (!removed[k]) records[static_cast<std::size_t>(piece.load)].area += piece.size;
-  }
+  std::vector<ExactSum> areas(records.size());
+  domain.for_each_particle([&](const ParticlePool<D>& pool, std::uint32_t row) {
+    for_each_piece_of(pool, row, [&](const SurfacePiece<D>& piece) {
+      areas[static_cast<std::size_t>(piece.load)].add(piece.size);
+    });
+  });
+  all_sum(*domain.grid.partition.comm, areas);
+  for (std::size_t l = 0; l < records.size(); ++l) records[l].area = areas[l].value();
   return records;
 }
 

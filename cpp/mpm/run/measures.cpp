@@ -1,17 +1,18 @@
 #include "mpm/run/measures.hpp"
 
-#include "mpm/math/exact_sum.hpp"
+#include "mpm/comm/all_sums.hpp"
 
 namespace mpm {
 
 template <int D>
 double total_mass(const Domain<D>& domain) {
-  double total = 0.0;
+  ExactSum total;
   domain.for_each_particle(
-      [&](const ParticlePool<D>& of, std::uint32_t row) { total += of.mass()[row]; });
+      [&](const ParticlePool<D>& of, std::uint32_t row) { total.add(of.mass()[row]); });
   for (const ParticlePool<D>& of : domain.pools)
-    for (const RemovedRow& removed : of.removed) total += of.mass()[removed.row];
-  return total;
+    for (const RemovedRow& removed : of.removed) total.add(of.mass()[removed.row]);
+  all_sum(*domain.grid.partition.comm, {&total, 1});
+  return total.value();
 }
 
 template <int D>
@@ -20,6 +21,7 @@ double kinetic_energy(const Domain<D>& domain) {
   domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
     total.add(mpm::kinetic_energy(of, row, domain.grid.affine_moment()));
   });
+  all_sum(*domain.grid.partition.comm, {&total, 1});
   return total.value();
 }
 
@@ -30,6 +32,7 @@ std::array<double, 3> momentum(const Domain<D>& domain) {
     for (std::size_t a = 0; a < D; ++a)
       total[a].add(of.mass()[row] * of.v(static_cast<int>(a))[row]);
   });
+  all_sum(*domain.grid.partition.comm, total);
   std::array<double, 3> sums{};
   for (std::size_t a = 0; a < D; ++a) sums[a] = total[a].value();
   return sums;
@@ -41,6 +44,7 @@ double initial_internal_energy(const Domain<D>& domain) {
   domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
     if (of.at.energy >= 0) total.add(of.columns.component(of.at.energy)[row] * of.volume()[row]);
   });
+  all_sum(*domain.grid.partition.comm, {&total, 1});
   return total.value();
 }
 

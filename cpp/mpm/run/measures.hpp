@@ -17,9 +17,9 @@ template <int D>
 double initial_internal_energy(const Domain<D>& domain);
 template <int D>
 std::size_t particle_count(const Domain<D>& domain);
-template <int D>
-RemovedSum sum_of(const Removed<D>& removed) {
-  return {removed.mass, removed.count};
+inline RemovedSum sum_of(const Removed& removed, Comm& comm) {
+  const RemovedTotal total = total_of(removed, comm);
+  return {total.mass, total.count};
 }
 
 template <int D>

@@ -1,8 +1,12 @@
 #pragma once
 // What is noted of a run that goes on but may be going wrong.
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
+#include "mpm/comm/all_sums.hpp"
+#include "mpm/particles/pool.hpp"
+#include "mpm/run/records.hpp"
 #include "mpm/run/step_watch.hpp"
 
 namespace mpm {
@@ -37,24 +41,44 @@ struct Note {
   std::int64_t count = 0;             // steps, or looks, at which it was so
 };
 
-/// Particles of a group that something is true of, and the one of which it is most so.
+template <int D>
+ParticleAt particle_at(const ParticlePool<D>& pool, int body, std::uint32_t row) {
+  ParticleAt at{body, pool.id[row], {}};
+  for (std::size_t a = 0; a < D; ++a) at.position[a] = pool.x(static_cast<int>(a))[row];
+  return at;
+}
+
+/// Particles of a group that something is true of, and the one of which it is most so; of several
+/// the first.
 struct Seen {
-  std::size_t count = 0, body = 0, row = 0;
+  std::int64_t count = 0;
   double most = 0.0, value = 0.0;
-  void add(std::size_t b, std::size_t at, double size, double shown) {
-    if (count++ == 0 || size > most) {
-      most = size;
-      body = b;
-      row = at;
-      value = shown;
-    }
+  ParticleAt at;
+  template <int D>
+  void add(const ParticlePool<D>& pool, int body, std::uint32_t row, double size, double shown) {
+    const std::int64_t particle = pool.id[row];
+    if (count++ > 0 && std::tuple(-size, body, particle) >= std::tuple(-most, at.body, at.particle))
+      return;
+    most = size;
+    value = shown;
+    at = particle_at(pool, body, row);
+  }
+  /// Of all ranks.
+  void add_others(Comm& comm) {
+    const std::int64_t all = all_sum(comm, count);
+    if (comm.alone() || all == 0) return;
+    const double own = count > 0 ? most : -std::numeric_limits<double>::infinity();
+    const int rank =
+        rank_of_largest(comm, {own, -1.0 * at.body, -static_cast<double>(at.particle)});
+    broadcast(comm, rank, *this);
+    count = all;
   }
 };
 
 /// What a look at the particles of a group has found.
 template <int D>
 struct Sight {
-  std::size_t particles = 0;
+  std::int64_t particles = 0;
   Seen outside, odd, left[2 * D];
 };
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "mpm/math/exact_sum.hpp"
+#include "mpm/comm/all_sums.hpp"
 
 namespace mpm {
 namespace {
@@ -40,6 +40,7 @@ std::vector<std::array<double, count>> sum_groups(Domain<D>& domain,
   for (std::size_t k = 0; k < count; ++k) {
     std::vector<ExactSum> exact(groups);
     for (std::size_t p = 0; p < parts.size(); ++p) exact[group_of(p)].add(parts[p][k]);
+    all_sum(*domain.grid.partition.comm, exact);
     for (std::size_t g = 0; g < groups; ++g) sums[g][k] = exact[g].value();
   }
   return sums;

@@ -76,13 +76,17 @@ void prepare(Simulation<D>& simulation) {
   check_bodies(domain);
   simulation.phase = Phase::broken;  // until all is done
   add_contact_columns(domain);
-  fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches);
+  fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches,
+             *domain.grid.partition.comm);
   place_pieces(domain);
   build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
   if (domain.has_contact())
     connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
   domain.sums.resize(domain.grid.patches.size());
   list_kinds(domain);
+  const auto may_remove = [](const ParticlePool<D>& pool) { return pool.at.failed >= 0; };
+  domain.may_remove =
+      std::ranges::any_of(domain.pools, may_remove) || domain.grid.outflow_box.exist;
   start_settling(simulation);
   start_motions(domain);
   project_rigid_velocities(domain);

@@ -7,6 +7,13 @@
 
 namespace mpm {
 
+/// A particle that is told of.
+struct ParticleAt {
+  int body = -1;               // -1: none
+  std::int64_t particle = -1;  // in the order in which the user gave them
+  std::array<double, 3> position{};
+};
+
 /// Why a run had to stop.
 struct Failure {
   std::string kind;  // "non-finite", "negative volume", "energy growth", "outside walls", "volume"
@@ -33,9 +40,7 @@ struct Warning {
 };
 
 /// The particle that limits the time step.
-struct Limiter {
-  int body = -1;
-  std::int64_t particle = -1;
+struct Limiter : ParticleAt {
   double sound_speed = 0.0, speed = 0.0;  // [m/s]
 };
 

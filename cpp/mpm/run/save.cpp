@@ -11,12 +11,12 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 11;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 12;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
   stream.same(body.count, other_case);
-  stream(body.moved, body.leaves, body.removed);
+  stream(body.moved, body.leaves, body.removed, body.removed_here);
   if (body.is_prescribed()) stream(body.motion->before, body.motion->now);
 }
 
@@ -30,6 +30,8 @@ void exchange_pool(StateStream& stream, ParticlePool<D>& pool) {
   stream.array(std::span(pool.id));
   stream.same(pool.piece.size(), other_case);
   stream.array(std::span(pool.piece));
+  stream.same(pool.pieces.size(), other_case);
+  stream.array(std::span(pool.pieces));
   stream.vector(pool.order);
   stream(pool.used);
   stream.vector(pool.removed);
@@ -40,19 +42,17 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   Domain<D>& domain = simulation.domain;
   stream.same(format, other_version);
   for (const std::size_t size :
-       {sizeof(Storage), sizeof(Ledger), sizeof(PatchSums<D>), sizeof(Removed<D>),
-        sizeof(RigidMotion), sizeof(SurfacePiece<D>), sizeof(StepWatch), sizeof(Note),
-        sizeof(PairRecord), sizeof(CachedNode), sizeof(CachedPair<D>)})
+       {sizeof(Storage), sizeof(Ledger), sizeof(PatchSums<D>), sizeof(Removed), sizeof(RigidMotion),
+        sizeof(SurfacePiece<D>), sizeof(StepWatch), sizeof(Note), sizeof(PairRecord),
+        sizeof(CachedNode), sizeof(CachedPair<D>)})
     stream.same(size, other_version);
   stream.same(D, other_case);
   stream.same(domain.bodies.size(), other_case);
   stream.same(domain.loads.size(), other_case);
   stream.same(domain.pools.size(), other_case);
-  stream.same(domain.pieces.size(), other_case);
   for (Body<D>& body : domain.bodies) exchange_body(stream, body);
   for (ParticlePool<D>& pool : domain.pools) exchange_pool(stream, pool);
   for (SurfaceLoad<D>& load : domain.loads) stream(load.stress, load.force, load.impulse);
-  stream.array(std::span(domain.pieces));
   exchange_grid(domain.grid, stream);
   if (stream.restores()) {
     check_lists(domain);

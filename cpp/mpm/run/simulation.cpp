@@ -82,10 +82,11 @@ void set_grid(TileGrid<D>& grid, const GridSettings& given) {
 }  // namespace
 
 template <int D>
-Simulation<D>::Simulation(const Settings& given)
+Simulation<D>::Simulation(const Settings& given, Comm* comm)
     : settings(checked(given)),
       stages(stages_of<D>(given.run.scheme, given.execution.fused, extra_stages(given))) {
   set_grid(domain.grid, given.grid);
+  if (comm != nullptr) domain.grid.partition.comm = comm;
   domain.grid.bonded = given.contact.bonded;
   domain.gravity_of_time = given.run.gravity;
   domain.transfer = given.run.transfer.word;

@@ -22,8 +22,9 @@ enum class Phase { building, ready, broken };
 
 template <int D>
 struct Simulation {
-  /// Throws std::invalid_argument, in one sentence, for a setting out of range.
-  explicit Simulation(const Settings& given);
+  /// One rank's part of a run, if `comm` names others. Throws std::invalid_argument, in one
+  /// sentence, for a setting out of range.
+  explicit Simulation(const Settings& given, Comm* comm = nullptr);
 
   Settings settings;
   Domain<D> domain;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mpm/comm/all_sums.hpp"
 #include "mpm/schedule/cell_loop.hpp"
 #include "mpm/step/affine_velocity.hpp"
 #include "mpm/step/patch_loops.hpp"
@@ -82,6 +83,7 @@ void start_affine(Domain<D>& domain, int body) {
           change = std::max(change, take_affine(domain, p, basis));
       });
     }
+    change = all_max(*domain.grid.partition.comm, change);
     first = std::max(first, change);
     if (change <= 1e-14 * first) return;
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "mpm/comm/all_sums.hpp"
 #include "mpm/run/find_failure.hpp"
 
 namespace mpm {
@@ -45,6 +46,7 @@ double stable_time_step(const Domain<D>& domain, double cfl) {
   // Where neither waves nor particles are fast, nothing falls further than about a cell.
   double fastest = std::sqrt(norm(domain.gravity) * domain.grid.cell_size);
   for (const PatchSums<D>& s : domain.sums) fastest = std::max(fastest, s.stress.fastest);
+  fastest = all_max(*domain.grid.partition.comm, fastest);
   const double way = cfl * domain.grid.cell_size;
   double time_step = way / fastest;
   // Prescribed motions may have jumps.
@@ -67,6 +69,9 @@ void note_fastest(Domain<D>& domain) {
     fastest = std::max(fastest, domain.sums[p].stress.fastest);
     of_all = std::max(of_all, fastest);
   }
+  Comm& comm = *domain.grid.partition.comm;
+  for (ParticlePool<D>& pool : domain.pools) pool.fastest = all_max(comm, pool.fastest);
+  of_all = all_max(comm, of_all);
   // Bonded bodies share their nodes, and what walls take of them has one share.
   if (domain.grid.bonded)
     for (ParticlePool<D>& pool : domain.pools) pool.fastest = of_all;
@@ -98,27 +103,34 @@ void update_time_step(Simulation<D>& simulation) {
   const std::string problem = choose_time_step(simulation);
   if (problem.empty()) return;
   const Domain<D>& domain = simulation.domain;
-  const Limiter fastest = find_limiter(domain);
-  const int body = std::max(fastest.body, 0);
-  const std::size_t row = fastest.body < 0 ? 0 : row_of(domain, body, fastest.particle);
-  simulation.failure =
-      failure_at(domain, "time step", static_cast<std::size_t>(body), row, problem);
+  simulation.failure = failure_at(domain, "time step", find_limiter(domain), problem);
 }
 
 template <int D>
 Limiter find_limiter(const Domain<D>& domain) {
   Limiter result;
-  if (domain.sums.empty() || domain.sums.size() != domain.grid.patches.size()) return result;
+  // The fastest patch of all, in their order the first.
+  std::vector<double> key(2 + D, -std::numeric_limits<double>::infinity());
   std::size_t fastest = 0;
-  for (std::size_t p = 1; p < domain.sums.size(); ++p)
-    if (domain.sums[p].stress.fastest > domain.sums[fastest].stress.fastest) fastest = p;
-  const Patch<D>& patch = domain.grid.patches[fastest];
-  const ParticlePool<D>& pool = domain.pool_of(patch);
-  for (const std::uint32_t row : pool.rows(patch)) {
-    const double c = wave_speed(domain, patch, row), v = speed_of(pool, row);
-    if (c + v > result.sound_speed + result.speed || result.body < 0)
-      result = {patch.body, static_cast<std::int64_t>(pool.id[row]), c, v};
+  if (domain.sums.size() == domain.grid.patches.size())
+    for (std::size_t p = 0; p < domain.sums.size(); ++p)
+      if (const double speed = domain.sums[p].stress.fastest; speed > key[0]) {
+        key[0] = speed;
+        fastest = p;
+      }
+  if (std::isfinite(key[0])) {
+    const Patch<D>& patch = domain.grid.patches[fastest];
+    const ParticlePool<D>& pool = domain.pool_of(patch);
+    key[1] = -patch.body;
+    for (std::size_t a = 0; a < D; ++a) key[2 + a] = -patch.tile[D - 1 - a];
+    for (const std::uint32_t row : pool.rows(patch)) {
+      const double c = wave_speed(domain, patch, row), v = speed_of(pool, row);
+      if (c + v > result.sound_speed + result.speed || result.body < 0)
+        result = {particle_at(pool, patch.body, row), c, v};
+    }
   }
+  Comm& comm = *domain.grid.partition.comm;
+  broadcast(comm, rank_of_largest(comm, key), result);
   return result;
 }
 

@@ -38,12 +38,10 @@ void note(Simulation<D>& simulation, Note found) {
 
 /// The same about a particle.
 template <int D>
-void note_at(Simulation<D>& simulation, Note found, int b, std::size_t row) {
-  const Domain<D>& domain = simulation.domain;
-  const ParticlePool<D>& pool = domain.pool_of(domain.body_at(b));
-  found.body = b;
-  found.particle = pool.id[row];
-  for (int a = 0; a < D; ++a) found.position[number(a)] = pool.x(a)[row];
+void note_at(Simulation<D>& simulation, Note found, const ParticleAt& at) {
+  found.body = at.body;
+  found.particle = at.particle;
+  found.position = at.position;
   note(simulation, found);
 }
 
@@ -76,7 +74,7 @@ void judge(Simulation<D>& simulation) {
       const double share = static_cast<double>(seen.count) / static_cast<double>(sight.particles);
       note_at(simulation,
               {.kind = kind, .value = seen.value, .against = limit, .face = face, .share = share},
-              static_cast<int>(seen.body), seen.row);
+              seen.at);
       if (!(share > limit) || simulation.failure) return;
       std::ostringstream text;
       text.precision(4);
@@ -87,13 +85,37 @@ void judge(Simulation<D>& simulation) {
            << ", and run." << (kind == NoteKind::volume ? "volume_limit" : "outside_limit")
            << " allows " << 100.0 * limit
            << " %; give smaller steps or cells, or a stiffer material";
-      simulation.failure = failure_at(domain, note_names[number(static_cast<int>(kind))], seen.body,
-                                      seen.row, text.str());
+      simulation.failure =
+          failure_at(domain, note_names[number(static_cast<int>(kind))], seen.at, text.str());
     };
     tell(NoteKind::outside, sight.outside, -1, simulation.settings.run.outside_limit);
     tell(NoteKind::volume, sight.odd, -1, simulation.settings.run.volume_limit);
     for (int face = 0; face < 2 * D; ++face)
       tell(NoteKind::left_box, sight.left[number(face)], face, 1.0);
+  }
+}
+
+/// What other ranks have seen.
+template <int D>
+void add_others(Simulation<D>& simulation) {
+  Comm& comm = *simulation.domain.grid.partition.comm;
+  if (comm.alone()) return;
+  // Most have seen nothing: all counts at once, and the rest where there is any.
+  constexpr std::size_t kinds = 2 + 2 * D;
+  std::vector<Sight<D>>& sights = simulation.watch.sights;
+  const auto seen = [](Sight<D>& sight, std::size_t kind) -> Seen& {
+    return kind == 0 ? sight.outside : kind == 1 ? sight.odd : sight.left[kind - 2];
+  };
+  std::vector<std::int64_t> counts;
+  for (Sight<D>& sight : sights) {
+    counts.push_back(sight.particles);
+    for (std::size_t kind = 0; kind < kinds; ++kind) counts.push_back(seen(sight, kind).count);
+  }
+  comm.all_sum(counts);
+  for (std::size_t g = 0, k = 0; g < sights.size(); ++g) {
+    sights[g].particles = counts[k++];
+    for (std::size_t kind = 0; kind < kinds; ++kind)
+      if (counts[k++] > 0) seen(sights[g], kind).add_others(comm);
   }
 }
 
@@ -112,20 +134,19 @@ void watch_step(Simulation<D>& simulation) {
   const Limiter fastest =
       find_limiter(domain);  // an unstable particle is the fastest, or soon will be
   if (fastest.body < 0) return;
-  const std::size_t row = row_of(domain, fastest.body, fastest.particle);
   if (median > 0.0)
     note_at(simulation,
             {.kind = NoteKind::time_step, .value = simulation.next_time_step, .against = median},
-            fastest.body, row);
+            fastest);
   if (made > 0.0)
     note_at(simulation,
             {.kind = NoteKind::energy_made, .value = made, .against = domain.ledger.largest},
-            fastest.body, row);
+            fastest);
   // A load may be meant to be sudden; but what it moves faster than waves run is torn off.
   if (work > 0.0 && fastest.speed > fastest.sound_speed)
     note_at(simulation,
             {.kind = NoteKind::load_energy, .value = work, .against = domain.ledger.largest},
-            fastest.body, row);
+            fastest);
 }
 
 template <int D>
@@ -154,7 +175,7 @@ void look(Simulation<D>& simulation) {
       if (solid && !(failed && failed[i] > 0.0)) {
         const double J = of.volume()[i] * b.initial_density / of.mass()[i];
         if (J < small_volume || J > large_volume)
-          sight.odd.add(number_of, i, std::abs(std::log(J)), J);
+          sight.odd.add(of, patch.body, i, std::abs(std::log(J)), J);
       }
       if (!placed) continue;
       bool outside = false;
@@ -165,14 +186,16 @@ void look(Simulation<D>& simulation) {
         const int side = x > upper[a] ? 1 : 0;
         const Wall wall = grid.walls.face[a][side];
         if (wall == Wall::fixed || wall == Wall::slip) {
-          if (!outside) sight.outside.add(number_of, i, depth, depth / grid.cell_size + beyond);
+          if (!outside)
+            sight.outside.add(of, patch.body, i, depth, depth / grid.cell_size + beyond);
           outside = true;
         } else {
-          sight.left[number(2 * a + side)].add(number_of, i, depth, 0.0);
+          sight.left[number(2 * a + side)].add(of, patch.body, i, depth, 0.0);
         }
       }
     }
   }
+  add_others(simulation);
   judge(simulation);
 }
 

@@ -62,7 +62,7 @@ void activate_tiles(Domain<D>& domain) {
     if (domain.sums[p].stress.eroded) domain.grid.patches[p].left_cell = true;
   if (domain.grid.outflow_box.exist) mark_leaving(domain);
   const bool changed = update_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads,
-                                         domain.list_scratch, domain.eroded, domain.outflow);
+                                         domain.list_scratch, &domain.eroded, &domain.outflow);
   // When columns are sorted changes the speed alone: sums over a cell go by the particles' numbers,
   // not by their rows (decision 0033).
   sort_disordered(domain.grid, domain.bodies, domain.pools, domain.threads, domain.disorder,

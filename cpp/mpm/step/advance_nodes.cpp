@@ -138,13 +138,13 @@ void add_angular_impulses(const Domain<D>& domain, const Patch<D>& patch, const 
   if (patch.at_wall) {
     // What is left of the moment of folding (walls/reactions.hpp), by who owns the node beyond.
     sums.walls += moment_of_folding(grid, patch, [&](int node) {
-      const double m = patch.owned[node] ? block.mass()[node] : 0.0;
+      const double m = patch.counts(node) ? block.mass()[node] : 0.0;
       return m * (dt * domain.gravity - block.vector(node, increment_at));
     });
     if (grid.walls.absorb()) sums.walls += dt * moment_of_dashpots(grid, patch, block, own);
     // The mass of a node beyond a wall is with that of its image too.
     for_each_ghost_node(grid, patch, [&](int node, int image, const WallImage<D>&) {
-      const double m = patch.owned[node] ? block.mass()[node] : 0.0;
+      const double m = patch.counts(node) ? block.mass()[node] : 0.0;
       mass_moment += m * (place_of(grid, patch, node) - place_of(grid, patch, image));
     });
   }

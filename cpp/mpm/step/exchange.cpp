@@ -1,6 +1,7 @@
 // The sums over the patches that hold a node. Every sum is taken by the one patch that owns the
-// node, in the order of the tiles, so it depends on no thread (decision 0020). Here processes that
-// hold parts of the patches would meet (decision 0034).
+// node, in the order of the tiles, so it depends on no thread (decision 0020). Ranks tell each
+// other before what they have put there (decision 0056).
+#include "mpm/grid/halo.hpp"
 #include "mpm/grid/shared_nodes.hpp"
 #include "mpm/step/stages.hpp"
 
@@ -11,8 +12,14 @@ namespace {
 /// forces the dashpots, which stand behind the records.
 template <int D>
 void exchange(Domain<D>& domain, int first, int last, bool dashpots) {
-  sum_shared_nodes(domain.grid, domain.threads, first, last);
-  if (dashpots && domain.grid.has_dashpots) sum_shared_dashpots(domain.grid, domain.threads);
+  TileGrid<D>& grid = domain.grid;
+  const bool absorbs = dashpots && grid.has_dashpots;
+  if (!grid.partition.alone()) {
+    exchange_nodes(grid, first, last);
+    if (absorbs) exchange_dashpots(grid);
+  }
+  sum_shared_nodes(grid, domain.threads, first, last);
+  if (absorbs) sum_shared_dashpots(grid, domain.threads);
 }
 
 }  // namespace

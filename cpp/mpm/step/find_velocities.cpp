@@ -59,7 +59,7 @@ void add_moments_beyond(Domain<D>& domain) {
   for_each_mapped_at_walls(
       domain, [&](const Patch<D>& patch, const NodeBlock<D>& block, Vector3& sum) {
         sum -= moment_of_folding(domain.grid, patch, [&](int node) {
-          const double m = patch.owned[node] ? block.mass()[node] : 0.0;
+          const double m = patch.counts(node) ? block.mass()[node] : 0.0;
           return grid_share_at(domain, patch, node) * m * block.vector(node, velocity_at);
         });
       });

@@ -17,8 +17,14 @@ void record_contacts(Domain<D>& domain) {
 template <int D, bool forces_follow>
 void sum_energies(Domain<D>& domain) {
   // All sums over patches at once, exactly: no order of patches matters (decision 0038).
-  domain.ledger.add(domain.sums, domain.contact_sums, domain.eroded, domain.outflow, forces_follow,
-                    is_affine(domain.transfer));
+  Comm& comm = *domain.grid.partition.comm;
+  RemovedTotal eroded, outflow;
+  if (domain.may_remove) {
+    eroded = total_of(domain.eroded, comm);
+    outflow = total_of(domain.outflow, comm);
+  }
+  domain.ledger.add(domain.sums, domain.contact_sums, eroded, outflow, forces_follow,
+                    is_affine(domain.transfer), comm);
 }
 
 template void record_contacts<2>(Domain<2>&);

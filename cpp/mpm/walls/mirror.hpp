@@ -32,7 +32,7 @@ void for_each_ghost_node(const TileGrid<D>& grid, const Patch<D>& patch, F&& f) 
 /// nodes has no branch and each shared node enters the ledger once.
 template <int D>
 void own_nodes(const TileGrid<D>& grid, const Patch<D>& patch, double* own) {
-  for (int n = 0; n < patch.shape.node_count; ++n) own[n] = patch.owned[n] ? 1.0 : 0.0;
+  for (int n = 0; n < patch.shape.node_count; ++n) own[n] = patch.counts(n) ? 1.0 : 0.0;
   for_each_ghost_node(grid, patch, [&](int node, int, const WallImage<D>&) { own[node] = 0.0; });
 }
 
@@ -69,7 +69,7 @@ void for_each_ghost_weight(const Domain<D>& domain, const Patch<D>& patch,
                            const NodeBlock<D>& block, F&& f) {
   for_each_ghost_node(domain.grid, patch, [&](int node, int image, const WallImage<D>& turned) {
     // By the mass after the exchange, the sum of what all patches gave to the node.
-    if (!patch.owned[node]) return;
+    if (!patch.counts(node)) return;
     for (int a = 0; a < D; ++a)
       if (turned.turned >> a & 1u) f(image, a, ghost_weight(domain, block, node, a));
   });

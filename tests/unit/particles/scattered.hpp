@@ -18,7 +18,7 @@ struct Scattered {
   ListScratch<D> scratch;
   std::vector<Body<D>> bodies;
   std::vector<ParticlePool<D>> pools;
-  Removed<D> eroded, outflow;
+  Removed eroded, outflow;
 
   Scattered(unsigned seed, BasisId basis, bool bonded, std::size_t particles) : random(seed) {
     grid.cell_size = 0.5;
@@ -72,7 +72,7 @@ struct Scattered {
           pool_of(patch).columns.component(pool_of(patch).at.failed)[row] =
               static_cast<double>(FailureAction::erode);
   }
-  void update() { update_cell_lists(grid, bodies, pools, threads, scratch, eroded, outflow); }
+  void update() { update_cell_lists(grid, bodies, pools, threads, scratch, &eroded, &outflow); }
 
   /// The number in its tile of the cell in which a place is, or CellMark::outside.
   int mark_of(const Patch<D>& patch, std::uint32_t row) {

@@ -30,7 +30,7 @@ void check_rows(Report& report) {
     std::size_t active = 0, all = 0;
     std::set<std::uint32_t> ids;
     for_each_active_row(world.grid.patches, pool, b, [&](std::uint32_t) { ++active; });
-    for_each_row(world.grid.patches, pool, b, body.removed, [&](std::uint32_t row) {
+    for_each_row(world.grid.patches, pool, b, body.removed_here, [&](std::uint32_t row) {
       const bool failed = pool.columns.component(pool.at.failed)[row] > 0.0;
       CHECK_EQUAL(failed, all >= active);
       ++all;

@@ -20,7 +20,7 @@ struct World {
   ListScratch<D> scratch;
   std::vector<Body<D>> bodies;
   std::vector<ParticlePool<D>> pools;
-  Removed<D> eroded, outflow;
+  Removed eroded, outflow;
 
   /// Three bodies, the first and the last of one material.
   World(std::mt19937_64& random, int thread_count, bool bonded) : threads(thread_count) {
@@ -50,7 +50,8 @@ struct World {
   }
   std::vector<std::uint32_t> rows_of(int body) {
     std::vector<std::uint32_t> rows;
-    for_each_row(grid.patches, pool_of(body), body, bodies[static_cast<std::size_t>(body)].removed,
+    for_each_row(grid.patches, pool_of(body), body,
+                 bodies[static_cast<std::size_t>(body)].removed_here,
                  [&](std::uint32_t row) { rows.push_back(row); });
     return rows;
   }
@@ -114,7 +115,7 @@ std::vector<std::uint32_t> check_rounds(mpm::testing::Report& report, int thread
       }
     }
     update_cell_lists(world.grid, world.bodies, world.pools, world.threads, world.scratch,
-                      world.eroded, world.outflow);
+                      &world.eroded, &world.outflow);
     check_lists(report, world, round);
     CHECK(other == world.rows_of((moved + 1) % 3), round);
     world.scratch.moved = {0, 1, 2};

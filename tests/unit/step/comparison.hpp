@@ -170,7 +170,7 @@ class Comparison {
     CHECK_EQUAL(count, pool.count());
   }
   void pieces() {
-    const auto& found = twin_.domain.pieces;
+    const auto& found = twin_.domain.pools[0].pieces;
     std::size_t k = 0;
     for (const reference::Load<D>& load : twin_.reference.loads)
       for (const reference::Piece<D>& piece : load.pieces) {

@@ -214,8 +214,8 @@ struct Twin {
       }
       piece.size = (1.5 + 0.5 * any()) * norm(piece.area);
       std::uint32_t& first = pool.piece[domain.grid.patches[1].begin + i];
-      piece.next = std::exchange(first, static_cast<std::uint32_t>(domain.pieces.size() + 1));
-      domain.pieces.push_back(piece);
+      piece.next = std::exchange(first, static_cast<std::uint32_t>(pool.pieces.size() + 1));
+      pool.pieces.push_back(piece);
       other.pieces.push_back({i, piece.size, piece.area, piece.arm});
     }
   }

@@ -1,0 +1,20 @@
+#pragma once
+// The nodes that patches of several ranks hold: what each gives is told to the others before the
+// shared nodes are summed, so that all add the same numbers in the same order.
+#include "mpm/grid/tile_grid.hpp"
+
+namespace mpm {
+
+/// Find which nodes are exchanged with whom. Call when the blocks are cut.
+template <int D>
+void plan_halo(TileGrid<D>& grid);
+
+/// Tell others what own patches have put into numbers [first, last) of the nodes that they read,
+/// and put what they tell into the blocks of their patches. By all ranks at once.
+template <int D>
+void exchange_nodes(TileGrid<D>& grid, int first, int last);
+/// The same for the dashpots.
+template <int D>
+void exchange_dashpots(TileGrid<D>& grid);
+
+}  // namespace mpm

@@ -1,0 +1,39 @@
+#pragma once
+// Which rank has which tiles: each a range of a Hilbert curve, so that what it has is compact.
+// Tiles without particles have an owner too.
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+#include "mpm/layout/tile.hpp"
+#include "mpm/math/hilbert.hpp"
+
+namespace mpm {
+
+/// The place of a tile along the curve. Throws std::out_of_range for one that is too far away.
+template <int D>
+std::uint64_t place_of(const Index<D>& tile) {
+  constexpr int bits = 19;  // as many as the keys of lists have
+  constexpr std::int32_t half = 1 << (bits - 1);
+  std::array<std::uint32_t, D> x;
+  for (std::size_t a = 0; a < D; ++a) {
+    if (tile[a] < -half || tile[a] >= half)
+      throw std::out_of_range("a particle lies too far away for the grid");
+    x[a] = static_cast<std::uint32_t>(tile[a] + half);
+  }
+  return hilbert_number<D>(x, bits);
+}
+
+template <int D>
+struct Owners {
+  std::vector<std::uint64_t> first{0};  // place of each rank's first tile; that of rank 0 is 0
+
+  int rank_of(const Index<D>& tile) const {
+    if (first.size() == 1) return 0;
+    const auto next = std::ranges::upper_bound(first, place_of<D>(tile));
+    return static_cast<int>(next - first.begin()) - 1;
+  }
+};
+
+}  // namespace mpm

@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <numeric>
+
+#include "mpm/particles/cell_lists.hpp"
+
+namespace mpm {
+namespace {
+
+/// Where ranges of tiles begin whose costs are alike: sums over all ranks, bit by bit of the place.
+template <int D>
+Owners<D> owners_of(const TileGrid<D>& grid) {
+  struct Cost {
+    std::uint64_t place;
+    std::int64_t until;  // of all up to this one
+  };
+  std::vector<Cost> costs;
+  for (const Patch<D>& patch : grid.patches)
+    if (patch.count > 0)
+      costs.push_back(
+          {place_of<D>(patch.tile), 4 * std::int64_t{patch.count} + Tile<D>::cell_count});
+  std::ranges::sort(costs, {}, &Cost::place);
+  std::int64_t here = 0;
+  for (Cost& cost : costs) cost.until = here += cost.until;
+  const auto before = [&](std::uint64_t place) {
+    const auto next = std::ranges::lower_bound(costs, place, {}, &Cost::place);
+    return next == costs.begin() ? 0 : std::prev(next)->until;
+  };
+  Comm& comm = *grid.partition.comm;
+  const auto ranks = static_cast<std::size_t>(comm.size());
+  std::int64_t total[1] = {here};
+  comm.all_sum(total);
+  Owners<D> owners;
+  owners.first.assign(ranks, 0);
+  std::vector<std::int64_t> sums(ranks);
+  constexpr int bits = 19 * D;
+  for (std::uint64_t bit = std::uint64_t{1} << (bits - 1); bit > 0; bit >>= 1) {
+    for (std::size_t r = 0; r < ranks; ++r) sums[r] = before(owners.first[r] + bit);
+    comm.all_sum(sums);
+    // Rank r's begins at the last place before which there is no more than its share.
+    for (std::size_t r = 1; r < ranks; ++r)
+      if (sums[r] <= total[0] * static_cast<std::int64_t>(r) / comm.size()) owners.first[r] += bit;
+  }
+  return owners;
+}
+
+}  // namespace
+
+template <int D>
+void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>>& pools,
+            Threads& threads, ListScratch<D>& scratch) {
+  take_owners(grid, owners_of(grid));
+  update_cell_lists<D>(grid, bodies, pools, threads, scratch, nullptr, nullptr);
+}
+
+template <int D>
+void take_owners(TileGrid<D>& grid, Owners<D> owners) {
+  Partition<D>& partition = grid.partition;
+  partition.owners = std::move(owners);
+  partition.divided = true;
+  partition.readers.resize(1);
+  partition.reader_numbers = {{{}, 0}};
+  for (Patch<D>& patch : grid.patches) {
+    patch.readers = -1;
+    if (!patch.foreign && partition.leaves(patch)) patch.left_cell = true;
+  }
+}
+
+template void divide<2>(TileGrid<2>&, std::vector<Body<2>>&, std::vector<ParticlePool<2>>&,
+                        Threads&, ListScratch<2>&);
+template void divide<3>(TileGrid<3>&, std::vector<Body<3>>&, std::vector<ParticlePool<3>>&,
+                        Threads&, ListScratch<3>&);
+template void take_owners<2>(TileGrid<2>&, Owners<2>);
+template void take_owners<3>(TileGrid<3>&, Owners<3>);
+
+}  // namespace mpm
