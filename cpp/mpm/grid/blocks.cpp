@@ -53,13 +53,16 @@ void cut_blocks(TileGrid<D>& grid, Threads& threads) {
   if (!find_shapes(grid, threads) && grid.blocks_known) return;
   grid.blocks_known = true;
   std::size_t needed = 0;
-  grid.patches_with_particles = 0;
+  grid.patches_with_particles = grid.nodes_with_particles = 0;
   for (Patch<D>& patch : grid.patches) {
     // One behind another in the order of the patches. Nothing in a block outlives a step, so they
     // may move freely (decision 0013).
     patch.memory = needed;
-    grid.patches_with_particles += patch.occupied != 0;
     const auto nodes = static_cast<std::size_t>(patch.shape.node_count);
+    if (patch.occupied != 0) {
+      ++grid.patches_with_particles;
+      grid.nodes_with_particles += nodes;
+    }
     needed += record * (nodes + (grid.has_dashpots ? (nodes + 1) / 2 : 0));  // whole cache lines
   }
   grid.nodes.needed = needed;

@@ -33,10 +33,7 @@ template <int D>
 bool is_foreign_as_told(const TileGrid<D>& grid) {
   auto told = grid.partition.told.begin();
   for (const Patch<D>& patch : grid.patches) {
-    if (!patch.foreign) {
-      if (grid.partition.leaves(patch)) return false;
-      continue;
-    }
+    if (!patch.foreign) continue;
     if (told == grid.partition.told.end() || told->body != patch.body || told->tile != patch.tile)
       return false;
     ++told;
@@ -57,7 +54,6 @@ void merge(TileGrid<D>& grid) {
       patch.body = told->body;
       patch.tile = told->tile;
       patch.foreign = true;
-      patch.owner = told->rank;
     }
   };
   for (const Patch<D>& patch : before) {
@@ -89,15 +85,19 @@ bool exchange_patches(TileGrid<D>& grid) {
   std::ranges::sort(partition.told, [](const auto& x, const auto& y) {
     return patch_less<D>(x.body, x.tile, y.body, y.tile);
   });
-  const bool changed = !is_foreign_as_told(grid);
+  // With other owners the same patches are exchanged with others.
+  const bool changed = partition.divided || !is_foreign_as_told(grid);
   if (changed) {
     merge(grid);
     connect(grid);
   }
   partition.divided = false;
   auto told = partition.told.begin();
-  for (Patch<D>& patch : grid.patches)
-    if (patch.foreign) patch.foreign_cells = told++->occupied;
+  for (Patch<D>& patch : grid.patches) {
+    if (!patch.foreign) continue;
+    patch.owner = told->rank;
+    patch.foreign_cells = told++->occupied;
+  }
   return changed;
 }
 

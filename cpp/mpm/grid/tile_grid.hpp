@@ -4,6 +4,7 @@
 // sum_shared_nodes.hpp.
 #include <vector>
 
+#include "mpm/comm/all_sums.hpp"
 #include "mpm/grid/geometry.hpp"
 #include "mpm/grid/node_memory.hpp"
 #include "mpm/grid/outflow_box.hpp"
@@ -27,7 +28,7 @@ struct TileGrid : GridGeometry<D> {
   NodeMemory nodes;
   SharedLists<D> shared;
   std::vector<std::uint8_t> reshaped;  // scratch: of each patch, its block is another than before
-  std::size_t patches_with_particles = 0;
+  std::size_t patches_with_particles = 0, nodes_with_particles = 0;  // nodes: of these patches
   bool blocks_known = false;  // the blocks are those of the patches there are
 
   NodeBlock<D> block(const Patch<D>& patch) {
@@ -36,10 +37,18 @@ struct TileGrid : GridGeometry<D> {
   NodeBlock<D> block(std::size_t patch) { return block(patches[patch]); }
 };
 
-/// What the patches and their nodes need now.
+/// What the patches with particles and their nodes need, of all ranks.
 template <int D>
 std::size_t needed_bytes(const TileGrid<D>& grid) {
-  return grid.nodes.needed * sizeof(double) + grid.patches.size() * sizeof(Patch<D>);
+  const std::size_t here = grid.nodes_with_particles * record * sizeof(double) +
+                           grid.patches_with_particles * sizeof(Patch<D>);
+  return static_cast<std::size_t>(all_sum(*grid.partition.comm, static_cast<std::int64_t>(here)));
+}
+/// How many patches of all ranks have particles.
+template <int D>
+std::size_t all_patches(const TileGrid<D>& grid) {
+  return static_cast<std::size_t>(
+      all_sum(*grid.partition.comm, static_cast<std::int64_t>(grid.patches_with_particles)));
 }
 /// What they have taken.
 template <int D>

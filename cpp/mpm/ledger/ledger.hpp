@@ -81,15 +81,24 @@ struct Ledger {
   /// given is made as well [J].
   double made() const { return -(mapping + time_integration) - contact - energy_floor; }
 
-  /// Count a patch of a body with prescribed motion at the start.
+  /// Count the bodies with prescribed motion at the start.
   template <int D>
-  void add_prescribed(const ParticlePool<D>& pool, const Patch<D>& patch) {
-    for (const std::uint32_t row : pool.rows(patch))
-      for (std::size_t a = 0; a < D; ++a) {
-        const double v = pool.v(static_cast<int>(a))[row], m = pool.mass()[row];
-        prescribed_kinetic += 0.5 * m * v * v;
-        prescribed_momentum[a] += m * v;
-      }
+  void start_prescribed(const std::vector<Body<D>>& bodies, const std::vector<Patch<D>>& patches,
+                        const std::vector<ParticlePool<D>>& pools, Comm& comm) {
+    std::array<ExactSum, 1 + D> sums;
+    for (const Patch<D>& patch : patches) {
+      if (!bodies[static_cast<std::size_t>(patch.body)].is_prescribed()) continue;
+      const ParticlePool<D>& pool = pools[pool_number(bodies, patch.body)];
+      for (const std::uint32_t row : pool.rows(patch))
+        for (std::size_t a = 0; a < D; ++a) {
+          const double v = pool.v(static_cast<int>(a))[row], m = pool.mass()[row];
+          sums[0].add(0.5 * m * v * v);
+          sums[1 + a].add(m * v);
+        }
+    }
+    all_sum(comm, sums);
+    prescribed_kinetic = sums[0].value();
+    for (std::size_t a = 0; a < D; ++a) prescribed_momentum[a] = sums[1 + a].value();
   }
 
   /// Take over the sums of a step; `forces_follow` if the stress was updated before the forces

@@ -61,7 +61,12 @@ void take_owners(TileGrid<D>& grid, Owners<D> owners) {
   partition.reader_numbers = {{{}, 0}};
   for (Patch<D>& patch : grid.patches) {
     patch.readers = -1;
-    if (!patch.foreign && partition.leaves(patch)) patch.left_cell = true;
+    if (partition.leaves(patch)) {
+      patch.left_cell = !patch.foreign;
+    } else if (patch.foreign) {
+      patch.foreign = false;  // its particles come
+      patch.foreign_cells = 0;
+    }
   }
 }
 

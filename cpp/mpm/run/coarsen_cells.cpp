@@ -19,7 +19,7 @@ bool must_coarsen(const Simulation<D>& simulation) {
   if (!given.coarsening || simulation.coarsenings >= most_coarsenings(given)) return false;
   const CoarseningSettings& coarsening = *given.coarsening;
   constexpr auto no_limit = std::numeric_limits<std::int64_t>::max();
-  const bool many = std::cmp_greater(grid.patches.size(), coarsening.tiles.value_or(no_limit));
+  const bool many = std::cmp_greater(all_patches(grid), coarsening.tiles.value_or(no_limit));
   const bool large = std::cmp_greater(needed_bytes(grid), coarsening.bytes.value_or(no_limit));
   if (!many && !large) return false;
   for (int a = 0; a < D; ++a)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "mpm/run/gather.hpp"
+
 namespace mpm {
 
 template <int D>
@@ -27,10 +29,15 @@ void copy_column(const Domain<D>& domain, int number, const std::string& name,
   for (int c = 0; c < info.components; ++c) {
     // Plane strain keeps xx yy zz xy; the fourth becomes the sixth of xx yy zz yz xz xy.
     const auto place = static_cast<std::size_t>(name == "stress" && D == 2 && c == 3 ? 5 : c);
-    of.columns.with_component(info.first + c, [&](const auto* from) {
+    const auto for_each_place = [&](auto&& f) {
       for_each_row(domain.grid.patches, of, number, b.removed_here,
-                   [&](std::uint32_t row) { to[of.id[row] * width + place] = from[row]; });
+                   [&](std::uint32_t row) { f(of.id[row] * width + place, row); });
+    };
+    of.columns.with_component(info.first + c, [&](const auto* from) {
+      for_each_place([&](std::size_t k, std::uint32_t row) { to[k] = from[row]; });
     });
+    gather(*domain.grid.partition.comm, to,
+           [&](auto&& f) { for_each_place([&](std::size_t k, std::uint32_t) { f(k); }); });
   }
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mpm/run/derived_fields.hpp"
+#include "mpm/run/gather.hpp"
 
 namespace mpm {
 
@@ -43,7 +44,7 @@ void round_column(const Domain<D>& domain, const std::string& name, std::span<co
   for (std::size_t m = 0; m < domain.pools.size(); ++m) {
     const ParticlePool<D>& of = domain.pools[m];
     const auto info = std::ranges::find(of.columns.infos(), name, &ColumnInfo::name);
-    if (of.count() == 0 || info == of.columns.infos().end()) continue;
+    if (info == of.columns.infos().end()) continue;
     if (places.size() != static_cast<std::size_t>(info->components) ||
         !std::ranges::all_of(places, [&](int k) { return 0 <= k && std::cmp_less(k, width); }))
       throw std::invalid_argument("round_column: wrong places");
@@ -55,6 +56,12 @@ void round_column(const Domain<D>& domain, const std::string& name, std::span<co
         });
       });
     }
+    gather(*domain.grid.partition.comm, to, [&](auto&& f) {
+      for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
+        for (const int place : places)
+          f((first[b] + of.id[row]) * width + static_cast<std::size_t>(place));
+      });
+    });
   }
 }
 
@@ -72,6 +79,10 @@ void round_derived(const Domain<D>& domain, const std::string& name, std::span<f
       for (int c = 0; c < Sym<double, D>::size; ++c)
         p.stress[D == 2 && c == 3 ? 5 : c] = of.stress(c)[row];
       to[first[b] + of.id[row]] = static_cast<float>(field->value(p));
+    });
+    gather(*domain.grid.partition.comm, to, [&](auto&& f) {
+      for_each_row_of(domain, m,
+                      [&](std::size_t b, std::uint32_t row) { f(first[b] + of.id[row]); });
     });
   }
 }

@@ -9,13 +9,6 @@
 
 namespace mpm {
 
-/// How many patches of all ranks have particles.
-template <int D>
-std::size_t all_patches(const TileGrid<D>& grid) {
-  return static_cast<std::size_t>(
-      all_sum(*grid.partition.comm, static_cast<std::int64_t>(grid.patches_with_particles)));
-}
-
 template <int D>
 StepState step_state(const Domain<D>& domain) {
   return {domain.ledger,    domain.step,           domain.time,

@@ -49,6 +49,7 @@ void start_motions(Domain<D>& domain) {
         for (int a = 0; a < D; ++a) pool.v(a)[row] = static_cast<Storage>(v[a]);
       }
     }
+    motion.radius = all_max(*domain.grid.partition.comm, motion.radius);
   }
 }
 
@@ -62,8 +63,8 @@ void start_ledger(Domain<D>& domain) {
   const AngularTotals angular = angular_totals(part_sums(domain));
   ledger.angular.start = angular.all;
   ledger.angular.prescribed_start = angular.prescribed;
-  for (const Patch<D>& patch : domain.grid.patches)
-    if (domain.body_of(patch).is_prescribed()) ledger.add_prescribed(domain.pool_of(patch), patch);
+  ledger.start_prescribed(domain.bodies, domain.grid.patches, domain.pools,
+                          *domain.grid.partition.comm);
 }
 
 }  // namespace

@@ -1,150 +1,244 @@
-// Any number of ranks makes the same bits: particles, history and ledger after some steps of a body
-// that bends, spins and crosses tiles.
+// Any number of ranks makes the same bits, wherever the tiles go: particles, history and ledger of
+// bodies that bend, spin and cross tiles, with all that may act on them.
+#include <functional>
+#include <random>
 #include <thread>
 
 #include "check.hpp"
 #include "mpm/comm/threads_comm.hpp"
+#include "mpm/particles/cell_lists.hpp"
 #include "mpm/run/advance.hpp"
 #include "mpm/run/bodies.hpp"
 #include "mpm/run/columns.hpp"
+#include "mpm/run/loads.hpp"
+#include "mpm/run/measures.hpp"
+#include "mpm/run/part_sums.hpp"
 #include "mpm/run/prepare.hpp"
+#include "mpm/run/warnings.hpp"
 
 namespace {
 
 using namespace mpm;
 
-/// What a test chooses.
+/// What a test chooses beside the default.
 struct Choice {
-  Scheme scheme = Scheme::usf;
-  BasisId basis = basis_id<QuadraticBSpline>;
-  TransferId transfer = Transfers::id_of<Aflip>();
-  bool bonded = false;  // two bodies
-  bool walls = false;
+  const char* name;
+  std::function<void(Settings&)> set = [](Settings&) {};
+  bool load = false, force = false, erodes = false;
+  bool rigid = false, prescribed = false;  // the second body
 };
 
-/// What a run ends with, the same on all ranks.
-struct Outcome {
-  std::vector<double> numbers;  // of particles by body, column and number, of its history
-};
+/// A block of particles, half a cell apart, that spins about the origin and flies.
+template <int D>
+void add_block(Simulation<D>& simulation, int material, double from, double speed) {
+  std::vector<double> x, v;
+  Index<D> low{}, high;
+  high.fill(D == 2 ? 31 : 11);
+  for_each_index<D>(low, high, [&](const Index<D>& i) {
+    for (std::size_t a = 0; a < D; ++a) x.push_back(0.25 + 0.5 * i[a] + (a == 0 ? from : 0.0));
+    const double* at = &x[x.size() - D];
+    v.push_back(speed - 20.0 * at[1]);
+    v.push_back(20.0 * (at[0] - from));
+    if (D == 3) v.push_back(30.0 + at[1]);
+  });
+  add_body(simulation, "block", material, x, v, std::array{std::pow(0.5, D)});
+}
 
 template <int D>
 void build(Simulation<D>& simulation, const Choice& choice) {
-  const int material =
-      add_material(simulation, {1000.0, {"neo_hookean", {{"K", 1e7}, {"G", 3e6}}}, {}, {}});
-  for (int b = 0; b < (choice.bonded ? 2 : 1); ++b) {
-    std::vector<double> x, v;
-    Index<D> low, high;
-    low.fill(0);
-    high.fill(D == 2 ? 39 : 15);
-    for_each_index<D>(low, high, [&](const Index<D>& i) {
-      for (std::size_t a = 0; a < D; ++a)
-        x.push_back(0.25 + 0.5 * i[a] + (a == 0 ? 8.0 * (D == 2 ? 2.5 : 1.0) * b : 0.0));
-      const double* at = &x[x.size() - D];
-      v.push_back(-20.0 * at[1]);
-      v.push_back(20.0 * at[0]);
-      if (D == 3) v.push_back(30.0 + at[1]);
-    });
-    add_body(simulation, "body", material, x, v, std::array{std::pow(0.5, D)});
+  MaterialChoice material{1000.0, {"neo_hookean", {{"K", 1e7}, {"G", 3e6}}}, {}, {}};
+  if (choice.erodes) material.failures = {{{"principal_stress", {{"limit", 1e6}}}, "erode"}};
+  const int rubber = add_material(simulation, material);
+  const ModelChoice elastic{"elastic", {{"E", 2e7}, {"nu", 0.2}}}, rigid{"rigid", {}};
+  const int stone =
+      add_material(simulation, {2000.0, choice.rigid ? rigid : elastic, {}, {}, {1.5, 0.06}});
+  add_block(simulation, rubber, 0.0, 0.0);
+  add_block(simulation, stone, D == 2 ? 16.0 : 6.0, 25.0);
+  add_block(simulation, rubber, -40.0, 60.0);
+  if (choice.prescribed) {
+    TimeFunction shaking(10.0), turning(5.0);
+    shaking.amplitude = 200.0;
+    shaking.frequency = 50.0;
+    set_motion(simulation, 1, {shaking, 0.0, 0.0}, {0.0, 0.0, turning}, {20.0, 7.0, 5.0});
+  }
+  if (choice.load)
+    for (const char* kind : {"pressure", "traction"}) {
+      std::vector<std::uint32_t> particles(60);
+      for (std::uint32_t k = 0; k < 60; ++k) particles[k] = 13 * k;
+      const std::vector<double> sizes(60, 0.5), vectors(60 * std::size_t{D}, 0.3);
+      add_load(simulation, kind, 0, kind, {TimeFunction(1e4), TimeFunction(2e4), TimeFunction(1e3)},
+               {particles, vectors, sizes, vectors});
+    }
+  if (choice.force) {
+    const Expression::Program along = {
+        {"X", 0.0}, {"sin", 0.0}, {"number", 1e3}, {"multiply", 0.0}};
+    add_body_force(simulation, {0, 2}, std::vector<Expression::Program>(D, along));
+    add_damping(simulation, {0}, TimeFunction(20.0), TimeFunction(0.3));
   }
 }
 
-/// The columns of a body, gathered from all ranks.
 template <int D>
-Outcome outcome_of(Simulation<D>& simulation) {
-  Domain<D>& domain = simulation.domain;
-  Comm& comm = *domain.grid.partition.comm;
-  Outcome outcome;
-  for (std::size_t b = 0; b < domain.bodies.size(); ++b)
-    for (const ColumnInfo& info : columns(domain, static_cast<int>(b))) {
-      const auto width =
-          static_cast<std::size_t>(column_components(domain, static_cast<int>(b), info.name));
-      std::vector<double> values(domain.bodies[b].count * width);
-      copy_column(domain, static_cast<int>(b), info.name, values);
-      // Each rank has some, and 0 for the others.
-      std::vector<std::int64_t> bits(values.size());
-      for (std::size_t k = 0; k < bits.size(); ++k)
-        bits[k] = std::bit_cast<std::int64_t>(values[k]);
-      comm.all_sum(bits);
-      for (const std::int64_t word : bits) outcome.numbers.push_back(std::bit_cast<double>(word));
+void gather(const Simulation<D>& simulation, std::vector<double>& numbers) {
+  const Domain<D>& domain = simulation.domain;
+  for (int b = 0; std::cmp_less(b, domain.bodies.size()); ++b)
+    for (const ColumnInfo& info : columns(domain, b)) {
+      const auto width = static_cast<std::size_t>(column_components(domain, b, info.name));
+      std::vector<double> values(domain.body_at(b).count * width);
+      copy_column(domain, b, info.name, values);
+      numbers.insert(numbers.end(), values.begin(), values.end());
     }
-  for (const double x : simulation.history.take()) outcome.numbers.push_back(x);
-  return outcome;
+}
+
+/// Other ranges of tiles, the same ones on all ranks.
+template <int D>
+void shuffle_owners(Simulation<D>& simulation, std::mt19937_64& random) {
+  TileGrid<D>& grid = simulation.domain.grid;
+  if (grid.partition.alone()) return;
+  Owners<D> owners = grid.partition.owners;
+  for (std::size_t r = 1; r < owners.first.size(); ++r) {
+    Index<D> tile;
+    for (std::int32_t& t : tile) t = static_cast<std::int32_t>(random() % 8);
+    owners.first[r] = place_of<D>(tile);
+  }
+  std::ranges::sort(owners.first);
+  take_owners(grid, owners);
 }
 
 template <int D>
-Settings settings_of(const Choice& choice) {
+std::vector<double> run_of(const Choice& choice, Comm& comm) {
   Settings settings;
   settings.grid.dimension = D;
   settings.grid.cell_size = 1.0;
-  settings.grid.basis = choice.basis;
-  settings.run.scheme = choice.scheme;
-  settings.run.transfer.word = choice.transfer;
-  settings.contact.bonded = choice.bonded;
+  settings.grid.basis = basis_id<QuadraticBSpline>;
+  settings.run.scheme = Scheme::usf;
+  settings.run.transfer.word = Transfers::id_of<Aflip>();
   settings.run.energy_growth_limit = 1e9;
-  if (choice.walls) {
-    settings.grid.box_cells = {60, 60, D == 3 ? 60 : 0};
-    settings.grid.walls[0] = Wall::slip;
-    settings.grid.walls[2] = Wall::fixed;
-    settings.grid.walls[3] = Wall::absorbing;
+  settings.contact.enabled = false;
+  choice.set(settings);
+  Simulation<D> simulation(settings, &comm);
+  build(simulation, choice);
+  prepare(simulation);
+  std::mt19937_64 random(3);
+  for (int round = 0; round < 8; ++round) {
+    advance(simulation, 10, 1e9, nullptr);
+    shuffle_owners(simulation, random);
   }
-  return settings;
+  std::vector<double> numbers = simulation.history.take();
+  gather(simulation, numbers);
+  for (const double x : rows_of(part_sums(simulation.domain))) numbers.push_back(x);
+  const RemovedSum eroded = sum_of(simulation.domain.eroded, comm);
+  numbers.push_back(eroded.mass);
+  for (const LoadRecord& load : load_records(simulation.domain)) numbers.push_back(load.area);
+  for (const Warning& warning : warnings(simulation)) {
+    numbers.push_back(static_cast<double>(warning.particle));
+    for (const char c : warning.message) numbers.push_back(c);
+  }
+  if (simulation.failure)
+    for (const char c : simulation.failure->message) numbers.push_back(c);
+  return numbers;
 }
 
+/// What the first rank ends with; what all tell is the same.
 template <int D>
-Outcome run_on(const Choice& choice, int ranks) {
-  constexpr int steps = 60;
-  std::vector<Outcome> outcomes(static_cast<std::size_t>(ranks));
-  std::vector<std::exception_ptr> errors(static_cast<std::size_t>(ranks));
+std::vector<double> run_on(const Choice& choice, int ranks) {
+  const auto count = static_cast<std::size_t>(ranks);
+  std::vector<std::vector<double>> outcomes(count);
+  std::vector<std::exception_ptr> errors(count);
   const auto world = std::make_shared<ThreadsWorld>(ranks);
   {
     std::vector<std::jthread> threads;
-    for (int rank = 0; rank < ranks; ++rank)
+    for (std::size_t rank = 0; rank < count; ++rank)
       threads.emplace_back([&, rank] {
-        ThreadsComm comm(world, rank);
+        ThreadsComm comm(world, static_cast<int>(rank));
         try {
-          Simulation<D> simulation(settings_of<D>(choice), &comm);
-          build(simulation, choice);
-          prepare(simulation);
-          advance(simulation, steps, 1e9, nullptr);
-          outcomes[static_cast<std::size_t>(rank)] = outcome_of(simulation);
+          outcomes[rank] = run_of<D>(choice, comm);
         } catch (const std::exception& error) {
           comm.fail(error.what());
-          errors[static_cast<std::size_t>(rank)] = std::current_exception();
+          errors[rank] = std::current_exception();
         }
       });
   }
   for (const std::exception_ptr& error : errors)
     if (error) std::rethrow_exception(error);
-  for (const Outcome& outcome : outcomes)
-    if (outcome.numbers != outcomes[0].numbers) throw std::logic_error("ranks tell other numbers");
   return outcomes[0];
 }
 
 template <int D>
 void check(mpm::testing::Report& report, const Choice& choice) {
-  fprintf(stderr, "D%d scheme %d walls %d\n", D, (int)choice.scheme, choice.walls);
-  const Outcome alone = run_on<D>(choice, 1);
-  for (const int ranks : {2, 3, 4, 8}) {
-    fprintf(stderr, "ranks %d\n", ranks);
-    const Outcome some = run_on<D>(choice, ranks);
-    std::size_t different = 0;
-    for (std::size_t k = 0; k < alone.numbers.size(); ++k)
-      different += alone.numbers[k] != some.numbers[k];
-    CHECK_EQUAL(some.numbers.size(), alone.numbers.size());
-    CHECK_EQUAL(different, 0u);
+  const std::vector<double> alone = run_on<D>(choice, 1);
+  for (const int ranks : {2, 3, 8}) {
+    std::vector<double> some;
+    try {
+      some = run_on<D>(choice, ranks);
+    } catch (const std::exception& error) {
+      CHECK(false, choice.name, ranks, D, error.what());
+      continue;
+    }
+    std::size_t same = 0;
+    for (std::size_t k = 0; k < alone.size() && k < some.size(); ++k) same += alone[k] == some[k];
+    CHECK_EQUAL(some.size(), alone.size());
+    CHECK(same == alone.size(), choice.name, ranks, D, same, alone.size());
   }
 }
 
-template <int D>
-void check_all(mpm::testing::Report& report) {
+void put_walls(Settings& settings) {
+  settings.grid.box_cells = {60, 60, settings.grid.dimension == 3 ? 60 : 0};
+  settings.grid.walls = {Wall::free, Wall::slip, Wall::fixed, Wall::absorbing, Wall::slip};
+}
+
+std::vector<Choice> choices() {
+  std::vector<Choice> all;
   for (const Scheme scheme : {Scheme::usf, Scheme::usl, Scheme::musl})
-    for (const bool walls : {false, true})
-      check<D>(report, {.scheme = scheme, .bonded = walls, .walls = walls});
+    all.push_back({"scheme", [=](Settings& s) { s.run.scheme = scheme; }});
+  Bases::for_each([&](BasisId basis, const auto&) {
+    all.push_back({"basis", [=](Settings& s) {
+                     s.grid.basis = basis;
+                     s.run.transfer.word = Transfers::id_of<Flip>();
+                     s.run.scheme = Scheme::musl;
+                     put_walls(s);
+                   }});
+  });
+  Transfers::for_each([&](TransferId transfer, const auto&) {
+    all.push_back({"transfer", [=](Settings& s) {
+                     s.run.transfer.word = transfer;
+                     s.run.transfer.every = 3;
+                     put_walls(s);
+                   }});
+  });
+  all.push_back({"bonded", [](Settings& s) {
+                   s.contact.enabled = s.contact.bonded = true;
+                   put_walls(s);
+                 }});
+  all.push_back({.name = "loads", .load = true});
+  all.push_back({.name = "forces and damping", .force = true});
+  all.push_back({.name = "erosion", .load = true, .erodes = true});
+  all.push_back({"outflow", [](Settings& s) {
+                   s.grid.outflow = true;
+                   s.grid.outflow_lower = {-30.0, 1.0, -100.0};
+                   s.grid.outflow_upper = {20.0, 100.0, 100.0};
+                 }});
+  all.push_back({.name = "rigid", .set = put_walls, .rigid = true});
+  all.push_back({.name = "prescribed", .set = put_walls, .prescribed = true});
+  all.push_back({"coarsening", [](Settings& s) {
+                   s.grid.coarsening.emplace();
+                   s.grid.coarsening->tiles = 5;
+                   s.grid.coarsening->times = 1;
+                 }});
+  all.push_back({"settling", [](Settings& s) {
+                   s.run.settle.emplace();
+                   s.run.settle->longest = 0.02;
+                   s.run.gravity[1] = TimeFunction(-9.81);
+                   put_walls(s);
+                 }});
+  all.push_back({"volume averaging and two threads", [](Settings& s) { s.execution.threads = 2; }});
+  return all;
 }
 
 }  // namespace
 
 void test_ranks(mpm::testing::Report& report) {
-  check_all<2>(report);
-  check_all<3>(report);
+  for (const Choice& choice : choices()) {
+    check<2>(report, choice);
+    check<3>(report, choice);
+  }
 }

@@ -264,8 +264,9 @@ struct Twin {
       const ParticlePool<D>& pool = domain.pool_of(patch);
       for (const std::uint32_t row : pool.rows(patch))
         ledger.start += kinetic_energy(pool, row, domain.grid.affine_moment());
-      if (domain.body_of(patch).is_prescribed()) ledger.add_prescribed(pool, patch);
     }
+    ledger.start_prescribed(domain.bodies, domain.grid.patches, domain.pools,
+                            *domain.grid.partition.comm);
     ledger.kinetic = ledger.start;
   }
   /// Volumes and stresses at random, and the same body for the reference.
