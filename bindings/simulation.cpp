@@ -216,7 +216,9 @@ void def_records(SimulationClass& simulation) {
              return nb::make_tuple(balance_row(s.domain.ledger.angular, angular_totals(parts)),
                                    to_numpy(rows_of(parts), part_columns.size()));
            }))
-      .def("contact_pairs", of_any([](auto& s) { return s.domain.contact.records.all(); }))
+      .def("contact_pairs", of_any([](auto& s) {
+             return s.domain.contact.records.of_all_ranks(*s.domain.grid.partition.comm);
+           }))
       .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))
       .def("contact_summary", of_any([](auto& s) {
              const auto& contact = s.domain.contact;

@@ -4,8 +4,17 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "mpm/contact/tile_particles.hpp"
+
 namespace mpm {
 namespace {
+
+/// Neighbour k of a tile.
+template <int D>
+Index<D> beside(Index<D> tile, int k) {
+  for (std::size_t a = 0; a < D; ++a) tile[a] += Tile<D>::offset(k)[a];
+  return tile;
+}
 
 /// May a block reach any node that belongs to neighbour k?
 template <int D>
@@ -38,7 +47,8 @@ void reuse_tiles(std::vector<ContactTile<D>>& last_tiles, std::vector<ContactTil
   }
 }
 
-/// The number of each tile's neighbours, -1 for those that are none of contact's.
+/// The number of each tile's neighbours, -1 for those that are none of contact's; with other ranks
+/// all others are foreign.
 template <int D>
 void find_around(Contact<D>& contact) {
   const auto& tiles = contact.tiles;
@@ -50,14 +60,55 @@ void find_around(Contact<D>& contact) {
   };
   std::ranges::sort(sorted, tile_less<D>, place);
   contact.around.resize(tiles.size());
+  const auto none = static_cast<std::int32_t>(tiles.size());
+  auto& foreign = contact.foreign_tiles;
+  foreign.clear();
   for (std::size_t t = 0; t < tiles.size(); ++t)
     for (int k = 0; k < Tile<D>::neighbours; ++k) {
-      Index<D> wanted = tiles[t].tile;
-      for (std::size_t a = 0; a < D; ++a) wanted[a] += Tile<D>::offset(k)[a];
+      const Index<D> wanted = beside<D>(tiles[t].tile, k);
       const auto found = std::ranges::lower_bound(sorted, wanted, tile_less<D>, place);
       contact.around[t][static_cast<std::size_t>(k)] =
           found != sorted.end() && place(*found) == wanted ? *found : -1;
+      if (tiles[t].beside_others && contact.around[t][static_cast<std::size_t>(k)] < 0)
+        foreign.push_back({wanted});
     }
+  std::ranges::sort(foreign, tile_less<D>, &ForeignTile<D>::tile);
+  const auto same = std::ranges::unique(foreign, {}, &ForeignTile<D>::tile);
+  foreign.erase(same.begin(), same.end());
+  for (std::size_t t = 0; t < tiles.size(); ++t)
+    for (int k = 0; tiles[t].beside_others && k < Tile<D>::neighbours; ++k) {
+      std::int32_t& number = contact.around[t][static_cast<std::size_t>(k)];
+      if (number >= 0) continue;
+      const Index<D> wanted = beside<D>(tiles[t].tile, k);
+      const auto found =
+          std::ranges::lower_bound(foreign, wanted, tile_less<D>, &ForeignTile<D>::tile);
+      number = none + static_cast<std::int32_t>(found - foreign.begin());
+    }
+}
+
+/// What other ranks have around the tiles: whose particles are looked at, and who is told.
+template <int D>
+void find_others(Contact<D>& contact, const TileGrid<D>& grid, Response response) {
+  contact.wanted.clear();
+  if (grid.partition.alone()) return;
+  const int range = TileParticles<D>::range_max;
+  const Reach reach = response == Response::springs ? Reach{range, range, 0.0} : grid.reach();
+  std::vector<std::uint64_t> cells(grid.patches.size(), 0);
+  for (ContactTile<D>& tile : contact.tiles) {
+    tile.beside_others = tile.held_by_others = false;
+    for (int k = 0; k < Tile<D>::neighbours && !tile.beside_others; ++k)
+      tile.beside_others = !grid.partition.owns(beside<D>(tile.tile, k));
+    for (std::uint32_t h = 0; h < tile.holders; ++h) {
+      const TileHolder& holder = contact.holders[tile.first_holder + h];
+      if (!grid.patches[holder.patch].foreign) continue;
+      tile.held_by_others = true;
+      const Index<D> offset = Tile<D>::offset(Tile<D>::neighbours - 1 - holder.neighbour);
+      cells[holder.patch] |= cells_in_reach<D>(~std::uint64_t{0}, offset, reach);
+    }
+  }
+  for (std::uint32_t p = 0; p < cells.size(); ++p)
+    if (grid.patches[p].foreign && grid.patches[p].in_contact)
+      contact.wanted.push_back({p, cells[p]});
 }
 
 /// Every patch with every tile where it may have nodes, or particles that others meet.
@@ -85,13 +136,13 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
   std::swap(contact.last_tiles, tiles);
   tiles.clear();
   contact.has_rigid = contact.has_free_rigid = false;
-  for (Patch<D>& patch : grid.patches) {
-    // Set below for the patches around tiles that stay: for others no masses are looked at.
-    patch.in_contact = false;
-    const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
+  for (const Body<D>& body : bodies) {
+    if (body.active() == 0) continue;
     if (!body.deforms()) contact.has_rigid = true;
     if (body.is_free_rigid()) contact.has_free_rigid = true;
   }
+  // Set below for the patches around tiles that stay: for others no masses are looked at.
+  for (Patch<D>& patch : grid.patches) patch.in_contact = false;
   auto tile_of = [&](const TileHolder& h) {
     Index<D> t = grid.patches[static_cast<std::size_t>(h.patch)].tile;
     const Index<D> o = Tile<D>::offset(h.neighbour);
@@ -114,6 +165,8 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
     }
     // Bodies that do not deform have no stress that could part them, and do not act on each other.
     if (!several || !deforms) continue;
+    // Who has the tile knows all that is around it.
+    if (!grid.partition.alone() && !grid.partition.owns(tile)) continue;
     ContactTile<D>& made = tiles.emplace_back();
     made.tile = tile;
     made.first_holder = kept;
@@ -132,6 +185,7 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
     const std::uint32_t py = holders[y.first_holder + y.holders - 1].patch;
     return px != py ? px < py : x.first_holder < y.first_holder;
   });
+  find_others(contact, grid, response);
   if (response == Response::springs) find_around(contact);
 }
 

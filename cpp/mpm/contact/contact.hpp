@@ -33,6 +33,26 @@ struct ContactTile {
   std::uint32_t cached_part = 0;   // where they are cached: a number of Contact::parts
   std::uint32_t first_cached = 0;  // the first of them, of ContactPart::cached_nodes
   TouchRange touches;              // with springs: of particles in the tile, in this step
+  bool beside_others = false;      // a tile around it belongs to another rank
+  bool held_by_others = false;     // some holder does
+};
+
+/// A tile of another rank beside one of contact, and which of Contact::foreign_touches lie there.
+template <int D>
+struct ForeignTile {
+  Index<D> tile;
+  std::uint32_t first = 0, count = 0;
+};
+
+/// The cells of a foreign patch of which contact here looks at the particles.
+struct WantedCells {
+  std::uint32_t patch;
+  std::uint64_t cells;
+};
+
+/// Letters of contact, whose memory is kept.
+struct ContactMail {
+  Mail asked, told, touches, responses;
 };
 
 /// Sums over all contacts of one step, for the ledger [J].
@@ -60,12 +80,17 @@ struct SetBack {
 
 template <int D>
 struct Contact {
-  std::vector<TileHolder> holders;  // those of each tile follow one another
-  std::vector<ContactTile<D>> tiles;
-  NodesWithMass<D> masses;  // of the step
-  // With springs: the numbers of the tiles around each, -1 if none; and the touches of the step.
+  std::vector<TileHolder> holders;    // those of each tile follow one another
+  std::vector<ContactTile<D>> tiles;  // of this rank
+  NodesWithMass<D> masses;            // of the step
+  // With springs: the numbers of the tiles around each, foreign ones behind those of this rank, -1
+  // if none; and the touches of the step.
   std::vector<std::array<std::int32_t, Tile<D>::neighbours>> around;
   std::vector<std::vector<Touch<D>>> touches;
+  std::vector<ForeignTile<D>> foreign_tiles;  // in their order
+  std::vector<Touch<D>> foreign_touches;      // by tile
+  std::vector<WantedCells> wanted;
+  ContactMail mail;
   std::vector<std::uint8_t> surface_ranges;  // scratch, by patch: SurfaceSum::range()
   std::vector<ContactPart<D>> parts;
   PairCache cache;
@@ -78,7 +103,7 @@ struct Contact {
   std::atomic<std::size_t> unconverged{0};
   std::vector<ContactTile<D>> last_tiles;  // scratch
   std::vector<std::int32_t> sorted_tiles;  // scratch
-  std::vector<double> rigid_share;         // scratch, by body: its mass at all overlapped nodes
+  std::vector<ExactSum> rigid_share;       // scratch: the mass of each free rigid body at its nodes
 };
 
 /// Memory that it holds [bytes].

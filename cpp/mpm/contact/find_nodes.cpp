@@ -5,6 +5,7 @@
 #include <bit>
 #include <utility>
 
+#include "mpm/contact/exchange_contact.hpp"
 #include "mpm/contact/find_pairs.hpp"
 #include "mpm/contact/find_springs.hpp"
 #include "mpm/contact/find_touches.hpp"
@@ -190,9 +191,11 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
   contact.masses.find(grid, threads);
   if (contact.cache.on) add_displacements(contact.cache, bodies.size());
   const bool springs = settings.response == Response::springs;
-  if (springs)
-    find_touches(contact, grid, bodies, pools, settings.gap_distance / grid.cell_size, threads);
   const double widest = springs ? widest_support(grid, bodies) : 0.0;
+  if (springs) {
+    find_touches(contact, grid, bodies, pools, settings.gap_distance / grid.cell_size, threads);
+    exchange_touches(contact, grid, widest);
+  }
   const TileShares shares(contact.tiles.size(), threads.count());
   if (shares.count > contact.parts.size())
     contact.parts.resize(shares.count);  // no part goes: it may know of another's tiles
@@ -236,10 +239,14 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
     contact.counts.overlapped += part.overlapped;
     contact.counts.bodies_max = std::max(contact.counts.bodies_max, part.bodies_max);
   }
+  Comm& comm = *grid.partition.comm;
+  contact.counts.overlapped =
+      static_cast<std::size_t>(all_sum(comm, static_cast<std::int64_t>(contact.counts.overlapped)));
+  contact.counts.bodies_max = static_cast<int>(all_max(comm, contact.counts.bodies_max));
   contact.counts.overlapped_max =
       std::max(contact.counts.overlapped_max, contact.counts.overlapped);
   note_speeds(contact, time_step);
-  share_rigid_masses(contact, bodies);
+  share_rigid_masses(contact, bodies, comm);
 }
 
 template <int D>
@@ -253,6 +260,10 @@ Crowd largest_crowd(const Contact<D>& contact, const TileGrid<D>& grid) {
       const Vec<double, D> x = grid.position_of(place_of(contact, grid, node));
       for (int a = 0; a < D; ++a) most.position[a] = x[a];
     }
+  Comm& comm = *grid.partition.comm;
+  std::vector<double> key{1.0 * most.bodies};
+  for (int a = D; a-- > 0;) key.push_back(-most.position[a]);
+  broadcast(comm, rank_of_largest(comm, key), most);
   return most;
 }
 

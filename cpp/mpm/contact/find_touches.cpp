@@ -57,7 +57,7 @@ void find_bodies(const Contact<D>& contact, const TileGrid<D>& grid,
       const Patch<D>& patch = grid.patches[static_cast<std::size_t>(holder.patch)];
       if (holder.neighbour == Tile<D>::self) at.own = &patch;
       at.near |=
-          cells_in_reach<D>(patch.occupied, Tile<D>::offset(holder.neighbour), reach_to(at.range));
+          cells_in_reach<D>(patch.cells(), Tile<D>::offset(holder.neighbour), reach_to(at.range));
     }
     at.holders = {&contact.holders[first], h - first};
   }
@@ -153,12 +153,9 @@ void find_ranges(Contact<D>& contact, const TileGrid<D>& grid, const std::vector
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     if (!patch.in_contact) return;
-    const ParticlePool<D>& pool = pools[pool_number(bodies, patch.body)];
-    double widest = 0.0;
-    for (const std::uint32_t row : pool.rows(patch))
-      widest = std::max(widest, double{pool.volume()[row]});
-    const double edge = (D == 2 ? std::sqrt(widest) : std::cbrt(widest)) / grid.cell_size;
-    contact.surface_ranges[p] = static_cast<std::uint8_t>(SurfaceSum<D>::range(edge));
+    contact.surface_ranges[p] =
+        patch.foreign ? patch.surface_range
+                      : surface_range(grid, pools[pool_number(bodies, patch.body)], patch);
   });
 }
 
@@ -214,6 +211,16 @@ void add_touches(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
 }  // namespace
 
 template <int D>
+std::uint8_t surface_range(const TileGrid<D>& grid, const ParticlePool<D>& pool,
+                           const Patch<D>& patch) {
+  double widest = 0.0;
+  for (const std::uint32_t row : pool.rows(patch))
+    widest = std::max(widest, double{pool.volume()[row]});
+  const double edge = (D == 2 ? std::sqrt(widest) : std::cbrt(widest)) / grid.cell_size;
+  return static_cast<std::uint8_t>(SurfaceSum<D>::range(edge));
+}
+
+template <int D>
 void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<ParticlePool<D>>& pools, double distance, Threads& threads) {
   find_ranges(contact, grid, bodies, pools, threads);
@@ -243,6 +250,8 @@ void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vecto
   });
 }
 
+template std::uint8_t surface_range<2>(const TileGrid<2>&, const ParticlePool<2>&, const Patch<2>&);
+template std::uint8_t surface_range<3>(const TileGrid<3>&, const ParticlePool<3>&, const Patch<3>&);
 template void find_touches<2>(Contact<2>&, const TileGrid<2>&, const std::vector<Body<2>>&,
                               const std::vector<ParticlePool<2>>&, double, Threads&);
 template void find_touches<3>(Contact<3>&, const TileGrid<3>&, const std::vector<Body<3>>&,

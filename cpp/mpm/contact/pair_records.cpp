@@ -110,7 +110,10 @@ void PairRecords::add(const PairShare& share, std::int64_t step, double time) {
   sums.friction_work.add(share.friction_work);
   PairRecord& r = records_[record];
   // A node that a body has only just reached tells nothing about when and where they met.
-  if (share.known || !(share.share > std::max(least_share, r.first_share))) return;
+  if (share.known || !(share.share > least_share)) return;
+  if (share.share < r.first_share ||
+      (share.share == r.first_share && !is_lower(share.node, r.first_node)))
+    return;
   r.first_step = step;
   r.first_time = time;
   r.first_gap = share.gap;
@@ -119,22 +122,71 @@ void PairRecords::add(const PairShare& share, std::int64_t step, double time) {
   std::ranges::copy(share.node, r.first_node);
 }
 
-void PairRecords::end_step(double time_step) {
-  for (std::size_t k = 0; k < records_.size(); ++k) {
-    PairRecord& r = records_[k];
-    for (std::size_t a = 0; a < 3; ++a) {
-      r.force[a] = sums_[k].step_impulse[a].value(impulse_unit_) / time_step;
-      r.impulse[a] = sums_[k].impulse[a].value(impulse_unit_);
-    }
-    r.friction_work = sums_[k].friction_work.value(energy_unit_);
+/// From the sums to the record.
+void PairRecords::write_sums(std::size_t record) {
+  PairRecord& r = records_[record];
+  for (std::size_t a = 0; a < 3; ++a) {
+    r.force[a] = sums_[record].step_impulse[a].value(impulse_unit_) / time_step_;
+    r.impulse[a] = sums_[record].impulse[a].value(impulse_unit_);
   }
+  r.friction_work = sums_[record].friction_work.value(energy_unit_);
+}
+
+void PairRecords::end_step(double time_step) {
+  time_step_ = time_step;
+  for (std::size_t k = 0; k < records_.size(); ++k) write_sums(k);
   if (records_.size() > sorted_) sort();
+}
+
+std::vector<PairRecord> PairRecords::of_all_ranks(Comm& comm) const {
+  if (comm.alone()) return records_;
+  Mail mail;
+  for (int rank = 0; rank < comm.size(); ++rank) {
+    if (rank == comm.rank()) continue;
+    Letter& letter = letter_to(mail, rank);
+    for (std::size_t k = 0; k < records_.size(); ++k) {
+      mpm::write(letter, records_[k]);
+      mpm::write(letter, sums_[k]);
+    }
+  }
+  comm.exchange(mail);
+  PairRecords all = *this;
+  for (const Letter& letter : mail.in)
+    for (Reader reader(letter); !reader.done();) {
+      const auto told = reader.read<PairRecord>();
+      const auto sums = reader.read<PairSums>();
+      std::size_t record = all.find(told.a, told.b);
+      if (record == none) record = all.make(told.a, told.b);
+      for (std::size_t a = 0; a < 3; ++a) {
+        all.sums_[record].step_impulse[a].add(sums.step_impulse[a]);
+        all.sums_[record].impulse[a].add(sums.impulse[a]);
+      }
+      all.sums_[record].friction_work.add(sums.friction_work);
+      PairRecord& r = all.records_[record];
+      const bool later = r.first_step >= 0 && told.first_step > r.first_step;
+      const bool same = told.first_step == r.first_step;
+      if (told.first_step < 0 || later ||
+          (same &&
+           (told.first_share < r.first_share ||
+            (told.first_share == r.first_share && !is_lower(told.first_node, r.first_node)))))
+        continue;
+      r.first_step = told.first_step;
+      r.first_time = told.first_time;
+      r.first_gap = told.first_gap;
+      r.first_share = told.first_share;
+      std::ranges::copy(told.first_normal, r.first_normal);
+      std::ranges::copy(told.first_node, r.first_node);
+    }
+  for (std::size_t k = 0; k < all.records_.size(); ++k) all.write_sums(k);
+  all.sort();
+  return all.records_;
 }
 
 void PairRecords::exchange(StateStream& stream) {
   stream.vector(records_);
   stream.vector(sums_);
   stream.vector(places_);
+  stream(time_step_);
 }
 
 void PairRecords::check_restored(std::size_t bodies) {

@@ -1,11 +1,13 @@
 #pragma once
 // What has passed between pairs of bodies since the start.
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <vector>
 
+#include "mpm/comm/all_sums.hpp"
 #include "mpm/fields/state_stream.hpp"
-#include "mpm/math/exact_sum.hpp"
 
 namespace mpm {
 
@@ -39,11 +41,19 @@ struct PairShare {
   double gap = 0.0, normal[3] = {}, node[3] = {};
 };
 
+/// Which of two nodes tells of a first contact, if all else is equal: so that it is the same one in
+/// any order.
+inline bool is_lower(const double (&x)[3], const double (&y)[3]) {
+  return std::lexicographical_compare(std::rbegin(x), std::rend(x), std::rbegin(y), std::rend(y));
+}
+
 /// The records of all pairs that have met, found by the numbers of the bodies.
 class PairRecords {
  public:
   /// Sorted by (a, b) between steps.
   const std::vector<PairRecord>& all() const { return records_; }
+  /// The same with what the others have recorded; by all ranks at once.
+  std::vector<PairRecord> of_all_ranks(Comm& comm) const;
   std::size_t size() const { return records_.size(); }
   /// Before the first step: about the largest mass [kg] and speed [m/s] that there are. Sums are
   /// good to 2^-96 of their product, and hold up to 2^31 of it.
@@ -71,11 +81,13 @@ class PairRecords {
   std::size_t make(int a, int b);
   void enter(std::size_t record);
   void sort();
+  void write_sums(std::size_t record);
 
   std::vector<PairRecord> records_;
   std::vector<PairSums> sums_;  // of each record
   std::size_t sorted_ = 0;      // records
   SumUnit impulse_unit_{-96}, energy_unit_{-96};
+  double time_step_ = 0.0;  // of the last step [s]
   // Where a pair's record is: open addressing by pair_key, at most half full; 0 is empty, else the
   // record's number + 1.
   std::vector<std::uint32_t> places_;

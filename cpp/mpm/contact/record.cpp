@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mpm/math/exact_sum.hpp"
+#include "mpm/comm/all_sums.hpp"
 
 namespace mpm {
 namespace {
@@ -51,12 +51,13 @@ void sum_part(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D>>
       // They have met before this step: where and how they first did is known.
       if (share.known) continue;
       const double lighter = std::min(mass_share(r), mass_share(s));
-      // The node that tells of the first contact is the one where the lighter body has most mass;
-      // of equals the first, so a strict comparison in the order of the nodes.
-      if (!(lighter > share.share)) continue;
+      if (lighter < share.share) continue;
+      const Vec<double, D> x = grid.position_of(place_of(contact, grid, node));
+      const Vector3 place = in_space<D>(x);
+      // The node that tells of the first contact is the one where the lighter body has most mass.
+      if (lighter == share.share && !is_lower(place.c, share.node)) continue;
       share.share = lighter;
       share.gap = pair.gap;
-      const Vec<double, D> x = grid.position_of(place_of(contact, grid, node));
       for (int a = 0; a < D; ++a) {
         share.normal[a] = sign * pair.normal[a];
         share.node[a] = x[a];
@@ -74,20 +75,18 @@ ContactSums record_pairs(Contact<D>& contact, TileGrid<D>& grid, const std::vect
   records.begin_step();
   threads.for_each(contact.parts.size(),
                    [&](std::size_t p) { sum_part(contact, grid, bodies, contact.parts[p], end); });
-  ExactSum energy, force_work, friction, friction_first, stored;
+  std::array<ExactSum, 5> sums;
   for (const ContactPart<D>& part : contact.parts) {
-    energy.add(part.energy);
-    force_work.add(part.force_work);
-    friction.add(part.friction);
-    friction_first.add(part.friction_first);
-    stored.add(part.stored);
-    // In the order of the parts, though the sums need none (decision 0038): ties between nodes of a
-    // first contact do.
+    sums[0].add(part.friction);
+    sums[1].add(part.friction_first);
+    sums[2].add(part.energy);
+    sums[3].add(part.force_work);
+    sums[4].add(part.stored);
     for (const PairShare& share : part.shares) records.add(share, end.step, end.time);
   }
+  all_sum(*grid.partition.comm, sums);
   records.end_step(end.time_step);
-  return {friction.value(), friction_first.value(), energy.value(), force_work.value(),
-          stored.value()};
+  return {sums[0].value(), sums[1].value(), sums[2].value(), sums[3].value(), sums[4].value()};
 }
 
 template ContactSums record_pairs<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&,

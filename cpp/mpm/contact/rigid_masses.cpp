@@ -36,29 +36,35 @@ void harden(const std::vector<Body<D>>& bodies, std::span<BodyAtNode<D>> sides) 
 }  // namespace
 
 template <int D>
-void share_rigid_masses(Contact<D>& contact, const std::vector<Body<D>>& bodies) {
+void share_rigid_masses(Contact<D>& contact, const std::vector<Body<D>>& bodies, Comm& comm) {
   if (!contact.has_rigid) return;
-  contact.rigid_share.resize(bodies.size());
-  for (const ContactPart<D>& part : contact.parts)
-    for (const BodyAtNode<D>& side : part.sides)
-      contact.rigid_share[static_cast<std::size_t>(side.body)] = 0.0;
+  contact.rigid_share.clear();
+  for (const Body<D>& body : bodies)
+    if (body.is_free_rigid()) contact.rigid_share.resize(static_cast<std::size_t>(body.rigid) + 1);
+  const auto rigid_of = [&](const BodyAtNode<D>& side) {
+    return bodies[static_cast<std::size_t>(side.body)].rigid;
+  };
+  // By one thread, exactly: no share depends on threads or ranks.
   for (ContactPart<D>& part : contact.parts) {
     for (const ContactNode& node : part.nodes) harden(bodies, part.sides_of(node));
     for (const BodyAtNode<D>& side : part.sides)
-      // Doubles, summed by one thread in the order of the nodes: no share may depend on the
-      // threads.
-      contact.rigid_share[static_cast<std::size_t>(side.body)] += side.mass;
+      if (rigid_of(side) >= 0)
+        contact.rigid_share[static_cast<std::size_t>(rigid_of(side))].add(side.mass);
   }
+  all_sum(comm, contact.rigid_share);
+  thread_local std::vector<double> shares;
+  shares.clear();
+  for (const ExactSum& sum : contact.rigid_share) shares.push_back(sum.value());
   for (ContactPart<D>& part : contact.parts)
-    for (BodyAtNode<D>& side : part.sides) {
-      const auto b = static_cast<std::size_t>(side.body);
+    for (BodyAtNode<D>& side : part.sides)
       // m_i M / sum m_i: at all overlapped nodes together the body has its whole mass M, so a light
       // surface stops a heavy tool no more than it should.
-      if (bodies[b].is_free_rigid()) side.mass /= contact.rigid_share[b] / bodies[b].total_mass;
-    }
+      if (rigid_of(side) >= 0)
+        side.mass /= shares[static_cast<std::size_t>(rigid_of(side))] /
+                     bodies[static_cast<std::size_t>(side.body)].total_mass;
 }
 
-template void share_rigid_masses<2>(Contact<2>&, const std::vector<Body<2>>&);
-template void share_rigid_masses<3>(Contact<3>&, const std::vector<Body<3>>&);
+template void share_rigid_masses<2>(Contact<2>&, const std::vector<Body<2>>&, Comm&);
+template void share_rigid_masses<3>(Contact<3>&, const std::vector<Body<3>>&, Comm&);
 
 }  // namespace mpm

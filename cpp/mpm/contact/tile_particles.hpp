@@ -222,7 +222,7 @@ class TileParticles {
       // A holder says where the tile lies from its patch; offsets are numbered so that k and
       // neighbours - 1 - k are opposite.
       const Index<D> offset = Tile<D>::offset(Tile<D>::neighbours - 1 - h.neighbour);
-      std::uint64_t cells = patch.occupied & cells_in_reach<D>(nodes, offset, reach);
+      std::uint64_t cells = patch.cells() & cells_in_reach<D>(nodes, offset, reach);
       for (; cells != 0; cells &= cells - 1) f(patch, offset, std::countr_zero(cells));
     }
   }

@@ -28,11 +28,8 @@ class TileTouches {
     for (int k = 0; k < Tile<D>::neighbours; ++k) {
       const std::int32_t number = contact.around[t][static_cast<std::size_t>(k)];
       if (number < 0) continue;
-      const TouchRange& range = contact.tiles[static_cast<std::size_t>(number)].touches;
-      if (range.count == 0) continue;
       const Index<D> offset = Tile<D>::offset(k);
-      for (const Touch<D>& touch :
-           std::span(&contact.touches[range.share][range.first], range.count)) {
+      for (const Touch<D>& touch : touches_in(contact, static_cast<std::size_t>(number))) {
         NearTouch<D> here{touch, 0, static_cast<std::uint32_t>(touches_.size())};
         for (int a = 0; a < D; ++a)
           here.x[a] += Tile<D>::cells * offset[static_cast<std::size_t>(a)];
@@ -56,11 +53,7 @@ class TileTouches {
     return {found.begin(), found.end()};
   }
 
- private:
-  using Pair = std::pair<std::int32_t, std::int32_t>;
-  static Pair pair_of(std::int32_t r, std::int32_t s) { return {std::min(r, s), std::max(r, s)}; }
-  static Pair of_touch(const NearTouch<D>& touch) { return pair_of(touch.body, touch.other); }
-  /// Those of the tile's nodes, 64 in 2D and 3D, nearer to a place than that along every axis.
+  /// Those of a tile's nodes, 64 in 2D and 3D, nearer to a place than that along every axis.
   static std::uint64_t nodes_near(const Vec<double, D>& place, double reach) {
     std::uint64_t nodes = ~std::uint64_t{0};
     for (int a = 0; a < D; ++a) {
@@ -72,6 +65,19 @@ class TileTouches {
     return nodes;
   }
 
+ private:
+  /// Of particles in a tile, by its number in Contact::around.
+  static std::span<const Touch<D>> touches_in(const Contact<D>& contact, std::size_t number) {
+    if (number < contact.tiles.size()) {
+      const TouchRange& range = contact.tiles[number].touches;
+      return {contact.touches[range.share].data() + range.first, range.count};
+    }
+    const ForeignTile<D>& tile = contact.foreign_tiles[number - contact.tiles.size()];
+    return {contact.foreign_touches.data() + tile.first, tile.count};
+  }
+  using Pair = std::pair<std::int32_t, std::int32_t>;
+  static Pair pair_of(std::int32_t r, std::int32_t s) { return {std::min(r, s), std::max(r, s)}; }
+  static Pair of_touch(const NearTouch<D>& touch) { return pair_of(touch.body, touch.other); }
   std::vector<NearTouch<D>> touches_;
   std::uint64_t nodes_ = 0;
 };

@@ -31,6 +31,25 @@ void for_each_beside(const TileGrid<D>& grid, const Patch<D>& patch, int rank, F
   }
 }
 
+/// The nodes of a patch in tiles of a rank beside it.
+template <int D>
+void add_tiles(const TileGrid<D>& grid, const Patch<D>& patch, int rank, NodeBits<D>& read) {
+  for (int k = 0; k < Tile<D>::neighbours; ++k) {
+    const Index<D> o = Tile<D>::offset(k);
+    Index<D> tile = patch.tile, low = patch.shape.low, high = patch.shape.last();
+    bool any = k != Tile<D>::self;
+    for (std::size_t a = 0; a < D; ++a) {
+      tile[a] += o[a];
+      low[a] = std::max(low[a], Tile<D>::cells * o[a]);
+      high[a] = std::min(high[a], Tile<D>::cells * (o[a] + 1) - 1);
+      any = any && low[a] <= high[a];
+    }
+    if (!any || grid.partition.owners.rank_of(tile) != rank) continue;
+    for_each_index<D>(low, high,
+                      [&](const Index<D>& node) { read.set_row(patch.shape.node(node), 1); });
+  }
+}
+
 /// The nodes of a patch that a rank reads, by those of its patches beside it: the same to the rank
 /// that has the patch and to the one that reads it.
 template <int D>
@@ -41,6 +60,7 @@ void add_runs(const TileGrid<D>& grid, std::uint32_t p, int rank, std::vector<No
   for_each_beside(grid, patch, rank, [&](const Patch<D>& other) {
     for_each_shared_row(patch, other, [&](int here, int, int count) { read.set_row(here, count); });
   });
+  if (grid.partition.shares_tiles) add_tiles(grid, patch, rank, read);
   for (int n = 0; n < patch.shape.node_count;) {
     if (!read[n]) {
       ++n;

@@ -63,6 +63,7 @@ struct Patch {
   int owner = 0;            // of a foreign one: that rank
   int readers = -1;         // of an own one: number of the set of ranks that hold it; -1: not known
   std::uint64_t foreign_cells = 0;  // of a foreign one: cells that hold particles
+  std::uint8_t surface_range = 0;   // and how far their surface is felt [cells]
 
   /// The cells about which its nodes lie.
   std::uint64_t cells() const { return occupied | foreign_cells; }

@@ -165,6 +165,7 @@ class FixedSum {
   }
   void add(double x, const SumUnit& unit) { sum_ += in_units(x, unit); }
   void add(Integer units) { sum_ += units; }
+  void add(const FixedSum& other) { sum_ += other.sum_; }
   double value(const SumUnit& unit) const { return static_cast<double>(sum_) * unit.size(); }
   void clear() { sum_ = 0; }
 

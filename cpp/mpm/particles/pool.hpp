@@ -44,6 +44,7 @@ struct ParticlePool {
   std::size_t used = 0;  // of `order`, by the ranges of patches, now or before; behind it is room
   std::vector<RemovedRow> removed;
   std::vector<std::uint32_t> free_rows;  // of no particle: some have gone to other ranks
+  std::vector<std::uint32_t> guests;     // rows of particles of other ranks that contact looks at
 
   std::size_t count() const { return columns.rows(); }
   double* x(int a) { return columns.component(position + a); }

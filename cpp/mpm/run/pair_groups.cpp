@@ -11,7 +11,7 @@ std::vector<PairRecord> group_pairs(const Domain<D>& domain) {
     return domain.bodies[static_cast<std::size_t>(body)].group;
   };
   std::map<std::pair<int, int>, PairRecord> found;
-  for (const PairRecord& pair : domain.contact.records.all()) {
+  for (const PairRecord& pair : domain.contact.records.of_all_ranks(*domain.grid.partition.comm)) {
     const int a = group_of(pair.a), b = group_of(pair.b);
     const auto key = std::minmax(a, b);
     PairRecord& sum = found.try_emplace(key).first->second;

@@ -76,6 +76,7 @@ void prepare(Simulation<D>& simulation) {
   check(!domain.bodies.empty(), "there is no body");
   check_bodies(domain);
   simulation.phase = Phase::broken;  // until all is done
+  domain.grid.partition.shares_tiles = domain.has_contact();
   add_contact_columns(domain);
   fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches,
              *domain.grid.partition.comm);

@@ -1,6 +1,7 @@
 #include "mpm/run/start_contact.hpp"
 
 #include "mpm/contact/find_touches.hpp"
+#include "mpm/contact/guests.hpp"
 #include "mpm/contact/set_back.hpp"
 #include "mpm/particles/make_body.hpp"
 
@@ -14,6 +15,8 @@ void add_contact_columns(Domain<D>& domain) {
 
 template <int D>
 void start_contact(Domain<D>& domain) {
+  if (domain.has_contact())
+    exchange_guests(domain.contact, domain.grid, domain.bodies, domain.pools);
   if (!domain.has_springs()) return;
   find_touches(domain.contact, domain.grid, domain.bodies, domain.pools,
                domain.contact_settings.gap_distance / domain.grid.cell_size, domain.threads);

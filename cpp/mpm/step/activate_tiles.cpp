@@ -1,4 +1,5 @@
 #include "mpm/contact/candidates.hpp"
+#include "mpm/contact/guests.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
@@ -71,6 +72,8 @@ void activate_tiles(Domain<D>& domain) {
   // Which bodies may meet is a matter of tiles and of the blocks, so it holds until lists change.
   if (changed && domain.has_contact())
     connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
+  if (domain.has_contact())
+    exchange_guests(domain.contact, domain.grid, domain.bodies, domain.pools);
   balance(domain);
 }
 

@@ -1,3 +1,4 @@
+#include "mpm/contact/exchange_contact.hpp"
 #include "mpm/contact/find_nodes.hpp"
 #include "mpm/contact/respond.hpp"
 #include "mpm/step/stages.hpp"
@@ -36,22 +37,25 @@ void contact_momentum(Domain<D>& domain) {
              domain.time_step, domain.threads);
   if (!stops_approach(domain)) return;
   remove_approach(domain.contact, domain.grid, domain.threads);
+  exchange_responses(domain.contact, domain.grid, velocity_at);
   reflect(domain, velocity_at);
 }
 
 template <int D>
 void contact_forces(Domain<D>& domain) {
-  if (domain.has_contact())
-    add_contact_forces(
-        domain.contact, domain.grid,
-        ContactStep<D>{domain.bodies, domain.dampings, domain.gravity, domain.time_step},
-        domain.threads);
+  if (!domain.has_contact()) return;
+  add_contact_forces(
+      domain.contact, domain.grid,
+      ContactStep<D>{domain.bodies, domain.dampings, domain.gravity, domain.time_step},
+      domain.threads);
+  exchange_responses(domain.contact, domain.grid, force_at);
 }
 
 template <int D>
 void release_from_contact(Domain<D>& domain) {
   if (!domain.has_contact()) return;
   release_particles(domain.contact, domain.grid, domain.threads);
+  exchange_responses(domain.contact, domain.grid, velocity_at);
   reflect(domain, velocity_at);
 }
 
@@ -59,6 +63,7 @@ template <int D>
 void restore_contact(Domain<D>& domain) {
   if (!domain.has_contact()) return;
   restore_nodes(domain.contact, domain.grid, domain.threads);
+  exchange_responses(domain.contact, domain.grid, velocity_at);
   reflect(domain, velocity_at);
 }
 
@@ -68,7 +73,9 @@ void contact_remapped(Domain<D>& domain) {
   // The particles have kept v_i when they were advanced by increments, so what approach (6)-(7)
   // took from the nodes is in the remapped velocities again (3.6, step 10: "readjust").
   respond_to_remapped(domain.contact, domain.grid, stops_approach(domain), domain.threads);
-  if (stops_approach(domain)) reflect(domain, remapped_at);
+  if (!stops_approach(domain)) return;
+  exchange_responses(domain.contact, domain.grid, remapped_at);
+  reflect(domain, remapped_at);
 }
 
 template void contact_momentum<2>(Domain<2>&);

@@ -26,6 +26,7 @@ struct Choice {
   std::function<void(Settings&)> set = [](Settings&) {};
   bool load = false, force = false, erodes = false;
   bool rigid = false, prescribed = false;  // the second body
+  bool contact = false;
 };
 
 /// A block of particles, half a cell apart, that spins about the origin and flies.
@@ -54,7 +55,7 @@ void build(Simulation<D>& simulation, const Choice& choice) {
       add_material(simulation, {2000.0, choice.rigid ? rigid : elastic, {}, {}, {1.5, 0.06}});
   add_block(simulation, rubber, 0.0, 0.0);
   add_block(simulation, stone, D == 2 ? 16.0 : 6.0, 25.0);
-  add_block(simulation, rubber, -40.0, 60.0);
+  add_block(simulation, rubber, D == 2 ? -20.0 : -8.0, 60.0);
   if (choice.prescribed) {
     TimeFunction shaking(10.0), turning(5.0);
     shaking.amplitude = 200.0;
@@ -113,7 +114,9 @@ std::vector<double> run_of(const Choice& choice, Comm& comm) {
   settings.run.scheme = Scheme::usf;
   settings.run.transfer.word = Transfers::id_of<Aflip>();
   settings.run.energy_growth_limit = 1e9;
-  settings.contact.enabled = false;
+  settings.contact.enabled = choice.contact;
+  settings.contact.response = Response::springs;
+  settings.contact.friction = 0.3;
   choice.set(settings);
   Simulation<D> simulation(settings, &comm);
   build(simulation, choice);
@@ -126,6 +129,13 @@ std::vector<double> run_of(const Choice& choice, Comm& comm) {
   std::vector<double> numbers = simulation.history.take();
   gather(simulation, numbers);
   for (const double x : rows_of(part_sums(simulation.domain))) numbers.push_back(x);
+  for (const PairRecord& pair : simulation.domain.contact.records.of_all_ranks(comm))
+    for (const double x : {pair.first_time, pair.first_gap, pair.first_normal[0],
+                           pair.first_node[1], pair.force[0], pair.impulse[1], pair.friction_work})
+      numbers.push_back(std::isnan(x) ? -1.0 : x);
+  const ContactCounts& counts = simulation.domain.contact.counts;
+  numbers.push_back(static_cast<double>(counts.overlapped_max +
+                                        1000u * static_cast<std::size_t>(counts.bodies_max)));
   const RemovedSum eroded = sum_of(simulation.domain.eroded, comm);
   numbers.push_back(eroded.mass);
   for (const LoadRecord& load : load_records(simulation.domain)) numbers.push_back(load.area);
@@ -209,6 +219,46 @@ std::vector<Choice> choices() {
                    s.contact.enabled = s.contact.bonded = true;
                    put_walls(s);
                  }});
+  all.push_back({.name = "springs", .contact = true});
+  all.push_back(
+      {.name = "springs, walls and a tool", .set = put_walls, .prescribed = true, .contact = true});
+  all.push_back({.name = "springs and a rigid body", .rigid = true, .contact = true});
+  all.push_back({.name = "springs and erosion", .erodes = true, .contact = true});
+  const auto impulses = [](Settings& s) {
+    s.contact.response = Response::impulses;
+    s.grid.basis = basis_id<Gimp>;
+    s.run.transfer.word = Transfers::id_of<Flip>();
+    s.run.scheme = Scheme::musl;
+    put_walls(s);
+  };
+  all.push_back({.name = "impulses", .set = impulses, .contact = true});
+  all.push_back(
+      {.name = "impulses and a tool", .set = impulses, .prescribed = true, .contact = true});
+  all.push_back(
+      {.name = "impulses and a rigid body", .set = impulses, .rigid = true, .contact = true});
+  all.push_back({.name = "impulses and erosion", .set = impulses, .erodes = true, .contact = true});
+  all.push_back({.name = "impulses that are released",
+                 .set =
+                     [=](Settings& s) {
+                       impulses(s);
+                       s.run.transfer.pic_rate = 10.0;
+                     },
+                 .contact = true});
+  all.push_back({.name = "planes that are kept",
+                 .set =
+                     [=](Settings& s) {
+                       impulses(s);
+                       s.contact.normal_refresh_distance = 0.1;
+                     },
+                 .contact = true});
+  all.push_back({.name = "velocity rule",
+                 .set =
+                     [=](Settings& s) {
+                       impulses(s);
+                       s.contact.detection = Detections::id_of<VelocityDetection>();
+                       s.contact.normal = NormalRules::id_of<PairNormal>();
+                     },
+                 .contact = true});
   all.push_back({.name = "loads", .load = true});
   all.push_back({.name = "forces and damping", .force = true});
   all.push_back({.name = "erosion", .load = true, .erodes = true});
