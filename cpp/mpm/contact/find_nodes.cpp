@@ -245,7 +245,7 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
   contact.counts.bodies_max = static_cast<int>(all_max(comm, contact.counts.bodies_max));
   contact.counts.overlapped_max =
       std::max(contact.counts.overlapped_max, contact.counts.overlapped);
-  note_speeds(contact, time_step);
+  note_speeds(contact, time_step, comm);
   share_rigid_masses(contact, bodies, comm);
 }
 

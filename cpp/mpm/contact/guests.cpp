@@ -62,6 +62,7 @@ void take_in(Reader& reader, ParticlePool<D>& pool, Patch<D>& patch) {
   const auto told = reader.read<Answer>();
   patch.surface_range = told.surface_range;
   patch.begin = static_cast<std::uint32_t>(pool.used + pool.guests.size());
+  patch.room = 0;  // no list of its own
   patch.cell_begin.fill(0);
   for (std::uint32_t k = 0; k < told.count; ++k) {
     const auto guest = reader.template read<Guest<D>>();

@@ -51,18 +51,24 @@ void add_displacements(PairCache& cache, std::size_t bodies) {
 }
 
 template <int D>
-void note_speeds(Contact<D>& contact, double time_step) {
-  contact.cache.last_time_step = time_step;
-  if (!contact.cache.on) return;
+void note_speeds(Contact<D>& contact, double time_step, Comm& comm) {
+  PairCache& cache = contact.cache;
+  cache.last_time_step = time_step;
+  if (!cache.on) return;
   for (const ContactPart<D>& part : contact.parts)
     for (const BodyAtNode<D>& side : part.sides) {
-      double& fastest = contact.cache.fastest[static_cast<std::size_t>(side.body)];
+      double& fastest = cache.fastest[static_cast<std::size_t>(side.body)];
       // Squares, so that one root a body and step is enough.
       const double square = dot(side.mapped, side.mapped);
       // The first speed of a body in this step lists it; the maximum does not depend on the order.
-      if (fastest == 0.0 && square > 0.0) contact.cache.moving.push_back(side.body);
+      if (fastest == 0.0 && square > 0.0) cache.moving.push_back(side.body);
       fastest = std::max(fastest, square);
     }
+  if (comm.alone()) return;
+  comm.all_max(cache.fastest);
+  cache.moving.clear();
+  for (std::size_t b = 0; b < cache.fastest.size(); ++b)
+    if (cache.fastest[b] > 0.0) cache.moving.push_back(static_cast<int>(b));
 }
 
 template <int D>
@@ -135,8 +141,8 @@ void move_gaps(ContactPart<D>& part, const ContactNode& node, const NodeSolution
 
 template void invalidate_pairs<2>(Contact<2>&);
 template void invalidate_pairs<3>(Contact<3>&);
-template void note_speeds<2>(Contact<2>&, double);
-template void note_speeds<3>(Contact<3>&, double);
+template void note_speeds<2>(Contact<2>&, double, Comm&);
+template void note_speeds<3>(Contact<3>&, double, Comm&);
 template bool reuse_pairs<2>(Contact<2>&, const std::vector<Body<2>>&, const ContactSettings&,
                              double, const ContactTile<2>&, ContactPart<2>&, const ContactNode&);
 template bool reuse_pairs<3>(Contact<3>&, const std::vector<Body<3>>&, const ContactSettings&,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mpm/comm/comm.hpp"
 #include "mpm/contact/contact_part.hpp"
 #include "mpm/contact/node_solver.hpp"
 #include "mpm/contact/settings.hpp"
@@ -40,9 +41,9 @@ void invalidate_pairs(Contact<D>& contact);
 
 /// Add to the displacements what the fastest node of each body says.
 void add_displacements(PairCache& cache, std::size_t bodies);
-/// Note how fast the bodies are in the step that begins.
+/// Note how fast the bodies are in the step that begins, on all ranks.
 template <int D>
-void note_speeds(Contact<D>& contact, double time_step);
+void note_speeds(Contact<D>& contact, double time_step, Comm& comm);
 
 /// Take over what is cached of the pairs at a node, if it still holds; else false.
 template <int D>

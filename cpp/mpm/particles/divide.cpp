@@ -64,8 +64,11 @@ void take_owners(TileGrid<D>& grid, Owners<D> owners) {
     if (partition.leaves(patch)) {
       patch.left_cell = !patch.foreign;
     } else if (patch.foreign) {
-      patch.foreign = false;  // its particles come
+      // Its particles come, and get a range of the lists then.
+      patch.foreign = false;
       patch.foreign_cells = 0;
+      patch.begin = patch.room = 0;
+      patch.cell_begin.fill(0);
     }
   }
 }

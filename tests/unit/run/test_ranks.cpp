@@ -27,6 +27,7 @@ struct Choice {
   bool load = false, force = false, erodes = false;
   bool rigid = false, prescribed = false;  // the second body
   bool contact = false;
+  bool stays = false;  // tiles stay where they are: planes that are kept do not go along
 };
 
 /// A block of particles, half a cell apart, that spins about the origin and flies.
@@ -124,7 +125,7 @@ std::vector<double> run_of(const Choice& choice, Comm& comm) {
   std::mt19937_64 random(3);
   for (int round = 0; round < 8; ++round) {
     advance(simulation, 10, 1e9, nullptr);
-    shuffle_owners(simulation, random);
+    if (!choice.stays) shuffle_owners(simulation, random);
   }
   std::vector<double> numbers = simulation.history.take();
   gather(simulation, numbers);
@@ -250,7 +251,8 @@ std::vector<Choice> choices() {
                        impulses(s);
                        s.contact.normal_refresh_distance = 0.1;
                      },
-                 .contact = true});
+                 .contact = true,
+                 .stays = true});
   all.push_back({.name = "velocity rule",
                  .set =
                      [=](Settings& s) {
