@@ -24,12 +24,36 @@ namespace {
 template <class F, class R, class... Arguments>
 auto of_any(F f, R (F::*)(Simulation<2>&, Arguments...) const) {
   return [f](AnySimulation& either, Arguments... arguments) -> R {
-    return either.visit([&](auto& s) -> R { return f(s, std::forward<Arguments>(arguments)...); });
+    // As they are, for several ranks may take them.
+    return either.visit([&](auto& s) -> R { return f(s, arguments...); });
   };
 }
 template <class F>
 auto of_any(F f) {
   return of_any(f, &F::template operator()<Simulation<2>>);
+}
+
+/// The same, converted for Python once all ranks are done: f makes no Python objects.
+template <class F, class Convert>
+auto of_any_to(F f, Convert convert) {
+  return [get = of_any(f), convert](AnySimulation& either) { return convert(get(either)); };
+}
+
+Comm& comm_of(auto& simulation) { return *simulation.domain.grid.partition.comm; }
+
+/// Rows of floats that `fill` writes on rank 0; on others it writes to rows of their own.
+template <class Fill>
+Floats rows_of_all(AnySimulation& either, std::size_t width, float elsewhere, Fill fill) {
+  const std::size_t count = either.visit([](auto& s) { return particle_count(s.domain); });
+  Floats values = floats(count, width, elsewhere);
+  const std::span<float> to{values.data(), values.size()};
+  either.visit([&](auto& s) {
+    std::vector<float> others;
+    const bool first = comm_of(s).rank() == 0;
+    if (!first) others.resize(to.size(), elsewhere);
+    fill(s, first ? to : std::span<float>(others));
+  });
+  return values;
 }
 
 nb::dict dict_of(const RemovedSum& removed) {
@@ -165,12 +189,9 @@ void def_telling(SimulationClass& simulation) {
            of_any([](auto& s, int body) { return s.domain.body_at(body).count; }), nb::arg("body"))
       .def_prop_ro("particle_count", of_any([](auto& s) { return particle_count(s.domain); }))
       .def_prop_ro("total_mass", of_any([](auto& s) { return total_mass(s.domain); }))
-      .def("eroded", of_any([](auto& s) {
-             return dict_of(sum_of(s.domain.eroded, *s.domain.grid.partition.comm));
-           }))
-      .def("left", of_any([](auto& s) {
-             return dict_of(sum_of(s.domain.outflow, *s.domain.grid.partition.comm));
-           }))
+      .def("eroded",
+           of_any_to([](auto& s) { return sum_of(s.domain.eroded, comm_of(s)); }, dict_of))
+      .def("left", of_any_to([](auto& s) { return sum_of(s.domain.outflow, comm_of(s)); }, dict_of))
       .def("loads", of_any([](auto& s) { return load_records(s.domain); }))
       .def_prop_ro("failure", of_any([](auto& s) { return s.failure; }))
       .def("limiter", of_any([](auto& s) { return find_limiter(s.domain); }))
@@ -182,72 +203,89 @@ void def_columns(SimulationClass& simulation) {
   simulation
       .def("columns", of_any([](auto& s, int body) { return columns(s.domain, body); }),
            nb::arg("body"))
-      .def("column", of_any([](auto& s, int body, const std::string& name) {
-             const auto width = static_cast<std::size_t>(column_components(s.domain, body, name));
-             std::vector<double> values(s.domain.body_at(body).count * width);
-             copy_column(s.domain, body, name, values);
-             return to_numpy(std::move(values), width);
-           }),
-           nb::arg("body"), nb::arg("name"))
-      .def("rounded_column",
-           of_any([](auto& s, const std::string& name, const std::vector<int>& places,
-                     std::size_t width, float elsewhere) {
-             Floats values = floats(particle_count(s.domain), width, elsewhere);
-             round_column(s.domain, name, places, width, {values.data(), values.size()});
-             return values;
-           }),
-           nb::arg("name"), nb::arg("places"), nb::arg("width"), nb::arg("elsewhere"))
-      .def("rounded_derived", of_any([](auto& s, const std::string& name) {
-             Floats values = floats(particle_count(s.domain), 1, 0.0F);
-             round_derived(s.domain, name, {values.data(), values.size()});
-             return values;
-           }),
-           nb::arg("name"));
+      .def(
+          "column",
+          [](AnySimulation& either, int body, const std::string& name) {
+            auto [values, width] = either.visit([&](auto& s) {
+              const auto components =
+                  static_cast<std::size_t>(column_components(s.domain, body, name));
+              std::vector<double> numbers(s.domain.body_at(body).count * components);
+              copy_column(s.domain, body, name, numbers);
+              return std::pair(std::move(numbers), components);
+            });
+            return to_numpy(std::move(values), width);
+          },
+          nb::arg("body"), nb::arg("name"))
+      .def(
+          "rounded_column",
+          [](AnySimulation& either, const std::string& name, const std::vector<int>& places,
+             std::size_t width, float elsewhere) {
+            return rows_of_all(either, width, elsewhere, [&](auto& s, std::span<float> to) {
+              round_column(s.domain, name, places, width, to);
+            });
+          },
+          nb::arg("name"), nb::arg("places"), nb::arg("width"), nb::arg("elsewhere"))
+      .def(
+          "rounded_derived",
+          [](AnySimulation& either, const std::string& name) {
+            return rows_of_all(either, 1, 0.0F, [&](auto& s, std::span<float> to) {
+              round_derived(s.domain, name, to);
+            });
+          },
+          nb::arg("name"));
 }
 
 /// What has happened: history, contacts, times, memory.
 void def_records(SimulationClass& simulation) {
   simulation
-      .def("history",
-           of_any([](auto& s) { return to_numpy(s.history.take(), history_terms.size()); }))
-      .def("part_sums", of_any([](auto& s) {
-             require(s, Phase::ready, "call prepare() before part_sums()");
-             const auto parts = part_sums(s.domain);
-             return nb::make_tuple(balance_row(s.domain.ledger.angular, angular_totals(parts)),
-                                   to_numpy(rows_of(parts), part_columns.size()));
-           }))
-      .def("contact_pairs", of_any([](auto& s) {
-             return s.domain.contact.records.of_all_ranks(*s.domain.grid.partition.comm);
-           }))
+      .def("history", of_any_to([](auto& s) { return s.history.take(); },
+                                [](std::vector<double> rows) {
+                                  return to_numpy(std::move(rows), history_terms.size());
+                                }))
+      .def("part_sums",
+           of_any_to(
+               [](auto& s) {
+                 require(s, Phase::ready, "call prepare() before part_sums()");
+                 const auto parts = part_sums(s.domain);
+                 return std::pair(balance_row(s.domain.ledger.angular, angular_totals(parts)),
+                                  rows_of(parts));
+               },
+               [](auto sums) {
+                 return nb::make_tuple(sums.first,
+                                       to_numpy(std::move(sums.second), part_columns.size()));
+               }))
+      .def("contact_pairs",
+           of_any([](auto& s) { return s.domain.contact.records.of_all_ranks(comm_of(s)); }))
       .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))
-      .def("contact_summary", of_any([](auto& s) {
-             const auto& contact = s.domain.contact;
-             nb::dict d;
-             d["overlapped_nodes"] = contact.counts.overlapped;
-             d["overlapped_nodes_max"] = contact.counts.overlapped_max;
-             d["bodies_per_node_max"] = contact.counts.bodies_max;
-             d["unconverged_nodes"] = contact.unconverged.load();
-             d["set_back_particles"] = contact.set_back.particles;
-             d["set_back_most"] = contact.set_back.most;
-             d["bytes"] = bytes_of(s).contact;
-             return d;
-           }))
-      .def("timers", of_any([](auto& s) {
-             nb::dict d;
-             for (const auto& [name, seconds] : s.timers.seconds())
-               d[nb::str(name.data(), name.size())] = seconds;
-             return d;
-           }))
+      .def("contact_summary", of_any_to([](auto& s) { return contact_summary(s); },
+                                        [](const ContactSummary& told) {
+                                          nb::dict d;
+                                          d["overlapped_nodes"] = told.overlapped;
+                                          d["overlapped_nodes_max"] = told.overlapped_max;
+                                          d["bodies_per_node_max"] = told.bodies_max;
+                                          d["unconverged_nodes"] = told.unconverged;
+                                          d["set_back_particles"] = told.set_back_particles;
+                                          d["set_back_most"] = told.set_back_most;
+                                          d["bytes"] = told.bytes;
+                                          return d;
+                                        }))
+      .def("timers", of_any_to([](auto& s) { return s.timers.seconds(); },
+                               [](const auto& times) {
+                                 nb::dict d;
+                                 for (const auto& [name, seconds] : times)
+                                   d[nb::str(name.data(), name.size())] = seconds;
+                                 return d;
+                               }))
       .def("reset_timers", of_any([](auto& s) { s.timers.reset(); }))
-      .def("bytes", of_any([](auto& s) {
-             const Bytes b = bytes_of(s);
-             nb::dict d;
-             d["particles"] = b.particles;
-             d["grid"] = b.grid;
-             d["contact"] = b.contact;
-             d["other"] = b.other;
-             return d;
-           }));
+      .def("bytes", of_any_to([](auto& s) { return bytes_of(s); },
+                              [](const Bytes& b) {
+                                nb::dict d;
+                                d["particles"] = b.particles;
+                                d["grid"] = b.grid;
+                                d["contact"] = b.contact;
+                                d["other"] = b.other;
+                                return d;
+                              }));
   simulation
       .def_prop_ro_static("history_columns",
                           [](nb::handle) {

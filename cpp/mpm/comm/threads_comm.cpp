@@ -8,6 +8,12 @@ namespace mpm {
 ThreadsWorld::ThreadsWorld(int size)
     : size_(size), boxes_(static_cast<std::size_t>(size) * static_cast<std::size_t>(size)) {}
 
+void ThreadsWorld::recover() {
+  failed_ = false;
+  entered_ = left_ = 0;
+  for (auto& box : boxes_) box.clear();
+}
+
 template <class Ready>
 void ThreadsWorld::wait(std::unique_lock<std::mutex>& lock, Ready&& ready) {
   changed_.wait(lock, [&] { return failed_ || ready(); });

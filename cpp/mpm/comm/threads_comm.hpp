@@ -15,6 +15,8 @@ class ThreadsWorld {
  public:
   explicit ThreadsWorld(int size);
   int size() const { return size_; }
+  /// After all ranks have failed alike and wait for nothing: begin anew.
+  void recover();
 
  private:
   friend class ThreadsComm;

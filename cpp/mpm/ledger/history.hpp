@@ -92,7 +92,7 @@ inline constexpr auto history_terms = std::to_array<HistoryTerm>({
      [](const StepState& s) { return s.ledger.unbalanced; }},
     {"cell_size", "m", "edge of the cells; it grows where `grid.coarsening` is given",
      [](const StepState& s) { return s.cell_size; }},
-    {"tiles", "1", "tiles of 4 x 4 x 4 cells (8 x 8 in 2D) in use, those of each body counted",
+    {"tiles", "1", "tiles of 4 x 4 x 4 cells (8 x 8 in 2D) that hold particles, those of each body counted",
      [](const StepState& s) { return static_cast<double>(s.tiles); }},
     {"motion_work", "J", "the part of `external` that prescribed motions have done",
      [](const StepState& s) { return s.ledger.motion_work; }, Role::other, "external"},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mpm/comm/all_sums.hpp"
 #include "mpm/run/coarsen_cells.hpp"
 #include "mpm/run/find_failure.hpp"
 #include "mpm/run/measures.hpp"
@@ -64,7 +65,9 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
     domain.time_step = last ? left : std::min(simulation.next_time_step, 0.5 * left);
     make_step(simulation, last ? next_stop : domain.time + domain.time_step);
     ++made;
-    if (stop != nullptr && stop->load(std::memory_order_relaxed)) break;
+    // All ranks after the same step.
+    const bool told = stop != nullptr && stop->load(std::memory_order_relaxed);
+    if (any_of_all(*domain.grid.partition.comm, told)) break;
   }
   const bool looked = simulation.watch.looked == domain.step;
   if (made > 0 && domain.time >= end_time && !looked && !simulation.failure) look(simulation);

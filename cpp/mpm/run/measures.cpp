@@ -67,6 +67,26 @@ Bytes bytes_of(const Simulation<D>& simulation) {
   return r;
 }
 
+template <int D>
+ContactSummary contact_summary(const Simulation<D>& simulation) {
+  const Contact<D>& contact = simulation.domain.contact;
+  Comm& comm = *simulation.domain.grid.partition.comm;
+  const auto all = [&](std::size_t number) {
+    return static_cast<std::size_t>(all_sum(comm, static_cast<std::int64_t>(number)));
+  };
+  ContactSummary told;
+  told.overlapped = contact.counts.overlapped;
+  told.overlapped_max = contact.counts.overlapped_max;
+  told.bodies_max = contact.counts.bodies_max;
+  told.unconverged = all(contact.unconverged.load());
+  told.set_back_particles = all(contact.set_back.particles);
+  told.set_back_most = all_max(comm, contact.set_back.most);
+  told.bytes = bytes_of(simulation).contact;
+  return told;
+}
+
+template ContactSummary contact_summary<2>(const Simulation<2>&);
+template ContactSummary contact_summary<3>(const Simulation<3>&);
 template double total_mass<2>(const Domain<2>&);
 template double total_mass<3>(const Domain<3>&);
 template double kinetic_energy<2>(const Domain<2>&);

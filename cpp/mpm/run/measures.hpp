@@ -23,6 +23,8 @@ inline RemovedSum sum_of(const Removed& removed, Comm& comm) {
 }
 
 template <int D>
+ContactSummary contact_summary(const Simulation<D>& simulation);
+template <int D>
 Bytes bytes_of(const Simulation<D>& simulation);
 
 }  // namespace mpm

@@ -50,6 +50,14 @@ struct RemovedSum {
   std::size_t count = 0;
 };
 
+/// What there was of contact, of all ranks but for the bytes.
+struct ContactSummary {
+  std::size_t overlapped = 0, overlapped_max = 0, unconverged = 0, set_back_particles = 0,
+              bytes = 0;
+  int bodies_max = 0;
+  double set_back_most = 0.0;  // [m]
+};
+
 /// A load on a part of a body's surface; vectors have zeros behind the dimension.
 struct LoadRecord {
   std::string name;

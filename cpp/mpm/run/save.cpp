@@ -76,6 +76,12 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   simulation.timers.exchange(stream);
 }
 
+template <int D>
+void refuse_ranks(const Simulation<D>& simulation) {
+  if (!simulation.domain.grid.partition.alone())
+    throw std::invalid_argument("a run of several ranks has no checkpoints: give one rank");
+}
+
 }  // namespace
 
 template <int D>
@@ -83,6 +89,7 @@ void save(Simulation<D>& simulation, const StateStream::Transfer& to) {
   require(simulation, Phase::ready, "call prepare() before save()");
   if (simulation.failure)
     throw std::invalid_argument("a run that had to stop has no state to go on from");
+  refuse_ranks(simulation);
   StateStream stream(StateStream::Way::save, to);
   exchange(simulation, stream);
 }
@@ -92,6 +99,7 @@ void restore(Simulation<D>& simulation, const StateStream::Transfer& from, std::
   constexpr const char* when = "call restore() after prepare() and before any step";
   require(simulation, Phase::ready, when);
   if (simulation.domain.step > 0) throw std::invalid_argument(when);
+  refuse_ranks(simulation);
   StateStream stream(StateStream::Way::restore, from, size);
   simulation.phase = Phase::broken;  // what has been restored half must not step
   exchange(simulation, stream);

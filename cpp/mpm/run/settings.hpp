@@ -164,13 +164,18 @@ struct RunSettings {
 /// What moves no bit of the results.
 struct ExecutionSettings {
   int threads = 1;
+  int ranks = 1;
   bool fused = true;
   double disorder = disorder_that_pays;
 
   static constexpr std::string_view table = "execution";
   using Self = ExecutionSettings;
   static constexpr auto settings = std::tuple{
-      Setting{"threads", &Self::threads, "threads", Rule{1.0, 65536.0, false, false}},
+      Setting{"threads", &Self::threads, "threads, of each rank", Rule{1.0, 65536.0, false, false}},
+      Setting{"ranks", &Self::ranks,
+              "parts of the grid, each worked on by a thread of its own as by a process: to test "
+              "that their number changes no result",
+              Rule{1.0, 1024.0, false, false}},
       Setting{"fused", &Self::fused, "whether neighbouring stages of a step are done at once"},
       Setting{
           "disorder", &Self::disorder,
