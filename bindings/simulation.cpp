@@ -1,11 +1,9 @@
 // The class of simulations: what it takes in, its steps, and what it tells.
-#include <nanobind/stl/array.h>
 
+#include "any.hpp"
 #include "interrupt.hpp"
 #include "mpm/run/advance.hpp"
 #include "mpm/run/bodies.hpp"
-#include "mpm/run/columns.hpp"
-#include "mpm/run/frame.hpp"
 #include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/pair_groups.hpp"
@@ -14,47 +12,10 @@
 #include "mpm/run/save.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/warnings.hpp"
-#include "one_thread.hpp"
 #include "translate.hpp"
 
 namespace mpm::bindings {
 namespace {
-
-/// A function of a simulation of any dimension, from a generic one of Simulation<D>&.
-template <class F, class R, class... Arguments>
-auto of_any(F f, R (F::*)(Simulation<2>&, Arguments...) const) {
-  return [f](AnySimulation& either, Arguments... arguments) -> R {
-    // As they are, for several ranks may take them.
-    return either.visit([&](auto& s) -> R { return f(s, arguments...); });
-  };
-}
-template <class F>
-auto of_any(F f) {
-  return of_any(f, &F::template operator()<Simulation<2>>);
-}
-
-/// The same, converted for Python once all ranks are done: f makes no Python objects.
-template <class F, class Convert>
-auto of_any_to(F f, Convert convert) {
-  return [get = of_any(f), convert](AnySimulation& either) { return convert(get(either)); };
-}
-
-Comm& comm_of(auto& simulation) { return *simulation.domain.grid.partition.comm; }
-
-/// Rows of floats that `fill` writes on rank 0; on others it writes to rows of their own.
-template <class Fill>
-Floats rows_of_all(AnySimulation& either, std::size_t width, float elsewhere, Fill fill) {
-  const std::size_t count = either.visit([](auto& s) { return particle_count(s.domain); });
-  Floats values = floats(count, width, elsewhere);
-  const std::span<float> to{values.data(), values.size()};
-  either.visit([&](auto& s) {
-    std::vector<float> others;
-    const bool first = comm_of(s).rank() == 0;
-    if (!first) others.resize(to.size(), elsewhere);
-    fill(s, first ? to : std::span<float>(others));
-  });
-  return values;
-}
 
 nb::dict dict_of(const RemovedSum& removed) {
   nb::dict d;
@@ -196,43 +157,6 @@ void def_telling(SimulationClass& simulation) {
       .def_prop_ro("failure", of_any([](auto& s) { return s.failure; }))
       .def("limiter", of_any([](auto& s) { return find_limiter(s.domain); }))
       .def("warnings", of_any([](auto& s) { return warnings(s); }));
-}
-
-/// The particles' numbers.
-void def_columns(SimulationClass& simulation) {
-  simulation
-      .def("columns", of_any([](auto& s, int body) { return columns(s.domain, body); }),
-           nb::arg("body"))
-      .def(
-          "column",
-          [](AnySimulation& either, int body, const std::string& name) {
-            auto [values, width] = either.visit([&](auto& s) {
-              const auto components =
-                  static_cast<std::size_t>(column_components(s.domain, body, name));
-              std::vector<double> numbers(s.domain.body_at(body).count * components);
-              copy_column(s.domain, body, name, numbers);
-              return std::pair(std::move(numbers), components);
-            });
-            return to_numpy(std::move(values), width);
-          },
-          nb::arg("body"), nb::arg("name"))
-      .def(
-          "rounded_column",
-          [](AnySimulation& either, const std::string& name, const std::vector<int>& places,
-             std::size_t width, float elsewhere) {
-            return rows_of_all(either, width, elsewhere, [&](auto& s, std::span<float> to) {
-              round_column(s.domain, name, places, width, to);
-            });
-          },
-          nb::arg("name"), nb::arg("places"), nb::arg("width"), nb::arg("elsewhere"))
-      .def(
-          "rounded_derived",
-          [](AnySimulation& either, const std::string& name) {
-            return rows_of_all(either, 1, 0.0F, [&](auto& s, std::span<float> to) {
-              round_derived(s.domain, name, to);
-            });
-          },
-          nb::arg("name"));
 }
 
 /// What has happened: history, contacts, times, memory.

@@ -78,21 +78,6 @@ class ColumnsIn {
     memory_.release_and_allocate(bytes);
   }
 
-  /// More rows behind those that there are, which keep what they hold.
-  void grow(std::size_t rows)
-    requires std::same_as<Space, HostSpace>
-  {
-    const std::size_t kept = rows_;
-    const std::vector<std::size_t> from = begin_;
-    const AlignedArray<std::byte, Space> before = std::move(memory_);
-    allocate(rows);
-    std::size_t k = 0;
-    for (const ColumnInfo& info : infos_)
-      for (int c = 0; c < info.components; ++c, ++k)
-        std::copy_n(before.data() + from[k], kept * info.number_bytes(),
-                    memory_.data() + begin_[k]);
-  }
-
   /// Columns with the same names and rows in this space, of those in the host's memory.
   void copy_from_host(const ColumnsIn<HostSpace>& host)
     requires(!std::same_as<Space, HostSpace>)
@@ -151,6 +136,7 @@ class ColumnsIn {
  private:
   template <MemorySpace>
   friend class ColumnsIn;
+  friend void grow(ColumnsIn<HostSpace>& columns, std::size_t rows);
 
   const ColumnInfo& info_of(int c) const {
     std::size_t k = infos_.size();
@@ -173,5 +159,18 @@ class ColumnsIn {
 };
 
 using Columns = ColumnsIn<HostSpace>;
+
+/// More rows behind those that there are, which keep what they hold.
+inline void grow(Columns& columns, std::size_t rows) {
+  const std::size_t kept = columns.rows_;
+  const std::vector<std::size_t> from = columns.begin_;
+  const AlignedArray<std::byte> before = std::move(columns.memory_);
+  columns.allocate(rows);
+  std::size_t k = 0;
+  for (const ColumnInfo& info : columns.infos_)
+    for (int c = 0; c < info.components; ++c, ++k)
+      std::copy_n(before.data() + from[k], kept * info.number_bytes(),
+                  columns.memory_.data() + columns.begin_[k]);
+}
 
 }  // namespace mpm

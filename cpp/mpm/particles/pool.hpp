@@ -85,7 +85,7 @@ std::uint32_t take_row(ParticlePool<D>& pool) {
   if (pool.free_rows.empty()) {
     // A sixteenth more, so that few comings allocate.
     const std::size_t count = pool.count(), more = count + count / 16 + 64;
-    pool.columns.grow(more);
+    grow(pool.columns, more);
     pool.id.resize(more);
     if (!pool.piece.empty()) pool.piece.resize(more, 0);
     for (std::size_t row = more; row > count; --row)

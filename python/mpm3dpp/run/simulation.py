@@ -14,7 +14,7 @@ from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError, RunError, nearest
 from mpm3dpp.base.expression import program_of
 from mpm3dpp.base.machine import thread_count
-from mpm3dpp.base.settings import fill_core_table, functions
+from mpm3dpp.base.settings import functions
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import lighting_times
 from mpm3dpp.case.loads import add_load, pieces
@@ -25,6 +25,7 @@ from mpm3dpp.fill.point_warnings import point_warnings
 from mpm3dpp.io.checkpoint import read_about, restore_checkpoint, write_checkpoint
 
 from .checkpoints import check_same
+from .core_settings import core_settings
 
 
 class Simulation:
@@ -37,6 +38,9 @@ class Simulation:
             same bits; False makes them one by one, as the scheme lists them.
         disorder: share of a body's particles that changes cell before its columns in memory are
             put back in order, which costs or saves time and moves no bit; by default what pays.
+        ranks: parts of the grid, each worked on by a thread of its own as by a process, with what
+            processes tell each other; to test that their number moves no bit. A run of several has
+            no checkpoints.
 
     Attributes:
         case: as given.
@@ -57,6 +61,7 @@ class Simulation:
         threads: int | None = None,
         fused: bool = True,
         disorder: float | None = None,
+        ranks: int = 1,
     ) -> None:
         if not isinstance(case, Case):
             remedy = 'give what mpm3dpp.load_case("case.toml") returns, or make a Case'
@@ -69,8 +74,9 @@ class Simulation:
         self.materials = [body.material for body in filled]
         self.warnings = [*warnings(filled), *point_warnings(case, filled)]
         self.notes = notes(case, filled)
-        settings = _settings(case, self.threads)
+        settings = core_settings(case, self.threads)
         settings.execution.fused = fused
+        settings.execution.ranks = ranks
         if disorder is not None:
             settings.execution.disorder = disorder
         self.core = _core.Simulation(settings)
@@ -273,28 +279,3 @@ class Simulation:
             known = [*self.bodies, *self.case.grains]
             raise CaseError("is not a body of the case", nearest(body, known), value=body)
         return [self.bodies.index(body)]
-
-
-def _settings(case: Case, threads: int) -> _core.Settings:
-    """Return a case's numbers as the core wants them."""
-
-    def three(values: Any, fill: Any) -> list[Any]:
-        return [*values, fill, fill, fill][:3]
-
-    settings = _core.Settings()
-    for name in ("grid", "run", "contact"):
-        fill_core_table(getattr(settings, name), getattr(case, name))
-    fill_core_table(settings.run.transfer, case.run.transfer).word = case.run.transfer.word
-    if case.run.settle is not None:
-        settings.run.settle = fill_core_table(_core.SettleSettings(), case.run.settle)
-    given, grid = case.grid, settings.grid
-    grid.origin = three(given.lower, 0.0)
-    grid.box_cells = three(given.box_cells, 0) if given.box_cells else [0, 0, 0]
-    grid.walls = given.walls
-    grid.outflow = given.outflow_box is not None
-    grid.outflow_lower = three(given.kept[0], -math.inf)
-    grid.outflow_upper = three(given.kept[1], math.inf)
-    if given.coarsening is not None:
-        grid.coarsening = fill_core_table(_core.CoarseningSettings(), given.coarsening)
-    settings.execution.threads = threads
-    return settings

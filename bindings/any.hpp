@@ -1,0 +1,34 @@
+#pragma once
+// Functions of a simulation in any dimension and of any number of ranks.
+#include <utility>
+
+#include "one_thread.hpp"
+#include "translate.hpp"
+
+namespace mpm::bindings {
+
+/// A function of a simulation of any dimension, from a generic one of Simulation<D>&.
+template <class F, class R, class... Arguments>
+auto of_any(F f, R (F::*)(Simulation<2>&, Arguments...) const) {
+  return [f](AnySimulation& either, Arguments... arguments) -> R {
+    // As they are, for several ranks may take them.
+    return either.visit([&](auto& s) -> R { return f(s, arguments...); });
+  };
+}
+template <class F>
+auto of_any(F f) {
+  return of_any(f, &F::template operator()<Simulation<2>>);
+}
+
+/// The same, converted for Python once all ranks are done: f makes no Python objects.
+template <class F, class Convert>
+auto of_any_to(F f, Convert convert) {
+  return [get = of_any(f), convert](AnySimulation& either) { return convert(get(either)); };
+}
+
+Comm& comm_of(auto& simulation) { return *simulation.domain.grid.partition.comm; }
+
+/// The particles' numbers, among the methods of the class.
+void def_columns(SimulationClass& simulation);
+
+}  // namespace mpm::bindings
