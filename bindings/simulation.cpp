@@ -126,14 +126,16 @@ void def_stepping(SimulationClass& simulation) {
           "save",
           [](AnySimulation& either, const nb::callable& write) {
             const AtWork here(either);
-            either.visit([&](auto& s) { save(s, transfer_by(write)); });
+            const auto transfer = transfer_by(write);
+            either.visit([&](auto& s) { save(s, transfer); });
           },
           nb::arg("write"))
       .def(
           "restore",
           [](AnySimulation& either, const nb::callable& readinto, std::size_t size) {
             const AtWork here(either);
-            either.visit([&](auto& s) { restore(s, transfer_by(readinto), size); });
+            const auto transfer = transfer_by(readinto);
+            either.visit([&](auto& s) { restore(s, transfer, size); });
           },
           nb::arg("readinto"), nb::arg("size"))
       .def("set_threads", of_any([](auto& s, int count) { s.domain.threads.resize(count); }),

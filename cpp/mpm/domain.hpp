@@ -53,6 +53,8 @@ struct Domain {
   std::int64_t step = 0;     // steps made
 
   std::vector<PatchSums<D>> sums;  // one per patch
+  // What walls have done to rigid bodies as a whole in the step, alike on all ranks [N m s].
+  Vector3 rigid_at_walls = Vector3::zero();
   ContactSums contact_sums;        // of the step
   Ledger ledger;
   ListScratch<D> list_scratch;

@@ -17,7 +17,7 @@ void ThreadsWorld::recover() {
 template <class Ready>
 void ThreadsWorld::wait(std::unique_lock<std::mutex>& lock, Ready&& ready) {
   changed_.wait(lock, [&] { return failed_ || ready(); });
-  if (failed_) throw RankFailed(why_);
+  if (!ready()) throw RankFailed(why_);
 }
 
 template <class Number, class Combine>
@@ -28,6 +28,8 @@ void ThreadsWorld::reduce(std::vector<Number>& shared, std::span<Number> numbers
   wait(lock, [&] { return left_ == 0; });
   if (entered_ == 0)
     shared.assign(numbers.begin(), numbers.end());
+  else if (shared.size() != numbers.size())
+    throw std::logic_error("ranks do not agree on what they sum");
   else
     for (std::size_t k = 0; k < numbers.size(); ++k) shared[k] = combine(shared[k], numbers[k]);
   if (++entered_ == size_) changed_.notify_all();

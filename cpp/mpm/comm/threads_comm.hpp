@@ -27,7 +27,7 @@ class ThreadsWorld {
   /// Wait until `ready()`; throws RankFailed once any rank has failed.
   template <class Ready>
   void wait(std::unique_lock<std::mutex>& lock, Ready&& ready);
-  /// Combine numbers of all ranks: each calls add(shared) in turn, the last lets all take(shared).
+  /// Combine numbers of all ranks, one after another; all get the result once the last has come.
   template <class Number, class Combine>
   void reduce(std::vector<Number>& shared, std::span<Number> numbers, Combine&& combine);
   std::deque<Sent>& box(int from, int to) {

@@ -9,13 +9,6 @@
 namespace mpm {
 namespace {
 
-/// Neighbour k of a tile.
-template <int D>
-Index<D> beside(Index<D> tile, int k) {
-  for (std::size_t a = 0; a < D; ++a) tile[a] += Tile<D>::offset(k)[a];
-  return tile;
-}
-
 /// May a block reach any node that belongs to neighbour k?
 template <int D>
 bool reaches(const Reach& reach, int k) {
@@ -65,7 +58,7 @@ void find_around(Contact<D>& contact) {
   foreign.clear();
   for (std::size_t t = 0; t < tiles.size(); ++t)
     for (int k = 0; k < Tile<D>::neighbours; ++k) {
-      const Index<D> wanted = beside<D>(tiles[t].tile, k);
+      const Index<D> wanted = Tile<D>::beside(tiles[t].tile, k);
       const auto found = std::ranges::lower_bound(sorted, wanted, tile_less<D>, place);
       contact.around[t][static_cast<std::size_t>(k)] =
           found != sorted.end() && place(*found) == wanted ? *found : -1;
@@ -79,7 +72,7 @@ void find_around(Contact<D>& contact) {
     for (int k = 0; tiles[t].beside_others && k < Tile<D>::neighbours; ++k) {
       std::int32_t& number = contact.around[t][static_cast<std::size_t>(k)];
       if (number >= 0) continue;
-      const Index<D> wanted = beside<D>(tiles[t].tile, k);
+      const Index<D> wanted = Tile<D>::beside(tiles[t].tile, k);
       const auto found =
           std::ranges::lower_bound(foreign, wanted, tile_less<D>, &ForeignTile<D>::tile);
       number = none + static_cast<std::int32_t>(found - foreign.begin());
@@ -97,7 +90,7 @@ void find_others(Contact<D>& contact, const TileGrid<D>& grid, Response response
   for (ContactTile<D>& tile : contact.tiles) {
     tile.beside_others = tile.held_by_others = false;
     for (int k = 0; k < Tile<D>::neighbours && !tile.beside_others; ++k)
-      tile.beside_others = !grid.partition.owns(beside<D>(tile.tile, k));
+      tile.beside_others = !grid.partition.owns(Tile<D>::beside(tile.tile, k));
     for (std::uint32_t h = 0; h < tile.holders; ++h) {
       const TileHolder& holder = contact.holders[tile.first_holder + h];
       if (!grid.patches[holder.patch].foreign) continue;
@@ -136,18 +129,16 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
   std::swap(contact.last_tiles, tiles);
   tiles.clear();
   contact.has_rigid = contact.has_free_rigid = false;
+  // By what the case has: ranks may not know alike who is left.
   for (const Body<D>& body : bodies) {
-    if (body.active() == 0) continue;
-    if (!body.deforms()) contact.has_rigid = true;
-    if (body.is_free_rigid()) contact.has_free_rigid = true;
+    contact.has_rigid = contact.has_rigid || !body.deforms();
+    contact.has_free_rigid = contact.has_free_rigid || body.is_free_rigid();
   }
   // Set below for the patches around tiles that stay: for others no masses are looked at.
   for (Patch<D>& patch : grid.patches) patch.in_contact = false;
   auto tile_of = [&](const TileHolder& h) {
-    Index<D> t = grid.patches[static_cast<std::size_t>(h.patch)].tile;
-    const Index<D> o = Tile<D>::offset(h.neighbour);
-    for (int a = 0; a < D; ++a) t[a] += o[a];
-    return t;
+    return Tile<D>::beside(grid.patches[static_cast<std::size_t>(h.patch)].tile,
+                           static_cast<int>(h.neighbour));
   };
   list_holders(grid, response, holders);
   std::sort(holders.begin(), holders.end(), [&](const TileHolder& x, const TileHolder& y) {

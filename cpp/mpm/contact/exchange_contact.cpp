@@ -17,7 +17,7 @@ template <int D>
 struct ToldNode {
   std::int32_t body, node;  // node: of the patch's block
   Index<D> tile;
-  Vec<double, D> value;
+  Vec<double, D> value;  // velocity [m/s] or force [N]
 };
 
 /// f(touch, rank) for each touch of a tile and each other rank with nodes that it reaches.
@@ -26,21 +26,22 @@ void for_each_reader(const Contact<D>& contact, const TileGrid<D>& grid, const C
                      double support, F&& f) {
   const std::span<const Touch<D>> touches(
       contact.touches[tile.touches.share].data() + tile.touches.first, tile.touches.count);
+  if (touches.empty()) return;
+  std::array<int, Tile<D>::neighbours> owners;
+  for (int k = 0; k < Tile<D>::neighbours; ++k)
+    owners[static_cast<std::size_t>(k)] =
+        grid.partition.owners.rank_of(Tile<D>::beside(tile.tile, k));
   std::vector<int> readers;
   for (const Touch<D>& touch : touches) {
     readers.clear();
     for (int k = 0; k < Tile<D>::neighbours; ++k) {
-      Index<D> other = tile.tile;
-      Vec<double, D> place = touch.place();
-      for (std::size_t a = 0; a < D; ++a) {
-        other[a] += Tile<D>::offset(k)[a];
-        place[static_cast<int>(a)] -= Tile<D>::cells * Tile<D>::offset(k)[a];
-      }
-      const int rank = grid.partition.owners.rank_of(other);
-      if (rank == grid.partition.comm->rank() ||
-          std::ranges::find(readers, rank) != readers.end() ||
-          TileTouches<D>::nodes_near(place, support) == 0)
+      const int rank = owners[static_cast<std::size_t>(k)];
+      if (rank == grid.partition.comm->rank() || std::ranges::find(readers, rank) != readers.end())
         continue;
+      Vec<double, D> place = touch.place();
+      for (std::size_t a = 0; a < D; ++a)
+        place[static_cast<int>(a)] -= Tile<D>::cells * Tile<D>::offset(k)[a];
+      if (TileTouches<D>::nodes_near(place, support) == 0) continue;
       readers.push_back(rank);
       f(touch, rank);
     }
@@ -103,8 +104,9 @@ void exchange_responses(Contact<D>& contact, TileGrid<D>& grid, int at) {
   for (const Letter& letter : mail.in)
     for (Reader reader(letter); !reader.done();) {
       const auto told = reader.template read<ToldNode<D>>();
-      const auto p = static_cast<std::size_t>(find_patch<D>(grid, told.body, told.tile));
-      double* const numbers = grid.block(p).records[told.node];
+      const int p = find_patch<D>(grid, told.body, told.tile);
+      if (p < 0) throw std::logic_error("another rank tells of a patch that is not here");
+      double* const numbers = grid.block(static_cast<std::size_t>(p)).records[told.node];
       for (int a = 0; a < D; ++a) numbers[at + a] = told.value[a];
     }
 }

@@ -254,10 +254,14 @@ Crowd largest_crowd(const Contact<D>& contact, const TileGrid<D>& grid) {
   Crowd most;
   for (const ContactPart<D>& part : contact.parts)
     for (const ContactNode& node : part.nodes) {
-      if (static_cast<int>(node.sides) <= most.bodies) continue;
+      if (static_cast<int>(node.sides) < most.bodies) continue;
+      const Vec<double, D> x = grid.position_of(place_of(contact, grid, node));
+      const Vector3 place = in_space<D>(x);
+      // Of equal ones the lowest, in whatever order they come.
+      if (static_cast<int>(node.sides) == most.bodies && !is_lower(place.c, most.position))
+        continue;
       most.bodies = node.sides;
       most.body = part.sides[node.first_side].body;
-      const Vec<double, D> x = grid.position_of(place_of(contact, grid, node));
       for (int a = 0; a < D; ++a) most.position[a] = x[a];
     }
   Comm& comm = *grid.partition.comm;

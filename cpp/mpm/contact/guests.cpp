@@ -1,6 +1,6 @@
 #include "mpm/contact/guests.hpp"
 
-#include <bit>
+#include <numeric>
 
 #include "mpm/comm/letters.hpp"
 #include "mpm/contact/find_touches.hpp"
@@ -19,15 +19,15 @@ struct Request {
 
 /// What it is told of the patch, before the particles.
 struct Answer {
-  std::uint8_t surface_range;
+  std::uint8_t surface_range;  // [cells]
   std::uint32_t count;
 };
 
 template <int D>
 struct Guest {
   std::uint8_t cell;
-  Vec<double, D> x;
-  double mass, volume, set_back;
+  Vec<double, D> x;               // [m]
+  double mass, volume, set_back;  // [kg], [m^3], a share of half its edge
 };
 
 template <int D>
@@ -72,9 +72,9 @@ void take_in(Reader& reader, ParticlePool<D>& pool, Patch<D>& patch) {
     pool.mass()[row] = guest.mass;
     pool.volume()[row] = guest.volume;
     if (pool.set_back >= 0) pool.columns.component(pool.set_back)[row] = guest.set_back;
-    for (std::size_t c = guest.cell + std::size_t{1}; c < patch.cell_begin.size(); ++c)
-      ++patch.cell_begin[c];
+    ++patch.cell_begin[guest.cell + std::size_t{1}];
   }
+  std::partial_sum(patch.cell_begin.begin(), patch.cell_begin.end(), patch.cell_begin.begin());
 }
 
 }  // namespace

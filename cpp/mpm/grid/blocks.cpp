@@ -53,7 +53,7 @@ void cut_blocks(TileGrid<D>& grid, Threads& threads) {
   if (!find_shapes(grid, threads) && grid.blocks_known) return;
   grid.blocks_known = true;
   std::size_t needed = 0;
-  grid.patches_with_particles = grid.nodes_with_particles = 0;
+  grid.patches_with_particles = grid.records_with_particles = 0;
   for (Patch<D>& patch : grid.patches) {
     // One behind another in the order of the patches. Nothing in a block outlives a step, so they
     // may move freely (decision 0013).
@@ -61,7 +61,10 @@ void cut_blocks(TileGrid<D>& grid, Threads& threads) {
     const auto nodes = static_cast<std::size_t>(patch.shape.node_count);
     if (patch.occupied != 0) {
       ++grid.patches_with_particles;
-      grid.nodes_with_particles += nodes;
+      // Of its own cells: which patch has the nodes of bonded ones is no matter of the case.
+      const auto own =
+          static_cast<std::size_t>(BlockShape<D>::around(patch.occupied, grid.reach()).node_count);
+      grid.records_with_particles += own + (grid.has_dashpots ? (own + 1) / 2 : 0);
     }
     needed += record * (nodes + (grid.has_dashpots ? (nodes + 1) / 2 : 0));  // whole cache lines
   }

@@ -1,23 +1,18 @@
 #include "mpm/grid/foreign_patches.hpp"
 
-#include <cstring>
-
 #include "mpm/comm/letters.hpp"
 #include "mpm/grid/connect.hpp"
 
 namespace mpm {
 namespace {
 
-/// The set of other ranks that have a tile beside a patch's, or its own.
+/// The set of other ranks that have the tile of a patch or one beside it.
 template <int D>
 const std::vector<int>& readers_of(Partition<D>& partition, Patch<D>& patch) {
   if (patch.readers >= 0) return partition.readers[static_cast<std::size_t>(patch.readers)];
   std::vector<int> ranks;
-  for (int k = 0; k < Tile<D>::neighbours; ++k) {
-    Index<D> tile = patch.tile;
-    for (std::size_t a = 0; a < D; ++a) tile[a] += Tile<D>::offset(k)[a];
-    ranks.push_back(partition.owners.rank_of(tile));
-  }
+  for (int k = 0; k < Tile<D>::neighbours; ++k)
+    ranks.push_back(partition.owners.rank_of(Tile<D>::beside(patch.tile, k)));
   std::ranges::sort(ranks);
   ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
   std::erase(ranks, partition.comm->rank());
@@ -45,6 +40,7 @@ bool is_foreign_as_told(const TileGrid<D>& grid) {
 template <int D>
 void merge(TileGrid<D>& grid) {
   const std::vector<Patch<D>> before = std::exchange(grid.patches, {});
+  grid.patches.reserve(before.size() + grid.partition.told.size());
   auto told = grid.partition.told.begin();
   const auto add_before = [&](const Patch<D>* next) {
     for (; told != grid.partition.told.end() &&
@@ -72,7 +68,9 @@ bool exchange_patches(TileGrid<D>& grid) {
   Mail& mail = partition.mail.patches;
   mail.out.clear();
   for (Patch<D>& patch : grid.patches) {
-    if (patch.foreign || patch.occupied == 0) continue;
+    // The first of bonded bodies in a tile has the nodes of all, though it be empty.
+    if (patch.foreign || partition.leaves(patch) || (patch.occupied == 0 && !grid.bonded))
+      continue;
     for (const int rank : readers_of(partition, patch))
       write(letter_to(mail, rank),
             ForeignPatch<D>{patch.body, patch.tile, patch.occupied, partition.comm->rank()});

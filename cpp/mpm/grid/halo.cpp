@@ -1,6 +1,5 @@
 #include "mpm/grid/halo.hpp"
 
-#include <bit>
 #include <cstring>
 
 #include "mpm/grid/shared_nodes.hpp"
@@ -136,7 +135,7 @@ void plan_halo(TileGrid<D>& grid) {
         add_runs(grid, p, rank, partner_with(partners, rank).give);
     }
   }
-  // A partner to whom nothing is given has nothing to give either: who reads a node holds it.
+  // Both sides know who has nothing to do with whom.
   std::erase_if(partners, [](const Partner& partner) {
     return partner.give.empty() && partner.take.empty();
   });

@@ -3,7 +3,6 @@
 // Tiles without particles have an owner too.
 #include <algorithm>
 #include <cstdint>
-#include <stdexcept>
 #include <vector>
 
 #include "mpm/layout/tile.hpp"
@@ -11,17 +10,14 @@
 
 namespace mpm {
 
-/// The place of a tile along the curve. Throws std::out_of_range for one that is too far away.
+/// The place of a tile along the curve; tiles that are too far away for it have those of its ends.
 template <int D>
 std::uint64_t place_of(const Index<D>& tile) {
   constexpr int bits = 19;  // as many as the keys of lists have
   constexpr std::int32_t half = 1 << (bits - 1);
   std::array<std::uint32_t, D> x;
-  for (std::size_t a = 0; a < D; ++a) {
-    if (tile[a] < -half || tile[a] >= half)
-      throw std::out_of_range("a particle lies too far away for the grid");
-    x[a] = static_cast<std::uint32_t>(tile[a] + half);
-  }
+  for (std::size_t a = 0; a < D; ++a)
+    x[a] = static_cast<std::uint32_t>(std::clamp(tile[a], -half, half - 1) + half);
   return hilbert_number<D>(x, bits);
 }
 

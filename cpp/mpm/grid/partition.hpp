@@ -44,8 +44,8 @@ struct Partition {
 
   Comm* comm = &nobody;
   Owners<D> owners;
-  bool shares_tiles =
-      false;             // who has a tile reads all nodes there: bodies meet, and it solves that
+  // Who has a tile reads all nodes there: bodies meet, and it solves their contacts.
+  bool shares_tiles = false;
   bool divided = false;  // owners have changed, and patches are still where they were
   std::vector<std::vector<int>> readers{{}};  // sets of other ranks; a patch has one's number
   std::map<std::vector<int>, int> reader_numbers{{{}, 0}};

@@ -28,7 +28,7 @@ struct TileGrid : GridGeometry<D> {
   NodeMemory nodes;
   SharedLists<D> shared;
   std::vector<std::uint8_t> reshaped;  // scratch: of each patch, its block is another than before
-  std::size_t patches_with_particles = 0, nodes_with_particles = 0;  // nodes: of these patches
+  std::size_t patches_with_particles = 0, records_with_particles = 0;  // records: of their nodes
   bool blocks_known = false;  // the blocks are those of the patches there are
 
   NodeBlock<D> block(const Patch<D>& patch) {
@@ -40,7 +40,7 @@ struct TileGrid : GridGeometry<D> {
 /// What the patches with particles and their nodes need, of all ranks.
 template <int D>
 std::size_t needed_bytes(const TileGrid<D>& grid) {
-  const std::size_t here = grid.nodes_with_particles * record * sizeof(double) +
+  const std::size_t here = grid.records_with_particles * record * sizeof(double) +
                            grid.patches_with_particles * sizeof(Patch<D>);
   return static_cast<std::size_t>(all_sum(*grid.partition.comm, static_cast<std::int64_t>(here)));
 }

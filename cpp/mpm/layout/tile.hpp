@@ -44,6 +44,11 @@ struct Tile {
     for (int a = 0; a < D; ++a, n /= cells) i[a] = n % cells;
     return i;
   }
+  /// Neighbour k of a tile.
+  static constexpr Index<D> beside(Index<D> tile, int k) {
+    for (std::size_t a = 0; a < D; ++a) tile[a] += offset(k)[a];
+    return tile;
+  }
   /// The cells with coordinate i along an axis, a bit each.
   static constexpr std::uint64_t slice(std::size_t axis, int i) {
     constexpr std::array<std::uint64_t, 3> first =

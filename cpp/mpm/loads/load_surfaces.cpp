@@ -128,17 +128,17 @@ void load_surfaces(Domain<D>& domain) {
   // Onto the internal forces of the patch's own block, before these are folded and exchanged.
   domain.threads.for_each(domain.grid.patches.size(),
                           [&](std::size_t p) { scatter_loads(domain, p); });
+  // Patch by patch, of no order (decision 0038).
   const std::size_t count = domain.loads.size();
+  thread_local std::vector<ExactSum> forces;
+  forces.assign(D * count, {});
+  for (std::size_t k = 0; k < domain.load_parts.size(); ++k)
+    for (std::size_t a = 0; a < D; ++a)
+      forces[D * (k % count) + a].add(domain.load_parts[k][static_cast<int>(a)]);
+  all_sum(*domain.grid.partition.comm, forces);
   for (std::size_t l = 0; l < count; ++l) {
     SurfaceLoad<D>& load = domain.loads[l];
-    for (int a = 0; a < D; ++a) {
-      // Patch by patch, of no order (decision 0038).
-      ExactSum force;
-      for (std::size_t k = l; k < domain.load_parts.size(); k += count)
-        force.add(domain.load_parts[k][a]);
-      all_sum(*domain.grid.partition.comm, {&force, 1});
-      load.force[a] = force.value();
-    }
+    for (std::size_t a = 0; a < D; ++a) load.force[static_cast<int>(a)] = forces[D * l + a].value();
     load.impulse += domain.time_step * load.force;
   }
 }

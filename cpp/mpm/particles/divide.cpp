@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <numeric>
 
 #include "mpm/particles/cell_lists.hpp"
 
@@ -8,16 +7,19 @@ namespace {
 
 /// Where ranges of tiles begin whose costs are alike: sums over all ranks, bit by bit of the place.
 template <int D>
-Owners<D> owners_of(const TileGrid<D>& grid) {
+Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies) {
   struct Cost {
     std::uint64_t place;
     std::int64_t until;  // of all up to this one
   };
   std::vector<Cost> costs;
   for (const Patch<D>& patch : grid.patches)
-    if (patch.count > 0)
-      costs.push_back(
-          {place_of<D>(patch.tile), 4 * std::int64_t{patch.count} + Tile<D>::cell_count});
+    if (patch.count > 0) {
+      // As stages cost it: those whose motion is prescribed cost their nodes only.
+      const bool moves_alone = bodies[static_cast<std::size_t>(patch.body)].is_prescribed();
+      const std::int64_t particles = moves_alone ? 0 : patch.count;
+      costs.push_back({place_of<D>(patch.tile), 4 * particles + Tile<D>::cell_count});
+    }
   std::ranges::sort(costs, {}, &Cost::place);
   std::int64_t here = 0;
   for (Cost& cost : costs) cost.until = here += cost.until;
@@ -48,7 +50,7 @@ Owners<D> owners_of(const TileGrid<D>& grid) {
 template <int D>
 void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>>& pools,
             Threads& threads, ListScratch<D>& scratch) {
-  take_owners(grid, owners_of(grid));
+  take_owners(grid, owners_of(grid, bodies));
   update_cell_lists<D>(grid, bodies, pools, threads, scratch, nullptr, nullptr);
 }
 

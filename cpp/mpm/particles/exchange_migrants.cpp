@@ -16,7 +16,7 @@ void write_particle(Letter& letter, int body, const ParticlePool<D>& pool, std::
   write(letter, pool.id[row]);
   for (int c = 0; c < pool.columns.component_count(); ++c)
     pool.columns.with_component(c, [&](const auto* values) { write(letter, values[row]); });
-  if (pool.piece.empty()) return;
+  if (pool.pieces.empty()) return;
   write(letter, pool.piece[row]);
   for_each_piece_of(pool, row, [&](const SurfacePiece<D>& piece) { write(letter, piece); });
 }
@@ -27,7 +27,7 @@ void read_particle(Reader& reader, ParticlePool<D>& pool, std::uint32_t row) {
   for (int c = 0; c < pool.columns.component_count(); ++c)
     pool.columns.with_component(
         c, [&]<class Number>(Number* values) { values[row] = reader.read<Number>(); });
-  if (pool.piece.empty()) return;
+  if (pool.pieces.empty()) return;
   pool.piece[row] = reader.read<std::uint32_t>();
   // A piece has the same number everywhere.
   for (std::uint32_t k = pool.piece[row]; k != 0; k = pool.pieces[k - 1].next)
@@ -43,6 +43,10 @@ void exchange_migrants(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   Mail& mail = partition.mail.migrants;
   mail.out.clear();
   for (Migrant<D>& migrant : scratch.migrants) {
+    // Most go to patches that this rank has.
+    if (migrant.patch >= 0 && !partition.divided &&
+        !grid.patches[static_cast<std::size_t>(migrant.patch)].foreign)
+      continue;
     const int rank = partition.owners.rank_of(migrant.tile);
     if (rank == partition.comm->rank()) continue;
     ParticlePool<D>& pool = pools[pool_number(bodies, migrant.body)];

@@ -87,7 +87,7 @@ std::uint32_t take_row(ParticlePool<D>& pool) {
     const std::size_t count = pool.count(), more = count + count / 16 + 64;
     grow(pool.columns, more);
     pool.id.resize(more);
-    if (!pool.piece.empty()) pool.piece.resize(more, 0);
+    if (!pool.pieces.empty()) pool.piece.resize(more, 0);
     for (std::size_t row = more; row > count; --row)
       pool.free_rows.push_back(static_cast<std::uint32_t>(row - 1));
   }

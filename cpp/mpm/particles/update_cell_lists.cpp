@@ -97,7 +97,7 @@ template <int D>
 void remove_particles(Body<D>& body, ParticlePool<D>& pool, const Patch<D>& patch,
                       const std::uint8_t* mark, double affine_moment, Removed& eroded,
                       Removed& outflow) {
-  // By one thread, in the order of the lists: sums of doubles, and rows that are pushed back.
+  // By one thread, in the order of the lists, for rows are pushed back.
   for (const std::uint32_t row : pool.rows(patch)) {
     const std::uint8_t now = *mark++;
     if (now != CellMark::eroded && now != CellMark::left) continue;

@@ -142,13 +142,9 @@ void find_rigid_motion(Domain<D>& domain) {
     }
     motion.spin = spin_of(motion.inertia, sums.angular, motion.free_axes);
     if (constrained == 0) return;
-    // Of the body as a whole: with the sums of the first of its patches.
-    const auto patches =
-        patches_of<D>(domain.grid.patches, static_cast<int>(domain.rigid_bodies[k]));
     const Vector3 after =
         cross(motion.centre, sums.mass * motion.velocity) + motion.inertia * motion.spin;
-    domain.sums[static_cast<std::size_t>(&patches[0] - &domain.grid.patches[0])].angular.walls +=
-        after - before;
+    domain.rigid_at_walls += after - before;
   });
 }
 

@@ -21,7 +21,8 @@ class Team {
       : world_(std::make_shared<ThreadsWorld>(settings.execution.ranks)) {
     for (int rank = 0; rank < world_->size(); ++rank) {
       comms_.push_back(std::make_unique<ThreadsComm>(world_, rank));
-      parts_.push_back(std::make_unique<Simulation<D>>(settings, comms_.back().get()));
+      Comm* const others = world_->size() > 1 ? comms_.back().get() : nullptr;
+      parts_.push_back(std::make_unique<Simulation<D>>(settings, others));
     }
   }
 

@@ -118,7 +118,7 @@ Limiter find_limiter(const Domain<D>& domain) {
         key[0] = speed;
         fastest = p;
       }
-  if (std::isfinite(key[0])) {
+  if (key[0] > -std::numeric_limits<double>::infinity()) {
     const Patch<D>& patch = domain.grid.patches[fastest];
     const ParticlePool<D>& pool = domain.pool_of(patch);
     key[1] = -patch.body;

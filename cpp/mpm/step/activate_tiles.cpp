@@ -69,6 +69,7 @@ void activate_tiles(Domain<D>& domain) {
   sort_disordered(domain.grid, domain.bodies, domain.pools, domain.threads, domain.disorder,
                   domain.list_scratch);
   domain.sums.assign(domain.grid.patches.size(), {});
+  domain.rigid_at_walls = Vector3::zero();
   // Which bodies may meet is a matter of tiles and of the blocks, so it holds until lists change.
   if (changed && domain.has_contact())
     connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);

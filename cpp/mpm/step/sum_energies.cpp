@@ -25,6 +25,7 @@ void sum_energies(Domain<D>& domain) {
   }
   domain.ledger.add(domain.sums, domain.contact_sums, eroded, outflow, forces_follow,
                     is_affine(domain.transfer), comm);
+  domain.ledger.angular.impulses.walls += domain.rigid_at_walls;
 }
 
 template void record_contacts<2>(Domain<2>&);

@@ -27,7 +27,8 @@ struct Choice {
   bool load = false, force = false, erodes = false;
   bool rigid = false, prescribed = false;  // the second body
   bool contact = false;
-  bool stays = false;  // tiles stay where they are: planes that are kept do not go along
+  bool averages = false;  // volumes over cells
+  bool stays = false;     // tiles stay where they are: planes that are kept do not go along
 };
 
 /// A block of particles, half a cell apart, that spins about the origin and flies.
@@ -49,6 +50,7 @@ void add_block(Simulation<D>& simulation, int material, double from, double spee
 template <int D>
 void build(Simulation<D>& simulation, const Choice& choice) {
   MaterialChoice material{1000.0, {"neo_hookean", {{"K", 1e7}, {"G", 3e6}}}, {}, {}};
+  material.volume_averaging = choice.averages;
   if (choice.erodes) material.failures = {{{"principal_stress", {{"limit", 1e6}}}, "erode"}};
   const int rubber = add_material(simulation, material);
   const ModelChoice elastic{"elastic", {{"E", 2e7}, {"nu", 0.2}}}, rigid{"rigid", {}};
@@ -129,7 +131,10 @@ std::vector<double> run_of(const Choice& choice, Comm& comm) {
   }
   std::vector<double> numbers = simulation.history.take();
   gather(simulation, numbers);
-  for (const double x : rows_of(part_sums(simulation.domain))) numbers.push_back(x);
+  const auto parts = part_sums(simulation.domain);
+  for (const double x : rows_of(parts)) numbers.push_back(x);
+  for (const double x : balance_row(simulation.domain.ledger.angular, angular_totals(parts)))
+    numbers.push_back(x);
   for (const PairRecord& pair : simulation.domain.contact.records.of_all_ranks(comm))
     for (const double x : {pair.first_time, pair.first_gap, pair.first_normal[0],
                            pair.first_node[1], pair.force[0], pair.impulse[1], pair.friction_work})
@@ -261,7 +266,7 @@ std::vector<Choice> choices() {
                        s.contact.normal = NormalRules::id_of<PairNormal>();
                      },
                  .contact = true});
-  all.push_back({.name = "loads", .load = true});
+  all.push_back({.name = "loads", .load = true, .averages = true});
   all.push_back({.name = "forces and damping", .force = true});
   all.push_back({.name = "erosion", .load = true, .erodes = true});
   all.push_back({"outflow", [](Settings& s) {
@@ -282,7 +287,18 @@ std::vector<Choice> choices() {
                    s.run.gravity[1] = TimeFunction(-9.81);
                    put_walls(s);
                  }});
-  all.push_back({"volume averaging and two threads", [](Settings& s) { s.execution.threads = 2; }});
+  const auto threads = [](Settings& s) { s.execution.threads = 2; };
+  all.push_back({.name = "threads", .set = threads, .rigid = true, .contact = true});
+  all.push_back({.name = "rigid bodies that leave",
+                 .set =
+                     [=](Settings& s) {
+                       impulses(s);
+                       s.grid.outflow = true;
+                       s.grid.outflow_lower = {-100.0, -100.0, -100.0};
+                       s.grid.outflow_upper = {25.0, 100.0, 100.0};
+                     },
+                 .rigid = true,
+                 .contact = true});
   return all;
 }
 
