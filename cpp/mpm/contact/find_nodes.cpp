@@ -180,6 +180,22 @@ void fill_springs(const Contact<D>& contact, const TileGrid<D>& grid,
                     place_of(contact, grid, part.nodes[n]));
 }
 
+/// How many nodes are overlapped, and by how many bodies at most, on all ranks.
+template <int D>
+void count_nodes(Contact<D>& contact, Comm& comm) {
+  // Integers and maxima: no order of the parts is seen.
+  contact.counts.overlapped = 0;
+  for (const ContactPart<D>& part : contact.parts) {
+    contact.counts.overlapped += part.overlapped;
+    contact.counts.bodies_max = std::max(contact.counts.bodies_max, part.bodies_max);
+  }
+  contact.counts.overlapped =
+      static_cast<std::size_t>(all_sum(comm, static_cast<std::int64_t>(contact.counts.overlapped)));
+  contact.counts.bodies_max = static_cast<int>(all_max(comm, contact.counts.bodies_max));
+  contact.counts.overlapped_max =
+      std::max(contact.counts.overlapped_max, contact.counts.overlapped);
+}
+
 }  // namespace
 
 template <int D>
@@ -233,18 +249,8 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
         });
     }
   });
-  // Integers and maxima: no order of the parts is seen.
-  contact.counts.overlapped = 0;
-  for (const ContactPart<D>& part : contact.parts) {
-    contact.counts.overlapped += part.overlapped;
-    contact.counts.bodies_max = std::max(contact.counts.bodies_max, part.bodies_max);
-  }
   Comm& comm = *grid.partition.comm;
-  contact.counts.overlapped =
-      static_cast<std::size_t>(all_sum(comm, static_cast<std::int64_t>(contact.counts.overlapped)));
-  contact.counts.bodies_max = static_cast<int>(all_max(comm, contact.counts.bodies_max));
-  contact.counts.overlapped_max =
-      std::max(contact.counts.overlapped_max, contact.counts.overlapped);
+  count_nodes(contact, comm);
   note_speeds(contact, time_step, comm);
   share_rigid_masses(contact, bodies, comm);
 }

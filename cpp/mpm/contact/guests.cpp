@@ -109,6 +109,7 @@ void exchange_guests(Contact<D>& contact, TileGrid<D>& grid, const std::vector<B
     pool.guests.clear();
   }
   std::vector<std::pair<int, Reader>> readers;
+  readers.reserve(told.in.size());
   for (const Letter& letter : told.in) readers.emplace_back(letter.rank, Reader(letter));
   // Answers come in the order of the requests.
   for (const WantedCells& wanted : contact.wanted) {

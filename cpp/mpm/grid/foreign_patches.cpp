@@ -11,6 +11,7 @@ template <int D>
 const std::vector<int>& readers_of(Partition<D>& partition, Patch<D>& patch) {
   if (patch.readers >= 0) return partition.readers[static_cast<std::size_t>(patch.readers)];
   std::vector<int> ranks;
+  ranks.reserve(Tile<D>::neighbours);
   for (int k = 0; k < Tile<D>::neighbours; ++k)
     ranks.push_back(partition.owners.rank_of(Tile<D>::beside(patch.tile, k)));
   std::ranges::sort(ranks);

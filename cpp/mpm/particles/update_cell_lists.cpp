@@ -122,6 +122,7 @@ void count_removed(std::vector<Body<D>>& bodies, Comm& comm) {
   }
   if (all_sum(comm, here) == before) return;
   std::vector<std::int64_t> counts;
+  counts.reserve(bodies.size());
   for (const Body<D>& body : bodies) counts.push_back(static_cast<std::int64_t>(body.removed_here));
   comm.all_sum(counts);
   for (std::size_t b = 0; b < counts.size(); ++b)

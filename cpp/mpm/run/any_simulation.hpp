@@ -3,7 +3,6 @@
 // of several ranks that are threads of this process, as if it were one.
 #include <exception>
 #include <memory>
-#include <optional>
 #include <thread>
 #include <type_traits>
 #include <variant>
@@ -33,15 +32,15 @@ class Team {
   auto visit(F&& f) {
     using Result = std::decay_t<decltype(f(*parts_[0]))>;
     if (parts_.size() == 1) return f(*parts_[0]);
-    std::conditional_t<std::is_void_v<Result>, std::monostate, std::optional<Result>> first;
+    std::conditional_t<std::is_void_v<Result>, std::monostate, std::unique_ptr<Result>> first;
     std::vector<std::exception_ptr> errors(parts_.size());
     const auto run = [&](std::size_t rank) {
       try {
         if constexpr (std::is_void_v<Result>) {
           f(*parts_[rank]);
         } else {
-          Result result = f(*parts_[rank]);
-          if (rank == 0) first.emplace(std::move(result));
+          auto result = std::make_unique<Result>(f(*parts_[rank]));
+          if (rank == 0) first = std::move(result);
         }
       } catch (const std::exception& error) {
         errors[rank] = std::current_exception();

@@ -54,7 +54,7 @@ Failure first_failure(const Domain<D>& domain) {
   std::vector<std::byte> bytes;
   if (found) bytes = to_bytes(*found);
   broadcast(comm, rank, bytes);
-  return comm.alone() ? *found : failure_from(bytes);
+  return failure_from(bytes);
 }
 
 }  // namespace

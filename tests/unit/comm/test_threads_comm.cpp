@@ -18,6 +18,7 @@ template <class F>
 void on_ranks(int size, F&& f) {
   const auto world = std::make_shared<ThreadsWorld>(size);
   std::vector<std::jthread> threads;
+  threads.reserve(static_cast<std::size_t>(size));
   for (int rank = 0; rank < size; ++rank)
     threads.emplace_back([&f, world, rank] {
       ThreadsComm comm(world, rank);
@@ -81,7 +82,8 @@ void check_letters(mpm::testing::Report& report, int size) {
       mine += wrong(comm, round, mail);
       std::int64_t sums[2] = {comm.rank() + 1, -round};
       comm.all_sum(sums);
-      mine += sums[0] != comm.size() * (comm.size() + 1) / 2 || sums[1] != -round * comm.size();
+      const std::int64_t ranks = comm.size();
+      mine += sums[0] != ranks * (ranks + 1) / 2 || sums[1] != -round * ranks;
       double largest[2] = {std::sin(round + comm.rank()), -1.0 * comm.rank()};
       comm.all_max(largest);
       mine += largest[1] != 0.0 || largest[0] < std::sin(round + comm.rank());

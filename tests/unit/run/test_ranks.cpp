@@ -163,6 +163,7 @@ std::vector<double> run_on(const Choice& choice, int ranks) {
   const auto world = std::make_shared<ThreadsWorld>(ranks);
   {
     std::vector<std::jthread> threads;
+    threads.reserve(count);
     for (std::size_t rank = 0; rank < count; ++rank)
       threads.emplace_back([&, rank] {
         ThreadsComm comm(world, static_cast<int>(rank));
