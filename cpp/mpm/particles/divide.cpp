@@ -52,6 +52,10 @@ void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<Particl
             Threads& threads, ListScratch<D>& scratch) {
   take_owners(grid, owners_of(grid, bodies));
   update_cell_lists<D>(grid, bodies, pools, threads, scratch, nullptr, nullptr);
+  // Those that have come lie wherever there was room.
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    sort_columns(grid, bodies[b], patches_of<D>(grid.patches, static_cast<int>(b)),
+                 pools[static_cast<std::size_t>(bodies[b].material)], threads, scratch);
 }
 
 template <int D>
