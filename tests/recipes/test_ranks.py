@@ -86,6 +86,12 @@ def test_a_mistake_of_all_ranks_is_one() -> None:
     assert simulation.advance(1) == 1
 
 
+@pytest.mark.parametrize("ranks", [0, -1, 2.5, 2000])
+def test_a_number_of_ranks_that_cannot_be(ranks: Any) -> None:
+    with pytest.raises(CaseError, match="ranks"):
+        Simulation(grains(2), threads=1, ranks=ranks)
+
+
 def test_checkpoints_are_refused(tmp_path: Any) -> None:
     simulation = Simulation(grains(2), threads=1, ranks=2)
     with pytest.raises((ValueError, CaseError), match="several ranks has no checkpoints"):

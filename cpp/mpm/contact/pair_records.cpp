@@ -20,6 +20,23 @@ std::size_t hash(int a, int b) {
   return static_cast<std::size_t>(product >> 32);
 }
 
+/// Let a record tell of the contact of another, if that was earlier, or at once with more mass or
+/// lower.
+void take_first_contact(const PairRecord& from, PairRecord& to) {
+  const auto in_order = [](const PairRecord& x) { return std::pair(x.first_step, -x.first_share); };
+  if (from.first_step < 0) return;
+  if (to.first_step >= 0) {
+    if (in_order(to) < in_order(from)) return;
+    if (in_order(to) == in_order(from) && !is_lower(from.first_node, to.first_node)) return;
+  }
+  to.first_step = from.first_step;
+  to.first_time = from.first_time;
+  to.first_gap = from.first_gap;
+  to.first_share = from.first_share;
+  std::ranges::copy(from.first_normal, to.first_normal);
+  std::ranges::copy(from.first_node, to.first_node);
+}
+
 }  // namespace
 
 std::size_t PairRecords::find(int a, int b) const {
@@ -111,15 +128,14 @@ void PairRecords::add(const PairShare& share, std::int64_t step, double time) {
   PairRecord& r = records_[record];
   // A node that a body has only just reached tells nothing about when and where they met.
   if (share.known || !(share.share > least_share)) return;
-  if (share.share < r.first_share ||
-      (share.share == r.first_share && !is_lower(share.node, r.first_node)))
-    return;
-  r.first_step = step;
-  r.first_time = time;
-  r.first_gap = share.gap;
-  r.first_share = share.share;
-  std::ranges::copy(share.normal, r.first_normal);
-  std::ranges::copy(share.node, r.first_node);
+  PairRecord met;
+  met.first_step = step;
+  met.first_time = time;
+  met.first_gap = share.gap;
+  met.first_share = share.share;
+  std::ranges::copy(share.normal, met.first_normal);
+  std::ranges::copy(share.node, met.first_node);
+  take_first_contact(met, r);
 }
 
 /// From the sums to the record.
@@ -162,20 +178,7 @@ std::vector<PairRecord> PairRecords::of_all_ranks(Comm& comm) const {
         all.sums_[record].impulse[a].add(sums.impulse[a]);
       }
       all.sums_[record].friction_work.add(sums.friction_work);
-      PairRecord& r = all.records_[record];
-      const bool later = r.first_step >= 0 && told.first_step > r.first_step;
-      const bool same = told.first_step == r.first_step;
-      if (told.first_step < 0 || later ||
-          (same &&
-           (told.first_share < r.first_share ||
-            (told.first_share == r.first_share && !is_lower(told.first_node, r.first_node)))))
-        continue;
-      r.first_step = told.first_step;
-      r.first_time = told.first_time;
-      r.first_gap = told.first_gap;
-      r.first_share = told.first_share;
-      std::ranges::copy(told.first_normal, r.first_normal);
-      std::ranges::copy(told.first_node, r.first_node);
+      take_first_contact(told, all.records_[record]);
     }
   for (std::size_t k = 0; k < all.records_.size(); ++k) all.write_sums(k);
   all.sort();

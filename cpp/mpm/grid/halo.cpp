@@ -126,7 +126,7 @@ void plan_halo(TileGrid<D>& grid) {
   }
   for (std::uint32_t p = 0; p < grid.patches.size(); ++p) {
     const Patch<D>& patch = grid.patches[p];
-    // Others do not know of patches that are empty for a while.
+    // Patches that are empty for a while give nothing.
     if (patch.cells() == 0) continue;
     if (patch.foreign) {
       add_runs(grid, p, partition.comm->rank(), partner_with(partners, patch.owner).take);

@@ -1,6 +1,7 @@
 #pragma once
 // A simulation in two or three dimensions, for those who know only when they run in how many; and
 // of several ranks that are threads of this process, as if it were one.
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <thread>
@@ -17,7 +18,8 @@ template <int D>
 class Team {
  public:
   explicit Team(const Settings& settings)
-      : world_(std::make_shared<ThreadsWorld>(settings.execution.ranks)) {
+      // A part at least, which refuses settings that are out of range.
+      : world_(std::make_shared<ThreadsWorld>(std::max(1, settings.execution.ranks))) {
     for (int rank = 0; rank < world_->size(); ++rank) {
       comms_.push_back(std::make_unique<ThreadsComm>(world_, rank));
       Comm* const others = world_->size() > 1 ? comms_.back().get() : nullptr;

@@ -76,7 +76,7 @@ class Simulation:
         self.notes = notes(case, filled)
         settings = core_settings(case, self.threads)
         settings.execution.fused = fused
-        settings.execution.ranks = ranks
+        settings.execution.ranks = arguments.whole_number("ranks", ranks, 1, 1024)
         if disorder is not None:
             settings.execution.disorder = disorder
         self.core = _core.Simulation(settings)

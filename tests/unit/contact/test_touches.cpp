@@ -72,6 +72,7 @@ void check_touches(mpm::testing::Report& report, const Blocks<D>& blocks) {
     const double depth = pool.x(D - 1)[row] / edge - rows + 0.5 * overlap;
     const double inwards = touch.body == 0 ? 1.0 : -1.0;
     CHECK_EQUAL(touch.other, 1 - touch.body);
+    // Of sums of a dozen edges.
     CHECK_CLOSE(-inwards * depth, 0.5 - 0.5 * overlap, 1e-9);
     bool at_rim = false;
     for (int a = 0; a + 1 < D; ++a) {
@@ -83,6 +84,7 @@ void check_touches(mpm::testing::Report& report, const Blocks<D>& blocks) {
     // The dents of a flat layer: 3e-6 of an edge in 2D, 5e-4 in 3D, and a twentieth of the overlap.
     const double dents = 0.05 * overlap + (D == 2 ? 1e-5 : 6e-4);
     CHECK_CLOSE(touch.overlap * h / edge, overlap, dents);
+    // Dents tilt the normal by less than 0.04, of which this is the cosine.
     CHECK_CLOSE(inwards * touch.normal[D - 1], 1.0, 1e-3);
     CHECK_CLOSE(touch.to_middle * h / edge, 0.5 - 0.5 * overlap, dents);
   }
