@@ -55,11 +55,10 @@ struct Domain {
   std::vector<PatchSums<D>> sums;  // one per patch
   // What walls have done to rigid bodies as a whole in the step, alike on all ranks [N m s].
   Vector3 rigid_at_walls = Vector3::zero();
-  ContactSums contact_sums;        // of the step
+  ContactSums contact_sums;  // of the step
   Ledger ledger;
   ListScratch<D> list_scratch;
   Removed eroded, outflow;  // by failure; out of the region that is kept
-  bool may_remove = false;  // some material may fail so, or there is such a region
   std::vector<SurfaceLoad<D>> loads;
   std::vector<BodyForce<D>> body_forces;
   std::vector<Damping> dampings;           // of bodies' motion

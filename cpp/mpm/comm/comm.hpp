@@ -1,7 +1,7 @@
 #pragma once
 // Ranks: those who work on one simulation, each on its own particles, and what passes between them.
-// The core knows no more of it than this; who carries the letters (threads of one process, MPI) is
-// a class below.
+// The core knows no more of it than this; who carries the letters, as threads of one process
+// (threads_comm.hpp), is a class of its own.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,8 +17,7 @@ struct Letter {
   std::vector<std::byte> bytes;
 };
 
-/// Letters to others and those that come, kept from step to step so that few are allocated anew. At
-/// most one to and one from each rank; none to oneself.
+/// Letters to others and those that come. At most one to and one from each rank; none to oneself.
 struct Mail {
   std::vector<Letter> out, in;
 };

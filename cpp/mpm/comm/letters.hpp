@@ -1,5 +1,5 @@
 #pragma once
-// What letters hold: numbers one behind another, and how ranks agree.
+// What letters hold: numbers one behind another.
 #include <cstring>
 #include <type_traits>
 

@@ -50,7 +50,7 @@ struct WantedCells {
   std::uint64_t cells;
 };
 
-/// Letters of contact, whose memory is kept.
+/// Letters of contact.
 struct ContactMail {
   Mail asked, told, touches, responses;
 };

@@ -33,7 +33,7 @@ struct ForeignPatch {
   int rank;
 };
 
-/// Kinds of letters, each with its own mail, whose memory is kept.
+/// Kinds of letters, each with its own mail.
 struct PartitionMail {
   Mail migrants, patches, nodes;
 };

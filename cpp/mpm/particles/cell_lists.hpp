@@ -137,6 +137,13 @@ void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<Particl
 /// that is kept.
 inline constexpr double left_region = 4.0;
 
+/// May any particle be removed: by failure, or out of the region that is kept?
+template <int D>
+bool may_remove(const TileGrid<D>& grid, const std::vector<ParticlePool<D>>& pools) {
+  const auto may_fail = [](const ParticlePool<D>& pool) { return pool.at.failed >= 0; };
+  return grid.outflow_box.exist || std::ranges::any_of(pools, may_fail);
+}
+
 /// Find the particles that have left their tiles, where ListScratch::notes says how many, and what
 /// changes for each patch; true if patches were added or removed.
 template <int D>

@@ -251,9 +251,7 @@ bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
     remove_particles(body_of(patch), pool_of(patch), patch, scratch.marks + change.first_mark,
                      grid.affine_moment(), *eroded, *outflow);
   }
-  const auto may_fail = [](const ParticlePool<D>& pool) { return pool.at.failed >= 0; };
-  if (eroded != nullptr && (grid.outflow_box.exist || std::ranges::any_of(pools, may_fail)))
-    count_removed(bodies, *grid.partition.comm);
+  if (eroded != nullptr && may_remove(grid, pools)) count_removed(bodies, *grid.partition.comm);
   write_lists(grid, bodies, pools, threads, scratch);
   // They lie in the memory of the nodes, which gets its blocks now.
   scratch.lists = nullptr;

@@ -86,9 +86,6 @@ void prepare(Simulation<D>& simulation) {
     connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
   domain.sums.resize(domain.grid.patches.size());
   list_kinds(domain);
-  const auto may_remove = [](const ParticlePool<D>& pool) { return pool.at.failed >= 0; };
-  domain.may_remove =
-      std::ranges::any_of(domain.pools, may_remove) || domain.grid.outflow_box.exist;
   start_settling(simulation);
   start_motions(domain);
   project_rigid_velocities(domain);

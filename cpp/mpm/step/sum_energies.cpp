@@ -19,7 +19,7 @@ void sum_energies(Domain<D>& domain) {
   // All sums over patches at once, exactly: no order of patches matters (decision 0038).
   Comm& comm = *domain.grid.partition.comm;
   RemovedTotal eroded, outflow;
-  if (domain.may_remove) {
+  if (may_remove(domain.grid, domain.pools)) {
     eroded = total_of(domain.eroded, comm);
     outflow = total_of(domain.outflow, comm);
   }
