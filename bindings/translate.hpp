@@ -14,7 +14,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "mpm/fields/memory_space.hpp"
-#include "mpm/fields/state_stream.hpp"
+#include "mpm/state/state_stream.hpp"
 #include "mpm/materials/material.hpp"
 
 namespace mpm::bindings {

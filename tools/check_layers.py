@@ -21,6 +21,7 @@ LAYERS = {
     "loads/damping.hpp": 1,
     "fields": 1,
     "basis": 1,
+    "state": 2,
     "layout": 2,
     "materials": 4,
     "walls/walls.hpp": 3,

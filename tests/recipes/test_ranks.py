@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -92,7 +93,32 @@ def test_a_number_of_ranks_that_cannot_be(ranks: Any) -> None:
         Simulation(grains(2), threads=1, ranks=ranks)
 
 
-def test_checkpoints_are_refused(tmp_path: Any) -> None:
-    simulation = Simulation(grains(2), threads=1, ranks=2)
-    with pytest.raises((ValueError, CaseError), match="several ranks has no checkpoints"):
-        simulation.save(tmp_path / "state.zip")
+def test_a_checkpoint_goes_on_with_any_number_of_ranks(tmp_path: Path) -> None:
+    """That of three with one, two and four, and all end as one that was never stopped."""
+    case, states = grains(2), []
+    straight = Simulation(case, threads=1)
+    straight.advance(150)
+    three = Simulation(case, threads=1, ranks=3)
+    three.advance(100)
+    three.save(tmp_path / "state.zip")
+    for simulation in (straight, *(Simulation(case, threads=1, ranks=n) for n in (1, 2, 4))):
+        if simulation is not straight:
+            simulation.restore(tmp_path / "state.zip")
+            simulation.advance(50)
+        core = simulation.core
+        rows = [core.history()[-1:], *(core.column(b, "position") for b in range(core.body_count))]
+        states.append(b"".join(row.tobytes() for row in rows))
+    assert len(states[0]) > 1000 and all(state == states[0] for state in states)
+
+
+def test_a_full_disk_is_one_mistake() -> None:
+    def full(_: memoryview) -> int:
+        raise OSError(28, "no space left on device")
+
+    simulation = Simulation(grains(2), threads=1, ranks=3)
+    with pytest.raises(OSError, match="no space left"):
+        simulation.core.save(full)
+    assert simulation.advance(1) == 1
+    again = Simulation(grains(2), threads=1, ranks=3)
+    with pytest.raises(ValueError, match="too early"):
+        again.core.restore(lambda _: 0, 10_000)

@@ -140,6 +140,7 @@ Vec<double, D> read(TileGrid<D>& grid, const BodyAtNode<D>& side, int at) {
 /// The records and what is cached, saved or restored; the tiles must have been connected. Throws
 /// std::invalid_argument if what is restored is of no such contact.
 template <int D>
-void exchange_contact(Contact<D>& contact, StateStream& stream, std::size_t bodies);
+void exchange_contact(Contact<D>& contact, StateStream& stream, std::size_t bodies,
+                      const Partition<D>& partition);
 
 }  // namespace mpm

@@ -154,8 +154,8 @@ void PairRecords::end_step(double time_step) {
   if (records_.size() > sorted_) sort();
 }
 
-std::vector<PairRecord> PairRecords::of_all_ranks(Comm& comm) const {
-  if (comm.alone()) return records_;
+PairRecords PairRecords::with_others(Comm& comm) const {
+  if (comm.alone()) return *this;
   Mail mail;
   for (int rank = 0; rank < comm.size(); ++rank) {
     if (rank == comm.rank()) continue;
@@ -182,17 +182,24 @@ std::vector<PairRecord> PairRecords::of_all_ranks(Comm& comm) const {
     }
   for (std::size_t k = 0; k < all.records_.size(); ++k) all.write_sums(k);
   all.sort();
-  return all.records_;
+  return all;
 }
 
 void PairRecords::exchange(StateStream& stream) {
+  if (!stream.restores() && !stream.comm().alone()) {
+    with_others(stream.comm()).exchange_own(stream);
+    return;
+  }
+  exchange_own(stream);
+}
+
+void PairRecords::exchange_own(StateStream& stream) {
   stream.vector(records_);
   stream.vector(sums_);
-  stream.vector(places_);
   stream(time_step_);
 }
 
-void PairRecords::check_restored(std::size_t bodies) {
+void PairRecords::check_restored(std::size_t bodies, bool keep) {
   const auto is_body = [&](int b) { return b >= 0 && static_cast<std::size_t>(b) < bodies; };
   for (std::size_t k = 0; k < records_.size(); ++k) {
     const PairRecord& r = records_[k];
@@ -201,10 +208,12 @@ void PairRecords::check_restored(std::size_t bodies) {
     StateStream::check(is_body(r.a) && is_body(r.b) && r.a < r.b && later, damaged);
   }
   StateStream::check(sums_.size() == records_.size(), damaged);
-  StateStream::check(
-      (places_.empty() && records_.empty()) ||
-          (std::has_single_bit(places_.size()) && 2 * records_.size() <= places_.size()),
-      damaged);
+  if (!keep) {
+    records_.clear();
+    sums_.clear();
+  }
+  // Half of the places at most are taken.
+  places_.assign(std::bit_ceil(std::max<std::size_t>(64, 2 * records_.size())), 0);
   sort();
 }
 

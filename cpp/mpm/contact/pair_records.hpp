@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mpm/comm/all_sums.hpp"
-#include "mpm/fields/state_stream.hpp"
+#include "mpm/state/state_stream.hpp"
 
 namespace mpm {
 
@@ -53,7 +53,7 @@ class PairRecords {
   /// Sorted by (a, b) between steps.
   const std::vector<PairRecord>& all() const { return records_; }
   /// The same with what the others have recorded; by all ranks at once.
-  std::vector<PairRecord> of_all_ranks(Comm& comm) const;
+  std::vector<PairRecord> of_all_ranks(Comm& comm) const { return with_others(comm).records_; }
   std::size_t size() const { return records_.size(); }
   /// Before the first step: about the largest mass [kg] and speed [m/s] that there are. Sums are
   /// good to 2^-96 of their product, and hold up to 2^31 of it.
@@ -70,9 +70,11 @@ class PairRecords {
   /// Write the sums into the records, and put new ones in their order among the old ones.
   void end_step(double time_step);
 
-  /// Save or restore them. Throws std::invalid_argument for records of other bodies.
+  /// Save or restore those of all ranks.
   void exchange(StateStream& stream);
-  void check_restored(std::size_t bodies);
+  /// Throws std::invalid_argument for records of other bodies. One rank keeps those that were
+  /// restored, and others none.
+  void check_restored(std::size_t bodies, bool keep);
   std::size_t bytes() const;
 
  private:
@@ -80,6 +82,8 @@ class PairRecords {
   std::size_t find(int a, int b) const;  // the number of the record of a pair, or none
   std::size_t make(int a, int b);
   void enter(std::size_t record);
+  PairRecords with_others(Comm& comm) const;
+  void exchange_own(StateStream& stream);
   void sort();
   void write_sums(std::size_t record);
 

@@ -4,9 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
-#include "mpm/contact/contact.hpp"
+#include "mpm/contact/kept_planes.hpp"
 
 namespace mpm {
 namespace {
@@ -19,61 +18,87 @@ bool is_pair_count(std::uint32_t pairs) {
   return pairs > 0 && pair_count(sides) == pairs;
 }
 
-/// The pairs of one node follow those of another.
+/// The planes that are kept, tile by tile: the rank of each gets its own.
 template <int D>
-void check_cached(const ContactPart<D>& part) {
-  const auto& nodes = part.cached_nodes;
-  StateStream::check(nodes.empty() == part.cached.empty(), damaged);
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    const std::size_t begin = nodes[n].first_pair;
-    const std::size_t end = n + 1 < nodes.size() ? nodes[n + 1].first_pair : part.cached.size();
-    StateStream::check((n > 0 || begin == 0) && begin < end && end <= part.cached.size() &&
-                           is_pair_count(static_cast<std::uint32_t>(end - begin)),
-                       damaged);
-    StateStream::check_flag(nodes[n].solved);
+void exchange_planes(Contact<D>& contact, StateStream& stream, const Partition<D>& partition) {
+  std::vector<Index<D>> tiles;
+  std::vector<std::uint64_t> cached, hashes;
+  std::vector<std::uint8_t> solved;
+  std::vector<std::uint32_t> counts;  // of the pairs of each node
+  std::vector<CachedPair<D>> pairs;
+  if (!stream.restores())
+    for (const KeptTile<D>& kept : exchange_kept(kept_tiles(contact), partition, true)) {
+      tiles.push_back(kept.tile);
+      cached.push_back(kept.cached);
+      for (std::size_t n = 0; n < kept.nodes.size(); ++n) {
+        const bool last = n + 1 == kept.nodes.size();
+        hashes.push_back(kept.nodes[n].membership_hash);
+        solved.push_back(kept.nodes[n].solved ? 1 : 0);
+        counts.push_back(
+            (last ? static_cast<std::uint32_t>(kept.pairs.size()) : kept.nodes[n + 1].first_pair) -
+            kept.nodes[n].first_pair);
+      }
+      pairs.insert(pairs.end(), kept.pairs.begin(), kept.pairs.end());
+    }
+  stream.vector(tiles);
+  stream.vector(cached);
+  stream.vector(hashes);
+  stream.vector(solved);
+  stream.vector(counts);
+  stream.vector(pairs);
+  if (!stream.restores()) return;
+  const auto check = [](bool holds) { StateStream::check(holds, damaged); };
+  check(tiles.size() == cached.size() && hashes.size() == counts.size() &&
+        solved.size() == counts.size());
+  std::vector<KeptTile<D>> all(tiles.size());
+  std::size_t node = 0, pair = 0;
+  for (std::size_t t = 0; t < tiles.size(); ++t) {
+    KeptTile<D>& kept = all[t];
+    kept.tile = tiles[t];
+    kept.cached = cached[t];
+    check(t == 0 || tile_less<D>(tiles[t - 1], tiles[t]));
+    const std::size_t end = node + static_cast<std::size_t>(std::popcount(cached[t]));
+    check(cached[t] != 0 && end <= counts.size());
+    for (; node < end; ++node) {
+      check(is_pair_count(counts[node]) && counts[node] <= pairs.size() - pair);
+      kept.nodes.push_back(
+          {hashes[node], static_cast<std::uint32_t>(kept.pairs.size()), solved[node] != 0});
+      for (const std::size_t last = pair + counts[node]; pair < last; ++pair)
+        kept.pairs.push_back(pairs[pair]);
+    }
   }
+  check(node == counts.size() && pair == pairs.size());
+  keep_tiles(contact, all);
 }
 
 }  // namespace
 
 template <int D>
-void exchange_contact(Contact<D>& contact, StateStream& stream, std::size_t bodies) {
-  stream.same(contact.tiles.size(), "its patches and its contacts do not agree");
-  for (ContactTile<D>& tile : contact.tiles)
-    stream(tile.cached, tile.cached_part, tile.first_cached);
-  stream.length(contact.parts, 2 * sizeof(std::size_t));
-  for (ContactPart<D>& part : contact.parts) {
-    // The last_ arrays are not saved: start() exchanges both before they are read.
-    stream.vector(part.cached_nodes);
-    stream.vector(part.cached);
-  }
+void exchange_contact(Contact<D>& contact, StateStream& stream, std::size_t bodies,
+                      const Partition<D>& partition) {
+  exchange_planes(contact, stream, partition);
   stream.vector(contact.cache.displacement);
   stream.vector(contact.cache.fastest);
   contact.records.exchange(stream);
-  std::size_t unconverged = contact.unconverged.load();
+  // Of all ranks; restored, the first has it.
+  const bool first = stream.comm().rank() == 0;
+  std::int64_t unconverged =
+      all_sum(stream.comm(), static_cast<std::int64_t>(contact.unconverged.load()));
   stream(contact.cache.last_time_step, contact.counts.overlapped, contact.counts.overlapped_max,
          contact.counts.bodies_max, unconverged);
-  contact.unconverged.store(unconverged);
   if (!stream.restores()) return;
-  for (const ContactPart<D>& part : contact.parts) check_cached(part);
-  for (const ContactTile<D>& tile : contact.tiles) {
-    if (tile.cached == 0) continue;
-    StateStream::check(tile.cached_part < contact.parts.size(), damaged);
-    const auto nodes = static_cast<std::size_t>(std::popcount(tile.cached));
-    StateStream::check(
-        tile.first_cached + nodes <= contact.parts[tile.cached_part].cached_nodes.size(), damaged);
-  }
+  contact.unconverged.store(first ? static_cast<std::size_t>(unconverged) : 0);
   for (const std::size_t size : {contact.cache.displacement.size(), contact.cache.fastest.size()})
     StateStream::check(size == 0 || size == bodies, damaged);
   StateStream::check(contact.counts.bodies_max >= 0 &&
                          static_cast<std::size_t>(contact.counts.bodies_max) <= bodies,
                      damaged);
-  contact.records.check_restored(bodies);
+  contact.records.check_restored(bodies, first);
   for (std::size_t b = 0; b < contact.cache.fastest.size(); ++b)
     if (contact.cache.fastest[b] > 0.0) contact.cache.moving.push_back(static_cast<int>(b));
 }
 
-template void exchange_contact<2>(Contact<2>&, StateStream&, std::size_t);
-template void exchange_contact<3>(Contact<3>&, StateStream&, std::size_t);
+template void exchange_contact<2>(Contact<2>&, StateStream&, std::size_t, const Partition<2>&);
+template void exchange_contact<3>(Contact<3>&, StateStream&, std::size_t, const Partition<3>&);
 
 }  // namespace mpm

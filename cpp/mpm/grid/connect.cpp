@@ -81,20 +81,9 @@ int find_patch(const TileGrid<D>& grid, int body, const Index<D>& tile) {
   return static_cast<int>(at - grid.patches.begin());
 }
 
-template <int D>
-void exchange_grid(TileGrid<D>& grid, StateStream& stream) {
-  stream(grid.cell_size, grid.anchor, grid.walls.cells);
-  stream.length(grid.patches, sizeof(Patch<D>::body) + sizeof(Patch<D>::cell_begin));
-  for (Patch<D>& p : grid.patches)
-    stream(p.body, p.tile, p.begin, p.room, p.count, p.first_row, p.occupied, p.cell_begin,
-           p.left_cell);
-}
-
 template void connect<2>(TileGrid<2>&);
 template void connect<3>(TileGrid<3>&);
 template int find_patch<2>(const TileGrid<2>&, int, const Index<2>&);
 template int find_patch<3>(const TileGrid<3>&, int, const Index<3>&);
-template void exchange_grid<2>(TileGrid<2>&, StateStream&);
-template void exchange_grid<3>(TileGrid<3>&, StateStream&);
 
 }  // namespace mpm

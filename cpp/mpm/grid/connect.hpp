@@ -1,6 +1,5 @@
 #pragma once
 // Which patches there are, and which are neighbours.
-#include "mpm/fields/state_stream.hpp"
 #include "mpm/grid/tile_grid.hpp"
 
 namespace mpm {
@@ -13,10 +12,5 @@ void connect(TileGrid<D>& grid);
 /// The patch of a body in a tile, or -1.
 template <int D>
 int find_patch(const TileGrid<D>& grid, int body, const Index<D>& tile);
-
-/// Save or restore what a run has made of the grid and its patches. Restored, they must be
-/// connected and cut.
-template <int D>
-void exchange_grid(TileGrid<D>& grid, StateStream& stream);
 
 }  // namespace mpm

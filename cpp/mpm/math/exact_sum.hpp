@@ -51,10 +51,12 @@ class ExactSum {
     for (std::size_t k = 0; k < count; ++k) chunks_[k] += carried.chunks_[k];
   }
 
-  /// The sum in integers: those of several sums, each added up, are those of the sum of all.
+  /// The sum in integers, alike for equal sums. Those of several sums, each added up, can be read as
+  /// the sum of all.
   static constexpr std::size_t words = 71;
   void write(std::span<std::int64_t, words> to) const {
     ExactSum carried = *this;
+    carried.top_ = count - 1;
     carried.carry();
     std::ranges::copy(carried.chunks_, to.begin());
     to[count] = std::isnan(special_) ? 1 : 0;

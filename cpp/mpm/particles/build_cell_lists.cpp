@@ -31,34 +31,6 @@ std::uint64_t key_of(const Index<D>& tile, int cell) {
   return key << 6 | static_cast<std::uint64_t>(cell);
 }
 
-template <int D>
-void find_anchor(TileGrid<D>& grid, const std::vector<Patch<D>>& patches,
-                 const std::vector<Body<D>>& bodies, const std::vector<ParticlePool<D>>& pools) {
-  // No two cells are further apart than this; counted from the lowest one in tiles of four they
-  // stay below 2^18, half the range of a key. Written as !(a < b), for no number is too far as
-  // well.
-  constexpr double furthest = 1 << 20;  // cells; within the 19 bits of a key's tile coordinates
-  grid.anchor.fill(std::numeric_limits<std::int32_t>::max());
-  for (const Patch<D>& patch : patches) {
-    const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
-    const ParticlePool<D>& pool = pools[static_cast<std::size_t>(body.material)];
-    for (const std::uint32_t row : pool.rows(patch)) {
-      const Vec<double, D> x = pool.position_of(row);
-      for (int a = 0; a < D; ++a)
-        if (!(std::abs(grid.in_cells(x[a], a)) < 0.5 * furthest))
-          throw std::invalid_argument("body \"" + body.name +
-                                      "\" lies more than 2^19 cells from the grid's origin");
-      const Index<D> cell = grid.cell_of(x);
-      for (std::size_t a = 0; a < D; ++a) grid.anchor[a] = std::min(grid.anchor[a], cell[a]);
-    }
-  }
-  // The lowest of all ranks.
-  double highest[D];
-  for (std::size_t a = 0; a < D; ++a) highest[a] = -1.0 * grid.anchor[a];
-  grid.partition.comm->all_max(highest);
-  for (std::size_t a = 0; a < D; ++a) grid.anchor[a] = static_cast<std::int32_t>(-highest[a]);
-}
-
 /// Add the patches of a body, whose particles are given by key and number, with their lists.
 template <int D>
 void add_patches(TileGrid<D>& grid, int body, const ParticlePool<D>& pool,
@@ -89,11 +61,38 @@ void add_patches(TileGrid<D>& grid, int body, const ParticlePool<D>& pool,
 }  // namespace
 
 template <int D>
+void place_anchor(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                  const std::vector<ParticlePool<D>>& pools) {
+  // No two cells are further apart than this; counted from the lowest one in tiles of four they
+  // stay below 2^18, half the range of a key. Written as !(a < b), for no number is too far as
+  // well.
+  constexpr double furthest = 1 << 20;  // cells; within the 19 bits of a key's tile coordinates
+  grid.anchor.fill(std::numeric_limits<std::int32_t>::max());
+  for (const Patch<D>& patch : grid.patches) {
+    const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
+    const ParticlePool<D>& pool = pools[static_cast<std::size_t>(body.material)];
+    for (const std::uint32_t row : pool.rows(patch)) {
+      const Vec<double, D> x = pool.position_of(row);
+      for (int a = 0; a < D; ++a)
+        if (!(std::abs(grid.in_cells(x[a], a)) < 0.5 * furthest))
+          throw std::invalid_argument("body \"" + body.name +
+                                      "\" lies more than 2^19 cells from the grid's origin");
+      const Index<D> cell = grid.cell_of(x);
+      for (std::size_t a = 0; a < D; ++a) grid.anchor[a] = std::min(grid.anchor[a], cell[a]);
+    }
+  }
+  // The lowest of all ranks.
+  double highest[D];
+  for (std::size_t a = 0; a < D; ++a) highest[a] = -1.0 * grid.anchor[a];
+  grid.partition.comm->all_max(highest);
+  for (std::size_t a = 0; a < D; ++a) grid.anchor[a] = static_cast<std::int32_t>(-highest[a]);
+}
+
+template <int D>
 void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                       std::vector<ParticlePool<D>>& pools, Threads& threads,
                       ListScratch<D>& scratch) {
   const std::vector<Patch<D>> before = std::exchange(grid.patches, {});
-  find_anchor(grid, before, bodies, pools);
   std::vector<std::vector<std::uint32_t>> orders(pools.size());
   for (std::size_t m = 0; m < pools.size(); ++m)
     orders[m].reserve(pools[m].count() + pools[m].count() / 4);
@@ -127,6 +126,10 @@ void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
     divide(grid, bodies, pools, threads, scratch);
 }
 
+template void place_anchor<2>(TileGrid<2>&, const std::vector<Body<2>>&,
+                              const std::vector<ParticlePool<2>>&);
+template void place_anchor<3>(TileGrid<3>&, const std::vector<Body<3>>&,
+                              const std::vector<ParticlePool<3>>&);
 template void build_cell_lists<2>(TileGrid<2>&, std::vector<Body<2>>&,
                                   std::vector<ParticlePool<2>>&, Threads&, ListScratch<2>&);
 template void build_cell_lists<3>(TileGrid<3>&, std::vector<Body<3>>&,

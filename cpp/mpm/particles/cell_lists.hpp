@@ -115,9 +115,15 @@ struct ListScratch {
   AlignedArray<std::uint32_t> own_lists;  // `lists` where there are other ranks
 };
 
-/// Sort every body's rows by tile and cell, and make patches and lists anew, at the start or after
-/// a change of the grid. Sets the grid's anchor. Throws std::invalid_argument if a particle lies
-/// more than 2^19 cells from the origin.
+/// Let tiles begin at the lowest cell with a particle. Throws std::invalid_argument if one lies
+/// more than 2^19 cells from the origin. By all ranks at once.
+template <int D>
+void place_anchor(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                  const std::vector<ParticlePool<D>>& pools);
+
+/// Sort every body's rows by tile and cell, and make patches and lists anew, at the start, after a
+/// change of the grid, or from a checkpoint. Throws std::out_of_range if a particle lies more than
+/// 2^20 cells from the anchor. By all ranks at once.
 template <int D>
 void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                       std::vector<ParticlePool<D>>& pools, Threads& threads,

@@ -1,10 +1,9 @@
-// Bytes from a file may be anything, and a step trusts its lists.
+// Bytes from a file may be anything, and a step trusts what it works on.
 #include "mpm/run/check_restored.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <utility>
 
 #include "mpm/run/coarsen_cells.hpp"
@@ -33,120 +32,55 @@ bool finite(const RigidMotion& m) {
   return all;
 }
 
-/// The ranges of a patch's cells, and which of them hold particles.
+/// Can a particle be stepped?
 template <int D>
-void check_cells(const Patch<D>& patch) {
-  check(patch.cell_begin.front() == 0 && patch.cell_begin.back() == patch.count &&
-            std::ranges::is_sorted(patch.cell_begin),
-        "its lists are damaged");
-  std::uint64_t occupied = 0;
-  for (std::size_t c = 0; c < Tile<D>::cell_count; ++c)
-    if (patch.cell_begin[c + 1] > patch.cell_begin[c]) occupied |= std::uint64_t{1} << c;
-  check(patch.occupied == occupied, "its lists are damaged");
-}
-
-/// Particles are in the cells of the lists, unless these are to be updated, and can be stepped.
-template <int D>
-void check_particles(const TileGrid<D>& grid, const ParticlePool<D>& pool, const Patch<D>& patch) {
-  const Index<D> first = grid.first_cell(patch.tile);
-  patch.for_each_cell([&](int c, std::uint32_t begin, std::uint32_t end) {
-    Index<D> cell = Tile<D>::cell_index(c);
-    for (std::size_t a = 0; a < D; ++a) cell[a] += first[a];
-    for (std::uint32_t k = begin; k < end; ++k) {
-      const std::uint32_t row = pool.order[k];
-      const Vec<double, D> x = pool.position_of(row);
-      bool fine = pool.mass()[row] > 0.0 && pool.volume()[row] > 0.0 &&
-                  finite(pool.mass()[row], pool.volume()[row]);
-      for (int a = 0; a < D; ++a)
-        fine = fine && std::isfinite(double{pool.v(a)[row]}) &&
-               std::abs(grid.in_cells(x[a], a)) < farthest;
-      if (pool.set_back >= 0) {
-        const double share = pool.columns.component(pool.set_back)[row];
-        fine = fine && share >= 0.0 && std::isfinite(share);
-      }
-      check(fine, "its particles are damaged");
-      check(patch.left_cell || grid.cell_of(x) == cell, "its lists are damaged");
-    }
-  });
-}
-
-/// Each row of a pool, and each number of a body, is that of one particle, in a list or removed.
-template <int D>
-void check_rows(const Domain<D>& domain) {
-  std::vector<std::vector<bool>> rows, ids;
-  for (const ParticlePool<D>& pool : domain.pools) rows.emplace_back(pool.count());
-  for (const Body<D>& body : domain.bodies) ids.emplace_back(body.count);
-  const auto see = [&](std::uint32_t row, int number) {
-    const auto m = static_cast<std::size_t>(domain.body_at(number).material);
-    check(row < rows[m].size() && !rows[m][row], "its lists are damaged");
-    rows[m][row] = true;
-    std::vector<bool>& seen = ids[static_cast<std::size_t>(number)];
-    const std::uint32_t id = domain.pools[m].id[row];
-    check(id < seen.size() && !seen[id], "its lists are damaged");
-    seen[id] = true;
-  };
-  for (const Patch<D>& patch : domain.grid.patches)
-    for (const std::uint32_t row : domain.pool_of(patch).rows(patch)) see(row, patch.body);
-  std::vector<std::size_t> removed(domain.bodies.size(), 0);
-  for (std::size_t m = 0; m < rows.size(); ++m)
-    for (const RemovedRow& one : domain.pools[m].removed) {
-      const auto b = static_cast<std::size_t>(one.body);
-      check(one.body >= 0 && b < removed.size() &&
-                std::cmp_equal(domain.body_at(one.body).material, m),
-            "its lists are damaged");
-      ++removed[b];
-      see(one.row, one.body);
-    }
-  for (const std::vector<bool>& seen : rows)
-    check(std::ranges::all_of(seen, std::identity()), "its lists are damaged");
-  for (std::size_t b = 0; b < removed.size(); ++b)
-    check(removed[b] == domain.bodies[b].removed_here, "its lists are damaged");
-}
-
-/// The ranges that patches own of their pools' lists: none of another's.
-template <int D>
-void check_ranges(const Domain<D>& domain) {
-  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> ranges(domain.pools.size());
-  for (const Patch<D>& patch : domain.grid.patches) {
-    check(patch.body >= 0 && std::cmp_less(patch.body, domain.bodies.size()) &&
-              patch.count <= patch.room,
-          "its lists are damaged");
-    const auto m = static_cast<std::size_t>(domain.body_of(patch).material);
-    ranges[m].emplace_back(patch.begin, patch.begin + std::size_t{patch.room});
+bool is_fine(const TileGrid<D>& grid, const ParticlePool<D>& pool, std::uint32_t row) {
+  const Vec<double, D> x = pool.position_of(row);
+  bool fine = pool.mass()[row] > 0.0 && pool.volume()[row] > 0.0 &&
+              finite(pool.mass()[row], pool.volume()[row]);
+  for (int a = 0; a < D; ++a)
+    fine = fine && std::isfinite(double{pool.v(a)[row]}) &&
+           std::abs(grid.in_cells(x[a], a)) < farthest;
+  if (pool.set_back >= 0) {
+    const double share = pool.columns.component(pool.set_back)[row];
+    fine = fine && share >= 0.0 && std::isfinite(share);
   }
-  for (std::size_t m = 0; m < ranges.size(); ++m) {
-    std::size_t end = 0;
-    std::ranges::sort(ranges[m]);
-    for (const auto& [first, last] : ranges[m]) {
-      check(first >= end, "its lists are damaged");
-      end = last;
-    }
-    const ParticlePool<D>& pool = domain.pools[m];
-    check(end <= pool.used && pool.used <= pool.order.size(), "its lists are damaged");
-  }
+  return fine;
 }
 
 /// The chains of pieces that particles carry: each piece once, by the particle that it is of.
 template <int D>
-void check_pieces(const Domain<D>& domain) {
-  for (const ParticlePool<D>& pool : domain.pools) {
-    std::vector<bool> seen(pool.pieces.size());
-    for (const std::uint32_t first : pool.piece)
-      for (std::uint32_t k = first; k != 0; k = pool.pieces[k - 1].next) {
-        check(k <= seen.size() && !seen[k - 1], "its loads are damaged");
-        seen[k - 1] = true;
-      }
-    for (const SurfacePiece<D>& piece : pool.pieces)
-      check(piece.load >= 0 && std::cmp_less(piece.load, domain.loads.size()) &&
-                finite(piece.area) && finite(piece.size) && finite(piece.arm),
-            "its loads are damaged");
-  }
+bool are_fine(const Domain<D>& domain, const ParticlePool<D>& pool,
+              std::span<const PlacedRow> rows) {
+  if (pool.pieces.empty()) return true;
+  std::vector<bool> seen(pool.pieces.size());
+  for (const auto [place, row] : rows)
+    for (std::uint32_t k = pool.piece[row]; k != 0; k = pool.pieces[k - 1].next) {
+      if (k > seen.size() || seen[k - 1]) return false;
+      seen[k - 1] = true;
+      const SurfacePiece<D>& piece = pool.pieces[k - 1];
+      if (piece.load < 0 || !std::cmp_less(piece.load, domain.loads.size()) ||
+          !finite(piece.area) || !finite(piece.size) || !finite(piece.arm))
+        return false;
+    }
+  return true;
 }
 
 }  // namespace
 
 template <int D>
-void check_lists(const Domain<D>& domain) {
+void check_particles(const Domain<D>& domain, std::size_t m, std::span<const PlacedRow> rows,
+                     const StateStream& stream) {
+  const ParticlePool<D>& pool = domain.pools[m];
+  stream.check_all(
+      std::ranges::all_of(
+          rows, [&](const PlacedRow& one) { return is_fine(domain.grid, pool, one.row); }),
+      "its particles are damaged");
+  stream.check_all(are_fine(domain, pool, rows), "its loads are damaged");
+}
+
+template <int D>
+void check_grid(const Domain<D>& domain) {
   const TileGrid<D>& grid = domain.grid;
   check(finite(grid.cell_size) && grid.cell_size > 0.0, "its grid is damaged");
   for (const std::int32_t cell : grid.anchor)
@@ -154,24 +88,10 @@ void check_lists(const Domain<D>& domain) {
   for (const Body<D>& body : domain.bodies)
     if (body.is_prescribed())
       check(finite(body.motion->before) && finite(body.motion->now), "its motions are damaged");
-  check_ranges(domain);
-  check_rows(domain);
-  const Patch<D>* last = nullptr;
-  for (const Patch<D>& patch : grid.patches) {
-    check(!last || patch_less<D>(last->body, last->tile, patch.body, patch.tile),
-          "its lists are damaged");
-    for (const std::int32_t tile : patch.tile)
-      check(std::abs(static_cast<double>(tile)) * Tile<D>::cells < farthest,
-            "its lists are damaged");
-    last = &patch;
-    check_cells<D>(patch);
-    check_particles<D>(grid, domain.pool_of(patch), patch);
-  }
-  check_pieces(domain);
 }
 
 template <int D>
-void check_rest(const Simulation<D>& simulation) {
+void check_rest(const Simulation<D>& simulation, const StateStream& stream) {
   const Domain<D>& domain = simulation.domain;
   const GridSettings& given = simulation.settings.grid;
   const int coarsenings = simulation.coarsenings;
@@ -189,9 +109,10 @@ void check_rest(const Simulation<D>& simulation) {
         "its time is damaged");
   for (const ParticlePool<D>& pool : domain.pools)
     check(finite(pool.fastest) && pool.fastest >= 0.0, "its time is damaged");
+  bool slow = true;
   const auto check_speed = [&](double v) {  // The next step is infinite where none moves.
-    check(v == 0.0 || std::abs(v) * simulation.next_time_step < farthest * grid.cell_size,
-          "its particles are damaged");
+    slow =
+        slow && (v == 0.0 || std::abs(v) * simulation.next_time_step < farthest * grid.cell_size);
   };
   const bool affine = is_affine(domain.transfer);
   domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
@@ -199,11 +120,7 @@ void check_rest(const Simulation<D>& simulation) {
     // What it gives to a node a cell away.
     for (int k = 0; affine && k < D * D; ++k) check_speed(of.affine_part(k)[row] * grid.cell_size);
   });
-  check(domain.sums.size() == grid.patches.size(), "its sums are damaged");
-  for (const PatchSums<D>& s : domain.sums) {
-    StateStream::check_flag(s.stress.negative_volume);
-    StateStream::check_flag(s.stress.eroded);
-  }
+  stream.check_all(slow, "its particles are damaged");
   for (const RigidMotion& motion : domain.rigid) check(finite(motion), "its motions are damaged");
   check(simulation.history.plausible(), "its history is damaged");
   check(finite(domain.ledger.kinetic) && finite(domain.ledger.residual()),
@@ -220,9 +137,13 @@ void check_rest(const Simulation<D>& simulation) {
           "its warnings are damaged");
 }
 
-template void check_lists<2>(const Domain<2>&);
-template void check_lists<3>(const Domain<3>&);
-template void check_rest<2>(const Simulation<2>&);
-template void check_rest<3>(const Simulation<3>&);
+template void check_particles<2>(const Domain<2>&, std::size_t, std::span<const PlacedRow>,
+                                 const StateStream&);
+template void check_particles<3>(const Domain<3>&, std::size_t, std::span<const PlacedRow>,
+                                 const StateStream&);
+template void check_grid<2>(const Domain<2>&);
+template void check_grid<3>(const Domain<3>&);
+template void check_rest<2>(const Simulation<2>&, const StateStream&);
+template void check_rest<3>(const Simulation<3>&, const StateStream&);
 
 }  // namespace mpm

@@ -39,6 +39,7 @@ void coarsen_cells(Simulation<D>& simulation) {
   grid.cell_size *= 2.0;
   for (int& cells : grid.walls.cells) cells /= 2;
   release_nodes(grid);
+  place_anchor(grid, domain.bodies, domain.pools);
   build_cell_lists(grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
   for (Patch<D>& patch : grid.patches) patch.left_cell = true;  // what has just failed still leaves
   invalidate_pairs(domain.contact);

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "mpm/domain.hpp"
-#include "mpm/fields/state_stream.hpp"
 #include "mpm/ledger/history.hpp"
+#include "mpm/state/state_stream.hpp"
 
 namespace mpm {
 

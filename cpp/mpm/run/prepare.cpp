@@ -81,6 +81,7 @@ void prepare(Simulation<D>& simulation) {
   fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches,
              *domain.grid.partition.comm);
   place_pieces(domain);
+  place_anchor(domain.grid, domain.bodies, domain.pools);
   build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
   if (domain.has_contact())
     connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);

@@ -3,69 +3,83 @@
 
 #include "mpm/contact/candidates.hpp"
 #include "mpm/grid/blocks.hpp"
-#include "mpm/grid/connect.hpp"
 #include "mpm/run/check_restored.hpp"
+#include "mpm/run/time_step.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 12;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 13;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
   stream.same(body.count, other_case);
-  stream(body.moved, body.leaves, body.removed, body.removed_here);
+  stream(body.leaves, body.removed);
   if (body.is_prescribed()) stream(body.motion->before, body.motion->now);
 }
 
+/// Of all ranks; restored, the first has it.
+void exchange_removed(StateStream& stream, Removed& removed) {
+  std::int64_t count = all_sum(stream.comm(), static_cast<std::int64_t>(removed.count));
+  stream(count);
+  Removed all{static_cast<std::size_t>(count), removed.sums};
+  all_sum(stream.comm(), all.sums);
+  for (ExactSum& sum : all.sums) {
+    std::array<std::int64_t, ExactSum::words> words;
+    sum.write(words);
+    stream(words);
+    sum = ExactSum::read(words);
+  }
+  if (stream.restores()) removed = stream.comm().rank() == 0 ? all : Removed{};
+}
+
+/// The lists anew, from where particles are: none depends on those that there were.
 template <int D>
-void exchange_pool(StateStream& stream, ParticlePool<D>& pool) {
-  stream.same(pool.count(), other_case);
-  stream.same(pool.columns.component_count(), other_case);
-  for (int c = 0; c < pool.columns.component_count(); ++c)
-    pool.columns.with_component(
-        c, [&](auto* values) { stream.array(std::span(values, pool.count())); });
-  stream.array(std::span(pool.id));
-  stream.same(pool.piece.size(), other_case);
-  stream.array(std::span(pool.piece));
-  stream.same(pool.pieces.size(), other_case);
-  stream.array(std::span(pool.pieces));
-  stream.vector(pool.order);
-  stream(pool.used);
-  stream.vector(pool.removed);
+void rebuild(Domain<D>& domain, std::vector<Patch<D>> bodies, const StateStream& stream) {
+  std::vector<std::int64_t> removed;
+  for (const Body<D>& body : domain.bodies)
+    removed.push_back(static_cast<std::int64_t>(body.removed_here));
+  stream.comm().all_sum(removed);
+  for (std::size_t b = 0; b < removed.size(); ++b)
+    StateStream::check(std::cmp_equal(removed[b], domain.bodies[b].removed),
+                       "its particles are damaged");
+  domain.grid.patches = std::move(bodies);
+  release_nodes(domain.grid);
+  build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
+  // What has failed in the last step, or is in another cell, is seen to in the next.
+  for (Patch<D>& patch : domain.grid.patches) patch.left_cell = !patch.foreign;
+  if (domain.has_contact())
+    connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
+  probe_speeds(domain);
 }
 
 template <int D>
 void exchange(Simulation<D>& simulation, StateStream& stream) {
   Domain<D>& domain = simulation.domain;
   stream.same(format, other_version);
-  for (const std::size_t size :
-       {sizeof(Storage), sizeof(Ledger), sizeof(PatchSums<D>), sizeof(Removed), sizeof(RigidMotion),
-        sizeof(SurfacePiece<D>), sizeof(StepWatch), sizeof(Note), sizeof(PairRecord),
-        sizeof(CachedNode), sizeof(CachedPair<D>)})
+  for (const std::size_t size : {sizeof(Storage), sizeof(Ledger), sizeof(Removed),
+                                 sizeof(RigidMotion), sizeof(SurfacePiece<D>), sizeof(StepWatch),
+                                 sizeof(Note), sizeof(PairRecord), sizeof(CachedPair<D>)})
     stream.same(size, other_version);
   stream.same(D, other_case);
   stream.same(domain.bodies.size(), other_case);
   stream.same(domain.loads.size(), other_case);
   stream.same(domain.pools.size(), other_case);
   for (Body<D>& body : domain.bodies) exchange_body(stream, body);
-  for (ParticlePool<D>& pool : domain.pools) exchange_pool(stream, pool);
+  stream(domain.grid.cell_size, domain.grid.anchor, domain.grid.walls.cells);
+  if (stream.restores()) check_grid(domain);
+  std::vector<Patch<D>> bodies(stream.restores() ? domain.bodies.size() : 0);
+  for (std::size_t m = 0; m < domain.pools.size(); ++m)
+    exchange_particles(domain, m, stream, bodies);
   for (SurfaceLoad<D>& load : domain.loads) stream(load.stress, load.force, load.impulse);
-  exchange_grid(domain.grid, stream);
-  if (stream.restores()) {
-    check_lists(domain);
-    release_nodes(domain.grid);
-    connect(domain.grid);
-    cut_blocks(domain.grid, domain.threads);
-    if (domain.has_contact())
-      connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
-  }
-  if (domain.has_contact()) exchange_contact(domain.contact, stream, domain.bodies.size());
+  if (stream.restores()) rebuild(domain, std::move(bodies), stream);
+  if (domain.has_contact())
+    exchange_contact(domain.contact, stream, domain.bodies.size(), domain.grid.partition);
   stream(domain.time, domain.time_step, domain.step, domain.gravity);
-  stream(domain.eroded, domain.outflow);
-  stream.vector(domain.sums);
+  exchange_removed(stream, domain.eroded);
+  exchange_removed(stream, domain.outflow);
   stream.same(domain.rigid.size(), other_case);
   stream.array(std::span(domain.rigid));
   stream(simulation.coarsenings, simulation.next_time_step, domain.ledger);
@@ -76,12 +90,6 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   simulation.timers.exchange(stream);
 }
 
-template <int D>
-void refuse_ranks(const Simulation<D>& simulation) {
-  if (!simulation.domain.grid.partition.alone())
-    throw std::invalid_argument("a run of several ranks has no checkpoints: give one rank");
-}
-
 }  // namespace
 
 template <int D>
@@ -89,9 +97,9 @@ void save(Simulation<D>& simulation, const StateStream::Transfer& to) {
   require(simulation, Phase::ready, "call prepare() before save()");
   if (simulation.failure)
     throw std::invalid_argument("a run that had to stop has no state to go on from");
-  refuse_ranks(simulation);
-  StateStream stream(StateStream::Way::save, to);
+  StateStream stream(StateStream::Way::save, to, *simulation.domain.grid.partition.comm);
   exchange(simulation, stream);
+  stream.end();
 }
 
 template <int D>
@@ -99,12 +107,11 @@ void restore(Simulation<D>& simulation, const StateStream::Transfer& from, std::
   constexpr const char* when = "call restore() after prepare() and before any step";
   require(simulation, Phase::ready, when);
   if (simulation.domain.step > 0) throw std::invalid_argument(when);
-  refuse_ranks(simulation);
-  StateStream stream(StateStream::Way::restore, from, size);
+  StateStream stream(StateStream::Way::restore, from, *simulation.domain.grid.partition.comm, size);
   simulation.phase = Phase::broken;  // what has been restored half must not step
   exchange(simulation, stream);
   stream.end();
-  check_rest(simulation);
+  check_rest(simulation, stream);
   simulation.phase = Phase::ready;
 }
 

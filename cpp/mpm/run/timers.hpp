@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "mpm/fields/state_stream.hpp"
+#include "mpm/state/state_stream.hpp"
 
 namespace mpm {
 

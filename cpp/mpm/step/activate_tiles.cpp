@@ -1,10 +1,23 @@
 #include "mpm/contact/candidates.hpp"
 #include "mpm/contact/guests.hpp"
+#include "mpm/contact/kept_planes.hpp"
 #include "mpm/step/stages.hpp"
 
 namespace mpm {
 
 namespace {
+
+/// Which bodies may meet is a matter of tiles and of the blocks, so it holds until lists change.
+/// `divided`: tiles have gone to other ranks, and what is kept of their contacts with them.
+template <int D>
+void connect_contact(Domain<D>& domain, bool divided) {
+  Contact<D>& contact = domain.contact;
+  const bool goes_along = divided && contact.cache.on;
+  std::vector<KeptTile<D>> kept;
+  if (goes_along) kept = kept_tiles(contact);
+  connect_tiles(contact, domain.grid, domain.bodies, domain.contact_settings.response);
+  if (goes_along) keep_tiles(contact, exchange_kept(kept, domain.grid.partition, false));
+}
 
 /// Mark the patches of which particles have left the region that is kept. A rigid body leaves as a
 /// whole, with its mass centre; one whose motion is prescribed stays.
@@ -62,6 +75,7 @@ void activate_tiles(Domain<D>& domain) {
   for (std::size_t p = 0; p < domain.sums.size(); ++p)
     if (domain.sums[p].stress.eroded) domain.grid.patches[p].left_cell = true;
   if (domain.grid.outflow_box.exist) mark_leaving(domain);
+  const bool divided = domain.grid.partition.divided;
   const bool changed = update_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads,
                                          domain.list_scratch, &domain.eroded, &domain.outflow);
   // When columns are sorted changes the speed alone: sums over a cell go by the particles' numbers,
@@ -70,9 +84,7 @@ void activate_tiles(Domain<D>& domain) {
                   domain.list_scratch);
   domain.sums.assign(domain.grid.patches.size(), {});
   domain.rigid_at_walls = Vector3::zero();
-  // Which bodies may meet is a matter of tiles and of the blocks, so it holds until lists change.
-  if (changed && domain.has_contact())
-    connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
+  if (changed && domain.has_contact()) connect_contact(domain, divided);
   if (domain.has_contact())
     exchange_guests(domain.contact, domain.grid, domain.bodies, domain.pools);
   balance(domain);

@@ -47,6 +47,7 @@ struct Blocks {
                                            std::array{std::pow(edge, D)}));
     }
     fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches);
+    place_anchor(domain.grid, domain.bodies, domain.pools);
     build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
     connect_tiles(domain.contact, domain.grid, domain.bodies, Response::springs);
   }

@@ -34,9 +34,13 @@ struct World {
       bodies.push_back(make_body<D>("b", material, pools[0], x, at_rest, volume));
     }
     fill_pools(pools, {material}, bodies, grid.patches);
+    place_anchor(grid, bodies, pools);
     build_cell_lists(grid, bodies, pools, threads, scratch);
   }
-  void build() { build_cell_lists(grid, bodies, pools, threads, scratch); }
+  void build() {
+    place_anchor(grid, bodies, pools);
+    build_cell_lists(grid, bodies, pools, threads, scratch);
+  }
   void sort(double share) { sort_disordered(grid, bodies, pools, threads, share, scratch); }
   std::vector<std::uint32_t> rows_of(int body) const {
     std::vector<std::uint32_t> rows;

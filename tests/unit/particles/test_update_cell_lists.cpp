@@ -43,6 +43,7 @@ struct World {
       bodies.back().material = b == 1 ? 1 : 0;
     }
     fill_pools(pools, {material, material}, bodies, grid.patches);
+    place_anchor(grid, bodies, pools);
     build_cell_lists(grid, bodies, pools, threads, scratch);
   }
   ParticlePool<D>& pool_of(int body) {

@@ -14,6 +14,7 @@
 #include "mpm/run/measures.hpp"
 #include "mpm/run/part_sums.hpp"
 #include "mpm/run/prepare.hpp"
+#include "mpm/run/save.hpp"
 #include "mpm/run/warnings.hpp"
 
 namespace {
@@ -28,7 +29,6 @@ struct Choice {
   bool rigid = false, prescribed = false;  // the second body
   bool contact = false;
   bool averages = false;  // volumes over cells
-  bool stays = false;     // tiles stay where they are: planes that are kept do not go along
 };
 
 /// A block of particles, half a cell apart, that spins about the origin and flies.
@@ -108,8 +108,37 @@ void shuffle_owners(Simulation<D>& simulation, std::mt19937_64& random) {
   take_owners(grid, owners);
 }
 
+/// Steps by which a run of other ranks goes on, from a state in the middle of it.
+constexpr int rounds = 8, saved_after = 4;
+
+/// The states that runs of some numbers of ranks have left, by rank 0.
+struct States {
+  const std::vector<std::byte>* from = nullptr;  // what this run begins with
+  std::vector<std::byte> left;
+};
+
 template <int D>
-std::vector<double> run_of(const Choice& choice, Comm& comm) {
+void save_to(Simulation<D>& simulation, std::vector<std::byte>& bytes) {
+  simulation.timers.reset();
+  save<D>(simulation, [&](std::span<std::byte> some) {
+    bytes.insert(bytes.end(), some.begin(), some.end());
+    return some.size();
+  });
+}
+
+template <int D>
+void restore_from(Simulation<D>& simulation, const std::vector<std::byte>& bytes) {
+  std::size_t at = 0;
+  const auto read = [&](std::span<std::byte> some) {
+    std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), some.size(), some.begin());
+    at += some.size();
+    return some.size();
+  };
+  restore<D>(simulation, read, bytes.size());
+}
+
+template <int D>
+std::vector<double> run_of(const Choice& choice, Comm& comm, States& states) {
   Settings settings;
   settings.grid.dimension = D;
   settings.grid.cell_size = 1.0;
@@ -125,9 +154,12 @@ std::vector<double> run_of(const Choice& choice, Comm& comm) {
   build(simulation, choice);
   prepare(simulation);
   std::mt19937_64 random(3);
-  for (int round = 0; round < 8; ++round) {
+  if (states.from != nullptr) restore_from(simulation, *states.from);
+  for (int round = states.from != nullptr ? saved_after : 0; round < rounds; ++round) {
+    if (round == saved_after && comm.rank() == 0) states.left.clear();
+    if (round == saved_after && !simulation.failure) save_to(simulation, states.left);
     advance(simulation, 10, 1e9, nullptr);
-    if (!choice.stays) shuffle_owners(simulation, random);
+    shuffle_owners(simulation, random);
   }
   std::vector<double> numbers = simulation.history.take();
   gather(simulation, numbers);
@@ -156,10 +188,11 @@ std::vector<double> run_of(const Choice& choice, Comm& comm) {
 
 /// What the first rank ends with; what all tell is the same.
 template <int D>
-std::vector<double> run_on(const Choice& choice, int ranks) {
+std::vector<double> run_on(const Choice& choice, int ranks, States& states) {
   const auto count = static_cast<std::size_t>(ranks);
   std::vector<std::vector<double>> outcomes(count);
   std::vector<std::exception_ptr> errors(count);
+  std::vector<States> of_ranks(count, states);
   const auto world = std::make_shared<ThreadsWorld>(ranks);
   {
     std::vector<std::jthread> threads;
@@ -168,7 +201,7 @@ std::vector<double> run_on(const Choice& choice, int ranks) {
       threads.emplace_back([&, rank] {
         ThreadsComm comm(world, static_cast<int>(rank));
         try {
-          outcomes[rank] = run_of<D>(choice, comm);
+          outcomes[rank] = run_of<D>(choice, comm, of_ranks[rank]);
         } catch (const std::exception& error) {
           comm.fail(error.what());
           errors[rank] = std::current_exception();
@@ -177,24 +210,36 @@ std::vector<double> run_on(const Choice& choice, int ranks) {
   }
   for (const std::exception_ptr& error : errors)
     if (error) std::rethrow_exception(error);
+  states.left = std::move(of_ranks[0].left);
   return outcomes[0];
+}
+
+void check_same(mpm::testing::Report& report, const std::vector<double>& some,
+                const std::vector<double>& alone, const char* what, int ranks, int dimension) {
+  std::size_t same = 0;
+  for (std::size_t k = 0; k < alone.size() && k < some.size(); ++k) same += alone[k] == some[k];
+  CHECK_EQUAL(some.size(), alone.size());
+  CHECK(same == alone.size(), what, ranks, dimension, same, alone.size());
 }
 
 template <int D>
 void check(mpm::testing::Report& report, const Choice& choice) {
-  const std::vector<double> alone = run_on<D>(choice, 1);
+  States first;
+  const std::vector<double> alone = run_on<D>(choice, 1, first);
   for (const int ranks : {2, 3, 8}) {
-    std::vector<double> some;
     try {
-      some = run_on<D>(choice, ranks);
+      States states;
+      check_same(report, run_on<D>(choice, ranks, states), alone, choice.name, ranks, D);
+      // The state in the middle is the same one, and any number of ranks goes on from it.
+      const auto other = std::ranges::mismatch(states.left, first.left).in1 - states.left.begin();
+      CHECK(states.left == first.left, choice.name, ranks, D, states.left.size(), other);
+      if (first.left.empty()) continue;
+      States again{&states.left, {}};
+      check_same(report, run_on<D>(choice, ranks == 3 ? 1 : ranks / 2 + 1, again), alone,
+                 choice.name, -ranks, D);
     } catch (const std::exception& error) {
       CHECK(false, choice.name, ranks, D, error.what());
-      continue;
     }
-    std::size_t same = 0;
-    for (std::size_t k = 0; k < alone.size() && k < some.size(); ++k) same += alone[k] == some[k];
-    CHECK_EQUAL(some.size(), alone.size());
-    CHECK(same == alone.size(), choice.name, ranks, D, same, alone.size());
   }
 }
 
@@ -257,8 +302,7 @@ std::vector<Choice> choices() {
                        impulses(s);
                        s.contact.normal_refresh_distance = 0.1;
                      },
-                 .contact = true,
-                 .stays = true});
+                 .contact = true});
   all.push_back({.name = "velocity rule",
                  .set =
                      [=](Settings& s) {

@@ -33,7 +33,8 @@ void test_timers(mpm::testing::Report& report) {
     file.insert(file.end(), bytes.begin(), bytes.end());
     return bytes.size();
   };
-  StateStream out(StateStream::Way::save, write);
+  mpm::NoOthers nobody;
+  StateStream out(StateStream::Way::save, write, nobody);
   timers.exchange(out);
   const auto restore = [&](StageTimers& into) {
     std::size_t at = 0;
@@ -43,7 +44,7 @@ void test_timers(mpm::testing::Report& report) {
       at += n;
       return n;
     };
-    StateStream in(StateStream::Way::restore, read);
+    StateStream in(StateStream::Way::restore, read, nobody);
     into.exchange(in);
   };
   StageTimers same, other;

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "check.hpp"
-#include "mpm/fields/state_stream.hpp"
+#include "mpm/state/state_stream.hpp"
 
 namespace {
 
@@ -30,7 +30,8 @@ void test_state_stream(mpm::testing::Report& report) {
     return bytes.size();
   };
   State saved{0.5, 3, {4, 5, 6}, {7.0, 8.0}}, restored{0.0, 0, {1}, {}};
-  StateStream out(StateStream::Way::save, write);
+  mpm::NoOthers nobody;
+  StateStream out(StateStream::Way::save, write, nobody);
   CHECK(!out.restores());
   saved.exchange(out, 2);
 
@@ -41,7 +42,7 @@ void test_state_stream(mpm::testing::Report& report) {
     at += n;
     return n;
   };
-  StateStream in(StateStream::Way::restore, read);
+  StateStream in(StateStream::Way::restore, read, nobody);
   restored.exchange(in, 2);
   CHECK_EQUAL(at, file.size());
   CHECK(restored.time == 0.5 && restored.step == 3, restored.time, restored.step);
@@ -57,7 +58,7 @@ void test_state_stream(mpm::testing::Report& report) {
 
   // A length that the bytes cannot have is refused before there is room for it.
   at = 0;
-  StateStream few(StateStream::Way::restore, read, file.size());
+  StateStream few(StateStream::Way::restore, read, nobody, file.size());
   std::ranges::fill(std::span(file).subspan(sizeof(int) + sizeof(double) + sizeof(int), 7),
                     std::byte{0x7f});
   CHECK_THROWS(restored.exchange(few, 2), "it ends too early");
@@ -67,7 +68,7 @@ void test_state_stream(mpm::testing::Report& report) {
   file = {std::byte{2}, std::byte{1}};
   at = 0;
   bool flag = false;
-  StateStream flags(StateStream::Way::restore, read, file.size());
+  StateStream flags(StateStream::Way::restore, read, nobody, file.size());
   CHECK_THROWS(flags(flag), "it is damaged");
   CHECK_THROWS(flags.end(), "it is too long");
   flags(flag);
