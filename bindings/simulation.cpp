@@ -1,6 +1,7 @@
 // The class of simulations: what it takes in, its steps, and what it tells.
 
 #include "any.hpp"
+#include "callback_comm.hpp"
 #include "interrupt.hpp"
 #include "mpm/run/advance.hpp"
 #include "mpm/run/bodies.hpp"
@@ -202,7 +203,22 @@ void def_records(SimulationClass& simulation) {
                                    d[nb::str(name.data(), name.size())] = seconds;
                                  return d;
                                }))
-      .def("reset_timers", of_any([](auto& s) { s.timers.reset(); }))
+      .def("reset_timers", of_any([](auto& s) {
+             s.timers.reset();
+             s.passed = {};
+           }))
+      .def("ranks", of_any_to([](auto& s) { return ranks_summary(s); },
+                              [](const RanksSummary& told) {
+                                nb::dict d;
+                                d["ranks"] = told.ranks;
+                                d["letters"] = told.letters;
+                                d["bytes"] = told.bytes;
+                                d["exchanges"] = told.exchanges;
+                                d["reductions"] = told.reductions;
+                                d["share"] = told.share;
+                                d["imbalance"] = told.imbalance;
+                                return d;
+                              }))
       .def("bytes", of_any_to([](auto& s) { return bytes_of(s); },
                               [](const Bytes& b) {
                                 nb::dict d;
@@ -227,7 +243,12 @@ void def_records(SimulationClass& simulation) {
 
 void add_simulation(nb::module_& m) {
   SimulationClass simulation(m, "Simulation");
-  simulation.nb::class_<AnySimulation>::def(nb::init<const Settings&>(), nb::arg("settings"));
+  simulation.nb::class_<AnySimulation>::def(
+      "__init__",
+      [](AnySimulation* made, const Settings& settings, const nb::object& comm) {
+        new (made) AnySimulation(settings, comm_from(comm));
+      },
+      nb::arg("settings"), nb::arg("comm") = nb::none());
   def_building(simulation);
   def_acting(simulation);
   def_stepping(simulation);

@@ -14,8 +14,8 @@
 #include <nanobind/stl/vector.h>
 
 #include "mpm/fields/memory_space.hpp"
-#include "mpm/state/state_stream.hpp"
 #include "mpm/materials/material.hpp"
+#include "mpm/state/state_stream.hpp"
 
 namespace mpm::bindings {
 

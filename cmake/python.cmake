@@ -45,3 +45,18 @@ endif()
 
 # The cases of the examples go with an installed package, for `mpm3dpp reproduce`.
 install(DIRECTORY examples/ DESTINATION mpm3dpp/examples FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv")
+
+# Ranks by MPI, in a module of their own: the core does not know of it.
+if(NOT MPM_MPI STREQUAL "OFF")
+  set(MPI_CXX_SKIP_MPICXX ON)   # the C interface is enough
+  if(MPM_MPI STREQUAL "ON")
+    find_package(MPI REQUIRED COMPONENTS CXX)
+  else()
+    find_package(MPI QUIET COMPONENTS CXX)
+  endif()
+  if(MPI_CXX_FOUND)
+    mpm_add_module(_comm_mpi ${tested_level} mpi/mpi_comm.cpp mpi/module.cpp)
+    target_link_libraries(_comm_mpi PRIVATE MPI::MPI_CXX)
+  endif()
+  message(STATUS "MPM3Dpp: ranks by MPI: ${MPI_CXX_FOUND} ${MPI_CXX_LIBRARIES}")
+endif()

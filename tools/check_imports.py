@@ -9,6 +9,7 @@ from pathlib import Path
 # Package of mpm3dpp -> layer; ARCHITECTURE.md explains the order.
 LAYERS = {
     "base": 0,
+    "ranks": 1,
     "materials": 1,
     "shapes": 1,
     "grains": 2,

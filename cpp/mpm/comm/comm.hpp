@@ -22,6 +22,32 @@ struct Mail {
   std::vector<Letter> out, in;
 };
 
+/// What a rank has sent, and the time that it was in the functions of its Comm, waiting included.
+struct Traffic {
+  std::int64_t letters = 0, bytes = 0;
+  std::int64_t exchanges = 0, reductions = 0;  // in which all ranks wait for all
+  double seconds = 0.0;
+
+  /// f(here, there) for each number.
+  template <class F>
+  static void for_each(Traffic& here, const Traffic& there, F&& f) {
+    f(here.letters, there.letters);
+    f(here.bytes, there.bytes);
+    f(here.exchanges, there.exchanges);
+    f(here.reductions, there.reductions);
+    f(here.seconds, there.seconds);
+  }
+  Traffic& operator+=(const Traffic& other) {
+    for_each(*this, other, [](auto& x, auto y) { x += y; });
+    return *this;
+  }
+  Traffic operator-(const Traffic& other) const {
+    Traffic rest = *this;
+    for_each(rest, other, [](auto& x, auto y) { x -= y; });
+    return rest;
+  }
+};
+
 /// Another rank has failed, and with it the run.
 struct RankFailed : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -50,6 +76,9 @@ class Comm {
   virtual void exchange(Mail& mail) = 0;
   /// Say that this rank cannot go on: the others get RankFailed from what they wait in.
   virtual void fail(const std::string& why) = 0;
+
+  /// So far, where it is counted (counted_comm.hpp).
+  virtual Traffic traffic() const { return {}; }
 
   bool alone() const { return size() == 1; }
 };

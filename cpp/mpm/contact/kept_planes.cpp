@@ -42,8 +42,7 @@ std::vector<KeptTile<D>> kept_tiles(const Contact<D>& contact) {
     const auto last = first + static_cast<std::ptrdiff_t>(count);
     // The pairs of one node follow those of another.
     const std::size_t begin = first->first_pair,
-                      end =
-                          last == part.cached_nodes.end() ? part.cached.size() : last->first_pair;
+                      end = last == part.cached_nodes.end() ? part.cached.size() : last->first_pair;
     KeptTile<D>& one = kept.emplace_back();
     one.tile = tile.tile;
     one.cached = tile.cached;

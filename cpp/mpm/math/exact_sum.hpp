@@ -51,8 +51,8 @@ class ExactSum {
     for (std::size_t k = 0; k < count; ++k) chunks_[k] += carried.chunks_[k];
   }
 
-  /// The sum in integers, alike for equal sums. Those of several sums, each added up, can be read as
-  /// the sum of all.
+  /// The sum in integers, alike for equal sums. Those of several sums, each added up, can be read
+  /// as the sum of all.
   static constexpr std::size_t words = 71;
   void write(std::span<std::int64_t, words> to) const {
     ExactSum carried = *this;

@@ -1,6 +1,7 @@
 #include "mpm/run/advance.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
@@ -55,6 +56,9 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
   require(simulation, Phase::ready, "call prepare() before advance()");
   if (!std::isfinite(end_time)) throw std::invalid_argument("end_time must be a finite number");
   Domain<D>& domain = simulation.domain;
+  Comm& comm = *domain.grid.partition.comm;
+  const Traffic before = comm.traffic();
+  const auto begin = std::chrono::steady_clock::now();
   std::int64_t made = 0;
   while (made < max_steps && domain.time < end_time && !simulation.failure) {
     const double next_stop = domain.settles() ? std::min(end_time, 0.0) : end_time;
@@ -67,8 +71,12 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
     ++made;
     // All ranks after the same step.
     const bool told = stop != nullptr && stop->load(std::memory_order_relaxed);
-    if (any_of_all(*domain.grid.partition.comm, told)) break;
+    if (any_of_all(comm, told)) break;
   }
+  simulation.passed.traffic += comm.traffic() - before;
+  simulation.passed.seconds +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  simulation.passed.steps += made;
   const bool looked = simulation.watch.looked == domain.step;
   if (made > 0 && domain.time >= end_time && !looked && !simulation.failure) look(simulation);
   return made;

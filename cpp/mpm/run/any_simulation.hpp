@@ -1,6 +1,6 @@
 #pragma once
-// A simulation in two or three dimensions, for those who know only when they run in how many; and
-// of several ranks that are threads of this process, as if it were one.
+// A simulation in two or three dimensions, for those who know only when they run in how many; of
+// one rank of several processes, or of several that are threads of this one, as if it were one.
 #include <algorithm>
 #include <exception>
 #include <memory>
@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "mpm/comm/counted_comm.hpp"
 #include "mpm/comm/threads_comm.hpp"
 #include "mpm/run/simulation.hpp"
 
@@ -17,11 +18,16 @@ namespace mpm {
 template <int D>
 class Team {
  public:
+  /// This process's part, if `others` are processes too.
+  Team(const Settings& settings, std::shared_ptr<Comm> others) {
+    comms_.push_back(std::make_unique<CountedComm>(std::move(others)));
+    parts_.push_back(std::make_unique<Simulation<D>>(settings, comms_[0].get()));
+  }
   explicit Team(const Settings& settings)
       // A part at least, which refuses settings that are out of range.
       : world_(std::make_shared<ThreadsWorld>(std::max(1, settings.execution.ranks))) {
     for (int rank = 0; rank < world_->size(); ++rank) {
-      comms_.push_back(std::make_unique<ThreadsComm>(world_, rank));
+      comms_.push_back(std::make_unique<CountedComm>(std::make_shared<ThreadsComm>(world_, rank)));
       Comm* const others = world_->size() > 1 ? comms_.back().get() : nullptr;
       parts_.push_back(std::make_unique<Simulation<D>>(settings, others));
     }
@@ -33,7 +39,14 @@ class Team {
   template <class F>
   auto visit(F&& f) {
     using Result = std::decay_t<decltype(f(*parts_[0]))>;
-    if (parts_.size() == 1) return f(*parts_[0]);
+    if (parts_.size() == 1) {
+      try {
+        return f(*parts_[0]);
+      } catch (const std::exception& error) {
+        comms_[0]->fail(error.what());
+        throw;
+      }
+    }
     std::conditional_t<std::is_void_v<Result>, std::monostate, std::unique_ptr<Result>> first;
     std::vector<std::exception_ptr> errors(parts_.size());
     const auto run = [&](std::size_t rank) {
@@ -82,7 +95,7 @@ class Team {
   }
 
   std::shared_ptr<ThreadsWorld> world_;
-  std::vector<std::unique_ptr<ThreadsComm>> comms_;
+  std::vector<std::unique_ptr<CountedComm>> comms_;
   std::vector<std::unique_ptr<Simulation<D>>> parts_;
 };
 
@@ -90,6 +103,9 @@ class AnySimulation {
  public:
   /// Throws std::invalid_argument, in one sentence, for a setting out of range.
   explicit AnySimulation(const Settings& settings) : of_(make(settings)) {}
+  /// The part of one of the ranks of `others`.
+  AnySimulation(const Settings& settings, const std::shared_ptr<Comm>& others)
+      : of_(others ? make(settings, others) : make(settings)) {}
   AnySimulation(const AnySimulation&) = delete;
   AnySimulation& operator=(const AnySimulation&) = delete;
 
@@ -101,9 +117,10 @@ class AnySimulation {
 
  private:
   using Either = std::variant<Team<2>, Team<3>>;
-  static Either make(const Settings& settings) {
-    if (settings.grid.dimension == 2) return Either(std::in_place_index<0>, settings);
-    return Either(std::in_place_index<1>, settings);
+  template <class... Others>
+  static Either make(const Settings& settings, const Others&... others) {
+    if (settings.grid.dimension == 2) return Either(std::in_place_index<0>, settings, others...);
+    return Either(std::in_place_index<1>, settings, others...);
   }
 
   Either of_;

@@ -64,6 +64,9 @@ Bytes bytes_of(const Simulation<D>& simulation) {
   r.grid = bytes_of(domain.grid);
   if (domain.has_contact()) r.contact = bytes_of(domain.contact);
   r.other = domain.sums.capacity() * sizeof(PatchSums<D>) + simulation.history.bytes();
+  for (std::size_t* bytes : {&r.particles, &r.grid, &r.contact, &r.other})
+    *bytes = static_cast<std::size_t>(
+        all_sum(*domain.grid.partition.comm, static_cast<std::int64_t>(*bytes)));
   return r;
 }
 
@@ -85,6 +88,41 @@ ContactSummary contact_summary(const Simulation<D>& simulation) {
   return told;
 }
 
+template <int D>
+RanksSummary ranks_summary(const Simulation<D>& simulation) {
+  Comm& comm = *simulation.domain.grid.partition.comm;
+  const StepTraffic& passed = simulation.passed;
+  const Traffic& t = passed.traffic;
+  const auto microseconds = [](double time) { return static_cast<std::int64_t>(1e6 * time); };
+  const double at_work = passed.seconds - t.seconds;
+  std::int64_t sums[] = {t.letters,
+                         t.bytes,
+                         t.exchanges,
+                         t.reductions,
+                         microseconds(t.seconds),
+                         microseconds(passed.seconds),
+                         microseconds(at_work)};
+  comm.all_sum(sums);
+  const double longest = all_max(comm, at_work);
+  RanksSummary told;
+  told.ranks = comm.size();
+  if (comm.alone() || passed.steps == 0) return told;
+  const auto mean = [&](std::size_t k) {
+    return static_cast<double>(sums[k]) / static_cast<double>(passed.steps * comm.size());
+  };
+  told.letters = mean(0);
+  told.bytes = mean(1);
+  told.exchanges = mean(2);
+  told.reductions = mean(3);
+  told.share =
+      static_cast<double>(sums[4]) / static_cast<double>(std::max<std::int64_t>(1, sums[5]));
+  told.imbalance =
+      longest * comm.size() / (1e-6 * static_cast<double>(std::max<std::int64_t>(1, sums[6])));
+  return told;
+}
+
+template RanksSummary ranks_summary<2>(const Simulation<2>&);
+template RanksSummary ranks_summary<3>(const Simulation<3>&);
 template ContactSummary contact_summary<2>(const Simulation<2>&);
 template ContactSummary contact_summary<3>(const Simulation<3>&);
 template double total_mass<2>(const Domain<2>&);

@@ -24,6 +24,10 @@ inline RemovedSum sum_of(const Removed& removed, Comm& comm) {
 
 template <int D>
 ContactSummary contact_summary(const Simulation<D>& simulation);
+/// By all ranks at once.
+template <int D>
+RanksSummary ranks_summary(const Simulation<D>& simulation);
+/// Memory of all ranks, by all at once.
 template <int D>
 Bytes bytes_of(const Simulation<D>& simulation);
 

@@ -50,12 +50,20 @@ struct RemovedSum {
   std::size_t count = 0;
 };
 
-/// What there was of contact, of all ranks but for the bytes.
+/// What there was of contact, of all ranks.
 struct ContactSummary {
   std::size_t overlapped = 0, overlapped_max = 0, unconverged = 0, set_back_particles = 0,
               bytes = 0;
   int bodies_max = 0;
   double set_back_most = 0.0;  // [m]
+};
+
+/// What passes between the ranks in a step: of one rank, in the mean.
+struct RanksSummary {
+  int ranks = 1;
+  double letters = 0.0, bytes = 0.0, exchanges = 0.0, reductions = 0.0;
+  double share = 0.0;      // of the time of the steps, waiting included
+  double imbalance = 1.0;  // the longest time at work over the mean one
 };
 
 /// A load on a part of a body's surface; vectors have zeros behind the dimension.

@@ -20,6 +20,13 @@ namespace mpm {
 /// restoring it has failed half-way.
 enum class Phase { building, ready, broken };
 
+/// What has passed between the ranks in steps of this process.
+struct StepTraffic {
+  Traffic traffic;
+  double seconds = 0.0;  // of the steps
+  std::int64_t steps = 0;
+};
+
 template <int D>
 struct Simulation {
   /// One rank's part of a run, if `comm` names others. Throws std::invalid_argument, in one
@@ -30,6 +37,7 @@ struct Simulation {
   Domain<D> domain;
   std::span<const Stage<D>> stages;  // of a step
   StageTimers timers;
+  StepTraffic passed;
   double next_time_step = 0.0;  // [s]
   int coarsenings = 0;          // of the cells so far
   Phase phase = Phase::building;

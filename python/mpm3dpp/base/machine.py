@@ -65,8 +65,11 @@ def memory_text(count: float) -> str:
     return f"{count / 2**30:.2g} GiB"
 
 
-def thread_count(wanted: int | None) -> int:
+def thread_count(wanted: int | None, cores: int | None = None) -> int:
     """Return the number of threads: what is wanted, else OMP_NUM_THREADS, else all cores.
+
+    Args:
+        wanted: by the user.          cores: that there are for it; by default all.
 
     Raises:
         CaseError: the number wanted, or OMP_NUM_THREADS, is no number of threads.
@@ -83,6 +86,8 @@ def thread_count(wanted: int | None) -> int:
             rule = f"must be a whole number from 1 to {MOST_THREADS}"
             raise CaseError(rule, "unset it or give one", key="OMP_NUM_THREADS", value=setting)
         return number
+    if cores is not None:
+        return cores
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

@@ -8,6 +8,7 @@
 from __future__ import annotations
 
 import enum
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,7 +18,7 @@ from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.readers import PROGRAMS
 
 from .materials import material_test, materials
-from .options import CaseFile, Json, Threads, Units
+from .options import CaseFile, Json, Ranks, Threads, Units
 
 if TYPE_CHECKING:
     from mpm3dpp.case.case import Case
@@ -90,6 +91,7 @@ def run(
         ),
     ] = None,
     threads: Threads = None,
+    ranks: Ranks = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
     json: Json = False,
     units: Units = None,
@@ -108,10 +110,11 @@ def run(
     ] = False,
 ) -> None:
     """Run a case: frames, history, manifest and pictures in the output folder."""
-    from mpm3dpp.base.machine import thread_count
     from mpm3dpp.io.folders import default_folder, writable_folder
     from mpm3dpp.run.resume import refuse_to_begin_anew
 
+    if ranks is not None and ranks > 1:
+        raise typer.Exit(_on_ranks(ranks, threads))
     loaded = _load(case, units, quiet)
     folder = out if out is not None else default_folder(case)
     if resume and anew:
@@ -122,8 +125,27 @@ def run(
             refuse_to_begin_anew(folder, loaded)
     from mpm3dpp.run.run import run_case  # The slowest import: after the mistakes.
 
-    workers, pictures = thread_count(threads), not no_pictures
-    run_case(loaded, folder, workers, quiet=quiet, json=json, pictures=pictures, resume=resume)
+    pictures = not no_pictures
+    run_case(loaded, folder, threads, quiet=quiet, json=json, pictures=pictures, resume=resume)
+
+
+def _on_ranks(ranks: int, threads: int | None) -> int:
+    """Run this command again, on several ranks, and return its exit code."""
+    from mpm3dpp.ranks.launch import launch
+    from mpm3dpp.ranks.world import started
+
+    words = sys.argv[1:]
+    for k, word in enumerate(words):
+        if word == "--ranks":
+            del words[k : k + 2]
+            break
+        if word.startswith("--ranks="):
+            del words[k]
+            break
+    if started() is not None:
+        rule = "--ranks is for one process, and mpiexec has started several"
+        raise CaseError(rule, "leave out --ranks")
+    return launch(ranks, words, threads)
 
 
 @app.command()

@@ -27,6 +27,42 @@ def main() -> None:
     signals.end_at_once()
     _mend_streams()
     os.environ["MPLBACKEND"] = "agg"  # Pictures go into files, whatever the user's notebooks need.
+    from mpm3dpp.ranks.world import started
+
+    if started() is None:
+        _command()
+    else:
+        _one_of_many()
+
+
+def _one_of_many() -> None:
+    """Run the command in the first of the processes that mpiexec has started, and exit."""
+    from mpm3dpp.base.errors import CaseError
+    from mpm3dpp.ranks.launch import exit_code, note_begin
+    from mpm3dpp.ranks.world import world
+
+    try:
+        ranks = world()
+    except CaseError as error:
+        _tell(error)
+        sys.exit(exit_code(2))
+    from mpm3dpp.run.lead import dismiss, serve
+
+    if ranks is not None and ranks.rank > 0:
+        serve(ranks)
+        sys.exit(0)
+    note_begin()
+    code = 0
+    try:
+        _command()
+    except SystemExit as end:
+        code = end.code if isinstance(end.code, int) else int(end.code is not None)
+    dismiss()
+    sys.exit(exit_code(code))
+
+
+def _command() -> None:
+    """Run the command line and exit."""
     from mpm3dpp.base.errors import CaseError, RunError
 
     try:

@@ -22,4 +22,12 @@ Threads = Annotated[
     int | None,
     typer.Option(min=1, help="Threads; default OMP_NUM_THREADS, else all cores."),
 ]
+Ranks = Annotated[
+    int | None,
+    typer.Option(
+        min=1,
+        help="Processes of this machine, by MPI, each with its share of the threads; on "
+        "others start `mpiexec -n N mpm3dpp run CASE`.",
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]

@@ -32,6 +32,11 @@ class Manifest:
         mass: of all particles [kg] (per metre in 2D).          cell_size: [m].
         eroded, left: mass [kg] (per metre in 2D) and count of the particles that have eroded,
             and that have left `grid.outflow_box`.
+        ranks: how many processes in its last part, the `mpi` they spoke by, and, of one of them in
+            the mean, what it has sent the others in a step: `letters` and their `bytes`,
+            `exchanges` and `reductions` in which all take part; the `share` of the steps' time that
+            went with that, waiting included, and the `imbalance`, the longest time at work over
+            the mean.
         particles, steps: counts.          wall_time: of the run [s].
         ns_per_particle_step, stages: time in the steps and in each stage [ns].
         resumed_step: from which the run went on last with `--resume`, else 0. Steps, times and
@@ -61,6 +66,7 @@ class Manifest:
     cell_size: float
     particles: int
     threads: int
+    ranks: dict[str, Any]
     steps: int
     resumed_step: int
     end_time: float
@@ -109,6 +115,7 @@ def build_manifest(
     parts: Sequence[str] | None = None,
     cell_size: float,
     threads: int,
+    mpi: str | None = None,
     wall_time: float,
     status: Status,
     resumed_step: int = 0,
@@ -127,7 +134,8 @@ def build_manifest(
         bodies: name of each body.
         parts: name under which contact reports each body; grains have one. Default `bodies`.
         cell_size: [m].
-        threads: used.
+        threads: used, by each process.
+        mpi: name of the MPI, if there are several.
         wall_time: of the whole run [s].
         status: how the run ended.
         resumed_step: from which it went on, if it did.
@@ -150,6 +158,7 @@ def build_manifest(
         cell_size=float(cell_size),
         particles=int(simulation.particle_count),
         threads=int(threads),
+        ranks={"mpi": mpi, **simulation.ranks()},
         steps=int(simulation.step),
         resumed_step=resumed_step,
         end_time=float(simulation.time),

@@ -135,6 +135,10 @@ def speed_line(manifest: Manifest) -> str:
     used = sum(manifest.bytes.values()) / max(1, manifest.particles)
     threads = "1 thread" if manifest.threads == 1 else f"{manifest.threads} threads"
     on = f"on {threads}"
+    ranks = manifest.ranks
+    if ranks["ranks"] > 1:
+        on += f" of each of {ranks['ranks']} ranks ({ranks['mpi']}), "
+        on += f"{ranks['share']:.0%} of the time in exchange, imbalance {ranks['imbalance']:.2f}"
     if manifest.resumed_step:
         on = f"in all parts of the run (from step {manifest.resumed_step:,} {on})"
     return (

@@ -20,8 +20,10 @@ from mpm3dpp.io.history import HistoryWriter
 from mpm3dpp.io.manifest import Manifest, Status, build_manifest
 from mpm3dpp.io.vtkhdf import RESULTS, ResultsWriter
 from mpm3dpp.plots.apart import draw_apart
+from mpm3dpp.ranks.world import world
 
 from .checkpoints import Checkpoint, Checkpoints
+from .lead import follow, make_simulation, release
 from .progress import Progress
 from .report import contact_table, energy_line, gone_lines, load_lines, speed_line, warning_lines
 from .resume import go_on, has_checkpoint
@@ -43,8 +45,9 @@ def run_case(
     Args:
         case: what to run, or its file.
         out: the output folder; it is made. Results in it are replaced, also those of another case:
-            only the command refuses that.
-        threads: how many; by default OMP_NUM_THREADS, else all cores.
+            only the command refuses that. Of several processes, which mpiexec has started, the
+            first one writes; the others return what it returns.
+        threads: of each process, how many; by default OMP_NUM_THREADS, else all cores.
         quiet: no progress and no summary.
         json: print the manifest at the end.
         pictures: make them; `mpm3dpp.plots.plot_results` makes them later.
@@ -57,6 +60,29 @@ def run_case(
         RunError: the run became unstable, or the disk is full; what was written before is kept.
         KeyboardInterrupt: the user stopped it; what was computed is kept.
     """
+    ranks = world()
+    if ranks is not None and ranks.rank > 0:
+        followed = follow(ranks)
+        if followed is None:
+            raise SystemExit(1)  # The first process has said why.
+        return followed
+    manifest: Manifest | None = None
+    try:
+        manifest = _run_case(case, out, threads, quiet, json, pictures, resume)
+    finally:
+        release(manifest)
+    return manifest
+
+
+def _run_case(
+    case: Case | str | Path,
+    out: str | Path,
+    threads: int | None,
+    quiet: bool,
+    json: bool,
+    pictures: bool,
+    resume: bool,
+) -> Manifest:
     folder = arguments.path("out", out)
     _core.return_freed_memory()
     if not isinstance(case, Case):
@@ -95,9 +121,9 @@ def _run(
     before: Checkpoint | None = None
     notes: list[str] = []
     if resume:
-        simulation, before, notes = go_on(folder, case, lambda: Simulation(case, threads))
+        simulation, before, notes = go_on(folder, case, lambda: make_simulation(case, threads))
     else:
-        simulation = Simulation(case, threads)
+        simulation = make_simulation(case, threads)
     checkpoints = Checkpoints(folder, case, before)
     with Notice() as notice:
         forget_last_run(folder, checkpoint=before is None)
@@ -217,7 +243,7 @@ def _manifest(
 ) -> Manifest:
     from mpm3dpp import __version__
 
-    case = simulation.case
+    case, ranks = simulation.case, world()
     return build_manifest(
         simulation.core,
         version=__version__,
@@ -228,6 +254,7 @@ def _manifest(
         parts=simulation.parts,
         cell_size=case.grid.cell_size,
         threads=simulation.threads,
+        mpi=ranks.library + ("" if ranks.native else ", through mpi4py") if ranks else None,
         wall_time=wall_time,
         status=status,
         resumed_step=begin,

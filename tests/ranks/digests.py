@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Steps of the first examples at quick size, by as many ranks as mpiexec has started.
+
+    mpiexec -n N python digests.py OUT STEPS
+
+writes a JSON file: of each example what it ends with, as a number that tells bits apart.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from mpm3dpp import Case, Simulation, load_case
+from mpm3dpp.ranks.world import world
+from mpm3dpp.reproduce.examples import EXAMPLES, folder_of_cases, load
+
+
+def cases() -> Iterator[tuple[str, Case]]:
+    """Yield the examples 01 to 05 with their names."""
+    folder = folder_of_cases()
+    for name, example in EXAMPLES.items():
+        for label in example.files:
+            yield f"{name} {label}", load(example, label, folder, "quick")[0]
+    yield "hopper", load_case(folder / "05_hopper" / "case_small.toml")
+
+
+def digest(simulation: Simulation) -> str:
+    """Return a number for all columns, the history and all pairs."""
+    core, found = simulation.core, hashlib.sha256()
+    for body in range(core.body_count):
+        for column in core.columns(body):
+            found.update(core.column(body, column.name).tobytes())
+    found.update(core.history().tobytes())
+    for pair in core.contact_pairs():
+        found.update(np.array([*pair.force, *pair.impulse, pair.friction_work]).tobytes())
+    return found.hexdigest()
+
+
+def main(out: str, steps: str) -> None:
+    ranks, found = world(), {}
+    for name, case in cases():
+        simulation = Simulation(case, threads=1, world=ranks)
+        simulation.advance(int(steps))
+        found[name] = digest(simulation)
+    found["ranks"] = str(ranks.size if ranks else 1)
+    if ranks is None or ranks.rank == 0:
+        Path(out).write_text(json.dumps(found))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

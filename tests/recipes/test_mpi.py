@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Ranks that are processes: the same bits, one who tells, and what comes of one that dies."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from commands import CASE, command, mpm3dpp, one_sentence, write
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.io.checkpoint import read_about
+from mpm3dpp.ranks import launch, world
+
+PROGRAMS = Path(__file__).parents[1] / "ranks"
+LONG = CASE.replace('"10 mm"', '"2 mm"').replace('"8 ms"', '"40 ms"')
+LONG = LONG.replace("[output]", "[output]\ncheckpoint_interval = 0.2")
+BOTH = ("out", "straight")
+
+
+def mpiexec(count: int, *words: Any) -> list[str]:
+    program, is_open = launch.find_mpiexec()
+    options = ["--oversubscribe", "--bind-to", "none"] if is_open else []
+    return [program, "-n", str(count), *options, sys.executable, *map(str, words)]
+
+
+def environment(way: str) -> dict[str, str]:
+    found = {**os.environ, **launch.AS_ROOT, "OMP_NUM_THREADS": "1"}
+    return {**found, world.THROUGH: "1"} if way == "mpi4py" else found
+
+
+@pytest.fixture(scope="module", params=["module", "mpi4py"])
+def way(request: pytest.FixtureRequest) -> str:
+    """How the core speaks to MPI; skipped where there is none."""
+    try:
+        launch.find_mpiexec()
+    except CaseError as error:
+        pytest.skip(f"no MPI: {error}")
+    name: str = request.param
+    ask = (
+        "from mpi4py import MPI; from mpm3dpp.ranks.world import module_for; print(module_for(MPI))"
+    )
+    told = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=True)
+    if name == "module" and told.stdout.strip() == "None":
+        pytest.skip("mpm3dpp was built without a module for the MPI that mpi4py uses")
+    return name
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    out = tmp_path_factory.mktemp("alone") / "found.json"
+    words = [sys.executable, str(PROGRAMS / "digests.py"), str(out), "20"]
+    subprocess.run(words, env=environment("module"), check=True, timeout=300)
+    return dict(json.loads(out.read_text()))
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_examples(tmp_path: Path, way: str, alone: dict[str, str], ranks: int) -> None:
+    out = tmp_path / "found.json"
+    words = mpiexec(ranks, PROGRAMS / "digests.py", out, 20)
+    subprocess.run(words, env=environment(way), check=True, timeout=300)
+    found = json.loads(out.read_text())
+    assert found.pop("ranks") == str(ranks)
+    assert len(found) == 6 and found == {k: v for k, v in alone.items() if k != "ranks"}
+
+
+def run(way: str, folder: Path, *words: Any) -> subprocess.CompletedProcess[str]:
+    line = command("run", *words)
+    return subprocess.run(
+        line,
+        cwd=folder,
+        env=environment(way),
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+def test_a_run_writes_and_tells_once(tmp_path: Path, way: str) -> None:
+    write(tmp_path)
+    plain = ("case.toml", "--no-pictures", "--threads", 1)
+    assert mpm3dpp("run", *plain, "--out", "one", cwd=tmp_path).returncode == 0
+    done = run(way, tmp_path, *plain, "--out", "three", "--ranks", 3)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("completed: ") == 1 and "of each of 3 ranks" in done.stdout
+    one, three = (
+        json.loads((tmp_path / name / "manifest.json").read_text()) for name in ("one", "three")
+    )
+    assert one["result_hash"] == three["result_hash"]
+    assert one["ranks"]["ranks"] == 1 and three["ranks"]["ranks"] == 3
+    assert three["ranks"]["mpi"].endswith("mpi4py") == (way == "mpi4py")
+    for file in ("history.csv", "history_bodies.csv", "history_pairs.csv"):
+        a, b = tmp_path / "one" / file, tmp_path / "three" / file
+        assert a.exists() == b.exists() and (not a.exists() or a.read_bytes() == b.read_bytes())
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "sentence"),
+    [
+        (CASE.replace("8 ms", "8 parsec"), (), 'run.end_time = "8 parsec" has the unit'),
+        (CASE.replace("cfl = 0.3", "time_step = 1.0"), (), "larger than the largest stable step"),
+        (CASE, ("--out", "case.toml"), "case.toml"),
+        (CASE, ("--resume",), "there is no checkpoint"),
+    ],
+)
+def test_a_mistake_is_told_once(
+    tmp_path: Path, way: str, text: str, words: tuple[str, ...], sentence: str
+) -> None:
+    write(tmp_path, text)
+    done = run(way, tmp_path, "case.toml", "--ranks", 2, *words)
+    assert done.returncode == 2 and sentence in one_sentence(done.stderr)
+
+
+def test_ctrl_c_and_any_number_of_ranks_goes_on(tmp_path: Path, way: str) -> None:
+    write(tmp_path, CASE.replace('"10 mm"', '"2 mm"'))
+    assert run(way, tmp_path, "case.toml", "--out", "straight", "--no-pictures").returncode == 0
+    words = command("run", "case.toml", "--out", "out", "--no-pictures", "--ranks", 3)
+    with subprocess.Popen(words, cwd=tmp_path, env=environment(way)) as job:
+        wait_for((tmp_path / "out" / "history.csv").exists)
+        job.send_signal(signal.SIGINT)
+        assert job.wait(60) == 130
+    for ranks in (2, 1):
+        more = ("--resume", "--no-pictures", "--ranks", ranks)
+        assert run(way, tmp_path, "case.toml", "--out", "out", *more).returncode == 0
+    found = [json.loads((tmp_path / name / "manifest.json").read_text()) for name in BOTH]
+    assert found[0]["result_hash"] == found[1]["result_hash"]
+
+
+def test_one_that_fails_alone_ends_all(tmp_path: Path, way: str) -> None:
+    words = mpiexec(3, PROGRAMS / "one_fails.py", write(tmp_path), 1)
+    done = subprocess.run(
+        words, env=environment(way), capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode != 0
+    assert "rank 1 cannot go on, and with it the run: no column is named speed" in done.stderr
+
+
+def wait_for(holds: Callable[[], bool]) -> None:
+    end = time.monotonic() + 60
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def step_of(checkpoint: Path) -> int:
+    return int(read_about(checkpoint)["step"])
+
+
+def ranks_of(job: subprocess.Popen[Any]) -> list[int]:
+    """Return the processes of a job that mpiexec has started, by their environment."""
+    found = []
+    for folder in Path("/proc").iterdir():
+        try:
+            about = (folder / "environ").read_bytes()
+            parent = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
+        except (OSError, ValueError, IndexError):
+            continue
+        if f"{launch.TOLD}=".encode() in about and parent != job.pid and b"RANK" in about:
+            found.append(int(folder.name))
+    return found
+
+
+@pytest.mark.parametrize("kills", [2, pytest.param(20, marks=pytest.mark.slow)])
+def test_killed_ranks(tmp_path: Path, way: str, kills: int) -> None:
+    """The job ends at once, and nothing is lost but the time since the last checkpoint."""
+    write(tmp_path, LONG.replace("40 ms", f"{20 * kills} ms"))
+    chance, state = random.Random(2026), tmp_path / "out" / "checkpoint.zip"
+    reached = []
+    for kill in range(kills):
+        more = ["--resume"] if kill else []
+        words = command("run", "case.toml", "--out", "out", "--no-pictures", "--ranks", 3, *more)
+        with subprocess.Popen(
+            words, cwd=tmp_path, env=environment(way), stderr=subprocess.PIPE, text=True
+        ) as job:
+            wait_for(lambda: state.exists() and step_of(state) > max(reached, default=0))
+            time.sleep(0.3 * chance.random())
+            os.kill(chance.choice(ranks_of(job)), signal.SIGKILL)
+            begin = time.monotonic()
+            _, told = job.communicate(timeout=60)
+        reached.append(step_of(state))
+        assert time.monotonic() - begin < 15 and job.returncode == 1 and "Traceback" not in told
+        last = told.strip().splitlines()[-1]
+        assert last.startswith("mpm3dpp: error: a process of the run has ended")
+    plain = ("case.toml", "--no-pictures", "--threads", 1, "--quiet")
+    assert run(way, tmp_path, *plain, "--out", "out", "--resume").returncode == 0
+    assert run(way, tmp_path, *plain, "--out", "straight").returncode == 0
+    found = [json.loads((tmp_path / name / "manifest.json").read_text()) for name in BOTH]
+    assert found[0]["result_hash"] == found[1]["result_hash"]
+    assert found[0]["resumed_step"] >= reached[-1]
+
+
+def test_processes_that_are_each_alone(tmp_path: Path) -> None:
+    """An mpiexec of another MPI than mpi4py's: a sentence by the first, no run of four."""
+    pytest.importorskip("mpi4py")
+    write(tmp_path)
+    for rank in (0, 1):
+        about = {**os.environ, "PMI_SIZE": "4", "PMI_RANK": str(rank)}
+        done = subprocess.run(
+            command("run", "case.toml"),
+            cwd=tmp_path,
+            env=about,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        assert done.returncode == 2
+        if rank == 0:
+            assert "4 processes were started" in one_sentence(done.stderr)
+        else:
+            assert done.stderr == ""
+
+
+def test_without_mpi4py(tmp_path: Path) -> None:
+    write(tmp_path)
+    (tmp_path / "mpi4py.py").write_text("raise ImportError('no mpi4py here')")
+    about = {**os.environ, "PYTHONPATH": f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"}
+    for more, extra in ((("--ranks", "2"), {}), ((), {"PMI_SIZE": "2", "PMI_RANK": "0"})):
+        done = subprocess.run(
+            command("run", "case.toml", *more),
+            cwd=tmp_path,
+            env={**about, **extra},
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        assert done.returncode == 2
+        assert "pip install 'mpm3dpp[mpi]'" in one_sentence(done.stderr)
