@@ -28,9 +28,7 @@ BOTH = ("out", "straight")
 
 
 def mpiexec(count: int, *words: Any) -> list[str]:
-    program, is_open = launch.find_mpiexec()
-    options = ["--oversubscribe", "--bind-to", "none"] if is_open else []
-    return [program, "-n", str(count), *options, sys.executable, *map(str, words)]
+    return [*launch.command_of(count, 1)[0], sys.executable, *map(str, words)]
 
 
 def environment(way: str) -> dict[str, str]:

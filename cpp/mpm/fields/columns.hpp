@@ -5,6 +5,7 @@
 #include <cassert>
 #include <concepts>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -136,7 +137,8 @@ class ColumnsIn {
  private:
   template <MemorySpace>
   friend class ColumnsIn;
-  friend void grow(ColumnsIn<HostSpace>& columns, std::size_t rows);
+  template <class Copy>
+  friend void reallocate(ColumnsIn<HostSpace>& columns, std::size_t rows, Copy&& copy);
 
   const ColumnInfo& info_of(int c) const {
     std::size_t k = infos_.size();
@@ -160,17 +162,36 @@ class ColumnsIn {
 
 using Columns = ColumnsIn<HostSpace>;
 
-/// More rows behind those that there are, which keep what they hold.
-inline void grow(Columns& columns, std::size_t rows) {
-  const std::size_t kept = columns.rows_;
+/// Columns anew, with so many rows; copy(from, to) for the numbers of each component before and
+/// now.
+template <class Copy>
+void reallocate(Columns& columns, std::size_t rows, Copy&& copy) {
   const std::vector<std::size_t> from = columns.begin_;
   const AlignedArray<std::byte> before = std::move(columns.memory_);
   columns.allocate(rows);
   std::size_t k = 0;
   for (const ColumnInfo& info : columns.infos_)
-    for (int c = 0; c < info.components; ++c, ++k)
-      std::copy_n(before.data() + from[k], kept * info.number_bytes(),
-                  columns.memory_.data() + columns.begin_[k]);
+    for (int c = 0; c < info.components; ++c, ++k) {
+      const std::byte* const old = before.data() + from[k];
+      std::byte* const now = columns.memory_.data() + columns.begin_[k];
+      if (info.kept == Precision::exact)
+        copy(reinterpret_cast<const double*>(old), reinterpret_cast<double*>(now));
+      else
+        copy(reinterpret_cast<const Storage*>(old), reinterpret_cast<Storage*>(now));
+    }
+}
+
+/// More rows behind those that there are, which keep what they hold.
+inline void grow(Columns& columns, std::size_t rows) {
+  const std::size_t kept = columns.rows();
+  reallocate(columns, rows, [&](const auto* from, auto* to) { std::copy_n(from, kept, to); });
+}
+
+/// The given rows in their order, and room behind them for `room` in all.
+inline void repack(Columns& columns, std::span<const std::uint32_t> rows, std::size_t room) {
+  reallocate(columns, room, [&](const auto* from, auto* to) {
+    for (const std::uint32_t row : rows) *to++ = from[row];
+  });
 }
 
 }  // namespace mpm

@@ -139,6 +139,17 @@ template <int D>
 void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>>& pools,
             Threads& threads, ListScratch<D>& scratch);
 
+/// Other ranges of tiles, if the cost of one rank is more than `bound` times the mean one; then
+/// true, and particles go along in the next update_cell_lists(). By all ranks at once.
+template <int D>
+bool balance_ranks(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, double bound);
+
+/// Put the rows that hold particles into the order of the lists, one behind another, with some room
+/// for others that come; guests are forgotten.
+template <int D>
+void repack(std::vector<Patch<D>>& patches, std::vector<Body<D>>& bodies,
+            std::vector<ParticlePool<D>>& pools);
+
 /// In the column `failed`, beside the values of FailureAction: the particle has left the region
 /// that is kept.
 inline constexpr double left_region = 4.0;

@@ -5,6 +5,14 @@
 namespace mpm {
 namespace {
 
+/// What the stages of a step cost for a patch, in quarters of a particle.
+template <int D>
+std::int64_t cost_of(const Patch<D>& patch, const std::vector<Body<D>>& bodies) {
+  // Those whose motion is prescribed cost their nodes only.
+  const bool moves_alone = bodies[static_cast<std::size_t>(patch.body)].is_prescribed();
+  return patch.count == 0 ? 0 : (moves_alone ? 0 : 4 * patch.count) + Tile<D>::cell_count;
+}
+
 /// Where ranges of tiles begin whose costs are alike: sums over all ranks, bit by bit of the place.
 template <int D>
 Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies) {
@@ -14,12 +22,7 @@ Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies)
   };
   std::vector<Cost> costs;
   for (const Patch<D>& patch : grid.patches)
-    if (patch.count > 0) {
-      // As stages cost it: those whose motion is prescribed cost their nodes only.
-      const bool moves_alone = bodies[static_cast<std::size_t>(patch.body)].is_prescribed();
-      const std::int64_t particles = moves_alone ? 0 : patch.count;
-      costs.push_back({place_of<D>(patch.tile), 4 * particles + Tile<D>::cell_count});
-    }
+    if (patch.count > 0) costs.push_back({place_of<D>(patch.tile), cost_of(patch, bodies)});
   std::ranges::sort(costs, {}, &Cost::place);
   std::int64_t here = 0;
   for (Cost& cost : costs) cost.until = here += cost.until;
@@ -53,9 +56,22 @@ void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<Particl
   take_owners(grid, owners_of(grid, bodies));
   update_cell_lists<D>(grid, bodies, pools, threads, scratch, nullptr, nullptr);
   // Those that have come lie wherever there was room.
-  for (std::size_t b = 0; b < bodies.size(); ++b)
-    sort_columns(grid, bodies[b], patches_of<D>(grid.patches, static_cast<int>(b)),
-                 pools[static_cast<std::size_t>(bodies[b].material)], threads, scratch);
+  repack(grid.patches, bodies, pools);
+}
+
+template <int D>
+bool balance_ranks(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, double bound) {
+  Comm& comm = *grid.partition.comm;
+  std::int64_t here = 0;
+  for (const Patch<D>& patch : grid.patches) here += cost_of(patch, bodies);
+  const double largest = all_max(comm, static_cast<double>(here));
+  const double mean = static_cast<double>(all_sum(comm, here)) / comm.size();
+  if (largest <= bound * mean) return false;
+  Owners<D> owners = owners_of(grid, bodies);
+  // Where tiles are few, no other ranges are better.
+  if (owners.first == grid.partition.owners.first) return false;
+  take_owners(grid, std::move(owners));
+  return true;
 }
 
 template <int D>
@@ -83,6 +99,8 @@ template void divide<2>(TileGrid<2>&, std::vector<Body<2>>&, std::vector<Particl
                         Threads&, ListScratch<2>&);
 template void divide<3>(TileGrid<3>&, std::vector<Body<3>>&, std::vector<ParticlePool<3>>&,
                         Threads&, ListScratch<3>&);
+template bool balance_ranks<2>(TileGrid<2>&, const std::vector<Body<2>>&, double);
+template bool balance_ranks<3>(TileGrid<3>&, const std::vector<Body<3>>&, double);
 template void take_owners<2>(TileGrid<2>&, Owners<2>);
 template void take_owners<3>(TileGrid<3>&, Owners<3>);
 

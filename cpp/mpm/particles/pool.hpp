@@ -79,12 +79,14 @@ struct ParticlePool {
   }
 };
 
+/// So many rows more, that few comings allocate.
+constexpr std::size_t spare_rows(std::size_t rows) { return rows / 16 + 64; }
+
 /// A row for a particle that comes from another rank.
 template <int D>
 std::uint32_t take_row(ParticlePool<D>& pool) {
   if (pool.free_rows.empty()) {
-    // A sixteenth more, so that few comings allocate.
-    const std::size_t count = pool.count(), more = count + count / 16 + 64;
+    const std::size_t count = pool.count(), more = count + spare_rows(count);
     grow(pool.columns, more);
     pool.id.resize(more);
     if (!pool.pieces.empty()) pool.piece.resize(more, 0);

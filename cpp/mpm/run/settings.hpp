@@ -167,6 +167,8 @@ struct ExecutionSettings {
   int ranks = 1;
   bool fused = true;
   double disorder = disorder_that_pays;
+  std::int64_t balance_every = 100;
+  double imbalance_limit = 1.05;
 
   static constexpr std::string_view table = "execution";
   using Self = ExecutionSettings;
@@ -181,7 +183,14 @@ struct ExecutionSettings {
           "disorder", &Self::disorder,
           "share of a body's particles that changes cell before its columns are sorted; infinite "
           "for never",
-          Rule{.lower = 0.0, .lower_open = false, .finite = false}}};
+          Rule{.lower = 0.0, .lower_open = false, .finite = false}},
+      Setting{"balance_every", &Self::balance_every,
+              "steps after which ranks are looked at, and share out the tiles anew where one has "
+              "too much",
+              Rule{1.0, 1e9, false, false}},
+      Setting{"imbalance_limit", &Self::imbalance_limit,
+              "cost of a rank over the mean one from which on that is done; infinite for never",
+              Rule{.lower = 1.0, .lower_open = false, .finite = false}}};
 };
 
 /// What is fixed before the bodies are added. SI units.

@@ -95,6 +95,8 @@ Simulation<D>::Simulation(const Settings& given, Comm* comm)
   domain.filter_order = given.run.transfer.xpic;
   domain.filter_every = given.run.transfer.every;
   domain.disorder = given.execution.disorder;
+  domain.balance_every = given.execution.balance_every;
+  domain.imbalance_limit = given.execution.imbalance_limit;
   domain.contact_settings = given.contact;
   domain.threads.resize(given.execution.threads);
   for (std::size_t k = 0; k < stages.size(); ++k) timers.name(k, stages[k].name);

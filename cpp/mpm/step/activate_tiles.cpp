@@ -75,11 +75,14 @@ void activate_tiles(Domain<D>& domain) {
   for (std::size_t p = 0; p < domain.sums.size(); ++p)
     if (domain.sums[p].stress.eroded) domain.grid.patches[p].left_cell = true;
   if (domain.grid.outflow_box.exist) mark_leaving(domain);
+  const bool looks = !domain.grid.partition.alone() && domain.step % domain.balance_every == 0;
+  if (looks) balance_ranks(domain.grid, domain.bodies, domain.imbalance_limit);
   const bool divided = domain.grid.partition.divided;
   const bool changed = update_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads,
                                          domain.list_scratch, &domain.eroded, &domain.outflow);
   // When columns are sorted changes the speed alone: sums over a cell go by the particles' numbers,
   // not by their rows (decision 0033).
+  if (divided) repack(domain.grid.patches, domain.bodies, domain.pools);
   sort_disordered(domain.grid, domain.bodies, domain.pools, domain.threads, domain.disorder,
                   domain.list_scratch);
   domain.sums.assign(domain.grid.patches.size(), {});

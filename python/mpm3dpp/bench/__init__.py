@@ -31,7 +31,7 @@ from mpm3dpp.io.folders import writable_folder
 
 from .cases import BENCHES, Bench
 from .operations import operations_per_particle_step
-from .process import Process
+from .process import Part, Process
 from .traffic import bytes_per_particle_step
 
 BLOCKS = 5
@@ -59,6 +59,7 @@ def measure(
     scheme: str = "musl",
     steps: int | None = None,
     told: Callable[[int, int], None] | None = None,
+    ranks: int = 1,
 ) -> dict[str, Any]:
     """Measure a benchmark.
 
@@ -69,12 +70,14 @@ def measure(
         scheme: "usf", "usl" or "musl".
         steps: how many are timed.
         told: called with (parts done, parts in all) as the measurement goes on.
+        ranks: processes, each with so many threads.
 
     Returns:
         What `--json` prints: `particles`, `threads`, `ns_per_particle_step`, `stages` [ns per
         particle-step], `bytes_per_particle` {particles, grid, contact, other, total},
         `bandwidth_GBps`, `bandwidth_fraction`, `arithmetic_GFLOPS`, `arithmetic_fraction`; what
-        was measured (`bench`, `scheme`, `size`, `steps`, `version`, `machine`, `isa`); `blocks`,
+        was measured (`bench`, `scheme`, `size`, `steps`, `version`, `machine`, `isa`); `ranks` and
+        what passes between them, see `Manifest.ranks`; `blocks`,
         all blocks [ns]; and with a twin `without_contact_ns` and `contact_ratio` (`elastic3d_ns`,
         `elastic3d_ratio` for `jc`, `debris` and `gimp3d`), the median over pairs of blocks.
 
@@ -85,11 +88,11 @@ def measure(
     bench = find(name)
     _allow(bench, scheme)
     cells = size or bench.size
-    specs = [(part, cells, threads) for part in (name, bench.twin) if part]
+    specs = [Part(part, cells, threads, ranks) for part in (name, bench.twin) if part]
     lengths = block_lengths(steps or STEPS)
     _check_memory(specs)
     blocks, ends = _in_turns(specs, scheme, lengths, told)
-    return _result(bench, cells, threads, scheme, sum(lengths), blocks, ends[0])
+    return _result(bench, specs[0], scheme, sum(lengths), blocks, ends[0])
 
 
 def series(
@@ -99,8 +102,9 @@ def series(
     scheme: str = "musl",
     steps: int | None = None,
     told: Callable[[int, int], None] | None = None,
+    ranks: Sequence[int] = (1,),
 ) -> list[dict[str, Any]]:
-    """Measure a benchmark for every size with every number of threads, in turns.
+    """Measure a benchmark for every size with every number of ranks and of threads, in turns.
 
     All take turns block by block, so that they can be compared; their memory is needed at once.
     The twin of a benchmark is left out. Arguments, results and errors are those of `measure`.
@@ -108,13 +112,15 @@ def series(
     bench = find(name)
     _allow(bench, scheme)
     lengths = block_lengths(steps or STEPS)
-    specs = [(name, size, count) for size in sizes for count in threads]
+    specs = [
+        Part(name, size, count, parts) for size in sizes for parts in ranks for count in threads
+    ]
     _check_memory(specs)
     blocks, ends = _in_turns(specs, scheme, lengths, told)
     alone = replace(bench, twin="")
     return [
-        _result(alone, size, count, scheme, sum(lengths), [found], end)
-        for (_, size, count), found, end in zip(specs, blocks, ends, strict=True)
+        _result(alone, part, scheme, sum(lengths), [found], end)
+        for part, found, end in zip(specs, blocks, ends, strict=True)
     ]
 
 
@@ -127,12 +133,12 @@ def _allow(bench: Bench, scheme: str) -> None:
         )
 
 
-def _check_memory(specs: Sequence[tuple[str, int, int]]) -> None:
-    """Raise `CaseError` if benchmarks (name, size, threads) at once have no room in memory."""
-    particles = sum(BENCHES[name].particles(size) for name, size, _ in specs)
+def _check_memory(specs: Sequence[Part]) -> None:
+    """Raise `CaseError` if benchmarks at once have no room in memory."""
+    particles = sum(BENCHES[part.name].particles(part.size) for part in specs)
     needed = particles * PARTICLE_BYTES_WITH_GRID
     if needed > MEMORY:
-        name, size, _ = max(specs, key=lambda spec: spec[1])
+        name, size = max(specs, key=lambda part: part.size)[:2]
         at_once = f"{len(specs)} benchmarks at once" if len(specs) > 1 else name
         raise CaseError(
             f"is too large: {at_once} would need some {needed / 2**30:,.0f} GiB of memory, and "
@@ -144,12 +150,12 @@ def _check_memory(specs: Sequence[tuple[str, int, int]]) -> None:
 
 
 def _in_turns(
-    specs: Sequence[tuple[str, int, int]],
+    specs: Sequence[Part],
     scheme: str,
     lengths: Sequence[int],
     told: Callable[[int, int], None] | None,
 ) -> tuple[list[list[dict[str, Any]]], list[dict[str, Any]]]:
-    """Measure benchmarks (name, size, threads) block by block; return their blocks and ends."""
+    """Measure benchmarks block by block; return their blocks and ends."""
     parts = len(specs) * (len(lengths) + 1) + 1
     blocks: list[list[dict[str, Any]]] = [[] for _ in specs]
     done = 0
@@ -163,9 +169,9 @@ def _in_turns(
     with ExitStack() as stack:
         workers = []
         # One after the other: making particles disturbs the rest.
-        for name, size, threads in specs:
+        for part in specs:
             tell()
-            worker = Process(name, size, threads, scheme, min(WARM_UP, sum(lengths)))
+            worker = Process(part, scheme, min(WARM_UP, sum(lengths)))
             workers.append(stack.enter_context(worker))
             worker.ask()
         for length in lengths:
@@ -180,8 +186,7 @@ def _in_turns(
 
 def _result(
     bench: Bench,
-    size: int,
-    threads: int,
+    part: Part,
     scheme: str,
     steps: int,
     blocks: list[list[dict[str, Any]]],
@@ -190,9 +195,11 @@ def _result(
     """Put the measurements together; see `measure`."""
     from mpm3dpp import __version__
 
+    size = part.size
     count = bench.particles(size)
     median = statistics.median_low(block["ns"] for block in blocks[0])
-    stages = next(block["stages"] for block in blocks[0] if block["ns"] == median)
+    block = next(block for block in blocks[0] if block["ns"] == median)
+    stages = block["stages"]
     moved = sum(bytes_per_particle_step(list(stages), bench.dimension, bench.state).values())
     made = sum(
         operations_per_particle_step(list(stages), bench.dimension, bench.basis, bench.law).values()
@@ -208,7 +215,8 @@ def _result(
         "size": size,
         "steps": steps,
         "particles": count,
-        "threads": threads,
+        "threads": part.threads,
+        **block["exchange"],
         "ns_per_particle_step": median,
         "blocks": [block["ns"] for block in blocks[0]],
         "stages": stages,
@@ -248,6 +256,7 @@ def main(
     steps: int | None = None,
     json: bool = False,
     plot: Path | None = None,
+    ranks: Sequence[int] = (1,),
 ) -> None:
     """Measure a benchmark and print a table, or JSON, and draw it; see `measure` and `series`."""
     from .report import progress, show, show_series
@@ -258,13 +267,15 @@ def main(
         raise CaseError("is not the name of a PNG file", remedy, key="--plot", value=str(plot))
     if plot is not None:
         writable_folder(plot.parent)
-    alone = len(sizes) <= 1 and len(threads) == 1
+    alone = len(sizes) <= 1 and len(threads) == len(ranks) == 1
     with progress(quiet=json) as told:
         try:
             if alone:
-                results = [measure(name, next(iter(sizes), None), threads[0], scheme, steps, told)]
+                size = next(iter(sizes), None)
+                results = [measure(name, size, threads[0], scheme, steps, told, ranks[0])]
             else:
-                results = series(name, sizes or (bench.size,), threads, scheme, steps, told)
+                sizes = sizes or (bench.size,)
+                results = series(name, sizes, threads, scheme, steps, told, ranks)
         except CaseError as error:
             if error.key != "size":
                 raise

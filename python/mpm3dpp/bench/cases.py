@@ -201,7 +201,7 @@ def _along(values: NDArray[Any], axis: int, dimension: int) -> NDArray[Any]:
     return values.reshape([-1 if a == axis else 1 for a in range(dimension)])
 
 
-def make(core: Any, bench: Bench, size: int, threads: int, scheme: str) -> Any:
+def make(core: Any, bench: Bench, size: int, threads: int, scheme: str, comm: Any = None) -> Any:
     """Return the core's simulation of a benchmark, ready to step.
 
     Args:
@@ -210,8 +210,9 @@ def make(core: Any, bench: Bench, size: int, threads: int, scheme: str) -> Any:
         size: cells along the edge of a body, or the number of grains.
         threads: how many.
         scheme: "usf", "usl" or "musl".
+        comm: of all ranks that work on it, `World.for_core()`.
     """
-    simulation = core.Simulation(_settings(core, bench, threads, scheme))
+    simulation = core.Simulation(_settings(core, bench, threads, scheme), comm)
     material = simulation.add_material(**bench.material)
     volume = np.array([(CELL / PER_AXIS) ** bench.dimension])
     at_rest = np.zeros((1, bench.dimension))

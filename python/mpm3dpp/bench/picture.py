@@ -43,12 +43,14 @@ def _stages(axes: Axes, result: dict[str, Any]) -> None:
 def _growth(axes: Axes, results: list[dict[str, Any]]) -> None:
     """Time over the number of particles for each number of threads; of one size, over threads."""
     sizes = sorted({result["particles"] for result in results})
-    counts = sorted({result["threads"] for result in results})
-    ns = {(r["particles"], r["threads"]): r["ns_per_particle_step"] for r in results}
+    ranks = sorted({result["ranks"] for result in results})
+    kind = "rank" if len(ranks) > 1 else "thread"
+    counts = ranks if len(ranks) > 1 else sorted({result["threads"] for result in results})
+    ns = {(r["particles"], r[f"{kind}s"]): r["ns_per_particle_step"] for r in results}
     if len(sizes) > 1:
         for count, colour in zip(counts, PALETTE, strict=False):
             found = [ns[size, count] for size in sizes]
-            label = f"{count} thread{'s' if count > 1 else ''}"
+            label = f"{count} {kind}{'s' if count > 1 else ''}"
             axes.plot(sizes, found, "o-", color=colour, label=label)
         axes.set_xscale("log")
         axes.set_xlabel("particles")
@@ -58,7 +60,7 @@ def _growth(axes: Axes, results: list[dict[str, Any]]) -> None:
         ideal = [found[0] * counts[0] / count for count in counts]
         axes.plot(counts, ideal, "--", color="black", linewidth=1.0, label="ideal")
         axes.set_xticks(counts)
-        axes.set_xlabel("threads")
+        axes.set_xlabel(f"{kind}s")
     axes.set_ylim(0.0, 1.1 * max(ns.values()))
     axes.set_ylabel("ns per particle and step")
     axes.grid(True)

@@ -3,23 +3,38 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
 import subprocess
-from typing import Any
+from typing import Any, NamedTuple
 
 from mpm3dpp.base import child
 from mpm3dpp.base.errors import RunError
+from mpm3dpp.ranks.launch import command_of
+
+
+class Part(NamedTuple):
+    """What is measured: a benchmark in a size, with threads of each of some ranks."""
+
+    name: str
+    size: int
+    threads: int
+    ranks: int
 
 
 class Process:
-    """A benchmark running in a process of its own; a context manager that ends it."""
+    """A benchmark in a process of its own, or in several; a context manager that ends it."""
 
-    def __init__(self, name: str, size: int, threads: int, scheme: str, warm_up: int) -> None:
-        numbers = [str(size), str(threads), scheme, str(warm_up)]
+    def __init__(self, part: Part, scheme: str, warm_up: int) -> None:
+        numbers = [str(part.size), str(part.threads), scheme, str(warm_up)]
+        by, added = command_of(part.ranks, part.threads) if part.ranks > 1 else ([], {})
         self._process = child.start(
             "bench.worker",
-            name,
+            part.name,
             *numbers,
+            by=by,
+            env=os.environ | added,
             stdout=subprocess.PIPE,
             start_new_session=True,  # Ctrl-C is for this process, whose end ends that one.
         )
@@ -28,6 +43,9 @@ class Process:
         return self
 
     def __exit__(self, *about: object) -> None:
+        self._process.terminate()  # That mpiexec ends its own.
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(5)
         self._process.kill()
         self._process.communicate()
 

@@ -68,20 +68,24 @@ def show_series(results: list[dict[str, Any]]) -> None:
     from rich.table import Table
 
     first = results[0]
-    heads = ("particles", "threads", "ns", "ratio", "bytes", "GB/s", "limit")
+    several = any(result["ranks"] > 1 for result in results)
+    heads = ("particles", "ranks", "threads", "ns", "ratio", "bytes")
+    heads += ("exchange", "kB", "letters", "imbalance") if several else ("GB/s", "limit")
     table = Table()
     for head in heads:
-        table.add_column(head, justify="right")
+        table.add_column(head, justify="right", no_wrap=True)
     for result in results:
         ns = result["ns_per_particle_step"]
+        used = result["bytes_moved_per_particle_step"] / ns
+        limits = (f"{used:.1f}", f"{result['bandwidth_GBps']:.1f}")
         table.add_row(
             f"{result['particles']:,}",
+            f"{result['ranks']}",
             f"{result['threads']}",
             f"{ns:.1f}",
             f"{ns / first['ns_per_particle_step']:.3f}",
             f"{result['bytes_per_particle']['total']:.1f}",
-            f"{result['bytes_moved_per_particle_step'] / ns:.1f}",
-            f"{result['bandwidth_GBps']:.1f}",
+            *(_exchange(result) if several else limits),
         )
     console = Console(highlight=False)
     about = BENCHES[first["bench"]].about
@@ -92,19 +96,35 @@ def show_series(results: list[dict[str, Any]]) -> None:
     console.print(table)
     for line in (
         "ns per particle-step and their ratio to the first row; bytes per particle at the peak;",
-        "bandwidth used, and measured in the same run",
+        *(_ABOUT_EXCHANGE if several else ("bandwidth used, and measured in the same run",)),
         f"machine    {first['machine']}, {first['isa']}",
     ):
         console.print(line, markup=False, soft_wrap=True)
 
 
+_ABOUT_EXCHANGE = (
+    "of a rank in the mean: the share of the time that exchange takes, waiting included; kB and",
+    "letters that it sends in a step; imbalance: the longest time at work over the mean one",
+)
+
+
+def _exchange(result: dict[str, Any]) -> tuple[str, ...]:
+    return (
+        f"{result['share']:.1%}",
+        f"{result['bytes'] / 1000:.0f}",
+        f"{result['letters']:.1f}",
+        f"{result['imbalance']:.2f}",
+    )
+
+
 def headline(result: dict[str, Any]) -> str:
     """Return what was measured, in one line."""
-    threads = result["threads"]
+    threads, ranks = result["threads"], result["ranks"]
+    of_ranks = f" of each of {ranks} ranks" if ranks > 1 else ""
     return (
         f"{result['bench']}: {BENCHES[result['bench']].about}; {result['particles']:,} particles, "
-        f"{result['scheme'].upper()}, {threads} thread{'s' if threads > 1 else ''}, "
-        f"{result['steps']} steps"
+        f"{result['scheme'].upper()}, {threads} thread{'s' if threads > 1 else ''}"
+        f"{of_ranks}, {result['steps']} steps"
     )
 
 
@@ -143,6 +163,13 @@ def lines(result: dict[str, Any]) -> list[str]:
         f"of {result['arithmetic_GFLOPS']:.1f} GFLOP/s "
         f"({100 * result['arithmetic_fraction']:.0f} %), as the equations are written",
     ]
+    if result["ranks"] > 1:
+        share, kilobytes, letters, imbalance = _exchange(result)
+        found.append(
+            f"exchange   {share} of the time, waiting included; of a rank in a step {kilobytes} kB "
+            f"in {letters} letters, {result['exchanges']:.1f} exchanges, {result['reductions']:.1f} "
+            f"reductions; imbalance {imbalance}"
+        )
     if "contact_ratio" in result:
         found.append(
             f"contact    {result['contact_ratio']:.3f} times the same without contact "

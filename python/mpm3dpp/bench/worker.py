@@ -5,7 +5,7 @@
 
 It answers commands on standard input with one line of JSON each on standard output: `block N`
 makes and times N steps, `finish` reads the memory and then, in the same process and state of the
-machine, measures what it can do at best.
+machine, measures what it can do at best. Of several ranks the first one answers.
 """
 
 from __future__ import annotations
@@ -14,10 +14,12 @@ import contextlib
 import json
 import sys
 import time as clock
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from mpm3dpp import _core
+from mpm3dpp.ranks.world import World, world
 
 from .cases import BENCHES, make
 
@@ -57,6 +59,7 @@ def timed_block(simulation: Any, steps: int) -> dict[str, Any]:
     scale = 1e9 / (steps * simulation.particle_count)
     return {
         "ns": seconds * scale,
+        "exchange": dict(simulation.ranks()),
         "stages": {name: spent * scale for name, spent in simulation.timers().items()},
     }
 
@@ -65,18 +68,20 @@ def main(arguments: list[str]) -> None:
     """Serve the commands of `mpm3dpp.bench.main`."""
     name, scheme = arguments[0], arguments[3]
     size, threads, warm_up = int(arguments[1]), int(arguments[2]), int(arguments[4])
+    ranks = world()
     forget_peak()
     before = status_bytes("VmRSS")
-    simulation = make(_core, BENCHES[name], size, threads, scheme)
+    comm = ranks.for_core() if ranks else None
+    simulation = make(_core, BENCHES[name], size, threads, scheme, comm)
     advance(simulation, warm_up)
-    answer({"ready": True})
-    for line in sys.stdin:
-        command, *values = line.split()
+    answer({"ready": True}, ranks)
+    for command, *values in orders(ranks):
         if command == "block":
-            answer(timed_block(simulation, int(values[0])))
+            answer(timed_block(simulation, int(values[0])), ranks)
         elif command == "finish":
+            growth = status_bytes("VmHWM") - before
             result = {
-                "growth": status_bytes("VmHWM") - before,
+                "growth": ranks.comm.allreduce(growth) if ranks else growth,
                 "bytes": dict(simulation.bytes()),
                 "overlapped_nodes": simulation.contact_summary()["overlapped_nodes"],
                 "isa": _core.build_info()["isa"],
@@ -84,13 +89,28 @@ def main(arguments: list[str]) -> None:
             del simulation  # The arrays of the bandwidth test take its place.
             result["bandwidth"] = _core.measure_bandwidth(threads)
             result["arithmetic"] = _core.measure_arithmetic(threads)
-            answer(result)
+            answer(result, ranks)
             return
 
 
-def answer(content: dict[str, Any]) -> None:
-    """Send one line to the process that asks."""
-    print(json.dumps(content), flush=True)
+def orders(ranks: World | None) -> Iterator[tuple[str, ...]]:
+    """Yield the commands on standard input, which the first rank reads for all."""
+    while True:
+        if ranks is not None and ranks.rank > 0:
+            yield ranks.hear()
+            continue
+        line = sys.stdin.readline()
+        if not line:
+            return
+        if ranks is not None:
+            ranks.tell(*line.split())
+        yield tuple(line.split())
+
+
+def answer(content: dict[str, Any], ranks: World | None = None) -> None:
+    """Send one line to the process that asks; one rank does."""
+    if ranks is None or ranks.rank == 0:
+        print(json.dumps(content), flush=True)
 
 
 if __name__ == "__main__":

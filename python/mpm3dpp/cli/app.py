@@ -237,6 +237,10 @@ def bench(
     threads: Annotated[
         list[int] | None, typer.Option(min=1, help="Threads; 1 if not given. May be given again.")
     ] = None,
+    ranks: Annotated[
+        list[int] | None,
+        typer.Option(min=1, help="Processes, by MPI; 1 if not given. May be given again."),
+    ] = None,
     scheme: Annotated[Scheme, typer.Option(help="Scheme.")] = Scheme.musl,
     steps: Annotated[int | None, typer.Option(min=1, help="Steps that are timed; 400.")] = None,
     json: Json = False,
@@ -244,11 +248,11 @@ def bench(
 ) -> None:
     """Measure the speed: time per particle-step and stage, memory, bandwidth.
 
-    With several sizes or numbers of threads: how these grow.
+    With several sizes or numbers of threads or ranks: how these grow.
     """
     from mpm3dpp.bench import main as measure
 
-    measure(name, size or (), threads or (1,), scheme.value, steps, json, plot)
+    measure(name, size or (), threads or (1,), scheme.value, steps, json, plot, ranks or (1,))
 
 
 class Size(str, enum.Enum):

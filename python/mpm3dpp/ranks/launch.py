@@ -35,20 +35,12 @@ def launch(count: int, words: list[str], threads: int | None) -> int:
         CaseError: there is no MPI, or none that fits.
         RunError: a process has ended that nobody has told to, as one that was killed.
     """
-    cores = len(os.sched_getaffinity(0))
-    each = threads if threads is not None else max(1, cores // count)
-    program, is_open = find_mpiexec()
-    options = []
-    if is_open and count > cores:
-        options.append("--oversubscribe")
-    if is_open and (each > 1 or count > cores):
-        options += ["--bind-to", "none"]  # Else all threads of a rank share one core.
+    each = threads if threads is not None else max(1, len(os.sched_getaffinity(0)) // count)
     words = [*words, "--threads", str(each)] if threads is None else words
-    command = [program, "-n", str(count), *options, sys.executable, "-m", "mpm3dpp", *words]
+    command, added = command_of(count, each)
+    command += [sys.executable, "-m", "mpm3dpp", *words]
     with tempfile.TemporaryDirectory(prefix="mpm3dpp-") as told:
-        environment = os.environ | {TOLD: told}
-        if is_open and os.geteuid() == 0:
-            environment |= AS_ROOT
+        environment = os.environ | {TOLD: told} | added
         # In a session of its own, so that Ctrl-C at the terminal comes to this process alone.
         with (
             subprocess.Popen(command, env=environment, start_new_session=True) as job,
@@ -62,6 +54,23 @@ def launch(count: int, words: list[str], threads: int | None) -> int:
         f"a process of the run has ended, and mpiexec {how}; what was written before is kept, and "
         "--resume goes on from the last checkpoint"
     )
+
+
+def command_of(count: int, threads: int) -> tuple[list[str], dict[str, str]]:
+    """Return what starts so many ranks here, with so many threads each, and what to add to the
+    environment; what they run goes behind it.
+
+    Raises:
+        CaseError: there is no MPI, or none that fits.
+    """
+    program, is_open = find_mpiexec()
+    command = [program, "-n", str(count)]
+    crowded = count > len(os.sched_getaffinity(0))
+    if is_open and crowded:
+        command.append("--oversubscribe")
+    if is_open and (threads > 1 or crowded):
+        command += ["--bind-to", "none"]  # Else all threads of a rank share one core.
+    return command, AS_ROOT if is_open and os.geteuid() == 0 else {}
 
 
 @contextlib.contextmanager

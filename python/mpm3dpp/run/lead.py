@@ -7,12 +7,8 @@ So all that a run writes, prints and decides is done once, by the same program a
 from __future__ import annotations
 
 import contextlib
-import pickle
 import signal
-import time
 from typing import Any
-
-import numpy as np
 
 from mpm3dpp.case.case import Case
 from mpm3dpp.ranks.world import World, world
@@ -26,7 +22,6 @@ _OWN = frozenset(
     }
 )
 """What the first process knows without the others."""
-_SPIN, _PAUSE = 0.002, 0.001  # s: a follower looks all the time, then now and then.
 
 
 class _Leading:
@@ -39,14 +34,14 @@ class _Leading:
         if name in _OWN or name.startswith("__"):
             return getattr(self._core, name)
         if isinstance(getattr(type(self._core), name, None), property):
-            _tell(self._ranks, "get", name)
+            self._ranks.tell("get", name)
             return getattr(self._core, name)
         return lambda *values, **named: self._call(name, values, named)
 
     def _call(self, name: str, values: tuple[Any, ...], named: dict[str, Any]) -> Any:
         # What only the first process calls, as to read a file, the others need not have.
         told = tuple(len if callable(value) else value for value in values)
-        _tell(self._ranks, "call", name, told, named)
+        self._ranks.tell("call", name, told, named)
         return getattr(self._core, name)(*values, **named)
 
 
@@ -55,7 +50,7 @@ def make_simulation(case: Case, threads: int | None) -> Simulation:
     ranks = world()
     if ranks is None:
         return Simulation(case, threads)
-    _tell(ranks, "make", case, threads)
+    ranks.tell("make", case, threads)
     simulation = _make(case, threads, ranks)
     simulation.core = _Leading(simulation.core, ranks)
     return simulation
@@ -73,14 +68,14 @@ def release(what: Any = None) -> None:
     """Tell the others that a run has ended, and what has come of it."""
     ranks = world()
     if ranks is not None:
-        _tell(ranks, "end", what)
+        ranks.tell("end", what)
 
 
 def dismiss() -> None:
     """Tell the others that there is nothing to do for them any more."""
     ranks = world()
     if ranks is not None:
-        _tell(ranks, "quit")
+        ranks.tell("quit")
 
 
 def serve(ranks: World) -> None:
@@ -99,7 +94,7 @@ def follow(ranks: World) -> Any:
     simulation: Any = None
     with _deaf():
         while True:
-            what, *about = _hear(ranks)
+            what, *about = ranks.hear()
             if what == "end":
                 return about[0]
             if what == "quit":
@@ -125,21 +120,3 @@ def _deaf() -> Any:
     finally:
         for kind, handler in zip(kinds, before, strict=True):
             signal.signal(kind, handler)
-
-
-def _tell(ranks: World, *order: Any) -> None:
-    content = np.frombuffer(pickle.dumps(order), dtype=np.uint8)
-    ranks.comm.Ibcast(np.array([content.size]), root=0).Wait()
-    ranks.comm.Bcast(content.copy(), root=0)
-
-
-def _hear(ranks: World) -> tuple[Any, ...]:
-    size = np.zeros(1, dtype=np.int64)
-    request, begin = ranks.comm.Ibcast(size, root=0), time.monotonic()
-    while not request.Test():
-        if time.monotonic() - begin > _SPIN:
-            time.sleep(_PAUSE)  # The first process writes or draws, and may need the core.
-    content = np.zeros(size[0], dtype=np.uint8)
-    ranks.comm.Bcast(content, root=0)
-    order: tuple[Any, ...] = pickle.loads(content.tobytes())
-    return order

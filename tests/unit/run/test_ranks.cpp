@@ -149,6 +149,7 @@ std::vector<double> run_of(const Choice& choice, Comm& comm, States& states) {
   settings.contact.enabled = choice.contact;
   settings.contact.response = Response::springs;
   settings.contact.friction = 0.3;
+  settings.execution.balance_every = 7;
   choice.set(settings);
   Simulation<D> simulation(settings, &comm);
   build(simulation, choice);
