@@ -167,8 +167,8 @@ def lines(result: dict[str, Any]) -> list[str]:
         share, kilobytes, letters, imbalance = _exchange(result)
         found.append(
             f"exchange   {share} of the time, waiting included; of a rank in a step {kilobytes} kB "
-            f"in {letters} letters, {result['exchanges']:.1f} exchanges, {result['reductions']:.1f} "
-            f"reductions; imbalance {imbalance}"
+            f"in {letters} letters, {result['exchanges']:.1f} exchanges, "
+            f"{result['reductions']:.1f} reductions; imbalance {imbalance}"
         )
     if "contact_ratio" in result:
         found.append(
