@@ -1,5 +1,6 @@
 #include "mpm/grid/halo.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "mpm/grid/shared_nodes.hpp"
@@ -78,40 +79,90 @@ std::size_t nodes_in(const std::vector<NodeRun>& runs) {
   return nodes;
 }
 
-/// `numbers` of each node, `stride` apart, from begin_of(patch) on.
-template <int D, class F>
-void exchange(TileGrid<D>& grid, std::size_t numbers, std::size_t stride, F&& begin_of) {
-  Partition<D>& partition = grid.partition;
-  Mail& mail = partition.mail.nodes;
-  const std::size_t size = numbers * sizeof(double);
-  const auto for_each_node = [&](const std::vector<NodeRun>& runs, auto&& f) {
-    for (const NodeRun& run : runs) {
-      double* node = begin_of(grid.patches[run.patch]) + run.first * stride;
-      for (int n = 0; n < run.count; ++n, node += stride) f(node);
-    }
+/// What is exchanged: of each node the first `numbers` from begin_of(patch) on, `stride` apart.
+template <class Begin>
+struct Numbers {
+  std::size_t numbers, stride;
+  Begin begin_of;
+  std::size_t bytes() const { return numbers * sizeof(double); }
+};
+template <int D>
+auto records_of(TileGrid<D>& grid, int first, int last) {
+  const auto begin_of = [&grid, first](const Patch<D>& p) {
+    return grid.block(p).records.data + first;
   };
+  return Numbers<decltype(begin_of)>{static_cast<std::size_t>(last - first), record, begin_of};
+}
+template <int D>
+auto dashpots_of(TileGrid<D>& grid) {
+  const auto begin_of = [&grid](const Patch<D>& p) { return grid.block(p).dashpots().data; };
+  return Numbers<decltype(begin_of)>{half_record, half_record, begin_of};
+}
+
+/// f(first number) of the nodes of runs.
+template <int D, class Begin, class F>
+void for_each_node(TileGrid<D>& grid, const std::vector<NodeRun>& runs, const Numbers<Begin>& what,
+                   F&& f) {
+  for (const NodeRun& run : runs) {
+    double* node = what.begin_of(grid.patches[run.patch]) + run.first * what.stride;
+    for (int n = 0; n < run.count; ++n, node += what.stride) f(node);
+  }
+}
+
+template <int D, class Begin>
+void start(TileGrid<D>& grid, Mail& mail, const Numbers<Begin>& what) {
+  Partition<D>& partition = grid.partition;
   mail.out.resize(partition.partners.size());
   mail.in.resize(partition.partners.size());
   for (std::size_t k = 0; k < partition.partners.size(); ++k) {
     const Partner& partner = partition.partners[k];
     mail.out[k].rank = mail.in[k].rank = partner.rank;
-    mail.out[k].bytes.resize(nodes_in(partner.give) * size);
-    mail.in[k].bytes.resize(nodes_in(partner.take) * size);
+    mail.out[k].bytes.resize(nodes_in(partner.give) * what.bytes());
+    mail.in[k].bytes.resize(nodes_in(partner.take) * what.bytes());
     std::byte* to = mail.out[k].bytes.data();
-    for_each_node(partner.give, [&](const double* node) {
-      std::memcpy(to, node, size);
-      to += size;
+    for_each_node(grid, partner.give, what, [&](const double* node) {
+      std::memcpy(to, node, what.bytes());
+      to += what.bytes();
     });
   }
   partition.comm->start(mail);
+}
+
+template <int D, class Begin>
+void finish(TileGrid<D>& grid, Mail& mail, const Numbers<Begin>& what) {
+  Partition<D>& partition = grid.partition;
   partition.comm->finish(mail);
   for (std::size_t k = 0; k < partition.partners.size(); ++k) {
     const std::byte* from = mail.in[k].bytes.data();
-    for_each_node(partition.partners[k].take, [&](double* node) {
-      std::memcpy(node, from, size);
-      from += size;
+    for_each_node(grid, partition.partners[k].take, what, [&](double* node) {
+      std::memcpy(node, from, what.bytes());
+      from += what.bytes();
     });
   }
+}
+
+/// Which patches come first: those with nodes that others read, and foreign ones, whose blocks are
+/// cleared before what comes is put there.
+template <int D>
+void find_edge(TileGrid<D>& grid) {
+  Partition<D>& partition = grid.partition;
+  std::vector<std::uint32_t>& edge = partition.edge;
+  edge.clear();
+  for (const Partner& partner : partition.partners)
+    for (const NodeRun& run : partner.give)
+      if (edge.empty() || edge.back() != run.patch) edge.push_back(run.patch);
+  for (std::uint32_t p = 0; p < grid.patches.size(); ++p)
+    if (grid.patches[p].foreign) edge.push_back(p);
+  std::ranges::sort(edge);
+  const auto twice = std::ranges::unique(edge);
+  edge.erase(twice.begin(), twice.end());
+  partition.inside.clear();
+  auto next = edge.begin();
+  for (std::uint32_t p = 0; p < grid.patches.size(); ++p)
+    if (next != edge.end() && *next == p)
+      ++next;
+    else
+      partition.inside.push_back(p);
 }
 
 }  // namespace
@@ -139,25 +190,36 @@ void plan_halo(TileGrid<D>& grid) {
   std::erase_if(partners, [](const Partner& partner) {
     return partner.give.empty() && partner.take.empty();
   });
+  find_edge(grid);
 }
 
 template <int D>
-void exchange_nodes(TileGrid<D>& grid, int first, int last) {
-  exchange(grid, static_cast<std::size_t>(last - first), record,
-           [&](const Patch<D>& p) { return grid.block(p).records.data + first; });
+void start_nodes(TileGrid<D>& grid, int first, int last) {
+  start(grid, grid.partition.mail.nodes, records_of(grid, first, last));
+}
+template <int D>
+void finish_nodes(TileGrid<D>& grid, int first, int last) {
+  finish(grid, grid.partition.mail.nodes, records_of(grid, first, last));
 }
 
 template <int D>
-void exchange_dashpots(TileGrid<D>& grid) {
-  exchange(grid, half_record, half_record,
-           [&](const Patch<D>& p) { return grid.block(p).dashpots().data; });
+void start_dashpots(TileGrid<D>& grid) {
+  start(grid, grid.partition.mail.dashpots, dashpots_of(grid));
+}
+template <int D>
+void finish_dashpots(TileGrid<D>& grid) {
+  finish(grid, grid.partition.mail.dashpots, dashpots_of(grid));
 }
 
 template void plan_halo<2>(TileGrid<2>&);
 template void plan_halo<3>(TileGrid<3>&);
-template void exchange_nodes<2>(TileGrid<2>&, int, int);
-template void exchange_nodes<3>(TileGrid<3>&, int, int);
-template void exchange_dashpots<2>(TileGrid<2>&);
-template void exchange_dashpots<3>(TileGrid<3>&);
+template void start_nodes<2>(TileGrid<2>&, int, int);
+template void start_nodes<3>(TileGrid<3>&, int, int);
+template void finish_nodes<2>(TileGrid<2>&, int, int);
+template void finish_nodes<3>(TileGrid<3>&, int, int);
+template void start_dashpots<2>(TileGrid<2>&);
+template void start_dashpots<3>(TileGrid<3>&);
+template void finish_dashpots<2>(TileGrid<2>&);
+template void finish_dashpots<3>(TileGrid<3>&);
 
 }  // namespace mpm

@@ -9,12 +9,16 @@ namespace mpm {
 template <int D>
 void plan_halo(TileGrid<D>& grid);
 
-/// Tell others what own patches have put into numbers [first, last) of the nodes that they read,
-/// and put what they tell into the blocks of their patches. By all ranks at once.
+/// Tell others what own patches have put into numbers [first, last) of the nodes that they read.
 template <int D>
-void exchange_nodes(TileGrid<D>& grid, int first, int last);
+void start_nodes(TileGrid<D>& grid, int first, int last);
+/// Put what they tell into the blocks of their patches.
+template <int D>
+void finish_nodes(TileGrid<D>& grid, int first, int last);
 /// The same for the dashpots.
 template <int D>
-void exchange_dashpots(TileGrid<D>& grid);
+void start_dashpots(TileGrid<D>& grid);
+template <int D>
+void finish_dashpots(TileGrid<D>& grid);
 
 }  // namespace mpm

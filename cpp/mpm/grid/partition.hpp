@@ -35,8 +35,12 @@ struct ForeignPatch {
 
 /// Kinds of letters, each with its own mail.
 struct PartitionMail {
-  Mail migrants, patches, nodes;
+  Mail migrants, patches, nodes, dashpots;
 };
+
+/// Which patches a stage goes through: those first of which others read nodes, and foreign ones;
+/// the rest while what these have is on its way.
+enum class PatchPart { all, edge, inside };
 
 template <int D>
 struct Partition {
@@ -50,6 +54,9 @@ struct Partition {
   std::vector<std::vector<int>> readers{{}};  // sets of other ranks; a patch has one's number
   std::map<std::vector<int>, int> reader_numbers{{{}, 0}};
   std::vector<Partner> partners;
+  std::vector<std::uint32_t> edge, inside;  // numbers of patches
+  PatchPart part = PatchPart::all;
+  bool on_its_way = false;            // nodes have been sent that are not received yet
   std::vector<ForeignPatch<D>> told;  // scratch
   PartitionMail mail;
 

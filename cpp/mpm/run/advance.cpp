@@ -12,6 +12,7 @@
 #include "mpm/run/settle.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/watch.hpp"
+#include "mpm/step/overlap.hpp"
 
 namespace mpm {
 namespace {
@@ -32,8 +33,9 @@ void make_step(Simulation<D>& simulation, double time_after) {
   Domain<D>& domain = simulation.domain;
   begin_step(domain, time_after);
   if (domain.settles()) begin_settling_step(simulation);
-  for (std::size_t k = 0; k < simulation.stages.size(); ++k)
+  run_stages(domain, simulation.stages, [&](std::size_t k) {
     simulation.timers.time(k, [&] { simulation.stages[k].run(domain); });
+  });
   const bool settling = domain.settles();
   domain.time = time_after;
   ++domain.step;

@@ -8,50 +8,93 @@
 namespace mpm {
 namespace {
 
-/// Of numbers [first, last) of the records, whole halves, which is how they are moved; with the
-/// forces the dashpots, which stand behind the records.
-template <int D>
-void exchange(Domain<D>& domain, int first, int last, bool dashpots) {
+/// Numbers [first, last) of the records, whole halves, which is how they are moved; with the forces
+/// the dashpots, which stand behind the records.
+struct Exchanged {
+  int first, last;
+  bool forces;
+};
+constexpr Exchanged momentum{0, force_at, false}, forces{force_at, record, true},
+    both{0, record, true};
+// The mass is that of the first mapping and has been summed: a second time it would count each
+// holder's share twice or more.
+constexpr Exchanged remapped{remapped_at, record, false};
+
+/// Ranks give what others read, as soon as it is there.
+template <Exchanged what, int D>
+void start(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
-  const bool absorbs = dashpots && grid.has_dashpots;
+  start_nodes(grid, what.first, what.last);
+  if (what.forces && grid.has_dashpots) start_dashpots(grid);
+  grid.partition.on_its_way = true;
+}
+
+template <Exchanged what, int D>
+void exchange(Domain<D>& domain) {
+  TileGrid<D>& grid = domain.grid;
+  const bool absorbs = what.forces && grid.has_dashpots;
   if (!grid.partition.alone()) {
-    exchange_nodes(grid, first, last);
-    if (absorbs) exchange_dashpots(grid);
+    if (!grid.partition.on_its_way) start<what>(domain);
+    finish_nodes(grid, what.first, what.last);
+    if (absorbs) finish_dashpots(grid);
+    grid.partition.on_its_way = false;
   }
-  sum_shared_nodes(grid, domain.threads, first, last);
+  sum_shared_nodes(grid, domain.threads, what.first, what.last);
   if (absorbs) sum_shared_dashpots(grid, domain.threads);
 }
 
 }  // namespace
 
 template <int D>
+void start_momentum(Domain<D>& domain) {
+  start<momentum>(domain);
+}
+template <int D>
 void exchange_momentum(Domain<D>& domain) {
-  exchange(domain, 0, force_at, false);
+  exchange<momentum>(domain);
 }
 
+template <int D>
+void start_forces(Domain<D>& domain) {
+  start<forces>(domain);
+}
 template <int D>
 void exchange_forces(Domain<D>& domain) {
-  exchange(domain, force_at, record, true);
+  exchange<forces>(domain);
 }
 
+template <int D>
+void start_momentum_and_forces(Domain<D>& domain) {
+  start<both>(domain);
+}
 template <int D>
 void exchange_momentum_and_forces(Domain<D>& domain) {
-  exchange(domain, 0, record, true);
+  exchange<both>(domain);
 }
 
 template <int D>
+void start_remapped(Domain<D>& domain) {
+  start<remapped>(domain);
+}
+template <int D>
 void exchange_remapped(Domain<D>& domain) {
-  // The mass is that of the first mapping and has been summed: a second time it would count each
-  // holder's share twice or more.
-  exchange(domain, remapped_at, record, false);
+  exchange<remapped>(domain);
 }
 
+template void start_momentum<2>(Domain<2>&);
+template void start_momentum<3>(Domain<3>&);
 template void exchange_momentum<2>(Domain<2>&);
 template void exchange_momentum<3>(Domain<3>&);
+template void start_forces<2>(Domain<2>&);
+template void start_forces<3>(Domain<3>&);
 template void exchange_forces<2>(Domain<2>&);
 template void exchange_forces<3>(Domain<3>&);
+template void start_momentum_and_forces<2>(Domain<2>&);
+template void start_momentum_and_forces<3>(Domain<3>&);
 template void exchange_momentum_and_forces<2>(Domain<2>&);
 template void exchange_momentum_and_forces<3>(Domain<3>&);
+template void start_remapped<2>(Domain<2>&);
+template void start_remapped<3>(Domain<3>&);
 template void exchange_remapped<2>(Domain<2>&);
 template void exchange_remapped<3>(Domain<3>&);
 

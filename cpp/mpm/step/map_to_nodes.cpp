@@ -1,3 +1,4 @@
+#include "mpm/step/patch_loops.hpp"
 #include "mpm/step/scatter_momentum.hpp"
 #include "mpm/step/stages.hpp"
 #include "mpm/walls/mirror.hpp"
@@ -46,8 +47,7 @@ void map_patch(Domain<D>& domain, std::size_t p) {
 
 template <unsigned what, int D>
 void map_to_nodes(Domain<D>& domain) {
-  domain.threads.for_each(domain.grid.patches.size(),
-                          [&](std::size_t p) { map_patch<what>(domain, p); });
+  for_each_patch(domain, [&](std::size_t p) { map_patch<what>(domain, p); });
 }
 
 }  // namespace

@@ -70,6 +70,8 @@ struct Stage {
   void (*run)(Domain<D>&) = nullptr;
   std::uint32_t reads = 0, writes = 0;  // of Data
   bool all_particles = false;           // it goes through all of them, and not only some
+  bool by_patch = false;                // what it does for a patch needs no other
+  void (*start)(Domain<D>&) = nullptr;  // of an exchange: may come as soon as the edge is done
 };
 
 /// May two stages change places, to the same bits?
@@ -115,6 +117,7 @@ struct Fusion {
   Stage<D> first, second;
   std::string_view name;
   void (*run)(Domain<D>&);
+  void (*start)(Domain<D>&) = nullptr;
 };
 
 /// The list with two stages fused. The second comes forward to the first, and with it, ahead of the
@@ -143,7 +146,8 @@ constexpr StageList<D> fuse(const StageList<D>& list, const Fusion<D>& fusion) {
     }
   fused.add({fusion.name, fusion.run, fusion.first.reads | fusion.second.reads,
              fusion.first.writes | fusion.second.writes,
-             fusion.first.all_particles || fusion.second.all_particles});
+             fusion.first.all_particles || fusion.second.all_particles,
+             fusion.first.by_patch && fusion.second.by_patch, fusion.start});
   for (std::size_t k = i + 1; k < j; ++k)
     if (!ahead[k]) fused.add(list.stages[k]);
   for (std::size_t k = j + 1; k < list.count; ++k) fused.add(list.stages[k]);

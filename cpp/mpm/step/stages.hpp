@@ -35,13 +35,22 @@ void fold_forces(Domain<D>& domain);
 template <int D>
 void fold_remapped(Domain<D>& domain);
 
-/// Nodes that several patches hold get the sum of what each has there.
+/// Nodes that several patches hold get the sum of what each has there. Ranks start to tell each
+/// other of it before.
+template <int D>
+void start_momentum(Domain<D>& domain);
 template <int D>
 void exchange_momentum(Domain<D>& domain);
 template <int D>
+void start_forces(Domain<D>& domain);
+template <int D>
 void exchange_forces(Domain<D>& domain);
 template <int D>
+void start_momentum_and_forces(Domain<D>& domain);
+template <int D>
 void exchange_momentum_and_forces(Domain<D>& domain);
+template <int D>
+void start_remapped(Domain<D>& domain);
 template <int D>
 void exchange_remapped(Domain<D>& domain);
 
@@ -136,10 +145,13 @@ void sum_energies(Domain<D>& domain);
 
 template <int D>
 constexpr Stage<D> update_stress_row(void (*run)(Domain<D>&), std::uint32_t straining) {
-  return {"update stress", run,
+  return {"update stress",
+          run,
           Data::lists | Data::position | Data::velocity | Data::mass | Data::volume | Data::stress |
               Data::load_pieces | Data::patch_sums | straining,
-          Data::volume | Data::stress | Data::load_pieces | Data::patch_sums, true};
+          Data::volume | Data::stress | Data::load_pieces | Data::patch_sums,
+          true,
+          true};
 }
 
 /// The rows. What a stage adds to it also reads.
@@ -161,16 +173,27 @@ struct Stages : Data {
   // correction; velocities stay until they are advanced, as the energies are those of FLIP's step.
   static constexpr Row filter{"filter velocities", mpm::filter_velocities<D>, lists | of_particles,
                               unseen | node_mass | node_velocity, true};
-  static constexpr Row map_momentum{
-      "map momentum", mpm::map_momentum<D>, lists | of_particles | of_rigid,
-      node_mass | node_momentum | ghost_weights | node_dashpots, true};
-  static constexpr Row fold_momentum{"fold momentum", mpm::fold_momentum<D>,
+  static constexpr Row map_momentum{"map momentum",
+                                    mpm::map_momentum<D>,
+                                    lists | of_particles | of_rigid,
+                                    node_mass | node_momentum | ghost_weights | node_dashpots,
+                                    true,
+                                    true};
+  static constexpr Row fold_momentum{"fold momentum",
+                                     mpm::fold_momentum<D>,
                                      node_mass | node_momentum | mapped_impulses,
-                                     node_mass | node_momentum | mapped_impulses};
+                                     node_mass | node_momentum | mapped_impulses,
+                                     false,
+                                     true};
   // The mass with the momentum: v_i of a node that patches share is the mean over all its
   // particles.
-  static constexpr Row exchange_momentum{"exchange momentum", mpm::exchange_momentum<D>,
-                                         node_mass | node_momentum, node_mass | node_momentum};
+  static constexpr Row exchange_momentum{"exchange momentum",
+                                         mpm::exchange_momentum<D>,
+                                         node_mass | node_momentum,
+                                         node_mass | node_momentum,
+                                         false,
+                                         false,
+                                         mpm::start_momentum<D>};
   static constexpr Row find_velocities{"find velocities", mpm::find_velocities<D>,
                                        node_mass | node_momentum | mapped_impulses,
                                        node_velocity | mapped_impulses};
@@ -179,25 +202,46 @@ struct Stages : Data {
       "contact momentum", mpm::contact_momentum<D>,
       lists | position | rigid_position | mass | volume | node_mass | node_velocity | contacts,
       node_velocity | contacts};
-  static constexpr Row average_pressure{"average pressure", mpm::average_pressure<D>,
-                                        lists | volume | stress, force_pressure};
+  static constexpr Row average_pressure{"average pressure",
+                                        mpm::average_pressure<D>,
+                                        lists | volume | stress,
+                                        force_pressure,
+                                        false,
+                                        true};
   // The weights it reads are in the places of the forces, and stay in the sum (map_to_nodes.cpp).
   static constexpr Row map_forces{
-      "map forces", mpm::map_forces<D>,
-      lists | position | volume | stress | force_pressure | ghost_weights, node_force, true};
+      "map forces",
+      mpm::map_forces<D>,
+      lists | position | volume | stress | force_pressure | ghost_weights,
+      node_force,
+      true,
+      true};
   static constexpr Row load_surfaces{"load surfaces", mpm::load_surfaces<D>,
                                      lists | position | load_pieces | node_force | impulses,
                                      load_pieces | node_force | impulses};
-  static constexpr Row add_body_forces{"body forces", mpm::add_body_forces<D>,
+  static constexpr Row add_body_forces{"body forces",
+                                       mpm::add_body_forces<D>,
                                        lists | position | mass | body_force | node_force | impulses,
-                                       body_force | node_force | impulses};
+                                       body_force | node_force | impulses,
+                                       false,
+                                       true};
   // Between the mappings and the exchange, as dashpots and loads are sums over particles as well.
-  static constexpr Row place_dashpots{"place dashpots", mpm::place_dashpots<D>,
-                                      lists | position | mass | node_dashpots, node_dashpots};
-  static constexpr Row fold_forces{"fold forces", mpm::fold_forces<D>, node_force | impulses,
-                                   node_force | impulses};
-  static constexpr Row exchange_forces{"exchange forces", mpm::exchange_forces<D>,
-                                       node_force | node_dashpots, node_force | node_dashpots};
+  static constexpr Row place_dashpots{"place dashpots",
+                                      mpm::place_dashpots<D>,
+                                      lists | position | mass | node_dashpots,
+                                      node_dashpots,
+                                      false,
+                                      true};
+  static constexpr Row fold_forces{
+      "fold forces", mpm::fold_forces<D>, node_force | impulses, node_force | impulses, false,
+      true};
+  static constexpr Row exchange_forces{"exchange forces",
+                                       mpm::exchange_forces<D>,
+                                       node_force | node_dashpots,
+                                       node_force | node_dashpots,
+                                       false,
+                                       false,
+                                       mpm::start_forces<D>};
   // After the exchange, as the force of a dashpot is not linear in C_i and m_i; before contact,
   // which balances all other forces of two bodies, eq. (13).
   static constexpr Row absorb{"absorb at walls", mpm::absorb_at_walls<D>,
@@ -218,23 +262,31 @@ struct Stages : Data {
   static constexpr Row restore{"restore contact", mpm::restore_contact<D>, node_velocity | contacts,
                                node_velocity | contacts};
   static constexpr Row advance_particles{
-      "advance particles", mpm::advance_particles<D>,
+      "advance particles",
+      mpm::advance_particles<D>,
       lists | of_particles | of_rigid | unseen | node_velocity | node_increments | patch_sums,
-      velocity | rigid_velocity | patch_sums, true};
+      velocity | rigid_velocity | patch_sums,
+      true,
+      true};
   // Before anything takes their velocities: the remap in MUSL, the end of the step in the others.
   static constexpr Row hold_rigid{"project rigid velocities", mpm::project_rigid_velocities<D>,
                                   lists | of_rigid | patch_sums | impulses,
                                   rigid_velocity | patch_sums | impulses};
-  static constexpr Row remap_momentum{"remap momentum", mpm::remap_momentum<D>,
-                                      lists | of_particles, node_remapped, true};
+  static constexpr Row remap_momentum{
+      "remap momentum", mpm::remap_momentum<D>, lists | of_particles, node_remapped, true, true};
   // Apart from that of others, so that theirs can be fused with eq. (17) while rigid bodies wait
   // for their motion (decision 0034).
-  static constexpr Row remap_rigid{"remap rigid bodies", mpm::remap_rigid_bodies<D>,
-                                   lists | of_rigid, node_remapped};
-  static constexpr Row fold_remapped{"fold remapped", mpm::fold_remapped<D>, node_remapped,
-                                     node_remapped};
-  static constexpr Row exchange_remapped{"exchange remapped", mpm::exchange_remapped<D>,
-                                         node_remapped, node_remapped};
+  static constexpr Row remap_rigid{"remap rigid bodies",
+                                   mpm::remap_rigid_bodies<D>,
+                                   lists | of_rigid,
+                                   node_remapped,
+                                   false,
+                                   true};
+  static constexpr Row fold_remapped{
+      "fold remapped", mpm::fold_remapped<D>, node_remapped, node_remapped, false, true};
+  static constexpr Row exchange_remapped{
+      "exchange remapped",   mpm::exchange_remapped<D>, node_remapped, node_remapped, false, false,
+      mpm::start_remapped<D>};
   static constexpr Row find_remapped{"find remapped velocities", mpm::find_remapped<D>,
                                      node_mass | node_velocity | node_remapped, node_remapped};
   static constexpr Row contact_remapped{"contact remapped", mpm::contact_remapped<D>,
@@ -263,9 +315,9 @@ struct Stages : Data {
 
   static constexpr Fusion<D> map_both{map_momentum, map_forces, "map momentum and forces",
                                       mpm::map_momentum_and_forces<D>};
-  static constexpr Fusion<D> exchange_both{exchange_momentum, exchange_forces,
-                                           "exchange momentum and forces",
-                                           mpm::exchange_momentum_and_forces<D>};
+  static constexpr Fusion<D> exchange_both{
+      exchange_momentum, exchange_forces, "exchange momentum and forces",
+      mpm::exchange_momentum_and_forces<D>, mpm::start_momentum_and_forces<D>};
   static constexpr Fusion<D> advance_and_remap{advance_particles, remap_momentum,
                                                "advance and remap particles",
                                                mpm::advance_and_remap_particles<D>};

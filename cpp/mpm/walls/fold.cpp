@@ -14,9 +14,8 @@ template <int D>
 void fold(Domain<D>& domain, int at) {
   auto& grid = domain.grid;
   if (!grid.has_ghosts()) return;
-  domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
-    fold_at_walls(grid, grid.patches[p], grid.block(p), at);
-  });
+  for_each_patch(domain,
+                 [&](std::size_t p) { fold_at_walls(grid, grid.patches[p], grid.block(p), at); });
 }
 
 /// What folding does to the moment of the vector at number `at` of the records, times
