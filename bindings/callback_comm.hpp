@@ -28,6 +28,10 @@ class CallbackComm final : public Comm {
     const nb::gil_scoped_acquire lock;
     of_.attr("finish")(key_of(mail));
   }
+  void release(Mail& mail) override {
+    const nb::gil_scoped_acquire lock;
+    of_.attr("release")(key_of(mail));
+  }
   void exchange(Mail& mail) override {
     const nb::gil_scoped_acquire lock;
     mail.in.clear();

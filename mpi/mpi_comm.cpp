@@ -32,6 +32,11 @@ int length_of(const std::vector<std::byte>& bytes) {
   return static_cast<int>(bytes.size());
 }
 
+void wait_for(std::vector<MPI_Request>& requests) {
+  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  requests.clear();
+}
+
 }  // namespace
 
 MpiComm::MpiComm(MPI_Comm users) {
@@ -45,6 +50,7 @@ MpiComm::~MpiComm() {
   int ended = 0;
   MPI_Finalized(&ended);
   if (ended != 0) return;
+  for (auto& [mail, requests] : sending_) wait_for(requests);
   MPI_Comm_free(&comm_);
   MPI_Comm_free(&failed_);
 }
@@ -64,21 +70,19 @@ void MpiComm::all_sum(std::span<std::int64_t> numbers) {
 }
 
 void MpiComm::start(Mail& mail) {
-  std::vector<MPI_Request>& requests = under_way_[&mail];
-  requests.clear();
+  release(mail);
+  std::vector<MPI_Request>&receiving = receiving_[&mail], &sending = sending_[&mail];
   for (Letter& letter : mail.in)
     MPI_Irecv(letter.bytes.data(), length_of(letter.bytes), MPI_BYTE, letter.rank, expected, comm_,
-              &requests.emplace_back());
+              &receiving.emplace_back());
   for (const Letter& letter : mail.out)
     MPI_Isend(letter.bytes.data(), length_of(letter.bytes), MPI_BYTE, letter.rank, expected, comm_,
-              &requests.emplace_back());
+              &sending.emplace_back());
 }
 
-void MpiComm::finish(Mail& mail) {
-  std::vector<MPI_Request>& requests = under_way_[&mail];
-  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
-  requests.clear();
-}
+void MpiComm::finish(Mail& mail) { wait_for(receiving_[&mail]); }
+
+void MpiComm::release(Mail& mail) { wait_for(sending_[&mail]); }
 
 void MpiComm::exchange(Mail& mail) {
   // No rank is more than a round ahead: two tags keep apart what comes in this one and the next.

@@ -22,6 +22,7 @@ class MpiComm final : public Comm {
   void all_sum(std::span<std::int64_t> numbers) override;
   void start(Mail& mail) override;
   void finish(Mail& mail) override;
+  void release(Mail& mail) override;
   void exchange(Mail& mail) override;
   /// Returns once all ranks have called it: then all have failed alike, and may go on. If some do
   /// not within seconds, none can, and the job ends with the sentence.
@@ -30,8 +31,9 @@ class MpiComm final : public Comm {
  private:
   MPI_Comm comm_ = MPI_COMM_NULL, failed_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
-  int round_ = 0;                                              // of exchange()
-  std::map<const Mail*, std::vector<MPI_Request>> under_way_;  // since start()
+  int round_ = 0;  // of exchange()
+  /// What was started and is not known to have ended, by its mail.
+  std::map<const Mail*, std::vector<MPI_Request>> receiving_, sending_;
 };
 
 }  // namespace mpm

@@ -68,10 +68,13 @@ class Comm {
   /// Of each integer the sum over all ranks.
   virtual void all_sum(std::span<std::int64_t> numbers) = 0;
   /// Start to send `out`, and to receive `in` from the ranks named there, of the lengths that its
-  /// bytes have. Both stay as they are until finish().
+  /// bytes have. Both stay as they are: `in` until finish(), `out` until release().
   virtual void start(Mail& mail) = 0;
-  /// Wait until all that was started has been sent and received.
+  /// Wait until all that was started has been received.
   virtual void finish(Mail& mail) = 0;
+  /// Wait until all that was started has been sent, which others may have to ask for: it costs
+  /// least before the next start().
+  virtual void release(Mail& mail) = 0;
   /// Send `out` to whom nobody knows of, and replace `in` by what has come, by rank.
   virtual void exchange(Mail& mail) = 0;
   /// Say that this rank cannot go on: the others get RankFailed from what they wait in.
@@ -92,6 +95,7 @@ class NoOthers final : public Comm {
   void all_sum(std::span<std::int64_t>) override {}
   void start(Mail&) override {}
   void finish(Mail&) override {}
+  void release(Mail&) override {}
   void exchange(Mail& mail) override { mail.in.clear(); }
   void fail(const std::string&) override {}
 };

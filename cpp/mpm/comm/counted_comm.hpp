@@ -29,6 +29,9 @@ class CountedComm final : public Comm {
   void finish(Mail& mail) override {
     timed([&] { to_->finish(mail); });
   }
+  void release(Mail& mail) override {
+    timed([&] { to_->release(mail); });
+  }
   void exchange(Mail& mail) override {
     count(mail);
     ++traffic_.exchanges;

@@ -112,6 +112,7 @@ void for_each_node(TileGrid<D>& grid, const std::vector<NodeRun>& runs, const Nu
 template <int D, class Begin>
 void start(TileGrid<D>& grid, Mail& mail, const Numbers<Begin>& what) {
   Partition<D>& partition = grid.partition;
+  partition.comm->release(mail);
   mail.out.resize(partition.partners.size());
   mail.in.resize(partition.partners.size());
   for (std::size_t k = 0; k < partition.partners.size(); ++k) {

@@ -29,7 +29,8 @@ class Mpi4pyComm:
     def __init__(self, mpi: Any, users: Any, fail: Callable[[str], None]) -> None:
         self._mpi = mpi
         self._comm = users.Dup()
-        self._under_way: dict[int, list[Any]] = {}
+        self._receiving: dict[int, list[Any]] = {}
+        self._sending: dict[int, list[Any]] = {}
         self._round = 0
         self.rank: int = users.rank
         self.size: int = users.size
@@ -52,13 +53,21 @@ class Mpi4pyComm:
 
     def start(self, key: int, out: Letters, into: Letters) -> None:
         """Start to send and to receive letters of known lengths."""
-        requests = [self._comm.Irecv(self._bytes(view), rank, _EXPECTED) for rank, view in into]
-        requests += [self._comm.Isend(self._bytes(view), rank, _EXPECTED) for rank, view in out]
-        self._under_way[key] = requests
+        self.release(key)
+        self._receiving[key] = [
+            self._comm.Irecv(self._bytes(view), rank, _EXPECTED) for rank, view in into
+        ]
+        self._sending[key] = [
+            self._comm.Isend(self._bytes(view), rank, _EXPECTED) for rank, view in out
+        ]
 
     def finish(self, key: int) -> None:
-        """Wait until all that was started has been sent and received."""
-        self._mpi.Request.Waitall(self._under_way.pop(key))
+        """Wait until all that was started has been received."""
+        self._mpi.Request.Waitall(self._receiving.pop(key))
+
+    def release(self, key: int) -> None:
+        """Wait until all that was started has been sent."""
+        self._mpi.Request.Waitall(self._sending.pop(key, []))
 
     def exchange(self, out: Letters) -> list[tuple[int, bytes]]:
         """Send letters to whom nobody knows of; return those that have come, by rank."""
