@@ -43,6 +43,17 @@ void def_columns(SimulationClass& simulation) {
           },
           nb::arg("body"), nb::arg("name"))
       .def(
+          "ranks_of",
+          [](AnySimulation& either, int body) {
+            auto numbers = either.visit([&](auto& s) {
+              std::vector<double> found(s.domain.body_at(body).count);
+              copy_ranks(s.domain, body, found);
+              return found;
+            });
+            return to_numpy(std::move(numbers), 1);
+          },
+          nb::arg("body"))
+      .def(
           "rounded_column",
           [](AnySimulation& either, const std::string& name, const std::vector<int>& places,
              std::size_t width, float elsewhere) {

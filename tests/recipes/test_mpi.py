@@ -235,3 +235,21 @@ def test_without_mpi4py(tmp_path: Path) -> None:
         )
         assert done.returncode == 2
         assert "pip install 'mpm3dpp[mpi]'" in one_sentence(done.stderr)
+
+
+def test_bench_of_ranks(tmp_path: Path, way: str) -> None:
+    words = ("bench", "elastic2d", "--size", 16, "--steps", 5, "--ranks", 1, "--ranks", 2)
+    line = command(*words, "--json", "--plot", tmp_path / "bench.png")
+    done = subprocess.run(
+        line, env=environment(way), capture_output=True, text=True, timeout=120, check=True
+    )
+    one, two = json.loads(done.stdout)
+    assert (one["ranks"], one["letters"], two["ranks"]) == (1, 0.0, 2)
+    assert two["letters"] > 0.0 and two["bytes"] > 0.0 and 0.0 < two["share"] < 1.0
+    assert (tmp_path / "bench.png").stat().st_size > 1000
+
+
+def test_check_tells_the_memory_of_a_rank(tmp_path: Path) -> None:
+    write(tmp_path)
+    done = mpm3dpp("check", "case.toml", "--ranks", 4, cwd=tmp_path)
+    assert "ranks: each of 4 about" in done.stdout

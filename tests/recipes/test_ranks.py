@@ -122,3 +122,48 @@ def test_a_full_disk_is_one_mistake() -> None:
     again = Simulation(grains(2), threads=1, ranks=3)
     with pytest.raises(ValueError, match="too early"):
         again.core.restore(lambda _: 0, 10_000)
+
+
+def free_block(cells: int) -> Case:
+    return Case.from_text(f"""
+[grid]
+dimension = 3
+cell_size = 1.0
+basis = "linear"
+[run]
+end_time = 1000
+scheme = "musl"
+cfl = 0.25
+[material.m]
+density = 1000
+strength = {{ elastic = {{ E = 1e7, nu = 0.3 }} }}
+[body.block]
+material = "m"
+shape = {{ box = {{ lower = [0, 0, 0], upper = [{cells}, {cells}, {cells}] }} }}
+velocity = [1, 2, 3]
+""")
+
+
+def test_what_passes_between_two_ranks() -> None:
+    """Counted, so that a change that sends more is seen: nodes of one face, twice a step."""
+    cells = 24
+    simulation = Simulation(free_block(cells), threads=1, ranks=2)
+    simulation.core.reset_timers()
+    simulation.advance(10)
+    told = simulation.core.ranks()
+    assert told["ranks"] == 2
+    # Momentum and forces, remapped momentum, which cells are occupied: one letter each.
+    assert told["letters"] == pytest.approx(3.0)
+    assert told["exchanges"] <= 2.0 and told["reductions"] <= 9.0
+    # The nodes of a face: 8 numbers of each, then 4. Patches give them on either side of the face.
+    face = 8 * (8 + 4) * (cells + 1) ** 2
+    assert face < told["bytes"] < 2.5 * face
+    assert 0.0 < told["share"] < 1.0 <= told["imbalance"]
+
+
+def test_who_has_what() -> None:
+    simulation = Simulation(free_block(8), threads=1, ranks=4)
+    ranks = simulation.ranks_of("block")
+    assert ranks.shape == (8 * 8**3,) and sorted(set(ranks.tolist())) == [0, 1, 2, 3]
+    counts = np.bincount(ranks)
+    assert counts.max() <= 1.2 * counts.mean()

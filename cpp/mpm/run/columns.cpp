@@ -41,6 +41,22 @@ void copy_column(const Domain<D>& domain, int number, const std::string& name,
   }
 }
 
+template <int D>
+void copy_ranks(const Domain<D>& domain, int number, std::span<double> to) {
+  const Body<D>& b = domain.body_at(number);
+  const ParticlePool<D>& of = domain.pool_of(b);
+  if (to.size() != b.count) throw std::invalid_argument("copy_ranks: wrong size");
+  Comm& comm = *domain.grid.partition.comm;
+  const auto for_each_place = [&](auto&& f) {
+    for_each_row(domain.grid.patches, of, number, b.removed_here,
+                 [&](std::uint32_t row) { f(std::size_t{of.id[row]}); });
+  };
+  for_each_place([&](std::size_t k) { to[k] = comm.rank(); });
+  gather(comm, to, for_each_place);
+}
+
+template void copy_ranks<2>(const Domain<2>&, int, std::span<double>);
+template void copy_ranks<3>(const Domain<3>&, int, std::span<double>);
 template const std::vector<ColumnInfo>& columns<2>(const Domain<2>&, int);
 template const std::vector<ColumnInfo>& columns<3>(const Domain<3>&, int);
 template int column_components<2>(const Domain<2>&, int, const std::string&);

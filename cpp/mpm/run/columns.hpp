@@ -16,4 +16,8 @@ int column_components(const Domain<D>& domain, int body, const std::string& name
 template <int D>
 void copy_column(const Domain<D>& domain, int body, const std::string& name, std::span<double> to);
 
+/// The number of the rank that has each particle of a body, shape (n,); on rank 0, by all at once.
+template <int D>
+void copy_ranks(const Domain<D>& domain, int body, std::span<double> to);
+
 }  // namespace mpm

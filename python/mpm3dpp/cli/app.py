@@ -149,7 +149,13 @@ def _on_ranks(ranks: int, threads: int | None) -> int:
 
 
 @app.command()
-def check(case: CaseFile, units: Units = None) -> None:
+def check(
+    case: CaseFile,
+    units: Units = None,
+    ranks: Annotated[
+        int, typer.Option(min=1, help="Also the memory of each of so many processes.")
+    ] = 1,
+) -> None:
     """Check a case and say what it amounts to, without running it."""
     from mpm3dpp.fill.advisories import refuse_time_step
     from mpm3dpp.fill.build import build
@@ -157,7 +163,7 @@ def check(case: CaseFile, units: Units = None) -> None:
 
     loaded = _load(case, units)
     bodies = build(loaded)
-    typer.echo(echo(loaded, bodies))
+    typer.echo(echo(loaded, bodies, ranks))
     refuse_time_step(loaded, bodies)
 
 

@@ -206,6 +206,15 @@ class Simulation:
             raise CaseError(f"is not a column of {body}", nearest(name, known), value=name)
         return np.concatenate([self.core.column(number, name) for number in numbers])
 
+    def ranks_of(self, body: str) -> np.ndarray:
+        """Return the number of the rank that has each particle of a body, shape (n,).
+
+        Raises:
+            CaseError: there is no such body.
+        """
+        found = [self.core.ranks_of(number) for number in self._numbers(body)]
+        return np.concatenate(found)[:, 0].astype(int)
+
     def eroded(self) -> dict[str, Any]:
         """Return `mass` [kg] (per metre in 2D) and `count` of the particles that have eroded.
 

@@ -30,6 +30,7 @@ _FRAME_BYTES = (
 _PARTICLE_BYTES, _NODE_BYTES = {2: 96, 3: 128}, {2: 150, 3: 200}
 
 
+_WITH_EDGES = 1.15  # of a rank's part of the core's memory
 _PROGRAM_BYTES = 62 << 20
 """Python and the libraries of a run, and what its start leaves [bytes]: measured with CPython 3.11,
 numpy 2.4 and h5py 3.16 on Linux."""
@@ -111,6 +112,16 @@ def process_bytes(case: Case, bodies: list[FilledBody]) -> int:
     return _PROGRAM_BYTES + round((1.0 + FRAME_SHARE) * memory_bytes(case, bodies))
 
 
+def rank_line(case: Case, bodies: list[FilledBody], ranks: int) -> str:
+    """Return the line about the memory of each of several ranks."""
+    # A rank has the nodes of others beside its own, and room for particles that come.
+    core = round(_WITH_EDGES * memory_bytes(case, bodies) / ranks)
+    return (
+        f"ranks: each of {ranks} about {(_PROGRAM_BYTES + core) / 2**20:,.0f} MiB, of which the "
+        f"core {core / 2**20:,.1f} MiB; the first one as much more as a frame takes"
+    )
+
+
 def material_lines(case: Case) -> list[str]:
     """Return the numbers of each material that a body has, those of the library included."""
     lines = []
@@ -169,7 +180,7 @@ def _grains_line(name: str, grains: list[FilledBody], per_metre: str) -> str:
     )
 
 
-def echo(case: Case, bodies: list[FilledBody]) -> str:
+def echo(case: Case, bodies: list[FilledBody], ranks: int = 1) -> str:
     """Return what the case amounts to: bodies, materials, memory, cells, time step, steps."""
     per_metre = " per metre" if case.grid.dimension == 2 else ""
     lines = [case.title] if case.title else []
@@ -199,6 +210,7 @@ def echo(case: Case, bodies: list[FilledBody]) -> str:
         f"total: {particles:,} particles, mass {sum(b.mass for b in bodies):.6g} kg{per_metre}, "
         f"memory about {process_bytes(case, bodies) / 2**20:,.0f} MiB, of which the core "
         f"{memory_bytes(case, bodies) / 2**20:,.1f} MiB",
+        *([rank_line(case, bodies, ranks)] if ranks > 1 else []),
         f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
         f"{bounds}, {case.grid.basis} basis",
         *condition_lines(case),
