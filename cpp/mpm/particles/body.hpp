@@ -17,7 +17,7 @@ enum class BodyKind : std::uint8_t {
   prescribed,  // as one, Body::motion, whatever acts on them
 };
 
-/// The particles of a body as the user gives them, until they are in a pool.
+/// The particles of a body as the user gives them, until they are in a pool: a rank's share.
 struct GivenParticles {
   std::vector<double> positions;                            // (n, D) [m]
   std::vector<double> velocities;                           // (n, D) or (1, D) [m/s]

@@ -40,25 +40,13 @@ void add_columns(ParticlePool<D>& pool, const Material& material, bool may_leave
   if (pool.at.failed < 0) pool.at.failed = c.add("failed", "1", 1);
 }
 
-/// The numbers of a body's particles that a rank takes: from one to the one before another.
-struct Share {
-  std::size_t first, last;
-  Share(std::size_t count, const Comm& comm) {
-    const auto rank = static_cast<std::size_t>(comm.rank()),
-               ranks = static_cast<std::size_t>(comm.size());
-    first = count * rank / ranks;
-    last = count * (rank + 1) / ranks;
-  }
-};
-
 /// f(row, values) for a share of the particles of a body in a pool, from row `row` on; of `width`
 /// given numbers each has its own, or all have the same.
 template <class F>
 void for_each_given(const std::vector<double>& given, std::size_t width, std::size_t row,
                     const Share& share, F&& f) {
   const bool one = given.size() == width;
-  for (std::size_t i = share.first; i < share.last; ++i)
-    f(row++, given.data() + (one ? 0 : i * width));
+  for (std::size_t i = 0; i < share.count(); ++i) f(row++, given.data() + (one ? 0 : i * width));
 }
 
 /// What all bodies give of one kind, from one member of GivenParticles, which is dropped when it
@@ -84,8 +72,7 @@ void make_rows(std::vector<ParticlePool<D>>& pools, const std::vector<Body<D>>& 
   patches.resize(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     std::size_t& next = rows[static_cast<std::size_t>(bodies[b].material)];
-    const Share share(bodies[b].count, comm);
-    const std::size_t count = share.last - share.first;
+    const std::size_t count = Share(bodies[b].count, comm).count();
     if (count > most - next)
       throw std::length_error("bodies of one material have more than 3 billion particles");
     patches[b].body = static_cast<int>(b);
@@ -102,6 +89,18 @@ void make_rows(std::vector<ParticlePool<D>>& pools, const std::vector<Body<D>>& 
 }
 
 }  // namespace
+
+Share::Share(std::size_t count, const Comm& comm) {
+  const auto rank = static_cast<std::size_t>(comm.rank()),
+             ranks = static_cast<std::size_t>(comm.size());
+  first = count * rank / ranks;
+  last = count * (rank + 1) / ranks;
+}
+
+std::vector<double> Share::of(std::span<const double> given, std::size_t width) const {
+  if (given.size() != width) given = given.subspan(first * width, count() * width);
+  return {given.begin(), given.end()};
+}
 
 void check_finite(std::span<const double> values, const std::string& what) {
   for (const double v : values)
@@ -145,7 +144,7 @@ void add_set_back(ParticlePool<D>& pool) {
 template <int D>
 Body<D> make_body(const std::string& name, const Material& material, const ParticlePool<D>& pool,
                   std::span<const double> positions, std::span<const double> velocities,
-                  std::span<const double> volumes) {
+                  std::span<const double> volumes, const Comm& comm) {
   check_particles<D>(name, positions, velocities, volumes);
   const std::size_t n = positions.size() / D;
   Body<D> body;
@@ -164,9 +163,10 @@ Body<D> make_body(const std::string& name, const Material& material, const Parti
   body.mean_mass = material.density * total / static_cast<double>(n);
   body.mean_edge = std::pow(total / static_cast<double>(n), 1.0 / D);
   body.given = std::make_unique<GivenParticles>();
-  body.given->positions.assign(positions.begin(), positions.end());
-  body.given->velocities.assign(velocities.begin(), velocities.end());
-  body.given->volumes.assign(volumes.begin(), volumes.end());
+  const Share share(n, comm);
+  body.given->positions = share.of(positions, D);
+  body.given->velocities = share.of(velocities, D);
+  body.given->volumes = share.of(volumes, 1);
   return body;
 }
 
@@ -205,14 +205,13 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
     ParticlePool<D>& pool = pool_of(bodies[b]);
     const std::size_t first = patches[b].begin;
     const Share share(bodies[b].count, comm);
-    const std::size_t count = share.last - share.first;
+    const std::size_t count = share.count();
     std::iota(pool.id.begin() + static_cast<std::ptrdiff_t>(first),
               pool.id.begin() + static_cast<std::ptrdiff_t>(first + count),
               static_cast<std::uint32_t>(share.first));
     for (const auto& [component, values] : bodies[b].given->states)
       pool.columns.with_component(component, [&]<class Number>(Number* to) {
-        for (std::size_t i = 0; i < count; ++i)
-          to[first + i] = static_cast<Number>(values[share.first + i]);
+        for (std::size_t i = 0; i < count; ++i) to[first + i] = static_cast<Number>(values[i]);
       });
     bodies[b].given.reset();
   }
@@ -226,10 +225,10 @@ template void add_set_back<2>(ParticlePool<2>&);
 template void add_set_back<3>(ParticlePool<3>&);
 template Body<2> make_body<2>(const std::string&, const Material&, const ParticlePool<2>&,
                               std::span<const double>, std::span<const double>,
-                              std::span<const double>);
+                              std::span<const double>, const Comm&);
 template Body<3> make_body<3>(const std::string&, const Material&, const ParticlePool<3>&,
                               std::span<const double>, std::span<const double>,
-                              std::span<const double>);
+                              std::span<const double>, const Comm&);
 template void fill_pools<2>(std::vector<ParticlePool<2>>&, const std::vector<Material>&,
                             std::vector<Body<2>>&, std::vector<Patch<2>>&, const Comm&);
 template void fill_pools<3>(std::vector<ParticlePool<3>>&, const std::vector<Material>&,

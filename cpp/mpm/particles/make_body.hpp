@@ -10,6 +10,16 @@
 
 namespace mpm {
 
+/// The numbers of a body's particles that a rank takes when they are given: from one to the one
+/// before another.
+struct Share {
+  std::size_t first, last;
+  Share(std::size_t count, const Comm& comm);
+  std::size_t count() const { return last - first; }
+  /// Its part of what is given for each particle, or what is given once for all: `width` numbers.
+  std::vector<double> of(std::span<const double> given, std::size_t width) const;
+};
+
 /// The pool of a material, with its columns declared and no particles. A wave's speed depends on
 /// the size of the grid's cells where the material is viscous.
 template <int D>
@@ -27,15 +37,15 @@ void add_set_back(ParticlePool<D>& pool);
 
 /// A body of particles at `positions` (n, D) [m] with `velocities` (n, D) or (1, D) [m/s] and
 /// `volumes` (n,) or (1,) [m^3], with the pool of its material, which it does not enter yet. Throws
-/// std::invalid_argument with the body's name if they do not fit each other.
+/// std::invalid_argument with the body's name if they do not fit each other. A rank keeps its share
+/// of them, by their numbers.
 template <int D>
 Body<D> make_body(const std::string& name, const Material& material, const ParticlePool<D>& pool,
                   std::span<const double> positions, std::span<const double> velocities,
-                  std::span<const double> volumes);
+                  std::span<const double> volumes, const Comm& comm = NoOthers());
 
-/// Put the given particles of all bodies, of which each rank takes its share by their numbers, into
-/// the pools of their materials; a patch for each body holds them, until lists are built. Throws
-/// std::length_error for more than 3e9 of one material.
+/// Put the given particles of all bodies into the pools of their materials; a patch for each body
+/// holds them, until lists are built. Throws std::length_error for more than 3e9 of one material.
 template <int D>
 void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>& materials,
                 std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches,

@@ -47,8 +47,8 @@ int add_body(Simulation<D>& simulation, const std::string& name, int material_nu
   Domain<D>& domain = simulation.domain;
   require(simulation, Phase::building, "bodies must be added before prepare()");
   const auto m = static_cast<std::size_t>(material_number);
-  Body<D> body =
-      make_body(name, domain.materials.at(m), domain.pools.at(m), positions, velocities, volumes);
+  Body<D> body = make_body(name, domain.materials.at(m), domain.pools.at(m), positions, velocities,
+                           volumes, *domain.grid.partition.comm);
   body.material = material_number;
   body.group = static_cast<int>(domain.bodies.size());
   domain.bodies.push_back(std::move(body));
@@ -64,7 +64,8 @@ void set_state(Simulation<D>& simulation, int number, const std::string& column,
   if (info.components != 1 || values.size() != b.count)
     throw std::invalid_argument(column + ": a state that is set must be (n,)");
   check_finite(values, column);
-  b.given->states.emplace_back(info.first, std::vector<double>(values.begin(), values.end()));
+  const Share share(b.count, *simulation.domain.grid.partition.comm);
+  b.given->states.emplace_back(info.first, share.of(values, 1));
 }
 
 template <int D>
@@ -122,7 +123,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
   if (velocities.size() != b.count * D) throw std::invalid_argument("velocities must be (n, D)");
   check_finite(velocities, "velocities");
   if (simulation.phase == Phase::building) {
-    b.given->velocities.assign(velocities.begin(), velocities.end());
+    b.given->velocities = Share(b.count, *domain.grid.partition.comm).of(velocities, D);
     return;
   }
   require(simulation, Phase::ready, "");

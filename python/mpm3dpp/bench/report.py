@@ -69,8 +69,8 @@ def show_series(results: list[dict[str, Any]]) -> None:
 
     first = results[0]
     several = any(result["ranks"] > 1 for result in results)
-    heads = ("particles", "ranks", "threads", "ns", "ratio", "bytes")
-    heads += ("exchange", "kB", "letters", "imbalance") if several else ("GB/s", "limit")
+    last = ("exchange", "kB", "letters", "imbalance") if several else ("GB/s", "limit")
+    heads = ("particles", "ranks", "threads", "ns", "ratio", "bytes", *last)
     table = Table()
     for head in heads:
         table.add_column(head, justify="right", no_wrap=True)
