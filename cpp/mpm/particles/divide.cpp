@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "mpm/particles/cell_lists.hpp"
 
@@ -13,6 +15,24 @@ std::int64_t cost_of(const Patch<D>& patch, const std::vector<Body<D>>& bodies) 
   return patch.count == 0 ? 0 : (moves_alone ? 0 : 4 * patch.count) + Tile<D>::cell_count;
 }
 
+/// The least box around the tiles with particles, of all ranks.
+template <int D>
+void set_bounds(const TileGrid<D>& grid, Owners<D>& owners) {
+  double ends[2 * D];
+  std::ranges::fill(ends, -std::numeric_limits<double>::infinity());
+  for (const Patch<D>& patch : grid.patches)
+    for (std::size_t a = 0; patch.count > 0 && a < D; ++a) {
+      ends[a] = std::max(ends[a], -1.0 * patch.tile[a]);
+      ends[D + a] = std::max(ends[D + a], 1.0 * patch.tile[a]);
+    }
+  grid.partition.comm->all_max(ends);
+  for (std::size_t a = 0; a < D; ++a)
+    if (std::isfinite(ends[a])) {
+      owners.low[a] = static_cast<std::int32_t>(-ends[a]);
+      owners.high[a] = static_cast<std::int32_t>(ends[D + a]);
+    }
+}
+
 /// Where ranges of tiles begin whose costs are alike: sums over all ranks, bit by bit of the place.
 template <int D>
 Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies) {
@@ -20,9 +40,11 @@ Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies)
     std::uint64_t place;
     std::int64_t until;  // of all up to this one
   };
+  Owners<D> owners;
+  set_bounds(grid, owners);
   std::vector<Cost> costs;
   for (const Patch<D>& patch : grid.patches)
-    if (patch.count > 0) costs.push_back({place_of<D>(patch.tile), cost_of(patch, bodies)});
+    if (patch.count > 0) costs.push_back({owners.place(patch.tile), cost_of(patch, bodies)});
   std::ranges::sort(costs, {}, &Cost::place);
   std::int64_t here = 0;
   for (Cost& cost : costs) cost.until = here += cost.until;
@@ -32,18 +54,25 @@ Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies)
   };
   Comm& comm = *grid.partition.comm;
   const auto ranks = static_cast<std::size_t>(comm.size());
-  std::int64_t total[1] = {here};
-  comm.all_sum(total);
-  Owners<D> owners;
+  const std::int64_t total = all_sum(comm, here);
   owners.first.assign(ranks, 0);
-  std::vector<std::int64_t> sums(ranks);
+  std::vector<std::int64_t> sums(ranks), below(ranks, 0);
+  std::vector<bool> found(ranks, false);
+  // A range may be so much larger or smaller, so that it begins where a large part of the curve
+  // does: the surface of what it holds is less then.
+  const std::int64_t off = total / comm.size() / 100;
   constexpr int bits = 19 * D;
   for (std::uint64_t bit = std::uint64_t{1} << (bits - 1); bit > 0; bit >>= 1) {
     for (std::size_t r = 0; r < ranks; ++r) sums[r] = before(owners.first[r] + bit);
     comm.all_sum(sums);
     // Rank r's begins at the last place before which there is no more than its share.
-    for (std::size_t r = 1; r < ranks; ++r)
-      if (sums[r] <= total[0] * static_cast<std::int64_t>(r) / comm.size()) owners.first[r] += bit;
+    for (std::size_t r = 1; r < ranks; ++r) {
+      const std::int64_t share = total * static_cast<std::int64_t>(r) / comm.size();
+      if (found[r] || sums[r] > share + off) continue;
+      owners.first[r] += bit;
+      below[r] = sums[r];
+      found[r] = below[r] >= share - off;
+    }
   }
   return owners;
 }
@@ -57,6 +86,8 @@ void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<Particl
   update_cell_lists<D>(grid, bodies, pools, threads, scratch, nullptr, nullptr);
   // Those that have come lie wherever there was room.
   repack(grid.patches, bodies, pools);
+  scratch.own.release_and_allocate(0);
+  scratch.own_lists.release_and_allocate(0);
 }
 
 template <int D>

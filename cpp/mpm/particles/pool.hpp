@@ -80,7 +80,7 @@ struct ParticlePool {
 };
 
 /// So many rows more, that few comings allocate.
-constexpr std::size_t spare_rows(std::size_t rows) { return rows / 16 + 64; }
+constexpr std::size_t spare_rows(std::size_t rows) { return rows / 64 + 64; }
 
 /// A row for a particle that comes from another rank.
 template <int D>

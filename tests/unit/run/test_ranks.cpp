@@ -102,7 +102,7 @@ void shuffle_owners(Simulation<D>& simulation, std::mt19937_64& random) {
   for (std::size_t r = 1; r < owners.first.size(); ++r) {
     Index<D> tile;
     for (std::int32_t& t : tile) t = static_cast<std::int32_t>(random() % 8);
-    owners.first[r] = place_of<D>(tile);
+    owners.first[r] = owners.place(tile);
   }
   std::ranges::sort(owners.first);
   take_owners(grid, owners);
