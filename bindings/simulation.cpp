@@ -162,40 +162,9 @@ void def_telling(SimulationClass& simulation) {
       .def("warnings", of_any([](auto& s) { return warnings(s); }));
 }
 
-/// What has happened: history, contacts, times, memory.
-void def_records(SimulationClass& simulation) {
+/// What it takes: times, what passes between ranks, memory.
+void def_costs(SimulationClass& simulation) {
   simulation
-      .def("history", of_any_to([](auto& s) { return s.history.take(); },
-                                [](std::vector<double> rows) {
-                                  return to_numpy(std::move(rows), history_terms.size());
-                                }))
-      .def("part_sums",
-           of_any_to(
-               [](auto& s) {
-                 require(s, Phase::ready, "call prepare() before part_sums()");
-                 const auto parts = part_sums(s.domain);
-                 return std::pair(balance_row(s.domain.ledger.angular, angular_totals(parts)),
-                                  rows_of(parts));
-               },
-               [](auto sums) {
-                 return nb::make_tuple(sums.first,
-                                       to_numpy(std::move(sums.second), part_columns.size()));
-               }))
-      .def("contact_pairs",
-           of_any([](auto& s) { return s.domain.contact.records.of_all_ranks(comm_of(s)); }))
-      .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))
-      .def("contact_summary", of_any_to([](auto& s) { return contact_summary(s); },
-                                        [](const ContactSummary& told) {
-                                          nb::dict d;
-                                          d["overlapped_nodes"] = told.overlapped;
-                                          d["overlapped_nodes_max"] = told.overlapped_max;
-                                          d["bodies_per_node_max"] = told.bodies_max;
-                                          d["unconverged_nodes"] = told.unconverged;
-                                          d["set_back_particles"] = told.set_back_particles;
-                                          d["set_back_most"] = told.set_back_most;
-                                          d["bytes"] = told.bytes;
-                                          return d;
-                                        }))
       .def("timers", of_any_to([](auto& s) { return s.timers.seconds(); },
                                [](const auto& times) {
                                  nb::dict d;
@@ -228,6 +197,42 @@ void def_records(SimulationClass& simulation) {
                                 d["other"] = b.other;
                                 return d;
                               }));
+}
+
+/// What has happened: history, contacts.
+void def_records(SimulationClass& simulation) {
+  simulation
+      .def("history", of_any_to([](auto& s) { return s.history.take(); },
+                                [](std::vector<double> rows) {
+                                  return to_numpy(std::move(rows), history_terms.size());
+                                }))
+      .def("part_sums",
+           of_any_to(
+               [](auto& s) {
+                 require(s, Phase::ready, "call prepare() before part_sums()");
+                 const auto parts = part_sums(s.domain);
+                 return std::pair(balance_row(s.domain.ledger.angular, angular_totals(parts)),
+                                  rows_of(parts));
+               },
+               [](auto sums) {
+                 return nb::make_tuple(sums.first,
+                                       to_numpy(std::move(sums.second), part_columns.size()));
+               }))
+      .def("contact_pairs",
+           of_any([](auto& s) { return s.domain.contact.records.of_all_ranks(comm_of(s)); }))
+      .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))
+      .def("contact_summary", of_any_to([](auto& s) { return contact_summary(s); },
+                                        [](const ContactSummary& told) {
+                                          nb::dict d;
+                                          d["overlapped_nodes"] = told.overlapped;
+                                          d["overlapped_nodes_max"] = told.overlapped_max;
+                                          d["bodies_per_node_max"] = told.bodies_max;
+                                          d["unconverged_nodes"] = told.unconverged;
+                                          d["set_back_particles"] = told.set_back_particles;
+                                          d["set_back_most"] = told.set_back_most;
+                                          d["bytes"] = told.bytes;
+                                          return d;
+                                        }));
   simulation
       .def_prop_ro_static("history_columns",
                           [](nb::handle) {
@@ -255,6 +260,7 @@ void add_simulation(nb::module_& m) {
   def_telling(simulation);
   def_columns(simulation);
   def_records(simulation);
+  def_costs(simulation);
 }
 
 }  // namespace mpm::bindings

@@ -33,6 +33,7 @@ NB_MODULE(_comm_mpi, m) {
   m.def(
       "comm",
       [](std::uintptr_t users) {
+        // NOLINTNEXTLINE(performance-no-int-to-ptr): mpi4py tells it as an integer.
         mpm::Comm* comm = new mpm::MpiComm(*reinterpret_cast<const MPI_Comm*>(users));
         return nb::capsule(comm, "mpm::Comm",
                            [](void* p) noexcept { delete static_cast<mpm::Comm*>(p); });

@@ -39,6 +39,7 @@ void exchange_removed(StateStream& stream, Removed& removed) {
 template <int D>
 void rebuild(Domain<D>& domain, std::vector<Patch<D>> bodies, const StateStream& stream) {
   std::vector<std::int64_t> removed;
+  removed.reserve(domain.bodies.size());
   for (const Body<D>& body : domain.bodies)
     removed.push_back(static_cast<std::int64_t>(body.removed_here));
   stream.comm().all_sum(removed);
