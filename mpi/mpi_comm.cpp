@@ -42,6 +42,9 @@ void wait_for(std::vector<MPI_Request>& requests) {
 MpiComm::MpiComm(MPI_Comm users) {
   MPI_Comm_dup(users, &comm_);
   MPI_Comm_dup(users, &failed_);
+  // mpi4py has errors returned, and its communicators hand that on; none is looked at here.
+  MPI_Comm_set_errhandler(comm_, MPI_ERRORS_ARE_FATAL);
+  MPI_Comm_set_errhandler(failed_, MPI_ERRORS_ARE_FATAL);
   MPI_Comm_rank(comm_, &rank_);
   MPI_Comm_size(comm_, &size_);
 }
@@ -80,7 +83,18 @@ void MpiComm::start(Mail& mail) {
               &sending.emplace_back());
 }
 
-void MpiComm::finish(Mail& mail) { wait_for(receiving_[&mail]); }
+void MpiComm::finish(Mail& mail) {
+  std::vector<MPI_Request>& receiving = receiving_[&mail];
+  std::vector<MPI_Status> statuses(receiving.size());
+  MPI_Waitall(static_cast<int>(receiving.size()), receiving.data(), statuses.data());
+  receiving.clear();
+  for (std::size_t k = 0; k < statuses.size(); ++k) {
+    int length = 0;
+    MPI_Get_count(&statuses[k], MPI_BYTE, &length);
+    if (length != length_of(mail.in[k].bytes))
+      throw std::logic_error("a letter has another length than was agreed");
+  }
+}
 
 void MpiComm::release(Mail& mail) { wait_for(sending_[&mail]); }
 

@@ -11,7 +11,8 @@
 namespace mpm {
 namespace {
 
-constexpr double farthest = 1 << 28;  // from the origin [cells]: beyond, a cell has no number
+constexpr double widest = (1 << 20) - 8;  // from the anchor [cells]: beyond, lists have no keys
+constexpr double farthest = 1 << 28;      // from the origin [cells]: beyond, a cell has no number
 
 void check(bool holds, const char* sentence) { StateStream::check(holds, sentence); }
 
@@ -40,7 +41,8 @@ bool is_fine(const TileGrid<D>& grid, const ParticlePool<D>& pool, std::uint32_t
               finite(pool.mass()[row], pool.volume()[row]);
   for (int a = 0; a < D; ++a)
     fine = fine && std::isfinite(double{pool.v(a)[row]}) &&
-           std::abs(grid.in_cells(x[a], a)) < farthest;
+           std::abs(grid.in_cells(x[a], a)) < farthest &&
+           std::abs(grid.in_cells(x[a], a) - grid.anchor[static_cast<std::size_t>(a)]) < widest;
   if (pool.set_back >= 0) {
     const double share = pool.columns.component(pool.set_back)[row];
     fine = fine && share >= 0.0 && std::isfinite(share);

@@ -134,14 +134,11 @@ def _on_ranks(ranks: int, threads: int | None) -> int:
     from mpm3dpp.ranks.launch import launch
     from mpm3dpp.ranks.world import started
 
-    words = sys.argv[1:]
-    for k, word in enumerate(words):
-        if word == "--ranks":
-            del words[k : k + 2]
-            break
-        if word.startswith("--ranks="):
-            del words[k]
-            break
+    words, skips = [], False
+    for word in sys.argv[1:]:
+        if not skips and word != "--ranks" and not word.startswith("--ranks="):
+            words.append(word)
+        skips = word == "--ranks"
     if started() is not None:
         rule = "--ranks is for one process, and mpiexec has started several"
         raise CaseError(rule, "leave out --ranks")

@@ -12,6 +12,7 @@ import errno
 import io
 import os
 import sys
+import traceback
 
 from mpm3dpp.base import signals
 
@@ -57,6 +58,9 @@ def _one_of_many() -> None:
         _command()
     except SystemExit as end:
         code = end.code if isinstance(end.code, int) else int(end.code is not None)
+    except BaseException:  # Ours to mend; the others must not wait for ever.
+        traceback.print_exc()
+        code = 1
     dismiss()
     sys.exit(exit_code(code))
 

@@ -10,11 +10,13 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 from mpm3dpp.base.errors import CaseError, RunError
+from mpm3dpp.base.machine import thread_count
+from mpm3dpp.base.signals import CODE
 
 from .world import INSTALL
 
@@ -23,7 +25,10 @@ TOLD = "MPM3DPP_LAUNCHED"
 AS_ROOT = {
     f"{who}_ALLOW_RUN_AS_ROOT{more}": "1" for who in ("OMPI", "PRTE") for more in ("", "_CONFIRM")
 }
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_PASSED_ON = {
+    signal.SIGINT: signal.SIGINT,
+    **dict.fromkeys((signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT), signal.SIGTERM),
+}
 
 
 def launch(count: int, words: list[str], threads: int | None) -> int:
@@ -35,20 +40,18 @@ def launch(count: int, words: list[str], threads: int | None) -> int:
         CaseError: there is no MPI, or none that fits.
         RunError: a process has ended that nobody has told to, as one that was killed.
     """
-    each = threads if threads is not None else max(1, len(os.sched_getaffinity(0)) // count)
-    words = [*words, "--threads", str(each)] if threads is None else words
+    each = thread_count(threads, max(1, len(os.sched_getaffinity(0)) // count))
+    if threads is None:
+        words = [*words[:1], "--threads", str(each), *words[1:]]
     command, added = command_of(count, each)
     command += [sys.executable, "-m", "mpm3dpp", *words]
     with tempfile.TemporaryDirectory(prefix="mpm3dpp-") as told:
-        environment = os.environ | {TOLD: told} | added
-        # In a session of its own, so that Ctrl-C at the terminal comes to this process alone.
-        with (
-            subprocess.Popen(command, env=environment, start_new_session=True) as job,
-            _passing_on(job, Path(told, "pid")),
-        ):
-            code = job.wait()
+        with _Job(Path(told, "pid")) as job:
+            code = job.run(command, os.environ | {TOLD: told} | added)
         with contextlib.suppress(OSError, ValueError):
             return int(Path(told, "code").read_text())
+    if job.stopped:
+        return CODE
     how = f"by signal {-code}" if code < 0 else f"with exit code {code}"
     raise RunError(
         f"a process of the run has ended, and mpiexec {how}; what was written before is kept, and "
@@ -65,31 +68,65 @@ def command_of(count: int, threads: int) -> tuple[list[str], dict[str, str]]:
     """
     program, is_open = find_mpiexec()
     command = [program, "-n", str(count)]
-    crowded = count > len(os.sched_getaffinity(0))
-    if is_open and crowded:
-        command.append("--oversubscribe")
-    if is_open and (threads > 1 or crowded):
+    if is_open:
+        command.append("--oversubscribe")  # It counts cores, of which some run two threads.
+    if is_open and (threads > 1 or count > _cores()):
         command += ["--bind-to", "none"]  # Else all threads of a rank share one core.
     return command, AS_ROOT if is_open and os.geteuid() == 0 else {}
 
 
-@contextlib.contextmanager
-def _passing_on(job: subprocess.Popen[bytes], number: Path) -> Iterator[None]:
-    """Pass Ctrl-C and SIGTERM on to the first process; while there is none yet, end the job."""
-
-    def pass_on(kind: int, _: FrameType | None) -> None:
+def _cores() -> int:
+    """Return how many cores this process may use, threads of one core counted once."""
+    found = set()
+    for number in os.sched_getaffinity(0):
+        about = Path(f"/sys/devices/system/cpu/cpu{number}/topology/thread_siblings_list")
         try:
-            os.kill(int(number.read_text()), kind)
-        except (OSError, ValueError):
-            with contextlib.suppress(OSError):
-                job.send_signal(kind)
+            found.add(about.read_text())
+        except OSError:
+            found.add(str(number))
+    return len(found)
 
-    before = [signal.signal(kind, pass_on) for kind in _SIGNALS]
-    try:
-        yield
-    finally:
-        for kind, handler in zip(_SIGNALS, before, strict=True):
+
+class _Job:
+    """While it lives, signals for this process go to the first of the ranks.
+
+    Args:
+        number: the file in which that leaves its number; before, the job is ended.
+
+    Attributes:
+        stopped: whether there was a signal.
+    """
+
+    def __init__(self, number: Path) -> None:
+        self.stopped = False
+        self._number = number
+        self._job: subprocess.Popen[bytes] | None = None
+        self._before: dict[signal.Signals, Any] = {}
+
+    def __enter__(self) -> _Job:
+        for kind in _PASSED_ON:
+            self._before[kind] = signal.signal(kind, self._pass_on)
+        return self
+
+    def __exit__(self, *_about: object) -> None:
+        for kind, handler in self._before.items():
             signal.signal(kind, handler)
+
+    def run(self, command: list[str], environment: dict[str, str]) -> int:
+        """Run it to its end; return its exit code."""
+        # In a session of its own, so that Ctrl-C at the terminal comes to this process alone.
+        with subprocess.Popen(command, env=environment, start_new_session=True) as self._job:
+            return self._job.wait()
+
+    def _pass_on(self, kind: int, _: FrameType | None) -> None:
+        self.stopped = True
+        kind = _PASSED_ON[signal.Signals(kind)]
+        try:
+            os.kill(int(self._number.read_text()), kind)
+        except (OSError, ValueError):
+            if self._job is not None:
+                with contextlib.suppress(OSError):
+                    self._job.send_signal(kind)
 
 
 def note_begin() -> None:

@@ -85,13 +85,13 @@ class World:
         here.Free()
         return share
 
-    def fail(self, why: str) -> None:
+    def fail(self, why: str, patience: float = PATIENCE) -> None:
         """Return once all ranks have called it, which then go on; else end all, with a sentence.
 
         What all have made alike is a mistake; what one alone has met is the end of the run.
         """
         request = self._failed.Ibarrier()
-        last = time.monotonic() + PATIENCE
+        last = time.monotonic() + patience
         while not request.Test():
             if time.monotonic() > last:
                 text = f"rank {self.rank} cannot go on, and with it the run: {why}"

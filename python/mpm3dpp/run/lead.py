@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import signal
+from collections.abc import Callable
 from typing import Any
 
 from mpm3dpp.case.case import Case
@@ -24,6 +25,9 @@ _OWN = frozenset(
 """What the first process knows without the others."""
 
 
+_PATIENCE = 60.0  # s, for ranks that are slower to fill bodies that cannot be filled
+
+
 class _Leading:
     """The core's `Simulation` of the first process; what it is asked, the others are asked too."""
 
@@ -35,14 +39,21 @@ class _Leading:
             return getattr(self._core, name)
         if isinstance(getattr(type(self._core), name, None), property):
             self._ranks.tell("get", name)
-            return getattr(self._core, name)
+            return self._alike(lambda: getattr(self._core, name))
         return lambda *values, **named: self._call(name, values, named)
 
     def _call(self, name: str, values: tuple[Any, ...], named: dict[str, Any]) -> Any:
         # What only the first process calls, as to read a file, the others need not have.
         told = tuple(len if callable(value) else value for value in values)
         self._ranks.tell("call", name, told, named)
-        return getattr(self._core, name)(*values, **named)
+        return self._alike(lambda: getattr(self._core, name)(*values, **named))
+
+    def _alike(self, act: Callable[[], Any]) -> Any:
+        try:
+            return act()
+        except Exception as error:
+            self._ranks.fail(str(error))  # Returns if it is a mistake that all have made.
+            raise
 
 
 def make_simulation(case: Case, threads: int | None) -> Simulation:
@@ -60,7 +71,7 @@ def _make(case: Case, threads: int | None, ranks: World) -> Simulation:
     try:
         return Simulation(case, threads, world=ranks)
     except Exception as error:
-        ranks.fail(str(error))
+        ranks.fail(str(error), _PATIENCE)
         raise
 
 
@@ -99,15 +110,19 @@ def follow(ranks: World) -> Any:
                 return about[0]
             if what == "quit":
                 raise SystemExit(0)
-            with contextlib.suppress(Exception):  # The first process has met the same.
-                if what == "make":
-                    simulation = None
+            if what == "make":
+                simulation = None
+                with contextlib.suppress(Exception):  # The first process has met the same.
                     simulation = _make(about[0], about[1], ranks)
-                elif what == "get":
+                continue
+            try:
+                if what == "get":
                     getattr(simulation.core, about[0])
                 else:
                     name, values, named = about
                     getattr(simulation.core, name)(*values, **named)
+            except Exception as error:
+                ranks.fail(str(error))
 
 
 @contextlib.contextmanager

@@ -71,6 +71,7 @@ class Simulation:
             raise CaseError("must be a Case", remedy, key="case", value=case)
         filled = build(case)
         self.case = case
+        self._world = world
         cores = world.cores_of_rank() if world else None
         self.threads = thread_count(threads, cores)
         self.bodies = [body.name for body in filled]
@@ -261,6 +262,9 @@ class Simulation:
         """
         if self.core.failure is not None:
             raise CaseError("a run that had to stop cannot be saved", "save it while it goes on")
+        if self._world is not None and self._world.rank > 0:
+            self.core.save(len)  # The first process writes.
+            return
         write_checkpoint(arguments.path("path", path), self.core, {"case": self.case.content()})
 
     def restore(self, path: str | Path) -> None:
