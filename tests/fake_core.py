@@ -148,6 +148,12 @@ class FakeSimulation:
     def warnings(self) -> list[Any]:
         return []
 
+    def ranks(self) -> dict[str, float]:
+        return {
+            **{"ranks": 1, "letters": 0.0, "bytes": 0.0, "exchanges": 0.0},
+            **{"reductions": 0.0, "share": 0.0, "imbalance": 1.0},
+        }
+
     def timers(self) -> dict[str, float]:
         return {"map momentum": 2e-3, "advance particles": 1e-3}
 
