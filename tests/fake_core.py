@@ -149,10 +149,8 @@ class FakeSimulation:
         return []
 
     def ranks(self) -> dict[str, float]:
-        return {
-            **{"ranks": 1, "letters": 0.0, "bytes": 0.0, "exchanges": 0.0},
-            **{"reductions": 0.0, "share": 0.0, "imbalance": 1.0},
-        }
+        told = dict.fromkeys(("letters", "bytes", "exchanges", "reductions", "share"), 0.0)
+        return {"ranks": 1, "imbalance": 1.0, **told}
 
     def timers(self) -> dict[str, float]:
         return {"map momentum": 2e-3, "advance particles": 1e-3}
