@@ -70,8 +70,7 @@ class Simulation:
             remedy = 'give what mpm3dpp.load_case("case.toml") returns, or make a Case'
             raise CaseError("must be a Case", remedy, key="case", value=case)
         filled = build(case)
-        self.case = case
-        self._world = world
+        self.case, self._world = case, world
         cores = world.cores_of_rank() if world else None
         self.threads = thread_count(threads, cores)
         self.bodies = [body.name for body in filled]
