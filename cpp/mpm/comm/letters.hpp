@@ -15,12 +15,27 @@ inline Letter& letter_to(Mail& mail, int rank) {
   return mail.out.back();
 }
 
+/// Room for so many bytes more at the end of a letter.
+inline std::byte* extend(Letter& letter, std::size_t bytes) {
+  const std::size_t at = letter.bytes.size();
+  letter.bytes.resize(at + bytes);
+  return letter.bytes.data() + at;
+}
+
 template <class T>
   requires std::is_trivially_copyable_v<T>
 void write(Letter& letter, const T& value) {
-  const std::size_t at = letter.bytes.size();
-  letter.bytes.resize(at + sizeof(T));
-  std::memcpy(&letter.bytes[at], &value, sizeof(T));
+  std::memcpy(extend(letter, sizeof(T)), &value, sizeof(T));
+}
+
+/// values[row] of each row.
+template <class T>
+void write_rows(Letter& letter, const T* values, std::span<const std::uint32_t> rows) {
+  std::byte* to = extend(letter, rows.size() * sizeof(T));
+  for (const std::uint32_t row : rows) {
+    std::memcpy(to, &values[row], sizeof(T));
+    to += sizeof(T);
+  }
 }
 
 /// Reads what was written, in the same order.
@@ -36,6 +51,10 @@ class Reader {
     std::memcpy(&value, bytes_.data(), sizeof(T));
     bytes_ = bytes_.subspan(sizeof(T));
     return value;
+  }
+  template <class T>
+  void read_rows(T* values, std::span<const std::uint32_t> rows) {
+    for (const std::uint32_t row : rows) values[row] = read<T>();
   }
 
  private:

@@ -64,10 +64,11 @@ void take_in(Reader& reader, ParticlePool<D>& pool, Patch<D>& patch) {
   patch.begin = static_cast<std::uint32_t>(pool.used + pool.guests.size());
   patch.room = 0;  // no list of its own
   patch.cell_begin.fill(0);
-  for (std::uint32_t k = 0; k < told.count; ++k) {
+  std::vector<std::uint32_t> rows;
+  take_rows(pool, told.count, rows);
+  pool.guests.insert(pool.guests.end(), rows.begin(), rows.end());
+  for (const std::uint32_t row : rows) {
     const auto guest = reader.template read<Guest<D>>();
-    const std::uint32_t row = take_row(pool);
-    pool.guests.push_back(row);
     for (int a = 0; a < D; ++a) pool.x(a)[row] = guest.x[a];
     pool.mass()[row] = guest.mass;
     pool.volume()[row] = guest.volume;

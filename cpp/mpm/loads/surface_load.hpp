@@ -69,6 +69,7 @@ struct SurfacePiece {
   int load = 0;                // that acts on it
   std::uint32_t particle = 0;  // number in the body
   std::uint32_t next = 0;      // 1 + number of the particle's next piece, of another load; or 0
+  std::uint32_t unused = 0;    // in place of bytes of no value: pieces are kept as bytes
   double size = 0.0;           // area [m^2]: at an edge of the body more than |area|
   Vec<double, D> area;         // outward area vector [m^2]
   Vec<double, D> arm;          // from the particle to the middle of the piece [m]

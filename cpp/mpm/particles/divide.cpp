@@ -17,7 +17,7 @@ std::int64_t cost_of(const Patch<D>& patch, const std::vector<Body<D>>& bodies) 
 
 /// The least box around the tiles with particles, of all ranks.
 template <int D>
-void set_bounds(const TileGrid<D>& grid, Owners<D>& owners) {
+void set_box(const TileGrid<D>& grid, Owners<D>& owners) {
   double ends[2 * D];
   std::ranges::fill(ends, -std::numeric_limits<double>::infinity());
   for (const Patch<D>& patch : grid.patches)
@@ -26,11 +26,13 @@ void set_bounds(const TileGrid<D>& grid, Owners<D>& owners) {
       ends[D + a] = std::max(ends[D + a], 1.0 * patch.tile[a]);
     }
   grid.partition.comm->all_max(ends);
-  for (std::size_t a = 0; a < D; ++a)
-    if (std::isfinite(ends[a])) {
-      owners.low[a] = static_cast<std::int32_t>(-ends[a]);
-      owners.high[a] = static_cast<std::int32_t>(ends[D + a]);
-    }
+  if (!std::isfinite(ends[0])) return;
+  Index<D> low, high;
+  for (std::size_t a = 0; a < D; ++a) {
+    low[a] = static_cast<std::int32_t>(-ends[a]);
+    high[a] = static_cast<std::int32_t>(ends[D + a]);
+  }
+  owners.set_box(low, high);
 }
 
 /// Where ranges of tiles begin whose costs are alike: sums over all ranks, bit by bit of the place.
@@ -41,7 +43,7 @@ Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies)
     std::int64_t until;  // of all up to this one
   };
   Owners<D> owners;
-  set_bounds(grid, owners);
+  set_box(grid, owners);
   std::vector<Cost> costs;
   for (const Patch<D>& patch : grid.patches)
     if (patch.count > 0) costs.push_back({owners.place(patch.tile), cost_of(patch, bodies)});
@@ -61,7 +63,7 @@ Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies)
   // A range may be so much larger or smaller, so that it begins where a large part of the curve
   // does: the surface of what it holds is less then.
   const std::int64_t off = total / comm.size() / 100;
-  constexpr int bits = 19 * D;
+  constexpr int bits = Owners<D>::bits * D;
   for (std::uint64_t bit = std::uint64_t{1} << (bits - 1); bit > 0; bit >>= 1) {
     for (std::size_t r = 0; r < ranks; ++r) sums[r] = before(owners.first[r] + bit);
     comm.all_sum(sums);

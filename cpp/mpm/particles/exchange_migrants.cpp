@@ -1,5 +1,5 @@
-// Particles that go from rank to rank: a letter holds, one after another, the number of a body,
-// that of a particle in it, all components of its columns, and the pieces of loads that it carries.
+// Particles that go from rank to rank: a letter holds groups of particles of a body, each with
+// their numbers in it, every component of their columns, and the pieces of loads that they carry.
 #include "mpm/particles/exchange_migrants.hpp"
 
 #include "mpm/comm/letters.hpp"
@@ -10,28 +10,69 @@ namespace {
 
 constexpr std::int32_t gone = -2;  // in place of a migrant's patch: it has gone to another rank
 
+/// What a group begins with.
+struct GroupHead {
+  std::int32_t body;
+  std::uint32_t count;
+};
+
+/// The particles of a body that go to a rank.
+struct Group {
+  int rank, body;
+  std::vector<std::uint32_t> rows{};
+};
+
 template <int D>
-void write_particle(Letter& letter, int body, const ParticlePool<D>& pool, std::uint32_t row) {
-  write(letter, body);
-  write(letter, pool.id[row]);
+void write_group(Letter& letter, const Group& group, const ParticlePool<D>& pool) {
+  const std::span<const std::uint32_t> rows = group.rows;
+  const std::size_t row_bytes =
+      pool.columns.bytes() / std::max<std::size_t>(1, pool.columns.stride()) + sizeof(rows[0]);
+  letter.bytes.reserve(letter.bytes.size() + sizeof(GroupHead) + rows.size() * row_bytes);
+  write(letter, GroupHead{group.body, static_cast<std::uint32_t>(rows.size())});
+  write_rows(letter, pool.id.data(), rows);
   for (int c = 0; c < pool.columns.component_count(); ++c)
-    pool.columns.with_component(c, [&](const auto* values) { write(letter, values[row]); });
+    pool.columns.with_component(c, [&](const auto* values) { write_rows(letter, values, rows); });
   if (pool.pieces.empty()) return;
-  write(letter, pool.piece[row]);
-  for_each_piece_of(pool, row, [&](const SurfacePiece<D>& piece) { write(letter, piece); });
+  write_rows(letter, pool.piece.data(), rows);
+  for (const std::uint32_t row : rows)
+    for_each_piece_of(pool, row, [&](const SurfacePiece<D>& piece) { write(letter, piece); });
 }
 
 template <int D>
-void read_particle(Reader& reader, ParticlePool<D>& pool, std::uint32_t row) {
-  pool.id[row] = reader.read<std::uint32_t>();
+void read_group(Reader& reader, ParticlePool<D>& pool, std::span<const std::uint32_t> rows) {
+  reader.read_rows(pool.id.data(), rows);
   for (int c = 0; c < pool.columns.component_count(); ++c)
-    pool.columns.with_component(
-        c, [&]<class Number>(Number* values) { values[row] = reader.read<Number>(); });
+    pool.columns.with_component(c, [&](auto* values) { reader.read_rows(values, rows); });
   if (pool.pieces.empty()) return;
-  pool.piece[row] = reader.read<std::uint32_t>();
+  reader.read_rows(pool.piece.data(), rows);
   // A piece has the same number everywhere.
-  for (std::uint32_t k = pool.piece[row]; k != 0; k = pool.pieces[k - 1].next)
-    pool.pieces[k - 1] = reader.read<SurfacePiece<D>>();
+  for (const std::uint32_t row : rows)
+    for_each_piece_of(pool, row, [&](SurfacePiece<D>& piece) {
+      piece = reader.template read<SurfacePiece<D>>();
+    });
+}
+
+/// Take the migrants that have come into tiles of other ranks out of the list, in groups.
+template <int D>
+std::vector<Group> take_leaving(const TileGrid<D>& grid, std::vector<Migrant<D>>& migrants) {
+  const Partition<D>& partition = grid.partition;
+  std::vector<Group> groups;
+  for (Migrant<D>& migrant : migrants) {
+    // Most go to patches that this rank has.
+    if (migrant.patch >= 0 && !partition.divided &&
+        !grid.patches[static_cast<std::size_t>(migrant.patch)].foreign)
+      continue;
+    const int rank = partition.owners.rank_of(migrant.tile);
+    if (rank == partition.comm->rank()) continue;
+    // Migrants are in the order of the bodies, so that only the last groups are looked at.
+    auto group = groups.rbegin();
+    while (group != groups.rend() && group->body == migrant.body && group->rank != rank) ++group;
+    const bool is_new = group == groups.rend() || group->body != migrant.body;
+    (is_new ? groups.emplace_back(rank, migrant.body) : *group).rows.push_back(migrant.row);
+    migrant.patch = gone;
+  }
+  std::erase_if(migrants, [](const Migrant<D>& migrant) { return migrant.patch == gone; });
+  return groups;
 }
 
 }  // namespace
@@ -39,33 +80,26 @@ void read_particle(Reader& reader, ParticlePool<D>& pool, std::uint32_t row) {
 template <int D>
 void exchange_migrants(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                        std::vector<ParticlePool<D>>& pools, ListScratch<D>& scratch) {
-  Partition<D>& partition = grid.partition;
-  Mail& mail = partition.mail.migrants;
+  Mail& mail = grid.partition.mail.migrants;
   mail.out.clear();
-  for (Migrant<D>& migrant : scratch.migrants) {
-    // Most go to patches that this rank has.
-    if (migrant.patch >= 0 && !partition.divided &&
-        !grid.patches[static_cast<std::size_t>(migrant.patch)].foreign)
-      continue;
-    const int rank = partition.owners.rank_of(migrant.tile);
-    if (rank == partition.comm->rank()) continue;
-    ParticlePool<D>& pool = pools[pool_number(bodies, migrant.body)];
-    write_particle(letter_to(mail, rank), migrant.body, pool, migrant.row);
-    pool.free_rows.push_back(migrant.row);
-    migrant.patch = gone;
+  for (const Group& group : take_leaving(grid, scratch.migrants)) {
+    ParticlePool<D>& pool = pools[pool_number(bodies, group.body)];
+    write_group(letter_to(mail, group.rank), group, pool);
+    pool.free_rows.insert(pool.free_rows.end(), group.rows.begin(), group.rows.end());
   }
-  std::erase_if(scratch.migrants, [](const Migrant<D>& migrant) { return migrant.patch == gone; });
-  partition.comm->exchange(mail);
+  grid.partition.comm->exchange(mail);
+  std::vector<std::uint32_t> rows;
   for (const Letter& letter : mail.in)
     for (Reader reader(letter); !reader.done();) {
-      const int body = reader.read<int>();
-      ParticlePool<D>& pool = pools[pool_number(bodies, body)];
-      const std::uint32_t row = take_row(pool);
-      read_particle(reader, pool, row);
-      const auto [tile, cell] = grid.tile_and_cell(pool.position_of(row));
-      scratch.migrants.push_back({body, tile,
-                                  static_cast<std::int32_t>(find_patch<D>(grid, body, tile)), row,
-                                  static_cast<std::uint8_t>(cell)});
+      const auto head = reader.read<GroupHead>();
+      ParticlePool<D>& pool = pools[pool_number(bodies, head.body)];
+      take_rows(pool, head.count, rows);
+      read_group<D>(reader, pool, rows);
+      for (const std::uint32_t row : rows) {
+        const auto [tile, cell] = grid.tile_and_cell(pool.position_of(row));
+        const int patch = find_patch<D>(grid, head.body, tile);
+        scratch.migrants.push_back({head.body, tile, patch, row, static_cast<std::uint8_t>(cell)});
+      }
     }
 }
 

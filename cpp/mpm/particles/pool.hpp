@@ -82,20 +82,22 @@ struct ParticlePool {
 /// So many rows more, that few comings allocate.
 constexpr std::size_t spare_rows(std::size_t rows) { return rows / 64 + 64; }
 
-/// A row for a particle that comes from another rank.
+/// Rows for so many particles that come from other ranks.
 template <int D>
-std::uint32_t take_row(ParticlePool<D>& pool) {
-  if (pool.free_rows.empty()) {
-    const std::size_t count = pool.count(), more = count + spare_rows(count);
+void take_rows(ParticlePool<D>& pool, std::size_t number, std::vector<std::uint32_t>& rows) {
+  std::vector<std::uint32_t>& free = pool.free_rows;
+  if (free.size() < number) {
+    // Where some come more do: to move all that there are costs about a step.
+    const std::size_t count = pool.count(), needed = count + number - free.size(),
+                      more = needed + 2 * spare_rows(needed);
     grow(pool.columns, more);
     pool.id.resize(more);
     if (!pool.pieces.empty()) pool.piece.resize(more, 0);
     for (std::size_t row = more; row > count; --row)
-      pool.free_rows.push_back(static_cast<std::uint32_t>(row - 1));
+      free.push_back(static_cast<std::uint32_t>(row - 1));
   }
-  const std::uint32_t row = pool.free_rows.back();
-  pool.free_rows.pop_back();
-  return row;
+  rows.assign(free.rbegin(), free.rbegin() + static_cast<std::ptrdiff_t>(number));
+  free.resize(free.size() - number);
 }
 
 /// f(piece) for the pieces of loads that a particle carries.
