@@ -39,7 +39,7 @@ struct Domain {
   Threads threads;
 
   double disorder = disorder_that_pays;  // share of a body's particles at which it is sorted
-  std::int64_t balance_every = 100;      // steps after which costs of ranks are compared ...
+  std::int64_t balance_every = 20;       // steps after which costs of ranks are compared ...
   double imbalance_limit = 1.05;         // ... and evened out above this, the largest over the mean
   TransferId transfer{};
   double flip_share = 1.0;  // of the velocity, in "flip" and "aflip"; the rest is the grid's

@@ -1,7 +1,6 @@
 #include "mpm/grid/foreign_patches.hpp"
 
 #include "mpm/comm/letters.hpp"
-#include "mpm/grid/connect.hpp"
 
 namespace mpm {
 namespace {
@@ -85,10 +84,7 @@ bool exchange_patches(TileGrid<D>& grid) {
   });
   // With other owners the same patches are exchanged with others.
   const bool changed = partition.divided || !is_foreign_as_told(grid);
-  if (changed) {
-    merge(grid);
-    connect(grid);
-  }
+  if (changed) merge(grid);
   partition.divided = false;
   auto told = partition.told.begin();
   for (Patch<D>& patch : grid.patches) {

@@ -139,10 +139,18 @@ template <int D>
 void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>>& pools,
             Threads& threads, ListScratch<D>& scratch);
 
+/// What is done in a tile of this rank beside the stages of its particles.
+template <int D>
+struct TileCost {
+  Index<D> tile;
+  std::int64_t cost;  // in quarters of what a particle costs in a step
+};
+
 /// Other ranges of tiles, if the cost of one rank is more than `bound` times the mean one; then
 /// true, and particles go along in the next update_cell_lists(). By all ranks at once.
 template <int D>
-bool balance_ranks(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, double bound);
+bool balance_ranks(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                   std::span<const TileCost<D>> more, double bound);
 
 /// Put the rows that hold particles into the order of the lists, one behind another, with some room
 /// for others that come; guests are forgotten.

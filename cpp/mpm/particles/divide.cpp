@@ -37,7 +37,8 @@ void set_box(const TileGrid<D>& grid, Owners<D>& owners) {
 
 /// Where ranges of tiles begin whose costs are alike: sums over all ranks, bit by bit of the place.
 template <int D>
-Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies) {
+Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                    std::span<const TileCost<D>> more) {
   struct Cost {
     std::uint64_t place;
     std::int64_t until;  // of all up to this one
@@ -47,6 +48,7 @@ Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies)
   std::vector<Cost> costs;
   for (const Patch<D>& patch : grid.patches)
     if (patch.count > 0) costs.push_back({owners.place(patch.tile), cost_of(patch, bodies)});
+  for (const TileCost<D>& of : more) costs.push_back({owners.place(of.tile), of.cost});
   std::ranges::sort(costs, {}, &Cost::place);
   std::int64_t here = 0;
   for (Cost& cost : costs) cost.until = here += cost.until;
@@ -84,7 +86,7 @@ Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies)
 template <int D>
 void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>>& pools,
             Threads& threads, ListScratch<D>& scratch) {
-  take_owners(grid, owners_of(grid, bodies));
+  take_owners(grid, owners_of<D>(grid, bodies, {}));
   update_cell_lists<D>(grid, bodies, pools, threads, scratch, nullptr, nullptr);
   // Those that have come lie wherever there was room.
   repack(grid.patches, bodies, pools);
@@ -93,14 +95,16 @@ void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<Particl
 }
 
 template <int D>
-bool balance_ranks(TileGrid<D>& grid, const std::vector<Body<D>>& bodies, double bound) {
+bool balance_ranks(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                   std::span<const TileCost<D>> more, double bound) {
   Comm& comm = *grid.partition.comm;
   std::int64_t here = 0;
   for (const Patch<D>& patch : grid.patches) here += cost_of(patch, bodies);
+  for (const TileCost<D>& of : more) here += of.cost;
   const double largest = all_max(comm, static_cast<double>(here));
   const double mean = static_cast<double>(all_sum(comm, here)) / comm.size();
   if (largest <= bound * mean) return false;
-  Owners<D> owners = owners_of(grid, bodies);
+  Owners<D> owners = owners_of(grid, bodies, more);
   // Where tiles are few, no other ranges are better.
   if (owners.first == grid.partition.owners.first) return false;
   take_owners(grid, std::move(owners));
@@ -132,8 +136,10 @@ template void divide<2>(TileGrid<2>&, std::vector<Body<2>>&, std::vector<Particl
                         Threads&, ListScratch<2>&);
 template void divide<3>(TileGrid<3>&, std::vector<Body<3>>&, std::vector<ParticlePool<3>>&,
                         Threads&, ListScratch<3>&);
-template bool balance_ranks<2>(TileGrid<2>&, const std::vector<Body<2>>&, double);
-template bool balance_ranks<3>(TileGrid<3>&, const std::vector<Body<3>>&, double);
+template bool balance_ranks<2>(TileGrid<2>&, const std::vector<Body<2>>&,
+                               std::span<const TileCost<2>>, double);
+template bool balance_ranks<3>(TileGrid<3>&, const std::vector<Body<3>>&,
+                               std::span<const TileCost<3>>, double);
 template void take_owners<2>(TileGrid<2>&, Owners<2>);
 template void take_owners<3>(TileGrid<3>&, Owners<3>);
 

@@ -110,8 +110,6 @@ bool add_patches(TileGrid<D>& grid, ListScratch<D>& scratch) {
     while (is_empty(patches[next])) ++next;
     n = static_cast<std::int32_t>(next++);
   }
-  // Numbers have changed, and with them everyone's neighbours.
-  connect(grid);
   return true;
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "mpm/grid/blocks.hpp"
+#include "mpm/grid/connect.hpp"
 #include "mpm/grid/foreign_patches.hpp"
 #include "mpm/particles/cell_lists.hpp"
 #include "mpm/particles/classify.hpp"
@@ -257,6 +258,8 @@ bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
   scratch.lists = nullptr;
   scratch.marks = nullptr;
   if (!alone && exchange_patches(grid)) changed = true;
+  // Numbers have changed, and with them everyone's neighbours.
+  if (changed) connect(grid);
   cut_blocks(grid, threads);
   return changed;
 }

@@ -167,7 +167,7 @@ struct ExecutionSettings {
   int ranks = 1;
   bool fused = true;
   double disorder = disorder_that_pays;
-  std::int64_t balance_every = 100;
+  std::int64_t balance_every = 20;
   double imbalance_limit = 1.05;
 
   static constexpr std::string_view table = "execution";

@@ -52,6 +52,21 @@ void mark_leaving(Domain<D>& domain) {
   });
 }
 
+/// Let ranks have other tiles where the work of one is much more than that of others.
+template <int D>
+void balance_ranks(Domain<D>& domain) {
+  if (domain.grid.partition.alone()) return;
+  // What contact costs is known after the first step.
+  if (domain.step != 1 && domain.step % domain.balance_every != 0) return;
+  // The normals and gaps at a node take about as long as eight particles.
+  constexpr std::int64_t of_node = 32;
+  std::vector<TileCost<D>> costs;
+  if (domain.has_contact())
+    for (const ContactTile<D>& tile : domain.contact.tiles)
+      costs.push_back({tile.tile, of_node * tile.nodes});
+  balance_ranks<D>(domain.grid, domain.bodies, costs, domain.imbalance_limit);
+}
+
 /// Share out the patches by what they cost in a step: some four parts for a particle and one for a
 /// node. Those of bodies whose motion is prescribed cost their nodes only.
 template <int D>
@@ -75,8 +90,7 @@ void activate_tiles(Domain<D>& domain) {
   for (std::size_t p = 0; p < domain.sums.size(); ++p)
     if (domain.sums[p].stress.eroded) domain.grid.patches[p].left_cell = true;
   if (domain.grid.outflow_box.exist) mark_leaving(domain);
-  const bool looks = !domain.grid.partition.alone() && domain.step % domain.balance_every == 0;
-  if (looks) balance_ranks(domain.grid, domain.bodies, domain.imbalance_limit);
+  balance_ranks(domain);
   const bool divided = domain.grid.partition.divided;
   const bool changed = update_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads,
                                          domain.list_scratch, &domain.eroded, &domain.outflow);
