@@ -49,6 +49,15 @@ void def_building(SimulationClass& simulation) {
            }),
            nb::arg("name"), nb::arg("material"), nb::arg("positions"), nb::arg("velocities"),
            nb::arg("volumes"))
+      .def("add_bodies",
+           of_any([](auto& s, const std::vector<std::string>& names, int material,
+                     const Counts& counts, const Input& volumes, std::size_t first,
+                     const Input& positions, const Input& velocities) {
+             return add_bodies(s, names, material, span_of(counts), span_of(volumes), first,
+                               span_of(positions), span_of(velocities));
+           }),
+           nb::arg("names"), nb::arg("material"), nb::arg("counts"), nb::arg("volumes"),
+           nb::arg("first"), nb::arg("positions"), nb::arg("velocities"))
       .def("set_state",
            of_any([](auto& s, int body, const std::string& column, const Input& values) {
              set_state(s, body, column, span_of(values));

@@ -29,7 +29,12 @@ using Named = std::pair<std::string, Parameters>;
 using Viscosity = std::pair<double, double>;  // quadratic, linear
 using NamedFailure = std::tuple<std::string, Parameters, std::string>;
 
+using Counts = nb::ndarray<const std::int64_t, nb::c_contig, nb::device::cpu>;
+
 inline std::span<const double> span_of(const Input& array) { return {array.data(), array.size()}; }
+inline std::span<const std::int64_t> span_of(const Counts& array) {
+  return {array.data(), array.size()};
+}
 
 inline Output to_numpy(std::vector<double>&& values, std::size_t columns) {
   auto* owned = new std::vector<double>(std::move(values));

@@ -267,11 +267,13 @@ def test_preview(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dimension: int
 
     names, blocks = ["left", "right"], FakeSimulation(dimension)._start
     size = np.full(len(blocks[0]), SIZE**dimension)
-    bodies = [
-        SimpleNamespace(part=name, positions=block, volumes=size)
-        for name, block in zip(names, blocks, strict=True)
-    ]
-    monkeypatch.setattr(mpm3dpp.fill.build, "fill_all", lambda case: bodies)
+    some = [SimpleNamespace(positions=block, volumes=size) for block in blocks]
+    parts = {
+        name: SimpleNamespace(chunks=lambda one=one: [(0, 1, one)])
+        for name, one in zip(names, some, strict=True)
+    }
+    filled = SimpleNamespace(parts=parts)
+    monkeypatch.setattr(mpm3dpp.fill.build, "fill_all", lambda case: filled)
     box = SimpleNamespace(lower=(0.0,) * dimension, upper=(0.03,) * dimension)
     grid = SimpleNamespace(
         dimension=dimension, cell_size=2 * SIZE, origin=(0.0,) * dimension, box=box

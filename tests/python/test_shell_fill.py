@@ -18,7 +18,8 @@ from scipy.spatial import cKDTree
 from mpm3dpp import Body, Case, CaseError, GrainCentres, Grains, Grid, Simulation
 from mpm3dpp.base.neighbours import near_pairs
 from mpm3dpp.case.loads import pieces
-from mpm3dpp.fill.build import FilledBody, build
+from mpm3dpp.fill.build import build
+from mpm3dpp.fill.parts import FilledBody
 from mpm3dpp.grains import GrainPacking
 from mpm3dpp.grains.orientation import orientations
 from mpm3dpp.run.summary import echo
@@ -323,8 +324,9 @@ def test_the_load_on_a_round_side_is_even_and_symmetric() -> None:
 def test_what_check_says() -> None:
     shape = Disc(centre=FLAT, radius=0.05)
     case = case_of({"disc": body(shape)})
-    [disc] = build(case)
-    shown = echo(case, [disc])
+    filled = build(case)
+    [disc] = filled
+    shown = echo(case, filled)
     assert "316 particles 0.005 m apart in shells, m, mass 7.85398 kg per metre, +0.000%" in shown
     assert (disc.fill, disc.mass_error) == ("shells", pytest.approx(0.0, abs=1e-14))
 

@@ -2,10 +2,12 @@
 // A body: what is not of its particles, which lie in the pool of its material.
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "mpm/comm/comm.hpp"
 #include "mpm/rigid/prescribed_motion.hpp"
 
 namespace mpm {
@@ -17,8 +19,22 @@ enum class BodyKind : std::uint8_t {
   prescribed,  // as one, Body::motion, whatever acts on them
 };
 
+/// Numbers that follow one another, of particles of a body or of bodies: those that a rank takes.
+struct Share {
+  std::size_t first = 0, last = 0;  // up to the one before the last
+  Share() = default;
+  Share(std::size_t from, std::size_t to) : first(from), last(to) {}
+  /// Of so many, the part of a rank if all get the same.
+  Share(std::size_t count, const Comm& comm);
+  std::size_t count() const { return last - first; }
+  bool holds(std::size_t number) const { return first <= number && number < last; }
+  /// Its part of what is given for each particle, or what is given once for all: `width` numbers.
+  std::vector<double> of(std::span<const double> given, std::size_t width) const;
+};
+
 /// The particles of a body as the user gives them, until they are in a pool: a rank's share.
 struct GivenParticles {
+  Share share;
   std::vector<double> positions;                            // (n, D) [m]
   std::vector<double> velocities;                           // (n, D) or (1, D) [m/s]
   std::vector<double> volumes;                              // (n,) or (1,) [m^3]
@@ -46,8 +62,10 @@ struct Body {
   double pressure_impedance = 0.0, shear_impedance = 0.0;  // rho c of the start [kg/(m^2 s)]
   std::size_t moved = 0;  // changes of cell since its rows were last sorted
   bool leaves = false;    // a rigid body that leaves the region that is kept, as a whole
-  std::unique_ptr<GivenParticles> given;  // none once they are in the pool
+  std::unique_ptr<GivenParticles> given;  // none if others take all, nor once they are in the pool
 
+  /// Of its particles, until they are in the pool.
+  Share share() const { return given ? given->share : Share{}; }
   std::size_t active() const { return count - removed; }
   bool deforms() const { return kind == BodyKind::deformable; }
   bool is_prescribed() const { return kind == BodyKind::prescribed; }

@@ -40,23 +40,24 @@ void add_columns(ParticlePool<D>& pool, const Material& material, bool may_leave
   if (pool.at.failed < 0) pool.at.failed = c.add("failed", "1", 1);
 }
 
-/// f(row, values) for a share of the particles of a body in a pool, from row `row` on; of `width`
-/// given numbers each has its own, or all have the same.
+/// f(row, values) for so many particles of a body in a pool, from row `row` on; of `width` given
+/// numbers each has its own, or all have the same.
 template <class F>
 void for_each_given(const std::vector<double>& given, std::size_t width, std::size_t row,
-                    const Share& share, F&& f) {
+                    std::size_t count, F&& f) {
   const bool one = given.size() == width;
-  for (std::size_t i = 0; i < share.count(); ++i) f(row++, given.data() + (one ? 0 : i * width));
+  for (std::size_t i = 0; i < count; ++i) f(row++, given.data() + (one ? 0 : i * width));
 }
 
 /// What all bodies give of one kind, from one member of GivenParticles, which is dropped when it
 /// has been taken, so that memory does not hold it twice.
 template <int D, class F>
-void take(std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches, const Comm& comm,
+void take(std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches,
           std::vector<double> GivenParticles::* member, std::size_t width, F&& f) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b].given) continue;
     std::vector<double>& given = bodies[b].given.get()->*member;
-    for_each_given(given, width, patches[b].begin, Share(bodies[b].count, comm),
+    for_each_given(given, width, patches[b].begin, bodies[b].share().count(),
                    [&](std::size_t row, const double* values) { f(bodies[b], row, values); });
     given = std::vector<double>();  // not {}, which keeps the memory
   }
@@ -65,14 +66,14 @@ void take(std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches, const Co
 /// Where the particles of each body go, a patch each, and room for them.
 template <int D>
 void make_rows(std::vector<ParticlePool<D>>& pools, const std::vector<Body<D>>& bodies,
-               std::vector<Patch<D>>& patches, const Comm& comm) {
+               std::vector<Patch<D>>& patches) {
   constexpr std::size_t most =
       3'000'000'000;  // 32 bits number the entries of the lists, which have some room
   std::vector<std::size_t> rows(pools.size(), 0);
   patches.resize(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     std::size_t& next = rows[static_cast<std::size_t>(bodies[b].material)];
-    const std::size_t count = Share(bodies[b].count, comm).count();
+    const std::size_t count = bodies[b].share().count();
     if (count > most - next)
       throw std::length_error("bodies of one material have more than 3 billion particles");
     patches[b].body = static_cast<int>(b);
@@ -142,50 +143,59 @@ void add_set_back(ParticlePool<D>& pool) {
 }
 
 template <int D>
-Body<D> make_body(const std::string& name, const Material& material, const ParticlePool<D>& pool,
-                  std::span<const double> positions, std::span<const double> velocities,
-                  std::span<const double> volumes, const Comm& comm) {
-  check_particles<D>(name, positions, velocities, volumes);
-  const std::size_t n = positions.size() / D;
+Body<D> empty_body(std::string name, const Material& material, const ParticlePool<D>& pool,
+                   std::size_t count, double volume) {
   Body<D> body;
-  body.name = name;
-  body.count = n;
-  double total = 0.0;
-  for (std::size_t i = 0; i < n; ++i) total += volumes[volumes.size() == 1 ? 0 : i];
+  body.name = std::move(name);
+  body.count = count;
   if (material.moves_as_one()) body.kind = BodyKind::rigid;
   const double speed = pool.sound_speed;
-  body.total_mass = material.density * total;
+  body.total_mass = material.density * volume;
   body.stiffness =
       !body.deforms() ? std::numeric_limits<double>::infinity() : material.density * speed * speed;
   body.initial_density = material.density;
   body.pressure_impedance = material.density * speed;
   body.shear_impedance = std::sqrt(material.density * shear_modulus(material));
-  body.mean_mass = material.density * total / static_cast<double>(n);
-  body.mean_edge = std::pow(total / static_cast<double>(n), 1.0 / D);
+  body.mean_mass = material.density * volume / static_cast<double>(count);
+  body.mean_edge = std::pow(volume / static_cast<double>(count), 1.0 / D);
+  return body;
+}
+
+template <int D>
+Body<D> make_body(const std::string& name, const Material& material, const ParticlePool<D>& pool,
+                  std::span<const double> positions, std::span<const double> velocities,
+                  std::span<const double> volumes, std::optional<Share> share) {
+  check_particles<D>(name, positions, velocities, volumes);
+  const std::size_t n = positions.size() / D;
+  double total = 0.0;
+  for (std::size_t i = 0; i < n; ++i) total += volumes[volumes.size() == 1 ? 0 : i];
+  Body<D> body = empty_body(name, material, pool, n, total);
+  const Share own = share.value_or(Share(0, n));
+  if (own.count() == 0) return body;
   body.given = std::make_unique<GivenParticles>();
-  const Share share(n, comm);
-  body.given->positions = share.of(positions, D);
-  body.given->velocities = share.of(velocities, D);
-  body.given->volumes = share.of(volumes, 1);
+  body.given->share = own;
+  body.given->positions = own.of(positions, D);
+  body.given->velocities = own.of(velocities, D);
+  body.given->volumes = own.of(volumes, 1);
   return body;
 }
 
 template <int D>
 void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>& materials,
-                std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches, const Comm& comm) {
+                std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches) {
   const auto pool_of = [&](const Body<D>& body) -> ParticlePool<D>& {
     return pools[static_cast<std::size_t>(body.material)];
   };
-  make_rows(pools, bodies, patches, comm);
-  take(bodies, patches, comm, &GivenParticles::positions, D,
+  make_rows(pools, bodies, patches);
+  take(bodies, patches, &GivenParticles::positions, D,
        [&](const Body<D>& body, std::size_t row, const double* given) {
          for (int a = 0; a < D; ++a) pool_of(body).x(a)[row] = given[a];
        });
-  take(bodies, patches, comm, &GivenParticles::velocities, D,
+  take(bodies, patches, &GivenParticles::velocities, D,
        [&](const Body<D>& body, std::size_t row, const double* given) {
          for (int a = 0; a < D; ++a) pool_of(body).v(a)[row] = static_cast<Storage>(given[a]);
        });
-  take(bodies, patches, comm, &GivenParticles::volumes, 1,
+  take(bodies, patches, &GivenParticles::volumes, 1,
        [&](const Body<D>& body, std::size_t row, const double* given) {
          pool_of(body).volume()[row] = *given;
          pool_of(body).mass()[row] = body.initial_density * *given;
@@ -202,9 +212,10 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
   for (ParticlePool<D>& pool : pools)
     if (pool.set_back >= 0) std::fill_n(pool.columns.component(pool.set_back), pool.count(), 0.0);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b].given) continue;
     ParticlePool<D>& pool = pool_of(bodies[b]);
     const std::size_t first = patches[b].begin;
-    const Share share(bodies[b].count, comm);
+    const Share share = bodies[b].share();
     const std::size_t count = share.count();
     std::iota(pool.id.begin() + static_cast<std::ptrdiff_t>(first),
               pool.id.begin() + static_cast<std::ptrdiff_t>(first + count),
@@ -223,15 +234,19 @@ template void add_force_columns<2>(ParticlePool<2>&, bool);
 template void add_force_columns<3>(ParticlePool<3>&, bool);
 template void add_set_back<2>(ParticlePool<2>&);
 template void add_set_back<3>(ParticlePool<3>&);
+template Body<2> empty_body<2>(std::string, const Material&, const ParticlePool<2>&, std::size_t,
+                               double);
 template Body<2> make_body<2>(const std::string&, const Material&, const ParticlePool<2>&,
                               std::span<const double>, std::span<const double>,
-                              std::span<const double>, const Comm&);
+                              std::span<const double>, std::optional<Share>);
+template Body<3> empty_body<3>(std::string, const Material&, const ParticlePool<3>&, std::size_t,
+                               double);
 template Body<3> make_body<3>(const std::string&, const Material&, const ParticlePool<3>&,
                               std::span<const double>, std::span<const double>,
-                              std::span<const double>, const Comm&);
+                              std::span<const double>, std::optional<Share>);
 template void fill_pools<2>(std::vector<ParticlePool<2>>&, const std::vector<Material>&,
-                            std::vector<Body<2>>&, std::vector<Patch<2>>&, const Comm&);
+                            std::vector<Body<2>>&, std::vector<Patch<2>>&);
 template void fill_pools<3>(std::vector<ParticlePool<3>>&, const std::vector<Material>&,
-                            std::vector<Body<3>>&, std::vector<Patch<3>>&, const Comm&);
+                            std::vector<Body<3>>&, std::vector<Patch<3>>&);
 
 }  // namespace mpm

@@ -1,5 +1,6 @@
 #pragma once
 // Bodies and pools from what a user gives.
+#include <optional>
 #include <span>
 #include <string>
 
@@ -9,16 +10,6 @@
 #include "mpm/particles/pool.hpp"
 
 namespace mpm {
-
-/// The numbers of a body's particles that a rank takes when they are given: from one to the one
-/// before another.
-struct Share {
-  std::size_t first, last;
-  Share(std::size_t count, const Comm& comm);
-  std::size_t count() const { return last - first; }
-  /// Its part of what is given for each particle, or what is given once for all: `width` numbers.
-  std::vector<double> of(std::span<const double> given, std::size_t width) const;
-};
 
 /// The pool of a material, with its columns declared and no particles. A wave's speed depends on
 /// the size of the grid's cells where the material is viscous.
@@ -35,21 +26,25 @@ void add_force_columns(ParticlePool<D>& pool, bool of_start);
 template <int D>
 void add_set_back(ParticlePool<D>& pool);
 
+/// A body of so many particles with a volume together [m^3], of which none are given yet.
+template <int D>
+Body<D> empty_body(std::string name, const Material& material, const ParticlePool<D>& pool,
+                   std::size_t count, double volume);
+
 /// A body of particles at `positions` (n, D) [m] with `velocities` (n, D) or (1, D) [m/s] and
 /// `volumes` (n,) or (1,) [m^3], with the pool of its material, which it does not enter yet. Throws
 /// std::invalid_argument with the body's name if they do not fit each other. A rank keeps its share
-/// of them, by their numbers.
+/// of them, one alone all.
 template <int D>
 Body<D> make_body(const std::string& name, const Material& material, const ParticlePool<D>& pool,
                   std::span<const double> positions, std::span<const double> velocities,
-                  std::span<const double> volumes, const Comm& comm = NoOthers());
+                  std::span<const double> volumes, std::optional<Share> share = {});
 
 /// Put the given particles of all bodies into the pools of their materials; a patch for each body
 /// holds them, until lists are built. Throws std::length_error for more than 3e9 of one material.
 template <int D>
 void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>& materials,
-                std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches,
-                const Comm& comm = NoOthers());
+                std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches);
 
 /// Throws std::invalid_argument if any is not finite, with what they are.
 void check_finite(std::span<const double> values, const std::string& what);

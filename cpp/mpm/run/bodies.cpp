@@ -47,12 +47,53 @@ int add_body(Simulation<D>& simulation, const std::string& name, int material_nu
   Domain<D>& domain = simulation.domain;
   require(simulation, Phase::building, "bodies must be added before prepare()");
   const auto m = static_cast<std::size_t>(material_number);
+  const Share share(positions.size() / D, *domain.grid.partition.comm);
   Body<D> body = make_body(name, domain.materials.at(m), domain.pools.at(m), positions, velocities,
-                           volumes, *domain.grid.partition.comm);
+                           volumes, share);
   body.material = material_number;
   body.group = static_cast<int>(domain.bodies.size());
   domain.bodies.push_back(std::move(body));
   return static_cast<int>(domain.bodies.size()) - 1;
+}
+
+template <int D>
+int add_bodies(Simulation<D>& simulation, std::span<const std::string> names, int material_number,
+               std::span<const std::int64_t> counts, std::span<const double> volumes,
+               std::size_t first, std::span<const double> positions,
+               std::span<const double> velocities) {
+  Domain<D>& domain = simulation.domain;
+  require(simulation, Phase::building, "bodies must be added before prepare()");
+  const auto m = static_cast<std::size_t>(material_number);
+  const Material& material = domain.materials.at(m);
+  const ParticlePool<D>& pool = domain.pools.at(m);
+  if (names.empty() || counts.size() != names.size() || volumes.size() != names.size())
+    throw std::invalid_argument("bodies need a name, a count and a volume of a particle each");
+  const auto leader = static_cast<int>(domain.bodies.size());
+  const Share share(names.size(), *domain.grid.partition.comm);
+  const bool alike = velocities.size() == D;
+  std::size_t given = 0;  // particles before those of the body
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto count = static_cast<std::size_t>(counts[k]);
+    const bool is_given = k >= first && (given + count) * D <= positions.size();
+    if (share.holds(k) && !is_given)
+      throw std::invalid_argument(names[k] + ": its particles are not given");
+    Body<D> body;
+    if (share.holds(k)) {
+      const std::size_t at = given * D, width = count * D;
+      body = make_body(names[k], material, pool, positions.subspan(at, width),
+                       alike ? velocities : velocities.subspan(at, width), volumes.subspan(k, 1),
+                       Share(0, count));
+    } else {
+      double volume = 0.0;  // as make_body() adds it up
+      for (std::size_t i = 0; i < count; ++i) volume += volumes[k];
+      body = empty_body(names[k], material, pool, count, volume);
+    }
+    if (k >= first) given += count;
+    body.material = material_number;
+    body.group = leader;
+    domain.bodies.push_back(std::move(body));
+  }
+  return leader;
 }
 
 template <int D>
@@ -64,8 +105,7 @@ void set_state(Simulation<D>& simulation, int number, const std::string& column,
   if (info.components != 1 || values.size() != b.count)
     throw std::invalid_argument(column + ": a state that is set must be (n,)");
   check_finite(values, column);
-  const Share share(b.count, *simulation.domain.grid.partition.comm);
-  b.given->states.emplace_back(info.first, share.of(values, 1));
+  if (b.given) b.given->states.emplace_back(info.first, b.share().of(values, 1));
 }
 
 template <int D>
@@ -123,7 +163,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
   if (velocities.size() != b.count * D) throw std::invalid_argument("velocities must be (n, D)");
   check_finite(velocities, "velocities");
   if (simulation.phase == Phase::building) {
-    b.given->velocities = Share(b.count, *domain.grid.partition.comm).of(velocities, D);
+    if (b.given) b.given->velocities = b.share().of(velocities, D);
     return;
   }
   require(simulation, Phase::ready, "");
@@ -161,6 +201,12 @@ template int add_body<2>(Simulation<2>&, const std::string&, int, std::span<cons
                          std::span<const double>, std::span<const double>);
 template int add_body<3>(Simulation<3>&, const std::string&, int, std::span<const double>,
                          std::span<const double>, std::span<const double>);
+template int add_bodies<2>(Simulation<2>&, std::span<const std::string>, int,
+                           std::span<const std::int64_t>, std::span<const double>, std::size_t,
+                           std::span<const double>, std::span<const double>);
+template int add_bodies<3>(Simulation<3>&, std::span<const std::string>, int,
+                           std::span<const std::int64_t>, std::span<const double>, std::size_t,
+                           std::span<const double>, std::span<const double>);
 template void set_state<2>(Simulation<2>&, int, const std::string&, std::span<const double>);
 template void set_state<3>(Simulation<3>&, int, const std::string&, std::span<const double>);
 template void set_motion<2>(Simulation<2>&, int, const std::array<TimeFunction, 3>&,

@@ -78,8 +78,7 @@ void prepare(Simulation<D>& simulation) {
   simulation.phase = Phase::broken;  // until all is done
   domain.grid.partition.shares_tiles = domain.has_contact();
   add_contact_columns(domain);
-  fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches,
-             *domain.grid.partition.comm);
+  fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches);
   place_pieces(domain);
   place_anchor(domain.grid, domain.bodies, domain.pools);
   build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);

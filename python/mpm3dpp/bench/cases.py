@@ -201,7 +201,15 @@ def _along(values: NDArray[Any], axis: int, dimension: int) -> NDArray[Any]:
     return values.reshape([-1 if a == axis else 1 for a in range(dimension)])
 
 
-def make(core: Any, bench: Bench, size: int, threads: int, scheme: str, comm: Any = None) -> Any:
+def make(
+    core: Any,
+    bench: Bench,
+    size: int,
+    threads: int,
+    scheme: str,
+    comm: Any = None,
+    ranks: int = 1,
+) -> Any:
     """Return the core's simulation of a benchmark, ready to step.
 
     Args:
@@ -211,8 +219,11 @@ def make(core: Any, bench: Bench, size: int, threads: int, scheme: str, comm: An
         threads: how many.
         scheme: "usf", "usl" or "musl".
         comm: of all ranks that work on it, `World.for_core()`.
+        ranks: how many threads do as ranks, without any `comm`.
     """
-    simulation = core.Simulation(_settings(core, bench, threads, scheme), comm)
+    settings = _settings(core, bench, threads, scheme)
+    settings.execution.ranks = ranks
+    simulation = core.Simulation(settings, comm)
     material = simulation.add_material(**bench.material)
     volume = np.array([(CELL / PER_AXIS) ** bench.dimension])
     at_rest = np.zeros((1, bench.dimension))

@@ -15,7 +15,7 @@ from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import EXPLOSIVE
 from mpm3dpp.case.grid import FACES
 
-from .build import FilledBody, by_part
+from .parts import Filled, FilledPart
 
 _FASTEST = 10.0  # Times the speed of sound; the fastest impacts in laboratories are at 2 to 3.
 _INCOMPRESSIBLE = 0.45
@@ -27,7 +27,7 @@ _SEEN = 0.1  # Cells: a fifth of an edge; a lattice stands out by less.
 _STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
 
 
-def notes(case: Case, bodies: list[FilledBody]) -> list[str]:
+def notes(case: Case, bodies: Filled) -> list[str]:
     """Return one sentence for each thing that a user should look at again.
 
     Args:
@@ -63,7 +63,7 @@ def overlap(case: Case, contact: dict[str, Any]) -> list[str]:
     ]
 
 
-def fastest(case: Case, bodies: list[FilledBody]) -> float:
+def fastest(case: Case, bodies: Filled) -> float:
     """Return the largest sum of the speeds of a wave and of a particle at the start [m/s]."""
     sound = {}
     for name, part in case.parts().items():
@@ -72,10 +72,8 @@ def fastest(case: Case, bodies: list[FilledBody]) -> float:
         q = material.beta * c**2 / case.grid.cell_size  # damped: docs/theory/damping.md
         sound[name] = q + float(np.hypot(q, c))
     found = 0.0
-    for name, members in by_part(bodies).items():
-        v = np.concatenate([body.velocities for body in members])
-        speed = float(np.sqrt(np.einsum("ij,ij->i", v, v).max()))
-        found = max(found, sound[name] + speed)
+    for name, filled in bodies.parts.items():
+        found = max(found, sound[name] + float(filled.survey.speeds.max()))
     return found
 
 
@@ -163,13 +161,11 @@ def _locking(case: Case) -> list[str]:
     return found
 
 
-def _springs(case: Case, bodies: list[FilledBody]) -> list[str]:
+def _springs(case: Case, bodies: Filled) -> list[str]:
     """Sizes of particles with which springs of contact are coarse, or see bodies too late."""
     if not case.has_springs:
         return []
-    sizes = {
-        name: max(body.spacing for body in members) for name, members in by_part(bodies).items()
-    }
+    sizes = {name: part.spacing for name, part in bodies.parts.items()}
     found = [
         f"{key_text(case.part_path(name))} has particles of {size / case.grid.cell_size:.2g} "
         "cells, and springs of contact want two a cell along each axis; give smaller particles, or "
@@ -194,14 +190,14 @@ def _springs(case: Case, bodies: list[FilledBody]) -> list[str]:
     return found
 
 
-def _speeds(case: Case, bodies: list[FilledBody]) -> list[str]:
+def _speeds(case: Case, bodies: Filled) -> list[str]:
     """Bodies that are so fast at the start that their velocity is perhaps in another unit."""
     parts = case.parts()
     sound = {name: case.material[part.material].sound_speed() for name, part in parts.items()}
     quickest = max(c for name, c in sound.items() if not case.is_rigid(name))
     found = []
-    for name, members in by_part(bodies).items():
-        speed = max(float(np.linalg.norm(body.velocities, axis=1).max()) for body in members)
+    for name, part in bodies.parts.items():
+        speed = float(part.survey.speeds.max())
         own = quickest if case.is_rigid(name) else sound[name]
         if speed > _FASTEST * own:
             whose = "the other materials" if case.is_rigid(name) else "its material"
@@ -213,7 +209,7 @@ def _speeds(case: Case, bodies: list[FilledBody]) -> list[str]:
     return found
 
 
-def refuse_time_step(case: Case, bodies: list[FilledBody]) -> None:
+def refuse_time_step(case: Case, bodies: Filled) -> None:
     """Refuse a time step with which the run does not start.
 
     Raises:
@@ -227,37 +223,35 @@ def refuse_time_step(case: Case, bodies: list[FilledBody]) -> None:
         )
 
 
-def _narrow(case: Case, bodies: list[FilledBody]) -> list[str]:
+def _narrow(case: Case, bodies: Filled) -> list[str]:
     """Bodies of so few cells that they neither bend nor rebound as they should."""
     found = []
-    for name, members in by_part(bodies).items():
-        if case.is_rigid(name):
-            continue
-        widths = min((_widths(case, body) for body in members), key=min)
-        if min(widths) < _NARROW:
+    for name, part in bodies.parts.items():
+        width = math.inf if case.is_rigid(name) else _width(case, part)
+        if width < _NARROW:
             found.append(
-                f"{key_text(case.part_path(name))} is {min(widths):.2g} cells wide, too stiff and "
+                f"{key_text(case.part_path(name))} is {width:.2g} cells wide, too stiff and "
                 "a poor rebound; give smaller cells"
             )
     return found
 
 
-def _widths(case: Case, body: FilledBody) -> list[float]:
-    """Extents [cells] along the axes, but those along which walls of the box hold both ends."""
-    widths = [math.inf]
+def _width(case: Case, part: FilledPart) -> float:
+    """Return the least extent of a body [cells], but along axes where walls hold both ends."""
+    least = math.inf
     for axis in range(case.grid.dimension):
-        x = body.positions[:, axis]
         if "free" in case.grid.walls[2 * axis : 2 * axis + 2]:
-            widths.append((float(np.ptp(x)) + body.spacing) / case.grid.cell_size)
-    return widths
+            extents = part.survey.upper[:, axis] - part.survey.lower[:, axis]
+            least = min(least, (float(extents.min()) + part.spacing) / case.grid.cell_size)
+    return least
 
 
-def _detonations(case: Case, bodies: list[FilledBody]) -> list[str]:
+def _detonations(case: Case, bodies: Filled) -> list[str]:
     """Explosives that nothing lights, and points that light nothing before the end of the run."""
     explosives = {
-        part: members
-        for part, members in by_part(bodies).items()
-        if case.material[members[0].material].strength.model == EXPLOSIVE
+        name: part
+        for name, part in bodies.parts.items()
+        if case.material[part.material].strength.model == EXPLOSIVE
     }
     found = []
     for name in explosives:
@@ -268,10 +262,11 @@ def _detonations(case: Case, bodies: list[FilledBody]) -> list[str]:
             )
     for index, detonation in enumerate(case.detonation):
         first = np.inf
-        for body in (b for name in detonation.bodies or explosives for b in explosives[name]):
-            distance = np.linalg.norm(body.positions - np.asarray(detonation.point), axis=1).min()
-            speed = case.material[body.material].strength.parameters["D"]
-            first = min(first, detonation.time + float(distance) / speed)
+        for part in (explosives[name] for name in detonation.bodies or explosives):
+            speed = case.material[part.material].strength.parameters["D"]
+            for _, _, some in part.chunks():
+                distance = np.linalg.norm(some.positions - np.asarray(detonation.point), axis=1)
+                first = min(first, detonation.time + float(distance.min()) / speed)
         if first > case.run.end_time:
             found.append(
                 f"detonation[{index}] lights nothing before the end of the run: it reaches an "

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +11,14 @@ from numpy.typing import NDArray
 from mpm3dpp.base.errors import CaseError, first_of
 from mpm3dpp.case.body import Body
 from mpm3dpp.case.case import Case
-from mpm3dpp.grains import Grains, fill_grains
+from mpm3dpp.grains import GrainFilling, Grains
 from mpm3dpp.grains.packing import ball_volume
+from mpm3dpp.ranks.world import World, share_of, together
 from mpm3dpp.shapes import fill, reference_volume
 from mpm3dpp.shapes.shells import SHELLS
 
 from .capacity import capacity_mistakes
+from .parts import Filled, FilledPart, Particles, Survey, joined, ranges, survey
 from .placement import box_mistakes, overlap_mistakes
 from .velocities import start_velocities
 
@@ -27,45 +28,14 @@ MASS_ERROR = 0.5  # ... and above which it does not start.
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class FilledBody:
-    """The particles of one body at the start.
-
-    Attributes:
-        name: of the body.
-        part: its name in the case: of the entry of `grains` if it is a grain, else its own.
-        material: name in the case.
-        positions: [m], shape (n, D).
-        velocities: [m/s], shape (1, D) if all are equal, else (n, D).
-        volumes: [m^3; in 2D m^2 times 1 m], shape (n,); all equal if a shape was filled.
-        spacing: distance of neighbours [m], in shells about that.
-        fill: "lattice" or "shells"; "" for particles given one by one.
-        mass: sum over the particles [kg; in 2D per metre of thickness].
-        shape_volume: the shape's volume [m^3; in 2D m^2]; None for particles given one by one.
-        volume_is_exact: whether that is a closed form, else a fine lattice gave it.
-        mass_error: mass / (density times shape_volume) - 1; 0 without a shape.
-        ball: centre [m], shape (D,), and radius [m] of a grain; None for others.
-    """
-
-    name: str
-    part: str
-    material: str
-    positions: Array
-    velocities: Array
-    volumes: Array
-    spacing: float
-    fill: str
-    mass: float
-    shape_volume: float | None
-    volume_is_exact: bool
-    mass_error: float
-    ball: tuple[Array, float] | None = None
-
-
-def build(case: Case) -> list[FilledBody]:
+def build(case: Case, world: World | None = None) -> Filled:
     """Fill all bodies of a case with particles, in the order of the case, and check them.
 
-    Grains come after the others.
+    Grains come after the others. Their particles are made when they are asked for.
+
+    Args:
+        case: what is filled.
+        world: processes that share the work; each calls this.
 
     Raises:
         CaseError: a body holds no particle, misses its mass by more than half, or reaches out of
@@ -78,19 +48,15 @@ def build(case: Case) -> list[FilledBody]:
         case.complete_and_check()  # Again: objects may have been changed since the case was made.
     except ValueError as error:
         raise from_violation(error) from None
-    bodies = fill_all(case)
-    told: dict[str, list[CaseError]] = {}
-    for body in bodies:  # Of the grains of an entry, the first that is wrong speaks for all.
-        if not told.get(body.part):
-            told[body.part] = list(box_mistakes(case, body))
-    mistakes = [mistake for found in told.values() for mistake in found]
-    mistakes += overlap_mistakes(case, bodies)
+    filled = fill_all(case, world)
+    mistakes = [one for part in filled.parts.values() for one in box_mistakes(case, part)]
+    mistakes += overlap_mistakes(case, filled)
     if mistakes:
         raise first_of(mistakes)
-    return bodies
+    return filled
 
 
-def fill_all(case: Case) -> list[FilledBody]:
+def fill_all(case: Case, world: World | None = None) -> Filled:
     """Fill all bodies as `build` does, but let them overlap and reach out of the box.
 
     Raises:
@@ -100,90 +66,97 @@ def fill_all(case: Case) -> list[FilledBody]:
     mistakes = list(capacity_mistakes(case))
     if mistakes:
         raise first_of(mistakes)
-    bodies: list[FilledBody] = []
+    parts: list[FilledPart] = []
     for name, part in case.parts().items():
         try:
             if isinstance(part, Grains):
-                bodies += _filled_grains(case, name, part)
+                parts.append(_filled_grains(case, name, part, world))
             else:
-                bodies.append(_filled(case, name, part))
+                parts.append(_filled(case, name, part))
         except CaseError as error:
             mistakes.append(error)
     if mistakes:
         raise first_of(mistakes)
-    return bodies
+    return Filled(parts)
 
 
-def warnings(bodies: list[FilledBody]) -> list[str]:
+def warnings(filled: Filled) -> list[str]:
     """Return a sentence for every body or entry of grains whose mass is off by more than 5 %."""
     found = []
-    for part, members in by_part(bodies).items():
-        worst = max((body.mass_error for body in members), key=abs)
+    for name, part in filled.parts.items():
+        worst = _worst(part.mass_errors)
         if abs(worst) <= MASS_WARNING:
             continue
-        if members[0].name == part:
+        if part.balls is None:
             found.append(
-                f"body.{part}: its particles have {worst:+.1%} of the mass of its shape; "
+                f"body.{name}: its particles have {worst:+.1%} of the mass of its shape; "
                 "give more particles_per_cell, or a shape aligned with the cells"
             )
         else:
             found.append(
-                f"grains.{part}: the particles of a grain have up to {worst:+.1%} of the mass of "
+                f"grains.{name}: the particles of a grain have up to {worst:+.1%} of the mass of "
                 "its shape; give more particles_per_cell, or another align"
             )
     return found
 
 
-def by_part(bodies: list[FilledBody]) -> dict[str, list[FilledBody]]:
-    """Return the bodies of each entry of the case: one, or all the grains."""
-    found: dict[str, list[FilledBody]] = {}
-    for body in bodies:
-        found.setdefault(body.part, []).append(body)
-    return found
+def _worst(errors: Array) -> float:
+    return float(errors[np.argmax(np.abs(errors))])
 
 
-def _filled_grains(case: Case, part: str, grains: Grains) -> list[FilledBody]:
-    path, grid = ("grains", part), case.grid
+def _filled_grains(case: Case, name: str, grains: Grains, world: World | None) -> FilledPart:
+    path, grid = ("grains", name), case.grid
     spacing, density = grains.particle_spacing(grid), case.material[grains.material].density
-    bodies: list[FilledBody] = []
-    way, cube = case.filled_by(part), spacing**grid.dimension
+    way, cube = case.filled_by(name), spacing**grid.dimension
     try:
         centres, radii = grains.place(grid.dimension)
-        align = grains.align or "between"
-        filled = list(fill_grains(centres, radii, spacing, grid, way, align))
+        filling = GrainFilling(centres, radii, spacing, grid, way, grains.align or "between")
     except CaseError as error:
         raise case.error((*path, grains.filling), error.rule, error.remedy) from None
-    volumes = ball_volume(radii, grid.dimension).tolist()
-    for k, (name, positions) in enumerate(zip(grains.names(part), filled, strict=True)):
-        each = volumes[k] / len(positions) if way == SHELLS else cube
-        particle_volumes = np.broadcast_to(each, (len(positions),))
-        volume = len(positions) * each
-        bodies.append(
-            FilledBody(
-                name=name,
-                part=part,
-                material=grains.material,
-                positions=positions,
-                velocities=start_velocities(case, part, positions, particle_volumes),
-                volumes=particle_volumes,
-                spacing=spacing,
-                fill=way,
-                mass=volume * density,
-                shape_volume=volumes[k],
-                volume_is_exact=True,
-                mass_error=volume / volumes[k] - 1,
-                ball=(centres[k], float(radii[k])),
-            )
-        )
-    worst = max((body.mass_error for body in bodies), key=abs)
+    exact = np.asarray(ball_volume(radii, grid.dimension))
+
+    def make(first: int, last: int) -> Particles:
+        try:
+            positions, counts = filling.fill(first, last)
+        except CaseError as error:
+            raise case.error((*path, grains.filling), error.rule, error.remedy) from None
+        each = exact[first:last] / counts if way == SHELLS else np.full(last - first, cube)
+        velocities = start_velocities(case, name, positions, each, counts)
+        return Particles(counts, positions, velocities, np.repeat(each, counts))
+
+    def look() -> list[Survey]:
+        # How many particles there will be is known well enough to make some of them at a time.
+        first, last = share_of(len(centres), world)
+        about = np.ceil(exact[first:last] / cube)
+        return [survey(make(first + a, first + b)) for a, b in ranges(about)]
+
+    seen = joined([one for of_rank in together(look, world) for one in of_rank])
+    each: Array = exact / seen.counts if way == SHELLS else np.full(len(exact), cube)
+    volumes = seen.counts * each
+    part = FilledPart(
+        name=name,
+        material=grains.material,
+        names=grains.names(name),
+        spacing=spacing,
+        fill=way,
+        survey=seen,
+        volumes=each,
+        masses=volumes * density,
+        shape_volumes=exact,
+        volume_is_exact=True,
+        mass_errors=volumes / exact - 1,
+        make=make,
+        balls=(centres, radii),
+    )
+    worst = _worst(part.mass_errors)
     if abs(worst) > MASS_ERROR:
         rule = f"is filled too coarsely: particles have {worst:+.0%} of the mass of a grain"
         remedy = "give a smaller grid.cell_size or more particles_per_cell"
         raise case.error((*path, grains.filling), rule, remedy)
-    return bodies
+    return part
 
 
-def _filled(case: Case, name: str, body: Body) -> FilledBody:
+def _filled(case: Case, name: str, body: Body) -> FilledPart:
     try:
         positions, volumes = fill(body, case.grid, case.filled_by(name))
     except CaseError as error:
@@ -201,17 +174,20 @@ def _filled(case: Case, name: str, body: Body) -> FilledBody:
             raise case.error(("body", name, "shape"), rule, remedy)
     else:
         volume = float(volumes.sum())
-    return FilledBody(
+    counts = np.array([len(positions)])
+    velocities = start_velocities(case, name, positions, volumes, counts)
+    particles = Particles(counts, positions, velocities, volumes)
+    return FilledPart(
         name=name,
-        part=name,
         material=body.material,
-        positions=positions,
-        velocities=start_velocities(case, name, positions, volumes),
-        volumes=volumes,
+        names=[name],
         spacing=body.particle_spacing(case.grid),
         fill=case.filled_by(name) if body.shape is not None else "",
-        mass=volume * case.material[body.material].density,
-        shape_volume=shape_volume,
+        survey=survey(particles),
+        volumes=np.array([volume / len(positions)]),
+        masses=np.array([volume * case.material[body.material].density]),
+        shape_volumes=None if shape_volume is None else np.array([shape_volume]),
         volume_is_exact=exact,
-        mass_error=mass_error,
+        mass_errors=np.array([mass_error]),
+        make=lambda _first, _last: particles,
     )

@@ -16,24 +16,40 @@ from mpm3dpp.case.case import Case
 from mpm3dpp.case.grid import FARTHEST
 
 if TYPE_CHECKING:
-    from .build import FilledBody
+    from .parts import Filled, FilledBody, FilledPart
 
 CLOSE = 0.25  # Particles of two bodies nearer than this share of their spacing overlap.
 _SLACK = 1e-9  # How far, in cells, a particle may stand outside the box by rounding.
 
 
-def box_mistakes(case: Case, body: FilledBody) -> Iterator[CaseError]:
-    """Yield where particles stand outside the box, or the region that is kept, or any grid."""
-    grid = case.grid
-    reach = np.abs(body.positions - np.asarray(grid.lower)).max() / grid.cell_size
-    if not reach < FARTHEST:
-        rule = f"is {reach:.2e} cells from the grid's origin, and {FARTHEST:,} is the most"
-        path, filling = _key(case, body)
-        yield case.error(path, rule, f"give larger cells, or move grid.origin to the {filling}")
-        return
+def box_mistakes(case: Case, part: FilledPart) -> Iterator[CaseError]:
+    """Yield where particles stand outside the box, or the region that is kept, or any grid.
+
+    Of the grains of an entry the first that is wrong speaks for all.
+    """
+    grid, seen = case.grid, part.survey
+    regions = [("outflow_box", grid.kept)]
     if grid.box is not None:
-        yield from _outside(case, body, "box", (grid.box.lower, grid.box.upper))
-    yield from _outside(case, body, "outflow_box", grid.kept)
+        regions.insert(0, ("box", (grid.box.lower, grid.box.upper)))
+    origin = np.asarray(grid.lower)
+    reach = np.maximum(abs(seen.lower - origin), abs(seen.upper - origin)) / grid.cell_size
+    wrong = ~(reach < FARTHEST).all(axis=1)
+    slack = _SLACK * grid.cell_size
+    for _, (lower, upper) in regions:
+        inside = (seen.lower >= np.asarray(lower) - slack) & (
+            seen.upper <= np.asarray(upper) + slack
+        )
+        wrong |= ~inside.all(axis=1)
+    for k in np.flatnonzero(wrong)[:1].tolist():
+        if not reach[k].max() < FARTHEST:
+            most = f"{FARTHEST:,} is the most"
+            rule = f"is {reach[k].max():.2e} cells from the grid's origin, and {most}"
+            path, filling = _key(case, part.name)
+            remedy = f"give larger cells, or move grid.origin to the {filling}"
+            yield case.error(path, rule, remedy)
+            return
+        for region, corners in regions:
+            yield from _outside(case, part.body(k), region, corners)
 
 
 def _outside(
@@ -52,31 +68,33 @@ def _outside(
             if reach > sign * limit + slack:
                 count = int((outside > sign * limit + slack).sum())
                 side = f"{axis} {'>' if sign > 0 else '<'} {limit:g} m"
-                path, filling = _key(case, body)
+                path, filling = _key(case, body.part)
                 who = "its particles" if body.name == body.part else f"the particles of {body.name}"
                 rule = f"reaches out of grid.{region}: {count} of {who} are at {side}"
                 yield case.error(path, rule, f"move the {filling}, or enlarge the {what}")
 
 
-def _key(case: Case, body: FilledBody) -> tuple[KeyPath, str]:
-    """Return the path of what gives a body its particles, and that key alone."""
-    filling = case.parts()[body.part].filling
-    return (*case.part_path(body.part), filling), filling
+def _key(case: Case, part: str) -> tuple[KeyPath, str]:
+    """Return the path of what gives an entry its particles, and that key alone."""
+    filling = case.parts()[part].filling
+    return (*case.part_path(part), filling), filling
 
 
-def overlap_mistakes(case: Case, bodies: list[FilledBody]) -> Iterator[CaseError]:
+def overlap_mistakes(case: Case, bodies: Filled) -> Iterator[CaseError]:
     """Yield which two bodies overlap by more than a quarter spacing; of grains the first only.
 
     Grains are judged as balls: where those touch, particles may be as near as chance has it.
     """
     if len(bodies) < 2:
         return
-    reach = CLOSE * np.array([body.spacing for body in bodies])
-    no_ball = (np.full(case.grid.dimension, np.nan), np.nan)
-    centres = np.array([(body.ball or no_ball)[0] for body in bodies])
-    radii = np.array([(body.ball or no_ball)[1] for body in bodies])
-    lowers = np.array([body.positions.min(axis=0) for body in bodies])
-    uppers = np.array([body.positions.max(axis=0) for body in bodies])
+    parts = list(bodies.parts.values())
+    reach = CLOSE * np.concatenate([np.full(len(part.names), part.spacing) for part in parts])
+    no_ball = (np.full((1, case.grid.dimension), np.nan), np.full(1, np.nan))
+    centres, radii = (
+        np.concatenate([(part.balls or no_ball)[which] for part in parts]) for which in (0, 1)
+    )
+    lowers = np.concatenate([part.survey.lower for part in parts])
+    uppers = np.concatenate([part.survey.upper for part in parts])
     lowers = np.fmin(lowers, centres - radii[:, None]) - 0.5 * reach[:, None]
     uppers = np.fmax(uppers, centres + radii[:, None]) + 0.5 * reach[:, None]
     a, b = overlapping_boxes(lowers, uppers)
@@ -106,7 +124,7 @@ def overlap_mistakes(case: Case, bodies: list[FilledBody]) -> Iterator[CaseError
             rule = f"has {second.name} overlap {other}: {how}"
             remedy = "move the grains, or make them smaller"
         told.add((first.part, second.part))
-        yield case.error(_key(case, second)[0], rule, remedy)
+        yield case.error(_key(case, second.part)[0], rule, remedy)
 
 
 def close_particles(

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from mpm3dpp.base.errors import key_text
 from mpm3dpp.case.case import Case
 
-from .build import FilledBody
+from .parts import Filled, FilledBody, FilledPart
 
 Array = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ _DENSE = 10.0  # Points in a cell along an axis from which lengths are rather in
 _VOLUME = 2.0  # How far volumes may be from those of cubes between the points, as a length.
 
 
-def point_warnings(case: Case, bodies: list[FilledBody]) -> list[str]:
+def point_warnings(case: Case, bodies: Filled) -> list[str]:
     """Return a sentence for everything about points that a run takes, but that is hardly meant.
 
     Args:
@@ -28,8 +28,9 @@ def point_warnings(case: Case, bodies: list[FilledBody]) -> list[str]:
         bodies: its bodies, filled.
     """
     found = []
-    for body in bodies:
-        if body.shape_volume is None:
+    for part in bodies.parts.values():
+        if part.shape_volumes is None:
+            body = part.body(0)
             found += _of_points(body, case.grid.cell_size) + _inside_others(case, body, bodies)
     return found
 
@@ -93,35 +94,41 @@ def _given_twice(points: Array, distance: float) -> tuple[int, tuple[int, int]] 
     return len(again), (int(earlier[again[0]]), int(again[0]))
 
 
-def _inside_others(case: Case, body: FilledBody, bodies: list[FilledBody]) -> list[str]:
+def _inside_others(case: Case, body: FilledBody, bodies: Filled) -> list[str]:
     """Return a sentence for every body by a shape, or entry of grains, that points stand in."""
     counts: dict[str, int] = {}
     points = body.positions[np.argsort(body.positions[:, 0], kind="stable")]
-    for other in bodies:
-        if other.part == body.part or (case.is_rigid(other.part) and case.is_rigid(body.part)):
+    for name, other in bodies.parts.items():
+        if name == body.part or (case.is_rigid(name) and case.is_rigid(body.part)):
             continue
-        shape = None if other.part in case.grains else case.body[other.part].shape
-        if other.ball is not None:
-            centre, radius = other.ball
-            lower, upper = centre - radius, centre + radius
+        shape = None if name in case.grains else case.body[name].shape
+        if other.balls is not None:
+            counts[name] = _in_balls(points, other)
         elif shape is not None:
-            lower, upper = shape.bounds()
-        else:
-            continue
-        begin, end = np.searchsorted(points[:, 0], (lower[0], upper[0]))
-        some = points[begin:end]
-        some = some[np.all((some > lower) & (some < upper), axis=1)]
-        if len(some) == 0:
-            continue
-        if other.ball is not None:
-            inside = ((some - centre) ** 2).sum(axis=1) < radius**2
-        else:
-            assert shape is not None
-            inside = shape.contains(some)
-        counts[other.part] = counts.get(other.part, 0) + int(inside.sum())
+            counts[name] = int(shape.contains(_within(points, *shape.bounds())).sum())
     return [
         f"body.{body.name}: {count:,} of its points stand inside {key_text(case.part_path(part))}"
         ", which fills the same place then; move one of the two, or leave these points out"
         for part, count in counts.items()
         if count
     ]
+
+
+def _in_balls(points: Array, grains: FilledPart) -> int:
+    """Return how many of some points, sorted by x, stand in grains."""
+    assert grains.balls is not None
+    centres, radii = grains.balls
+    lowers, uppers = centres - radii[:, None], centres + radii[:, None]
+    near = np.all((lowers < points.max(axis=0)) & (uppers > points.min(axis=0)), axis=1)
+    count = 0
+    for k in np.flatnonzero(near).tolist():
+        some = _within(points, lowers[k], uppers[k])
+        count += int((((some - centres[k]) ** 2).sum(axis=1) < radii[k] ** 2).sum())
+    return count
+
+
+def _within(points: Array, lower: Array, upper: Array) -> Array:
+    """Return those of some points, sorted by x, that stand between two corners."""
+    begin, end = np.searchsorted(points[:, 0], (lower[0], upper[0]))
+    some = points[begin:end]
+    return some[np.all((some > lower) & (some < upper), axis=1)]

@@ -2,7 +2,7 @@
 """Many round bodies from one entry of a case: where they stand and how they are filled."""
 
 from .centres import GrainCentres
-from .filling import fill_grains
+from .filling import GrainFilling
 from .table import GrainLattice, GrainPacking, Grains
 
-__all__ = ["GrainCentres", "GrainLattice", "GrainPacking", "Grains", "fill_grains"]
+__all__ = ["GrainCentres", "GrainFilling", "GrainLattice", "GrainPacking", "Grains"]

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -13,17 +12,15 @@ from mpm3dpp.base.errors import CaseError
 from mpm3dpp.shapes import Disc, Sphere
 from mpm3dpp.shapes.filling import fill_round, fill_shape
 from mpm3dpp.shapes.shells import SHELLS
-from mpm3dpp.shapes.turns import turned
 
 from .orientation import orientations
 
 Array = NDArray[np.float64]
+Counts = NDArray[np.int64]
 
 
-def fill_grains(
-    centres: Array, radii: Array, spacing: float, grid: Any, way: str, align: str
-) -> Iterator[Array]:
-    """Yield the particles of each grain [m], shape (n, D); those of a grain have equal volumes.
+class GrainFilling:
+    """What fills the grains of an entry; those of a grain have equal volumes.
 
     Args:
         centres: of the grains [m], shape (grains, D).
@@ -34,37 +31,78 @@ def fill_grains(
         align: of a lattice: "between" (the centre is the middle of a square or cube of particles),
             "particle" (a particle stands at the centre) or "grid" (on the lattice of the grid, as
             bodies).
-
-    Raises:
-        CaseError: a grain holds no particle.
     """
-    turns = orientations(centres, radii) if way == SHELLS else None
-    made: dict[float, Array] = {}
-    for k, (centre, radius) in enumerate(zip(centres, radii.tolist(), strict=True)):
-        if turns is None and align == "grid":
-            positions = fill_shape(_ball(centre, radius), grid.origin, spacing)
-        else:
-            if radius not in made:
-                made[radius] = _about_zero(len(centre), radius, spacing, way, align)
-            points = made[radius] if turns is None else turned(made[radius], turns[k])
-            positions = points + centre
-        if len(positions) == 0:
-            rule = (
-                f"has a grain of radius {radius:.4g} m that holds no particle: they are "
-                f"{spacing:.4g} m apart"
-            )
-            remedy = "give a smaller grid.cell_size, more particles_per_cell, or larger grains"
-            raise CaseError(rule, remedy)
-        yield positions
 
+    def __init__(
+        self, centres: Array, radii: Array, spacing: float, grid: Any, way: str, align: str
+    ) -> None:
+        self._centres, self._radii, self._spacing = centres, radii, spacing
+        self._grid, self._way, self._align = grid, way, align
+        self._turns = orientations(centres, radii) if way == SHELLS else None
+        self._made: dict[float, Array] = {}
 
-def _about_zero(dimension: int, radius: float, spacing: float, way: str, align: str) -> Array:
-    """Return the particles of a grain about zero [m], shape (n, D), before it is turned."""
-    zero = np.zeros(dimension)
-    ball = _ball(zero, radius)
-    if way == SHELLS:
-        return fill_round(ball, spacing)
-    return fill_shape(ball, zero if align == "between" else zero - 0.5 * spacing, spacing)
+    def fill(self, first: int, last: int) -> tuple[Array, Counts]:
+        """Return the particles of the grains from one to the one before another.
+
+        Returns:
+            Positions [m], shape (n, D), one grain after another, and how many each has.
+
+        Raises:
+            CaseError: a grain holds no particle.
+        """
+        if self._way != SHELLS and self._align == "grid":
+            on_grid = [self._on_grid(k) for k in range(first, last)]
+            return np.concatenate(on_grid), np.array([len(x) for x in on_grid], dtype=np.int64)
+        radii, kind = np.unique(self._radii[first:last], return_inverse=True)
+        templates = [self._about_zero(radius) for radius in radii.tolist()]
+        counts = np.array([len(points) for points in templates], dtype=np.int64)[kind]
+        ends = np.cumsum(counts)
+        positions = np.empty((int(ends[-1]), self._centres.shape[1]))
+        by_kind = np.argsort(kind, kind="stable")
+        groups = np.split(by_kind, np.cumsum(np.bincount(kind))[:-1])
+        for points, grains in zip(templates, groups, strict=True):
+            rows = (ends[grains] - len(points))[:, None] + np.arange(len(points))
+            positions[rows] = self._turned(points, first + grains)
+        return positions, counts
+
+    def _turned(self, points: Array, grains: Counts) -> Array:
+        """Return particles about zero as they are in some grains, shape (grains, n, D)."""
+        centres = self._centres[grains, None, :]
+        if self._turns is None:
+            return points + centres
+        matrix = self._turns[grains]
+        found = points[:, 0, None] * matrix[:, None, :, 0]
+        for axis in range(1, points.shape[1]):
+            found = found + points[:, axis, None] * matrix[:, None, :, axis]
+        return np.asarray(found + centres)
+
+    def _about_zero(self, radius: float) -> Array:
+        """Return the particles of a grain about zero [m], shape (n, D), before it is turned."""
+        if radius not in self._made:
+            zero = np.zeros(self._centres.shape[1])
+            ball = _ball(zero, radius)
+            if self._way == SHELLS:
+                found = fill_round(ball, self._spacing)
+            else:
+                corner = zero if self._align == "between" else zero - 0.5 * self._spacing
+                found = fill_shape(ball, corner, self._spacing)
+            self._made[radius] = self._checked(found, radius)
+        return self._made[radius]
+
+    def _on_grid(self, k: int) -> Array:
+        radius = float(self._radii[k])
+        ball = _ball(self._centres[k], radius)
+        return self._checked(fill_shape(ball, self._grid.origin, self._spacing), radius)
+
+    def _checked(self, positions: Array, radius: float) -> Array:
+        if len(positions):
+            return positions
+        rule = (
+            f"has a grain of radius {radius:.4g} m that holds no particle: they are "
+            f"{self._spacing:.4g} m apart"
+        )
+        remedy = "give a smaller grid.cell_size, more particles_per_cell, or larger grains"
+        raise CaseError(rule, remedy)
 
 
 def _ball(centre: Array, radius: float) -> Disc:

@@ -47,13 +47,13 @@ def filled(case: Any) -> tuple[list[str], np.ndarray, np.ndarray, np.ndarray]:
     dimension = int(case.grid.dimension)
     names = list(case.parts())
     points, sizes, bodies = [], [], []
-    for body in fill_all(case):
-        whole = np.zeros((len(body.positions), 3))
-        whole[:, :dimension] = body.positions
-        points.append(whole)
-        edge = np.asarray(body.volumes, dtype=float).reshape(-1) ** (1.0 / dimension)
-        sizes.append(np.broadcast_to(edge, len(whole)))
-        bodies.append(np.full(len(whole), names.index(body.part)))
+    for name, part in fill_all(case).parts.items():
+        for _, _, some in part.chunks():
+            whole = np.zeros((len(some.positions), 3))
+            whole[:, :dimension] = some.positions
+            points.append(whole)
+            sizes.append(some.volumes ** (1.0 / dimension))
+            bodies.append(np.full(len(whole), names.index(name)))
     return names, np.concatenate(points), np.concatenate(sizes), np.concatenate(bodies)
 
 

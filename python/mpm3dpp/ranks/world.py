@@ -9,6 +9,7 @@ import os
 import pickle
 import sys
 import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -135,6 +136,35 @@ def world() -> World | None:
         remedy = "start them with the mpiexec of that MPI, or install mpi4py for the other one"
         raise _once(number, CaseError(rule, remedy))
     return World(MPI)
+
+
+def share_of(count: int, world: World | None) -> tuple[int, int]:
+    """Return which of so many things this process sees to: from one to the one before another.
+
+    It is the same as the core's `Share`.
+    """
+    rank, size = (world.rank, world.size) if world else (0, 1)
+    return count * rank // size, count * (rank + 1) // size
+
+
+def together(make: Callable[[], Any], world: World | None) -> list[Any]:
+    """Return what all processes make, by their ranks.
+
+    Raises:
+        CaseError: one has met a mistake, which is that of all then.
+    """
+    if world is None:
+        return [make()]
+    found, mistake = None, None
+    try:
+        found = make()
+    except CaseError as error:
+        mistake = error
+    for told in world.comm.allgather(None if mistake is None else str(mistake)):
+        if told is not None:
+            raise mistake or CaseError(told)
+    result: list[Any] = world.comm.allgather(found)
+    return result
 
 
 def _once(number: int, error: CaseError) -> BaseException:

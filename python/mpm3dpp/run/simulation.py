@@ -16,15 +16,13 @@ from mpm3dpp.base.expression import program_of
 from mpm3dpp.base.machine import thread_count
 from mpm3dpp.base.settings import functions
 from mpm3dpp.case.case import Case
-from mpm3dpp.case.detonation import lighting_times
-from mpm3dpp.case.loads import add_load, pieces
-from mpm3dpp.case.motion import Motion
 from mpm3dpp.fill.advisories import notes, overlap
 from mpm3dpp.fill.build import build, warnings
 from mpm3dpp.fill.point_warnings import point_warnings
 from mpm3dpp.io.checkpoint import read_about, restore_checkpoint, write_checkpoint
 from mpm3dpp.ranks.world import World
 
+from .add_part import add_part
 from .checkpoints import check_same
 from .core_settings import core_settings
 
@@ -39,6 +37,8 @@ class Simulation:
             same bits; False makes them one by one, as the scheme lists them.
         disorder: share of a body's particles that changes cell before its columns in memory are
             put back in order, which costs or saves time and moves no bit; by default what pays.
+        imbalance_limit: cost of a rank over the mean one above which ranks share out the grid anew,
+            which moves no bit; by default 1.05, infinite for never.
         ranks: parts of the grid, each worked on by a thread of its own as by a process, with what
             processes tell each other; to test that their number moves no bit.
         world: processes that work on it, `mpm3dpp.ranks.world.world()`; each calls the same
@@ -63,52 +63,36 @@ class Simulation:
         threads: int | None = None,
         fused: bool = True,
         disorder: float | None = None,
+        imbalance_limit: float | None = None,
         ranks: int = 1,
         world: World | None = None,
     ) -> None:
         if not isinstance(case, Case):
             remedy = 'give what mpm3dpp.load_case("case.toml") returns, or make a Case'
             raise CaseError("must be a Case", remedy, key="case", value=case)
-        filled = build(case)
+        filled = build(case, world)
         self.case, self._world = case, world
         cores = world.cores_of_rank() if world else None
         self.threads = thread_count(threads, cores)
-        self.bodies = [body.name for body in filled]
-        self.parts = [body.part for body in filled]
-        self.materials = [body.material for body in filled]
+        entries = list(filled.parts.values())
+        self.bodies = [name for part in entries for name in part.names]
+        self.parts = [part.name for part in entries for _ in part.names]
+        self.materials = [part.material for part in entries for _ in part.names]
         self.warnings = [*warnings(filled), *point_warnings(case, filled)]
         self.notes = notes(case, filled)
         settings = core_settings(case, self.threads)
         settings.execution.fused = fused
         settings.execution.ranks = arguments.whole_number("ranks", ranks, 1, 1024)
-        if disorder is not None:
-            settings.execution.disorder = disorder
+        for name, value in (("disorder", disorder), ("imbalance_limit", imbalance_limit)):
+            if value is not None:
+                setattr(settings.execution, name, value)
         self.core = _core.Simulation(settings, world.for_core() if world else None)
-        numbers = {name: self._add_material(name) for name in dict.fromkeys(self.materials)}
-        firsts = case.first_bodies()
-        filled.reverse()
-        while filled:  # What the core has taken is dropped, so that memory holds it once.
-            body = filled.pop()
-            equal = bool(np.all(body.volumes == body.volumes[0]))
-            number = self.core.add_body(
-                body.name,
-                numbers[body.material],
-                body.positions,
-                np.ascontiguousarray(body.velocities),
-                body.volumes[:1].copy() if equal else np.ascontiguousarray(body.volumes),
-            )
-            motion = None if body.part in case.grains else case.body[body.part].motion
-            if motion is not None:
-                self._set_motion(number, motion, motion.middle(body.positions, body.volumes))
-            if number != firsts[body.part]:
-                self.core.set_group(number, firsts[body.part])
-            arrival = lighting_times(case, body.part, body.positions)
-            if arrival is not None:
-                self.core.set_state(number, "lighting_time", arrival)
-            for name, load in case.load.items():
-                if load.body == body.name:
-                    found = pieces(case, name, body.positions, body.spacing)
-                    add_load(self.core, case, name, number, found)
+        used = dict.fromkeys(part.material for part in entries)
+        numbers = {name: self._add_material(name) for name in used}
+        del filled
+        entries.reverse()
+        while entries:  # What the core has taken is dropped, so that memory holds it once.
+            add_part(self.core, case, entries.pop(), numbers, world)
         for name, part in case.parts().items():
             if part.body_force is not None:
                 self.core.add_body_force(
@@ -135,12 +119,6 @@ class Simulation:
         rule = sentence.partition(" s ")[2]
         remedy = "give a smaller one, or leave it out"
         return self.case.error(("run", "time_step"), rule, remedy, value=step)
-
-    def _set_motion(self, number: int, motion: Motion, centre: np.ndarray) -> None:
-        spin = motion.angular_velocity
-        spin = (0.0, 0.0, *spin) if len(spin) == 1 else spin
-        place = [*centre.tolist(), 0.0][:3]
-        self.core.set_motion(number, functions(motion.velocity), functions(spin), place)
 
     def _add_material(self, name: str) -> int:
         material = self.case.material[name]

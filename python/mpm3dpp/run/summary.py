@@ -12,7 +12,8 @@ from mpm3dpp import _core
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.loads import pieces
 from mpm3dpp.fill.advisories import fastest, notes
-from mpm3dpp.fill.build import FilledBody, by_part, warnings
+from mpm3dpp.fill.build import warnings
+from mpm3dpp.fill.parts import Filled, FilledPart, Particles
 from mpm3dpp.fill.point_warnings import point_warnings
 from mpm3dpp.io.background import FRAME_SHARE
 from mpm3dpp.materials import Failure, catalogue, state_columns
@@ -36,7 +37,7 @@ _PROGRAM_BYTES = 62 << 20
 numpy 2.4 and h5py 3.16 on Linux."""
 
 
-def time_step(case: Case, bodies: list[FilledBody]) -> float:
+def time_step(case: Case, bodies: Filled) -> float:
     """Return the expected first time step [s]: that given, or f h / max(c + |v|) as bounded."""
     if case.run.time_step is not None:
         return float(case.run.time_step)
@@ -44,13 +45,15 @@ def time_step(case: Case, bodies: list[FilledBody]) -> float:
     return min(case.run.cfl * case.grid.cell_size / fastest(case, bodies), bound)
 
 
-def steps_in_words(case: Case, bodies: list[FilledBody]) -> str:
+def steps_in_words(case: Case, bodies: Filled) -> str:
     """Return the number of steps: `about` or, where the time step may fall, `at least` so many.
 
     It falls where waves become faster in what is compressed or burns (an equation of state), or
     bodies become faster (gravity).
     """
-    compressible = any(case.material[body.material].eos is not None for body in bodies)
+    compressible = any(
+        case.material[part.material].eos is not None for part in bodies.parts.values()
+    )
     may_fall = case.run.time_step is None and (compressible or any(case.run.gravity))
     word, step = "at least" if may_fall else "about", time_step(case, bodies)
     steps = f"{word} {math.ceil(case.run.end_time / step):,} steps"
@@ -71,48 +74,52 @@ def frames_in_words(case: Case, particles: int) -> str:
     return f"{count:,} frames{much}"
 
 
-def occupied_cells(case: Case, bodies: list[FilledBody]) -> int:
+def occupied_cells(case: Case, bodies: Filled) -> int:
     """Return the number of grid cells that hold particles, each body counted by itself."""
-    return sum(len(_cells(case, members, 0.0)[0]) for members in by_part(bodies).values())
+    return sum(
+        len(_cells(case, some, 0.0)[0])
+        for part in bodies.parts.values()
+        for _, _, some in part.chunks()
+    )
 
 
-def _cells(case: Case, members: list[FilledBody], shift: float) -> tuple[np.ndarray, np.ndarray]:
+def _cells(case: Case, some: Particles, shift: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the numbers of the cells that hold particles, and the steps to the next on each axis.
 
     Cells begin `shift` of a cell before the nodes; around a body there is room for what it reaches.
     """
     room = max(basis["nodes"] for basis in _core.bases.values()) - 1
-    positions = np.concatenate([body.positions for body in members])
-    owner = np.repeat(np.arange(len(members)), [len(body.positions) for body in members])
-    cells = np.floor((positions - np.asarray(case.grid.lower)) / case.grid.cell_size + shift)
+    owner = np.repeat(np.arange(len(some.counts)), some.counts)
+    cells = np.floor((some.positions - np.asarray(case.grid.lower)) / case.grid.cell_size + shift)
     cells -= cells.min(axis=0) - room
     strides = np.cumprod([1.0, *(cells.max(axis=0) + room + 1)])
     return np.unique(cells @ strides[:-1] + owner * strides[-1]), strides[:-1]
 
 
-def memory_bytes(case: Case, bodies: list[FilledBody]) -> int:
+def memory_bytes(case: Case, bodies: Filled) -> int:
     """Return about what the core will need, of particles and the nodes that each body reaches."""
     basis, total = _core.bases[case.grid.basis], 0
     transfer, D = _core.transfers[case.run.transfer.word], case.grid.dimension
     taken = 8 * (D * D * transfer["affine"] + D * transfer["filters"] + case.has_springs)
     reached = np.arange(basis["nodes"]) - basis["before"]  # From a cell's own node, along an axis.
-    for members in by_part(bodies).values():
-        state = state_columns(case.material[members[0].material].models)
+    for part in bodies.parts.values():
+        state = state_columns(case.material[part.material].models)
         each = _PARTICLE_BYTES[D] + taken + 8 * len(state)
-        total += each * sum(len(body.positions) for body in members)
-        nodes, strides = _cells(case, members, basis["own_node"])
-        for stride in strides:
-            nodes = np.unique(np.add.outer(stride * reached, nodes))
-        total += _NODE_BYTES[D] * len(nodes)
+        total += each * part.count
+        for _, _, some in part.chunks():
+            nodes, strides = _cells(case, some, basis["own_node"])
+            for stride in strides:
+                nodes = np.unique(np.add.outer(stride * reached, nodes))
+            total += _NODE_BYTES[D] * len(nodes)
     return total
 
 
-def process_bytes(case: Case, bodies: list[FilledBody]) -> int:
+def process_bytes(case: Case, bodies: Filled) -> int:
     """Return about the peak of the process of a run that writes frames; pictures have their own."""
     return _PROGRAM_BYTES + round((1.0 + FRAME_SHARE) * memory_bytes(case, bodies))
 
 
-def rank_line(case: Case, bodies: list[FilledBody], ranks: int) -> str:
+def rank_line(case: Case, bodies: Filled, ranks: int) -> str:
     """Return the line about the memory of each of several ranks."""
     # A rank has the nodes of others beside its own, and room for particles that come.
     core = round(_WITH_EDGES * memory_bytes(case, bodies) / ranks)
@@ -144,21 +151,21 @@ def material_lines(case: Case) -> list[str]:
     return lines
 
 
-def _body_line(case: Case, body: FilledBody, per_metre: str) -> str:
-    against = "exact" if body.volume_is_exact else "measured on a fine lattice"
-    source = f"{_off(body.mass_error)} of the shape's ({against})"
-    if body.shape_volume is None:
+def _body_line(case: Case, part: FilledPart, per_metre: str) -> str:
+    against = "exact" if part.volume_is_exact else "measured on a fine lattice"
+    source = f"{_off(part.mass_errors[0])} of the shape's ({against})"
+    if part.shape_volumes is None:
         source = "given one by one"
     return (
-        f"body {body.name}: {len(body.positions):,} particles {_apart(body)}, "
-        f"{body.material}, mass {body.mass:.6g} kg{per_metre}, {source}"
-        f"{motion_in_words(case, body.name)}"
+        f"body {part.name}: {part.count:,} particles {_apart(part)}, "
+        f"{part.material}, mass {part.masses[0]:.6g} kg{per_metre}, {source}"
+        f"{motion_in_words(case, part.name)}"
     )
 
 
-def _apart(body: FilledBody) -> str:
+def _apart(part: FilledPart) -> str:
     """Return how far apart the particles of a body are, and whether they stand in shells."""
-    return f"{body.spacing:.4g} m apart" + (f" in {SHELLS}" if body.fill == SHELLS else "")
+    return f"{part.spacing:.4g} m apart" + (f" in {SHELLS}" if part.fill == SHELLS else "")
 
 
 def _off(error: float) -> str:
@@ -166,39 +173,37 @@ def _off(error: float) -> str:
     return f"{round(error, 12) + 0.0:+.3%}"
 
 
-def _grains_line(name: str, grains: list[FilledBody], per_metre: str) -> str:
-    counts = sorted(len(grain.positions) for grain in grains)
-    each = f"{counts[0]:,} each"
-    if counts[0] != counts[-1]:
-        each = f"{counts[0]:,} to {counts[-1]:,} each"
-    mass = sum(grain.mass for grain in grains)
-    exact = sum(grain.mass / (1.0 + grain.mass_error) for grain in grains)
+def _grains_line(grains: FilledPart, per_metre: str) -> str:
+    least, most = grains.survey.counts.min(), grains.survey.counts.max()
+    each = f"{least:,} each" if least == most else f"{least:,} to {most:,} each"
+    mass = float(grains.masses.sum())
+    exact = float((grains.masses / (1.0 + grains.mass_errors)).sum())
     return (
-        f"grains {name}: {len(grains):,} bodies, {sum(counts):,} particles ({each}) "
-        f"{_apart(grains[0])}, {grains[0].material}, mass {mass:.6g} kg{per_metre}, "
+        f"grains {grains.name}: {len(grains.names):,} bodies, {grains.count:,} particles ({each}) "
+        f"{_apart(grains)}, {grains.material}, mass {mass:.6g} kg{per_metre}, "
         f"{_off(mass / exact - 1.0)} of the shapes' (exact)"
     )
 
 
-def echo(case: Case, bodies: list[FilledBody], ranks: int = 1) -> str:
+def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
     """Return what the case amounts to: bodies, materials, memory, cells, time step, steps."""
     per_metre = " per metre" if case.grid.dimension == 2 else ""
     lines = [case.title] if case.title else []
-    for name, members in by_part(bodies).items():
+    for name, part in bodies.parts.items():
         lines.append(
-            _grains_line(name, members, per_metre)
+            _grains_line(part, per_metre)
             if name in case.grains
-            else _body_line(case, members[0], per_metre)
+            else _body_line(case, part, per_metre)
         )
     for name, load in case.load.items():
-        [body] = [body for body in bodies if body.name == load.body]
+        body = bodies.parts[load.body].body(0)
         found = pieces(case, name, body.positions, body.spacing)
         lines.append(
             f"load {name}: {load_in_words(case, name)} on {load.side} of {load.body}, "
             f"{found.area:.6g} m^2{per_metre}, carried by {len(found.particles):,} particles"
         )
     lines += material_lines(case)
-    particles = sum(len(body.positions) for body in bodies)
+    particles = bodies.particle_count
     cells = occupied_cells(case, bodies)
     box = case.grid.box_cells
     bounds = " x ".join(str(n) for n in box) + " cells" if box else "no bounds"
