@@ -50,6 +50,8 @@ class GrainFilling:
         Raises:
             CaseError: a grain holds no particle.
         """
+        if first == last:
+            return np.zeros((0, self._centres.shape[1])), np.zeros(0, dtype=np.int64)
         if self._way != SHELLS and self._align == "grid":
             on_grid = [self._on_grid(k) for k in range(first, last)]
             return np.concatenate(on_grid), np.array([len(x) for x in on_grid], dtype=np.int64)
