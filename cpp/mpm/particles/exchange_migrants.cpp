@@ -1,6 +1,9 @@
-// Particles that go from rank to rank: a letter holds groups of particles of a body, each with
-// their numbers in it, every component of their columns, and the pieces of loads that they carry.
+// Particles that go from rank to rank: a letter says how many come to each pool, and holds groups
+// of particles of a body, each with their numbers in it, every component of their columns, and the
+// pieces of loads that they carry.
 #include "mpm/particles/exchange_migrants.hpp"
+
+#include <map>
 
 #include "mpm/comm/letters.hpp"
 #include "mpm/grid/connect.hpp"
@@ -25,9 +28,6 @@ struct Group {
 template <int D>
 void write_group(Letter& letter, const Group& group, const ParticlePool<D>& pool) {
   const std::span<const std::uint32_t> rows = group.rows;
-  const std::size_t row_bytes =
-      pool.columns.bytes() / std::max<std::size_t>(1, pool.columns.stride()) + sizeof(rows[0]);
-  letter.bytes.reserve(letter.bytes.size() + sizeof(GroupHead) + rows.size() * row_bytes);
   write(letter, GroupHead{group.body, static_cast<std::uint32_t>(rows.size())});
   write_rows(letter, pool.id.data(), rows);
   for (int c = 0; c < pool.columns.component_count(); ++c)
@@ -82,15 +82,27 @@ void exchange_migrants(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                        std::vector<ParticlePool<D>>& pools, ListScratch<D>& scratch) {
   Mail& mail = grid.partition.mail.migrants;
   mail.out.clear();
-  for (const Group& group : take_leaving(grid, scratch.migrants)) {
+  const std::vector<Group> groups = take_leaving(grid, scratch.migrants);
+  std::map<int, std::vector<std::size_t>> counts;  // by rank, of each pool
+  for (const Group& group : groups)
+    counts.try_emplace(group.rank, pools.size()).first->second[pool_number(bodies, group.body)] +=
+        group.rows.size();
+  for (const auto& [rank, of_pools] : counts)
+    for (const std::size_t count : of_pools) write(letter_to(mail, rank), count);
+  for (const Group& group : groups) {
     ParticlePool<D>& pool = pools[pool_number(bodies, group.body)];
     write_group(letter_to(mail, group.rank), group, pool);
     pool.free_rows.insert(pool.free_rows.end(), group.rows.begin(), group.rows.end());
   }
   grid.partition.comm->exchange(mail);
+  std::vector<Reader> readers(mail.in.begin(), mail.in.end());
+  std::vector<std::size_t> coming(pools.size(), 0);
+  for (Reader& reader : readers)
+    for (std::size_t& count : coming) count += reader.read<std::size_t>();
+  for (std::size_t m = 0; m < pools.size(); ++m) need_rows(pools[m], coming[m]);
   std::vector<std::uint32_t> rows;
-  for (const Letter& letter : mail.in)
-    for (Reader reader(letter); !reader.done();) {
+  for (Reader& reader : readers)
+    while (!reader.done()) {
       const auto head = reader.read<GroupHead>();
       ParticlePool<D>& pool = pools[pool_number(bodies, head.body)];
       take_rows(pool, head.count, rows);

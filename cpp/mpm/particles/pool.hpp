@@ -82,20 +82,26 @@ struct ParticlePool {
 /// So many rows more, that few comings allocate.
 constexpr std::size_t spare_rows(std::size_t rows) { return rows / 64 + 64; }
 
+/// See to so many free rows.
+template <int D>
+void need_rows(ParticlePool<D>& pool, std::size_t number) {
+  std::vector<std::uint32_t>& free = pool.free_rows;
+  if (free.size() >= number) return;
+  // Where some come more do: to move all that there are costs about a step.
+  const std::size_t count = pool.count(), needed = count + number - free.size(),
+                    more = needed + 2 * spare_rows(needed);
+  grow(pool.columns, more);
+  pool.id.resize(more);
+  if (!pool.pieces.empty()) pool.piece.resize(more, 0);
+  for (std::size_t row = more; row > count; --row)
+    free.push_back(static_cast<std::uint32_t>(row - 1));
+}
+
 /// Rows for so many particles that come from other ranks.
 template <int D>
 void take_rows(ParticlePool<D>& pool, std::size_t number, std::vector<std::uint32_t>& rows) {
   std::vector<std::uint32_t>& free = pool.free_rows;
-  if (free.size() < number) {
-    // Where some come more do: to move all that there are costs about a step.
-    const std::size_t count = pool.count(), needed = count + number - free.size(),
-                      more = needed + 2 * spare_rows(needed);
-    grow(pool.columns, more);
-    pool.id.resize(more);
-    if (!pool.pieces.empty()) pool.piece.resize(more, 0);
-    for (std::size_t row = more; row > count; --row)
-      free.push_back(static_cast<std::uint32_t>(row - 1));
-  }
+  need_rows(pool, number);
   rows.assign(free.rbegin(), free.rbegin() + static_cast<std::ptrdiff_t>(number));
   free.resize(free.size() - number);
 }
