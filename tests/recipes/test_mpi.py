@@ -25,6 +25,22 @@ PROGRAMS = Path(__file__).parents[1] / "ranks"
 LONG = CASE.replace('"10 mm"', '"2 mm"').replace('"8 ms"', '"100 s"').replace("frames = 4", "")
 LONG = LONG.replace("[output]", '[output]\ncheckpoint_interval = 0.2\ninterval = "1 s"')
 BOTH = ("out", "straight")
+# Grains that a formula gives a velocity; beyond x = 50 mm, where the second of two ranks has them,
+# it has none.
+GRAINS = """
+[grid]
+dimension = 2
+cell_size = "2 mm"
+[run]
+end_time = "1 ms"
+[material.sand]
+density = "2000 kg/m^3"
+strength = { elastic = { E = "1 MPa", nu = 0.3 } }
+[grains.sand]
+material = "sand"
+lattice = { lower = [0, 0], count = [8, 2], radius = "5 mm" }
+velocity = [{ expression = "sqrt(0.05 - x)" }, 0]
+"""
 
 
 def mpiexec(count: int, *words: Any) -> list[str]:
@@ -107,6 +123,7 @@ def test_a_run_writes_and_tells_once(tmp_path: Path, way: str) -> None:
     [
         (CASE.replace("8 ms", "8 parsec"), (), 'run.end_time = "8 parsec" has the unit'),
         (CASE.replace("cfl = 0.3", "time_step = 1.0"), (), "larger than the largest stable step"),
+        (GRAINS, (), "which is no finite number"),
         (CASE, ("--out", "case.toml"), "case.toml"),
         (CASE, ("--resume",), "there is no checkpoint"),
     ],
