@@ -18,7 +18,7 @@ from fake_core import pressure, von_mises
 from mpm3dpp import Simulation, load_case
 from mpm3dpp.fill.build import build
 from mpm3dpp.io import frame_of
-from mpm3dpp.run.summary import process_bytes
+from mpm3dpp.run.summary import memory_bytes, process_bytes
 
 MIB = 2**20
 LONG = 60.0  # [s] Until a process that hangs is given up.
@@ -85,7 +85,7 @@ def test_frames_and_checkpoints_take_a_fourth_of_stepping_at_most(
     stepping, running = peak(tmp_path, "step"), peak(tmp_path, "run")
     assert running <= 1.25 * stepping
     case = load_case(path)
-    assert process_bytes(case, build(case)) == pytest.approx(running, rel=0.25)
+    assert process_bytes(memory_bytes(case, build(case))) == pytest.approx(running, rel=0.25)
 
 
 def test_pictures_do_not_raise_the_peak(tmp_path: Path) -> None:

@@ -254,6 +254,25 @@ def test_bodies_of_another_world_are_those_of_this_one_moved(dimension: int, wor
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
+def test_grains_are_the_same_in_whatever_groups_they_are_made(dimension: int) -> None:
+    """Ranks make their own, and each some at a time: to the last bit."""
+    spinning = Grains(
+        material="m",
+        file=GrainCentres(*packing(dimension)),
+        fill="shells",
+        velocity=[{"expression": "sin(50 * r)"}, *(0.0,) * (dimension - 1)],
+        angular_velocity=3.0 if dimension == 2 else [1.0, 2.0, 3.0],
+    )
+    part = build(case_of({}, {"sand": spinning})).parts["sand"]
+    whole, shared = part.make(0, len(part.names)), part.share(0, len(part.names))
+    single = [part.make(k, k + 1) for k in range(len(part.names))]
+    for name in ("positions", "velocities", "volumes"):
+        one_by_one = np.concatenate([getattr(one, name) for one in single])
+        assert np.array_equal(getattr(whole, name), one_by_one)
+        assert np.array_equal(getattr(whole, name), getattr(shared, name))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
 def test_numbers_of_grains_and_the_place_of_the_whole_do_not_matter(dimension: int) -> None:
     centres, radii = packing(dimension)
     here = build(sand(centres, radii))

@@ -167,3 +167,30 @@ def test_who_has_what() -> None:
     assert ranks.shape == (8 * 8**3,) and sorted(set(ranks.tolist())) == [0, 1, 2, 3]
     counts = np.bincount(ranks)
     assert counts.max() <= 1.2 * counts.mean()
+
+
+def test_ranks_follow_a_body_that_flies() -> None:
+    """From tiles of one rank into those of the other: the tiles are shared out anew on the way."""
+    simulation = Simulation(
+        Case.from_text("""
+[grid]
+dimension = 2
+cell_size = 1.0
+[run]
+end_time = 100
+[material.m]
+density = 1000
+strength = { elastic = { E = 1e4, nu = 0.3 } }
+[body.block]
+material = "m"
+shape = { box = { lower = [0, 0], upper = [64, 16] } }
+velocity = [2, 0]
+"""),
+        threads=1,
+        ranks=2,
+    )
+    for end in (10.0, 20.0, 30.0):
+        simulation.advance(1000, end)
+        counts = np.bincount(simulation.ranks_of("block"), minlength=2)
+        assert counts.max() <= 1.2 * counts.mean()  # 1.05, and 20 steps more
+    assert simulation.column("block", "position")[:, 0].min() > 55.0

@@ -33,7 +33,7 @@ struct ContactTile {
   std::uint32_t cached_part = 0;   // where they are cached: a number of Contact::parts
   std::uint32_t first_cached = 0;  // the first of them, of ContactPart::cached_nodes
   TouchRange touches;              // with springs: of particles in the tile, in this step
-  std::uint8_t nodes = 0;          // that were overlapped in the last step, with springs touched
+  std::uint8_t node_count = 0;     // that were overlapped in the last step, with springs touched
   bool beside_others = false;      // a tile around it belongs to another rank
   bool held_by_others = false;     // some holder does
 };

@@ -227,7 +227,7 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
         // A rigid body's mass is spread over all nodes where it meets others.
         if (!contact.has_free_rigid) around.overlapped &= around.touches.nodes();
       }
-      contact.tiles[t].nodes = static_cast<std::uint8_t>(std::popcount(around.overlapped));
+      contact.tiles[t].node_count = static_cast<std::uint8_t>(std::popcount(around.overlapped));
       if (around.overlapped == 0) {
         contact.tiles[t].cached = 0;
         continue;

@@ -40,6 +40,7 @@ struct Owners {
     const auto next = std::ranges::upper_bound(first, place(tile));
     return static_cast<int>(next - first.begin()) - 1;
   }
+  bool operator==(const Owners&) const = default;
   static constexpr int bits = 19;  // of a place along each axis, as many as the keys of lists have
 
  private:

@@ -146,11 +146,12 @@ struct TileCost {
   std::int64_t cost;  // in quarters of what a particle costs in a step
 };
 
-/// Other ranges of tiles, if the cost of one rank is more than `bound` times the mean one; then
-/// true, and particles go along in the next update_cell_lists(). By all ranks at once.
+/// Other ranges of tiles, if the cost of one rank is more than `bound` times the mean one and
+/// others are better; then true, and particles go along in the next update_cell_lists(). By all
+/// ranks at once.
 template <int D>
-bool balance_ranks(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                   std::span<const TileCost<D>> more, double bound);
+bool share_out_anew(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                    std::span<const TileCost<D>> more, double bound);
 
 /// Put the rows that hold particles into the order of the lists, one behind another, with some room
 /// for others that come; guests are forgotten.

@@ -35,6 +35,20 @@ void set_box(const TileGrid<D>& grid, Owners<D>& owners) {
   owners.set_box(low, high);
 }
 
+/// The largest cost of a rank with these owners. By all ranks at once.
+template <int D>
+std::int64_t largest_cost(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                          std::span<const TileCost<D>> more, const Owners<D>& owners) {
+  std::vector<std::int64_t> costs(owners.first.size(), 0);
+  const auto add = [&](const Index<D>& tile, std::int64_t cost) {
+    costs[static_cast<std::size_t>(owners.rank_of(tile))] += cost;
+  };
+  for (const Patch<D>& patch : grid.patches) add(patch.tile, cost_of(patch, bodies));
+  for (const TileCost<D>& of : more) add(of.tile, of.cost);
+  grid.partition.comm->all_sum(costs);
+  return std::ranges::max(costs);
+}
+
 /// Where ranges of tiles begin whose costs are alike: sums over all ranks, bit by bit of the place.
 template <int D>
 Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
@@ -95,8 +109,8 @@ void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<Particl
 }
 
 template <int D>
-bool balance_ranks(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                   std::span<const TileCost<D>> more, double bound) {
+bool share_out_anew(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                    std::span<const TileCost<D>> more, double bound) {
   Comm& comm = *grid.partition.comm;
   std::int64_t here = 0;
   for (const Patch<D>& patch : grid.patches) here += cost_of(patch, bodies);
@@ -105,8 +119,8 @@ bool balance_ranks(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   const double mean = static_cast<double>(all_sum(comm, here)) / comm.size();
   if (largest <= bound * mean) return false;
   Owners<D> owners = owners_of(grid, bodies, more);
-  // Where tiles are few, no other ranges are better.
-  if (owners.first == grid.partition.owners.first) return false;
+  // Where tiles are few, others may be no better.
+  if (static_cast<double>(largest_cost(grid, bodies, more, owners)) >= largest) return false;
   take_owners(grid, std::move(owners));
   return true;
 }
@@ -136,10 +150,10 @@ template void divide<2>(TileGrid<2>&, std::vector<Body<2>>&, std::vector<Particl
                         Threads&, ListScratch<2>&);
 template void divide<3>(TileGrid<3>&, std::vector<Body<3>>&, std::vector<ParticlePool<3>>&,
                         Threads&, ListScratch<3>&);
-template bool balance_ranks<2>(TileGrid<2>&, const std::vector<Body<2>>&,
-                               std::span<const TileCost<2>>, double);
-template bool balance_ranks<3>(TileGrid<3>&, const std::vector<Body<3>>&,
-                               std::span<const TileCost<3>>, double);
+template bool share_out_anew<2>(TileGrid<2>&, const std::vector<Body<2>>&,
+                                std::span<const TileCost<2>>, double);
+template bool share_out_anew<3>(TileGrid<3>&, const std::vector<Body<3>>&,
+                                std::span<const TileCost<3>>, double);
 template void take_owners<2>(TileGrid<2>&, Owners<2>);
 template void take_owners<3>(TileGrid<3>&, Owners<3>);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -56,6 +57,22 @@ int add_body(Simulation<D>& simulation, const std::string& name, int material_nu
   return static_cast<int>(domain.bodies.size()) - 1;
 }
 
+namespace {
+
+/// All ranks are given the same of this, and so throw alike.
+void check_bodies(std::span<const std::string> names, std::span<const std::int64_t> counts,
+                  std::span<const double> volumes) {
+  if (names.empty() || counts.size() != names.size() || volumes.size() != names.size())
+    throw std::invalid_argument("bodies need a name, a count and a volume of a particle each");
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (counts[k] <= 0) throw std::invalid_argument(names[k] + ": it has no particles");
+    if (!(volumes[k] > 0.0 && std::isfinite(volumes[k])))
+      throw std::invalid_argument(names[k] + ": volumes must be finite numbers > 0");
+  }
+}
+
+}  // namespace
+
 template <int D>
 int add_bodies(Simulation<D>& simulation, std::span<const std::string> names, int material_number,
                std::span<const std::int64_t> counts, std::span<const double> volumes,
@@ -66,11 +83,14 @@ int add_bodies(Simulation<D>& simulation, std::span<const std::string> names, in
   const auto m = static_cast<std::size_t>(material_number);
   const Material& material = domain.materials.at(m);
   const ParticlePool<D>& pool = domain.pools.at(m);
-  if (names.empty() || counts.size() != names.size() || volumes.size() != names.size())
-    throw std::invalid_argument("bodies need a name, a count and a volume of a particle each");
+  check_bodies(names, counts, volumes);
+  if (velocities.size() != D && velocities.size() != positions.size())
+    throw std::invalid_argument(names[0] + ": velocities must be (n, D) or (1, D)");
   const auto leader = static_cast<int>(domain.bodies.size());
   const Share share(names.size(), *domain.grid.partition.comm);
   const bool alike = velocities.size() == D;
+  std::vector<Body<D>> bodies;
+  bodies.reserve(names.size());
   std::size_t given = 0;  // particles before those of the body
   for (std::size_t k = 0; k < names.size(); ++k) {
     const auto count = static_cast<std::size_t>(counts[k]);
@@ -91,8 +111,9 @@ int add_bodies(Simulation<D>& simulation, std::span<const std::string> names, in
     if (k >= first) given += count;
     body.material = material_number;
     body.group = leader;
-    domain.bodies.push_back(std::move(body));
+    bodies.push_back(std::move(body));
   }
+  std::ranges::move(bodies, std::back_inserter(domain.bodies));
   return leader;
 }
 

@@ -20,8 +20,8 @@ int add_body(Simulation<D>& simulation, const std::string& name, int material,
              std::span<const double> volumes);
 /// Bodies of one material that form a group, as grains do: how many particles each has, and the
 /// volume of one of them. Particles are given of those from the `first`-th on, one body after
-/// another; of several ranks each takes those of its Share of the bodies. Returns the number of the
-/// first.
+/// another; of several ranks each takes those of its Share of the bodies, which must be among
+/// these. Returns the number of the first.
 template <int D>
 int add_bodies(Simulation<D>& simulation, std::span<const std::string> names, int material,
                std::span<const std::int64_t> counts, std::span<const double> volumes,

@@ -185,8 +185,8 @@ struct ExecutionSettings {
           "for never",
           Rule{.lower = 0.0, .lower_open = false, .finite = false}},
       Setting{"balance_every", &Self::balance_every,
-              "steps after which ranks are looked at, and share out the tiles anew where one has "
-              "too much",
+              "steps after which ranks are looked at, as after the first one, and share out the "
+              "tiles anew where one has too much",
               Rule{1.0, 1e9, false, false}},
       Setting{"imbalance_limit", &Self::imbalance_limit,
               "cost of a rank over the mean one from which on that is done; infinite for never",

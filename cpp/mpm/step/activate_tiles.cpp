@@ -56,15 +56,15 @@ void mark_leaving(Domain<D>& domain) {
 template <int D>
 void balance_ranks(Domain<D>& domain) {
   if (domain.grid.partition.alone()) return;
-  // What contact costs is known after the first step.
-  if (domain.step != 1 && domain.step % domain.balance_every != 0) return;
+  // Tiles have just been shared out; what contact costs is known after the first step.
+  if (domain.step == 0 || (domain.step != 1 && domain.step % domain.balance_every != 0)) return;
   // The normals and gaps at a node take about as long as eight particles.
   constexpr std::int64_t of_node = 32;
   std::vector<TileCost<D>> costs;
   if (domain.has_contact())
     for (const ContactTile<D>& tile : domain.contact.tiles)
-      costs.push_back({tile.tile, of_node * tile.nodes});
-  balance_ranks<D>(domain.grid, domain.bodies, costs, domain.imbalance_limit);
+      if (tile.node_count > 0) costs.push_back({tile.tile, of_node * tile.node_count});
+  share_out_anew<D>(domain.grid, domain.bodies, costs, domain.imbalance_limit);
 }
 
 /// Share out the patches by what they cost in a step: some four parts for a particle and one for a

@@ -121,16 +121,17 @@ def _filled_grains(case: Case, name: str, grains: Grains, world: World | None) -
         except CaseError as error:
             raise case.error((*path, grains.filling), error.rule, error.remedy) from None
         each = exact[first:last] / counts if way == SHELLS else np.full(last - first, cube)
-        velocities = start_velocities(case, name, positions, each, counts)
-        return Particles(counts, positions, velocities, np.repeat(each, counts))
+        each_particle = np.repeat(each, counts)
+        velocities = start_velocities(case, name, positions, each_particle, counts)
+        return Particles(counts, positions, velocities, each_particle)
 
-    def look() -> list[Survey]:
+    def surveys_of_share() -> list[Survey]:
         # How many particles there will be is known well enough to make some of them at a time.
         first, last = share_of(len(centres), world)
         about = np.ceil(exact[first:last] / cube)
         return [survey(make(first + a, first + b)) for a, b in ranges(about)]
 
-    seen = joined([one for of_rank in together(look, world) for one in of_rank])
+    seen = joined([one for of_rank in together(surveys_of_share, world) for one in of_rank])
     each: Array = exact / seen.counts if way == SHELLS else np.full(len(exact), cube)
     volumes = seen.counts * each
     part = FilledPart(
@@ -174,9 +175,8 @@ def _filled(case: Case, name: str, body: Body) -> FilledPart:
             raise case.error(("body", name, "shape"), rule, remedy)
     else:
         volume = float(volumes.sum())
-    counts = np.array([len(positions)])
-    velocities = start_velocities(case, name, positions, volumes, counts)
-    particles = Particles(counts, positions, velocities, volumes)
+    velocities = start_velocities(case, name, positions, volumes)
+    particles = Particles(np.array([len(positions)]), positions, velocities, volumes)
     return FilledPart(
         name=name,
         material=body.material,

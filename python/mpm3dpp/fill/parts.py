@@ -128,6 +128,25 @@ class FilledPart:
         for first, last in ranges(self.survey.counts):
             yield first, last, self.make(first, last)
 
+    def share(self, first: int, last: int) -> Particles:
+        """Return the particles of the bodies from one to the one before another, as one array."""
+        counts = self.survey.counts[first:last]
+        positions = np.empty((int(counts.sum()), self.survey.lower.shape[1]))
+        velocities: list[Array] = []
+        at = 0
+        for a, b in ranges(counts):
+            some = self.make(first + a, first + b)
+            positions[at : at + len(some.positions)] = some.positions
+            at += len(some.positions)
+            velocities.append(some.velocities)
+        alike = all(len(v) == 1 for v in velocities)
+        return Particles(
+            counts,
+            positions,
+            velocities[0] if velocities and alike else np.concatenate([*velocities, positions[:0]]),
+            np.repeat(self.volumes[first:last], counts),
+        )
+
     def body(self, k: int) -> FilledBody:
         """Return one of the bodies, with its particles."""
         some = self.make(k, k + 1)

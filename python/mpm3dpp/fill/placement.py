@@ -88,6 +88,7 @@ def overlap_mistakes(case: Case, bodies: Filled) -> Iterator[CaseError]:
     if len(bodies) < 2:
         return
     parts = list(bodies.parts.values())
+    part_of = np.repeat(np.arange(len(parts)), [len(part.names) for part in parts])
     reach = CLOSE * np.concatenate([np.full(len(part.names), part.spacing) for part in parts])
     no_ball = (np.full((1, case.grid.dimension), np.nan), np.full(1, np.nan))
     centres, radii = (
@@ -100,12 +101,14 @@ def overlap_mistakes(case: Case, bodies: Filled) -> Iterator[CaseError]:
     a, b = overlapping_boxes(lowers, uppers)
     depths = radii[a] + radii[b] - np.sqrt(((centres[a] - centres[b]) ** 2).sum(axis=1))
     near = ~(depths <= np.minimum(reach[a], reach[b]))  # With a body that is no ball: not a number.
-    rigid = {name: case.is_rigid(name) for name in case.parts()}
-    told: set[tuple[str, str]] = set()
+    rigid = np.array([case.is_rigid(part.name) for part in parts])
+    near &= ~(rigid[part_of[a]] & rigid[part_of[b]])  # They do not act on each other.
+    told: set[tuple[int, int]] = set()
     for k in np.flatnonzero(near).tolist():
-        first, second = bodies[a[k]], bodies[b[k]]
-        if (first.part, second.part) in told or (rigid[first.part] and rigid[second.part]):
-            continue  # They do not act on each other.
+        pair = int(part_of[a[k]]), int(part_of[b[k]])
+        if pair in told:
+            continue
+        first, second = bodies[int(a[k])], bodies[int(b[k])]
         how = f"by {depths[k]:.4g} m"
         if np.isnan(depths[k]):
             distance = CLOSE * min(first.spacing, second.spacing)
@@ -123,7 +126,7 @@ def overlap_mistakes(case: Case, bodies: Filled) -> Iterator[CaseError]:
         else:
             rule = f"has {second.name} overlap {other}: {how}"
             remedy = "move the grains, or make them smaller"
-        told.add((first.part, second.part))
+        told.add(pair)
         yield case.error(_key(case, second.part)[0], rule, remedy)
 
 

@@ -13,14 +13,13 @@ from mpm3dpp.base.errors import Path as KeyPath
 from mpm3dpp.base.expression import Expression
 from mpm3dpp.case.body import Body
 from mpm3dpp.case.case import Case
-from mpm3dpp.grains import Grains
 
 Array = NDArray[np.float64]
 _LARGEST = 1e100  # As of all quantities in a case.
 
 
 def start_velocities(
-    case: Case, part: str, positions: Array, volumes: Array, counts: NDArray[np.int64]
+    case: Case, part: str, positions: Array, volumes: Array, counts: NDArray[np.int64] | None = None
 ) -> Array:
     """Return v + w x (x - x_mass centre) of each particle of a body, or of some grains [m/s].
 
@@ -28,8 +27,8 @@ def start_velocities(
         case: gives v and the spin w, or the prescribed motion, or velocities one by one.
         part: name of the body, or of the entry of grains that they belong to.
         positions: [m], shape (n, D), one body after another.
-        volumes: of the particles of a body [m^3; in 2D m^2], shape (n,); or of one of each grain.
-        counts: how many each has.
+        volumes: of the particles [m^3; in 2D m^2], shape (n,); those of a grain are equal.
+        counts: how many each grain has; None for a body.
 
     Returns:
         Shape (1, D) if all are equal by the case, else (n, D).
@@ -47,8 +46,13 @@ def start_velocities(
     spins = any(entry.angular_velocity)
     if not spins and not any(isinstance(value, Expression) for value in entry.velocity):
         return np.array([entry.velocity], dtype=float)
-    alike = isinstance(entry, Grains) or bool(np.all(volumes == volumes[0]))
-    arm = positions - _mass_centres(positions, None if alike else volumes, counts)
+    if counts is None:
+        alike = bool(np.all(volumes == volumes[0]))
+        arm = positions - np.average(positions, axis=0, weights=None if alike else volumes)
+    else:
+        # In the same way for one grain as for many: they may be made in any groups.
+        sums = np.add.reduceat(positions, np.cumsum(counts) - counts, axis=0)
+        arm = positions - np.repeat(sums / counts[:, None], counts, axis=0)
     dimension = positions.shape[1]
     places = dict(zip("xyz", positions.T, strict=False))
     places["r"] = np.sqrt((arm**2).sum(axis=1))
@@ -66,14 +70,6 @@ def start_velocities(
     if dimension == 2:
         return velocity + np.asarray(spin[0])[..., None] * np.column_stack([-arm[:, 1], arm[:, 0]])
     return velocity + np.cross(np.stack(np.broadcast_arrays(*spin), axis=-1), arm)
-
-
-def _mass_centres(positions: Array, volumes: Array | None, counts: NDArray[np.int64]) -> Array:
-    """Return the mass centre of a body [m], shape (D,), or of each particle's grain, (n, D)."""
-    if len(counts) == 1:
-        return np.asarray(np.average(positions, axis=0, weights=volumes))
-    sums = np.add.reduceat(positions, np.cumsum(counts) - counts, axis=0)
-    return np.repeat(sums / counts[:, None], counts, axis=0)
 
 
 def _value(

@@ -18,6 +18,10 @@ from .orientation import orientations
 Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
+_KEPT = (
+    64  # Radii whose particles are kept; where there are more, most grains have one of their own.
+)
+
 
 class GrainFilling:
     """What fills the grains of an entry; those of a grain have equal volumes.
@@ -57,7 +61,11 @@ class GrainFilling:
             return np.concatenate(on_grid), np.array([len(x) for x in on_grid], dtype=np.int64)
         radii, kind = np.unique(self._radii[first:last], return_inverse=True)
         templates = [self._about_zero(radius) for radius in radii.tolist()]
+        if len(self._made) > _KEPT:
+            self._made.clear()
         counts = np.array([len(points) for points in templates], dtype=np.int64)[kind]
+        for k in np.flatnonzero(counts == 0)[:1]:
+            raise self._empty(float(self._radii[first + k]))
         ends = np.cumsum(counts)
         positions = np.empty((int(ends[-1]), self._centres.shape[1]))
         by_kind = np.argsort(kind, kind="stable")
@@ -88,23 +96,23 @@ class GrainFilling:
             else:
                 corner = zero if self._align == "between" else zero - 0.5 * self._spacing
                 found = fill_shape(ball, corner, self._spacing)
-            self._made[radius] = self._checked(found, radius)
+            self._made[radius] = found
         return self._made[radius]
 
     def _on_grid(self, k: int) -> Array:
         radius = float(self._radii[k])
-        ball = _ball(self._centres[k], radius)
-        return self._checked(fill_shape(ball, self._grid.origin, self._spacing), radius)
+        found = fill_shape(_ball(self._centres[k], radius), self._grid.origin, self._spacing)
+        if len(found) == 0:
+            raise self._empty(radius)
+        return found
 
-    def _checked(self, positions: Array, radius: float) -> Array:
-        if len(positions):
-            return positions
+    def _empty(self, radius: float) -> CaseError:
         rule = (
             f"has a grain of radius {radius:.4g} m that holds no particle: they are "
             f"{self._spacing:.4g} m apart"
         )
         remedy = "give a smaller grid.cell_size, more particles_per_cell, or larger grains"
-        raise CaseError(rule, remedy)
+        return CaseError(rule, remedy)
 
 
 def _ball(centre: Array, radius: float) -> Disc:

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.errors import NO_VALUE, CaseError
 
 # How many processes a launcher has started and which of them this is: Open MPI; MPICH, Intel MPI
 # and others that speak PMI; Slurm's srun.
@@ -159,10 +159,11 @@ def together(make: Callable[[], Any], world: World | None) -> list[Any]:
     try:
         found = make()
     except CaseError as error:
-        mistake = error
-    for told in world.comm.allgather(None if mistake is None else str(mistake)):
+        given = {} if error.value is NO_VALUE else {"value": error.value}
+        mistake = (error.rule, error.remedy, {"key": error.key, "place": error.place, **given})
+    for told in world.comm.allgather(mistake):
         if told is not None:
-            raise mistake or CaseError(told)
+            raise CaseError(told[0], told[1], **told[2])
     result: list[Any] = world.comm.allgather(found)
     return result
 

@@ -62,7 +62,7 @@ def _add_grains(
     core: Any, case: Case, grains: FilledPart, material: int, world: World | None
 ) -> None:
     first, last = share_of(len(grains.names), world)
-    own = grains.make(first, last)
+    own = grains.share(first, last)
     counts, volumes = grains.survey.counts, grains.volumes
     leader = core.add_bodies(
         grains.names, material, counts, volumes, first, own.positions, own.velocities

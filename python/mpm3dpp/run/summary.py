@@ -114,15 +114,18 @@ def memory_bytes(case: Case, bodies: Filled) -> int:
     return total
 
 
-def process_bytes(case: Case, bodies: Filled) -> int:
-    """Return about the peak of the process of a run that writes frames; pictures have their own."""
-    return _PROGRAM_BYTES + round((1.0 + FRAME_SHARE) * memory_bytes(case, bodies))
+def process_bytes(core: int) -> int:
+    """Return about the peak of the process of a run that writes frames, by that of the core.
+
+    Pictures have a process of their own.
+    """
+    return _PROGRAM_BYTES + round((1.0 + FRAME_SHARE) * core)
 
 
-def rank_line(case: Case, bodies: Filled, ranks: int) -> str:
-    """Return the line about the memory of each of several ranks."""
+def rank_line(core: int, ranks: int) -> str:
+    """Return the line about the memory of each of several ranks, by that of one core alone."""
     # A rank has the nodes of others beside its own, and room for particles that come.
-    core = round(_WITH_EDGES * memory_bytes(case, bodies) / ranks)
+    core = round(_WITH_EDGES * core / ranks)
     return (
         f"ranks: each of {ranks} about {(_PROGRAM_BYTES + core) / 2**20:,.0f} MiB, of which the "
         f"core {core / 2**20:,.1f} MiB; the first one as much more as a frame takes"
@@ -185,10 +188,9 @@ def _grains_line(grains: FilledPart, per_metre: str) -> str:
     )
 
 
-def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
-    """Return what the case amounts to: bodies, materials, memory, cells, time step, steps."""
-    per_metre = " per metre" if case.grid.dimension == 2 else ""
-    lines = [case.title] if case.title else []
+def _body_lines(case: Case, bodies: Filled, per_metre: str) -> list[str]:
+    """Return the lines about bodies, grains and loads."""
+    lines = []
     for name, part in bodies.parts.items():
         lines.append(
             _grains_line(part, per_metre)
@@ -202,8 +204,16 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
             f"load {name}: {load_in_words(case, name)} on {load.side} of {load.body}, "
             f"{found.area:.6g} m^2{per_metre}, carried by {len(found.particles):,} particles"
         )
-    lines += material_lines(case)
-    particles = bodies.particle_count
+    return lines
+
+
+def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
+    """Return what the case amounts to: bodies, materials, memory, cells, time step, steps."""
+    per_metre = " per metre" if case.grid.dimension == 2 else ""
+    lines = [case.title] if case.title else []
+    lines += _body_lines(case, bodies, per_metre) + material_lines(case)
+    particles, core = bodies.particle_count, memory_bytes(case, bodies)
+    mass = sum(float(part.masses.sum()) for part in bodies.parts.values())
     cells = occupied_cells(case, bodies)
     box = case.grid.box_cells
     bounds = " x ".join(str(n) for n in box) + " cells" if box else "no bounds"
@@ -212,10 +222,10 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
         contact = f"{case.contact.detection} detection, {case.contact.response}"
         contact += f", friction {case.contact.friction:g}"
     lines += [
-        f"total: {particles:,} particles, mass {sum(b.mass for b in bodies):.6g} kg{per_metre}, "
-        f"memory about {process_bytes(case, bodies) / 2**20:,.0f} MiB, of which the core "
-        f"{memory_bytes(case, bodies) / 2**20:,.1f} MiB",
-        *([rank_line(case, bodies, ranks)] if ranks > 1 else []),
+        f"total: {particles:,} particles, mass {mass:.6g} kg{per_metre}, "
+        f"memory about {process_bytes(core) / 2**20:,.0f} MiB, of which the core "
+        f"{core / 2**20:,.1f} MiB",
+        *([rank_line(core, ranks)] if ranks > 1 else []),
         f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
         f"{bounds}, {case.grid.basis} basis",
         *condition_lines(case),
