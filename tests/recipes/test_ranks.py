@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 from cases import three_blocks
-from mpm3dpp import Case, Simulation
+from mpm3dpp import Case, Simulation, _core
 from mpm3dpp.base.errors import CaseError
 from outcomes import different, outcome, steps_of
 
@@ -194,3 +195,36 @@ velocity = [2, 0]
         counts = np.bincount(simulation.ranks_of("block"), minlength=2)
         assert counts.max() <= 1.2 * counts.mean()  # 1.05, and 20 steps more
     assert simulation.column("block", "position")[:, 0].min() > 55.0
+
+
+ALIKE = (["a", "b"], np.array([1, 1]), np.array([1.0, 1.0]), np.zeros((2, 2)), np.zeros((1, 2)))
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({0: []}, "need a name, a count and a volume"),
+        ({1: np.array([1])}, "need a name, a count and a volume"),
+        ({1: np.array([1, -1])}, "b: it has no particles"),
+        ({2: np.array([1.0, 0.0])}, "b: volumes must be finite numbers > 0"),
+        ({2: np.array([1.0, np.nan])}, "b: volumes must be finite numbers > 0"),
+        ({3: np.zeros((1, 2))}, "b: its particles are not given"),
+        ({3: np.array([[0.0, 0.0], [0.0, np.inf]])}, "b: positions must be finite numbers"),
+        ({4: np.zeros((3, 2))}, "a: velocities must be"),
+    ],
+)
+def test_bodies_that_do_not_fit(changes: dict[int, Any], sentence: str) -> None:
+    settings = _core.Settings()
+    settings.grid.dimension, settings.grid.cell_size = 2, 1.0
+    core = _core.Simulation(settings)
+    material = core.add_material(
+        1000.0, "elastic", {"E": 1e6, "nu": 0.3}, None, [], (0, 0), 0.0, False
+    )
+    names, counts, volumes, positions, velocities = (
+        changes.get(k, ALIKE[k]) for k in range(len(ALIKE))
+    )
+    with pytest.raises(ValueError, match=re.escape(sentence)):
+        core.add_bodies(names, material, counts, volumes, 0, positions, velocities)
+    assert core.body_count == 0
+    assert core.add_bodies(ALIKE[0], material, *ALIKE[1:3], 0, *ALIKE[3:]) == 0
+    assert core.body_count == 2
