@@ -53,7 +53,8 @@ def worker(case_file: str, until: float, limit: float) -> None:
         seconds += time.perf_counter() - begin
         counts = particles_by_rank(simulation, ranks.size)
         times.append(float(end))
-        imbalance.append(float(counts.max() / counts.mean()))
+        if ranks.rank == 0:  # Others are not told.
+            imbalance.append(float(counts.max() / counts.mean()))
     if ranks.rank == 0:
         print(json.dumps({"times": times, "imbalance": imbalance, "seconds": seconds}))
 

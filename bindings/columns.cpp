@@ -8,18 +8,20 @@
 namespace mpm::bindings {
 namespace {
 
-/// Rows of floats that `fill` writes on rank 0; on others it writes to rows of their own.
+/// So many on rank 0, which gets all; none on others.
+template <class Simulation>
+std::size_t on_first(const Simulation& s, std::size_t count) {
+  return comm_of(s).rank() == 0 ? count : 0;
+}
+
+/// Rows of floats that `fill` writes on rank 0; none on others.
 template <class Fill>
 Floats rows_of_all(AnySimulation& either, std::size_t width, float elsewhere, Fill fill) {
-  const std::size_t count = either.visit([](auto& s) { return particle_count(s.domain); });
+  const std::size_t count =
+      either.visit([](auto& s) { return on_first(s, particle_count(s.domain)); });
   Floats values = floats(count, width, elsewhere);
   const std::span<float> to{values.data(), values.size()};
-  either.visit([&](auto& s) {
-    std::vector<float> others;
-    const bool first = comm_of(s).rank() == 0;
-    if (!first) others.resize(to.size(), elsewhere);
-    fill(s, first ? to : std::span<float>(others));
-  });
+  either.visit([&](auto& s) { fill(s, to.first(on_first(s, to.size()))); });
   return values;
 }
 
@@ -35,7 +37,7 @@ void def_columns(SimulationClass& simulation) {
             auto [values, width] = either.visit([&](auto& s) {
               const auto components =
                   static_cast<std::size_t>(column_components(s.domain, body, name));
-              std::vector<double> numbers(s.domain.body_at(body).count * components);
+              std::vector<double> numbers(on_first(s, s.domain.body_at(body).count * components));
               copy_column(s.domain, body, name, numbers);
               return std::pair(std::move(numbers), components);
             });
@@ -46,7 +48,7 @@ void def_columns(SimulationClass& simulation) {
           "ranks_of",
           [](AnySimulation& either, int body) {
             auto numbers = either.visit([&](auto& s) {
-              std::vector<double> found(s.domain.body_at(body).count);
+              std::vector<double> found(on_first(s, s.domain.body_at(body).count));
               copy_ranks(s.domain, body, found);
               return found;
             });

@@ -76,11 +76,14 @@ def peak(folder: Path, what: str) -> int:
     return int(json.loads(done.stdout))
 
 
-@pytest.mark.parametrize(("edge", "end", "dimension"), [(150, "0.02 ms", 2), (20, "0.05 ms", 3)])
+@pytest.mark.parametrize(("edge", "end", "dimension"), [(240, "0.02 ms", 2), (20, "0.05 ms", 3)])
 def test_frames_and_checkpoints_take_a_fourth_of_stepping_at_most(
     tmp_path: Path, edge: int, end: str, dimension: int
 ) -> None:
-    """And `check` says the peak within a fourth."""
+    """And `check` says the peak within a fourth.
+
+    Cases so large that the library for frames, some 17 MB, is a small part of that.
+    """
     path = case_file(tmp_path, edge, end, dimension)
     stepping, running = peak(tmp_path, "step"), peak(tmp_path, "run")
     assert running <= 1.25 * stepping

@@ -24,20 +24,19 @@ void copy_column(const Domain<D>& domain, int number, const std::string& name,
   const ParticlePool<D>& of = domain.pool_of(b);
   const ColumnInfo& info = of.columns.info(name);
   const auto width = static_cast<std::size_t>(column_components(domain, number, name));
-  if (to.size() != b.count * width) throw std::invalid_argument("copy_column: wrong size");
+  Comm& comm = *domain.grid.partition.comm;
+  if (comm.rank() == 0 && to.size() != b.count * width)
+    throw std::invalid_argument("copy_column: wrong size");
   std::fill(to.begin(), to.end(), 0.0);
   for (int c = 0; c < info.components; ++c) {
     // Plane strain keeps xx yy zz xy; the fourth becomes the sixth of xx yy zz yz xz xy.
     const auto place = static_cast<std::size_t>(name == "stress" && D == 2 && c == 3 ? 5 : c);
-    const auto for_each_place = [&](auto&& f) {
-      for_each_row(domain.grid.patches, of, number, b.removed_here,
-                   [&](std::uint32_t row) { f(of.id[row] * width + place, row); });
-    };
     of.columns.with_component(info.first + c, [&](const auto* from) {
-      for_each_place([&](std::size_t k, std::uint32_t row) { to[k] = from[row]; });
+      gather(comm, to, [&](auto&& f) {
+        for_each_row(domain.grid.patches, of, number, b.removed_here,
+                     [&](std::uint32_t row) { f(of.id[row] * width + place, double{from[row]}); });
+      });
     });
-    gather(*domain.grid.partition.comm, to,
-           [&](auto&& f) { for_each_place([&](std::size_t k, std::uint32_t) { f(k); }); });
   }
 }
 
@@ -45,14 +44,13 @@ template <int D>
 void copy_ranks(const Domain<D>& domain, int number, std::span<double> to) {
   const Body<D>& b = domain.body_at(number);
   const ParticlePool<D>& of = domain.pool_of(b);
-  if (to.size() != b.count) throw std::invalid_argument("copy_ranks: wrong size");
   Comm& comm = *domain.grid.partition.comm;
-  const auto for_each_place = [&](auto&& f) {
+  if (comm.rank() == 0 && to.size() != b.count)
+    throw std::invalid_argument("copy_ranks: wrong size");
+  gather(comm, to, [&](auto&& f) {
     for_each_row(domain.grid.patches, of, number, b.removed_here,
-                 [&](std::uint32_t row) { f(std::size_t{of.id[row]}); });
-  };
-  for_each_place([&](std::size_t k) { to[k] = comm.rank(); });
-  gather(comm, to, for_each_place);
+                 [&](std::uint32_t row) { f(of.id[row], 1.0 * comm.rank()); });
+  });
 }
 
 template void copy_ranks<2>(const Domain<2>&, int, std::span<double>);

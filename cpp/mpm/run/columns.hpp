@@ -12,7 +12,7 @@ const std::vector<ColumnInfo>& columns(const Domain<D>& domain, int body);
 /// Stress has six components in 2D too.
 template <int D>
 int column_components(const Domain<D>& domain, int body, const std::string& name);
-/// (n, components) row by row.
+/// (n, components) row by row; on rank 0, by all at once, and others need no room.
 template <int D>
 void copy_column(const Domain<D>& domain, int body, const std::string& name, std::span<double> to);
 

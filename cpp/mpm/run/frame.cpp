@@ -40,7 +40,9 @@ template <int D>
 void round_column(const Domain<D>& domain, const std::string& name, std::span<const int> places,
                   std::size_t width, std::span<float> to) {
   const std::vector<std::size_t> first = first_places(domain);
-  if (to.size() < first.back() * width) throw std::invalid_argument("round_column: wrong size");
+  Comm& comm = *domain.grid.partition.comm;
+  if (comm.rank() == 0 && to.size() < first.back() * width)
+    throw std::invalid_argument("round_column: wrong size");
   for (std::size_t m = 0; m < domain.pools.size(); ++m) {
     const ParticlePool<D>& of = domain.pools[m];
     const auto info = std::ranges::find(of.columns.infos(), name, &ColumnInfo::name);
@@ -49,19 +51,15 @@ void round_column(const Domain<D>& domain, const std::string& name, std::span<co
         !std::ranges::all_of(places, [&](int k) { return 0 <= k && std::cmp_less(k, width); }))
       throw std::invalid_argument("round_column: wrong places");
     for (int c = 0; c < info->components; ++c) {
-      float* const begin = to.data() + places[static_cast<std::size_t>(c)];
+      const auto place = static_cast<std::size_t>(places[static_cast<std::size_t>(c)]);
       of.columns.with_component(info->first + c, [&](const auto* from) {
-        for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
-          begin[(first[b] + of.id[row]) * width] = static_cast<float>(from[row]);
+        gather(comm, to, [&](auto&& f) {
+          for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
+            f((first[b] + of.id[row]) * width + place, static_cast<float>(from[row]));
+          });
         });
       });
     }
-    gather(*domain.grid.partition.comm, to, [&](auto&& f) {
-      for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
-        for (const int place : places)
-          f((first[b] + of.id[row]) * width + static_cast<std::size_t>(place));
-      });
-    });
   }
 }
 
@@ -71,18 +69,18 @@ void round_derived(const Domain<D>& domain, const std::string& name, std::span<f
   if (field == derived_fields.end())
     throw std::invalid_argument("no derived field is named " + name);
   const std::vector<std::size_t> first = first_places(domain);
-  if (to.size() < first.back()) throw std::invalid_argument("round_derived: wrong size");
+  Comm& comm = *domain.grid.partition.comm;
+  if (comm.rank() == 0 && to.size() < first.back())
+    throw std::invalid_argument("round_derived: wrong size");
   for (std::size_t m = 0; m < domain.pools.size(); ++m) {
     const ParticlePool<D>& of = domain.pools[m];
-    for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
-      ParticleState p{{}, of.mass()[row] / domain.bodies[b].initial_density, D};
-      for (int c = 0; c < Sym<double, D>::size; ++c)
-        p.stress[D == 2 && c == 3 ? 5 : c] = of.stress(c)[row];
-      to[first[b] + of.id[row]] = static_cast<float>(field->value(p));
-    });
-    gather(*domain.grid.partition.comm, to, [&](auto&& f) {
-      for_each_row_of(domain, m,
-                      [&](std::size_t b, std::uint32_t row) { f(first[b] + of.id[row]); });
+    gather(comm, to, [&](auto&& f) {
+      for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
+        ParticleState p{{}, of.mass()[row] / domain.bodies[b].initial_density, D};
+        for (int c = 0; c < Sym<double, D>::size; ++c)
+          p.stress[D == 2 && c == 3 ? 5 : c] = of.stress(c)[row];
+        f(first[b] + of.id[row], static_cast<float>(field->value(p)));
+      });
     });
   }
 }

@@ -8,8 +8,8 @@
 namespace mpm {
 
 /// A column of all bodies, one after another, rounded to floats: component c of particle i goes to
-/// to[i * width + places[c]]. What belongs to bodies without the column, or to no component, stays
-/// as it is.
+/// to[i * width + places[c]]; on rank 0, by all at once, and others need no room. What belongs to
+/// bodies without the column, or to no component, stays as it is.
 template <int D>
 void round_column(const Domain<D>& domain, const std::string& name, std::span<const int> places,
                   std::size_t width, std::span<float> to);

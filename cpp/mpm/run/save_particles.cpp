@@ -54,9 +54,8 @@ struct Places {
           [](const PlacedRow& one, std::size_t place) { return one.place < place; });
       const std::span here(at, end);
       if (!stream.restores()) {
-        for (const auto [place, row] : here) numbers[place - begin] = get(row);
         gather(stream.comm(), std::span(numbers), [&](auto&& f) {
-          for (const auto [place, row] : here) f(place - begin);
+          for (const auto [place, row] : here) f(place - begin, get(row));
         });
       }
       stream.array(std::span(numbers));
@@ -78,7 +77,8 @@ void exchange_pieces(const Places<D>& places, ParticlePool<D>& pool, StateStream
   if (!stream.restores())
     gather(stream.comm(), std::span(pool.pieces), [&](auto&& f) {
       for (const auto [place, row] : places.rows)
-        for (std::uint32_t k = pool.piece[row]; k != 0; k = pool.pieces[k - 1].next) f(k - 1);
+        for (std::uint32_t k = pool.piece[row]; k != 0; k = pool.pieces[k - 1].next)
+          f(k - 1, pool.pieces[k - 1]);
     });
   stream.array(std::span(pool.pieces));
 }
