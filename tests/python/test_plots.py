@@ -269,7 +269,7 @@ def test_preview(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dimension: int
     size = np.full(len(blocks[0]), SIZE**dimension)
     some = [SimpleNamespace(positions=block, volumes=size) for block in blocks]
     parts = {
-        name: SimpleNamespace(chunks=lambda one=one: [(0, 1, one)])
+        name: SimpleNamespace(chunks=lambda one=one: [one])
         for name, one in zip(names, some, strict=True)
     }
     filled = SimpleNamespace(parts=parts)

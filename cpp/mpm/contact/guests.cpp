@@ -56,15 +56,15 @@ void answer(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   });
 }
 
-/// Take the particles of a foreign patch in, behind all lists of their pool.
+/// Take the particles of a foreign patch in, behind all lists of their pool; `rows` is scratch.
 template <int D>
-void take_in(Reader& reader, ParticlePool<D>& pool, Patch<D>& patch) {
+void take_in(Reader& reader, ParticlePool<D>& pool, Patch<D>& patch,
+             std::vector<std::uint32_t>& rows) {
   const auto told = reader.read<Answer>();
   patch.surface_range = told.surface_range;
   patch.begin = static_cast<std::uint32_t>(pool.used + pool.guests.size());
   patch.room = 0;  // no list of its own
   patch.cell_begin.fill(0);
-  std::vector<std::uint32_t> rows;
   take_rows(pool, told.count, rows);
   pool.guests.insert(pool.guests.end(), rows.begin(), rows.end());
   for (const std::uint32_t row : rows) {
@@ -112,11 +112,12 @@ void exchange_guests(Contact<D>& contact, TileGrid<D>& grid, const std::vector<B
   std::vector<std::pair<int, Reader>> readers;
   readers.reserve(told.in.size());
   for (const Letter& letter : told.in) readers.emplace_back(letter.rank, Reader(letter));
+  std::vector<std::uint32_t> rows;
   // Answers come in the order of the requests.
   for (const WantedCells& wanted : contact.wanted) {
     Patch<D>& patch = grid.patches[wanted.patch];
     take_in(std::ranges::find(readers, patch.owner, &std::pair<int, Reader>::first)->second,
-            pools[pool_number(bodies, patch.body)], patch);
+            pools[pool_number(bodies, patch.body)], patch, rows);
   }
   for (ParticlePool<D>& pool : pools) {
     const std::size_t end = pool.used + pool.guests.size();

@@ -264,7 +264,7 @@ def _detonations(case: Case, bodies: Filled) -> list[str]:
         first = np.inf
         for part in (explosives[name] for name in detonation.bodies or explosives):
             speed = case.material[part.material].strength.parameters["D"]
-            for _, _, some in part.chunks():
+            for some in part.chunks():
                 distance = np.linalg.norm(some.positions - np.asarray(detonation.point), axis=1)
                 first = min(first, detonation.time + float(distance.min()) / speed)
         if first > case.run.end_time:

@@ -123,10 +123,10 @@ class FilledPart:
         """Number of the particles of all its bodies."""
         return int(self.survey.counts.sum())
 
-    def chunks(self) -> Iterator[tuple[int, int, Particles]]:
-        """Yield bodies from one to the one before another, with their particles, by and by."""
+    def chunks(self) -> Iterator[Particles]:
+        """Yield the particles of all its bodies, those of some bodies at a time."""
         for first, last in ranges(self.survey.counts):
-            yield first, last, self.make(first, last)
+            yield self.make(first, last)
 
     def share(self, first: int, last: int) -> Particles:
         """Return the particles of the bodies from one to the one before another, as one array."""

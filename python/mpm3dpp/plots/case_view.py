@@ -48,7 +48,7 @@ def filled(case: Any) -> tuple[list[str], np.ndarray, np.ndarray, np.ndarray]:
     names = list(case.parts())
     points, sizes, bodies = [], [], []
     for name, part in fill_all(case).parts.items():
-        for _, _, some in part.chunks():
+        for some in part.chunks():
             whole = np.zeros((len(some.positions), 3))
             whole[:, :dimension] = some.positions
             points.append(whole)

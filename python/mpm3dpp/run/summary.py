@@ -77,9 +77,7 @@ def frames_in_words(case: Case, particles: int) -> str:
 def occupied_cells(case: Case, bodies: Filled) -> int:
     """Return the number of grid cells that hold particles, each body counted by itself."""
     return sum(
-        len(_cells(case, some, 0.0)[0])
-        for part in bodies.parts.values()
-        for _, _, some in part.chunks()
+        len(_cells(case, some, 0.0)[0]) for part in bodies.parts.values() for some in part.chunks()
     )
 
 
@@ -106,7 +104,7 @@ def memory_bytes(case: Case, bodies: Filled) -> int:
         state = state_columns(case.material[part.material].models)
         each = _PARTICLE_BYTES[D] + taken + 8 * len(state)
         total += each * part.count
-        for _, _, some in part.chunks():
+        for some in part.chunks():
             nodes, strides = _cells(case, some, basis["own_node"])
             for stride in strides:
                 nodes = np.unique(np.add.outer(stride * reached, nodes))
