@@ -14,14 +14,21 @@ std::size_t on_first(const Simulation& s, std::size_t count) {
   return comm_of(s).rank() == 0 ? count : 0;
 }
 
-/// Rows of floats that `fill` writes on rank 0; none on others.
+/// Rows of floats that `fill` writes: the slice of all particles that this rank gets of those that
+/// are shared out to `writers`.
 template <class Fill>
-Floats rows_of_all(AnySimulation& either, std::size_t width, float elsewhere, Fill fill) {
-  const std::size_t count =
-      either.visit([](auto& s) { return on_first(s, particle_count(s.domain)); });
+Floats rows_of_slice(AnySimulation& either, const std::vector<int>& writers, std::size_t width,
+                     float elsewhere, Fill fill) {
+  const auto slices_of = [&](auto& s) { return Slices(particle_count(s.domain), writers); };
+  const auto [rank, count] = either.visit([&](auto& s) {
+    const int own = comm_of(s).rank();
+    return std::pair(own, slices_of(s).of(own).count());
+  });
   Floats values = floats(count, width, elsewhere);
   const std::span<float> to{values.data(), values.size()};
-  either.visit([&](auto& s) { fill(s, to.first(on_first(s, to.size()))); });
+  either.visit([&, rank = rank](auto& s) {  // Others may be threads of this process.
+    fill(s, slices_of(s), comm_of(s).rank() == rank ? to : std::span<float>{});
+  });
   return values;
 }
 
@@ -58,20 +65,23 @@ void def_columns(SimulationClass& simulation) {
       .def(
           "rounded_column",
           [](AnySimulation& either, const std::string& name, const std::vector<int>& places,
-             std::size_t width, float elsewhere) {
-            return rows_of_all(either, width, elsewhere, [&](auto& s, std::span<float> to) {
-              round_column(s.domain, name, places, width, to);
-            });
+             std::size_t width, float elsewhere, const std::vector<int>& writers) {
+            return rows_of_slice(either, writers, width, elsewhere,
+                                 [&](auto& s, const Slices& slices, std::span<float> to) {
+                                   round_column(s.domain, slices, name, places, width, to);
+                                 });
           },
-          nb::arg("name"), nb::arg("places"), nb::arg("width"), nb::arg("elsewhere"))
+          nb::arg("name"), nb::arg("places"), nb::arg("width"), nb::arg("elsewhere"),
+          nb::arg("writers") = std::vector<int>{0})
       .def(
           "rounded_derived",
-          [](AnySimulation& either, const std::string& name) {
-            return rows_of_all(either, 1, 0.0F, [&](auto& s, std::span<float> to) {
-              round_derived(s.domain, name, to);
-            });
+          [](AnySimulation& either, const std::string& name, const std::vector<int>& writers) {
+            return rows_of_slice(either, writers, 1, 0.0F,
+                                 [&](auto& s, const Slices& slices, std::span<float> to) {
+                                   round_derived(s.domain, slices, name, to);
+                                 });
           },
-          nb::arg("name"));
+          nb::arg("name"), nb::arg("writers") = std::vector<int>{0});
 }
 
 }  // namespace mpm::bindings

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -88,9 +89,15 @@ class FakeSimulation:
         }[name]
 
     def rounded_column(
-        self, name: str, places: list[int], width: int, elsewhere: float
+        self,
+        name: str,
+        places: list[int],
+        width: int,
+        elsewhere: float,
+        writers: Sequence[int] = (0,),
     ) -> np.ndarray:
         """As the core: the columns of all bodies, component c at places[c]."""
+        assert list(writers) == [0]
         rounded = np.full((self.particle_count, width), elsewhere, dtype=np.float32)
         end = 0
         for body in range(self.body_count):
@@ -100,7 +107,8 @@ class FakeSimulation:
             end += count
         return rounded
 
-    def rounded_derived(self, name: str) -> np.ndarray:
+    def rounded_derived(self, name: str, writers: Sequence[int] = (0,)) -> np.ndarray:
+        assert list(writers) == [0]
         if name == "size":
             return np.full((self.particle_count, 1), SIZE, dtype=np.float32)
         stress = np.concatenate([self.column(b, "stress") for b in range(self.body_count)])

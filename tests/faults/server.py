@@ -208,15 +208,14 @@ def by_steps() -> None:
 
 def one_thread_at_a_time() -> None:
     """Let a step wait for its frame, so that each run makes the same calls in the same order."""
-    writer = mpm3dpp.io.background.BackgroundWriter
-    write = writer.write
+    thread = mpm3dpp.io.background.FrameThread
+    hand_over = thread.hand_over
 
     def wait(self: Any, simulation: Any) -> None:
-        write(self, simulation)
-        with self._changed:
-            self._changed.wait_for(lambda: self._unwritten == 0)
+        hand_over(self, simulation)
+        self.wait()
 
-    writer.write = wait  # type: ignore[method-assign]
+    thread.hand_over = wait  # type: ignore[method-assign]
 
 
 def stopped_after(case: Any, folder: Path, looks: int) -> None:

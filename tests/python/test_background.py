@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -85,7 +86,7 @@ def test_a_frame_larger_than_the_room_goes_through_column_by_column(tmp_path: Pa
 
         def watched(*arguments):
             for found in own(*arguments):
-                waiting.append(results._waiting)
+                waiting.append(results._parts._waiting)
                 yield found
 
         file._own = watched
@@ -131,10 +132,10 @@ def test_a_frame_that_cannot_be_copied_takes_no_room(tmp_path: Path) -> None:
 class Breaking(FakeSimulation):
     """Has no memory left for a column in the middle of its second frame."""
 
-    def rounded_derived(self, name: str) -> np.ndarray:
+    def rounded_derived(self, name: str, writers: Sequence[int] = (0,)) -> np.ndarray:
         if self.step:
             raise MemoryError("no room")
-        return super().rounded_derived(name)
+        return super().rounded_derived(name, writers)
 
 
 def test_nothing_is_written_after_the_end(tmp_path: Path) -> None:
@@ -153,7 +154,7 @@ def test_a_column_that_cannot_be_made_takes_no_room(tmp_path: Path) -> None:
         results.write(simulation)
     with pytest.raises(CaseError, match="broken off"):
         results.close()
-    assert results._waiting == 0
+    assert results._parts._waiting == 0
 
 
 def test_a_frame_that_breaks_off_leaves_those_before(tmp_path: Path) -> None:

@@ -423,7 +423,7 @@ def test_a_first_frame_that_failed_does_not_take_the_constants_with_it(
     simulation = FakeSimulation()
     with writer(tmp_path) as results:
         with monkeypatch.context() as patch, pytest.raises(OSError):
-            patch.setattr("mpm3dpp.io.vtkhdf.write_frame", Mock(side_effect=OSError()))
+            patch.setattr("mpm3dpp.io.frames_writer.write_frame", Mock(side_effect=OSError()))
             results.write(simulation)
         results.write(simulation)
     assert {"body", "material", "size"} <= open_results(tmp_path).arrays(0).keys()

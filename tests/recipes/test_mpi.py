@@ -16,15 +16,16 @@ from typing import Any
 
 import pytest
 
+import mpi_jobs
 from commands import CASE, command, mpm3dpp, one_sentence, write
-from mpm3dpp.base.errors import CaseError
+from mpi_jobs import PROGRAMS, environment, mpiexec, run
 from mpm3dpp.io.checkpoint import read_about
-from mpm3dpp.ranks import launch, world
+from mpm3dpp.ranks import launch
 
-PROGRAMS = Path(__file__).parents[1] / "ranks"
 LONG = CASE.replace('"10 mm"', '"2 mm"').replace('"8 ms"', '"100 s"').replace("frames = 4", "")
 LONG = LONG.replace("[output]", '[output]\ncheckpoint_interval = 0.2\ninterval = "1 s"')
 BOTH = ("out", "straight")
+way = mpi_jobs.way
 # Grains that a formula gives a velocity; beyond x = 50 mm, where the second of two ranks has them,
 # it has none.
 GRAINS = """
@@ -43,32 +44,6 @@ velocity = [{ expression = "sqrt(0.05 - x)" }, 0]
 """
 
 
-def mpiexec(count: int, *words: Any) -> list[str]:
-    return [*launch.command_of(count, 1)[0], sys.executable, *map(str, words)]
-
-
-def environment(way: str) -> dict[str, str]:
-    found = {**os.environ, **launch.AS_ROOT, "OMP_NUM_THREADS": "1"}
-    return {**found, world.THROUGH: "1"} if way == "mpi4py" else found
-
-
-@pytest.fixture(scope="module", params=["module", "mpi4py"])
-def way(request: pytest.FixtureRequest) -> str:
-    """How the core speaks to MPI; skipped where there is none."""
-    try:
-        launch.find_mpiexec()
-    except CaseError as error:
-        pytest.skip(f"no MPI: {error}")
-    name: str = request.param
-    ask = (
-        "from mpi4py import MPI; from mpm3dpp.ranks.world import module_for; print(module_for(MPI))"
-    )
-    told = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=True)
-    if name == "module" and told.stdout.strip() == "None":
-        pytest.skip("mpm3dpp was built without a module for the MPI that mpi4py uses")
-    return name
-
-
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     out = tmp_path_factory.mktemp("alone") / "found.json"
@@ -85,19 +60,6 @@ def test_examples(tmp_path: Path, way: str, alone: dict[str, str], ranks: int) -
     found = json.loads(out.read_text())
     assert found.pop("ranks") == str(ranks)
     assert len(found) == 6 and found == {k: v for k, v in alone.items() if k != "ranks"}
-
-
-def run(way: str, folder: Path, *words: Any) -> subprocess.CompletedProcess[str]:
-    line = command("run", *words)
-    return subprocess.run(
-        line,
-        cwd=folder,
-        env=environment(way),
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
 
 
 def test_a_run_writes_and_tells_once(tmp_path: Path, way: str) -> None:

@@ -65,6 +65,7 @@
   X(tile_holder) \
   X(contact_part) \
   X(derived_fields) \
+  X(slices) \
   X(ranks) \
   X(step_watch) \
   X(timers) \

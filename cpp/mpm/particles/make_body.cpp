@@ -53,7 +53,7 @@ void for_each_given(const std::vector<double>& given, std::size_t width, std::si
 /// has been taken, so that memory does not hold it twice.
 template <int D, class F>
 void take(std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches,
-          std::vector<double> GivenParticles::* member, std::size_t width, F&& f) {
+          std::vector<double> GivenParticles::*member, std::size_t width, F&& f) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].given) continue;
     std::vector<double>& given = bodies[b].given.get()->*member;
@@ -90,13 +90,6 @@ void make_rows(std::vector<ParticlePool<D>>& pools, const std::vector<Body<D>>& 
 }
 
 }  // namespace
-
-Share::Share(std::size_t count, const Comm& comm) {
-  const auto rank = static_cast<std::size_t>(comm.rank()),
-             ranks = static_cast<std::size_t>(comm.size());
-  first = count * rank / ranks;
-  last = count * (rank + 1) / ranks;
-}
 
 std::vector<double> Share::of(std::span<const double> given, std::size_t width) const {
   if (given.size() != width) given = given.subspan(first * width, count() * width);

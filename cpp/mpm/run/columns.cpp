@@ -32,9 +32,9 @@ void copy_column(const Domain<D>& domain, int number, const std::string& name,
     // Plane strain keeps xx yy zz xy; the fourth becomes the sixth of xx yy zz yz xz xy.
     const auto place = static_cast<std::size_t>(name == "stress" && D == 2 && c == 3 ? 5 : c);
     of.columns.with_component(info.first + c, [&](const auto* from) {
-      gather(comm, to, [&](auto&& f) {
+      gather(comm, Slices(b.count), width, to, [&](auto&& f) {
         for_each_row(domain.grid.patches, of, number, b.removed_here,
-                     [&](std::uint32_t row) { f(of.id[row] * width + place, double{from[row]}); });
+                     [&](std::uint32_t row) { f(of.id[row], place, double{from[row]}); });
       });
     });
   }
@@ -47,9 +47,9 @@ void copy_ranks(const Domain<D>& domain, int number, std::span<double> to) {
   Comm& comm = *domain.grid.partition.comm;
   if (comm.rank() == 0 && to.size() != b.count)
     throw std::invalid_argument("copy_ranks: wrong size");
-  gather(comm, to, [&](auto&& f) {
+  gather(comm, Slices(b.count), 1, to, [&](auto&& f) {
     for_each_row(domain.grid.patches, of, number, b.removed_here,
-                 [&](std::uint32_t row) { f(of.id[row], 1.0 * comm.rank()); });
+                 [&](std::uint32_t row) { f(of.id[row], 0, 1.0 * comm.rank()); });
   });
 }
 

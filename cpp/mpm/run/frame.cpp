@@ -37,11 +37,11 @@ void for_each_row_of(const Domain<D>& domain, std::size_t pool, F&& f) {
 }  // namespace
 
 template <int D>
-void round_column(const Domain<D>& domain, const std::string& name, std::span<const int> places,
-                  std::size_t width, std::span<float> to) {
+void round_column(const Domain<D>& domain, const Slices& slices, const std::string& name,
+                  std::span<const int> places, std::size_t width, std::span<float> to) {
   const std::vector<std::size_t> first = first_places(domain);
   Comm& comm = *domain.grid.partition.comm;
-  if (comm.rank() == 0 && to.size() < first.back() * width)
+  if (to.size() < slices.of(comm.rank()).count() * width)
     throw std::invalid_argument("round_column: wrong size");
   for (std::size_t m = 0; m < domain.pools.size(); ++m) {
     const ParticlePool<D>& of = domain.pools[m];
@@ -53,9 +53,9 @@ void round_column(const Domain<D>& domain, const std::string& name, std::span<co
     for (int c = 0; c < info->components; ++c) {
       const auto place = static_cast<std::size_t>(places[static_cast<std::size_t>(c)]);
       of.columns.with_component(info->first + c, [&](const auto* from) {
-        gather(comm, to, [&](auto&& f) {
+        gather(comm, slices, width, to, [&](auto&& f) {
           for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
-            f((first[b] + of.id[row]) * width + place, static_cast<float>(from[row]));
+            f(first[b] + of.id[row], place, static_cast<float>(from[row]));
           });
         });
       });
@@ -64,32 +64,35 @@ void round_column(const Domain<D>& domain, const std::string& name, std::span<co
 }
 
 template <int D>
-void round_derived(const Domain<D>& domain, const std::string& name, std::span<float> to) {
+void round_derived(const Domain<D>& domain, const Slices& slices, const std::string& name,
+                   std::span<float> to) {
   const auto field = std::ranges::find(derived_fields, name, &DerivedField::name);
   if (field == derived_fields.end())
     throw std::invalid_argument("no derived field is named " + name);
   const std::vector<std::size_t> first = first_places(domain);
   Comm& comm = *domain.grid.partition.comm;
-  if (comm.rank() == 0 && to.size() < first.back())
+  if (to.size() < slices.of(comm.rank()).count())
     throw std::invalid_argument("round_derived: wrong size");
   for (std::size_t m = 0; m < domain.pools.size(); ++m) {
     const ParticlePool<D>& of = domain.pools[m];
-    gather(comm, to, [&](auto&& f) {
+    gather(comm, slices, 1, to, [&](auto&& f) {
       for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
         ParticleState p{{}, of.mass()[row] / domain.bodies[b].initial_density, D};
         for (int c = 0; c < Sym<double, D>::size; ++c)
           p.stress[D == 2 && c == 3 ? 5 : c] = of.stress(c)[row];
-        f(first[b] + of.id[row], static_cast<float>(field->value(p)));
+        f(first[b] + of.id[row], 0, static_cast<float>(field->value(p)));
       });
     });
   }
 }
 
-template void round_column<2>(const Domain<2>&, const std::string&, std::span<const int>,
-                              std::size_t, std::span<float>);
-template void round_column<3>(const Domain<3>&, const std::string&, std::span<const int>,
-                              std::size_t, std::span<float>);
-template void round_derived<2>(const Domain<2>&, const std::string&, std::span<float>);
-template void round_derived<3>(const Domain<3>&, const std::string&, std::span<float>);
+template void round_column<2>(const Domain<2>&, const Slices&, const std::string&,
+                              std::span<const int>, std::size_t, std::span<float>);
+template void round_column<3>(const Domain<3>&, const Slices&, const std::string&,
+                              std::span<const int>, std::size_t, std::span<float>);
+template void round_derived<2>(const Domain<2>&, const Slices&, const std::string&,
+                               std::span<float>);
+template void round_derived<3>(const Domain<3>&, const Slices&, const std::string&,
+                               std::span<float>);
 
 }  // namespace mpm

@@ -54,8 +54,8 @@ struct Places {
           [](const PlacedRow& one, std::size_t place) { return one.place < place; });
       const std::span here(at, end);
       if (!stream.restores()) {
-        gather(stream.comm(), std::span(numbers), [&](auto&& f) {
-          for (const auto [place, row] : here) f(place - begin, get(row));
+        gather(stream.comm(), Slices(numbers.size()), 1, std::span(numbers), [&](auto&& f) {
+          for (const auto [place, row] : here) f(place - begin, 0, get(row));
         });
       }
       stream.array(std::span(numbers));
@@ -75,10 +75,10 @@ void exchange_pieces(const Places<D>& places, ParticlePool<D>& pool, StateStream
       stream, [&](std::uint32_t row) { return pool.piece[row]; },
       [&](std::uint32_t row, std::uint32_t piece) { pool.piece[row] = piece; });
   if (!stream.restores())
-    gather(stream.comm(), std::span(pool.pieces), [&](auto&& f) {
+    gather(stream.comm(), Slices(pool.pieces.size()), 1, std::span(pool.pieces), [&](auto&& f) {
       for (const auto [place, row] : places.rows)
         for (std::uint32_t k = pool.piece[row]; k != 0; k = pool.pieces[k - 1].next)
-          f(k - 1, pool.pieces[k - 1]);
+          f(k - 1, 0, pool.pieces[k - 1]);
     });
   stream.array(std::span(pool.pieces));
 }

@@ -20,7 +20,7 @@ class _Strict(BaseModel):
 class Results(_Strict):
     """See `ResultsWriter.rows`."""
 
-    frames: list[Check]
+    frames: list[Annotated[list[Check], Field(min_length=1)]]
     units: dict[str, str]
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from mpm3dpp.base.errors import CaseError
 
 from .fields import Column
+from .frames_writer import FramesWriter
 from .vtkhdf import ResultsWriter
 
 FRAME_SHARE = 1 / 6
@@ -34,22 +35,21 @@ class _Once:
         return array
 
 
-class BackgroundWriter:
-    """Writes frames column by column, in a thread of its own; a context manager that ends it.
+class FrameThread:
+    """Writes frames column by column, in a thread of its own.
 
     The thread that steps copies a column when there is room for it beside those that are not
     written yet, so that what waits for the disk is never more than `room`, whatever the frame. A
-    frame that could not be written ends the run at its next look: `write` raises the error, `check`
-    and `close` do if nobody has told it yet. Frames written before stay readable; those that wait
-    are dropped.
+    frame that could not be written ends the run at its next look. Frames written before stay
+    readable; those that wait are dropped.
 
     Args:
-        results: the writer of the file, closed at the end.
+        file: the writer of the files.
         room: for columns that are copied and not written [bytes]; one is always let in.
     """
 
-    def __init__(self, results: ResultsWriter, room: float = math.inf) -> None:
-        self._results = results
+    def __init__(self, file: FramesWriter, room: float = math.inf) -> None:
+        self.file = file
         self._room = room
         self._waiting = 0  # bytes of the columns that are not written
         self._unwritten = 0  # frames
@@ -62,16 +62,15 @@ class BackgroundWriter:
         self._thread = threading.Thread(target=self._work, name="frames", daemon=True)
         self._thread.start()
 
-    def write(self, simulation: Any) -> None:
+    def hand_over(self, simulation: Any) -> None:
         """Hand over the present state of the core's `Simulation`; wait only for room.
 
         Raises:
-            CaseError: an earlier frame could not be written, or there is no such column.
+            CaseError: the thread has ended, or there is no such column.
         """
-        self._tell()
         if not self._thread.is_alive():
-            raise self._results.closed()
-        frame = self._results.frame_of(simulation)
+            raise self.file.closed()
+        frame = self.file.frame_of(simulation)
         with self._changed:
             self._unwritten += 1
         self._handed.put(frame)
@@ -91,48 +90,30 @@ class BackgroundWriter:
         finally:
             self._handed.put(end)
 
-    def rows(self) -> dict[str, Any]:
-        """Write what waits, and return what a writer needs to go on from here.
+    def look(self, again: bool = False) -> tuple[int, Exception | None]:
+        """Return how many frames are written, and what has gone wrong with one.
 
-        Raises:
-            CaseError: a frame could not be written.
+        Args:
+            again: what has gone wrong also if it has been told before.
         """
+        error = self._error if again or not self._told else None
+        self._told |= error is not None
+        return self.file.frames, error
+
+    def wait(self) -> None:
+        """Wait until all that was handed over is written, or could not be."""
         with self._changed:
             self._changed.wait_for(lambda: self._unwritten == 0)
-        self._tell()
-        return self._results.rows()
 
-    def check(self) -> None:
-        """Raise the error of a frame that could not be written, if nobody has told it yet."""
-        if not self._told:
-            self._tell()
+    def sums_of_others(self) -> list[list[int]]:
+        """Return what `FramesWriter.finish` returns to those who write other parts: nobody here."""
+        return []
 
-    def close(self) -> None:
-        """Write what waits, and close the file. Closing twice does nothing.
-
-        Raises:
-            CaseError: a frame could not be written, and nobody has told it yet.
-        """
+    def end(self) -> None:
+        """Write what waits, and end the thread. Twice does nothing."""
         if self._thread.is_alive():
             self._handed.put(None)
             self._thread.join()
-        try:
-            self._results.close()
-        finally:
-            self.check()
-
-    def __enter__(self) -> BackgroundWriter:
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, *about: object) -> None:
-        # The first error is the one to tell.
-        with contextlib.suppress(Exception) if kind else contextlib.nullcontext():
-            self.close()
-
-    def _tell(self) -> None:
-        if self._error is not None:
-            self._told = True
-            raise self._error
 
     def _wait_for_room(self, size: int) -> None:
         with self._changed:
@@ -158,7 +139,7 @@ class BackgroundWriter:
             columns = self._taken()
             try:
                 if self._error is None:
-                    self._results.add(dataclasses.replace(frame, columns=columns))
+                    self.file.add(dataclasses.replace(frame, columns=columns))
             except Exception as error:  # Whatever it is, the thread that steps must hear of it.
                 self._error = error
             finally:
@@ -168,3 +149,70 @@ class BackgroundWriter:
                 with self._changed:
                     self._unwritten -= 1
                     self._changed.notify_all()
+
+
+class BackgroundWriter:
+    """Writes frames while the simulation goes on; a context manager that closes the file.
+
+    `write` raises the error of a frame that could not be written, `check` and `close` do if nobody
+    has told it yet.
+
+    Args:
+        results: the writer of the files, closed at the end.
+        room: see `FrameThread`.
+        parts: who writes them, with the functions of a `FrameThread`; that by default.
+    """
+
+    def __init__(self, results: ResultsWriter, room: float = math.inf, parts: Any = None) -> None:
+        self._results = results
+        self._parts = FrameThread(results, room) if parts is None else parts
+
+    def write(self, simulation: Any) -> None:
+        """Hand over the present state of the core's `Simulation`; wait only for room.
+
+        Raises:
+            CaseError: an earlier frame could not be written, or there is no such column.
+        """
+        self._look(again=True)
+        self._parts.hand_over(simulation)
+
+    def rows(self) -> dict[str, Any]:
+        """Write what waits, and return what a writer needs to go on from here.
+
+        Raises:
+            CaseError: a frame could not be written.
+        """
+        self._parts.wait()
+        self._look(again=True)
+        return self._results.rows(self._parts.sums_of_others())
+
+    def check(self) -> None:
+        """Raise the error of a frame that could not be written, if nobody has told it yet."""
+        self._look(again=False)
+
+    def close(self) -> None:
+        """Write what waits, and close the file. Closing twice does nothing.
+
+        Raises:
+            CaseError: a frame could not be written, and nobody has told it yet.
+        """
+        self._parts.end()
+        self._results.whole, error = self._parts.look(again=False)
+        try:
+            self._results.close()
+        finally:
+            if error is not None:
+                raise error
+
+    def __enter__(self) -> BackgroundWriter:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *about: object) -> None:
+        # The first error is the one to tell.
+        with contextlib.suppress(Exception) if kind else contextlib.nullcontext():
+            self.close()
+
+    def _look(self, again: bool) -> None:
+        self._results.whole, error = self._parts.look(again)
+        if error is not None:
+            raise error

@@ -17,6 +17,7 @@ import numpy as np
 
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.outputs import CHANGING, COLUMNS, DERIVED, STANDARD, UNITS
+from mpm3dpp.base.parts import equal_part
 
 from .rows import FROM_VTK
 
@@ -51,13 +52,14 @@ class Frame:
     Attributes:
         time: [s].
         step: number of steps made until then.
-        particles: count.
+        rows: particles in each part that is a file of its own; the columns are those of one of
+            them.
         columns: "position" first; all bodies one after another in their original order.
     """
 
     time: float
     step: int
-    particles: int
+    rows: list[int]
     columns: Iterable[Column]
 
 
@@ -67,6 +69,8 @@ def frame_of(
     names: Sequence[str] = (),
     materials: Sequence[int] = (),
     constants: bool = True,
+    writers: Sequence[int] = (0,),
+    part: int | None = 0,
 ) -> Frame:
     """Return the present state of the core's `Simulation`; its columns are made as they are taken.
 
@@ -77,6 +81,9 @@ def frame_of(
         names: of each body; bodies of one name are grains.
         materials: number of the material of each body.
         constants: whether the columns that do not change are among them.
+        writers: the ranks that write frames, each a slice of the particles; all ranks ask for the
+            same columns at once.
+        part: which of the slices, None for no particles.
 
     Returns:
         A frame with position [m] and velocity [m/s] (n, 3), z = 0 in 2D; stress [Pa] (n, 6) in
@@ -91,20 +98,29 @@ def frame_of(
     stored = {name: _components(simulation, name) for name in COLUMNS}
     stored |= {name: _components(simulation, name) for name in fields if name not in STANDARD}
     widths = {name: _width(name, components) for name, components in stored.items()}
-    count = int(simulation.particle_count)
+    ends = [
+        equal_part(int(simulation.particle_count), k, len(writers)) for k in range(len(writers))
+    ]
+    first, last = (0, 0) if part is None else ends[part]
+    of_slice = partial(_column, simulation, list(writers))
 
     def column(name: str, make: Callable[[], np.ndarray], width: int = 1) -> Column:
-        return Column(name, 4 * width * count, make)
+        return Column(name, 4 * width * (last - first), make)
 
     columns = [
-        column(name, partial(_column, simulation, name, stored[name], width), width)
+        column(name, partial(of_slice, name, stored[name], width), width)
         for name, width in widths.items()
     ]
-    columns += [column(name, partial(_derived, simulation, name)) for name in CHANGING]
+    derived = partial(_derived, simulation, list(writers))
+    columns += [column(name, partial(derived, name)) for name in CHANGING]
     if constants:
-        fixed = _constants(simulation, names, materials)
+        fixed = _constants(simulation, names, materials, first, last)
         columns += [column(name, make) for name, make in fixed.items()]
-    return Frame(float(simulation.time), int(simulation.step), count, columns)
+        columns += [
+            column(name, partial(derived, name)) for name in DERIVED if name not in CHANGING
+        ]
+    rows = [end - begin for begin, end in ends]
+    return Frame(float(simulation.time), int(simulation.step), rows, columns)
 
 
 def column_units(simulation: Any) -> dict[str, str]:
@@ -115,13 +131,15 @@ def column_units(simulation: Any) -> dict[str, str]:
     return units
 
 
-def _column(simulation: Any, name: str, components: int, width: int) -> np.ndarray:
+def _column(
+    simulation: Any, writers: list[int], name: str, components: int, width: int
+) -> np.ndarray:
     """Return a column of the core as it is stored."""
     places = _PLACES.get(components, tuple(range(components)))
     elsewhere = 0.0 if name in STANDARD else math.nan
     if components < width:  # The third component of vectors in 2D.
         elsewhere = 0.0
-    column: np.ndarray = simulation.rounded_column(name, list(places), width, elsewhere)
+    column: np.ndarray = simulation.rounded_column(name, list(places), width, elsewhere, writers)
     return column if width > 1 else column[:, 0]
 
 
@@ -147,23 +165,23 @@ def _width(name: str, components: int) -> int:
 
 
 def _constants(
-    simulation: Any, names: Sequence[str], materials: Sequence[int]
+    simulation: Any, names: Sequence[str], materials: Sequence[int], first: int, last: int
 ) -> dict[str, Callable[[], np.ndarray]]:
-    """Return what makes the columns that do not change, by name."""
+    """Return what makes the columns of bodies that do not change, by name, of a slice."""
     counts = [int(simulation.body_particle_count(b)) for b in range(simulation.body_count)]
+    ends = np.cumsum([0, *counts]).clip(first, last)  # of each body, in the slice
 
     def of_body(numbers: Sequence[int]) -> Callable[[], np.ndarray]:
-        return lambda: np.repeat(np.asarray(numbers, dtype=np.int32), counts)
+        return lambda: np.repeat(np.asarray(numbers, dtype=np.int32), np.diff(ends))
 
     different, numbers = numbered(names)
     made = {"body": of_body(numbers), "material": of_body(materials)}
     if len(different) < len(numbers):
         firsts = [numbers.index(k) for k in range(len(different))]
         made["grain"] = of_body([b - firsts[k] for b, k in enumerate(numbers)])
-    constant = [name for name in DERIVED if name not in CHANGING]
-    return made | {name: partial(_derived, simulation, name) for name in constant}
+    return made
 
 
-def _derived(simulation: Any, name: str) -> np.ndarray:
-    values: np.ndarray = simulation.rounded_derived(name)
+def _derived(simulation: Any, writers: list[int], name: str) -> np.ndarray:
+    values: np.ndarray = simulation.rounded_derived(name, writers)
     return values[:, 0]

@@ -4,7 +4,8 @@
 The HDF5 file has the group `arrays` with a data set per array, one row per particle, `cells` with
 what VTK wants to know of a vertex per particle where no earlier frame has as many, and an attribute
 `frame`: JSON with time, step and count of particles, the check sum of each array, and the frames
-that hold those arrays which have not changed.
+that hold those arrays which have not changed. Of several processes each writes a part of the frame,
+a slice of its particles, in such a file: `000012.h5`, `000012.1.h5`, ...
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ LIBVER = ("v108", "v110")
 """Versions of HDF5's format: from the first on tables have check sums; virtual data sets need the
 last."""
 
-_NAME = re.compile(r"(\d{6,})\.h5")
+_NAME = re.compile(r"(\d{6,})(?:\.(\d+))?\.h5")
 _CHUNK_BYTES = (1 << 32) - 1  # HDF5's limit
 
 
@@ -44,6 +45,7 @@ class FrameInfo:
 
     Attributes:
         time: [s].          step: number of steps made until then.          count: of particles.
+        rows: particles in each part of the frame.
         checks: name -> CRC-32 of each array that the file has.
         elsewhere: name -> number of the frame whose file has it.
         kinds: name -> components (0 for one number a particle) and type, of those in the file.
@@ -52,9 +54,13 @@ class FrameInfo:
     time: float
     step: int
     count: int
+    rows: list[int] = field(default_factory=list)
     checks: dict[str, int] = field(default_factory=dict)
     elsewhere: dict[str, int] = field(default_factory=dict)
     kinds: dict[str, tuple[int, str]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.rows = self.rows or [self.count]
 
     def where(self, name: str, own: int) -> int:
         """Return the number of the frame whose file has an array; `own` is this one's."""
@@ -72,36 +78,48 @@ def frames_folder(results: Path) -> Path:
     return results.with_suffix(".frames")
 
 
-def frame_path(folder: Path, frame: int) -> Path:
-    """Return the file of a frame."""
-    return folder / f"{frame:06d}.h5"
+def frame_path(folder: Path, frame: int, part: int = 0) -> Path:
+    """Return the file of a frame, or of a part of it."""
+    return folder / (f"{frame:06d}.{part}.h5" if part else f"{frame:06d}.h5")
 
 
 def frame_numbers(folder: Path) -> list[int]:
     """Return the numbers of the frames that have files in a folder, in order."""
-    with contextlib.suppress(OSError):
-        found = (_NAME.fullmatch(path.name) for path in folder.iterdir())
-        return sorted(int(match[1]) for match in found if match)
-    return []
+    return sorted({frame for frame, _ in _files(folder)})
 
 
 def remove_frames(folder: Path, first: int) -> None:
     """Remove the frames from number `first` on. Raises `CaseError` if one cannot be removed."""
-    for frame in reversed(frame_numbers(folder)):  # So that none is left without those it needs.
+    # The last first, so that none is left without those it needs.
+    for frame, part in sorted(_files(folder), key=lambda file: (-file[0], file[1])):
         if frame >= first:
-            old = frame_path(folder, frame)
+            old = frame_path(folder, frame, part)
             with writing(old):
                 old.unlink(missing_ok=True)
 
 
+def is_whole(folder: Path, frame: int, info: FrameInfo) -> bool:
+    """Return whether all parts of a frame have files."""
+    return all(frame_path(folder, frame, part).is_file() for part in range(len(info.rows)))
+
+
+def _files(folder: Path) -> list[tuple[int, int]]:
+    """Return frame and part of each file in a folder."""
+    with contextlib.suppress(OSError):
+        found = (_NAME.fullmatch(path.name) for path in folder.iterdir())
+        return [(int(match[1]), int(match[2] or 0)) for match in found if match]
+    return []
+
+
 def write_frame(
-    path: Path, info: FrameInfo, arrays: Iterable[tuple[str, np.ndarray]], level: int
+    path: Path, info: FrameInfo, part: int, arrays: Iterable[tuple[str, np.ndarray]], level: int
 ) -> None:
-    """Write the file of a frame.
+    """Write the file of a frame, or of a part of it.
 
     Args:
         path: the file.
         info: of which `checks` and `kinds` are filled here.
+        part: number of the part.
         arrays: (name, array as stored) of those that do not stand elsewhere, each asked for when
             the one before is in the file.
         level: of compression: 0 for none, else gzip's, 1 to 9, after a shuffle of bytes.
@@ -120,10 +138,12 @@ def write_frame(
             group.create_dataset(name, data=column, **chunks)
         if CELLS not in info.elsewhere:
             cells = file.create_group(CELLS)
-            cells["Offsets"] = np.arange(info.count + 1, dtype=np.int64)
-            cells["Connectivity"] = np.arange(info.count, dtype=np.int64)
+            first, last = sum(info.rows[:part]), sum(info.rows[: part + 1])
+            # There is one offset more than there are cells: the first part has the first.
+            cells["Offsets"] = np.arange(first + (part > 0), last + 1, dtype=np.int64)
+            cells["Connectivity"] = np.arange(first, last, dtype=np.int64)
         about: dict[str, Any] = {"time": info.time, "step": info.step, "count": info.count}
-        about |= {"checks": info.checks, "elsewhere": info.elsewhere}
+        about |= {"checks": info.checks, "elsewhere": info.elsewhere, "rows": info.rows}
         file.attrs["frame"] = json.dumps(about, sort_keys=True)
 
 
@@ -146,17 +166,30 @@ def read_arrays(
         frame: number.
         names: of the arrays; those that there are not are left out. All if None.
     """
-    with _frame(frame_path(folder, frame)) as file:
-        info = _info(file)
-        wanted = [name for name in info.names if names is None or name in names]
-        found = {name: _column(file, info, name) for name in wanted if name in info.checks}
-    for k in {info.elsewhere[name] for name in wanted if name in info.elsewhere}:
-        with _frame(frame_path(folder, k)) as file:
-            there = _info(file)
-            for name in wanted:
-                if info.elsewhere.get(name) == k:
-                    found[name] = _column(file, there, name)
+    info = read_info(frame_path(folder, frame))
+    wanted = [name for name in info.names if names is None or name in names]
+    found: dict[str, np.ndarray] = {}
+    for k in {info.where(name, frame) for name in wanted}:
+        here = [name for name in wanted if info.where(name, frame) == k]
+        parts = [_read_part(folder, k, 0, here)]
+        parts += [_read_part(folder, k, part, here) for part in range(1, len(parts[0][0].rows))]
+        for name in here:
+            of_parts = [columns.pop(name) for _, columns in parts]
+            found[name] = np.concatenate(of_parts) if len(of_parts) > 1 else of_parts[0]
     return {name: found[name] for name in wanted}
+
+
+def _read_part(
+    folder: Path, frame: int, part: int, names: Collection[str]
+) -> tuple[FrameInfo, dict[str, np.ndarray]]:
+    """Return what the file of a part tells of its frame, and arrays that it has, as stored."""
+    with _frame(frame_path(folder, frame, part)) as file:
+        info, columns = _info(file), {}
+        for name in names:
+            columns[name] = column = file["arrays"][name][()]
+            if len(column) != info.rows[part] or zlib.crc32(column.data) != info.checks[name]:
+                raise ValueError(name)
+        return info, columns
 
 
 @contextlib.contextmanager
@@ -230,7 +263,7 @@ def _frame(path: Path) -> Iterator[h5py.File]:
     """Give the file of a frame to read; what goes wrong in the block is one sentence."""
     import h5py
 
-    number = path.stem.lstrip("0") or "0"
+    number = path.stem.partition(".")[0].lstrip("0") or "0"
     try:
         with h5py.File(path, "r", locking=False) as file:
             yield file
@@ -246,13 +279,6 @@ def _frame(path: Path) -> Iterator[h5py.File]:
 
 def _info(file: h5py.File) -> FrameInfo:
     return FrameInfo(**json.loads(file.attrs["frame"]))
-
-
-def _column(file: h5py.File, info: FrameInfo, name: str) -> np.ndarray:
-    column: np.ndarray = file["arrays"][name][()]
-    if len(column) != info.count or zlib.crc32(column.data) != info.checks[name]:
-        raise ValueError(name)
-    return column
 
 
 def _kind(column: Any) -> tuple[int, str]:

@@ -56,13 +56,13 @@ def write_master(path: Path, frames: Sequence[FrameInfo], meta: Mapping[str, Any
         steps["FieldDataOffsets"]["step"] = np.arange(len(frames))
         _place_cells(root, steps, folder, frames)
         for name in frames[0].names if frames else ():
-            counts = [f.count if name in f.checks else 0 for f in frames]
-            firsts = _firsts(counts)
+            rows = [f.rows if name in f.checks else [] for f in frames]
+            firsts = _firsts([*map(sum, rows)])
             offsets = firsts[[f.where(name, k) for k, f in enumerate(frames)]]
             components, kind = next(f.kinds[name] for f in frames if name in f.kinds)
             tail = (components,) if components else ()
             group, place = (root, "Points") if name == "position" else (root["PointData"], name)
-            _virtual(group, place, folder, f"arrays/{name}", counts, tail, np.dtype(kind))
+            _virtual(group, place, folder, f"arrays/{name}", rows, tail, np.dtype(kind))
             if name == "position":
                 steps["PointOffsets"] = offsets
             else:
@@ -91,7 +91,10 @@ def _place_cells(
             group["Offsets"] = np.zeros(len(parts), dtype=np.int64)
             group["Connectivity"] = np.zeros(0, dtype=np.int64)
     for name, more in (("Offsets", 1), ("Connectivity", 0)):
-        rows = [n + more if mine else 0 for n, mine in zip(counts.tolist(), own, strict=True)]
+        rows = [
+            [f.rows[0] + more, *f.rows[1:]] if mine else []
+            for f, mine in zip(frames, own, strict=True)
+        ]
         source = f"{CELLS}/{name}"
         _virtual(root["Vertices"], name, folder, source, rows, (), np.dtype(np.int64))
     first = np.zeros((len(frames), len(_TOPOLOGIES)), dtype=np.int64)
@@ -111,26 +114,26 @@ def _virtual(
     name: str,
     folder: Path,
     source: str,
-    counts: Sequence[int],
+    rows: Sequence[Sequence[int]],
     tail: tuple[int, ...],
     kind: np.dtype[Any],
 ) -> None:
-    """Make a data set whose rows stand in the files of the frames, `counts[k]` in that of k."""
+    """Make a data set whose rows stand in files, `rows[k][j]` in that of part j of frame k."""
     import h5py
 
     plan = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     plan.set_fill_value(np.array(np.nan if kind.kind == "f" else -1, kind))
-    whole = h5py.h5s.create_simple((sum(counts), *tail))
+    blocks = [(k, j, n) for k, parts in enumerate(rows) for j, n in enumerate(parts) if n]
+    whole = h5py.h5s.create_simple((sum(n for _, _, n in blocks), *tail))
     first = 0
-    for frame, rows in enumerate(counts):
-        if rows:
-            block = (rows, *tail)
-            whole.select_hyperslab((first, *(0 for _ in tail)), (1,) * len(block), block=block)
-            file = frame_path(Path(folder.name), frame).as_posix()
-            plan.set_virtual(whole, file.encode(), source.encode(), h5py.h5s.create_simple(block))
-            first += rows
+    for frame, part, count in blocks:
+        block = (count, *tail)
+        whole.select_hyperslab((first, *(0 for _ in tail)), (1,) * len(block), block=block)
+        file = frame_path(Path(folder.name), frame, part).as_posix()
+        plan.set_virtual(whole, file.encode(), source.encode(), h5py.h5s.create_simple(block))
+        first += count
     whole.select_all()
-    if not first:  # HDF5 has no virtual data set without a source.
+    if not blocks:  # HDF5 has no virtual data set without a source.
         group.create_dataset(name, (0, *tail), kind)
         return
     h5py.h5d.create(group.id, name.encode(), h5py.h5t.py_create(kind), whole, plan)

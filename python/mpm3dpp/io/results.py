@@ -13,7 +13,7 @@ import numpy as np
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError
 
-from .frame_file import frame_path, read_arrays, read_info
+from .frame_file import frame_path, is_whole, read_arrays, read_info
 from .rows import FROM_VTK, TO_VTK
 
 if TYPE_CHECKING:
@@ -174,6 +174,8 @@ class Results:
             try:
                 info = read_info(frame_path(folder, len(times)))
             except CaseError:
+                return
+            if not is_whole(folder, len(times), info):
                 return
             self._names = info.names
             times.append(info.time)

@@ -1,17 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writer of the frames of a run, for ParaView and PyVista.
+"""Writer of the results of a run, for ParaView and PyVista: frames, and where they are.
 
-Each frame is a file of its own in `results.frames` (`io/frame_file.py`), and `results.vtkhdf` tells
-where they are (`io/master.py`). Every file is written beside its place, brought to the disk and
-renamed, so that a run that is killed or meets a full disk leaves whole frames, and a frame that
-was written is never touched again. Arrays that do not change (cells, body, grain, material, size)
-stand in the first frame's file only.
+`results.frames` has the frames (`io/frames_writer.py`), and `results.vtkhdf` tells where they are
+(`io/master.py`).
 """
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -21,30 +17,20 @@ import numpy as np
 from mpm3dpp.base.disk import bring_folder_to_disk, checksum, make_folder, unfinished, writing
 from mpm3dpp.base.errors import CaseError
 
-from .fields import Column, Frame, column_units, frame_of, numbered
-from .frame_file import (
-    CELLS,
-    FrameInfo,
-    frame_numbers,
-    frame_path,
-    frames_folder,
-    read_arrays,
-    read_info,
-    remove_frames,
-    write_frame,
-)
+from .fields import Column, Frame, column_units, numbered
+from .frame_file import frame_numbers, frame_path, frames_folder, remove_frames
+from .frames_writer import FramesWriter
 from .master import write_master
 from .rows import as_stored
 
 RESULTS = "results.vtkhdf"
 
-_CONSTANT = ("body", "grain", "material", "size")
 _OFTEN = 32
 """`results.vtkhdf` is written anew when the frames since are a 32nd of those it tells of: then its
 writing takes a time proportional to the number of frames, not to its square."""
 
 
-class ResultsWriter:
+class ResultsWriter(FramesWriter):
     """Writes frames, each in a file of its own, and the VTKHDF file that tells where they are.
 
     Six-component arrays are given in the order xx yy zz yz xz xy and stored in VTK's order
@@ -64,6 +50,11 @@ class ResultsWriter:
         case_hash: hash of the case, so that a file can be traced to its run.
         rows: of a run that goes on, `rows()` then; the frames are there (`check_frames`), and those
             written later are removed.
+        writers: the ranks that write frames, each a slice of the particles, this one the first.
+
+    Attributes:
+        whole: how many frames are there with all their parts: those that the file may tell of. What
+            others write one learns of otherwise, before `write`, `rows` and `close`.
 
     Raises:
         CaseError: a file cannot be written; frames that were written stay readable.
@@ -83,76 +74,57 @@ class ResultsWriter:
         title: str = "",
         case_hash: str = "",
         rows: Mapping[str, Any] | None = None,
+        writers: Sequence[int] = (0,),
     ) -> None:
         self.path = Path(path)
-        self._folder = frames_folder(self.path)
-        self._fields = tuple(fields)
-        self._level = compression
-        self._bodies = list(bodies)
-        names, self._materials = numbered(materials)
-        self._frames: list[FrameInfo] = []
-        self._checks: list[int] = []  # of the frames' files
+        folder = frames_folder(self.path)
+        self._kept: list[list[int]] = [*rows["frames"]] if rows else []
         self._told = 0  # frames that the file tells of
-        self._closed = False
-        self._constant: dict[str, tuple[bytes, int]] = {}  # digest, and the frame that has it
-        self._cells: dict[int, int] = {}  # count of particles -> frame that has their cells
-        self._knows_constants = False
+        self._is_closed = False
         self._meta: dict[str, Any] = {
             "title": title,
             "case_hash": case_hash,
             "bodies": numbered(bodies)[0],
-            "materials": names,
+            "materials": numbered(materials)[0],
             "dimension": dimension,
             "cell_size": float(cell_size),
             "origin": [*map(float, origin), 0.0, 0.0, 0.0][:3],
-            "units": {},
+            "units": dict(rows["units"]) if rows else {},
         }
         make_folder(self.path.parent)
         if rows is None:
             with writing(self.path):  # First, for nobody may take old frames for those of this run.
                 self.path.unlink(missing_ok=True)
-            remove_frames(self._folder, 0)
-        else:
-            self._go_on(rows)
-        make_folder(self._folder)
+            remove_frames(folder, 0)
+        make_folder(folder)
+        super().__init__(
+            folder, bodies, materials, fields, compression, writers, kept=len(self._kept)
+        )
+        self.whole = self.frames
         self._tell()
-        remove_frames(self._folder, self.frames)
-        with writing(self._folder):
-            for left in self._folder.glob(unfinished(Path("*.h5")).name):
+        remove_frames(folder, self.frames)
+        with writing(folder):
+            for left in folder.glob(unfinished(Path("*.h5")).name):
                 left.unlink(missing_ok=True)
 
-    @property
-    def frames(self) -> int:
-        """How many frames there are."""
-        return len(self._frames)
-
-    def rows(self) -> dict[str, Any]:
+    def rows(self, others: Sequence[Sequence[int]] = ()) -> dict[str, Any]:
         """Return what a writer needs to go on from here, for JSON; all of it is on the disk then.
 
-        It is `frames`, the check sum of each frame's file, and `units`.
+        It is `frames`, the check sums of each frame's files, and `units`.
+
+        Args:
+            others: what `finish` has returned to the other writers.
         """
         self._tell_of_all()
-        bring_folder_to_disk(self._folder)
+        written = [list(parts) for parts in zip(self.finish(), *others, strict=True)]
         bring_folder_to_disk(self.path.parent)
-        return {"frames": list(self._checks), "units": dict(self._meta["units"])}
-
-    def write(self, simulation: Any) -> None:
-        """Append the present state of the core's `Simulation` as a frame."""
-        try:
-            self.add(self.frame_of(simulation))
-        except BaseException:
-            self._knows_constants = "size" in self._constant
-            raise
+        return {"frames": self._kept + written, "units": dict(self._meta["units"])}
 
     def frame_of(self, simulation: Any) -> Frame:
-        """Return the present state of the core's `Simulation`, as `fields.frame_of`.
-
-        What does not change is in the first frame alone.
-        """
+        """Return the present state of the core's `Simulation`, as `fields.frame_of`."""
         if not self._knows_constants:
             self._meta["units"] = column_units(simulation)
-        new, self._knows_constants = not self._knows_constants, True
-        return frame_of(simulation, self._fields, self._bodies, self._materials, constants=new)
+        return super().frame_of(simulation)
 
     def append(self, time: float, step: int, arrays: Mapping[str, np.ndarray]) -> None:
         """Append one frame.
@@ -175,58 +147,17 @@ class ResultsWriter:
             for name, array in zip(arrays, stored, strict=True)
         ]
         columns.sort(key=lambda column: column.name != "position")
-        self.add(Frame(time, step, len(arrays["position"]), columns))
+        self.add(Frame(time, step, [len(arrays["position"])], columns))
 
     def add(self, frame: Frame) -> None:
-        """Append a frame; each of its columns is asked for when the one before is in the file.
-
-        A column that does not change may be left out of later frames. Raises what `append` raises,
-        and what the columns raise; the frames written before stay.
-        """
-        if self._closed:
+        """Append a frame, as `FramesWriter.add`; the file tells of it now or later."""
+        if self._is_closed:
             raise self.closed()
-        number = self.frames
-        info = FrameInfo(float(frame.time), int(frame.step), frame.particles)
-        info.elsewhere = {name: where for name, (_, where) in self._constant.items()}
-        if info.count in self._cells:
-            info.elsewhere[CELLS] = self._cells[info.count]
-        new: dict[str, bytes] = {}
-        path = frame_path(self._folder, number)
-        write_frame(path, info, self._own(frame.columns, info, new), self._level)
-        with writing(path):
-            check = checksum(path)
-        assert check is not None  # for no size was given
-        self._frames.append(info)
-        self._checks.append(check)
-        self._constant |= {name: (digest, number) for name, digest in new.items()}
-        self._cells.setdefault(info.count, number)
-        if _OFTEN * (self.frames - self._told) >= self._told:
+        super().add(frame)
+        if len(frame.rows) == 1:
+            self.whole = self.frames
+        if _OFTEN * (self.whole - self._told) >= self._told:
             self._tell()
-
-    def _own(
-        self, columns: Iterable[Column], info: FrameInfo, new: dict[str, bytes]
-    ) -> Iterator[tuple[str, np.ndarray]]:
-        """Give the arrays that a frame's file has to hold, and note where the others are.
-
-        Args:
-            columns: of the frame.
-            info: of the frame.
-            new: gets the digests of those that seldom change.
-        """
-        for name, _, make in columns:
-            column = make()
-            if name in _CONSTANT:
-                digest = _digest(column)
-                if digest == self._constant.get(name, (b"", 0))[0]:
-                    continue
-                new[name] = digest
-            if len(column) != info.count:
-                rule = f"'{name}' has {len(column):,} rows, and 'position' has {info.count:,}"
-                raise CaseError(f"a frame of '{self.path}': {rule}")
-            info.elsewhere.pop(name, None)
-            yield name, column
-        if self._frames and self._frames[0].names != info.names:
-            raise CaseError(f"a frame of '{self.path}' must have the arrays of the first one")
 
     def closed(self) -> CaseError:
         """Return the mistake of a frame that comes after the end."""
@@ -234,8 +165,8 @@ class ResultsWriter:
 
     def close(self) -> None:
         """Let the file tell of all frames. Closing twice does nothing."""
-        if not self._closed:
-            self._closed = True
+        if not self._is_closed:
+            self._is_closed = True
             self._tell_of_all()
 
     def __enter__(self) -> ResultsWriter:
@@ -246,27 +177,13 @@ class ResultsWriter:
 
     def _tell(self) -> None:
         """Write the VTKHDF file anew."""
-        write_master(self.path, self._frames, self._meta)
-        self._told = self.frames
+        told = self.whole
+        write_master(self.path, self._frames[:told], self._meta)
+        self._told = told
 
     def _tell_of_all(self) -> None:
-        if self._told < self.frames:
+        if self._told < self.whole:
             self._tell()
-
-    def _go_on(self, rows: Mapping[str, Any]) -> None:
-        """Learn what the frames hold that are kept."""
-        self._checks = list(rows["frames"])
-        self._meta["units"] = dict(rows["units"])
-        self._frames = [read_info(frame_path(self._folder, k)) for k in range(len(self._checks))]
-        for k, info in enumerate(self._frames):
-            if CELLS not in info.elsewhere:
-                self._cells[info.count] = k
-        if not self._frames:
-            return
-        last = self.frames - 1
-        for name, column in read_arrays(self._folder, last, _CONSTANT).items():
-            self._constant[name] = _digest(column), self._frames[last].where(name, last)
-        self._knows_constants = "size" in self._constant
 
 
 def has_no_results(path: Path) -> bool:
@@ -281,18 +198,15 @@ def check_frames(path: Path, rows: Mapping[str, Any]) -> None:
         path: the results file.
         rows: `ResultsWriter.rows` then.
     """
-    for frame, check in enumerate(rows["frames"]):
-        file = frame_path(frames_folder(path), frame)
-        try:
-            now = checksum(file)
-        except FileNotFoundError:
-            raise CaseError(f"frame {frame} is missing: there is no file '{file}'") from None
-        except OSError as error:
-            raise CaseError(f"frame {frame}: cannot read '{file}': {error.strerror}") from error
-        if now != check:
-            raise CaseError(f"frame {frame} is damaged: '{file}' is not as it was written")
-
-
-def _digest(column: np.ndarray) -> bytes:
-    """Return what tells one column from another, in place of the column."""
-    return hashlib.blake2b(np.ascontiguousarray(column).data, digest_size=16).digest()
+    folder = frames_folder(path)
+    for frame, checks in enumerate(rows["frames"]):
+        for part, check in enumerate(checks):
+            file = frame_path(folder, frame, part)
+            try:
+                now = checksum(file)
+            except FileNotFoundError:
+                raise CaseError(f"frame {frame} is missing: there is no file '{file}'") from None
+            except OSError as error:
+                raise CaseError(f"frame {frame}: cannot read '{file}': {error.strerror}") from error
+            if now != check:
+                raise CaseError(f"frame {frame} is damaged: '{file}' is not as it was written")

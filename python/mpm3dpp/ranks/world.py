@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp.base.errors import NO_VALUE, CaseError
+from mpm3dpp.base.parts import equal_part
 
 # How many processes a launcher has started and which of them this is: Open MPI; MPICH, Intel MPI
 # and others that speak PMI; Slurm's srun.
@@ -46,6 +47,8 @@ class World:
         self.size: int = self.comm.size
         self.library = " ".join(mpi.Get_library_version().replace(",", " ").split()[:3])
         self._failed = self.comm.Dup()
+        self._here = self.comm.Split_type(mpi.COMM_TYPE_SHARED)
+        self._firsts = sorted(set(self.comm.allgather(self._here.bcast(self.rank))))
         self._core: Any = None
         self._module = module_for(mpi)
         self.native = self._module is not None
@@ -80,11 +83,16 @@ class World:
 
     def cores_of_rank(self) -> int:
         """Return how many cores each rank of this machine has, if they share them equally."""
-        here = self.comm.Split_type(self._mpi.COMM_TYPE_SHARED)
-        cores = set().union(*here.allgather(os.sched_getaffinity(0)))
-        share = max(1, len(cores) // here.size)
-        here.Free()
-        return share
+        cores = set().union(*self._here.allgather(os.sched_getaffinity(0)))
+        return max(1, len(cores) // self._here.size)
+
+    def writers(self, files: str) -> list[int]:
+        """Return the ranks that write frames: all ("rank"), or the first of each machine."""
+        return list(range(self.size)) if files == "rank" else list(self._firsts)
+
+    def all_max(self, numbers: np.ndarray) -> None:
+        """Replace integers by the largest of all ranks."""
+        self.comm.Allreduce(self._mpi.IN_PLACE, numbers, op=self._mpi.MAX)
 
     def fail(self, why: str, patience: float = PATIENCE) -> None:
         """Return once all ranks have called it, which then go on; else end all, with a sentence.
@@ -139,12 +147,9 @@ def world() -> World | None:
 
 
 def share_of(count: int, world: World | None) -> tuple[int, int]:
-    """Return which of so many things this process sees to: from one to the one before another.
-
-    It is the same as the core's `Share`.
-    """
+    """Return which of so many things this process sees to: from one to the one before another."""
     rank, size = (world.rank, world.size) if world else (0, 1)
-    return count * rank // size, count * (rank + 1) // size
+    return equal_part(count, rank, size)
 
 
 def together(make: Callable[[], Any], world: World | None) -> list[Any]:

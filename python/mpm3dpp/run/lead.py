@@ -9,12 +9,15 @@ from __future__ import annotations
 import contextlib
 import signal
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 from mpm3dpp.case.case import Case
+from mpm3dpp.io.background import FRAME_SHARE, BackgroundWriter
+from mpm3dpp.io.vtkhdf import ResultsWriter
 from mpm3dpp.ranks.world import World, world
 
 from .simulation import Simulation
+from .sliced_frames import SlicedFrames
 
 _OWN = frozenset(
     {
@@ -28,25 +31,36 @@ _OWN = frozenset(
 _PATIENCE = 60.0  # s, for ranks that are slower to fill bodies that cannot be filled
 
 
-class _Leading:
-    """The core's `Simulation` of the first process; what it is asked, the others are asked too."""
+class _Own(NamedTuple):
+    """What each process has its own of: "core", the core's `Simulation`, or "frames"."""
 
-    def __init__(self, core: Any, ranks: World) -> None:
-        self._core, self._ranks = core, ranks
+    name: str
+
+
+class _Leading:
+    """What the first process has of its own; what it is asked, those of the others are asked too.
+
+    Args:
+        own: this process's.
+        name: see `_Own`.
+        ranks: all processes.
+    """
+
+    def __init__(self, own: Any, name: str, ranks: World) -> None:
+        self._own, self._name, self._ranks = own, name, ranks
 
     def __getattr__(self, name: str) -> Any:
         if name in _OWN or name.startswith("__"):
-            return getattr(self._core, name)
-        if isinstance(getattr(type(self._core), name, None), property):
-            self._ranks.tell("get", name)
-            return self._alike(lambda: getattr(self._core, name))
+            return getattr(self._own, name)
+        if isinstance(getattr(type(self._own), name, None), property):
+            self._ranks.tell("get", self._name, name)
+            return self._alike(lambda: getattr(self._own, name))
         return lambda *values, **named: self._call(name, values, named)
 
     def _call(self, name: str, values: tuple[Any, ...], named: dict[str, Any]) -> Any:
-        # What only the first process calls, as to read a file, the others need not have.
-        told = tuple(len if callable(value) else value for value in values)
-        self._ranks.tell("call", name, told, named)
-        return self._alike(lambda: getattr(self._core, name)(*values, **named))
+        own = [value._own if isinstance(value, _Leading) else value for value in values]
+        self._ranks.tell("call", self._name, name, [_told(value) for value in values], named)
+        return self._alike(lambda: getattr(self._own, name)(*own, **named))
 
     def _alike(self, act: Callable[[], Any]) -> Any:
         try:
@@ -63,8 +77,31 @@ def make_simulation(case: Case, threads: int | None) -> Simulation:
         return Simulation(case, threads)
     ranks.tell("make", case, threads)
     simulation = _make(case, threads, ranks)
-    simulation.core = _Leading(simulation.core, ranks)
+    simulation.core = _Leading(simulation.core, "core", ranks)
     return simulation
+
+
+def background_writer(simulation: Simulation, file: ResultsWriter) -> BackgroundWriter:
+    """Return what writes the frames of a run, of which other processes may write slices.
+
+    Args:
+        simulation: as `make_simulation` returns it.
+        file: the writer of the first process.
+    """
+    ranks = world()
+    if ranks is None:
+        return BackgroundWriter(file, FRAME_SHARE * sum(simulation.core.bytes().values()))
+    ranks.tell("frames", file.path, file.frames)
+    parts = SlicedFrames(simulation, simulation.core._own, file.path, file.frames, ranks, file)
+    return BackgroundWriter(file, parts=_Leading(parts, "frames", ranks))
+
+
+def _told(value: Any) -> Any:
+    """Return an argument as the others are told it."""
+    if isinstance(value, _Leading):
+        return _Own(value._name)
+    # What only the first process calls, as to read a file, the others need not have.
+    return len if callable(value) else value
 
 
 def _make(case: Case, threads: int | None, ranks: World) -> Simulation:
@@ -103,6 +140,7 @@ def follow(ranks: World) -> Any:
         SystemExit: there are no more runs.
     """
     simulation: Any = None
+    own: dict[str, Any] = {}
     with _deaf():
         while True:
             what, *about = ranks.hear()
@@ -111,16 +149,20 @@ def follow(ranks: World) -> Any:
             if what == "quit":
                 raise SystemExit(0)
             if what == "make":
-                simulation = None
+                simulation, own = None, {}
                 with contextlib.suppress(Exception):  # The first process has met the same.
                     simulation = _make(about[0], about[1], ranks)
+                    own["core"] = simulation.core
                 continue
             try:
-                if what == "get":
-                    getattr(simulation.core, about[0])
+                if what == "frames":
+                    own["frames"] = SlicedFrames(simulation, own["core"], about[0], about[1], ranks)
+                elif what == "get":
+                    getattr(own[about[0]], about[1])
                 else:
-                    name, values, named = about
-                    getattr(simulation.core, name)(*values, **named)
+                    name, function, values, named = about
+                    values = [own[v.name] if isinstance(v, _Own) else v for v in values]
+                    getattr(own[name], function)(*values, **named)
             except Exception as error:
                 ranks.fail(str(error))
 

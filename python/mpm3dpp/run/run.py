@@ -13,7 +13,6 @@ from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError, RunError
 from mpm3dpp.base.signals import Notice, as_exceptions
 from mpm3dpp.case.case import Case, load_case
-from mpm3dpp.io.background import FRAME_SHARE, BackgroundWriter
 from mpm3dpp.io.checkpoint import CHECKPOINT, no_checkpoint
 from mpm3dpp.io.folders import forget_last_run, only_run_in, writable_folder
 from mpm3dpp.io.history import HistoryWriter
@@ -23,11 +22,12 @@ from mpm3dpp.plots.apart import draw_apart
 from mpm3dpp.ranks.world import world
 
 from .checkpoints import Checkpoint, Checkpoints
-from .lead import follow, make_simulation, release
+from .lead import background_writer, follow, make_simulation, release
 from .progress import Progress
 from .report import contact_table, energy_line, gone_lines, load_lines, speed_line, warning_lines
 from .resume import go_on, has_checkpoint
 from .simulation import Simulation
+from .sliced_frames import fields_of
 from .stepping import step_to_end, tell
 
 
@@ -190,8 +190,7 @@ def _write_run(
     )
     unit = "J/m" if case.grid.dimension == 2 else "J"
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
-    room = FRAME_SHARE * sum(core.bytes().values())
-    with BackgroundWriter(file, room) as results, history, progress:
+    with background_writer(simulation, file) as results, history, progress:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
         for sentence in [*simulation.notes, *notes]:
@@ -211,7 +210,7 @@ def _results_writer(
     simulation: Simulation, folder: Path, kept: dict[str, Any] | None
 ) -> ResultsWriter:
     """Return the writer of the frames; `kept`: those that are there, as `ResultsWriter.rows`."""
-    case = simulation.case
+    case, ranks = simulation.case, world()
     return ResultsWriter(
         folder / RESULTS,
         bodies=simulation.parts,
@@ -219,23 +218,13 @@ def _results_writer(
         dimension=case.grid.dimension,
         cell_size=case.grid.cell_size,
         origin=case.grid.lower,
-        fields=_fields(case),
+        fields=fields_of(case),
         compression=case.output.compression,
         title=case.title,
         case_hash=case.case_hash,
         rows=kept,
+        writers=ranks.writers(case.output.files) if ranks else (0,),
     )
-
-
-def _fields(case: Case) -> list[str]:
-    """Return the columns to write: those asked for; `failed` where particles may erode or leave.
-
-    Without it a reader could not tell which particles are gone.
-    """
-    used = case.materials_used
-    goes = any(f.action == "erode" for name in used for f in case.material[name].failure)
-    goes = goes or case.grid.outflow_box is not None
-    return list(dict.fromkeys([*case.output.fields, *(["failed"] if goes else [])]))
 
 
 def _manifest(

@@ -4,27 +4,14 @@
 #include <cstring>
 #include <limits>
 #include <random>
-#include <thread>
 
 #include "check.hpp"
-#include "mpm/comm/threads_comm.hpp"
+#include "on_ranks.hpp"
 
 namespace {
 
 using namespace mpm;
-
-/// f(comm) in as many threads as there are ranks.
-template <class F>
-void on_ranks(int size, F&& f) {
-  const auto world = std::make_shared<ThreadsWorld>(size);
-  std::vector<std::jthread> threads;
-  threads.reserve(static_cast<std::size_t>(size));
-  for (int rank = 0; rank < size; ++rank)
-    threads.emplace_back([&f, world, rank] {
-      ThreadsComm comm(world, rank);
-      f(comm);
-    });
-}
+using testing::on_ranks;
 
 std::vector<std::byte> bytes_of(int from, int to, int round, std::size_t length) {
   std::vector<std::byte> bytes(length);
