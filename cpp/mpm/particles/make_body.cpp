@@ -89,6 +89,26 @@ void make_rows(std::vector<ParticlePool<D>>& pools, const std::vector<Body<D>>& 
   }
 }
 
+/// A body of so many particles with a volume together [m^3], of which none are given yet.
+template <int D>
+Body<D> empty_body(std::string name, const Material& material, const ParticlePool<D>& pool,
+                   std::size_t count, double volume) {
+  Body<D> body;
+  body.name = std::move(name);
+  body.count = count;
+  if (material.moves_as_one()) body.kind = BodyKind::rigid;
+  const double speed = pool.sound_speed;
+  body.total_mass = material.density * volume;
+  body.stiffness =
+      !body.deforms() ? std::numeric_limits<double>::infinity() : material.density * speed * speed;
+  body.initial_density = material.density;
+  body.pressure_impedance = material.density * speed;
+  body.shear_impedance = std::sqrt(material.density * shear_modulus(material));
+  body.mean_mass = material.density * volume / static_cast<double>(count);
+  body.mean_edge = std::pow(volume / static_cast<double>(count), 1.0 / D);
+  return body;
+}
+
 }  // namespace
 
 std::vector<double> Share::of(std::span<const double> given, std::size_t width) const {
@@ -136,25 +156,6 @@ void add_set_back(ParticlePool<D>& pool) {
 }
 
 template <int D>
-Body<D> empty_body(std::string name, const Material& material, const ParticlePool<D>& pool,
-                   std::size_t count, double volume) {
-  Body<D> body;
-  body.name = std::move(name);
-  body.count = count;
-  if (material.moves_as_one()) body.kind = BodyKind::rigid;
-  const double speed = pool.sound_speed;
-  body.total_mass = material.density * volume;
-  body.stiffness =
-      !body.deforms() ? std::numeric_limits<double>::infinity() : material.density * speed * speed;
-  body.initial_density = material.density;
-  body.pressure_impedance = material.density * speed;
-  body.shear_impedance = std::sqrt(material.density * shear_modulus(material));
-  body.mean_mass = material.density * volume / static_cast<double>(count);
-  body.mean_edge = std::pow(volume / static_cast<double>(count), 1.0 / D);
-  return body;
-}
-
-template <int D>
 Body<D> make_body(const std::string& name, const Material& material, const ParticlePool<D>& pool,
                   std::span<const double> positions, std::span<const double> velocities,
                   std::span<const double> volumes, std::optional<Share> share) {
@@ -165,11 +166,28 @@ Body<D> make_body(const std::string& name, const Material& material, const Parti
   Body<D> body = empty_body(name, material, pool, n, total);
   const Share own = share.value_or(Share(0, n));
   if (own.count() == 0) return body;
-  body.given = std::make_unique<GivenParticles>();
-  body.given->share = own;
-  body.given->positions = own.of(positions, D);
-  body.given->velocities = own.of(velocities, D);
-  body.given->volumes = own.of(volumes, 1);
+  body.given = std::make_unique<GivenParticles>(
+      GivenParticles{own, own.of(positions, D), own.of(velocities, D), own.of(volumes, 1), {}});
+  return body;
+}
+
+template <int D>
+Body<D> make_part(const std::string& name, const Material& material, const ParticlePool<D>& pool,
+                  std::size_t count, Share share, std::span<const double> positions,
+                  std::span<const double> velocities, double volume) {
+  double total = 0.0;  // as make_body() adds it up
+  for (std::size_t i = 0; i < count; ++i) total += volume;
+  Body<D> body = empty_body(name, material, pool, count, total);
+  if (share.count() == 0) return body;
+  check_particles<D>(name, positions, velocities, std::span(&volume, 1));
+  if (share.last > count || positions.size() != share.count() * D)
+    throw std::invalid_argument(name + ": its particles are not those of the share");
+  body.given =
+      std::make_unique<GivenParticles>(GivenParticles{share,
+                                                      {positions.begin(), positions.end()},
+                                                      {velocities.begin(), velocities.end()},
+                                                      {volume},
+                                                      {}});
   return body;
 }
 
@@ -227,13 +245,15 @@ template void add_force_columns<2>(ParticlePool<2>&, bool);
 template void add_force_columns<3>(ParticlePool<3>&, bool);
 template void add_set_back<2>(ParticlePool<2>&);
 template void add_set_back<3>(ParticlePool<3>&);
-template Body<2> empty_body<2>(std::string, const Material&, const ParticlePool<2>&, std::size_t,
-                               double);
 template Body<2> make_body<2>(const std::string&, const Material&, const ParticlePool<2>&,
                               std::span<const double>, std::span<const double>,
                               std::span<const double>, std::optional<Share>);
-template Body<3> empty_body<3>(std::string, const Material&, const ParticlePool<3>&, std::size_t,
-                               double);
+template Body<2> make_part<2>(const std::string&, const Material&, const ParticlePool<2>&,
+                              std::size_t, Share, std::span<const double>, std::span<const double>,
+                              double);
+template Body<3> make_part<3>(const std::string&, const Material&, const ParticlePool<3>&,
+                              std::size_t, Share, std::span<const double>, std::span<const double>,
+                              double);
 template Body<3> make_body<3>(const std::string&, const Material&, const ParticlePool<3>&,
                               std::span<const double>, std::span<const double>,
                               std::span<const double>, std::optional<Share>);

@@ -26,11 +26,6 @@ void add_force_columns(ParticlePool<D>& pool, bool of_start);
 template <int D>
 void add_set_back(ParticlePool<D>& pool);
 
-/// A body of so many particles with a volume together [m^3], of which none are given yet.
-template <int D>
-Body<D> empty_body(std::string name, const Material& material, const ParticlePool<D>& pool,
-                   std::size_t count, double volume);
-
 /// A body of particles at `positions` (n, D) [m] with `velocities` (n, D) or (1, D) [m/s] and
 /// `volumes` (n,) or (1,) [m^3], with the pool of its material, which it does not enter yet. Throws
 /// std::invalid_argument with the body's name if they do not fit each other. A rank keeps its share
@@ -39,6 +34,13 @@ template <int D>
 Body<D> make_body(const std::string& name, const Material& material, const ParticlePool<D>& pool,
                   std::span<const double> positions, std::span<const double> velocities,
                   std::span<const double> volumes, std::optional<Share> share = {});
+
+/// A body of `count` particles of one volume [m^3], of which this rank is given those of its share
+/// and no others: their positions (n, D), and velocities (n, D) or (1, D).
+template <int D>
+Body<D> make_part(const std::string& name, const Material& material, const ParticlePool<D>& pool,
+                  std::size_t count, Share share, std::span<const double> positions,
+                  std::span<const double> velocities, double volume);
 
 /// Put the given particles of all bodies into the pools of their materials; a patch for each body
 /// holds them, until lists are built. Throws std::length_error for more than 3e9 of one material.

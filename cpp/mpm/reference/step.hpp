@@ -43,22 +43,27 @@ struct Step {
   /// f(node, N_ip, grad N_ip [1/m]) for the nodes that a place reaches.
   template <class F>
   void for_each_node(const Vec<double, D>& x, F&& f) const {
+    constexpr std::int32_t most = 4;  // along an axis
     Index<D> low, high;
-    for (int a = 0; a < D; ++a) {
-      const auto k = static_cast<std::size_t>(a);
-      low[k] = static_cast<std::int32_t>(std::floor(x[a] / h)) - 1;
-      high[k] = low[k] + 3;
+    std::array<std::array<ShapeValue, most>, D> along;
+    for (std::size_t a = 0; a < D; ++a) {
+      const double at = x[static_cast<int>(a)] / h;
+      low[a] = static_cast<std::int32_t>(std::floor(at)) - 1;
+      high[a] = low[a] + most - 1;
+      for (std::int32_t k = 0; k < most; ++k)
+        along[a][static_cast<std::size_t>(k)] = S(at - (low[a] + k));
     }
     for_each_index<D>(low, high, [&](const Index<D>& i) {
+      const auto s = [&](std::size_t a) {
+        return along[a][static_cast<std::size_t>(i[a] - low[a])];
+      };
       double N = 1.0;
       Vec<double, D> dN;
-      for (int a = 0; a < D; ++a) {
-        N *= S(x[a] / h - i[static_cast<std::size_t>(a)]).N;
-        dN[a] = 1.0 / h;
-        for (int b = 0; b < D; ++b) {
-          const ShapeValue s = S(x[b] / h - i[static_cast<std::size_t>(b)]);
-          dN[a] *= a == b ? s.dN : s.N;
-        }
+      for (std::size_t a = 0; a < D; ++a) {
+        N *= s(a).N;
+        double product = 1.0 / h;
+        for (std::size_t b = 0; b < D; ++b) product *= a == b ? s(b).dN : s(b).N;
+        dN[static_cast<int>(a)] = product;
       }
       if (N > 0.0) f(i, N, dN);
     });

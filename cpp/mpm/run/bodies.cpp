@@ -97,17 +97,10 @@ int add_bodies(Simulation<D>& simulation, std::span<const std::string> names, in
     const bool is_given = k >= first && (given + count) * D <= positions.size();
     if (share.holds(k) && !is_given)
       throw std::invalid_argument(names[k] + ": its particles are not given");
-    Body<D> body;
-    if (share.holds(k)) {
-      const std::size_t at = given * D, width = count * D;
-      body = make_body(names[k], material, pool, positions.subspan(at, width),
-                       alike ? velocities : velocities.subspan(at, width), volumes.subspan(k, 1),
-                       Share(0, count));
-    } else {
-      double volume = 0.0;  // as make_body() adds it up
-      for (std::size_t i = 0; i < count; ++i) volume += volumes[k];
-      body = empty_body(names[k], material, pool, count, volume);
-    }
+    const Share whole = share.holds(k) ? Share(0, count) : Share();
+    const std::size_t at = share.holds(k) ? given * D : 0, width = whole.count() * D;
+    Body<D> body = make_part(names[k], material, pool, count, whole, positions.subspan(at, width),
+                             alike ? velocities : velocities.subspan(at, width), volumes[k]);
     if (k >= first) given += count;
     body.material = material_number;
     body.group = leader;
@@ -118,15 +111,37 @@ int add_bodies(Simulation<D>& simulation, std::span<const std::string> names, in
 }
 
 template <int D>
+int add_part(Simulation<D>& simulation, const std::string& name, int material_number,
+             std::size_t count, std::size_t first, std::span<const double> positions,
+             std::span<const double> velocities, double volume) {
+  Domain<D>& domain = simulation.domain;
+  require(simulation, Phase::building, "bodies must be added before prepare()");
+  const auto m = static_cast<std::size_t>(material_number);
+  const auto counts = {static_cast<std::int64_t>(count)};
+  check_bodies(std::span(&name, 1), counts, std::span(&volume, 1));
+  Body<D> body =
+      make_part(name, domain.materials.at(m), domain.pools.at(m), count,
+                Share(first, first + positions.size() / D), positions, velocities, volume);
+  body.material = material_number;
+  body.group = static_cast<int>(domain.bodies.size());
+  domain.bodies.push_back(std::move(body));
+  return static_cast<int>(domain.bodies.size()) - 1;
+}
+
+template <int D>
 void set_state(Simulation<D>& simulation, int number, const std::string& column,
                std::span<const double> values) {
   require(simulation, Phase::building, "states must be set before prepare()");
   Body<D>& b = simulation.domain.body_at(number);
   const ColumnInfo& info = simulation.domain.pool_of(b).columns.info(column);
-  if (info.components != 1 || values.size() != b.count)
+  const Share share = b.share();
+  const bool of_all = values.size() == b.count;
+  if (info.components != 1 || (!of_all && values.size() != share.count()))
     throw std::invalid_argument(column + ": a state that is set must be (n,)");
   check_finite(values, column);
-  if (b.given) b.given->states.emplace_back(info.first, b.share().of(values, 1));
+  if (!b.given) return;
+  b.given->states.emplace_back(
+      info.first, of_all ? share.of(values, 1) : std::vector(values.begin(), values.end()));
 }
 
 template <int D>
@@ -228,6 +243,10 @@ template int add_bodies<2>(Simulation<2>&, std::span<const std::string>, int,
 template int add_bodies<3>(Simulation<3>&, std::span<const std::string>, int,
                            std::span<const std::int64_t>, std::span<const double>, std::size_t,
                            std::span<const double>, std::span<const double>);
+template int add_part<2>(Simulation<2>&, const std::string&, int, std::size_t, std::size_t,
+                         std::span<const double>, std::span<const double>, double);
+template int add_part<3>(Simulation<3>&, const std::string&, int, std::size_t, std::size_t,
+                         std::span<const double>, std::span<const double>, double);
 template void set_state<2>(Simulation<2>&, int, const std::string&, std::span<const double>);
 template void set_state<3>(Simulation<3>&, int, const std::string&, std::span<const double>);
 template void set_motion<2>(Simulation<2>&, int, const std::array<TimeFunction, 3>&,

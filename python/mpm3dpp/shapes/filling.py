@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.machine import MOST_PARTICLES
+from mpm3dpp.base.parts import equal_part
 
 from .base import SURFACE_TOLERANCE, Points, Shape
 from .shells import SHELLS, shell_count, shell_points
@@ -43,22 +44,49 @@ class _Lattice:
         self.tolerance = max(SURFACE_TOLERANCE * spacing.min(), 8 * np.finfo(float).eps * reach)
         self.shape = shape
 
-    def slabs(self) -> Iterator[tuple[list[Points], NDArray[np.bool_]]]:
-        """Yield (axes of a slab, which of its points are strictly inside), about _CHUNK each."""
-        layer = max(1, int(np.prod([len(axis) for axis in self.axes[1:]])))
-        step = max(1, _CHUNK // layer)
-        for start in range(0, len(self.axes[0]), step):
-            axes = [self.axes[0][start : start + step], *self.axes[1:]]
-            if layer > 4 * _CHUNK:  # a layer alone is too large: cut it too
-                wide = max(1, _CHUNK // max(1, layer // len(axes[1])))
-                parts = [axes[1][i : i + wide] for i in range(0, len(axes[1]), wide)]
-            else:
-                parts = [axes[1]]
-            for part in parts:
-                slab = [axes[0], part, *axes[2:]]
-                mesh = np.meshgrid(*slab, indexing="ij", copy=False)
-                points = np.stack([x.ravel() for x in mesh], axis=1)
-                yield slab, self.shape.inside(points, -self.tolerance)
+    def slabs(
+        self, part: int = 0, parts: int = 1
+    ) -> Iterator[tuple[list[Points], NDArray[np.bool_]]]:
+        """Yield (axes of a slab, which of its points are strictly inside), about _CHUNK each.
+
+        Args:
+            part, parts: of the lines along the last axis one of so many equal parts.
+        """
+        for axes in self._blocks(part, parts):
+            layer = max(1, int(np.prod([len(axis) for axis in axes[1:]])))
+            step = max(1, _CHUNK // layer)
+            for start in range(0, len(axes[0]), step):
+                first = axes[0][start : start + step]
+                if layer > 4 * _CHUNK:  # a layer alone is too large: cut it too
+                    wide = max(1, _CHUNK // max(1, layer // len(axes[1])))
+                    cuts = [axes[1][i : i + wide] for i in range(0, len(axes[1]), wide)]
+                else:
+                    cuts = [axes[1]]
+                for cut in cuts:
+                    slab = [first, cut, *axes[2:]]
+                    mesh = np.meshgrid(*slab, indexing="ij", copy=False)
+                    points = np.stack([x.ravel() for x in mesh], axis=1)
+                    yield slab, self.shape.inside(points, -self.tolerance)
+
+    def _blocks(self, part: int, parts: int) -> Iterator[list[Points]]:
+        """Yield the axes of blocks, in order: those of a part of the lines along the last axis."""
+        x, *others = self.axes
+        width = len(others[0]) if len(others) == 2 else 1  # lines in a layer
+        first, end = equal_part(len(x) * width, part, parts)
+        if len(others) == 1:
+            yield [x[first:end], *others]
+            return
+        y, z = others
+        (a, i), (b, j) = divmod(first, max(width, 1)), divmod(end, max(width, 1))
+        if a == b:  # within a layer
+            yield [x[a : a + 1], y[i:j], z]
+            return
+        if i:
+            yield [x[a : a + 1], y[i:], z]
+            a += 1
+        yield [x[a:b], y, z]
+        if j:
+            yield [x[b : b + 1], y[:j], z]
 
 
 def _too_many(shape: Shape, points: float) -> CaseError:
@@ -68,7 +96,9 @@ def _too_many(shape: Shape, points: float) -> CaseError:
     return CaseError(rule, LENGTHS_REMEDY, key="shape")
 
 
-def fill_shape(shape: Shape, origin: Any, spacing: float) -> Points:
+def fill_shape(
+    shape: Shape, origin: Any, spacing: float, part: int = 0, parts: int = 1
+) -> Points:
     """Return the lattice points inside a shape, in lexicographic order.
 
     A point on the surface (to 1e-9 of the spacing) is outside: mirror images fill alike and
@@ -79,6 +109,7 @@ def fill_shape(shape: Shape, origin: Any, spacing: float) -> Points:
         shape: what to fill.
         origin: a corner of the grid [m], D numbers; the points are at origin + (k + 1/2) spacing.
         spacing: distance of the points [m].
+        part, parts: one of so many parts of all points, which follow one another.
 
     Returns:
         Positions [m], shape (n, D).
@@ -88,7 +119,7 @@ def fill_shape(shape: Shape, origin: Any, spacing: float) -> Points:
     """
     start = np.asarray(origin, dtype=np.float64)
     lattice = _Lattice(shape, start, np.full(len(start), float(spacing)))
-    kept = [(slab, np.packbits(mask), len(mask)) for slab, mask in lattice.slabs()]
+    kept = [(slab, np.packbits(mask), len(mask)) for slab, mask in lattice.slabs(part, parts)]
     counts = [int(np.unpackbits(bits, count=size).sum()) for _, bits, size in kept]
     positions = np.empty((sum(counts), len(start)))
     at = 0
@@ -117,13 +148,16 @@ def fill_round(shape: Shape, spacing: float) -> Points:
     return shell_points(shape, spacing)
 
 
-def fill(body: Any, grid: Any, way: str = "") -> tuple[Points, Points]:
+def fill(
+    body: Any, grid: Any, way: str = "", part: int = 0, parts: int = 1
+) -> tuple[Points, Points]:
     """Return the particles of a body.
 
     Args:
         body: a `case.Body`: its shape or particles, and `particles_per_cell` or `spacing`.
         grid: a `case.Grid`: its dimension, origin and cell size.
         way: "shells" or "lattice"; by default what the body says.
+        part, parts: of a shape with a lattice, one of so many parts of all particles.
 
     Returns:
         Positions [m], shape (n, D), and volumes [m^3; in 2D m^2 times 1 m], shape (n,) (of a
@@ -148,15 +182,20 @@ def fill(body: Any, grid: Any, way: str = "") -> tuple[Points, Points]:
     if in_shells:
         positions = fill_round(body.shape, spacing)
     else:
-        positions = fill_shape(body.shape, grid.origin, spacing)
-    if len(positions) == 0:
-        lower, upper = body.shape.bounds()
-        edges = " x ".join(f"{edge:.4g}" for edge in upper - lower)
-        rule = f"holds no particle: it measures {edges} m and particles are {spacing:.4g} m apart"
-        remedy = "give a smaller grid.cell_size, more particles_per_cell, or a larger shape"
-        raise CaseError(rule, remedy, key="shape")
+        positions = fill_shape(body.shape, grid.origin, spacing, part, parts)
+    if len(positions) == 0 and parts == 1:
+        raise holds_none(body.shape, spacing)
     each = body.shape.volume() / len(positions) if in_shells else spacing**grid.dimension
     return positions, np.broadcast_to(each, (len(positions),))
+
+
+def holds_none(shape: Shape, spacing: float) -> CaseError:
+    """Return the mistake that a shape holds no particle."""
+    lower, upper = shape.bounds()
+    edges = " x ".join(f"{edge:.4g}" for edge in upper - lower)
+    rule = f"holds no particle: it measures {edges} m and particles are {spacing:.4g} m apart"
+    remedy = "give a smaller grid.cell_size, more particles_per_cell, or a larger shape"
+    return CaseError(rule, remedy, key="shape")
 
 
 def reference_volume(shape: Shape) -> tuple[float, bool]:
