@@ -22,12 +22,13 @@ from mpm3dpp.reproduce.examples import EXAMPLES, folder_of_cases, load
 
 
 def cases() -> Iterator[tuple[str, Case]]:
-    """Yield the examples 01 to 05 with their names."""
+    """Yield the examples 01 to 05 with their names, and a case that has what these do not."""
     folder = folder_of_cases()
     for name, example in EXAMPLES.items():
         for label in example.files:
             yield f"{name} {label}", load(example, label, folder, "quick")[0]
     yield "hopper", load_case(folder / "05_hopper" / "case_small.toml")
+    yield "slices", load_case(Path(__file__).parent / "slices.toml")
 
 
 def digest(simulation: Simulation) -> str:

@@ -54,12 +54,14 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 @pytest.mark.parametrize("ranks", [2, 4])
 def test_examples(tmp_path: Path, way: str, alone: dict[str, str], ranks: int) -> None:
+    if way == "mpi4py" and ranks > 2:
+        return  # The same letters by another carrier.
     out = tmp_path / "found.json"
     words = mpiexec(ranks, PROGRAMS / "digests.py", out, 10)
     subprocess.run(words, env=environment(way), check=True, timeout=600)
     found = json.loads(out.read_text())
     assert found.pop("ranks") == str(ranks)
-    assert len(found) == 6 and found == {k: v for k, v in alone.items() if k != "ranks"}
+    assert len(found) == 7 and found == {k: v for k, v in alone.items() if k != "ranks"}
 
 
 def test_a_run_writes_and_tells_once(tmp_path: Path, way: str) -> None:

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 # Points of a surface for each spacing of the particles: on a circle the more the evener its load.
 _FINER = {(2, LATTICE): 8, (2, SHELLS): 64, (3, LATTICE): 4, (3, SHELLS): 4}
+_REACH = 2.5  # spacings, from a point of a surface to the particle that carries it at most
 _SAME = 1e-9  # Distances that differ by less than this share of the spacing are equal.
 
 
@@ -143,7 +144,13 @@ def _kind(body: Body) -> str:
     return unmoved(body.shape).kind if body.shape is not None else "set of particles"
 
 
-def pieces(case: Case, name: str, positions: Array, spacing: float) -> Pieces:
+Near = Callable[[Array, float], tuple[NDArray[np.int64], Array]]
+"""Gives numbers and positions of a body's particles within reach of points [m]."""
+
+
+def pieces(
+    case: Case, name: str, positions: Array, spacing: float, near: Near | None = None
+) -> Pieces:
     """Share the side that a load acts on among the particles of its body.
 
     Each point of the side belongs to the particle nearest to it, or in equal parts to those that
@@ -155,6 +162,7 @@ def pieces(case: Case, name: str, positions: Array, spacing: float) -> Pieces:
         name: of the load.
         positions: of the body's particles [m], shape (n, D).
         spacing: distance of neighbouring particles [m].
+        near: gives those that may carry the side, where nobody has all.
 
     Raises:
         CaseError: a part of the side has no particle within two spacings.
@@ -170,6 +178,9 @@ def pieces(case: Case, name: str, positions: Array, spacing: float) -> Pieces:
     if not len(side.points):
         rule = "is nowhere on the surface: the other shapes cover it or cut it off"
         raise case.error(("load", name, "side"), rule, "load another side", value=load.side)
+    numbers: NDArray[np.int64] | None = None
+    if near is not None:
+        numbers, positions = near(side.points, _REACH * spacing)
     points, owner = nearest_particles(positions, side.points, spacing)
     lost = np.bincount(points, minlength=len(side.points)) == 0
     if lost.any():
@@ -181,7 +192,10 @@ def pieces(case: Case, name: str, positions: Array, spacing: float) -> Pieces:
         remedy = "give a smaller grid.cell_size or more particles_per_cell"
         raise case.error(("load", name, "side"), rule, remedy, value=load.side)
     parts = np.bincount(points)[points][:, None]
-    return _share(Surface(side.points[points], side.areas[points] / parts), owner, positions)
+    found = _share(Surface(side.points[points], side.areas[points] / parts), owner, positions)
+    if numbers is None:
+        return found
+    return replace(found, particles=numbers[found.particles].astype(np.uint32))
 
 
 def _share(side: Surface, owner: NDArray[np.int64], positions: Array) -> Pieces:
@@ -215,9 +229,11 @@ def nearest_particles(
     """
     from scipy.spatial import cKDTree
 
+    if not len(positions):
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
     most = min(2 ** positions.shape[1], len(positions))
     away, owner = cKDTree(positions).query(
-        points, k=range(1, most + 1), distance_upper_bound=2.5 * spacing
+        points, k=range(1, most + 1), distance_upper_bound=_REACH * spacing
     )
     near = np.isfinite(away) & (away <= away[:, :1] + _SAME * spacing)
     numbers, _ = np.nonzero(near)

@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from mpm3dpp.base.errors import Path, nearest, violation
+from mpm3dpp.base.mean import mass_centre
 from mpm3dpp.base.model import CaseModel
 from mpm3dpp.base.time_functions import TimedSpin, TimedVelocity, at, bound
 from mpm3dpp.base.units import Point
@@ -46,17 +47,15 @@ class Motion(CaseModel):
         """Whether it is not at rest at all times."""
         return any(bound(f) for f in (*self.velocity, *self.angular_velocity))
 
-    def middle(self, positions: Array, volumes: Array) -> Array:
+    def middle(self, positions: Array, volumes: Array, world: Any = None) -> Array:
         """Return the centre at the start [m], shape (D,).
 
         Args:
             positions: of the body's particles [m], shape (n, D).
             volumes: [m^3; in 2D m^2], shape (n,).
+            world: see `mass_centre`.
         """
-        if self.centre:
-            return np.array(self.centre)
-        equal = bool(np.all(volumes == volumes[0]))
-        return np.asarray(np.average(positions, axis=0, weights=None if equal else volumes))
+        return np.array(self.centre) if self.centre else mass_centre(positions, volumes, world)
 
     def velocities(self, time: float, positions: Array, centre: Array) -> Array:
         """Return the velocities [m/s] at a time [s], shape (1, D) without spin, else (n, D).

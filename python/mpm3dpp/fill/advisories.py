@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from mpm3dpp.base.time_functions import TimeFunction
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import EXPLOSIVE
 from mpm3dpp.case.grid import FACES
+from mpm3dpp.ranks.world import World, together
 
 from .parts import Filled, FilledPart
 
@@ -27,18 +29,19 @@ _SEEN = 0.1  # Cells: a fifth of an edge; a lattice stands out by less.
 _STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
 
 
-def notes(case: Case, bodies: Filled) -> list[str]:
+def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
     """Return one sentence for each thing that a user should look at again.
 
     Args:
         case: a checked case.
         bodies: its bodies, filled.
+        world: processes that have slices of them; each calls this.
     """
     found = [
         *_renamed(case),
         *_materials(case),
         *_rigid(case),
-        *_detonations(case, bodies),
+        *_detonations(case, bodies, world),
         *_walls(case),
         *_locking(case),
         *_springs(case, bodies),
@@ -246,7 +249,7 @@ def _width(case: Case, part: FilledPart) -> float:
     return least
 
 
-def _detonations(case: Case, bodies: Filled) -> list[str]:
+def _detonations(case: Case, bodies: Filled, world: World | None) -> list[str]:
     """Explosives that nothing lights, and points that light nothing before the end of the run."""
     explosives = {
         name: part
@@ -266,7 +269,9 @@ def _detonations(case: Case, bodies: Filled) -> list[str]:
             speed = case.material[part.material].strength.parameters["D"]
             for some in part.chunks():
                 distance = np.linalg.norm(some.positions - np.asarray(detonation.point), axis=1)
-                first = min(first, detonation.time + float(distance.min()) / speed)
+                near = float(distance.min(initial=np.inf))
+                first = min(first, detonation.time + near / speed)
+        first = min(together(partial(float, first), world))
         if first > case.run.end_time:
             found.append(
                 f"detonation[{index}] lights nothing before the end of the run: it reaches an "

@@ -13,13 +13,15 @@ from mpm3dpp.case.body import Body
 from mpm3dpp.case.case import Case
 from mpm3dpp.grains import GrainFilling, Grains
 from mpm3dpp.grains.packing import ball_volume
-from mpm3dpp.ranks.world import World, share_of, together
+from mpm3dpp.ranks.world import World, agreed, share_of, together
 from mpm3dpp.shapes import fill, reference_volume
+from mpm3dpp.shapes.filling import holds_none
 from mpm3dpp.shapes.shells import SHELLS
 
 from .capacity import capacity_mistakes
-from .parts import Filled, FilledPart, Particles, Survey, joined, ranges, survey
+from .parts import Filled, FilledPart, Particles, Slice, Survey, joined, ranges, survey
 from .placement import box_mistakes, overlap_mistakes
+from .slices import survey_of_slices
 from .velocities import start_velocities
 
 MASS_WARNING = 0.05  # Relative mass error above which a run warns ...
@@ -50,7 +52,7 @@ def build(case: Case, world: World | None = None) -> Filled:
         raise from_violation(error) from None
     filled = fill_all(case, world)
     mistakes = [one for part in filled.parts.values() for one in box_mistakes(case, part)]
-    mistakes += overlap_mistakes(case, filled)
+    mistakes += overlap_mistakes(case, filled, world)
     if mistakes:
         raise first_of(mistakes)
     return filled
@@ -72,7 +74,7 @@ def fill_all(case: Case, world: World | None = None) -> Filled:
             if isinstance(part, Grains):
                 parts.append(_filled_grains(case, name, part, world))
             else:
-                parts.append(_filled(case, name, part))
+                parts.append(_filled(case, name, part, world))
         except CaseError as error:
             mistakes.append(error)
     if mistakes:
@@ -157,14 +159,33 @@ def _filled_grains(case: Case, name: str, grains: Grains, world: World | None) -
     return part
 
 
-def _filled(case: Case, name: str, body: Body) -> FilledPart:
-    try:
-        positions, volumes = fill(body, case.grid, case.filled_by(name))
-    except CaseError as error:
-        raise case.error(("body", name, body.filling), error.rule, error.remedy) from None
+def _filled(case: Case, name: str, body: Body, world: World | None) -> FilledPart:
+    way, path = case.filled_by(name), ("body", name, body.filling)
+    spacing = body.particle_spacing(case.grid)
+
+    def make(ranks: World | None = None) -> Particles:
+        part, parts = (ranks.rank, ranks.size) if ranks else (0, 1)
+        try:
+            positions, volumes = fill(body, case.grid, way, part, parts)
+        except CaseError as error:
+            raise case.error(path, error.rule, error.remedy) from None
+        velocities = start_velocities(case, name, positions, volumes, world=ranks)
+        return Particles(np.array([len(positions)]), positions, velocities, volumes)
+
+    own: Slice | None = None
+    if world is not None and body.shape is not None and way != SHELLS:
+        particles = agreed(lambda: make(world), world)
+        seen, own = survey_of_slices(particles, world)
+        if not seen.counts[0]:
+            error = holds_none(body.shape, spacing)
+            raise case.error(path, error.rule, error.remedy)
+    else:
+        particles = make()
+        seen = survey(particles)
+    count, volumes = int(seen.counts[0]), particles.volumes
     shape_volume, exact, mass_error = None, True, 0.0
     if body.shape is not None:
-        volume = len(positions) * float(volumes[0])
+        volume = count * (spacing**case.grid.dimension if own else float(volumes[0]))
         shape_volume, exact = reference_volume(body.shape)
         mass_error = volume / shape_volume - 1 if shape_volume > 0 else math.inf
         if abs(mass_error) > MASS_ERROR:
@@ -175,19 +196,18 @@ def _filled(case: Case, name: str, body: Body) -> FilledPart:
             raise case.error(("body", name, "shape"), rule, remedy)
     else:
         volume = float(volumes.sum())
-    velocities = start_velocities(case, name, positions, volumes)
-    particles = Particles(np.array([len(positions)]), positions, velocities, volumes)
     return FilledPart(
         name=name,
         material=body.material,
         names=[name],
-        spacing=body.particle_spacing(case.grid),
-        fill=case.filled_by(name) if body.shape is not None else "",
-        survey=survey(particles),
-        volumes=np.array([volume / len(positions)]),
+        spacing=spacing,
+        fill=way if body.shape is not None else "",
+        survey=seen,
+        volumes=np.array([volume / count]),
         masses=np.array([volume * case.material[body.material].density]),
         shape_volumes=None if shape_volume is None else np.array([shape_volume]),
         volume_is_exact=exact,
         mass_errors=np.array([mass_error]),
-        make=lambda _first, _last: particles,
+        make=(lambda _first, _last: make()) if own else (lambda _first, _last: particles),
+        own=own,
     )

@@ -85,6 +85,19 @@ class Survey:
 
 
 @dataclass(frozen=True)
+class Slice:
+    """The particles of a body that one of several processes has filled.
+
+    Attributes:
+        first: number of the first of them in the body.
+        particles: these.
+    """
+
+    first: int
+    particles: Particles
+
+
+@dataclass(frozen=True)
 class FilledPart:
     """The bodies of an entry of a case at the start: one, or all the grains, m in number.
 
@@ -102,6 +115,7 @@ class FilledPart:
         mass_errors: mass / (density times shape volume) - 1, shape (m,); 0 without a shape.
         make: gives the particles of the bodies from one to the one before another.
         balls: centres [m], shape (m, D), and radii [m], shape (m,), of grains; None for others.
+        own: of a body of which each of several processes has filled a slice, that of this one.
     """
 
     name: str
@@ -117,6 +131,7 @@ class FilledPart:
     mass_errors: Array
     make: Callable[[int, int], Particles]
     balls: tuple[Array, Array] | None = None
+    own: Slice | None = None
 
     @property
     def count(self) -> int:
@@ -124,7 +139,10 @@ class FilledPart:
         return int(self.survey.counts.sum())
 
     def chunks(self) -> Iterator[Particles]:
-        """Yield the particles of all its bodies, those of some bodies at a time."""
+        """Yield the particles of all its bodies, or of a slice, those of some bodies at a time."""
+        if self.own is not None:
+            yield self.own.particles
+            return
         for first, last in ranges(self.survey.counts):
             yield self.make(first, last)
 

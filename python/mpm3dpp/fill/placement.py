@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,13 @@ from mpm3dpp.base.errors import Path as KeyPath
 from mpm3dpp.base.neighbours import overlapping_boxes
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.grid import FARTHEST
+from mpm3dpp.ranks.world import World
+
+from .parts import FilledPart
+from .slices import of_one, strips
 
 if TYPE_CHECKING:
-    from .parts import Filled, FilledBody, FilledPart
+    from .parts import Filled, FilledBody
 
 CLOSE = 0.25  # Particles of two bodies nearer than this share of their spacing overlap.
 _SLACK = 1e-9  # How far, in cells, a particle may stand outside the box by rounding.
@@ -80,15 +84,22 @@ def _key(case: Case, part: str) -> tuple[KeyPath, str]:
     return (*case.part_path(part), filling), filling
 
 
-def overlap_mistakes(case: Case, bodies: Filled) -> Iterator[CaseError]:
+def overlap_mistakes(case: Case, bodies: Filled, world: World | None = None) -> Iterator[CaseError]:
     """Yield which two bodies overlap by more than a quarter spacing; of grains the first only.
 
     Grains are judged as balls: where those touch, particles may be as near as chance has it.
+
+    Args:
+        case: what is filled.
+        bodies: its bodies, filled.
+        world: processes that have slices of them; each calls this.
     """
     if len(bodies) < 2:
         return
     parts = list(bodies.parts.values())
-    part_of = np.repeat(np.arange(len(parts)), [len(part.names) for part in parts])
+    sizes = [len(part.names) for part in parts]
+    part_of = np.repeat(np.arange(len(parts)), sizes)
+    first_of = np.cumsum([0, *sizes])
     reach = CLOSE * np.concatenate([np.full(len(part.names), part.spacing) for part in parts])
     no_ball = (np.full((1, case.grid.dimension), np.nan), np.full(1, np.nan))
     centres, radii = (
@@ -108,26 +119,63 @@ def overlap_mistakes(case: Case, bodies: Filled) -> Iterator[CaseError]:
         pair = int(part_of[a[k]]), int(part_of[b[k]])
         if pair in told:
             continue
-        first, second = bodies[int(a[k])], bodies[int(b[k])]
+        one = _OneBody(parts[pair[0]], int(a[k] - first_of[pair[0]]))
+        other = _OneBody(parts[pair[1]], int(b[k] - first_of[pair[1]]))
         how = f"by {depths[k]:.4g} m"
         if np.isnan(depths[k]):
-            distance = CLOSE * min(first.spacing, second.spacing)
-            count = close_particles(first.positions, second.positions, distance)
+            count = _close(one, other, CLOSE * min(one.part.spacing, other.part.spacing), world)
             if not count:
                 continue
             how = (
-                f"{count} of the particles of {second.name} are closer than a quarter spacing to "
-                f"particles of {first.name}"
+                f"{count} of the particles of {other.name} are closer than a quarter spacing to "
+                f"particles of {one.name}"
             )
-        other = f"body.{first.name}" if first.name == first.part else first.name
-        if second.name == second.part:
-            rule = f"overlaps {other}: {how}"
+        who = f"body.{one.name}" if one.name == one.part.name else one.name
+        if other.name == other.part.name:
+            rule = f"overlaps {who}: {how}"
             remedy = "move one of the two, or cut one out of the other with difference"
         else:
-            rule = f"has {second.name} overlap {other}: {how}"
+            rule = f"has {other.name} overlap {who}: {how}"
             remedy = "move the grains, or make them smaller"
         told.add(pair)
-        yield case.error(_key(case, second.part)[0], rule, remedy)
+        yield case.error(_key(case, other.part.name)[0], rule, remedy)
+
+
+class _OneBody(NamedTuple):
+    """One of the bodies of an entry, by its place there."""
+
+    part: FilledPart
+    place: int
+
+    @property
+    def name(self) -> str:
+        return self.part.names[self.place]
+
+    def positions(self, world: World | None) -> NDArray[np.float64]:
+        """Return the particles' positions [m]: each is had by one of the processes."""
+        if self.part.own is not None:
+            return self.part.own.particles.positions
+        whole = self.part.make(self.place, self.place + 1).positions
+        return whole if world is None else of_one(whole, world)
+
+    def bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return self.part.survey.lower[self.place], self.part.survey.upper[self.place]
+
+
+def _close(one: _OneBody, other: _OneBody, distance: float, world: World | None) -> int:
+    """Return how many particles of the other are closer than a distance to one of the first."""
+    points = [body.positions(world) for body in (one, other)]
+    if world is not None:
+        lower = np.maximum(one.bounds()[0], other.bounds()[0]) - distance
+        upper = np.minimum(one.bounds()[1], other.bounds()[1]) + distance
+        if np.any(lower > upper):
+            return 0
+        points = [p[np.all((p >= lower) & (p <= upper), axis=1)] for p in points]
+        points = [*strips(points[0], points[1], (lower, upper), distance, world)]
+    count = np.array([close_particles(points[0], points[1], distance)])
+    if world is not None:
+        world.all_sum(count)
+    return int(count[0])
 
 
 def close_particles(

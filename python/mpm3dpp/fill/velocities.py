@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mpm3dpp.base.errors import Path as KeyPath
 from mpm3dpp.base.expression import Expression
+from mpm3dpp.base.mean import mass_centre
 from mpm3dpp.case.body import Body
 from mpm3dpp.case.case import Case
 
@@ -19,7 +20,12 @@ _LARGEST = 1e100  # As of all quantities in a case.
 
 
 def start_velocities(
-    case: Case, part: str, positions: Array, volumes: Array, counts: NDArray[np.int64] | None = None
+    case: Case,
+    part: str,
+    positions: Array,
+    volumes: Array,
+    counts: NDArray[np.int64] | None = None,
+    world: Any = None,
 ) -> Array:
     """Return v + w x (x - x_mass centre) of each particle of a body, or of some grains [m/s].
 
@@ -29,6 +35,7 @@ def start_velocities(
         positions: [m], shape (n, D), one body after another.
         volumes: of the particles [m^3; in 2D m^2], shape (n,); those of a grain are equal.
         counts: how many each grain has; None for a body.
+        world: processes that have others of its particles.
 
     Returns:
         Shape (1, D) if all are equal by the case, else (n, D).
@@ -38,7 +45,9 @@ def start_velocities(
     """
     entry = case.parts()[part]
     if isinstance(entry, Body) and entry.motion is not None:
-        return entry.motion.velocities(0.0, positions, entry.motion.middle(positions, volumes))
+        return entry.motion.velocities(
+            0.0, positions, entry.motion.middle(positions, volumes, world)
+        )
     if isinstance(entry, Body) and entry.particles is not None:
         given = entry.particles.velocities
         if given is not None:
@@ -47,8 +56,7 @@ def start_velocities(
     if not spins and not any(isinstance(value, Expression) for value in entry.velocity):
         return np.array([entry.velocity], dtype=float)
     if counts is None:
-        alike = bool(np.all(volumes == volumes[0]))
-        arm = positions - np.average(positions, axis=0, weights=None if alike else volumes)
+        arm = positions - mass_centre(positions, volumes, world)
     else:
         # In the same way for one grain as for many: they may be made in any groups.
         sums = np.add.reduceat(positions, np.cumsum(counts) - counts, axis=0)

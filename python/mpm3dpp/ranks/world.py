@@ -91,8 +91,12 @@ class World:
         return list(range(self.size)) if files == "rank" else list(self._firsts)
 
     def all_max(self, numbers: np.ndarray) -> None:
-        """Replace integers by the largest of all ranks."""
+        """Replace numbers by the largest of all ranks."""
         self.comm.Allreduce(self._mpi.IN_PLACE, numbers, op=self._mpi.MAX)
+
+    def all_sum(self, numbers: np.ndarray) -> None:
+        """Replace integers by their sums over all ranks."""
+        self.comm.Allreduce(self._mpi.IN_PLACE, numbers, op=self._mpi.SUM)
 
     def fail(self, why: str, patience: float = PATIENCE) -> None:
         """Return once all ranks have called it, which then go on; else end all, with a sentence.
@@ -152,14 +156,14 @@ def share_of(count: int, world: World | None) -> tuple[int, int]:
     return equal_part(count, rank, size)
 
 
-def together(make: Callable[[], Any], world: World | None) -> list[Any]:
-    """Return what all processes make, by their ranks.
+def agreed(make: Callable[[], Any], world: World | None) -> Any:
+    """Return what this process makes, once all have made theirs.
 
     Raises:
         CaseError: one has met a mistake, which is that of all then.
     """
     if world is None:
-        return [make()]
+        return make()
     found, mistake = None, None
     try:
         found = make()
@@ -169,8 +173,13 @@ def together(make: Callable[[], Any], world: World | None) -> list[Any]:
     for told in world.comm.allgather(mistake):
         if told is not None:
             raise CaseError(told[0], told[1], **told[2])
-    result: list[Any] = world.comm.allgather(found)
-    return result
+    return found
+
+
+def together(make: Callable[[], Any], world: World | None) -> list[Any]:
+    """Return what all processes make, by their ranks. Raises what `agreed` does."""
+    found = agreed(make, world)
+    return [found] if world is None else list(world.comm.allgather(found))
 
 
 def _once(number: int, error: CaseError) -> BaseException:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,8 @@ from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import lighting_times
 from mpm3dpp.case.loads import add_load, pieces
 from mpm3dpp.case.motion import Motion
-from mpm3dpp.fill.parts import FilledPart
+from mpm3dpp.fill.parts import FilledPart, Particles
+from mpm3dpp.fill.slices import near_points
 from mpm3dpp.ranks.world import World, share_of
 
 
@@ -26,36 +28,41 @@ def add_part(
         case: of which the entry is.
         part: the entry.
         materials: their numbers in the core.
-        world: processes that each give a share of the grains.
+        world: processes that each give a share of the grains, or a slice of a body.
     """
     material = materials[part.material]
-    if part.balls is None:
-        _add_body(core, case, part, material)
-    else:
+    if part.balls is not None:
         _add_grains(core, case, part, material, world)
-
-
-def _add_body(core: Any, case: Case, part: FilledPart, material: int) -> None:
-    body = part.body(0)
-    volumes = body.volumes
-    equal = bool(np.all(volumes == volumes[0]))
-    number = core.add_body(
-        body.name,
-        material,
-        body.positions,
-        np.ascontiguousarray(body.velocities),
-        volumes[:1].copy() if equal else np.ascontiguousarray(volumes),
-    )
+        return
+    particles = part.own.particles if part.own else part.make(0, 1)
+    positions, volumes = particles.positions, particles.volumes
+    number = _add_body(core, part, particles, material)
+    shared, near = None, None
+    if part.own is not None and world is not None:
+        shared, near = world, partial(near_points, part.own, world=world)
     motion = case.body[part.name].motion
     if motion is not None:
-        _set_motion(core, number, motion, motion.middle(body.positions, volumes))
-    arrival = lighting_times(case, part.name, body.positions)
+        _set_motion(core, number, motion, motion.middle(positions, volumes, shared))
+    arrival = lighting_times(case, part.name, positions)
     if arrival is not None:
         core.set_state(number, "lighting_time", arrival)
     for name, load in case.load.items():
         if load.body == part.name:
-            found = pieces(case, name, body.positions, body.spacing)
-            add_load(core, case, name, number, found)
+            add_load(core, case, name, number, pieces(case, name, positions, part.spacing, near))
+
+
+def _add_body(core: Any, part: FilledPart, particles: Particles, material: int) -> int:
+    """Hand over the particles, or those that this process has; return the body's number."""
+    velocities, volumes = np.ascontiguousarray(particles.velocities), particles.volumes
+    if part.own is not None:
+        count, volume = part.count, part.spacing ** particles.positions.shape[1]
+        positions = np.ascontiguousarray(particles.positions)
+        return int(
+            core.add_part(part.name, material, count, part.own.first, positions, velocities, volume)
+        )
+    equal = bool(np.all(volumes == volumes[0]))
+    volumes = volumes[:1].copy() if equal else np.ascontiguousarray(volumes)
+    return int(core.add_body(part.name, material, particles.positions, velocities, volumes))
 
 
 def _add_grains(

@@ -79,7 +79,7 @@ class Simulation:
         self.parts = [part.name for part in entries for _ in part.names]
         self.materials = [part.material for part in entries for _ in part.names]
         self.warnings = [*warnings(filled), *point_warnings(case, filled)]
-        self.notes = notes(case, filled)
+        self.notes = notes(case, filled, world)
         settings = core_settings(case, self.threads)
         settings.execution.fused = fused
         settings.execution.ranks = arguments.whole_number("ranks", ranks, 1, 1024)

@@ -96,9 +96,7 @@ def _too_many(shape: Shape, points: float) -> CaseError:
     return CaseError(rule, LENGTHS_REMEDY, key="shape")
 
 
-def fill_shape(
-    shape: Shape, origin: Any, spacing: float, part: int = 0, parts: int = 1
-) -> Points:
+def fill_shape(shape: Shape, origin: Any, spacing: float, part: int = 0, parts: int = 1) -> Points:
     """Return the lattice points inside a shape, in lexicographic order.
 
     A point on the surface (to 1e-9 of the spacing) is outside: mirror images fill alike and
