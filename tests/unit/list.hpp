@@ -45,6 +45,7 @@
   X(blocks) \
   X(shared_nodes) \
   X(make_body) \
+  X(give_to_owners) \
   X(pool) \
   X(build_cell_lists) \
   X(update_cell_lists) \

@@ -37,13 +37,26 @@ struct Share {
   std::vector<double> of(std::span<const double> given, std::size_t width) const;
 };
 
-/// The particles of a body as the user gives them, until they are in a pool: a rank's share.
+/// The particles of a body as the user gives them, until they are in a pool: a rank's share, then
+/// those in its tiles.
 struct GivenParticles {
   Share share;
-  std::vector<double> positions;                            // (n, D) [m]
-  std::vector<double> velocities;                           // (n, D) or (1, D) [m/s]
-  std::vector<double> volumes;                              // (n,) or (1,) [m^3]
-  std::vector<std::pair<int, std::vector<double>>> states;  // a component of the columns, (n,)
+  std::vector<double> positions;                              // (n, D) [m]
+  std::vector<double> velocities;                             // (n, D) or (1, D) [m/s]
+  std::vector<double> volumes;                                // (n,) or (1,) [m^3]
+  std::vector<std::pair<int, std::vector<double>>> states{};  // a component of the columns, (n,)
+  std::vector<std::uint32_t> numbers{};                       // in the body, if they are no share
+
+  std::size_t count() const { return numbers.empty() ? share.count() : numbers.size(); }
+  template <int D>
+  Vec<double, D> position(std::size_t k) const {
+    Vec<double, D> x;
+    for (int a = 0; a < D; ++a) x[a] = positions[k * D + static_cast<std::size_t>(a)];
+    return x;
+  }
+  std::uint32_t number(std::size_t k) const {
+    return numbers.empty() ? static_cast<std::uint32_t>(share.first + k) : numbers[k];
+  }
 };
 
 template <int D>

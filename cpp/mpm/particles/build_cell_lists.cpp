@@ -58,29 +58,22 @@ void add_patches(TileGrid<D>& grid, int body, const ParticlePool<D>& pool,
   }
 }
 
-}  // namespace
-
-template <int D>
-void place_anchor(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                  const std::vector<ParticlePool<D>>& pools) {
+/// for_each(f) calls f(body, position) for the particles.
+template <int D, class ForEach>
+void anchor_below(TileGrid<D>& grid, ForEach&& for_each) {
   // No two cells are further apart than this; counted from the lowest one in tiles of four they
   // stay below 2^18, half the range of a key. Written as !(a < b), for no number is too far as
   // well.
   constexpr double furthest = 1 << 20;  // cells; within the 19 bits of a key's tile coordinates
   grid.anchor.fill(std::numeric_limits<std::int32_t>::max());
-  for (const Patch<D>& patch : grid.patches) {
-    const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
-    const ParticlePool<D>& pool = pools[static_cast<std::size_t>(body.material)];
-    for (const std::uint32_t row : pool.rows(patch)) {
-      const Vec<double, D> x = pool.position_of(row);
-      for (int a = 0; a < D; ++a)
-        if (!(std::abs(grid.in_cells(x[a], a)) < 0.5 * furthest))
-          throw std::invalid_argument("body \"" + body.name +
-                                      "\" lies more than 2^19 cells from the grid's origin");
-      const Index<D> cell = grid.cell_of(x);
-      for (std::size_t a = 0; a < D; ++a) grid.anchor[a] = std::min(grid.anchor[a], cell[a]);
-    }
-  }
+  for_each([&](const Body<D>& body, const Vec<double, D>& x) {
+    for (int a = 0; a < D; ++a)
+      if (!(std::abs(grid.in_cells(x[a], a)) < 0.5 * furthest))
+        throw std::invalid_argument("body \"" + body.name +
+                                    "\" lies more than 2^19 cells from the grid's origin");
+    const Index<D> cell = grid.cell_of(x);
+    for (std::size_t a = 0; a < D; ++a) grid.anchor[a] = std::min(grid.anchor[a], cell[a]);
+  });
   // The lowest of all ranks.
   double highest[D];
   for (std::size_t a = 0; a < D; ++a) highest[a] = -1.0 * grid.anchor[a];
@@ -88,10 +81,33 @@ void place_anchor(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   for (std::size_t a = 0; a < D; ++a) grid.anchor[a] = static_cast<std::int32_t>(-highest[a]);
 }
 
+}  // namespace
+
+template <int D>
+void place_anchor(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
+                  const std::vector<ParticlePool<D>>& pools) {
+  anchor_below<D>(grid, [&](auto&& f) {
+    for (const Patch<D>& patch : grid.patches) {
+      const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
+      const ParticlePool<D>& pool = pools[static_cast<std::size_t>(body.material)];
+      for (const std::uint32_t row : pool.rows(patch)) f(body, pool.position_of(row));
+    }
+  });
+}
+
+template <int D>
+void place_anchor(TileGrid<D>& grid, const std::vector<Body<D>>& bodies) {
+  anchor_below<D>(grid, [&](auto&& f) {
+    for (const Body<D>& body : bodies)
+      for (std::size_t k = 0; body.given && k < body.given->count(); ++k)
+        f(body, body.given->template position<D>(k));
+  });
+}
+
 template <int D>
 void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                       std::vector<ParticlePool<D>>& pools, Threads& threads,
-                      ListScratch<D>& scratch) {
+                      ListScratch<D>& scratch, std::optional<Owners<D>> owners) {
   const std::vector<Patch<D>> before = std::exchange(grid.patches, {});
   std::vector<std::vector<std::uint32_t>> orders(pools.size());
   for (std::size_t m = 0; m < pools.size(); ++m)
@@ -123,16 +139,20 @@ void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
   if (grid.partition.alone())
     cut_blocks(grid, threads);
   else
-    divide(grid, bodies, pools, threads, scratch);
+    divide(grid, bodies, pools, threads, scratch, std::move(owners));
 }
 
 template void place_anchor<2>(TileGrid<2>&, const std::vector<Body<2>>&,
                               const std::vector<ParticlePool<2>>&);
+template void place_anchor<2>(TileGrid<2>&, const std::vector<Body<2>>&);
 template void place_anchor<3>(TileGrid<3>&, const std::vector<Body<3>>&,
                               const std::vector<ParticlePool<3>>&);
+template void place_anchor<3>(TileGrid<3>&, const std::vector<Body<3>>&);
 template void build_cell_lists<2>(TileGrid<2>&, std::vector<Body<2>>&,
-                                  std::vector<ParticlePool<2>>&, Threads&, ListScratch<2>&);
+                                  std::vector<ParticlePool<2>>&, Threads&, ListScratch<2>&,
+                                  std::optional<Owners<2>>);
 template void build_cell_lists<3>(TileGrid<3>&, std::vector<Body<3>>&,
-                                  std::vector<ParticlePool<3>>&, Threads&, ListScratch<3>&);
+                                  std::vector<ParticlePool<3>>&, Threads&, ListScratch<3>&,
+                                  std::optional<Owners<3>>);
 
 }  // namespace mpm

@@ -120,24 +120,33 @@ struct ListScratch {
 template <int D>
 void place_anchor(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<ParticlePool<D>>& pools);
+/// The same, of particles that are given and in no pool yet.
+template <int D>
+void place_anchor(TileGrid<D>& grid, const std::vector<Body<D>>& bodies);
 
 /// Sort every body's rows by tile and cell, and make patches and lists anew, at the start, after a
 /// change of the grid, or from a checkpoint. Throws std::out_of_range if a particle lies more than
-/// 2^20 cells from the anchor. By all ranks at once.
+/// 2^20 cells from the anchor. By all ranks at once, which take these tiles, or share them out.
 template <int D>
 void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                       std::vector<ParticlePool<D>>& pools, Threads& threads,
-                      ListScratch<D>& scratch);
+                      ListScratch<D>& scratch, std::optional<Owners<D>> owners = {});
+
+/// The ranges of tiles that cost alike, where patches with no more than a body, a tile and a count
+/// tell of the particles. By all ranks at once.
+template <int D>
+Owners<D> choose_owners(const TileGrid<D>& grid, std::span<const Patch<D>> patches,
+                        const std::vector<Body<D>>& bodies);
 
 /// From now on these ranks have the tiles; particles go there when lists are updated.
 template <int D>
 void take_owners(TileGrid<D>& grid, Owners<D> owners);
 
-/// Share out the tiles among the ranks by what they cost, and take the particles there. By all
-/// ranks at once.
+/// Give these tiles to the ranks, or share them out by what they cost, and take the particles
+/// there. By all ranks at once.
 template <int D>
 void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>>& pools,
-            Threads& threads, ListScratch<D>& scratch);
+            Threads& threads, ListScratch<D>& scratch, std::optional<Owners<D>> owners);
 
 /// What is done in a tile of this rank beside the stages of its particles.
 template <int D>

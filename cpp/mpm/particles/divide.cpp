@@ -17,15 +17,15 @@ std::int64_t cost_of(const Patch<D>& patch, const std::vector<Body<D>>& bodies) 
 
 /// The least box around the tiles with particles, of all ranks.
 template <int D>
-void set_box(const TileGrid<D>& grid, Owners<D>& owners) {
+void set_box(Comm& comm, std::span<const Patch<D>> patches, Owners<D>& owners) {
   double ends[2 * D];
   std::ranges::fill(ends, -std::numeric_limits<double>::infinity());
-  for (const Patch<D>& patch : grid.patches)
+  for (const Patch<D>& patch : patches)
     for (std::size_t a = 0; patch.count > 0 && a < D; ++a) {
       ends[a] = std::max(ends[a], -1.0 * patch.tile[a]);
       ends[D + a] = std::max(ends[D + a], 1.0 * patch.tile[a]);
     }
-  grid.partition.comm->all_max(ends);
+  comm.all_max(ends);
   if (!std::isfinite(ends[0])) return;
   Index<D> low, high;
   for (std::size_t a = 0; a < D; ++a) {
@@ -51,16 +51,16 @@ std::int64_t largest_cost(const TileGrid<D>& grid, const std::vector<Body<D>>& b
 
 /// Where ranges of tiles begin whose costs are alike: sums over all ranks, bit by bit of the place.
 template <int D>
-Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                    std::span<const TileCost<D>> more) {
+Owners<D> owners_of(Comm& comm, std::span<const Patch<D>> patches,
+                    const std::vector<Body<D>>& bodies, std::span<const TileCost<D>> more) {
   struct Cost {
     std::uint64_t place;
     std::int64_t until;  // of all up to this one
   };
   Owners<D> owners;
-  set_box(grid, owners);
+  set_box(comm, patches, owners);
   std::vector<Cost> costs;
-  for (const Patch<D>& patch : grid.patches)
+  for (const Patch<D>& patch : patches)
     if (patch.count > 0) costs.push_back({owners.place(patch.tile), cost_of(patch, bodies)});
   for (const TileCost<D>& of : more) costs.push_back({owners.place(of.tile), of.cost});
   std::ranges::sort(costs, {}, &Cost::place);
@@ -70,7 +70,6 @@ Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     const auto next = std::ranges::lower_bound(costs, place, {}, &Cost::place);
     return next == costs.begin() ? 0 : std::prev(next)->until;
   };
-  Comm& comm = *grid.partition.comm;
   const auto ranks = static_cast<std::size_t>(comm.size());
   const std::int64_t total = all_sum(comm, here);
   owners.first.assign(ranks, 0);
@@ -98,9 +97,15 @@ Owners<D> owners_of(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
 }  // namespace
 
 template <int D>
+Owners<D> choose_owners(const TileGrid<D>& grid, std::span<const Patch<D>> patches,
+                        const std::vector<Body<D>>& bodies) {
+  return owners_of<D>(*grid.partition.comm, patches, bodies, {});
+}
+
+template <int D>
 void divide(TileGrid<D>& grid, std::vector<Body<D>>& bodies, std::vector<ParticlePool<D>>& pools,
-            Threads& threads, ListScratch<D>& scratch) {
-  take_owners(grid, owners_of<D>(grid, bodies, {}));
+            Threads& threads, ListScratch<D>& scratch, std::optional<Owners<D>> owners) {
+  take_owners(grid, owners ? std::move(*owners) : choose_owners<D>(grid, grid.patches, bodies));
   update_cell_lists<D>(grid, bodies, pools, threads, scratch, nullptr, nullptr);
   // Those that have come lie wherever there was room.
   repack(grid.patches, bodies, pools);
@@ -118,7 +123,7 @@ bool share_out_anew(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   const double largest = all_max(comm, static_cast<double>(here));
   const double mean = static_cast<double>(all_sum(comm, here)) / comm.size();
   if (largest <= bound * mean) return false;
-  Owners<D> owners = owners_of(grid, bodies, more);
+  Owners<D> owners = owners_of<D>(comm, grid.patches, bodies, more);
   // Where tiles are few, others may be no better.
   if (static_cast<double>(largest_cost(grid, bodies, more, owners)) >= largest) return false;
   take_owners(grid, std::move(owners));
@@ -146,10 +151,14 @@ void take_owners(TileGrid<D>& grid, Owners<D> owners) {
   }
 }
 
+template Owners<2> choose_owners<2>(const TileGrid<2>&, std::span<const Patch<2>>,
+                                    const std::vector<Body<2>>&);
 template void divide<2>(TileGrid<2>&, std::vector<Body<2>>&, std::vector<ParticlePool<2>>&,
-                        Threads&, ListScratch<2>&);
+                        Threads&, ListScratch<2>&, std::optional<Owners<2>>);
+template Owners<3> choose_owners<3>(const TileGrid<3>&, std::span<const Patch<3>>,
+                                    const std::vector<Body<3>>&);
 template void divide<3>(TileGrid<3>&, std::vector<Body<3>>&, std::vector<ParticlePool<3>>&,
-                        Threads&, ListScratch<3>&);
+                        Threads&, ListScratch<3>&, std::optional<Owners<3>>);
 template bool share_out_anew<2>(TileGrid<2>&, const std::vector<Body<2>>&,
                                 std::span<const TileCost<2>>, double);
 template bool share_out_anew<3>(TileGrid<3>&, const std::vector<Body<3>>&,

@@ -53,11 +53,11 @@ void for_each_given(const std::vector<double>& given, std::size_t width, std::si
 /// has been taken, so that memory does not hold it twice.
 template <int D, class F>
 void take(std::vector<Body<D>>& bodies, std::vector<Patch<D>>& patches,
-          std::vector<double> GivenParticles::*member, std::size_t width, F&& f) {
+          std::vector<double> GivenParticles::* member, std::size_t width, F&& f) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].given) continue;
     std::vector<double>& given = bodies[b].given.get()->*member;
-    for_each_given(given, width, patches[b].begin, bodies[b].share().count(),
+    for_each_given(given, width, patches[b].begin, bodies[b].given->count(),
                    [&](std::size_t row, const double* values) { f(bodies[b], row, values); });
     given = std::vector<double>();  // not {}, which keeps the memory
   }
@@ -73,7 +73,7 @@ void make_rows(std::vector<ParticlePool<D>>& pools, const std::vector<Body<D>>& 
   patches.resize(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     std::size_t& next = rows[static_cast<std::size_t>(bodies[b].material)];
-    const std::size_t count = bodies[b].share().count();
+    const std::size_t count = bodies[b].given ? bodies[b].given->count() : 0;
     if (count > most - next)
       throw std::length_error("bodies of one material have more than 3 billion particles");
     patches[b].body = static_cast<int>(b);
@@ -167,7 +167,7 @@ Body<D> make_body(const std::string& name, const Material& material, const Parti
   const Share own = share.value_or(Share(0, n));
   if (own.count() == 0) return body;
   body.given = std::make_unique<GivenParticles>(
-      GivenParticles{own, own.of(positions, D), own.of(velocities, D), own.of(volumes, 1), {}});
+      GivenParticles{own, own.of(positions, D), own.of(velocities, D), own.of(volumes, 1)});
   return body;
 }
 
@@ -225,12 +225,8 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].given) continue;
     ParticlePool<D>& pool = pool_of(bodies[b]);
-    const std::size_t first = patches[b].begin;
-    const Share share = bodies[b].share();
-    const std::size_t count = share.count();
-    std::iota(pool.id.begin() + static_cast<std::ptrdiff_t>(first),
-              pool.id.begin() + static_cast<std::ptrdiff_t>(first + count),
-              static_cast<std::uint32_t>(share.first));
+    const std::size_t first = patches[b].begin, count = bodies[b].given->count();
+    for (std::size_t i = 0; i < count; ++i) pool.id[first + i] = bodies[b].given->number(i);
     for (const auto& [component, values] : bodies[b].given->states)
       pool.columns.with_component(component, [&]<class Number>(Number* to) {
         for (std::size_t i = 0; i < count; ++i) to[first + i] = static_cast<Number>(values[i]);

@@ -43,7 +43,7 @@ void repack(std::vector<Patch<D>>& patches, std::vector<Body<D>>& bodies,
     const std::size_t room = rows.size() + spare_rows(rows.size());
     repack(pool.columns, rows, room);
     pool.id = in_order(pool.id, rows, room);
-    if (!pool.piece.empty()) pool.piece = in_order(pool.piece, rows, room);
+    if (!pool.pieces.empty()) pool.piece = in_order(pool.piece, rows, room);
     pool.guests.clear();
     pool.free_rows.resize(room - rows.size());
     std::iota(pool.free_rows.rbegin(), pool.free_rows.rend(),

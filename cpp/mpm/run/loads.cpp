@@ -100,16 +100,24 @@ void add_damping(Simulation<D>& simulation, const std::vector<int>& bodies,
 
 template <int D>
 void place_pieces(Domain<D>& domain) {
+  struct Numbered {
+    std::uint32_t number, row;
+  };
+  std::vector<std::vector<Numbered>> of_bodies(domain.bodies.size());  // by number
   for (ParticlePool<D>& pool : domain.pools)
     for (std::size_t k = 0; k < pool.pieces.size(); ++k) {
       SurfacePiece<D>& piece = pool.pieces[k];
       const int on = domain.loads[static_cast<std::size_t>(piece.load)].body;
       const Patch<D>& patch = domain.grid.patches[static_cast<std::size_t>(on)];
       pool.piece.resize(pool.count(), 0);
-      // A rank has a share of the particles, one behind another.
-      const std::uint32_t first_id = patch.count > 0 ? pool.id[patch.begin] : 0;
-      if (piece.particle < first_id || piece.particle - first_id >= patch.count) continue;
-      std::uint32_t& first = pool.piece[patch.begin + (piece.particle - first_id)];
+      std::vector<Numbered>& rows = of_bodies[static_cast<std::size_t>(on)];
+      if (rows.empty()) {
+        for (const std::uint32_t row : pool.rows(patch)) rows.push_back({pool.id[row], row});
+        std::ranges::sort(rows, {}, &Numbered::number);
+      }
+      const auto found = std::ranges::lower_bound(rows, piece.particle, {}, &Numbered::number);
+      if (found == rows.end() || found->number != piece.particle) continue;  // another rank's
+      std::uint32_t& first = pool.piece[found->row];
       piece.next = first;
       first = static_cast<std::uint32_t>(k + 1);
     }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "mpm/contact/candidates.hpp"
+#include "mpm/particles/give_to_owners.hpp"
 #include "mpm/particles/make_body.hpp"
 #include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
@@ -78,10 +79,12 @@ void prepare(Simulation<D>& simulation) {
   simulation.phase = Phase::broken;  // until all is done
   domain.grid.partition.shares_tiles = domain.has_contact();
   add_contact_columns(domain);
+  place_anchor(domain.grid, domain.bodies);
+  std::optional<Owners<D>> owners = give_to_owners(domain.grid, domain.bodies);
   fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches);
   place_pieces(domain);
-  place_anchor(domain.grid, domain.bodies, domain.pools);
-  build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
+  build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch,
+                   std::move(owners));
   if (domain.has_contact())
     connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
   domain.sums.resize(domain.grid.patches.size());
