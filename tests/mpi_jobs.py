@@ -27,21 +27,31 @@ def environment(way: str) -> dict[str, str]:
     return {**found, world.THROUGH: "1"} if way == "mpi4py" else found
 
 
-@pytest.fixture(scope="module", params=["module", "mpi4py"])
-def way(request: pytest.FixtureRequest) -> str:
-    """How the core speaks to MPI; skipped where there is none."""
+def has_module() -> bool:
+    """Return whether the core can speak to MPI itself. Skips the test where there is none."""
     try:
         launch.find_mpiexec()
     except CaseError as error:
         pytest.skip(f"no MPI: {error}")
-    name: str = request.param
     ask = (
         "from mpi4py import MPI; from mpm3dpp.ranks.world import module_for; print(module_for(MPI))"
     )
     told = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=True)
-    if name == "module" and told.stdout.strip() == "None":
+    return told.stdout.strip() != "None"
+
+
+@pytest.fixture(scope="module", params=["module", "mpi4py"])
+def each_way(request: pytest.FixtureRequest) -> str:
+    """How the core speaks to MPI; skipped where it cannot."""
+    if not has_module() and request.param == "module":
         pytest.skip("mpm3dpp was built without a module for the MPI that mpi4py uses")
-    return name
+    return str(request.param)
+
+
+@pytest.fixture(scope="module")
+def way() -> str:
+    """As `each_way`, for tests of what is the same in both: the way that users get."""
+    return "module" if has_module() else "mpi4py"
 
 
 def run(way: str, folder: Path, *words: Any) -> subprocess.CompletedProcess[str]:
