@@ -32,6 +32,7 @@ from mpm3dpp.shapes import (
     parse_shape,
     reference_volume,
 )
+from mpm3dpp.shapes.filling import fill_shape
 
 FLAT: list[Shape] = [
     Box(lower=(-1, -2), upper=(2, 1)),
@@ -252,3 +253,20 @@ def test_python_objects_are_checked() -> None:
         Disc(centre=(0, 0), radius="-1 mm")
     with pytest.raises(CaseError, match=r"use disc in 2D"):
         fill(body(SOLID[1]), Grid(dimension=2, cell_size=0.1))
+
+
+@pytest.mark.parametrize("parts", [1, 2, 3, 7, 400])
+@pytest.mark.parametrize(
+    "shape",
+    [
+        Box(lower=(0, 0), upper=(5, 3)),
+        Sphere(centre=(6, 6, 6), radius=5) - Box(lower=(5, 5, 0), upper=(7, 8, 20)),
+        Box(lower=(0, 0, 0), upper=(1, 9, 8)),
+    ],
+)
+def test_parts_are_the_whole(shape: Shape, parts: int) -> None:
+    """One behind another, also where there are more than lines of the lattice."""
+    origin = np.zeros(len(shape.bounds()[0]))
+    whole = fill_shape(shape, origin, 0.5)
+    found = [fill_shape(shape, origin, 0.5, part, parts) for part in range(parts)]
+    np.testing.assert_array_equal(np.concatenate(found), whole)
