@@ -32,7 +32,8 @@ from mpm3dpp.shapes import (
     parse_shape,
     reference_volume,
 )
-from mpm3dpp.shapes.filling import fill_shape
+from mpm3dpp.shapes.filling import fill_round, fill_shape
+from mpm3dpp.shapes.shells import shell_total
 
 FLAT: list[Shape] = [
     Box(lower=(-1, -2), upper=(2, 1)),
@@ -269,4 +270,25 @@ def test_parts_are_the_whole(shape: Shape, parts: int) -> None:
     origin = np.zeros(len(shape.bounds()[0]))
     whole = fill_shape(shape, origin, 0.5)
     found = [fill_shape(shape, origin, 0.5, part, parts) for part in range(parts)]
+    np.testing.assert_array_equal(np.concatenate(found), whole)
+
+
+@pytest.mark.parametrize("parts", [1, 2, 3, 7, 4000])
+@pytest.mark.parametrize(
+    "shape",
+    [
+        Disc(centre=(1, 2), radius=5),
+        Sphere(centre=(6, 6, 6), radius=5),
+        Translate(shape=Sphere(centre=(6, 6, 6), radius=0.3), by=(1, 2, 3)),
+        Rotate(
+            shape=Tube(centre=(1, 2, 3), inner_radius=2, outer_radius=4, height=5, axis="x"),
+            angle=30,
+            axis=(0, 0, 1),
+        ),
+    ],
+)
+def test_parts_of_shells_are_the_whole(shape: Shape, parts: int) -> None:
+    whole = fill_round(shape, 1.0)
+    assert len(whole) == shell_total(shape, 1.0)
+    found = [fill_round(shape, 1.0, part, parts) for part in range(parts)]
     np.testing.assert_array_equal(np.concatenate(found), whole)

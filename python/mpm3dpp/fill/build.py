@@ -173,7 +173,7 @@ def _filled(case: Case, name: str, body: Body, world: World | None) -> FilledPar
         return Particles(np.array([len(positions)]), positions, velocities, volumes)
 
     own: Slice | None = None
-    if world is not None and body.shape is not None and way != SHELLS:
+    if world is not None and body.shape is not None:
         particles = agreed(lambda: make(world), world)
         seen, own = survey_of_slices(particles, world)
         if not seen.counts[0]:
@@ -185,7 +185,7 @@ def _filled(case: Case, name: str, body: Body, world: World | None) -> FilledPar
     count, volumes = int(seen.counts[0]), particles.volumes
     shape_volume, exact, mass_error = None, True, 0.0
     if body.shape is not None:
-        volume = count * (spacing**case.grid.dimension if own else float(volumes[0]))
+        volume = count * (own.volume if own else float(volumes[0]))
         shape_volume, exact = reference_volume(body.shape)
         mass_error = volume / shape_volume - 1 if shape_volume > 0 else math.inf
         if abs(mass_error) > MASS_ERROR:

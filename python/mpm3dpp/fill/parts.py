@@ -90,10 +90,12 @@ class Slice:
 
     Attributes:
         first: number of the first of them in the body.
+        volume: of each of the body's particles [m^3; in 2D m^2 times 1 m].
         particles: these.
     """
 
     first: int
+    volume: float
     particles: Particles
 
 

@@ -21,16 +21,17 @@ def survey_of_slices(particles: Particles, world: World) -> tuple[Survey, Slice]
     lower = positions.min(axis=0, initial=np.inf)
     upper = positions.max(axis=0, initial=-np.inf)
     speed = np.sqrt(np.einsum("ij,ij->i", velocities, velocities).max(initial=0.0))
-    told = np.array(world.comm.allgather([count, *lower, *upper, speed]))
+    volume = particles.volumes.max(initial=0.0)
+    told = np.array(world.comm.allgather([count, *lower, *upper, speed, volume]))
     counts = told[:, 0].astype(np.int64)
     first = int(counts[: world.rank].sum())
     seen = Survey(
         np.array([counts.sum()]),
         told[:, 1 : 1 + dimension].min(axis=0)[None],
-        told[:, 1 + dimension : -1].max(axis=0)[None],
-        np.array([told[:, -1].max()]),
+        told[:, 1 + dimension : -2].max(axis=0)[None],
+        np.array([told[:, -2].max()]),
     )
-    return seen, Slice(first, particles)
+    return seen, Slice(first, float(told[:, -1].max()), particles)
 
 
 def near_points(

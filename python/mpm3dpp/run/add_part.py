@@ -55,11 +55,9 @@ def _add_body(core: Any, part: FilledPart, particles: Particles, material: int) 
     """Hand over the particles, or those that this process has; return the body's number."""
     velocities, volumes = np.ascontiguousarray(particles.velocities), particles.volumes
     if part.own is not None:
-        count, volume = part.count, part.spacing ** particles.positions.shape[1]
-        positions = np.ascontiguousarray(particles.positions)
-        return int(
-            core.add_part(part.name, material, count, part.own.first, positions, velocities, volume)
-        )
+        positions, own = np.ascontiguousarray(particles.positions), part.own
+        about = (part.name, material, part.count, own.first)
+        return int(core.add_part(*about, positions, velocities, own.volume))
     equal = bool(np.all(volumes == volumes[0]))
     volumes = volumes[:1].copy() if equal else np.ascontiguousarray(volumes)
     return int(core.add_body(part.name, material, particles.positions, velocities, volumes))

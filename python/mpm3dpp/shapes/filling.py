@@ -14,7 +14,7 @@ from mpm3dpp.base.machine import MOST_PARTICLES
 from mpm3dpp.base.parts import equal_part
 
 from .base import SURFACE_TOLERANCE, Points, Shape
-from .shells import SHELLS, shell_count, shell_points
+from .shells import SHELLS, shell_count, shell_points, shell_total
 
 _CHUNK = 1 << 18  # Points looked at together: some 20 MB of temporary arrays.
 LENGTHS_REMEDY = (
@@ -130,12 +130,13 @@ def fill_shape(shape: Shape, origin: Any, spacing: float, part: int = 0, parts: 
     return positions
 
 
-def fill_round(shape: Shape, spacing: float) -> Points:
+def fill_round(shape: Shape, spacing: float, part: int = 0, parts: int = 1) -> Points:
     """Return the particles that fill a round shape in shells, of equal volume, shape (n, D) [m].
 
     Args:
         shape: one that takes shells.
         spacing: about the distance of the particles [m].
+        part, parts: one of so many parts of all particles, which follow one another.
 
     Raises:
         CaseError: the particles would not fit into the memory of this machine.
@@ -143,7 +144,7 @@ def fill_round(shape: Shape, spacing: float) -> Points:
     points = shell_count(shape, spacing)
     if not points < MOST_PARTICLES:
         raise _too_many(shape, points)
-    return shell_points(shape, spacing)
+    return shell_points(shape, spacing, part, parts)
 
 
 def fill(
@@ -155,7 +156,7 @@ def fill(
         body: a `case.Body`: its shape or particles, and `particles_per_cell` or `spacing`.
         grid: a `case.Grid`: its dimension, origin and cell size.
         way: "shells" or "lattice"; by default what the body says.
-        part, parts: of a shape with a lattice, one of so many parts of all particles.
+        part, parts: of a shape, one of so many parts of all particles.
 
     Returns:
         Positions [m], shape (n, D), and volumes [m^3; in 2D m^2 times 1 m], shape (n,) (of a
@@ -176,14 +177,15 @@ def fill(
 
         raise CaseError(wrong[1], wrong[2], key=key_text(wrong[0]))
     spacing = body.particle_spacing(grid)
-    in_shells = (way or body.filled_by()) == SHELLS
-    if in_shells:
-        positions = fill_round(body.shape, spacing)
+    if (way or body.filled_by()) == SHELLS:
+        positions = fill_round(body.shape, spacing, part, parts)
+        count = shell_total(body.shape, spacing)
+        each = body.shape.volume() / count if count else 0.0
     else:
         positions = fill_shape(body.shape, grid.origin, spacing, part, parts)
+        each = spacing**grid.dimension
     if len(positions) == 0 and parts == 1:
         raise holds_none(body.shape, spacing)
-    each = body.shape.volume() / len(positions) if in_shells else spacing**grid.dimension
     return positions, np.broadcast_to(each, (len(positions),))
 
 

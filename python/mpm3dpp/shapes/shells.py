@@ -10,14 +10,17 @@ the grid's points are.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
 
 import numpy as np
 
+from mpm3dpp.base.parts import equal_part
+
 from .base import Points, Shape
-from .circles import circles, layer_places
+from .circles import circle_counts, circles, layer_places
 from .primitives import AXES, Cylinder, Disc, Ring, Sphere, Tube
-from .spheres import ball_shells
+from .spheres import ball_shell, shell_counts
 from .transforms import Rotate, Translate
 from .turns import turned
 
@@ -48,32 +51,64 @@ def default_way(shape: Shape) -> str:
     return DEFAULT if takes_shells(shape) else LATTICE
 
 
-def shell_points(shape: Shape, spacing: float) -> Points:
-    """Return the particles that fill a round shape, shape (n, D) [m]; each has the n-th part of it.
+def shell_points(shape: Shape, spacing: float, part: int = 0, parts: int = 1) -> Points:
+    """Return the particles that fill a round shape, shape (n, D) [m]; each has the same volume.
 
     Args:
         shape: one that takes shells.
         spacing: about the distance of the particles [m].
+        part, parts: one of so many parts of all, which follow one another.
 
     Returns:
         None at all if the shape is thinner than half a spacing somewhere.
     """
     if isinstance(shape, Translate):
-        return shell_points(shape.shape, spacing) + np.array(shape.by)
+        return shell_points(shape.shape, spacing, part, parts) + np.array(shape.by)
     if isinstance(shape, Rotate):
         about = shape.centre()
-        return turned(shell_points(shape.shape, spacing) - about, shape.matrix()) + about
+        points = shell_points(shape.shape, spacing, part, parts)
+        return turned(points - about, shape.matrix()) + about
+    pieces = _pieces(shape, spacing)
+    first, last = equal_part(sum(pieces.counts), part, parts)
+    found, at = [np.zeros((0, len(shape.bounds()[0])))], 0
+    for k, count in enumerate(pieces.counts):
+        begin, end = max(first - at, 0), min(last - at, count)
+        if begin < end:
+            found.append(pieces.make(k)[begin:end])
+        at += count
+    return np.concatenate(found)
+
+
+def shell_total(shape: Shape, spacing: float) -> int:
+    """Return how many particles fill a round shape."""
+    return sum(_pieces(unmoved(shape), spacing).counts)
+
+
+class _Pieces(NamedTuple):
+    """Points in pieces that follow one another, each made when it is asked for."""
+
+    counts: list[int]
+    make: Callable[[int], Points]
+
+
+def _pieces(shape: Shape, spacing: float) -> _Pieces:
+    """Return the shells of a sphere, the layers of a cylinder or tube, or a disc or ring."""
     assert isinstance(shape, Disc | Ring | Cylinder | Tube)
     centre = np.array(shape.centre)
     if isinstance(shape, Sphere):
-        return ball_shells(shape.radius, spacing) + centre
-    layer = circles(*_radii(shape), spacing)
+        radius = shape.radius
+        return _Pieces(
+            shell_counts(radius, spacing), lambda k: ball_shell(radius, spacing, k) + centre
+        )
+    radii = _radii(shape)
+    count = int(circle_counts(*radii, spacing)[-1])
     if not isinstance(shape, Cylinder | Tube):
-        return layer + centre
-    places = layer_places(shape.height, spacing)
-    points = np.tile(layer, (len(places), 1))
-    along = np.repeat(places, len(layer))
-    return np.insert(points, AXES[shape.axis], along, axis=1) + centre
+        return _Pieces([count], lambda _: circles(*radii, spacing) + centre)
+    axis, places = AXES[shape.axis], layer_places(shape.height, spacing)
+    layer = circles(*radii, spacing)
+    return _Pieces(
+        [count] * len(places), lambda k: np.insert(layer, axis, places[k], axis=1) + centre
+    )
 
 
 def shell_count(shape: Shape, spacing: float) -> float:

@@ -56,22 +56,20 @@ def _possible(wanted: float) -> int:
     return 54 if nearest == 48 else nearest  # Eight points spread badly over a face.
 
 
-def ball_shells(radius: float, spacing: float) -> Array:
-    """Return points of equal volume that fill a sphere about zero [m], shape (n, 3).
+def ball_shell(radius: float, spacing: float, shell: int) -> Array:
+    """Return the points of a shell, of the same volume in all, about zero [m], shape (n, 3).
 
     Args:
-        radius: [m].
+        radius: of the sphere [m].
         spacing: about the distance of the points [m].
+        shell: its number, from the inside.
     """
     counts = shell_counts(radius, spacing)
-    if not counts:
-        return np.zeros((0, 3))
-    totals = np.concatenate([[0.0], np.cumsum(counts)])
-    bounds = np.concatenate([[0.0], cube_root(totals[1:] / totals[-1])])
-    a, b = bounds[:-1], bounds[1:]
+    inner, total = sum(counts[:shell]), sum(counts)
+    b = float(cube_root(np.array([(inner + counts[shell]) / total]))[0])
+    a = float(cube_root(np.array([inner / total]))[0]) if inner else 0.0
     above, below = b * b * (b * b + a * b + a * a) + a * a * a * (a + b), b * b + a * b + a * a
-    radii = radius * np.sqrt(0.6 * above / below)
-    return np.concatenate([r * directions(n) for r, n in zip(radii.tolist(), counts, strict=True)])
+    return radius * math.sqrt(0.6 * above / below) * directions(counts[shell])
 
 
 def directions(count: int) -> Array:
