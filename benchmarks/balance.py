@@ -30,13 +30,18 @@ from mpm3dpp.ranks.launch import command_of
 from mpm3dpp.ranks.world import world
 
 SAMPLES = 40
+GONE = 3.0  # The column `failed` of a particle that has eroded, or more of one that has left.
 
 
 def particles_by_rank(simulation: mpm3dpp.Simulation, size: int) -> np.ndarray:
     """Return how many particles that take part each rank has, shape (size,); by all ranks."""
-    bodies = range(len(simulation.bodies))
-    found = np.concatenate([np.asarray(simulation.core.ranks_of(b)).ravel() for b in bodies])
-    return np.bincount(found[found >= 0].astype(int), minlength=size)
+    core, found = simulation.core, []
+    for body in range(core.body_count):
+        owners = core.ranks_of(body)[:, 0].astype(int)
+        if "failed" in [column.name for column in core.columns(body)]:
+            owners = owners[core.column(body, "failed")[:, 0] < GONE]
+        found.append(owners)
+    return np.bincount(np.concatenate(found), minlength=size)
 
 
 def worker(case_file: str, until: float, limit: float) -> None:

@@ -6,7 +6,8 @@
 Left: bytes that a rank sends in a step, counted with threads as ranks, against its particles, and
 the surface of a cube through the last. Right: the efficiency of a run whose ranks have a million
 particles each, by a model of a large machine. That is a projection: nothing of it was measured
-beyond this machine. Not in it are noise of the operating system, a crowded network and slow nodes.
+beyond this machine. Not in it are noise of the operating system, a crowded network, slow nodes, and
+what a run's first process orders between steps (half a dozen broadcasts of a step with contact).
 """
 
 from __future__ import annotations

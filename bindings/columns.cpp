@@ -4,6 +4,7 @@
 #include "any.hpp"
 #include "mpm/run/frame.hpp"
 #include "mpm/run/measures.hpp"
+#include "one_thread.hpp"
 
 namespace mpm::bindings {
 namespace {
@@ -26,7 +27,9 @@ Floats rows_of_slice(AnySimulation& either, const std::vector<int>& writers, std
   });
   Floats values = floats(count, width, elsewhere);
   const std::span<float> to{values.data(), values.size()};
-  either.visit([&, rank = rank](auto& s) {  // Others may be threads of this process.
+  const AtWork here(either);
+  const nb::gil_scoped_release without_lock;  // Others may take long to make room for theirs.
+  either.visit([&, rank = rank](auto& s) {    // Others may be threads of this process.
     fill(s, slices_of(s), comm_of(s).rank() == rank ? to : std::span<float>{});
   });
   return values;
@@ -72,7 +75,7 @@ void def_columns(SimulationClass& simulation) {
                                  });
           },
           nb::arg("name"), nb::arg("places"), nb::arg("width"), nb::arg("elsewhere"),
-          nb::arg("writers") = std::vector<int>{0})
+          nb::arg("writers"))
       .def(
           "rounded_derived",
           [](AnySimulation& either, const std::string& name, const std::vector<int>& writers) {
@@ -81,7 +84,7 @@ void def_columns(SimulationClass& simulation) {
                                    round_derived(s.domain, slices, name, to);
                                  });
           },
-          nb::arg("name"), nb::arg("writers") = std::vector<int>{0});
+          nb::arg("name"), nb::arg("writers"));
 }
 
 }  // namespace mpm::bindings

@@ -58,11 +58,11 @@ void def_building(SimulationClass& simulation) {
            }),
            nb::arg("names"), nb::arg("material"), nb::arg("counts"), nb::arg("volumes"),
            nb::arg("first"), nb::arg("positions"), nb::arg("velocities"))
-      .def("add_part",
+      .def("add_slice",
            of_any([](auto& s, const std::string& name, int material, std::size_t count,
                      std::size_t first, const Input& positions, const Input& velocities,
                      double volume) {
-             return add_part(s, name, material, count, first, span_of(positions),
+             return add_slice(s, name, material, count, first, span_of(positions),
                              span_of(velocities), volume);
            }),
            nb::arg("name"), nb::arg("material"), nb::arg("count"), nb::arg("first"),

@@ -32,12 +32,13 @@ NB_MODULE(_comm_mpi, m) {
 #endif
   m.def(
       "comm",
-      [](std::uintptr_t users) {
+      [](std::uintptr_t users, std::size_t piece) {
         // NOLINTNEXTLINE(performance-no-int-to-ptr): mpi4py tells it as an integer.
-        mpm::Comm* comm = new mpm::MpiComm(*reinterpret_cast<const MPI_Comm*>(users));
+        mpm::Comm* comm = new mpm::MpiComm(*reinterpret_cast<const MPI_Comm*>(users), piece);
         return nb::capsule(comm, "mpm::Comm",
                            [](void* p) noexcept { delete static_cast<mpm::Comm*>(p); });
       },
-      nb::arg("users"),
-      "A communicator for the core, by all ranks of a user's, of which `users` is the address.");
+      nb::arg("users"), nb::arg("piece"),
+      "A communicator for the core, by all ranks of a user's, of which `users` is the address; "
+      "letters of any length go in pieces of so many bytes.");
 }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <thread>
 
+#include "mpm/comm/letters.hpp"
+
 namespace mpm {
 namespace {
 
@@ -39,7 +41,7 @@ void wait_for(std::vector<MPI_Request>& requests) {
 
 }  // namespace
 
-MpiComm::MpiComm(MPI_Comm users) {
+MpiComm::MpiComm(MPI_Comm users, std::size_t piece) : piece_(piece) {
   MPI_Comm_dup(users, &comm_);
   MPI_Comm_dup(users, &failed_);
   // mpi4py has errors returned, and its communicators hand that on; none is looked at here.
@@ -101,10 +103,12 @@ void MpiComm::release(Mail& mail) { wait_for(sending_[&mail]); }
 void MpiComm::exchange(Mail& mail) {
   // No rank is more than a round ahead: two tags keep apart what comes in this one and the next.
   const int tag = unexpected + (round_++ & 1);
-  std::vector<MPI_Request> sent(mail.out.size());
-  for (std::size_t k = 0; k < mail.out.size(); ++k)
-    MPI_Issend(mail.out[k].bytes.data(), length_of(mail.out[k].bytes), MPI_BYTE, mail.out[k].rank,
-               tag, comm_, &sent[k]);
+  std::vector<MPI_Request> sent;
+  for (const Letter& letter : mail.out)
+    for (std::size_t at = 0; at == 0 || at < letter.bytes.size(); at += piece_)
+      MPI_Issend(letter.bytes.data() + at,
+                 static_cast<int>(std::min(piece_, letter.bytes.size() - at)), MPI_BYTE,
+                 letter.rank, tag, comm_, &sent.emplace_back());
   mail.in.clear();
   MPI_Request all_taken = MPI_REQUEST_NULL;
   for (int done = 0; done == 0;) {
@@ -114,10 +118,11 @@ void MpiComm::exchange(Mail& mail) {
     if (here != 0) {
       int length = 0;
       MPI_Get_count(&status, MPI_BYTE, &length);
-      Letter& letter = mail.in.emplace_back();
-      letter.rank = status.MPI_SOURCE;
-      letter.bytes.resize(static_cast<std::size_t>(length));
-      MPI_Recv(letter.bytes.data(), length, MPI_BYTE, letter.rank, tag, comm_, MPI_STATUS_IGNORE);
+      // Pieces of a letter come one behind another.
+      auto letter = std::ranges::find(mail.in, status.MPI_SOURCE, &Letter::rank);
+      if (letter == mail.in.end()) letter = mail.in.insert(letter, Letter{status.MPI_SOURCE, {}});
+      MPI_Recv(extend(*letter, static_cast<std::size_t>(length)), length, MPI_BYTE, letter->rank,
+               tag, comm_, MPI_STATUS_IGNORE);
     }
     if (all_taken != MPI_REQUEST_NULL) {
       MPI_Test(&all_taken, &done, MPI_STATUS_IGNORE);

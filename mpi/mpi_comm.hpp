@@ -13,7 +13,8 @@ namespace mpm {
 /// On a communicator of its own, made from one that the user has. Called by one thread.
 class MpiComm final : public Comm {
  public:
-  explicit MpiComm(MPI_Comm users);
+  /// Letters to those who do not expect them go in pieces of so many bytes at most.
+  MpiComm(MPI_Comm users, std::size_t piece);
   ~MpiComm() override;
 
   int rank() const override { return rank_; }
@@ -31,7 +32,8 @@ class MpiComm final : public Comm {
  private:
   MPI_Comm comm_ = MPI_COMM_NULL, failed_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
-  int round_ = 0;  // of exchange()
+  int round_ = 0;      // of exchange()
+  std::size_t piece_;  // bytes
   /// What was started and is not known to have ended, by its mail.
   std::map<const Mail*, std::vector<MPI_Request>> receiving_, sending_;
 };

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Steps of the first examples at quick size, by as many ranks as mpiexec has started.
 
-    mpiexec -n N python digests.py OUT STEPS
+    mpiexec -n N python digests.py OUT STEPS [PIECE]
 
-writes a JSON file: of each example what it ends with, as a number that tells bits apart.
+writes a JSON file: of each example what it ends with, as a number that tells bits apart. Messages
+whose length is not known have PIECE bytes at most.
 """
 
 from __future__ import annotations
@@ -43,8 +44,10 @@ def digest(simulation: Simulation) -> str:
     return found.hexdigest()
 
 
-def main(out: str, steps: str) -> None:
+def main(out: str, steps: str, piece: str = "") -> None:
     ranks, found = world(), {}
+    if piece and ranks is not None:
+        ranks.piece = int(piece)
     for name, case in cases():
         simulation = Simulation(case, threads=1, world=ranks)
         simulation.advance(int(steps))

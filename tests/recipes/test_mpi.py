@@ -25,6 +25,7 @@ from mpm3dpp.ranks import launch
 LONG = CASE.replace('"10 mm"', '"2 mm"').replace('"8 ms"', '"100 s"').replace("frames = 4", "")
 LONG = LONG.replace("[output]", '[output]\ncheckpoint_interval = 0.2\ninterval = "1 s"')
 BOTH = ("out", "straight")
+TINY = CASE.replace("50 mm", "1 mm").replace("velocity = [", "angular_velocity = 3.0\nvelocity = [")
 way, each_way = mpi_jobs.way, mpi_jobs.each_way
 # Grains that a formula gives a velocity; beyond x = 50 mm, where the second of two ranks has them,
 # it has none.
@@ -52,10 +53,13 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return dict(json.loads(out.read_text()))
 
 
-@pytest.mark.parametrize("ranks", [2, 4])
-def test_examples(tmp_path: Path, each_way: str, alone: dict[str, str], ranks: int) -> None:
+@pytest.mark.parametrize(("ranks", "piece"), [(2, 1000), (4, "")])
+def test_examples(
+    tmp_path: Path, each_way: str, alone: dict[str, str], ranks: int, piece: int | str
+) -> None:
+    """Also with letters that go in pieces."""
     out = tmp_path / "found.json"
-    words = mpiexec(ranks, PROGRAMS / "digests.py", out, 10)
+    words = mpiexec(ranks, PROGRAMS / "digests.py", out, 10, piece)
     subprocess.run(words, env=environment(each_way), check=True, timeout=600)
     found = json.loads(out.read_text())
     assert found.pop("ranks") == str(ranks)
@@ -86,6 +90,7 @@ def test_a_run_writes_and_tells_once(tmp_path: Path, each_way: str) -> None:
         (CASE.replace("8 ms", "8 parsec"), (), 'run.end_time = "8 parsec" has the unit'),
         (CASE.replace("cfl = 0.3", "time_step = 1.0"), (), "larger than the largest stable step"),
         (GRAINS, (), "which is no finite number"),
+        (TINY, (), "holds no particle: it measures"),
         (CASE, ("--out", "case.toml"), "case.toml"),
         (CASE, ("--resume",), "there is no checkpoint"),
     ],

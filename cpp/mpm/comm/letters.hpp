@@ -28,6 +28,12 @@ void write(Letter& letter, const T& value) {
   std::memcpy(extend(letter, sizeof(T)), &value, sizeof(T));
 }
 
+template <class T>
+void write_all(Letter& letter, std::span<const T> values) {
+  if (values.empty()) return;
+  std::memcpy(extend(letter, values.size_bytes()), values.data(), values.size_bytes());
+}
+
 /// values[row] of each row.
 template <class T>
 void write_rows(Letter& letter, const T* values, std::span<const std::uint32_t> rows) {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "mpm/comm/comm.hpp"
+#include "mpm/comm/share.hpp"
 #include "mpm/rigid/prescribed_motion.hpp"
 
 namespace mpm {
@@ -17,24 +17,6 @@ enum class BodyKind : std::uint8_t {
   deformable,  // each its own forces
   rigid,       // as one, those of all (Newton, Euler)
   prescribed,  // as one, Body::motion, whatever acts on them
-};
-
-/// Numbers that follow one another, of particles of a body or of bodies: those that a rank takes.
-struct Share {
-  std::size_t first = 0, last = 0;  // up to the one before the last
-  Share() = default;
-  Share(std::size_t from, std::size_t to) : first(from), last(to) {}
-  /// Of so many, one of equal parts.
-  Share(std::size_t count, std::size_t part, std::size_t parts)
-      : first(count * part / parts), last(count * (part + 1) / parts) {}
-  /// The part of a rank if all get the same.
-  Share(std::size_t count, const Comm& comm)
-      : Share(count, static_cast<std::size_t>(comm.rank()), static_cast<std::size_t>(comm.size())) {
-  }
-  std::size_t count() const { return last - first; }
-  bool holds(std::size_t number) const { return first <= number && number < last; }
-  /// Its part of what is given for each particle, or what is given once for all: `width` numbers.
-  std::vector<double> of(std::span<const double> given, std::size_t width) const;
 };
 
 /// The particles of a body as the user gives them, until they are in a pool: a rank's share, then
@@ -82,7 +64,7 @@ struct Body {
   bool leaves = false;    // a rigid body that leaves the region that is kept, as a whole
   std::unique_ptr<GivenParticles> given;  // none if others take all, nor once they are in the pool
 
-  /// Of its particles, until they are in the pool.
+  /// Of its particles, until they go to the ranks of their tiles.
   Share share() const { return given ? given->share : Share{}; }
   std::size_t active() const { return count - removed; }
   bool deforms() const { return kind == BodyKind::deformable; }

@@ -9,11 +9,17 @@
 namespace mpm {
 namespace {
 
-/// What a group begins with.
+/// A letter begins with these, and their number.
 struct GroupHead {
   std::int32_t body;
   std::uint32_t count;
   std::uint64_t states;
+};
+
+/// The particles of a body that go to a rank.
+struct Group {
+  int body;
+  std::vector<std::uint32_t> which;
 };
 
 template <int D>
@@ -56,9 +62,8 @@ void write_given(Letter& letter, const std::vector<double>& values, std::size_t 
 }
 
 template <int D>
-void write_group(Letter& letter, int body, const GivenParticles& given,
+void write_group(Letter& letter, const GivenParticles& given,
                  std::span<const std::uint32_t> which) {
-  write(letter, GroupHead{body, static_cast<std::uint32_t>(which.size()), given.states.size()});
   for (const std::uint32_t k : which) write(letter, given.number(k));
   write_given(letter, given.positions, D, which);
   write_given(letter, given.velocities, D, which);
@@ -87,29 +92,69 @@ void read_group(Reader& reader, const GroupHead& head, GivenParticles& given) {
   }
 }
 
-/// All that this rank was given, in letters to the ranks of its tiles; that to itself is apart.
+/// Which of its particles this rank gives to each.
 template <int D>
-Letter write_all(const TileGrid<D>& grid, std::vector<Body<D>>& bodies, const Owners<D>& owners,
-                 Mail& mail) {
-  const int own = grid.partition.comm->rank();
-  Letter kept;
-  std::vector<std::vector<std::uint32_t>> of_ranks(owners.first.size());
+std::vector<std::vector<Group>> groups_of_ranks(const TileGrid<D>& grid,
+                                                const std::vector<Body<D>>& bodies,
+                                                const Owners<D>& owners) {
+  std::vector<std::vector<Group>> groups(owners.first.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    for (std::size_t k = 0; bodies[b].given && k < bodies[b].given->count(); ++k) {
+      const int rank = owners.rank_of(tile_of(grid, *bodies[b].given, k));
+      std::vector<Group>& of_rank = groups[static_cast<std::size_t>(rank)];
+      if (of_rank.empty() || std::cmp_not_equal(of_rank.back().body, b))
+        of_rank.push_back({static_cast<int>(b), {}});
+      of_rank.back().which.push_back(static_cast<std::uint32_t>(k));
+    }
+  return groups;
+}
+
+/// A letter to each rank that gets any, this one too.
+template <int D>
+std::vector<Letter> write_all(const TileGrid<D>& grid, std::vector<Body<D>>& bodies,
+                              const Owners<D>& owners) {
+  const std::vector<std::vector<Group>> groups = groups_of_ranks(grid, bodies, owners);
+  std::vector<Letter> letters(groups.size());
+  for (std::size_t rank = 0; rank < groups.size(); ++rank) {
+    letters[rank].rank = static_cast<int>(rank);
+    if (groups[rank].empty()) continue;
+    write(letters[rank], groups[rank].size());
+    for (const Group& group : groups[rank]) {
+      const auto count = static_cast<std::uint32_t>(group.which.size());
+      const auto& given = *bodies[static_cast<std::size_t>(group.body)].given;
+      write(letters[rank], GroupHead{group.body, count, given.states.size()});
+    }
+  }
+  // Body by body, so that memory does not hold all twice.
+  std::vector<std::size_t> next(groups.size(), 0);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (!bodies[b].given) continue;
-    const GivenParticles& given = *bodies[b].given;
-    for (std::size_t k = 0; k < given.count(); ++k)
-      of_ranks[static_cast<std::size_t>(owners.rank_of(tile_of(grid, given, k)))].push_back(
-          static_cast<std::uint32_t>(k));
-    for (std::size_t rank = 0; rank < of_ranks.size(); ++rank) {
-      if (of_ranks[rank].empty()) continue;
-      const bool stays = std::cmp_equal(rank, own);
-      Letter& letter = stays ? kept : letter_to(mail, static_cast<int>(rank));
-      write_group<D>(letter, static_cast<int>(b), given, of_ranks[rank]);
-      of_ranks[rank].clear();
+    for (std::size_t rank = 0; rank < groups.size(); ++rank) {
+      if (next[rank] == groups[rank].size()) continue;
+      const Group& group = groups[rank][next[rank]];
+      if (std::cmp_not_equal(group.body, b)) continue;
+      write_group<D>(letters[rank], *bodies[b].given, group.which);
+      ++next[rank];
     }
     bodies[b].given.reset();
   }
-  return kept;
+  return letters;
+}
+
+/// The heads of a letter's groups; room is made for what they tell of.
+template <int D>
+std::vector<GroupHead> read_heads(Reader& reader, std::vector<Body<D>>& bodies) {
+  std::vector<GroupHead> heads(reader.read<std::size_t>());
+  for (GroupHead& head : heads) {
+    head = reader.read<GroupHead>();
+    std::unique_ptr<GivenParticles>& given = bodies[static_cast<std::size_t>(head.body)].given;
+    if (!given) given = std::make_unique<GivenParticles>();
+    const std::size_t count = given->numbers.capacity() + head.count;
+    given->numbers.reserve(count);
+    given->positions.reserve(D * count);
+    given->velocities.reserve(D * count);
+    given->volumes.reserve(count);
+  }
+  return heads;
 }
 
 }  // namespace
@@ -118,19 +163,22 @@ template <int D>
 std::optional<Owners<D>> give_to_owners(TileGrid<D>& grid, std::vector<Body<D>>& bodies) {
   if (grid.partition.alone()) return std::nullopt;
   const Owners<D> owners = choose_owners<D>(grid, count_in_tiles(grid, bodies), bodies);
+  std::vector<Letter> letters = write_all(grid, bodies, owners);
+  Comm& comm = *grid.partition.comm;
   Mail mail;
-  const Letter kept = write_all(grid, bodies, owners, mail);
-  grid.partition.comm->exchange(mail);
+  for (Letter& letter : letters)
+    if (letter.rank != comm.rank() && !letter.bytes.empty()) mail.out.push_back(std::move(letter));
+  comm.exchange(mail);
   mail.out.clear();
-  mail.in.push_back(kept);
-  for (Letter& letter : mail.in) {
-    for (Reader reader(letter); !reader.done();) {
-      const auto head = reader.read<GroupHead>();
-      std::unique_ptr<GivenParticles>& given = bodies[static_cast<std::size_t>(head.body)].given;
-      if (!given) given = std::make_unique<GivenParticles>();
-      read_group<D>(reader, head, *given);
-    }
-    letter = {};
+  Letter& kept = letters[static_cast<std::size_t>(comm.rank())];
+  if (!kept.bytes.empty()) mail.in.push_back(std::move(kept));
+  std::vector<Reader> readers(mail.in.begin(), mail.in.end());
+  std::vector<std::vector<GroupHead>> heads;
+  for (Reader& reader : readers) heads.push_back(read_heads(reader, bodies));
+  for (std::size_t k = 0; k < readers.size(); ++k) {
+    for (const GroupHead& head : heads[k])
+      read_group<D>(readers[k], head, *bodies[static_cast<std::size_t>(head.body)].given);
+    mail.in[k] = {};
   }
   return owners;
 }

@@ -111,11 +111,6 @@ Body<D> empty_body(std::string name, const Material& material, const ParticlePoo
 
 }  // namespace
 
-std::vector<double> Share::of(std::span<const double> given, std::size_t width) const {
-  if (given.size() != width) given = given.subspan(first * width, count() * width);
-  return {given.begin(), given.end()};
-}
-
 void check_finite(std::span<const double> values, const std::string& what) {
   for (const double v : values)
     if (!std::isfinite(v)) throw std::invalid_argument(what + " must be finite numbers");
@@ -172,9 +167,9 @@ Body<D> make_body(const std::string& name, const Material& material, const Parti
 }
 
 template <int D>
-Body<D> make_part(const std::string& name, const Material& material, const ParticlePool<D>& pool,
-                  std::size_t count, Share share, std::span<const double> positions,
-                  std::span<const double> velocities, double volume) {
+Body<D> make_slice(const std::string& name, const Material& material, const ParticlePool<D>& pool,
+                   std::size_t count, Share share, std::span<const double> positions,
+                   std::span<const double> velocities, double volume) {
   double total = 0.0;  // as make_body() adds it up
   for (std::size_t i = 0; i < count; ++i) total += volume;
   Body<D> body = empty_body(name, material, pool, count, total);
@@ -244,12 +239,12 @@ template void add_set_back<3>(ParticlePool<3>&);
 template Body<2> make_body<2>(const std::string&, const Material&, const ParticlePool<2>&,
                               std::span<const double>, std::span<const double>,
                               std::span<const double>, std::optional<Share>);
-template Body<2> make_part<2>(const std::string&, const Material&, const ParticlePool<2>&,
-                              std::size_t, Share, std::span<const double>, std::span<const double>,
-                              double);
-template Body<3> make_part<3>(const std::string&, const Material&, const ParticlePool<3>&,
-                              std::size_t, Share, std::span<const double>, std::span<const double>,
-                              double);
+template Body<2> make_slice<2>(const std::string&, const Material&, const ParticlePool<2>&,
+                               std::size_t, Share, std::span<const double>, std::span<const double>,
+                               double);
+template Body<3> make_slice<3>(const std::string&, const Material&, const ParticlePool<3>&,
+                               std::size_t, Share, std::span<const double>, std::span<const double>,
+                               double);
 template Body<3> make_body<3>(const std::string&, const Material&, const ParticlePool<3>&,
                               std::span<const double>, std::span<const double>,
                               std::span<const double>, std::optional<Share>);

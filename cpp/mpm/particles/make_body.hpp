@@ -38,9 +38,9 @@ Body<D> make_body(const std::string& name, const Material& material, const Parti
 /// A body of `count` particles of one volume [m^3], of which this rank is given those of its share
 /// and no others: their positions (n, D), and velocities (n, D) or (1, D).
 template <int D>
-Body<D> make_part(const std::string& name, const Material& material, const ParticlePool<D>& pool,
-                  std::size_t count, Share share, std::span<const double> positions,
-                  std::span<const double> velocities, double volume);
+Body<D> make_slice(const std::string& name, const Material& material, const ParticlePool<D>& pool,
+                   std::size_t count, Share share, std::span<const double> positions,
+                   std::span<const double> velocities, double volume);
 
 /// Put the given particles of all bodies into the pools of their materials; a patch for each body
 /// holds them, until lists are built. Throws std::length_error for more than 3e9 of one material.

@@ -66,6 +66,8 @@ void check_bodies(std::span<const std::string> names, std::span<const std::int64
     throw std::invalid_argument("bodies need a name, a count and a volume of a particle each");
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (counts[k] <= 0) throw std::invalid_argument(names[k] + ": it has no particles");
+    if (counts[k] > std::numeric_limits<std::uint32_t>::max())  // They are numbered by 32 bits.
+      throw std::invalid_argument(names[k] + ": it has more than 4 billion particles");
     if (!(volumes[k] > 0.0 && std::isfinite(volumes[k])))
       throw std::invalid_argument(names[k] + ": volumes must be finite numbers > 0");
   }
@@ -99,8 +101,8 @@ int add_bodies(Simulation<D>& simulation, std::span<const std::string> names, in
       throw std::invalid_argument(names[k] + ": its particles are not given");
     const Share whole = share.holds(k) ? Share(0, count) : Share();
     const std::size_t at = share.holds(k) ? given * D : 0, width = whole.count() * D;
-    Body<D> body = make_part(names[k], material, pool, count, whole, positions.subspan(at, width),
-                             alike ? velocities : velocities.subspan(at, width), volumes[k]);
+    Body<D> body = make_slice(names[k], material, pool, count, whole, positions.subspan(at, width),
+                              alike ? velocities : velocities.subspan(at, width), volumes[k]);
     if (k >= first) given += count;
     body.material = material_number;
     body.group = leader;
@@ -111,17 +113,17 @@ int add_bodies(Simulation<D>& simulation, std::span<const std::string> names, in
 }
 
 template <int D>
-int add_part(Simulation<D>& simulation, const std::string& name, int material_number,
-             std::size_t count, std::size_t first, std::span<const double> positions,
-             std::span<const double> velocities, double volume) {
+int add_slice(Simulation<D>& simulation, const std::string& name, int material_number,
+              std::size_t count, std::size_t first, std::span<const double> positions,
+              std::span<const double> velocities, double volume) {
   Domain<D>& domain = simulation.domain;
   require(simulation, Phase::building, "bodies must be added before prepare()");
   const auto m = static_cast<std::size_t>(material_number);
   const auto counts = {static_cast<std::int64_t>(count)};
   check_bodies(std::span(&name, 1), counts, std::span(&volume, 1));
   Body<D> body =
-      make_part(name, domain.materials.at(m), domain.pools.at(m), count,
-                Share(first, first + positions.size() / D), positions, velocities, volume);
+      make_slice(name, domain.materials.at(m), domain.pools.at(m), count,
+                 Share(first, first + positions.size() / D), positions, velocities, volume);
   body.material = material_number;
   body.group = static_cast<int>(domain.bodies.size());
   domain.bodies.push_back(std::move(body));
@@ -243,10 +245,10 @@ template int add_bodies<2>(Simulation<2>&, std::span<const std::string>, int,
 template int add_bodies<3>(Simulation<3>&, std::span<const std::string>, int,
                            std::span<const std::int64_t>, std::span<const double>, std::size_t,
                            std::span<const double>, std::span<const double>);
-template int add_part<2>(Simulation<2>&, const std::string&, int, std::size_t, std::size_t,
-                         std::span<const double>, std::span<const double>, double);
-template int add_part<3>(Simulation<3>&, const std::string&, int, std::size_t, std::size_t,
-                         std::span<const double>, std::span<const double>, double);
+template int add_slice<2>(Simulation<2>&, const std::string&, int, std::size_t, std::size_t,
+                          std::span<const double>, std::span<const double>, double);
+template int add_slice<3>(Simulation<3>&, const std::string&, int, std::size_t, std::size_t,
+                          std::span<const double>, std::span<const double>, double);
 template void set_state<2>(Simulation<2>&, int, const std::string&, std::span<const double>);
 template void set_state<3>(Simulation<3>&, int, const std::string&, std::span<const double>);
 template void set_motion<2>(Simulation<2>&, int, const std::array<TimeFunction, 3>&,

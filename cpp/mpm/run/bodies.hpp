@@ -30,9 +30,9 @@ int add_bodies(Simulation<D>& simulation, std::span<const std::string> names, in
 /// A body of `count` particles of one volume, of which this rank is given some from the `first`-th
 /// on, and each other one others. Returns the body's number.
 template <int D>
-int add_part(Simulation<D>& simulation, const std::string& name, int material, std::size_t count,
-             std::size_t first, std::span<const double> positions,
-             std::span<const double> velocities, double volume);
+int add_slice(Simulation<D>& simulation, const std::string& name, int material, std::size_t count,
+              std::size_t first, std::span<const double> positions,
+              std::span<const double> velocities, double volume);
 /// Values of a state column of a body, one component, in the order in which the user gave the
 /// particles, of all or of those that this rank was given; before prepare().
 template <int D>

@@ -1,6 +1,8 @@
 #include "mpm/run/columns.hpp"
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 #include <stdexcept>
 
 #include "mpm/run/gather.hpp"
@@ -28,16 +30,18 @@ void copy_column(const Domain<D>& domain, int number, const std::string& name,
   if (comm.rank() == 0 && to.size() != b.count * width)
     throw std::invalid_argument("copy_column: wrong size");
   std::fill(to.begin(), to.end(), 0.0);
-  for (int c = 0; c < info.components; ++c) {
-    // Plane strain keeps xx yy zz xy; the fourth becomes the sixth of xx yy zz yz xz xy.
-    const auto place = static_cast<std::size_t>(name == "stress" && D == 2 && c == 3 ? 5 : c);
-    of.columns.with_component(info.first + c, [&](const auto* from) {
-      gather(comm, Slices(b.count), width, to, [&](auto&& f) {
-        for_each_row(domain.grid.patches, of, number, b.removed_here,
-                     [&](std::uint32_t row) { f(of.id[row], place, double{from[row]}); });
+  // Plane strain keeps xx yy zz xy; the fourth becomes the sixth of xx yy zz yz xz xy.
+  std::vector<int> places(static_cast<std::size_t>(info.components));
+  std::iota(places.begin(), places.end(), 0);
+  if (name == "stress" && D == 2) places[3] = 5;
+  gather(comm, Slices(b.count), width, places, to, [&](auto&& f) {
+    for (int c = 0; c < info.components; ++c)
+      of.columns.with_component(info.first + c, [&](const auto* from) {
+        for_each_row(domain.grid.patches, of, number, b.removed_here, [&](std::uint32_t row) {
+          f(of.id[row], static_cast<std::size_t>(c), double{from[row]});
+        });
       });
-    });
-  }
+  });
 }
 
 template <int D>
@@ -47,7 +51,7 @@ void copy_ranks(const Domain<D>& domain, int number, std::span<double> to) {
   Comm& comm = *domain.grid.partition.comm;
   if (comm.rank() == 0 && to.size() != b.count)
     throw std::invalid_argument("copy_ranks: wrong size");
-  gather(comm, Slices(b.count), 1, to, [&](auto&& f) {
+  gather(comm, Slices(b.count), 1, std::array{0}, to, [&](auto&& f) {
     for_each_row(domain.grid.patches, of, number, b.removed_here,
                  [&](std::uint32_t row) { f(of.id[row], 0, 1.0 * comm.rank()); });
   });

@@ -3,6 +3,7 @@
 #include "mpm/run/frame.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -50,16 +51,14 @@ void round_column(const Domain<D>& domain, const Slices& slices, const std::stri
     if (places.size() != static_cast<std::size_t>(info->components) ||
         !std::ranges::all_of(places, [&](int k) { return 0 <= k && std::cmp_less(k, width); }))
       throw std::invalid_argument("round_column: wrong places");
-    for (int c = 0; c < info->components; ++c) {
-      const auto place = static_cast<std::size_t>(places[static_cast<std::size_t>(c)]);
-      of.columns.with_component(info->first + c, [&](const auto* from) {
-        gather(comm, slices, width, to, [&](auto&& f) {
+    gather(comm, slices, width, places, to, [&](auto&& f) {
+      for (int c = 0; c < info->components; ++c)
+        of.columns.with_component(info->first + c, [&](const auto* from) {
           for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
-            f(first[b] + of.id[row], place, static_cast<float>(from[row]));
+            f(first[b] + of.id[row], static_cast<std::size_t>(c), static_cast<float>(from[row]));
           });
         });
-      });
-    }
+    });
   }
 }
 
@@ -75,7 +74,7 @@ void round_derived(const Domain<D>& domain, const Slices& slices, const std::str
     throw std::invalid_argument("round_derived: wrong size");
   for (std::size_t m = 0; m < domain.pools.size(); ++m) {
     const ParticlePool<D>& of = domain.pools[m];
-    gather(comm, slices, 1, to, [&](auto&& f) {
+    gather(comm, slices, 1, std::array{0}, to, [&](auto&& f) {
       for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
         ParticleState p{{}, of.mass()[row] / domain.bodies[b].initial_density, D};
         for (int c = 0; c < Sym<double, D>::size; ++c)

@@ -11,6 +11,8 @@
 namespace mpm {
 namespace {
 
+constexpr std::array one{0};  // the place of a row's only number
+
 constexpr std::size_t most = std::size_t{1} << 16;  // numbers that pass at once
 
 /// The particles of the bodies of a pool: where those of each begin in the user's order, and which
@@ -54,7 +56,7 @@ struct Places {
           [](const PlacedRow& one, std::size_t place) { return one.place < place; });
       const std::span here(at, end);
       if (!stream.restores()) {
-        gather(stream.comm(), Slices(numbers.size()), 1, std::span(numbers), [&](auto&& f) {
+        gather(stream.comm(), Slices(numbers.size()), 1, one, std::span(numbers), [&](auto&& f) {
           for (const auto [place, row] : here) f(place - begin, 0, get(row));
         });
       }
@@ -75,11 +77,12 @@ void exchange_pieces(const Places<D>& places, ParticlePool<D>& pool, StateStream
       stream, [&](std::uint32_t row) { return pool.piece[row]; },
       [&](std::uint32_t row, std::uint32_t piece) { pool.piece[row] = piece; });
   if (!stream.restores())
-    gather(stream.comm(), Slices(pool.pieces.size()), 1, std::span(pool.pieces), [&](auto&& f) {
-      for (const auto [place, row] : places.rows)
-        for (std::uint32_t k = pool.piece[row]; k != 0; k = pool.pieces[k - 1].next)
-          f(k - 1, 0, pool.pieces[k - 1]);
-    });
+    gather(stream.comm(), Slices(pool.pieces.size()), 1, one, std::span(pool.pieces),
+           [&](auto&& f) {
+             for (const auto [place, row] : places.rows)
+               for (std::uint32_t k = pool.piece[row]; k != 0; k = pool.pieces[k - 1].next)
+                 f(k - 1, 0, pool.pieces[k - 1]);
+           });
   stream.array(std::span(pool.pieces));
 }
 

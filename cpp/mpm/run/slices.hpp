@@ -2,7 +2,7 @@
 // Rows in the user's order, of which some ranks get a slice each: those that write them.
 #include <vector>
 
-#include "mpm/particles/body.hpp"
+#include "mpm/comm/share.hpp"
 
 namespace mpm {
 

@@ -92,8 +92,8 @@ class Output(CaseModel):
         animation: whether a run ends with an animation of its frames, `animation.gif`.
         compression: of the frames: 0 for none, else the level of gzip, 1 to 9. Level 1 makes the
             file a third to a half smaller; it is written at some 50 MB/s then.
-        files: of several ranks, whether those of a machine write a frame into one file ("node") or
-            each into its own ("rank").
+        files: of several ranks, whether those of a machine write a frame into one file ("machine")
+            or each into its own ("rank").
         checkpoint_interval: wall-clock time between two checkpoints [s], from which `--resume` goes
             on; one more is written at the end, also by Ctrl-C. 0 for none at all.
     """
@@ -105,7 +105,7 @@ class Output(CaseModel):
     picture: Text = "von_mises"
     animation: Flag = False
     compression: Annotated[int, Exactly(int, 0, 9)] = 0
-    files: Annotated[str, Choice(("node", "rank"))] = "node"
+    files: Annotated[str, Choice(("machine", "rank"))] = "machine"
     checkpoint_interval: Annotated[float, Quantity("s", ">= 0")] = 600.0
 
     @model_validator(mode="after")

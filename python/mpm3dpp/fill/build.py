@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mpm3dpp.base.errors import CaseError, first_of
+from mpm3dpp.base.machine import MEMORY
 from mpm3dpp.case.body import Body
 from mpm3dpp.case.case import Case
 from mpm3dpp.grains import GrainFilling, Grains
@@ -19,9 +20,9 @@ from mpm3dpp.shapes.filling import holds_none
 from mpm3dpp.shapes.shells import SHELLS
 
 from .capacity import capacity_mistakes
-from .parts import Filled, FilledPart, Particles, Slice, Survey, joined, ranges, survey
+from .parts import Filled, FilledPart, Particles, Survey, joined, ranges, survey
 from .placement import box_mistakes, overlap_mistakes
-from .slices import survey_of_slices
+from .slices import number_of_all, survey_of_slices
 from .velocities import start_velocities
 
 MASS_WARNING = 0.05  # Relative mass error above which a run warns ...
@@ -51,7 +52,7 @@ def build(case: Case, world: World | None = None) -> Filled:
     except ValueError as error:
         raise from_violation(error) from None
     filled = fill_all(case, world)
-    mistakes = [one for part in filled.parts.values() for one in box_mistakes(case, part)]
+    mistakes = [one for part in filled.parts.values() for one in box_mistakes(case, part, world)]
     mistakes += overlap_mistakes(case, filled, world)
     if mistakes:
         raise first_of(mistakes)
@@ -65,7 +66,7 @@ def fill_all(case: Case, world: World | None = None) -> Filled:
         CaseError: a body holds no particle or misses its mass by more than half, or the case is
             too large for the memory.
     """
-    mistakes = list(capacity_mistakes(case))
+    mistakes = list(capacity_mistakes(case, world.memory if world else MEMORY))
     if mistakes:
         raise first_of(mistakes)
     parts: list[FilledPart] = []
@@ -163,24 +164,30 @@ def _filled(case: Case, name: str, body: Body, world: World | None) -> FilledPar
     way, path = case.filled_by(name), ("body", name, body.filling)
     spacing = body.particle_spacing(case.grid)
 
+    sliced = world if body.shape is not None else None
+
     def make(ranks: World | None = None) -> Particles:
         part, parts = (ranks.rank, ranks.size) if ranks else (0, 1)
-        try:
-            positions, volumes = fill(body, case.grid, way, part, parts)
-        except CaseError as error:
-            raise case.error(path, error.rule, error.remedy) from None
-        velocities = start_velocities(case, name, positions, volumes, world=ranks)
-        return Particles(np.array([len(positions)]), positions, velocities, volumes)
 
-    own: Slice | None = None
-    if world is not None and body.shape is not None:
-        particles = agreed(lambda: make(world), world)
-        seen, own = survey_of_slices(particles, world)
-        if not seen.counts[0]:
+        def filled() -> tuple[Array, Array]:
+            try:
+                return fill(body, case.grid, way, part, parts)
+            except CaseError as error:
+                raise case.error(path, error.rule, error.remedy) from None
+
+        positions, volumes = agreed(filled, ranks)
+        if body.shape is not None and not number_of_all(len(positions), ranks):
             error = holds_none(body.shape, spacing)
             raise case.error(path, error.rule, error.remedy)
+        velocities = agreed(
+            lambda: start_velocities(case, name, positions, volumes, world=ranks), ranks
+        )
+        return Particles(np.array([len(positions)]), positions, velocities, volumes)
+
+    particles, own = make(sliced), None
+    if sliced is not None:
+        seen, own = survey_of_slices(particles, sliced)
     else:
-        particles = make()
         seen = survey(particles)
     count, volumes = int(seen.counts[0]), particles.volumes
     shape_volume, exact, mass_error = None, True, 0.0

@@ -22,19 +22,24 @@ filled: fewer are filled at once, and then looked at one by one."""
 _SAMPLE = 1 << 16  # Points of a shape that are looked at.
 
 
-def capacity_mistakes(case: Case) -> Iterator[CaseError]:
-    """Yield what makes it senseless to fill a case: too much for the memory, or out of the box."""
-    counts = {name: _particles(case, name) for name in case.parts()}
+def capacity_mistakes(case: Case, memory: float = MEMORY) -> Iterator[CaseError]:
+    """Yield what makes it senseless to fill a case: too much for the memory, or out of the box.
+
+    Args:
+        case: what would be filled.
+        memory: that there is for it, of all machines [bytes].
+    """
+    counts = {name: _particles(case, name, memory) for name in case.parts()}
     bodies = {n: p.count if isinstance(p, Grains) else 1 for n, p in case.parts().items()}
     needs = {n: counts[n] * PARTICLE_BYTES_WITH_GRID + bodies[n] * BODY_BYTES for n in counts}
     total = sum(needs.values())
-    if not total <= MEMORY:
-        alone = (name for name, need in needs.items() if need > MEMORY)
+    if not total <= memory:
+        alone = (name for name, need in needs.items() if need > memory)
         name = next(alone, max(needs, key=lambda part: needs[part]))
         spacing = case.parts()[name].particle_spacing(case.grid)
         rule = (
             f"would need some {counts[name]:.0e} particles, {spacing:.3g} m apart; the whole case "
-            f"would take {memory_text(total)} of memory, and there are {memory_text(MEMORY)}"
+            f"would take {memory_text(total)} of memory, and there are {memory_text(memory)}"
         )
         yield case.error((*case.part_path(name), case.parts()[name].filling), rule, LENGTHS_REMEDY)
     for name, part in case.parts().items():
@@ -48,7 +53,7 @@ def capacity_mistakes(case: Case) -> Iterator[CaseError]:
             yield case.error(path, rule, f"move the {part.filling}, or enlarge the box")
 
 
-def _particles(case: Case, name: str) -> float:
+def _particles(case: Case, name: str, memory: float) -> float:
     """Return about how many particles an entry will have, or a bound, if that is small."""
     part, dimension = case.parts()[name], case.grid.dimension
     spacing = part.particle_spacing(case.grid)
@@ -64,7 +69,7 @@ def _particles(case: Case, name: str) -> float:
         return shell_count(part.shape, spacing)
     lower, upper = part.shape.bounds()
     bound = float(np.prod(np.maximum(upper - lower, 0.0))) / cube
-    if bound * PARTICLE_BYTES_WITH_GRID <= MEMORY:
+    if bound * PARTICLE_BYTES_WITH_GRID <= memory:
         return bound  # There is room for all of its bounds.
     return reference_volume(part.shape)[0] / cube
 

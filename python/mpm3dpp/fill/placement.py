@@ -17,19 +17,24 @@ from mpm3dpp.case.grid import FARTHEST
 from mpm3dpp.ranks.world import World
 
 from .parts import FilledPart
-from .slices import of_one, strips
+from .slices import number_of_all, of_one, strips
 
 if TYPE_CHECKING:
-    from .parts import Filled, FilledBody
+    from .parts import Filled
 
 CLOSE = 0.25  # Particles of two bodies nearer than this share of their spacing overlap.
 _SLACK = 1e-9  # How far, in cells, a particle may stand outside the box by rounding.
 
 
-def box_mistakes(case: Case, part: FilledPart) -> Iterator[CaseError]:
+def box_mistakes(case: Case, part: FilledPart, world: World | None = None) -> Iterator[CaseError]:
     """Yield where particles stand outside the box, or the region that is kept, or any grid.
 
     Of the grains of an entry the first that is wrong speaks for all.
+
+    Args:
+        case: what is filled.
+        part: an entry.
+        world: processes that have slices of it; each calls this.
     """
     grid, seen = case.grid, part.survey
     regions = [("outflow_box", grid.kept)]
@@ -53,27 +58,29 @@ def box_mistakes(case: Case, part: FilledPart) -> Iterator[CaseError]:
             yield case.error(path, rule, remedy)
             return
         for region, corners in regions:
-            yield from _outside(case, part.body(k), region, corners)
+            yield from _outside(case, _OneBody(part, k), region, corners, world)
 
 
 def _outside(
     case: Case,
-    body: FilledBody,
+    body: _OneBody,
     region: str,
     corners: tuple[tuple[float, ...], tuple[float, ...]],
+    world: World | None,
 ) -> Iterator[CaseError]:
     slack = _SLACK * case.grid.cell_size
     what = "box" if region == "box" else "region"
+    positions, (lower, upper) = body.positions(world), body.bounds()
     for d, axis in enumerate("xyz"[: case.grid.dimension]):
-        x = body.positions[:, d]
-        for limit, outside in ((corners[0][d], -x), (corners[1][d], x)):
-            sign = 1 if limit == corners[1][d] else -1
-            reach = float(outside.max())
-            if reach > sign * limit + slack:
-                count = int((outside > sign * limit + slack).sum())
+        x = positions[:, d]
+        for sign, limit, end in ((-1, corners[0][d], lower[d]), (1, corners[1][d], upper[d])):
+            if sign * end > sign * limit + slack:
+                count = number_of_all(int((sign * x > sign * limit + slack).sum()), world)
                 side = f"{axis} {'>' if sign > 0 else '<'} {limit:g} m"
-                path, filling = _key(case, body.part)
-                who = "its particles" if body.name == body.part else f"the particles of {body.name}"
+                path, filling = _key(case, body.part.name)
+                who = "its particles"
+                if body.name != body.part.name:
+                    who = f"the particles of {body.name}"
                 rule = f"reaches out of grid.{region}: {count} of {who} are at {side}"
                 yield case.error(path, rule, f"move the {filling}, or enlarge the {what}")
 
@@ -172,10 +179,7 @@ def _close(one: _OneBody, other: _OneBody, distance: float, world: World | None)
             return 0
         points = [p[np.all((p >= lower) & (p <= upper), axis=1)] for p in points]
         points = [*strips(points[0], points[1], (lower, upper), distance, world)]
-    count = np.array([close_particles(points[0], points[1], distance)])
-    if world is not None:
-        world.all_sum(count)
-    return int(count[0])
+    return number_of_all(close_particles(points[0], points[1], distance), world)
 
 
 def close_particles(

@@ -14,6 +14,14 @@ from mpm3dpp.ranks.world import World
 from .parts import Array, Particles, Slice, Survey
 
 
+def number_of_all(count: int, world: World | None) -> int:
+    """Return the sum of a number that each process has."""
+    sums = np.array([count])
+    if world is not None:
+        world.all_sum(sums)
+    return int(sums[0])
+
+
 def survey_of_slices(particles: Particles, world: World) -> tuple[Survey, Slice]:
     """Return what is to be known of a body, and where a slice of it is among all its particles."""
     positions, velocities = particles.positions, particles.velocities

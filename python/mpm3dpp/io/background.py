@@ -9,7 +9,7 @@ import math
 import queue
 import threading
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -33,6 +33,16 @@ class _Once:
         array, self.array = self.array, None
         assert array is not None
         return array
+
+
+class FrameParts(Protocol):
+    """Who writes frames, or the parts of them; see `FrameThread`."""
+
+    def hand_over(self, simulation: Any) -> None: ...
+    def look(self, again: bool = False) -> tuple[int, Exception | None]: ...
+    def wait(self) -> None: ...
+    def sums_of_others(self) -> list[list[int]]: ...
+    def end(self) -> None: ...
 
 
 class FrameThread:
@@ -160,12 +170,14 @@ class BackgroundWriter:
     Args:
         results: the writer of the files, closed at the end.
         room: see `FrameThread`.
-        parts: who writes them, with the functions of a `FrameThread`; that by default.
+        parts: who writes them; by default a `FrameThread`.
     """
 
-    def __init__(self, results: ResultsWriter, room: float = math.inf, parts: Any = None) -> None:
+    def __init__(
+        self, results: ResultsWriter, room: float = math.inf, parts: FrameParts | None = None
+    ) -> None:
         self._results = results
-        self._parts = FrameThread(results, room) if parts is None else parts
+        self._parts: FrameParts = FrameThread(results, room) if parts is None else parts
 
     def write(self, simulation: Any) -> None:
         """Hand over the present state of the core's `Simulation`; wait only for room.

@@ -46,12 +46,16 @@ def write_checkpoint(
         keep: name that the old one gets then.
 
     Raises:
-        CaseError: the file cannot be written; the old one still stands.
+        CaseError: the file cannot be written, or there are more particles than it may hold; the old
+            one still stands.
     """
     with replacing(path, keep) as file, zipfile.ZipFile(file, "w") as archive:
         archive.writestr("about.json", json.dumps(about))
         with archive.open("state", "w", force_zip64=True) as state:
-            core.save(state.write)
+            try:
+                core.save(state.write)
+            except ValueError as error:
+                raise CaseError(str(error)) from error
 
 
 def no_checkpoint(path: Path) -> DamagedError:

@@ -2,10 +2,10 @@
 """One frame in a file of its own, which is written in one step and never changed after.
 
 The HDF5 file has the group `arrays` with a data set per array, one row per particle, `cells` with
-what VTK wants to know of a vertex per particle where no earlier frame has as many, and an attribute
-`frame`: JSON with time, step and count of particles, the check sum of each array, and the frames
-that hold those arrays which have not changed. Of several processes each writes a part of the frame,
-a slice of its particles, in such a file: `000012.h5`, `000012.1.h5`, ...
+what VTK wants to know of a vertex per particle where no earlier frame has the same parts, and an
+attribute `frame`: JSON with time, step and count of particles, the check sum of each array, and the
+frames that hold those arrays which have not changed. Of several processes each writes a part of the
+frame, a slice of its particles, in such a file: `000012.h5`, `000012.1.h5`, ...
 """
 
 from __future__ import annotations

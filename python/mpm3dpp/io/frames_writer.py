@@ -3,8 +3,8 @@
 
 Each frame is a file of its own (`io/frame_file.py`). Every file is written beside its place,
 brought to the disk and renamed, so that a run that is killed or meets a full disk leaves whole
-frames, and a frame that was written is never touched again. Arrays that do not change (cells, body,
-grain, material, size) stand in the first frame's file only.
+frames, and a frame that was written is never touched again. Arrays that do not change (body, grain,
+material, size) stand in the first frame's file only, cells in the first with the same parts.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from mpm3dpp.base.disk import bring_folder_to_disk, checksum, writing
 from mpm3dpp.base.errors import CaseError
 
 from .fields import Column, Frame, frame_of, numbered
-from .frame_file import CELLS, FrameInfo, frame_path, read_arrays, read_info, write_frame
+from .frame_file import CELLS, FrameInfo, frame_path, read_arrays, write_frame
 
 _CONSTANT = ("body", "grain", "material", "size")
 
@@ -33,10 +33,7 @@ class FramesWriter:
         bodies, materials, fields, compression: as those of `ResultsWriter`.
         writers: the ranks that write frames, each a slice of the particles.
         part: which of them this is.
-        kept: how many frames there are already.
-
-    Raises:
-        CaseError: a frame that is there cannot be read.
+        frames: those that there are already.
     """
 
     def __init__(
@@ -48,13 +45,13 @@ class FramesWriter:
         compression: int,
         writers: Sequence[int] = (0,),
         part: int = 0,
-        kept: int = 0,
+        frames: Sequence[FrameInfo] = (),
     ) -> None:
         self._folder = folder
         self._bodies, self._materials = list(bodies), numbered(materials)[1]
         self._fields, self._level = tuple(fields), compression
         self._writers, self._part = tuple(writers), part
-        self._frames = [read_info(frame_path(folder, k)) for k in range(kept)]
+        self._frames = list(frames)
         self._checks: list[int] = []  # of the files that were written here
         # What seldom changes: the digest, unless a run before had it, and the frame that has it.
         self._constant: dict[str, tuple[bytes | None, int]] = {}
@@ -70,8 +67,10 @@ class FramesWriter:
         """How many frames there are."""
         return len(self._frames)
 
-    def close(self) -> None:
-        """Nothing is left to do: each frame is whole."""
+    @property
+    def infos(self) -> list[FrameInfo]:
+        """What their files hold."""
+        return list(self._frames)
 
     def closed(self) -> CaseError:
         """Return the mistake of a frame that comes after the end."""
@@ -109,8 +108,12 @@ class FramesWriter:
     def add(self, frame: Frame) -> None:
         """Append a frame; each of its columns is asked for when the one before is in the file.
 
-        A column that does not change may be left out of later frames. Raises what `append` raises,
-        and what the columns raise; the frames written before stay.
+        A column that does not change may be left out of later frames. The frames written before
+        stay whatever happens.
+
+        Raises:
+            CaseError: no room on the disk, or columns that do not fit each other. And what the
+                columns raise.
         """
         number = self.frames
         info = FrameInfo(float(frame.time), int(frame.step), sum(frame.rows), list(frame.rows))

@@ -76,7 +76,7 @@ def write_master(path: Path, frames: Sequence[FrameInfo], meta: Mapping[str, Any
 def _place_cells(
     root: h5py.Group, steps: h5py.Group, folder: Path, frames: Sequence[FrameInfo]
 ) -> None:
-    """The cells, one vertex a particle: a part for each number of particles."""
+    """The cells, one vertex a particle: for VTK a part for each way to share out particles."""
     own = [CELLS not in frame.elsewhere for frame in frames]
     counts = np.array([frame.count for frame in frames], dtype=np.int64)
     parts = counts[own]

@@ -18,7 +18,7 @@ from mpm3dpp.base.disk import bring_folder_to_disk, checksum, make_folder, unfin
 from mpm3dpp.base.errors import CaseError
 
 from .fields import Column, Frame, column_units, numbered
-from .frame_file import frame_numbers, frame_path, frames_folder, remove_frames
+from .frame_file import frame_numbers, frame_path, frames_folder, read_info, remove_frames
 from .frames_writer import FramesWriter
 from .master import write_master
 from .rows import as_stored
@@ -53,8 +53,8 @@ class ResultsWriter(FramesWriter):
         writers: the ranks that write frames, each a slice of the particles, this one the first.
 
     Attributes:
-        whole: how many frames are there with all their parts: those that the file may tell of. What
-            others write one learns of otherwise, before `write`, `rows` and `close`.
+        whole: of several writers, how many frames have been written by all: those that the file
+            may tell of. Who asks the others sets it.
 
     Raises:
         CaseError: a file cannot be written; frames that were written stay readable.
@@ -97,9 +97,8 @@ class ResultsWriter(FramesWriter):
                 self.path.unlink(missing_ok=True)
             remove_frames(folder, 0)
         make_folder(folder)
-        super().__init__(
-            folder, bodies, materials, fields, compression, writers, kept=len(self._kept)
-        )
+        infos = [read_info(frame_path(folder, k)) for k in range(len(self._kept))]
+        super().__init__(folder, bodies, materials, fields, compression, writers, frames=infos)
         self.whole = self.frames
         self._tell()
         remove_frames(folder, self.frames)
@@ -154,9 +153,7 @@ class ResultsWriter(FramesWriter):
         if self._is_closed:
             raise self.closed()
         super().add(frame)
-        if len(frame.rows) == 1:
-            self.whole = self.frames
-        if _OFTEN * (self.whole - self._told) >= self._told:
+        if _OFTEN * (self._whole() - self._told) >= self._told:
             self._tell()
 
     def closed(self) -> CaseError:
@@ -177,13 +174,16 @@ class ResultsWriter(FramesWriter):
 
     def _tell(self) -> None:
         """Write the VTKHDF file anew."""
-        told = self.whole
+        told = self._whole()
         write_master(self.path, self._frames[:told], self._meta)
         self._told = told
 
     def _tell_of_all(self) -> None:
-        if self._told < self.whole:
+        if self._told < self._whole():
             self._tell()
+
+    def _whole(self) -> int:
+        return self.whole if len(self._writers) > 1 else self.frames
 
 
 def has_no_results(path: Path) -> bool:

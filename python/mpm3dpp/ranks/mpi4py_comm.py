@@ -24,10 +24,11 @@ class Mpi4pyComm:
     Args:
         mpi: the module `mpi4py.MPI`.          users: the communicator of which it is a copy.
         fail: see `World.fail`.
+        piece: bytes in which letters of any length go at most.
     """
 
-    def __init__(self, mpi: Any, users: Any, fail: Callable[[str], None]) -> None:
-        self._mpi = mpi
+    def __init__(self, mpi: Any, users: Any, fail: Callable[[str], None], piece: int) -> None:
+        self._mpi, self._piece = mpi, piece
         self._comm = users.Dup()
         self._receiving: dict[int, list[Any]] = {}
         self._sending: dict[int, list[Any]] = {}
@@ -73,18 +74,22 @@ class Mpi4pyComm:
         """Send letters to whom nobody knows of; return those that have come, by rank."""
         tag = _UNEXPECTED + self._round % 2
         self._round += 1
-        sent = [self._comm.Issend(self._bytes(view), rank, tag) for rank, view in out]
-        got: list[tuple[int, bytes]] = []
+        sent = [
+            self._comm.Issend(self._bytes(view[at : at + self._piece]), rank, tag)
+            for rank, view in out
+            for at in range(0, max(1, len(view)), self._piece)
+        ]
+        got: dict[int, bytearray] = {}  # Pieces of a letter come one behind another.
         status, all_taken = self._mpi.Status(), None
         while True:
             if self._comm.Iprobe(self._mpi.ANY_SOURCE, tag, status):
-                letter = bytearray(status.Get_count(self._mpi.BYTE))
+                piece = bytearray(status.Get_count(self._mpi.BYTE))
                 source = status.Get_source()
-                self._comm.Recv(self._bytes(letter), source, tag)
-                got.append((source, bytes(letter)))
+                self._comm.Recv(self._bytes(piece), source, tag)
+                got.setdefault(source, bytearray()).extend(piece)
             if all_taken is not None:
                 if all_taken.Test():
-                    return sorted(got)
+                    return sorted((source, bytes(letter)) for source, letter in got.items())
             elif self._mpi.Request.Testall(sent):
                 all_taken = self._comm.Ibarrier()
 

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp.base.errors import NO_VALUE, CaseError
+from mpm3dpp.base.machine import MEMORY
 from mpm3dpp.base.parts import equal_part
 
 # How many processes a launcher has started and which of them this is: Open MPI; MPICH, Intel MPI
@@ -38,6 +39,8 @@ class World:
         comm: `mpi4py.MPI.COMM_WORLD`.          rank: of this one.          size: how many.
         library: name and version of the MPI.
         native: whether the core speaks to MPI itself, else through mpi4py.
+        piece: bytes of the largest message; MPI counts no further than 2 GiB.
+        memory: of all machines together, by the least that a process has on each [bytes].
     """
 
     def __init__(self, mpi: Any) -> None:
@@ -46,9 +49,12 @@ class World:
         self.rank: int = self.comm.rank
         self.size: int = self.comm.size
         self.library = " ".join(mpi.Get_library_version().replace(",", " ").split()[:3])
+        self.piece = 1 << 30
         self._failed = self.comm.Dup()
         self._here = self.comm.Split_type(mpi.COMM_TYPE_SHARED)
         self._firsts = sorted(set(self.comm.allgather(self._here.bcast(self.rank))))
+        here = self._here.allreduce(MEMORY, op=mpi.MIN)
+        self.memory: int = self.comm.allreduce(here if self.rank in self._firsts else 0)
         self._core: Any = None
         self._module = module_for(mpi)
         self.native = self._module is not None
@@ -56,11 +62,11 @@ class World:
     def for_core(self) -> Any:
         """Return what the core's `Simulation` takes; made once, by all ranks at once."""
         if self._core is None and self._module is not None:
-            self._core = self._module.comm(self._mpi._addressof(self.comm))
+            self._core = self._module.comm(self._mpi._addressof(self.comm), self.piece)
         elif self._core is None:
             from .mpi4py_comm import Mpi4pyComm
 
-            self._core = Mpi4pyComm(self._mpi, self.comm, self.fail)
+            self._core = Mpi4pyComm(self._mpi, self.comm, self.fail, self.piece)
         return self._core
 
     def tell(self, *order: Any) -> None:
@@ -87,7 +93,7 @@ class World:
         return max(1, len(cores) // self._here.size)
 
     def writers(self, files: str) -> list[int]:
-        """Return the ranks that write frames: all ("rank"), or the first of each machine."""
+        """Return the ranks that write frames: all ("rank"), or the first of each ("machine")."""
         return list(range(self.size)) if files == "rank" else list(self._firsts)
 
     def all_max(self, numbers: np.ndarray) -> None:
@@ -98,13 +104,13 @@ class World:
         """Replace integers by their sums over all ranks."""
         self.comm.Allreduce(self._mpi.IN_PLACE, numbers, op=self._mpi.SUM)
 
-    def fail(self, why: str, patience: float = PATIENCE) -> None:
+    def fail(self, why: str) -> None:
         """Return once all ranks have called it, which then go on; else end all, with a sentence.
 
         What all have made alike is a mistake; what one alone has met is the end of the run.
         """
         request = self._failed.Ibarrier()
-        last = time.monotonic() + patience
+        last = time.monotonic() + PATIENCE
         while not request.Test():
             if time.monotonic() > last:
                 text = f"rank {self.rank} cannot go on, and with it the run: {why}"
@@ -159,6 +165,8 @@ def share_of(count: int, world: World | None) -> tuple[int, int]:
 def agreed(make: Callable[[], Any], world: World | None) -> Any:
     """Return what this process makes, once all have made theirs.
 
+    What fails otherwise than by a mistake ends all processes.
+
     Raises:
         CaseError: one has met a mistake, which is that of all then.
     """
@@ -170,6 +178,9 @@ def agreed(make: Callable[[], Any], world: World | None) -> Any:
     except CaseError as error:
         given = {} if error.value is NO_VALUE else {"value": error.value}
         mistake = (error.rule, error.remedy, {"key": error.key, "place": error.place, **given})
+    except Exception as error:
+        world.fail(str(error) or type(error).__name__)
+        raise
     for told in world.comm.allgather(mistake):
         if told is not None:
             raise CaseError(told[0], told[1], **told[2])

@@ -57,7 +57,7 @@ def _add_body(core: Any, part: FilledPart, particles: Particles, material: int) 
     if part.own is not None:
         positions, own = np.ascontiguousarray(particles.positions), part.own
         about = (part.name, material, part.count, own.first)
-        return int(core.add_part(*about, positions, velocities, own.volume))
+        return int(core.add_slice(*about, positions, velocities, own.volume))
     equal = bool(np.all(volumes == volumes[0]))
     volumes = volumes[:1].copy() if equal else np.ascontiguousarray(volumes)
     return int(core.add_body(part.name, material, particles.positions, velocities, volumes))

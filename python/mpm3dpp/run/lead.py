@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A run of several processes: the first leads, the others do with their parts what it does.
 
-So all that a run writes, prints and decides is done once, by the same program as for one process.
+So all is decided and printed once, by the same program as for one process, and all is written by it
+but the slices of frames that others have.
 """
 
 from __future__ import annotations
@@ -26,9 +27,6 @@ _OWN = frozenset(
     }
 )
 """What the first process knows without the others."""
-
-
-_PATIENCE = 60.0  # s, for ranks that are slower to fill bodies that cannot be filled
 
 
 class _Own(NamedTuple):
@@ -91,8 +89,8 @@ def background_writer(simulation: Simulation, file: ResultsWriter) -> Background
     ranks = world()
     if ranks is None:
         return BackgroundWriter(file, FRAME_SHARE * sum(simulation.core.bytes().values()))
-    ranks.tell("frames", file.path, file.frames)
-    parts = SlicedFrames(simulation, simulation.core._own, file.path, file.frames, ranks, file)
+    ranks.tell("frames", file.path, file.infos)
+    parts = SlicedFrames(simulation, simulation.core._own, file.path, file.infos, ranks, file)
     return BackgroundWriter(file, parts=_Leading(parts, "frames", ranks))
 
 
@@ -108,7 +106,7 @@ def _make(case: Case, threads: int | None, ranks: World) -> Simulation:
     try:
         return Simulation(case, threads, world=ranks)
     except Exception as error:
-        ranks.fail(str(error), _PATIENCE)
+        ranks.fail(str(error))
         raise
 
 

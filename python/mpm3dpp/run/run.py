@@ -45,8 +45,8 @@ def run_case(
     Args:
         case: what to run, or its file.
         out: the output folder; it is made. Results in it are replaced, also those of another case:
-            only the command refuses that. Of several processes, which mpiexec has started, the
-            first one writes; the others return what it returns.
+            only the command refuses that. Of several processes, which mpiexec has started, all
+            return what the first one does; the folder is on a disk that all have.
         threads: of each process, how many; by default OMP_NUM_THREADS, else all cores.
         quiet: no progress and no summary.
         json: print the manifest at the end.

@@ -42,7 +42,7 @@ class Simulation:
         ranks: parts of the grid, each worked on by a thread of its own as by a process, with what
             processes tell each other; to test that their number moves no bit.
         world: processes that work on it, `mpm3dpp.ranks.world.world()`; each calls the same
-            functions. Columns, records and frames are those of all in the first of them.
+            functions. Columns and records are those of all in the first of them.
 
     Attributes:
         case: as given.

@@ -12,9 +12,9 @@ from mpm3dpp.base.errors import CaseError
 from mpm3dpp.case.case import Case
 from mpm3dpp.io.background import FRAME_SHARE, FrameThread
 from mpm3dpp.io.fields import frame_of, numbered
-from mpm3dpp.io.frame_file import frames_folder
+from mpm3dpp.io.frame_file import FrameInfo, frames_folder
 from mpm3dpp.io.frames_writer import FramesWriter
-from mpm3dpp.ranks.world import World
+from mpm3dpp.ranks.world import World, together
 
 from .simulation import Simulation
 
@@ -26,7 +26,7 @@ class SlicedFrames:
         simulation: of the frames.
         core: the core's `Simulation` of this process.
         results: the results file.
-        kept: how many frames there are already.
+        frames: those that there are already.
         ranks: all processes.
         file: of the first process, which has made it.
     """
@@ -36,14 +36,14 @@ class SlicedFrames:
         simulation: Simulation,
         core: Any,
         results: Path,
-        kept: int,
+        frames: list[FrameInfo],
         ranks: World,
         file: FramesWriter | None = None,
     ) -> None:
         case = simulation.case
         self._ranks = ranks
         self._writers = ranks.writers(case.output.files)
-        self._simulation, self._fields, self._begun = simulation, fields_of(case), kept > 0
+        self._simulation, self._fields, self._begun = simulation, fields_of(case), len(frames) > 0
         room = FRAME_SHARE * sum(core.bytes().values()) / len(self._writers)  # those of all ranks
         self._thread: FrameThread | None = None
         if ranks.rank in self._writers:
@@ -55,7 +55,7 @@ class SlicedFrames:
                 case.output.compression,
                 self._writers,
                 self._writers.index(ranks.rank),
-                kept,
+                frames,
             )
             self._thread = FrameThread(file, room)
 
@@ -83,8 +83,9 @@ class SlicedFrames:
         numbers = np.array([-written, error is not None])
         self._ranks.all_max(numbers)
         if numbers[1]:
-            told = self._ranks.comm.allgather(str(error) if error else None)
-            error = CaseError(next(filter(None, told)))
+            text = str(error) or type(error).__name__
+            told = self._ranks.comm.allgather(text if error else None)
+            error = CaseError(next(one for one in told if one is not None))
         return -int(numbers[0]), error
 
     def wait(self) -> None:
@@ -93,10 +94,12 @@ class SlicedFrames:
             self._thread.wait()
 
     def sums_of_others(self) -> list[list[int]]:
-        """Return what `FramesWriter.finish` returns to the other writers; only to the first one."""
-        own = self._thread.file.finish() if self._thread and self._ranks.rank else None
-        told = self._ranks.comm.gather(own)
-        return [sums for sums in told or () if sums is not None]
+        """Return what `FramesWriter.finish` returns to the writers but the first."""
+
+        def finish() -> list[int] | None:
+            return self._thread.file.finish() if self._thread and self._ranks.rank else None
+
+        return [sums for sums in together(finish, self._ranks) if sums is not None]
 
     def end(self) -> None:
         """See `FrameThread`."""

@@ -57,14 +57,19 @@ def circles(inner: float, outer: float, spacing: float) -> Array:
         inner, outer: radii [m]; inner is 0 for a disc.
         spacing: about the distance of the points [m].
     """
+    shells = len(circle_counts(inner, outer, spacing)) - 1
+    found = [circle(inner, outer, spacing, k) for k in range(shells)]
+    return np.concatenate([np.zeros((0, 2)), *found])
+
+
+def circle(inner: float, outer: float, spacing: float, number: int) -> Array:
+    """Return the points of one of the circles of `circles`, from the inside, shape (n, 2)."""
     counts = circle_counts(inner, outer, spacing)
-    found = [np.zeros((0, 2))]
-    for k in range(1, len(counts)):
-        share = (counts[k] + counts[k - 1]) / (2.0 * counts[-1])
-        radius = math.sqrt(inner * inner + (outer - inner) * (outer + inner) * share)
-        offset = 0.5 if (len(counts) - 1 - k) % 2 == 0 else 0.0
-        found.append(radius * _circle(int(counts[k] - counts[k - 1]), offset))
-    return np.concatenate(found)
+    k = number + 1
+    share = (counts[k] + counts[k - 1]) / (2.0 * counts[-1])
+    radius = math.sqrt(inner * inner + (outer - inner) * (outer + inner) * share)
+    offset = 0.5 if (len(counts) - 1 - k) % 2 == 0 else 0.0
+    return radius * _circle(int(counts[k] - counts[k - 1]), offset)
 
 
 def _circle(count: int, offset: float) -> Array:

@@ -27,14 +27,17 @@ _QUADRATURE = {2: 1 << 21, 3: 1 << 22}  # Lattice points for a volume without a 
 
 
 class _Lattice:
-    """The lattice points origin + (k + 1/2) spacing within the bounds of a shape."""
+    """The lattice points origin + (k + 1/2) spacing within the bounds of a shape.
 
-    def __init__(self, shape: Shape, origin: Points, spacing: Points) -> None:
+    Of several processes each looks at a part of them.
+    """
+
+    def __init__(self, shape: Shape, origin: Points, spacing: Points, parts: int = 1) -> None:
         lower, upper = shape.bounds()
         first = np.floor((lower - origin) / spacing - 0.5)
         count = np.ceil((upper - origin) / spacing - 0.5) - first + 1
         points = float(np.prod(np.maximum(count, 0.0)))
-        if not points < _MOST:
+        if not points / parts < _MOST:
             raise _too_many(shape, points)
         self.axes = [
             origin[d] + (first[d] + np.arange(int(count[d])) + 0.5) * spacing[d]
@@ -116,7 +119,7 @@ def fill_shape(shape: Shape, origin: Any, spacing: float, part: int = 0, parts: 
         CaseError: the particles would not fit into the memory of this machine.
     """
     start = np.asarray(origin, dtype=np.float64)
-    lattice = _Lattice(shape, start, np.full(len(start), float(spacing)))
+    lattice = _Lattice(shape, start, np.full(len(start), float(spacing)), parts)
     kept = [(slab, np.packbits(mask), len(mask)) for slab, mask in lattice.slabs(part, parts)]
     counts = [int(np.unpackbits(bits, count=size).sum()) for _, bits, size in kept]
     positions = np.empty((sum(counts), len(start)))
@@ -142,7 +145,7 @@ def fill_round(shape: Shape, spacing: float, part: int = 0, parts: int = 1) -> P
         CaseError: the particles would not fit into the memory of this machine.
     """
     points = shell_count(shape, spacing)
-    if not points < MOST_PARTICLES:
+    if not points / parts < MOST_PARTICLES:
         raise _too_many(shape, points)
     return shell_points(shape, spacing, part, parts)
 
@@ -163,7 +166,8 @@ def fill(
         shape all equal: a read-only view of one number).
 
     Raises:
-        CaseError: the shape does not suit the dimension, or holds no particle.
+        CaseError: the shape does not suit the dimension, or holds no particle; of one part of
+            several that is for the others to tell.
     """
     if body.particles is not None:
         positions, volumes = body.particles.positions, body.particles.volumes

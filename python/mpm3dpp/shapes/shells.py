@@ -9,6 +9,7 @@ the grid's points are.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
@@ -18,7 +19,7 @@ import numpy as np
 from mpm3dpp.base.parts import equal_part
 
 from .base import Points, Shape
-from .circles import circle_counts, circles, layer_places
+from .circles import circle, circle_counts, circles, layer_places
 from .primitives import AXES, Cylinder, Disc, Ring, Sphere, Tube
 from .spheres import ball_shell, shell_counts
 from .transforms import Rotate, Translate
@@ -100,14 +101,19 @@ def _pieces(shape: Shape, spacing: float) -> _Pieces:
         return _Pieces(
             shell_counts(radius, spacing), lambda k: ball_shell(radius, spacing, k) + centre
         )
-    radii = _radii(shape)
-    count = int(circle_counts(*radii, spacing)[-1])
+    inner, outer = _radii(shape)
+    until = circle_counts(inner, outer, spacing).astype(int)
     if not isinstance(shape, Cylinder | Tube):
-        return _Pieces([count], lambda _: circles(*radii, spacing) + centre)
+        return _Pieces(np.diff(until).tolist(), lambda k: circle(inner, outer, spacing, k) + centre)
     axis, places = AXES[shape.axis], layer_places(shape.height, spacing)
-    layer = circles(*radii, spacing)
+
+    @functools.cache
+    def layer() -> Points:
+        return circles(inner, outer, spacing)
+
     return _Pieces(
-        [count] * len(places), lambda k: np.insert(layer, axis, places[k], axis=1) + centre
+        [int(until[-1])] * len(places),
+        lambda k: np.insert(layer(), axis, places[k], axis=1) + centre,
     )
 
 

@@ -35,12 +35,14 @@ void check_gather(mpm::testing::Report& report, std::size_t rows, const std::vec
     const Slices slices(rows, writers);
     std::vector<int>& own = got[static_cast<std::size_t>(comm.rank())];
     own.resize(slices.of(comm.rank()).count() * width);
-    gather(comm, slices, width, std::span(own), [&](auto&& f) {
-      std::minstd_rand random(7);
-      for (std::size_t row = 0; row < rows; ++row)
-        if (random() % size == static_cast<unsigned>(comm.rank()))
-          for (std::size_t place = 0; place < width; ++place)
-            f(row, place, static_cast<int>(10 * row + place));
+    constexpr std::array places{2, 0, 1};
+    gather(comm, slices, width, places, std::span(own), [&](auto&& f) {
+      for (std::size_t c = 0; c < width; ++c) {
+        std::minstd_rand random(7);
+        for (std::size_t row = 0; row < rows; ++row)
+          if (random() % size == static_cast<unsigned>(comm.rank()))
+            f(row, c, 10 * static_cast<int>(row) + places[c]);
+      }
     });
   });
   std::vector<int> all;
