@@ -34,9 +34,12 @@ GONE = 3.0  # The column `failed` of a particle that has eroded, or more of one 
 
 
 def particles_by_rank(simulation: mpm3dpp.Simulation, size: int) -> np.ndarray:
-    """Return how many particles that take part each rank has, shape (size,); by all ranks."""
+    """Return how many particles that move freely each rank has, shape (size,); by all ranks."""
     core, found = simulation.core, []
-    for body in range(core.body_count):
+    for body, name in enumerate(simulation.parts):
+        entry = simulation.case.parts()[name]
+        if getattr(entry, "motion", None) is not None:
+            continue  # They cost their nodes only.
         owners = core.ranks_of(body)[:, 0].astype(int)
         if "failed" in [column.name for column in core.columns(body)]:
             owners = owners[core.column(body, "failed")[:, 0] < GONE]
