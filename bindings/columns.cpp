@@ -1,6 +1,8 @@
 // The particles' numbers as arrays.
 #include "mpm/run/columns.hpp"
 
+#include <numeric>
+
 #include "any.hpp"
 #include "mpm/run/frame.hpp"
 #include "mpm/run/measures.hpp"
@@ -13,6 +15,19 @@ namespace {
 template <class Simulation>
 std::size_t on_first(const Simulation& s, std::size_t count) {
   return comm_of(s).rank() == 0 ? count : 0;
+}
+
+/// The rows of a column that this rank gets, by slices_of(comm, count of the body).
+template <class SlicesOf>
+Output column_of(AnySimulation& either, int body, const std::string& name, SlicesOf slices_of) {
+  auto [values, width] = either.visit([&](auto& s) {
+    const Slices slices = slices_of(comm_of(s), s.domain.body_at(body).count);
+    const auto components = static_cast<std::size_t>(column_components(s.domain, body, name));
+    std::vector<double> numbers(slices.of(comm_of(s).rank()).count() * components);
+    copy_column(s.domain, slices, body, name, numbers);
+    return std::pair(std::move(numbers), components);
+  });
+  return to_numpy(std::move(values), width);
 }
 
 /// Rows of floats that `fill` writes: the slice of all particles that this rank gets of those that
@@ -44,14 +59,18 @@ void def_columns(SimulationClass& simulation) {
       .def(
           "column",
           [](AnySimulation& either, int body, const std::string& name) {
-            auto [values, width] = either.visit([&](auto& s) {
-              const auto components =
-                  static_cast<std::size_t>(column_components(s.domain, body, name));
-              std::vector<double> numbers(on_first(s, s.domain.body_at(body).count * components));
-              copy_column(s.domain, body, name, numbers);
-              return std::pair(std::move(numbers), components);
+            return column_of(either, body, name,
+                             [](const auto&, std::size_t count) { return Slices(count); });
+          },
+          nb::arg("body"), nb::arg("name"))
+      .def(
+          "column_slice",
+          [](AnySimulation& either, int body, const std::string& name) {
+            return column_of(either, body, name, [](const Comm& comm, std::size_t count) {
+              std::vector<int> all(static_cast<std::size_t>(comm.size()));
+              std::iota(all.begin(), all.end(), 0);
+              return Slices(count, all);
             });
-            return to_numpy(std::move(values), width);
           },
           nb::arg("body"), nb::arg("name"))
       .def(

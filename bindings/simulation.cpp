@@ -63,7 +63,7 @@ void def_building(SimulationClass& simulation) {
                      std::size_t first, const Input& positions, const Input& velocities,
                      double volume) {
              return add_slice(s, name, material, count, first, span_of(positions),
-                             span_of(velocities), volume);
+                              span_of(velocities), volume);
            }),
            nb::arg("name"), nb::arg("material"), nb::arg("count"), nb::arg("first"),
            nb::arg("positions"), nb::arg("velocities"), nb::arg("volume"))

@@ -18,7 +18,7 @@ from mpm3dpp.base.disk import write_atomically
 from mpm3dpp.base.errors import CaseError
 
 from .records import ContactRecord, LoadRecord, PairRecord, WarningRecord
-from .result_hash import result_hash
+from .result_hash import Parts, result_hash
 
 Status = Literal["completed", "interrupted", "failed"]
 
@@ -123,6 +123,7 @@ def build_manifest(
     energies: Mapping[str, Any] | None = None,
     case_hash: str | None = None,
     build: Mapping[str, Any] | None = None,
+    columns: Parts | None = None,
 ) -> Manifest:
     """Collect the record of a run from the core's `Simulation`.
 
@@ -143,6 +144,7 @@ def build_manifest(
         energies: `HistoryWriter.summary()`.
         case_hash: when the case has its own; else SHA-256 of the canonical JSON of `case`.
         build: the core's `build_info()`.
+        columns: see `result_hash`.
     """
     build = build or {}
     work = max(1, int(simulation.particle_count) * int(simulation.step))
@@ -167,7 +169,7 @@ def build_manifest(
         stages=stages,
         peak_memory_bytes=peak_memory_bytes(),
         bytes={k: int(v) for k, v in simulation.bytes().items()},
-        result_hash=result_hash(simulation),
+        result_hash=result_hash(simulation, columns),
         contact=_contact(simulation, parts or bodies),
         loads=_loads(simulation),
         warnings=_warnings(simulation, bodies),

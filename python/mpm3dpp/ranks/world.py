@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import math
 import os
 import pickle
 import sys
@@ -95,6 +96,24 @@ class World:
     def writers(self, files: str) -> list[int]:
         """Return the ranks that write frames: all ("rank"), or the first of each ("machine")."""
         return list(range(self.size)) if files == "rank" else list(self._firsts)
+
+    def send(self, rows: np.ndarray) -> None:
+        """Send rows of doubles to the first rank, when it asks for them."""
+        self.comm.Recv(np.zeros(0), source=0)
+        self.comm.send(rows.shape, dest=0)
+        flat = rows.reshape(-1)
+        step = self.piece // 8
+        for at in range(0, len(flat), step):
+            self.comm.Send(flat[at : at + step], dest=0)
+
+    def receive(self, rank: int) -> np.ndarray:
+        """Return the rows that a rank has to send."""
+        self.comm.Send(np.zeros(0), dest=rank)
+        flat = np.empty(math.prod(shape := self.comm.recv(source=rank)))
+        step = self.piece // 8
+        for at in range(0, len(flat), step):
+            self.comm.Recv(flat[at : at + step], source=rank)
+        return flat.reshape(shape)
 
     def all_max(self, numbers: np.ndarray) -> None:
         """Replace numbers by the largest of all ranks."""

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import contextlib
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from mpm3dpp.case.case import Case
 from mpm3dpp.io.background import FRAME_SHARE, BackgroundWriter
+from mpm3dpp.io.result_hash import Parts
 from mpm3dpp.io.vtkhdf import ResultsWriter
 from mpm3dpp.ranks.world import World, world
 
@@ -94,6 +97,23 @@ def background_writer(simulation: Simulation, file: ResultsWriter) -> Background
     return BackgroundWriter(file, parts=_Leading(parts, "frames", ranks))
 
 
+def column_parts(simulation: Simulation) -> Parts | None:
+    """Return what gives columns in parts if other processes have some of the particles."""
+    ranks = world()
+    if ranks is None:
+        return None
+    core = simulation.core._own
+
+    def parts(body: int, name: str) -> Iterator[np.ndarray]:
+        ranks.tell("slice", body, name)
+        own: np.ndarray = core.column_slice(body, name)
+        yield own
+        for rank in range(1, ranks.size):
+            yield ranks.receive(rank)
+
+    return parts
+
+
 def _told(value: Any) -> Any:
     """Return an argument as the others are told it."""
     if isinstance(value, _Leading):
@@ -153,7 +173,9 @@ def follow(ranks: World) -> Any:
                     own["core"] = simulation.core
                 continue
             try:
-                if what == "frames":
+                if what == "slice":
+                    ranks.send(own["core"].column_slice(*about))
+                elif what == "frames":
                     own["frames"] = SlicedFrames(simulation, own["core"], about[0], about[1], ranks)
                 elif what == "get":
                     getattr(own[about[0]], about[1])

@@ -22,7 +22,7 @@ from mpm3dpp.plots.apart import draw_apart
 from mpm3dpp.ranks.world import world
 
 from .checkpoints import Checkpoint, Checkpoints
-from .lead import background_writer, follow, make_simulation, release
+from .lead import background_writer, column_parts, follow, make_simulation, release
 from .progress import Progress
 from .report import contact_table, energy_line, gone_lines, load_lines, speed_line, warning_lines
 from .resume import go_on, has_checkpoint
@@ -250,4 +250,5 @@ def _manifest(
         reason=reason,
         case_hash=case.case_hash,
         build=_core.build_info(),
+        columns=column_parts(simulation),
     )

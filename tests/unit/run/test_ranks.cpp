@@ -96,7 +96,7 @@ void gather(const Simulation<D>& simulation, std::vector<double>& numbers) {
     for (const ColumnInfo& info : columns(domain, b)) {
       const auto width = static_cast<std::size_t>(column_components(domain, b, info.name));
       std::vector<double> values(domain.body_at(b).count * width);
-      copy_column(domain, b, info.name, values);
+      copy_column(domain, Slices(domain.body_at(b).count), b, info.name, values);
       numbers.insert(numbers.end(), values.begin(), values.end());
     }
 }
