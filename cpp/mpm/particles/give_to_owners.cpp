@@ -162,7 +162,7 @@ std::vector<GroupHead> read_heads(Reader& reader, std::vector<Body<D>>& bodies) 
 template <int D>
 std::optional<Owners<D>> give_to_owners(TileGrid<D>& grid, std::vector<Body<D>>& bodies) {
   if (grid.partition.alone()) return std::nullopt;
-  const Owners<D> owners = choose_owners<D>(grid, count_in_tiles(grid, bodies), bodies);
+  Owners<D> owners = choose_owners<D>(grid, count_in_tiles(grid, bodies), bodies);
   std::vector<Letter> letters = write_all(grid, bodies, owners);
   Comm& comm = *grid.partition.comm;
   Mail mail;
@@ -173,8 +173,8 @@ std::optional<Owners<D>> give_to_owners(TileGrid<D>& grid, std::vector<Body<D>>&
   Letter& kept = letters[static_cast<std::size_t>(comm.rank())];
   if (!kept.bytes.empty()) mail.in.push_back(std::move(kept));
   std::vector<Reader> readers(mail.in.begin(), mail.in.end());
-  std::vector<std::vector<GroupHead>> heads;
-  for (Reader& reader : readers) heads.push_back(read_heads(reader, bodies));
+  std::vector<std::vector<GroupHead>> heads(readers.size());
+  for (std::size_t k = 0; k < heads.size(); ++k) heads[k] = read_heads(readers[k], bodies);
   for (std::size_t k = 0; k < readers.size(); ++k) {
     for (const GroupHead& head : heads[k])
       read_group<D>(readers[k], head, *bodies[static_cast<std::size_t>(head.body)].given);

@@ -61,8 +61,9 @@ void test_give_to_owners(mpm::testing::Report& report) {
     TileGrid<3> grid;
     grid.partition.comm = &comm;
     grid.cell_size = 1.0;
-    std::vector<Body<3>> bodies;
-    for (int b = 0; b < 2; ++b) bodies.push_back(given_body(b, comm, places[b]));
+    std::vector<Body<3>> bodies(2);
+    for (int b = 0; b < 2; ++b)
+      bodies[static_cast<std::size_t>(b)] = given_body(b, comm, places[b]);
     place_anchor(grid, bodies);
     const auto owners = give_to_owners(grid, bodies);
     const std::scoped_lock lock(mutex);
