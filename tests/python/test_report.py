@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mpm3dpp.run.report import energy_line, warning_lines
+from mpm3dpp.run.report import body_lines, energy_line, warning_lines
 
 
 def manifest(initial: dict[str, float], final: dict[str, float]) -> Any:
@@ -67,3 +67,26 @@ def test_what_pic_takes_is_no_reason_for_smaller_steps() -> None:
     assert energy_line(told).endswith("; a smaller run.cfl or smaller cells may help")
     told.case = {"run": {"transfer": "pic"}}
     assert energy_line(told).endswith("; what run.transfer takes is in it")
+
+
+def of_body(velocity: tuple[float, float, float], kinetic: float) -> dict[str, float]:
+    return {
+        **dict(zip(("velocity_x", "velocity_y", "velocity_z"), velocity, strict=True)),
+        "kinetic": kinetic,
+    }
+
+
+def test_a_line_for_each_body_that_moves_freely() -> None:
+    ball = {"initial": of_body((0, 0, -800), 3200.0), "final": of_body((321, 0, -537), 1957.3)}
+    rest = {"initial": of_body((0, 0, 0), 0.0), "final": of_body((0, 0, -1e-3), 1e-9)}
+    case = {"body": {"tool": {"motion": {}}, "ball": {"motion": None}}}
+    found: Any = SimpleNamespace(bodies={"ball": ball, "tool": rest, "plate": rest}, case=case)
+    assert body_lines(found) == [
+        "ball: 800 -> 625.6 m/s (321, 0, -537), kinetic energy 3200 -> 1957 J",
+        "plate: 0 -> 0.001 m/s (0, 0, -0.001), kinetic energy 0 -> 1e-09 J",
+    ]
+    case["grid"] = {"dimension": 2}
+    assert body_lines(found)[0] == "ball: 0 -> 321 m/s (321, 0), kinetic energy 3200 -> 1957 J/m"
+    found.bodies = {f"grain {k}": rest for k in range(12)}
+    assert body_lines(found)[-1] == "... and 2 more bodies, in manifest.json"
+    assert len(body_lines(found)) == 11

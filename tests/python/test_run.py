@@ -136,6 +136,28 @@ def test_run_case_from_python(tmp_path: Path, capfd: pytest.CaptureFixture[str])
         assert results.case_hash == case.case_hash
 
 
+def test_what_became_of_each_body(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Also of a run that goes on: before is before its first step."""
+    for end in ("4 ms", "8 ms"):
+        file, more = write(tmp_path, CASE.replace('"8 ms"', f'"{end}"')), end == "8 ms"
+        run_case(file, tmp_path / "out", threads=1, quiet=False, pictures=False, resume=more)
+    assert "left: 5 -> " in capfd.readouterr().out
+    found = read_manifest(tmp_path / "out")["bodies"]
+    assert list(found) == ["left", "right"]
+    for name, speed in (("left", 5.0), ("right", -5.0)):
+        before, after = found[name]["initial"], found[name]["final"]
+        assert before["velocity_x"] == pytest.approx(speed)
+        assert before["mass"] == pytest.approx(after["mass"], rel=1e-12)
+        assert abs(after["velocity_x"]) < 5.0
+    sums = {
+        which: sum(found[name][which]["momentum_x"] for name in found)
+        for which in ("initial", "final")
+    }
+    assert abs(sums["final"] - sums["initial"]) < 1e-9 * found["left"]["initial"]["momentum_x"]
+    history = read_history(tmp_path / "out")
+    assert history["body_left_velocity_x"][-1] == found["left"]["final"]["velocity_x"]
+
+
 def start_long_run(folder: Path) -> subprocess.Popen[str]:
     """Start a run without end and return when it has written a few frames."""
     run = subprocess.Popen(

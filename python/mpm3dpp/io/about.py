@@ -55,6 +55,7 @@ class History(_Strict):
     tables: Annotated[list[Table | None], Field(min_length=2, max_length=2)]
     summary: Summary | None
     momentum: list[float]
+    bodies: list[list[float]]
 
     @model_validator(mode="after")
     def _whole(self) -> History:

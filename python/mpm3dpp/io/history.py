@@ -117,7 +117,7 @@ class HistoryWriter:
         pairs = list(itertools.combinations(firsts, 2)) if contact else []
         self._pairs = {pair: k for k, pair in enumerate(pairs)} if len(pairs) <= PAIR_LIMIT else {}
         header = list(columns)
-        self._parts = PartCells(names) if parts else None
+        self._parts = PartCells(names, state["bodies"] if state else ()) if parts else None
         self._part_cells = self._parts.header if self._parts else []
         header += self._part_cells
         for a, b in self._pairs:
@@ -149,6 +149,8 @@ class HistoryWriter:
             pairs: the core's `contact_groups()` after the last of these steps; None: not known.
             parts: its `part_sums()` then; None: not asked for.
         """
+        if parts is not None:
+            self.note_bodies(parts)
         if len(rows) == 0:
             return
         table = np.asarray(rows, dtype=float)
@@ -169,7 +171,13 @@ class HistoryWriter:
         """Return what a writer needs to go on from here, for JSON; it is on the disk then."""
         tables = [table.saved() if table else None for table in (self._table, self._long)]
         summary = self.summary() or None
-        return {"tables": tables, "summary": summary, "momentum": self._momentum.tolist()}
+        first = self._parts.first if self._parts else None
+        return {
+            "tables": tables,
+            "summary": summary,
+            "momentum": self._momentum.tolist(),
+            "bodies": [] if first is None else first.tolist(),
+        }
 
     def summary(self) -> dict[str, Any]:
         """Energies of the whole run for the manifest [J], J per metre in 2D.
@@ -180,6 +188,18 @@ class HistoryWriter:
         momentum [N s].
         """
         return dict(self._summary)
+
+    def note_bodies(self, parts: Sums) -> None:
+        """Take the core's `part_sums()` for the last that is known of the bodies."""
+        if self._parts:
+            self._parts.note(parts)
+
+    def bodies(self) -> dict[str, dict[str, dict[str, float]]]:
+        """Return `initial` and `final` numbers of each body, grains of an entry together.
+
+        They are those of PART_COLUMNS, by name: mass, centre, velocity and so on.
+        """
+        return self._parts.records() if self._parts else {}
 
     def close(self) -> None:
         """Close the files."""

@@ -50,7 +50,7 @@ class Manifest:
         contact: see `ContactRecord`.          end_time: time reached [s].
         status, reason: "completed", "interrupted" or "failed", and why.
         limiter: who limits the time step: body, particle, sound_speed and speed [m/s].
-        energies: see `HistoryWriter.summary`.
+        energies: see `HistoryWriter.summary`.          bodies: see `HistoryWriter.bodies`.
         compiler, flags, isa, platform, python: how it was built and where it ran.
         case, case_text: the whole case as data, and the text of its file.
         case_file: whole path of that file; empty where none was read.
@@ -81,6 +81,7 @@ class Manifest:
     warnings: list[WarningRecord]
     limiter: dict[str, Any] | None
     energies: dict[str, Any]
+    bodies: dict[str, dict[str, dict[str, float]]]
     compiler: str
     flags: str
     isa: str
@@ -175,6 +176,7 @@ def build_manifest(
         warnings=_warnings(simulation, bodies),
         limiter=_limiter(simulation, bodies),
         energies=dict(energies or {}),
+        bodies={},
         compiler=str(build.get("compiler", "unknown")),
         flags=str(build.get("flags", "unknown")),
         isa=str(build.get("isa", "unknown")),

@@ -23,20 +23,30 @@ PART_LIMIT = 12
 
 
 class PartCells:
-    """Cells of a row of the history.
+    """What the history holds of the bodies.
 
     Args:
         names: of the bodies, all grains of an entry being one.
+        first: rows of the first sums of a run that goes on; none if it begins.
     """
 
-    def __init__(self, names: Sequence[str]) -> None:
-        self._told = list(names) if len(names) <= PART_LIMIT else []
+    def __init__(self, names: Sequence[str], first: Sequence[Sequence[float]] = ()) -> None:
+        self._names = list(names)
+        self._told = self._names if len(names) <= PART_LIMIT else []
+        self.first = np.array(first) if len(first) else None
+        self._last = self.first
 
     @property
     def header(self) -> list[str]:
         """Names of the columns."""
         told = [f"body_{name}_{column}" for name in self._told for column in PART_COLUMNS]
         return [*TOTALS, *told]
+
+    def note(self, sums: Sums) -> None:
+        """Keep the core's `part_sums()` if they are the first, and as the last."""
+        self._last = sums[1]
+        if self.first is None:
+            self.first = sums[1]
 
     def cells(self, sums: Sums) -> list[str]:
         """Return the cells of a row.
@@ -47,3 +57,14 @@ class PartCells:
         totals, parts = sums
         told = parts.ravel().tolist() if self._told else []
         return [repr(value) for value in [*totals, *told]]
+
+    def records(self) -> dict[str, dict[str, dict[str, float]]]:
+        """Return of each body what PART_COLUMNS were, `initial` and `final`."""
+        found = {}
+        for which, rows in (("initial", self.first), ("final", self._last)):
+            if rows is not None:
+                found[which] = [dict(zip(PART_COLUMNS, row, strict=True)) for row in rows.tolist()]
+        return {
+            name: {which: rows[k] for which, rows in found.items()}
+            for k, name in enumerate(self._names)
+        }

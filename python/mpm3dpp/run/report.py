@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 
 from mpm3dpp.io.manifest import Manifest
 
 _PAIRS_SHOWN = 10
+_BODIES_SHOWN = 10
 _OF_A_KIND = 3  # warnings shown
 _NUMERICAL_WARNING = 0.05
 
@@ -43,6 +45,31 @@ def contact_table(manifest: Manifest) -> list[str]:
         )
     if len(contact.pairs) > _PAIRS_SHOWN:
         lines.append(f"  ... and {len(contact.pairs) - _PAIRS_SHOWN} more, in manifest.json")
+    return lines
+
+
+def body_lines(manifest: Manifest) -> list[str]:
+    """Return a line for each body that moves freely: the speed of its mass centre and its energy.
+
+    That is before and after, then the velocity; of grains the mean one.
+    """
+    flat = manifest.case.get("grid", {}).get("dimension") == 2
+    unit, axes = ("J/m", "xy") if flat else ("J", "xyz")
+    given = manifest.case.get("body", {})
+    lines = []
+    for name, found in manifest.bodies.items():
+        if given.get(name, {}).get("motion") is not None:
+            continue
+        velocities = [[found[k][f"velocity_{x}"] for x in axes] for k in ("initial", "final")]
+        before, after = (math.hypot(*velocity) for velocity in velocities)
+        energies = " -> ".join(f"{found[k]['kinetic']:.4g}" for k in ("initial", "final"))
+        lines.append(
+            f"{name}: {before:.4g} -> {after:.4g} m/s ({_listed(velocities[1])}), kinetic energy "
+            f"{energies} {unit}"
+        )
+    if len(lines) > _BODIES_SHOWN:
+        more = len(lines) - _BODIES_SHOWN
+        lines = [*lines[:_BODIES_SHOWN], f"... and {more} more bodies, in manifest.json"]
     return lines
 
 

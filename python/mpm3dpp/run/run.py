@@ -24,7 +24,15 @@ from mpm3dpp.ranks.world import world
 from .checkpoints import Checkpoint, Checkpoints
 from .lead import background_writer, column_parts, follow, make_simulation, release
 from .progress import Progress
-from .report import contact_table, energy_line, gone_lines, load_lines, speed_line, warning_lines
+from .report import (
+    body_lines,
+    contact_table,
+    energy_line,
+    gone_lines,
+    load_lines,
+    speed_line,
+    warning_lines,
+)
 from .resume import go_on, has_checkpoint
 from .simulation import Simulation
 from .sliced_frames import fields_of
@@ -95,7 +103,8 @@ def _run_case(
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
-        lines = [*contact_table(manifest), *load_lines(manifest), *gone_lines(manifest)]
+        lines = [*body_lines(manifest), *contact_table(manifest), *load_lines(manifest)]
+        lines += gone_lines(manifest)
         lines += warning_lines(manifest)
         lines += [energy_line(manifest)]
         print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]), flush=True)
@@ -129,7 +138,7 @@ def _run(
         forget_last_run(folder, checkpoint=before is None)
         begin = simulation.step
         try:
-            status, reason = _write_run(
+            status, reason, of_bodies = _write_run(
                 simulation, folder, quiet, checkpoints, before, notes, notice
             )
         except CaseError as error:  # The disk: it was no mistake when the run began.
@@ -138,7 +147,7 @@ def _run(
             can_go_on = ", and --resume goes on" if has_checkpoint(folder) else ""
             raise RunError(f"{error}; what was written before is in {folder}{can_go_on}") from error
         manifest = _manifest(simulation, status, reason, checkpoints.wall_time, begin)
-        manifest.energies = simulation.summary
+        manifest.energies, manifest.bodies = simulation.summary, of_bodies
         manifest.write(folder)
         return manifest, status == "completed" and notice.taken
 
@@ -171,8 +180,8 @@ def _write_run(
     before: Checkpoint | None,
     notes: list[str],
     notice: Notice,
-) -> tuple[Status, str | None]:
-    """Step to the end time, writing frames and history; return how it ended, and why."""
+) -> tuple[Status, str | None, dict[str, Any]]:
+    """Step to the end time, writing frames and history; return how it ended, why, and bodies."""
     case, core = simulation.case, simulation.core
     contact = case.contact_enabled
     kept = None if before is None or before.results_are_gone else before.results
@@ -201,9 +210,10 @@ def _write_run(
             tell(progress, checkpoints.write(core, results, history))
         status, reason = step_to_end(simulation, checkpoints, results, history, progress, notice)
         if status != "failed":
+            history.note_bodies(core.part_sums())
             tell(progress, checkpoints.write_last(core, results, history))
     simulation.summary = history.summary()
-    return status, reason
+    return status, reason, history.bodies()
 
 
 def _results_writer(
