@@ -17,7 +17,15 @@ import numpy as np
 from mpm3dpp.base.disk import write_atomically
 from mpm3dpp.base.errors import CaseError
 
-from .records import ContactRecord, LoadRecord, PairRecord, WarningRecord
+from .records import (
+    ContactRecord,
+    LoadRecord,
+    WarningRecord,
+    contact_of,
+    limiter_of,
+    loads_of,
+    warnings_of,
+)
 from .result_hash import Parts, result_hash
 
 Status = Literal["completed", "interrupted", "failed"]
@@ -171,10 +179,10 @@ def build_manifest(
         peak_memory_bytes=peak_memory_bytes(),
         bytes={k: int(v) for k, v in simulation.bytes().items()},
         result_hash=result_hash(simulation, columns),
-        contact=_contact(simulation, parts or bodies),
-        loads=_loads(simulation),
-        warnings=_warnings(simulation, bodies),
-        limiter=_limiter(simulation, bodies),
+        contact=contact_of(simulation, parts or bodies),
+        loads=loads_of(simulation),
+        warnings=warnings_of(simulation, bodies),
+        limiter=limiter_of(simulation, bodies),
         energies=dict(energies or {}),
         bodies={},
         compiler=str(build.get("compiler", "unknown")),
@@ -222,69 +230,6 @@ def read_manifest(path: str | Path) -> dict[str, Any]:
         raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
     except (OSError, TypeError, ValueError) as error:
         raise CaseError(f"'{path}' is not a manifest of mpm3dpp: {error}") from error
-
-
-def _contact(simulation: Any, parts: Sequence[str]) -> ContactRecord:
-    summary = simulation.contact_summary()
-    pairs = [
-        PairRecord(
-            bodies=[parts[b] for b in pair.bodies],
-            pairs=int(pair.pairs),
-            first_time=float(pair.first_time),
-            first_gap=float(pair.first_gap),
-            first_normal=list(pair.first_normal) if pair.first_step >= 0 else None,
-            first_node=list(pair.first_node) if pair.first_step >= 0 else None,
-            impulse=[float(v) for v in pair.impulse],
-            friction_work=float(pair.friction_work),
-        )
-        for pair in simulation.contact_groups()
-    ]
-    return ContactRecord(
-        bodies=len(parts),
-        overlapped_nodes=int(summary.get("overlapped_nodes", 0)),
-        overlapped_nodes_max=int(summary.get("overlapped_nodes_max", 0)),
-        bodies_per_node_max=int(summary.get("bodies_per_node_max", 0)),
-        peak_bytes=int(summary.get("bytes", 0)),
-        unconverged_nodes=int(summary.get("unconverged_nodes", 0)),
-        pairs=pairs,
-    )
-
-
-def _loads(simulation: Any) -> dict[str, LoadRecord]:
-    return {
-        load.name: LoadRecord(list(load.impulse), list(load.force), float(load.area))
-        for load in simulation.loads()
-    }
-
-
-def _warnings(simulation: Any, bodies: Sequence[str]) -> list[WarningRecord]:
-    return [
-        WarningRecord(
-            kind=w.kind,
-            body=bodies[w.body],
-            particle=int(w.particle),
-            step=int(w.step),
-            time=float(w.time),
-            position=[float(x) for x in w.position],
-            share=float(w.share),
-            count=int(w.count),
-            is_error=bool(w.is_error),
-            message=w.message,
-        )
-        for w in simulation.warnings()
-    ]
-
-
-def _limiter(simulation: Any, bodies: Sequence[str]) -> dict[str, Any] | None:
-    who = simulation.limiter()
-    if who is None or not 0 <= int(who.body) < len(bodies):
-        return None
-    return {
-        "body": bodies[int(who.body)],
-        "particle": int(who.particle),
-        "sound_speed": float(who.sound_speed),
-        "speed": float(who.speed),
-    }
 
 
 def _plain(value: Any) -> Any:

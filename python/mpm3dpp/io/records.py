@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the manifest of a run tells of its contacts and loads."""
+"""What the manifest of a run tells of its contacts, loads and warnings."""
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
+from typing import Any
 
 
 @dataclasses.dataclass
@@ -91,3 +93,70 @@ class ContactRecord:
     peak_bytes: int = 0
     unconverged_nodes: int = 0
     pairs: list[PairRecord] = dataclasses.field(default_factory=list)
+
+
+def contact_of(simulation: Any, parts: Sequence[str]) -> ContactRecord:
+    """Return what there was of contact; `parts` names each body, grains alike."""
+    summary = simulation.contact_summary()
+    pairs = [
+        PairRecord(
+            bodies=[parts[b] for b in pair.bodies],
+            pairs=int(pair.pairs),
+            first_time=float(pair.first_time),
+            first_gap=float(pair.first_gap),
+            first_normal=list(pair.first_normal) if pair.first_step >= 0 else None,
+            first_node=list(pair.first_node) if pair.first_step >= 0 else None,
+            impulse=[float(v) for v in pair.impulse],
+            friction_work=float(pair.friction_work),
+        )
+        for pair in simulation.contact_groups()
+    ]
+    return ContactRecord(
+        bodies=len(parts),
+        overlapped_nodes=int(summary.get("overlapped_nodes", 0)),
+        overlapped_nodes_max=int(summary.get("overlapped_nodes_max", 0)),
+        bodies_per_node_max=int(summary.get("bodies_per_node_max", 0)),
+        peak_bytes=int(summary.get("bytes", 0)),
+        unconverged_nodes=int(summary.get("unconverged_nodes", 0)),
+        pairs=pairs,
+    )
+
+
+def loads_of(simulation: Any) -> dict[str, LoadRecord]:
+    """Return what loads have done, by name."""
+    return {
+        load.name: LoadRecord(list(load.impulse), list(load.force), float(load.area))
+        for load in simulation.loads()
+    }
+
+
+def warnings_of(simulation: Any, bodies: Sequence[str]) -> list[WarningRecord]:
+    """Return what the core has warned of."""
+    return [
+        WarningRecord(
+            kind=w.kind,
+            body=bodies[w.body],
+            particle=int(w.particle),
+            step=int(w.step),
+            time=float(w.time),
+            position=[float(x) for x in w.position],
+            share=float(w.share),
+            count=int(w.count),
+            is_error=bool(w.is_error),
+            message=w.message,
+        )
+        for w in simulation.warnings()
+    ]
+
+
+def limiter_of(simulation: Any, bodies: Sequence[str]) -> dict[str, Any] | None:
+    """Return who limits the time step; None if nobody does."""
+    who = simulation.limiter()
+    if who is None or not 0 <= int(who.body) < len(bodies):
+        return None
+    return {
+        "body": bodies[int(who.body)],
+        "particle": int(who.particle),
+        "sound_speed": float(who.sound_speed),
+        "speed": float(who.speed),
+    }

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mpm3dpp.base import arguments
-from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.errors import CaseError, nearest
 
+from .data_frames import data_frame, has_pandas
 from .frame_file import frame_path, is_whole, read_arrays, read_info
+from .history import read_history
 from .rows import FROM_VTK, TO_VTK
 
 if TYPE_CHECKING:
@@ -122,6 +124,54 @@ class Results:
             arrays[name] = data[first : first + count]
         return arrays
 
+    def to_pandas(self, frame: int, names: Collection[str] | None = None) -> Any:
+        """Return a frame as a `pandas.DataFrame`, a row for each particle.
+
+        Vectors and tensors have a column for each component: `velocity_x`, `stress_xx` and so on.
+
+        Args:
+            frame: see `arrays`.
+            names: see `arrays`.
+
+        Raises:
+            IndexError: there is no such frame.
+            CaseError: pandas is not installed; or see `arrays`.
+        """
+        return data_frame(self.arrays(frame, names))
+
+    def track(
+        self, particle: int, names: Collection[str] | None = None, body: str | None = None
+    ) -> dict[str, np.ndarray]:
+        """Return what one particle had in each frame.
+
+        Args:
+            particle: its number, in the order of `arrays`; negative ones count from the end.
+            names: see `arrays`.
+            body: if given, `particle` is the number among those of this body, or of these grains.
+
+        Returns:
+            "time" [s], shape (frames,), and name -> (frames,) or (frames, c).
+
+        Raises:
+            IndexError: there is no such particle.
+            CaseError: there is no such body; or see `arrays`.
+        """
+        particle = self._particle(arguments.whole_number("particle", particle), body)
+        frames = [self.arrays(k, names) for k in range(len(self))]
+        columns = {name: [frame[name][particle] for frame in frames] for name in frames[0]}
+        return {"time": self.times} | {name: np.array(rows) for name, rows in columns.items()}
+
+    def history(self) -> Any:
+        """Return the table of the run, `history.csv`, by the names of its columns.
+
+        That is a `pandas.DataFrame` where pandas is installed, else arrays by name.
+
+        Raises:
+            CaseError: the file is missing or damaged.
+        """
+        table = read_history(self.path.parent)
+        return data_frame(table) if has_pandas() else table
+
     def nearest(self, time: float) -> int:
         """Number of the frame nearest to `time` [s].
 
@@ -180,6 +230,21 @@ class Results:
             self._names = info.names
             times.append(info.time)
             steps.append(info.step)
+
+    def _particle(self, particle: int, body: str | None) -> int:
+        """Return the number of a particle among all, which may be given among those of a body."""
+        where = self.arrays(0, ["body"])["body"] if len(self) else np.zeros(0, dtype=int)
+        among = np.arange(len(where))
+        if body is not None:
+            if arguments.text("body", body) not in self.bodies:
+                raise CaseError(
+                    "is not a body of these results", nearest(body, self.bodies), value=body
+                )
+            among = among[where == self.bodies.index(body)]
+        if not -len(among) <= particle < len(among):
+            of = f"body {body}" if body else f"'{self.path}'"
+            raise IndexError(f"particle {particle} of {of}: it has {len(among):,} particles")
+        return int(among[particle])
 
     def _must_be_open(self) -> None:
         if not self._open:

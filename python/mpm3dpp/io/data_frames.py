@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arrays by name as tables of pandas, which need not be installed."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from mpm3dpp.base.errors import CaseError
+
+_COMPONENTS = {2: ("x", "y"), 3: ("x", "y", "z"), 6: ("xx", "yy", "zz", "yz", "xz", "xy")}
+
+
+def has_pandas() -> bool:
+    """Return whether pandas is installed."""
+    return importlib.util.find_spec("pandas") is not None
+
+
+def columns_of(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return arrays of shape (n,) by name: of one of shape (n, c) one for each component.
+
+    They are called `NAME_x` to `NAME_z` and `NAME_xx` to `NAME_xy`, others `NAME_0` and so on.
+    """
+    found = {}
+    for name, values in arrays.items():
+        if values.ndim == 1:
+            found[name] = values
+            continue
+        count = values.shape[1]
+        words = _COMPONENTS.get(count, tuple(map(str, range(count))))
+        found |= {f"{name}_{word}": values[:, k] for k, word in enumerate(words)}
+    return found
+
+
+def data_frame(arrays: Mapping[str, np.ndarray]) -> Any:
+    """Return a `pandas.DataFrame` with a column for each component of arrays with as many rows.
+
+    Raises:
+        CaseError: pandas is not installed.
+    """
+    try:
+        import pandas
+    except ImportError as error:
+        raise CaseError("this needs pandas", "install it: pip install pandas") from error
+    return pandas.DataFrame(columns_of(arrays))
