@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from commands import CASE, write
+from commands import CASE, mpm3dpp, one_sentence, write
 from mpm3dpp import open_results, run_case
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io import Results, read_history
@@ -68,3 +69,60 @@ def test_one_particle_over_time(results: Results) -> None:
         CaseError, match='"lift" is not a body of these results; did you mean "left"'
     ):
         results.track(0, body="lift")
+
+
+def exported(results: Results, tmp_path: Path, *words: str) -> Path:
+    out = tmp_path / "made" / "frame"
+    done = mpm3dpp("export", results.path.parent, "--out", out, *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == str(out)
+    return out
+
+
+def test_a_frame_as_csv(results: Results, tmp_path: Path) -> None:
+    out = exported(results, tmp_path, "--where", "body=left, velocity_x < 4 m/s, pressure > -1 MPa")
+    rows = np.genfromtxt(out, delimiter=",", names=True)
+    arrays = results.arrays(-1)
+    keep = (arrays["body"] == 0) & (arrays["velocity"][:, 0] < 4.0) & (arrays["pressure"] > -1e6)
+    assert 0 < keep.sum() < len(keep) and len(rows) == keep.sum()
+    np.testing.assert_array_equal(np.float32(rows["position_x"]), arrays["position"][keep, 0])
+    np.testing.assert_array_equal(np.float32(rows["stress_xy"]), arrays["stress"][keep, 5])
+
+
+@pytest.mark.parametrize("kind", ["vtu", "vtp"])
+@pytest.mark.parametrize("where", ["", "body=right"])
+def test_a_frame_for_vtk(results: Results, tmp_path: Path, kind: str, where: str) -> None:
+    pyvista = pytest.importorskip("pyvista")
+    out = tmp_path / f"frame.{kind}"
+    words = ("export", results.path.parent, "--format", kind, "--frame", 1, "--out", out)
+    assert mpm3dpp(*words, "--where", where, cwd=tmp_path).returncode == 0
+    found, arrays = pyvista.read(out), results.arrays(1)
+    keep = arrays["body"] == 1 if where else np.ones(len(arrays["body"]), dtype=bool)
+    np.testing.assert_array_equal(found.points, arrays["position"][keep])
+    np.testing.assert_array_equal(found["von_mises"], arrays["von_mises"][keep])
+    assert found.n_cells == keep.sum()
+
+
+def test_all_frames(results: Results, tmp_path: Path) -> None:
+    words = ("export", results.path.parent, "--all", "--out", tmp_path / "all")
+    done = mpm3dpp(*words, cwd=tmp_path)
+    names = [f"frame_{k:06d}.csv" for k in range(len(results))]
+    assert [Path(line).name for line in done.stdout.split()] == names
+    assert sorted(path.name for path in (tmp_path / "all").iterdir()) == names
+
+
+@pytest.mark.parametrize(
+    ("where", "sentence"),
+    [
+        ("body=lift", 'where = "lift" is no body of these results; did you mean "left"?'),
+        ("presure>1", 'where = "presure" is no column; did you mean "pressure"?'),
+        ("pressure>1 m", "where"),
+        ("pressure", 'where = "pressure" is no condition; write such as body=plate'),
+        ("pressure>1e99", "leaves no particle"),
+    ],
+)
+def test_conditions_that_cannot_be(
+    results: Results, tmp_path: Path, where: str, sentence: str
+) -> None:
+    done = mpm3dpp("export", results.path.parent, "--where", where, cwd=tmp_path)
+    assert done.returncode == 2 and sentence in one_sentence(done.stderr)

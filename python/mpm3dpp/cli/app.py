@@ -17,6 +17,7 @@ import typer
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.readers import PROGRAMS
 
+from .export import export
 from .materials import material_test, materials
 from .options import CaseFile, Json, Ranks, Threads, Units
 
@@ -293,5 +294,6 @@ def reproduce(
             typer.echo(path)
 
 
+app.command()(export)
 app.command()(materials)
 app.command("material-test")(material_test)

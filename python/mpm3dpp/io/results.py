@@ -102,7 +102,7 @@ class Results:
             CaseError: `frame` is no whole number, the file has been closed, or a frame is missing
                 or damaged.
         """
-        frame = self._number(frame)
+        frame = self.number(frame)
         wanted = None if names is None else {"position", *names}
         if self._folder:
             arrays = read_arrays(self._folder, frame, wanted)
@@ -250,7 +250,13 @@ class Results:
         if not self._open:
             raise CaseError(f"'{self.path}' has been closed", "open it again with open_results")
 
-    def _number(self, frame: int) -> int:
+    def number(self, frame: int) -> int:
+        """Return the number of a frame that is counted from the end, if it is negative.
+
+        Raises:
+            IndexError: there is no such frame.
+            CaseError: it is no whole number, or the file has been closed.
+        """
         frame = arguments.whole_number("frame", frame)
         self._must_be_open()
         if not -len(self) <= frame < len(self):

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Frames of a run as files for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mpm3dpp.base.disk import make_folder, replacing, writing
+from mpm3dpp.base.errors import CaseError
+
+from .data_frames import columns_of
+from .results import Results
+from .where import chosen
+
+FORMATS = ("csv", "vtu", "vtp")
+
+
+def export(results: Results, frame: int, out: Path, kind: str = "csv", where: str = "") -> Path:
+    """Write a frame to a file, and return it.
+
+    Args:
+        results: of a run.
+        frame: see `Results.arrays`.
+        out: the file.
+        kind: "csv", a row for each particle and a column for each component of what it has; "vtu"
+            or "vtp", points with these arrays, which need PyVista.
+        where: conditions on the particles (`io/where.py`); all if empty.
+
+    Raises:
+        IndexError: there is no such frame.
+        CaseError: the file cannot be written, PyVista is not installed, or see `chosen`.
+    """
+    arrays = results.arrays(frame)
+    columns = columns_of(arrays)
+    keep = np.ones(len(arrays["position"]), dtype=bool)
+    if where:
+        words = {"body": results.bodies, "material": results.materials}
+        units = {name: results.units.get(_array_of(name, results), "") for name in columns}
+        keep = chosen(where, columns, words, units)
+    if not keep.any():
+        raise CaseError("leaves no particle", "give other conditions", key="where", value=where)
+    make_folder(out.parent)
+    if kind == "csv":
+        _write_csv(out, {name: values[keep] for name, values in columns.items()})
+        return out
+    cloud: Any = results[frame]
+    if where:
+        cloud = cloud.extract_points(np.flatnonzero(keep), adjacent_cells=False)
+    whole = cloud.cast_to_unstructured_grid() if kind == "vtu" else cloud.extract_geometry()
+    with writing(out):
+        whole.save(out)
+    return out
+
+
+def _array_of(column: str, results: Results) -> str:
+    """Return the array of which a column is a component."""
+    return column if column in results.fields else column.rpartition("_")[0]
+
+
+def _write_csv(out: Path, columns: dict[str, np.ndarray]) -> None:
+    """Write a table; single numbers have as many digits as tell them apart."""
+    kinds = ["%d" if np.issubdtype(c.dtype, np.integer) else "%.9g" for c in columns.values()]
+    with replacing(out) as file:
+        file.write((",".join(columns) + "\n").encode())
+        rows = np.rec.fromarrays([*columns.values()]) if len(columns) else np.zeros(0)
+        np.savetxt(file, rows, fmt=kinds, delimiter=",")
+
+
+def file_name(frame: int, kind: str) -> str:
+    """Return the name that the file of a frame has by default."""
+    if kind not in FORMATS:
+        raise CaseError("is no format", f"valid here: {', '.join(FORMATS)}", value=kind)
+    return f"frame_{frame:06d}.{kind}"
