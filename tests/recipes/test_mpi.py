@@ -103,6 +103,15 @@ def test_a_mistake_is_told_once(
     assert done.returncode == 2 and sentence in one_sentence(done.stderr)
 
 
+def test_so_many_ranks_that_they_would_take_all_memory(tmp_path: Path, way: str) -> None:
+    write(tmp_path)
+    done = run(way, tmp_path, "case.toml", "--ranks", 1000)
+    assert done.returncode == 2
+    assert "--ranks = 1000: there are" in one_sentence(done.stderr)
+    done = run(way, tmp_path, "case.toml", "--ranks", 0)
+    assert done.returncode == 2 and "--ranks" in done.stderr
+
+
 def test_ctrl_c_and_any_number_of_ranks_goes_on(tmp_path: Path, way: str) -> None:
     write(tmp_path, CASE.replace('"10 mm"', '"2 mm"'))
     assert run(way, tmp_path, "case.toml", "--out", "straight", "--no-pictures").returncode == 0

@@ -22,6 +22,7 @@ from .world import INSTALL
 
 TOLD = "MPM3DPP_LAUNCHED"
 """The folder in which the first process leaves its number for signals, and its exit code."""
+_FEW, _OF_A_CORE = 16, 4  # Ranks that may be tried, more than there are cores.
 AS_ROOT = {
     f"{who}_ALLOW_RUN_AS_ROOT{more}": "1" for who in ("OMPI", "PRTE") for more in ("", "_CONFIRM")
 }
@@ -45,6 +46,12 @@ def launch(count: int, words: list[str], threads: int | None) -> int:
         words = [*words[:1], "--threads", str(each), *words[1:]]
     command, added = command_of(count, each)
     command += [sys.executable, "-m", "mpm3dpp", *words]
+    cores = len(os.sched_getaffinity(0))
+    if count > cores:
+        text = (
+            f"{count} ranks share {cores} cores, and wait for each other: fewer may be much faster"
+        )
+        print(f"note: {text}", file=sys.stderr, flush=True)
     with tempfile.TemporaryDirectory(prefix="mpm3dpp-") as told:
         with _Job(Path(told, "pid")) as job:
             code = job.run(command, os.environ | {TOLD: told} | added)
@@ -64,8 +71,13 @@ def command_of(count: int, threads: int) -> tuple[list[str], dict[str, str]]:
     environment; what they run goes behind it.
 
     Raises:
-        CaseError: there is no MPI, or none that fits.
+        CaseError: there is no MPI, or none that fits; or so many ranks would take all memory.
     """
+    cores = len(os.sched_getaffinity(0))
+    most = max(_FEW, _OF_A_CORE * cores)
+    if count > most:
+        rule = f"--ranks = {count}: there are {cores} cores here, for {most} ranks at most"
+        raise CaseError(rule, "give fewer, or start them on more machines with mpiexec")
     program, is_open = find_mpiexec()
     command = [program, "-n", str(count)]
     if is_open:
