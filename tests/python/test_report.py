@@ -77,7 +77,7 @@ def of_body(velocity: tuple[float, float, float], kinetic: float) -> dict[str, f
 
 
 def test_a_line_for_each_body_that_moves_freely() -> None:
-    ball = {"initial": of_body((0, 0, -800), 3200.0), "final": of_body((321, 0, -537), 1957.3)}
+    ball = {"initial": of_body((0, 0, -800), 3200.0), "final": of_body((321, 1e-11, -537), 1957.3)}
     rest = {"initial": of_body((0, 0, 0), 0.0), "final": of_body((0, 0, -1e-3), 1e-9)}
     case = {"body": {"tool": {"motion": {}}, "ball": {"motion": None}}}
     found: Any = SimpleNamespace(bodies={"ball": ball, "tool": rest, "plate": rest}, case=case)

@@ -10,6 +10,7 @@ from mpm3dpp.io.manifest import Manifest
 
 _PAIRS_SHOWN = 10
 _BODIES_SHOWN = 10
+_ROUNDING = 1e-9  # Components of a velocity that are less than this share of it are none.
 _OF_A_KIND = 3  # warnings shown
 _NUMERICAL_WARNING = 0.05
 
@@ -63,8 +64,9 @@ def body_lines(manifest: Manifest) -> list[str]:
         velocities = [[found[k][f"velocity_{x}"] for x in axes] for k in ("initial", "final")]
         before, after = (math.hypot(*velocity) for velocity in velocities)
         energies = " -> ".join(f"{found[k]['kinetic']:.4g}" for k in ("initial", "final"))
+        final = [v if abs(v) > _ROUNDING * after else 0.0 for v in velocities[1]]
         lines.append(
-            f"{name}: {before:.4g} -> {after:.4g} m/s ({_listed(velocities[1])}), kinetic energy "
+            f"{name}: {before:.4g} -> {after:.4g} m/s ({_listed(final)}), kinetic energy "
             f"{energies} {unit}"
         )
     if len(lines) > _BODIES_SHOWN:
