@@ -54,8 +54,7 @@ def way() -> str:
     return "module" if has_module() else "mpi4py"
 
 
-def run(way: str, folder: Path, *words: Any) -> subprocess.CompletedProcess[str]:
-    line = command("run", *words)
+def job(way: str, folder: Path, line: list[str]) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         line,
         cwd=folder,
@@ -65,3 +64,7 @@ def run(way: str, folder: Path, *words: Any) -> subprocess.CompletedProcess[str]
         timeout=120,
         check=False,
     )
+
+
+def run(way: str, folder: Path, *words: Any) -> subprocess.CompletedProcess[str]:
+    return job(way, folder, command("run", *words))

@@ -18,7 +18,7 @@ import pytest
 
 import mpi_jobs
 from commands import CASE, command, mpm3dpp, one_sentence, write
-from mpi_jobs import PROGRAMS, environment, mpiexec, run
+from mpi_jobs import PROGRAMS, environment, job, mpiexec, run
 from mpm3dpp.io.checkpoint import read_about
 from mpm3dpp.ranks import launch
 
@@ -129,9 +129,7 @@ def test_ctrl_c_and_any_number_of_ranks_goes_on(tmp_path: Path, way: str) -> Non
 
 def test_one_that_fails_alone_ends_all(tmp_path: Path, each_way: str) -> None:
     words = mpiexec(3, PROGRAMS / "one_fails.py", write(tmp_path), 1)
-    done = subprocess.run(
-        words, env=environment(each_way), capture_output=True, text=True, timeout=60, check=False
-    )
+    done = job(each_way, tmp_path, words)
     assert done.returncode != 0
     assert "rank 1 cannot go on, and with it the run: no column is named speed" in done.stderr
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,7 @@ import pytest
 
 import mpi_jobs
 from commands import CASE, mpm3dpp, one_sentence, write
-from mpi_jobs import PROGRAMS, environment, mpiexec, run
+from mpi_jobs import PROGRAMS, job, mpiexec, run
 from mpm3dpp import open_results
 
 TEXT = CASE.replace("[output]", '[output]\nfiles = "rank"\nfields = ["volume"]')
@@ -106,15 +105,7 @@ def test_a_full_disk_of_one_rank(tmp_path: Path, way: str, rank: int) -> None:
     """A sentence, and the frames before it stay."""
     write(tmp_path, TEXT)
     words = ("run", *PLAIN, "--out", "out", "--quiet")
-    done = subprocess.run(
-        mpiexec(3, PROGRAMS / "full_disk.py", rank, 2, *words),
-        cwd=tmp_path,
-        env=environment(way),
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = job(way, tmp_path, mpiexec(3, PROGRAMS / "full_disk.py", rank, 2, *words))
     file = "000002.2.h5" if rank else "000002.h5"
     assert done.returncode == 1 and "Traceback" not in done.stderr
     told = [line for line in done.stderr.splitlines() if line.startswith("mpm3dpp: error")]

@@ -163,7 +163,6 @@ def _filled_grains(case: Case, name: str, grains: Grains, world: World | None) -
 def _filled(case: Case, name: str, body: Body, world: World | None) -> FilledPart:
     way, path = case.filled_by(name), ("body", name, body.filling)
     spacing = body.particle_spacing(case.grid)
-
     sliced = world if body.shape is not None else None
 
     def make(ranks: World | None = None) -> Particles:

@@ -15,8 +15,6 @@ from .data_frames import columns_of
 from .results import Results
 from .where import chosen
 
-FORMATS = ("csv", "vtu", "vtp")
-
 
 def export(results: Results, frame: int, out: Path, kind: str = "csv", where: str = "") -> Path:
     """Write a frame to a file, and return it.
@@ -65,12 +63,10 @@ def _write_csv(out: Path, columns: dict[str, np.ndarray]) -> None:
     kinds = ["%d" if np.issubdtype(c.dtype, np.integer) else "%.9g" for c in columns.values()]
     with replacing(out) as file:
         file.write((",".join(columns) + "\n").encode())
-        rows = np.rec.fromarrays([*columns.values()]) if len(columns) else np.zeros(0)
+        rows = np.rec.fromarrays([*columns.values()])
         np.savetxt(file, rows, fmt=kinds, delimiter=",")
 
 
 def file_name(frame: int, kind: str) -> str:
     """Return the name that the file of a frame has by default."""
-    if kind not in FORMATS:
-        raise CaseError("is no format", f"valid here: {', '.join(FORMATS)}", value=kind)
     return f"frame_{frame:06d}.{kind}"

@@ -18,6 +18,8 @@ from mpm3dpp.ranks.world import World, together
 
 from .simulation import Simulation
 
+_MANY = 1 << 62  # Frames that a process without files keeps nobody from.
+
 
 class SlicedFrames:
     """The part that this process has in the frames. All call its functions at once.
@@ -105,9 +107,6 @@ class SlicedFrames:
         """See `FrameThread`."""
         if self._thread is not None:
             self._thread.end()
-
-
-_MANY = 1 << 62
 
 
 def fields_of(case: Case) -> list[str]:
