@@ -140,7 +140,7 @@ def main() -> None:
         along = np.array([particles[0], PARTICLES])
         surface = found[-1].bytes * (along / particles[-1]) ** (2 / 3)
         left.loglog(along, surface, color=f"C{color}", linewidth=1)
-        right.semilogx(ranks, efficiency, **style)
+        right.semilogx(ranks, efficiency, "o-", **style)
         last = found[-1]
         print(
             f"{name}: {last.bytes / 1e3:.0f} kB in {last.letters:.1f} letters, "
@@ -149,9 +149,11 @@ def main() -> None:
             f"{efficiency[-1]:.3f} at {ranks[-1]:,} ranks of {PARTICLES:,.0f} (projection)",
             flush=True,
         )
-    left.set(xlabel="particles of a rank", ylabel="bytes sent in a step (counted)")
-    left.legend()
-    right.set(xlabel="ranks", ylabel="weak efficiency (projection)", ylim=(0.8, 1.01))
+    left.set(xlabel="particles of a rank", ylabel="bytes that it sends in a step")
+    left.set_title(f"points: counted, {RANKS} ranks; lines: as the surface of a cube", fontsize=9)
+    right.set(xlabel="ranks", ylabel="time of one rank / time of a rank", ylim=(0.8, 1.01))
+    right.set_title(f"a projection: {PARTICLES:,.0f} particles a rank", fontsize=9)
+    right.legend(loc="lower right")
     right.grid(alpha=0.3)
     figure.savefig(given.out, dpi=150)
 

@@ -262,6 +262,16 @@ def test_a_folder_that_cannot_be_made(tmp_path: Path, place: str) -> None:
         run_case(load_case(path), tmp_path / place)
 
 
+def test_a_refused_run_leaves_no_folder(tmp_path: Path) -> None:
+    """Nor does it take one that was there."""
+    (tmp_path / "mine").mkdir()
+    write(tmp_path, CASE.replace("cfl = 0.3", "time_step = 1.0"))
+    for out in ("mine", "new"):
+        done = mpm3dpp("run", "case.toml", "--out", out, cwd=tmp_path)
+        assert done.returncode == 2 and "largest stable step" in done.stderr
+    assert [path.name for path in tmp_path.iterdir() if path.is_dir()] == ["mine"]
+
+
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
 def test_a_folder_without_permission(tmp_path: Path) -> None:
     folder = tmp_path / "locked"

@@ -64,6 +64,7 @@ def show(result: dict[str, Any]) -> None:
 
 def show_series(results: list[dict[str, Any]]) -> None:
     """Print a row for each result of `mpm3dpp.bench.series` on standard output."""
+    from rich.box import SIMPLE_HEAD
     from rich.console import Console
     from rich.table import Table
 
@@ -71,8 +72,8 @@ def show_series(results: list[dict[str, Any]]) -> None:
     several = any(result["ranks"] > 1 for result in results)
     last = ("exchange", "kB", "letters", "imbalance") if several else ("GB/s", "limit")
     heads = ("particles", "ranks", "threads", "ns", "ratio", "bytes", *last)
-    table = Table()
-    for head in heads:
+    table = Table(box=SIMPLE_HEAD, padding=0)
+    for head in heads:  # Ten fit into 80 columns.
         table.add_column(head, justify="right", no_wrap=True)
     for result in results:
         ns = result["ns_per_particle_step"]
@@ -153,12 +154,14 @@ def lines(result: dict[str, Any]) -> list[str]:
     memory, blocks = result["bytes_per_particle"], result["blocks"]
     parts = ", ".join(f"{key} {memory[key]:.1f}" for key in memory if key != "total")
     used = result["bytes_moved_per_particle_step"] / result["ns_per_particle_step"]
+    cached = ": most comes from the caches" if result["bandwidth_fraction"] > 1.0 else ""
     found = [
         f"time       {result['ns_per_particle_step']:.1f} ns per particle-step, the median of "
         f"{len(blocks)} blocks from {min(blocks):.1f} to {max(blocks):.1f}",
         f"memory     {memory['total']:.1f} bytes per particle at the peak: {parts}",
         f"bandwidth  {used:.1f} of {result['bandwidth_GBps']:.1f} GB/s "
-        f"({100 * result['bandwidth_fraction']:.0f} %), as counted; the limit is measured now",
+        f"({100 * result['bandwidth_fraction']:.0f} %{cached}), as counted; the limit is measured "
+        "now",
         f"arithmetic {result['operations_per_particle_step'] / result['ns_per_particle_step']:.1f} "
         f"of {result['arithmetic_GFLOPS']:.1f} GFLOP/s "
         f"({100 * result['arithmetic_fraction']:.0f} %), as the equations are written",

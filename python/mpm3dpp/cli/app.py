@@ -111,23 +111,23 @@ def run(
     ] = False,
 ) -> None:
     """Run a case: frames, history, manifest and pictures in the output folder."""
-    from mpm3dpp.io.folders import default_folder, writable_folder
+    from mpm3dpp.io.folders import default_folder, folder_of_run
     from mpm3dpp.run.resume import refuse_to_begin_anew
 
-    if ranks is not None and ranks > 1:
-        raise typer.Exit(_on_ranks(ranks, threads))
-    loaded = _load(case, units, quiet)
+    count = ranks or 1
+    loaded = _load(case, units, quiet or count > 1)  # Of several one will tell the notes.
     folder = out if out is not None else default_folder(case)
     if resume and anew:
         raise CaseError("--resume and --anew cannot be given together", "give one of them")
-    if not resume:
-        writable_folder(folder)
-        if not anew:
+    with folder_of_run(folder):
+        if not resume and not anew:
             refuse_to_begin_anew(folder, loaded)
-    from mpm3dpp.run.run import run_case  # The slowest import: after the mistakes.
+        if count > 1:
+            raise typer.Exit(_on_ranks(count, threads))
+        from mpm3dpp.run.run import run_case  # The slowest import: after the mistakes.
 
-    pictures = not no_pictures
-    run_case(loaded, folder, threads, quiet=quiet, json=json, pictures=pictures, resume=resume)
+        pictures = not no_pictures
+        run_case(loaded, folder, threads, quiet=quiet, json=json, pictures=pictures, resume=resume)
 
 
 def _on_ranks(ranks: int, threads: int | None) -> int:

@@ -80,6 +80,23 @@ def only_run_in(folder: Path) -> Iterator[None]:
         os.close(handle)
 
 
+@contextlib.contextmanager
+def folder_of_run(path: Path) -> Iterator[None]:
+    """Within it there is a folder that can be written; made for a run that is refused, it goes.
+
+    Raises:
+        CaseError: it cannot be made or written.
+    """
+    is_new = not path.exists()
+    writable_folder(path)
+    try:
+        yield
+    finally:
+        if is_new:
+            with contextlib.suppress(OSError):  # Not empty: it is kept.
+                path.rmdir()
+
+
 def writable_folder(path: Path) -> Path:
     """Make a folder, prove that files can be written in it, and return it.
 
