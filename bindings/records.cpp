@@ -10,6 +10,11 @@
 namespace mpm::bindings {
 
 void add_records(nb::module_& m) {
+  nb::class_<FaceRecord>(m, "Face")
+      .def_ro("name", &FaceRecord::name)
+      .def_ro("force", &FaceRecord::force)
+      .def_ro("impulse", &FaceRecord::impulse)
+      .def_ro("area", &FaceRecord::area);
   nb::class_<LoadRecord>(m, "Load")
       .def_ro("name", &LoadRecord::name)
       .def_ro("force", &LoadRecord::force)

@@ -7,7 +7,7 @@
 #include "mpm/ledger/history.hpp"
 #include "mpm/math/expression.hpp"
 #include "mpm/run/derived_fields.hpp"
-#include "mpm/run/part_sums.hpp"
+#include "mpm/run/part_rows.hpp"
 
 namespace mpm::bindings {
 namespace {
@@ -55,9 +55,9 @@ nb::dict all_history_terms() {
   return terms;
 }
 
-nb::dict described(std::span<const PartColumn> rows) {
+nb::dict described(std::span<const Column> rows) {
   nb::dict columns;
-  for (const PartColumn& column : rows)
+  for (const Column& column : rows)
     columns[text(column.name)] = nb::make_tuple(text(column.unit), text(column.meaning));
   return columns;
 }

@@ -8,7 +8,7 @@
 #include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/pair_groups.hpp"
-#include "mpm/run/part_sums.hpp"
+#include "mpm/run/part_rows.hpp"
 #include "mpm/run/prepare.hpp"
 #include "mpm/run/save.hpp"
 #include "mpm/run/time_step.hpp"
@@ -230,7 +230,7 @@ void def_records(SimulationClass& simulation) {
                  require(s, Phase::ready, "call prepare() before part_sums()");
                  const auto parts = part_sums(s.domain);
                  return std::pair(balance_row(s.domain.ledger.angular, angular_totals(parts)),
-                                  rows_of(parts));
+                                  part_rows(s.domain, parts));
                },
                [](auto sums) {
                  return nb::make_tuple(sums.first,
@@ -239,6 +239,7 @@ void def_records(SimulationClass& simulation) {
       .def("contact_pairs",
            of_any([](auto& s) { return s.domain.contact.records.of_all_ranks(comm_of(s)); }))
       .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))
+      .def("walls", of_any([](auto& s) { return face_records(s.domain); }))
       .def("contact_summary", of_any_to([](auto& s) { return contact_summary(s); },
                                         [](const ContactSummary& told) {
                                           nb::dict d;
@@ -278,6 +279,7 @@ void add_simulation(nb::module_& m) {
   def_telling(simulation);
   def_columns(simulation);
   def_records(simulation);
+  def_probes(simulation);
   def_costs(simulation);
 }
 

@@ -3,10 +3,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
+
+import pytest
+
+from mpm3dpp import Case, run_case
 
 CASE = """\
 title = "Two blocks"
@@ -54,3 +59,18 @@ def one_sentence(text: str) -> str:
     assert len(lines) == 1, text
     assert lines[0].startswith("mpm3dpp: error: ")
     return lines[0]
+
+
+def interrupted(case: Case, folder: Path, looks: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run a case as if Ctrl-C had been pressed after so many looks at it."""
+    left = iter(range(looks))
+
+    class Pressed(contextlib.nullcontext[Any]):
+        taken = property(lambda _: next(left, None) is None)
+
+        def __enter__(self) -> Pressed:
+            return self
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr("mpm3dpp.run.run.Notice", Pressed)
+        run_case(case, folder, threads=1, pictures=False)

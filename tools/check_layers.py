@@ -25,6 +25,7 @@ LAYERS = {
     "layout": 2,
     "materials": 4,
     "walls/walls.hpp": 3,
+    "walls/face_impulses.hpp": 3,
     "grid": 4,
     "particles": 5,
     "schedule": 6,

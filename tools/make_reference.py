@@ -17,6 +17,7 @@ from mpm3dpp.case import body, case, grid, parts, transfer
 from mpm3dpp.case.detonation import Detonation
 from mpm3dpp.case.loads import Load
 from mpm3dpp.case.motion import Motion
+from mpm3dpp.case.probe import Probe, ProbeRegion
 from mpm3dpp.grains import GrainLattice, GrainPacking, Grains
 from mpm3dpp.io import history as terms
 from mpm3dpp.io import part_cells
@@ -57,6 +58,8 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ("grains.NAME.packing", GrainPacking, ""),
     ("load.NAME", Load, ""),
     ("detonation", Detonation, "Written `[[detonation]]`, once for each point."),
+    ("probe.NAME", Probe, ""),
+    ("probe.NAME.region", ProbeRegion, ""),
 )
 
 
@@ -277,12 +280,15 @@ def history_page() -> str:
         "",
         "Some 16 steps apart, and where a frame is written, a row has these too, those with",
         "`body_A` for each body A (all grains of an entry count as one) if there are no more",
-        f"than {part_cells.PART_LIMIT}. How angular momentum adds up: [its",
+        f"than {part_cells.PART_LIMIT}; with more, each frame has the columns of all bodies",
+        "(`results.bodies_at(k)`; `results.history(body)` reads either). Those with `wall_x_min`",
+        "are of each face of the box that is not free. How angular momentum adds up: [its",
         "balance](../theory/step.md#the-balance-of-angular-momentum).",
         "",
         *table(
             part_cells.TOTALS
             | {f"body_A_{key}": row for key, row in part_cells.PART_COLUMNS.items()}
+            | {f"wall_x_min_{key}": row for key, row in part_cells.WALL_COLUMNS.items()}
         ),
         "",
         "A run with contact has these too, for each pair of bodies; all grains of an entry count",

@@ -8,6 +8,7 @@
 #include "mpm/contact/contact.hpp"
 #include "mpm/grid/tile_grid.hpp"
 #include "mpm/ledger/ledger.hpp"
+#include "mpm/ledger/part_energies.hpp"
 #include "mpm/loads/body_force.hpp"
 #include "mpm/loads/damping.hpp"
 #include "mpm/loads/surface_load.hpp"
@@ -15,6 +16,7 @@
 #include "mpm/parallel/threads.hpp"
 #include "mpm/particles/cell_lists.hpp"
 #include "mpm/rigid/rigid_motion.hpp"
+#include "mpm/walls/face_impulses.hpp"
 
 namespace mpm {
 
@@ -32,6 +34,7 @@ struct Domain {
   std::vector<ParticlePool<D>> pools;     // one per material
   std::vector<std::size_t> prescribed;    // numbers of the bodies of which the motion is
   std::vector<std::size_t> rigid_bodies;  // of those that are rigid and free to move
+  std::vector<std::size_t> group_of;      // of each body, the number of its group among the groups
   ContactSettings contact_settings;
   Contact<D> contact;
   std::array<TimeFunction, 3> gravity_of_time{};    // [m/s^2]
@@ -55,10 +58,14 @@ struct Domain {
   std::int64_t step = 0;     // steps made
 
   std::vector<PatchSums<D>> sums;  // one per patch
-  // What walls have done to rigid bodies as a whole in the step, alike on all ranks [N m s].
+  // What walls have done to rigid bodies as a whole in the step, alike on all ranks [N m s; N s].
   Vector3 rigid_at_walls = Vector3::zero();
-  ContactSums contact_sums;  // of the step
+  FaceImpulses<D> rigid_at_faces;
+  std::vector<FaceImpulses<D>> face_parts;  // of the step, one per patch; without a box none
+  FaceSums<D> faces_in_step, faces;         // of the last step, and so far; of this rank
+  ContactSums contact_sums;                 // of the step
   Ledger ledger;
+  std::vector<PartEnergies> part_energies;  // one per group
   ListScratch<D> list_scratch;
   Removed eroded, outflow;  // by failure; out of the region that is kept
   std::vector<SurfaceLoad<D>> loads;
@@ -116,7 +123,8 @@ struct Domain {
   }
 };
 
-/// List the bodies that do not deform; their kinds stay as they are from here on.
+/// List the bodies that do not deform, and number the groups in the order of their first bodies;
+/// kinds and groups stay as they are from here on.
 template <int D>
 void list_kinds(Domain<D>& domain) {
   for (std::size_t b = 0; b < domain.bodies.size(); ++b) {
@@ -127,6 +135,13 @@ void list_kinds(Domain<D>& domain) {
     domain.rigid_bodies.push_back(b);
   }
   domain.rigid.resize(domain.rigid_bodies.size());
+  domain.group_of.resize(domain.bodies.size());
+  std::size_t count = 0;
+  for (std::size_t b = 0; b < domain.bodies.size(); ++b) {
+    const auto first = static_cast<std::size_t>(domain.bodies[b].group);
+    domain.group_of[b] = first == b ? count++ : domain.group_of[first];
+  }
+  domain.part_energies.resize(count);
 }
 
 }  // namespace mpm

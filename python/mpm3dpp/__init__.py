@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from mpm3dpp.case.motion import Motion
     from mpm3dpp.case.particles import Particles
     from mpm3dpp.case.parts import Contact, ContactPair, Output, Run, Viscosity
+    from mpm3dpp.case.probe import Probe, ProbeRegion
     from mpm3dpp.grains import GrainCentres, GrainLattice, GrainPacking, Grains
     from mpm3dpp.io import open_results
     from mpm3dpp.materials import Eos, Failure, Strength
@@ -64,6 +65,7 @@ _HOMES = {
     "case.loads": ("Load",),
     "case.motion": ("Motion",),
     "case.particles": ("Particles",),
+    "case.probe": ("Probe", "ProbeRegion"),
     "case.parts": ("Contact", "ContactPair", "Output", "Run", "Viscosity"),
     "grains": ("GrainCentres", "GrainLattice", "GrainPacking", "Grains"),
     "io": ("open_results",),
@@ -98,6 +100,8 @@ __all__ = [
     "Motion",
     "Output",
     "Particles",
+    "Probe",
+    "ProbeRegion",
     "Run",
     "RunError",
     "Simulation",

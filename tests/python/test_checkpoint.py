@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import errno
 import io
 import json
@@ -17,12 +16,11 @@ import time
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
-from commands import CASE, command, mpm3dpp, one_sentence, write
+from commands import CASE, command, interrupted, mpm3dpp, one_sentence, write
 from mpm3dpp import Case, Simulation, load_case, open_results, run_case
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io import read_history, read_manifest
@@ -87,21 +85,6 @@ def check_files(folder: Path, whole: Path) -> None:
             assert list(arrays) == list(expected)
             for name, values in expected.items():
                 assert np.array_equal(arrays[name], values), (frame, name)
-
-
-def interrupted(case: Case, folder: Path, looks: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Run a case as if Ctrl-C had been pressed after so many looks at it."""
-    left = iter(range(looks))
-
-    class Pressed(contextlib.nullcontext[Any]):
-        taken = property(lambda _: next(left, None) is None)
-
-        def __enter__(self) -> Pressed:
-            return self
-
-    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr("mpm3dpp.run.run.Notice", Pressed)
-        run_case(case, folder, threads=1, pictures=False)
 
 
 GRAINS = """

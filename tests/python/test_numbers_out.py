@@ -40,9 +40,54 @@ def test_the_history_as_a_table(results: Results, monkeypatch: pytest.MonkeyPatc
     table, expected = results.history(), read_history(results.path.parent)
     assert [*table.columns] == [*expected]
     np.testing.assert_array_equal(table["kinetic"], expected["kinetic"])
-    monkeypatch.setattr("mpm3dpp.io.results.has_pandas", lambda: False)
+    monkeypatch.setattr("mpm3dpp.io.data_frames.has_pandas", lambda: False)
     plain = results.history()
     assert isinstance(plain, dict) and plain.keys() == expected.keys()
+
+
+def test_the_history_of_a_body(results: Results) -> None:
+    found, expected = results.history("right"), read_history(results.path.parent)
+    told = ~np.isnan(expected["body_right_mass"])
+    assert len(found["time"]) == told.sum() > len(results)
+    for name in ("velocity_x", "spin_z", "internal", "contact_force_x"):
+        np.testing.assert_array_equal(found[name], expected[f"body_right_{name}"][told])
+    with pytest.raises(CaseError, match=r'"rigth" is not a body .* did you mean "right"'):
+        results.history("rigth")
+    with pytest.raises(CaseError, match="frames have a table of bodies if these are more than 12"):
+        results.bodies_at(0)
+
+
+BLOCK = """
+[body.b{k:02}]
+material = "soft"
+shape = {{ box = {{ lower = ["{x} mm", 0], upper = ["{end} mm", "20 mm"] }} }}
+velocity = ["{k} m/s", 0]
+"""
+
+
+def test_many_bodies_have_a_table_in_each_frame(tmp_path: Path) -> None:
+    """In place of columns; with the same numbers as sums over the particles of the frame."""
+    head = CASE.partition("[body.left]")[0]
+    blocks = [BLOCK.format(k=k, x=60 * k, end=60 * k + 20) for k in range(14)]
+    run_case(write(tmp_path, head + "".join(blocks)), tmp_path / "out", threads=1, pictures=False)
+    with open_results(tmp_path / "out") as results:
+        assert not any(name.startswith("body_") for name in results.history())
+        table, frame = results.bodies_at(-1), results.arrays(-1)
+        assert len(table["mass"]) == 14
+        for k in range(14):
+            mean = frame["velocity"][frame["body"] == k].mean(axis=0)
+            assert table["velocity_x"][k] == pytest.approx(mean[0], rel=1e-6, abs=1e-6)
+        found = results.history("b03")
+        np.testing.assert_array_equal(found["time"], results.times)
+        mass = np.asarray(found["mass"])
+        assert found["velocity_x"][0] == pytest.approx(3.0) and mass.min() > 0.0
+        file = tmp_path / "out" / "results.frames" / "000001.h5"
+        data = bytearray(file.read_bytes())
+        at = data.find(mass[1:2].tobytes())
+        data[at] ^= 1
+        file.write_bytes(data)
+        with pytest.raises(CaseError, match="frame 1 is damaged"):
+            results.bodies_at(1)
 
 
 def test_without_pandas(results: Results, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,14 +4,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from cases import CELL, block, materials, three_blocks
-from mpm3dpp import Case, Grid, Run, Simulation, run_case
+from mpm3dpp import Case, Grid, Run, Simulation, load_case, run_case
 from mpm3dpp.io.history import read_history
 from mpm3dpp.io.part_cells import PART_COLUMNS
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
 def expected(sim: Simulation, name: str) -> dict[str, np.ndarray]:
@@ -120,3 +123,75 @@ def test_the_balance_of_angular_momentum_is_in_the_history(tmp_path: Path) -> No
         scale = np.abs(history[f"angular_momentum_{axis}"][told]).max()
         assert np.abs(total - total[0]).max() < 1e-14 * scale
     assert history["angular_impulse_gravity_z"][told][-1] < 0.0
+
+
+@pytest.mark.parametrize("transfer", ["flip", "apic"])
+@pytest.mark.parametrize(("dimension", "spin"), [(2, 40.0), (3, (30.0, -20.0, 10.0))])
+def test_spin_is_that_of_a_body_that_turns(dimension: int, spin: Any, transfer: str) -> None:
+    """A block of unequal sides turns as it is told to, whatever the axes of its inertia."""
+    sides = (3, 5, 7)[:dimension]
+    blocks = {"a": block((0,) * dimension, sides, material="solid", angular_velocity=spin)}
+    grid = Grid(dimension=dimension, cell_size=CELL, basis="quadratic_bspline")
+    run = Run(end_time=1.0, transfer=transfer)
+    sim = Simulation(Case(grid=grid, run=run, material=materials(), body=blocks), threads=1)
+    sums = dict(zip(PART_COLUMNS, sim.core.part_sums()[1][0], strict=True))
+    found = [sums[f"spin_{axis}"] for axis in "xyz"]
+    assert found == pytest.approx(spin if dimension == 3 else (0.0, 0.0, spin), rel=1e-12)
+
+
+IMPACT = """
+[grid]
+dimension = 3
+cell_size = "1 mm"
+outflow_box = { lower = ["-20 mm", "-20 mm", "-10 mm"], upper = ["20 mm", "20 mm", "10 mm"] }
+[run]
+end_time = "8 us"
+scheme = "usf"
+[material.copper]
+library = "copper_ofhc"
+failure = { plastic_strain = { limit = 0.6, action = "erode" } }
+[body.ball]
+material = "copper"
+shape = { sphere = { centre = ["1 mm", "0.5 mm", "4.5 mm"], radius = "4 mm" } }
+velocity = ["200 m/s", "100 m/s", "-800 m/s"]
+[body.plate]
+material = "copper"
+shape = { box = { lower = ["-10 mm", "-10 mm", "-2 mm"], upper = ["10 mm", "10 mm", "0 mm"] } }
+[load.push]
+body = "plate"
+side = "z_min"
+pressure = "1 MPa"
+"""
+
+
+def test_what_bodies_have_is_what_all_have(tmp_path: Path) -> None:
+    """Energies of the bodies are the ledger's, the eroded mass is all of it, and forces oppose."""
+    manifest = run_case(Case.from_text(IMPACT), tmp_path, threads=2, pictures=False, quiet=True)
+    history, final = read_history(tmp_path), {}
+    for name in ("internal", "plastic", "viscous", "kinetic"):
+        final[name] = sum(history[f"body_{body}_{name}"] for body in ("ball", "plate"))
+        told = ~np.isnan(final[name])
+        assert told.sum() > 5
+        differences = np.abs(final[name] - history[name])[told]
+        assert differences.max() < 1e-12 * history["kinetic"][0], name
+    assert final["plastic"][-1] > 0.05 * history["kinetic"][0]
+    eroded = {name: found["final"]["eroded_mass"] for name, found in manifest.bodies.items()}
+    assert min(eroded.values()) > 0.0
+    assert sum(eroded.values()) == pytest.approx(manifest.eroded["mass"], rel=1e-14)
+    forces = np.array(
+        [[history[f"body_{b}_contact_force_{x}"] for x in "xyz"] for b in ("ball", "plate")]
+    )
+    pairs = np.array([history[f"contact_force_ball_plate_{x}"] for x in "xyz"])
+    told = ~np.isnan(forces[0, 0]) & ~np.isnan(pairs[0])
+    assert np.array_equal(forces[0][:, told], pairs[:, told]) and np.abs(pairs[:, told]).max() > 0
+    assert np.array_equal(forces[0][:, told], -forces[1][:, told])
+    load = [manifest.bodies["plate"]["final"][f"load_force_{x}"] for x in "xyz"]
+    assert load == manifest.loads["push"].force and load[2] > 0.0
+
+
+def test_a_gas_has_its_energy_from_the_start(tmp_path: Path) -> None:
+    """Of two bodies of which one alone has an equation of state with an energy."""
+    sim = Simulation(load_case(EXAMPLES / "13_sod_tube" / "case.toml"), threads=1)
+    rows = [dict(zip(PART_COLUMNS, row, strict=True)) for row in sim.core.part_sums()[1]]
+    whole = sim.core.history()[0][sim.core.history_columns.index("internal")]
+    assert sum(row["internal"] for row in rows) == pytest.approx(whole, rel=1e-14) and whole > 0.0

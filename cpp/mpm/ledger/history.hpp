@@ -103,6 +103,8 @@ inline constexpr auto history_terms = std::to_array<HistoryTerm>({
      [](const StepState& s) { return s.ledger.motion_impulse[1]; }},
     {"motion_impulse_z", "N s", "likewise; 0 in 2D",
      [](const StepState& s) { return s.ledger.motion_impulse[2]; }},
+    {"kinetic_prescribed", "J", "the part of `kinetic` of bodies with prescribed motion",
+     [](const StepState& s) { return s.ledger.prescribed_kinetic; }, Role::other, "kinetic"},
     {"energy_floor", "J", "the part of `bounded` that energies below absolute zero were given",
      [](const StepState& s) { return s.ledger.energy_floor; }, Role::other, "bounded"},
     {"numerical_averaging", "J",

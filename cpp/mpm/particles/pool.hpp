@@ -150,6 +150,12 @@ Vector3 angular_momentum(const ParticlePool<D>& pool, std::uint32_t row, double 
   return pool.mass()[row] * (cross(arm, in_space<D>(v)) + affine_moment * turning(pool, row));
 }
 
+/// Recoverable energy of a particle, which is kept per initial volume m / rho_0 [J].
+template <int D>
+double recoverable_energy(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row) {
+  return pool.columns.component(pool.at.recoverable)[row] * pool.mass()[row] / body.initial_density;
+}
+
 /// How many entries of its pool's lists a patch with so many particles gets: some come and go.
 constexpr std::uint32_t room_for(std::uint32_t count) { return count + count / 16 + 1; }
 /// How many entries there are behind the ranges of all patches, for those that outgrow theirs.

@@ -84,13 +84,9 @@ void count_changes(std::vector<Body<D>>& bodies, ListScratch<D>& scratch) {
 template <int D>
 void take_out(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row,
               double affine_moment, Removed& sums) {
-  const double m = pool.mass()[row];
-  // Energies are kept per initial volume, m / rho_0.
-  const double recoverable =
-      pool.columns.component(pool.at.recoverable)[row] * m / body.initial_density;
   const Vector3 turning = angular_momentum(pool, row, affine_moment, Vector3::zero());
-  sums.add({m, kinetic_energy(pool, row, affine_moment), recoverable, turning[0], turning[1],
-            turning[2]});
+  sums.add({pool.mass()[row], kinetic_energy(pool, row, affine_moment),
+            recoverable_energy(body, pool, row), turning[0], turning[1], turning[2]});
 }
 
 /// Those of a patch's particles that take no part any more.

@@ -63,14 +63,15 @@ void gather(Domain<D>& domain) {
   });
 }
 
-/// Axes along which walls hold a body of that extent: half a particle lies between its particles
-/// and the face. Held nodes have no increment, but a body that is not stressed is not stopped by
-/// that alone: so its motion is held as a whole.
+/// Along each axis the faces, as bits 2 axis + side, that hold a body of that extent: half a
+/// particle lies between its particles and the face. Held nodes have no increment, but a body that
+/// is not stressed is not stopped by that alone: so its motion is held as a whole.
 template <int D>
-unsigned constrained_axes(const Domain<D>& domain, const Body<D>& body, const Extent& extent) {
+std::array<unsigned, 3> holding_faces(const Domain<D>& domain, const Body<D>& body,
+                                      const Extent& extent) {
   const auto& grid = domain.grid;
-  unsigned constrained = 0;
-  if (!grid.walls.exist) return constrained;
+  std::array<unsigned, 3> holding{};
+  if (!grid.walls.exist) return holding;
   const double reach = 0.5 * body.mean_edge / grid.cell_size;
   for (int a = 0; a < D; ++a)
     for (int side = 0; side < 2; ++side) {
@@ -81,9 +82,12 @@ unsigned constrained_axes(const Domain<D>& domain, const Body<D>& body, const Ex
                                  ? extent.lower[a]
                                  : grid.walls.cells[static_cast<std::size_t>(a)] - extent.upper[a];
       // A thousandth of a cell for rounding.
-      if (nearest <= reach + 1e-3) constrained |= wall == Wall::fixed ? (1u << D) - 1u : 1u << a;
+      if (nearest > reach + 1e-3) continue;
+      for (int held = 0; held < D; ++held)
+        if (wall == Wall::fixed || held == a)
+          holding[static_cast<std::size_t>(held)] |= 1u << (2 * a + side);
     }
-  return constrained;
+  return holding;
 }
 
 /// Give a patch's particles the motion of their body.
@@ -130,12 +134,19 @@ void find_rigid_motion(Domain<D>& domain) {
     // never gives any.
     motion.velocity = (1.0 / sums.mass) * sums.momentum;
     motion.inertia = sums.inertia;
-    const unsigned constrained = constrained_axes(domain, body, sums.extent);
+    const std::array<unsigned, 3> holding = holding_faces(domain, body, sums.extent);
+    unsigned constrained = 0;
+    for (unsigned a = 0; a < 3; ++a) constrained |= holding[a] != 0 ? 1u << a : 0u;
     const Vector3 before = cross(motion.centre, sums.momentum) + sums.angular;
     // In the plane about z alone.
     motion.free_axes = D == 2 ? 4u : 7u;
     for (int a = 0; a < 3; ++a) {
-      if (constrained >> a & 1u) motion.velocity[a] = 0.0;
+      if (constrained >> a & 1u) {
+        if (a < D)
+          domain.rigid_at_faces.add(holding[static_cast<std::size_t>(a)], a,
+                                    -sums.mass * motion.velocity[a]);
+        motion.velocity[a] = 0.0;
+      }
       // A body that stands on a face turns about the face's normal only: about axis a if no axis
       // but a is held.
       if (constrained & ~(1u << a)) motion.free_axes &= ~(1u << a);

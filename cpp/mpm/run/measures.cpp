@@ -63,7 +63,9 @@ Bytes bytes_of(const Simulation<D>& simulation) {
   r.particles += domain.list_scratch.bytes();
   r.grid = bytes_of(domain.grid);
   if (domain.has_contact()) r.contact = bytes_of(domain.contact);
-  r.other = domain.sums.capacity() * sizeof(PatchSums<D>) + simulation.history.bytes();
+  r.other = domain.sums.capacity() * sizeof(PatchSums<D>) + simulation.history.bytes() +
+            domain.part_energies.capacity() * sizeof(PartEnergies) +
+            domain.face_parts.capacity() * sizeof(FaceImpulses<D>);
   for (std::size_t* bytes : {&r.particles, &r.grid, &r.contact, &r.other})
     *bytes = static_cast<std::size_t>(
         all_sum(*domain.grid.partition.comm, static_cast<std::int64_t>(*bytes)));
@@ -121,6 +123,34 @@ RanksSummary ranks_summary(const Simulation<D>& simulation) {
   return told;
 }
 
+template <int D>
+std::vector<FaceRecord> face_records(const Domain<D>& domain) {
+  const Walls<D>& walls = domain.grid.walls;
+  std::vector<FaceRecord> records;
+  if (!walls.exist) return records;
+  Comm& comm = *domain.grid.partition.comm;
+  FaceSums<D> in_step = domain.faces_in_step, so_far = domain.faces;
+  all_sum(comm, in_step);
+  all_sum(comm, so_far);
+  for (std::size_t face = 0; face < 2 * D; ++face) {
+    const std::size_t axis = face / 2, side = face % 2;
+    if (walls.face[axis][side] == Wall::free) continue;
+    FaceRecord& record = records.emplace_back();
+    record.name = std::string(1, "xyz"[axis]) + (side == 0 ? "_min" : "_max");
+    record.area = 1.0;
+    for (std::size_t a = 0; a < D; ++a) {
+      // What the bodies give the face is the opposite of what it gives them.
+      record.impulse[a] = 0.0 - so_far[face * D + a].value();
+      if (domain.time_step > 0.0)
+        record.force[a] = 0.0 - in_step[face * D + a].value() / domain.time_step;
+      if (a != axis) record.area *= walls.cells[a] * domain.grid.cell_size;
+    }
+  }
+  return records;
+}
+
+template std::vector<FaceRecord> face_records<2>(const Domain<2>&);
+template std::vector<FaceRecord> face_records<3>(const Domain<3>&);
 template RanksSummary ranks_summary<2>(const Simulation<2>&);
 template RanksSummary ranks_summary<3>(const Simulation<3>&);
 template ContactSummary contact_summary<2>(const Simulation<2>&);

@@ -1,6 +1,7 @@
 #pragma once
 // Sums over the particles, as they are between two steps.
 #include <array>
+#include <vector>
 
 #include "mpm/run/simulation.hpp"
 
@@ -27,6 +28,9 @@ ContactSummary contact_summary(const Simulation<D>& simulation);
 /// By all ranks at once.
 template <int D>
 RanksSummary ranks_summary(const Simulation<D>& simulation);
+/// Of the faces that are not free, in the order x_min, x_max, y_min, ...; by all ranks at once.
+template <int D>
+std::vector<FaceRecord> face_records(const Domain<D>& domain);
 /// Memory of all ranks, by all at once.
 template <int D>
 Bytes bytes_of(const Simulation<D>& simulation);

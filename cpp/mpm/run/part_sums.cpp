@@ -1,31 +1,16 @@
 #include "mpm/run/part_sums.hpp"
 
-#include <utility>
-
 #include "mpm/comm/all_sums.hpp"
 
 namespace mpm {
 namespace {
 
-/// The number of each body's group among the groups, and of the groups.
-template <int D>
-std::pair<std::vector<std::size_t>, std::size_t> number_groups(const Domain<D>& domain) {
-  std::vector<std::size_t> numbers(domain.bodies.size());
-  std::size_t count = 0;
-  for (std::size_t b = 0; b < numbers.size(); ++b) {
-    const auto first = static_cast<std::size_t>(domain.bodies[b].group);
-    numbers[b] = first == b ? count++ : numbers[first];
-  }
-  return {std::move(numbers), count};
-}
-
-/// Exact sums of some numbers over the patches of each group, `numbers` of the bodies.
+/// Exact sums of some numbers over the patches of each group.
 template <std::size_t count, int D, class F>
-std::vector<std::array<double, count>> sum_groups(Domain<D>& domain,
-                                                  const std::vector<std::size_t>& numbers,
-                                                  std::size_t groups, F&& of_particle) {
+std::vector<std::array<double, count>> sum_groups(Domain<D>& domain, F&& of_particle) {
+  const std::size_t groups = domain.part_energies.size();
   const auto group_of = [&](std::size_t p) {
-    return numbers[static_cast<std::size_t>(domain.grid.patches[p].body)];
+    return domain.group_of[static_cast<std::size_t>(domain.grid.patches[p].body)];
   };
   std::vector<std::array<double, count>> parts(domain.grid.patches.size());
   domain.threads.for_each(parts.size(), [&](std::size_t p) {
@@ -58,46 +43,42 @@ Vector3 velocity(const ParticlePool<D>& pool, std::uint32_t row) {
 template <int D>
 std::vector<PartSums> part_sums(Domain<D>& domain) {
   const double moment = domain.grid.affine_moment();
-  const auto [numbers, groups] = number_groups(domain);
-  const auto linear = sum_groups<8>(
-      domain, numbers, groups, [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t) {
+  const auto linear =
+      sum_groups<8>(domain, [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t) {
         const double m = pool.mass()[row];
         const Vector3 x = m * in_space<D>(pool.position_of(row)), p = m * velocity(pool, row);
         return std::array{m, x[0], x[1], x[2], p[0], p[1], p[2], kinetic_energy(pool, row, moment)};
       });
-  std::vector<PartSums> parts(groups);
-  for (std::size_t g = 0; g < groups; ++g) {
+  std::vector<PartSums> parts(linear.size());
+  for (std::size_t g = 0; g < parts.size(); ++g) {
     const auto& s = linear[g];
     parts[g].mass = s[0];
     parts[g].centre = (s[0] > 0.0 ? 1.0 / s[0] : 0.0) * Vector3{s[1], s[2], s[3]};
     parts[g].momentum = {s[4], s[5], s[6]};
     parts[g].kinetic = s[7];
   }
-  const auto angular =
-      sum_groups<3>(domain, numbers, groups,
-                    [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t group) {
-                      const Vector3 L = angular_momentum(pool, row, moment, parts[group].centre);
-                      return std::array{L[0], L[1], L[2]};
-                    });
-  for (std::size_t g = 0; g < groups; ++g)
-    parts[g].angular_momentum = {angular[g][0], angular[g][1], angular[g][2]};
-  for (std::size_t b = 0; b < numbers.size(); ++b)
-    parts[numbers[b]].prescribed = domain.bodies[b].is_prescribed();
-  return parts;
-}
-
-std::vector<double> rows_of(const std::vector<PartSums>& parts) {
-  std::vector<double> rows;
-  rows.reserve(parts.size() * part_columns.size());
-  for (const PartSums& part : parts) {
-    const Vector3 velocity = (part.mass > 0.0 ? 1.0 / part.mass : 0.0) * part.momentum;
-    rows.push_back(part.mass);
-    for (const Vector3& vector : {part.centre, velocity, part.momentum})
-      for (int a = 0; a < 3; ++a) rows.push_back(vector[a]);
-    rows.push_back(part.kinetic);
-    for (int a = 0; a < 3; ++a) rows.push_back(part.angular_momentum[a]);
+  const auto turning =
+      sum_groups<9>(domain, [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t group) {
+        const Vector3 centre = parts[group].centre;
+        const Vector3 L = angular_momentum(pool, row, moment, centre);
+        RigidSums of;
+        const double m = pool.mass()[row];
+        of.add(m, in_space<D>(pool.position_of(row)) - centre, Vector3::zero());
+        // The affine part of a rigid motion is its spin, of which the momentum is `moment` times
+        // the curl.
+        const Matrix3& I = of.inertia;
+        const double own = pool.affine < 0 ? 0.0 : 2.0 * m * moment;
+        return std::array{L[0],          L[1],    L[2],    I[0][0] + own, I[1][1] + own,
+                          I[2][2] + own, I[1][2], I[0][2], I[0][1]};
+      });
+  for (std::size_t g = 0; g < parts.size(); ++g) {
+    const auto& s = turning[g];
+    parts[g].angular_momentum = {s[0], s[1], s[2]};
+    parts[g].inertia = {{{s[3], s[8], s[7]}, {s[8], s[4], s[6]}, {s[7], s[6], s[5]}}};
   }
-  return rows;
+  for (std::size_t b = 0; b < domain.bodies.size(); ++b)
+    parts[domain.group_of[b]].prescribed = domain.bodies[b].is_prescribed();
+  return parts;
 }
 
 AngularTotals angular_totals(const std::vector<PartSums>& parts) {

@@ -9,29 +9,13 @@
 
 namespace mpm {
 
-/// A number of a body, for `history.csv`.
-struct PartColumn {
+/// A column of `history.csv`.
+struct Column {
   std::string_view name, unit, meaning;
 };
-inline constexpr auto part_columns = std::to_array<PartColumn>({
-    {"mass", "kg", "mass of the particles that take part"},
-    {"centre_x", "m", "its mass centre"},
-    {"centre_y", "m", "likewise"},
-    {"centre_z", "m", "likewise; 0 in 2D"},
-    {"velocity_x", "m/s", "velocity of the mass centre"},
-    {"velocity_y", "m/s", "likewise"},
-    {"velocity_z", "m/s", "likewise; 0 in 2D"},
-    {"momentum_x", "N s", "its momentum"},
-    {"momentum_y", "N s", "likewise"},
-    {"momentum_z", "N s", "likewise; 0 in 2D"},
-    {"kinetic", "J", "its kinetic energy"},
-    {"angular_momentum_x", "N m s", "its angular momentum about its mass centre; 0 in 2D"},
-    {"angular_momentum_y", "N m s", "likewise"},
-    {"angular_momentum_z", "N m s", "likewise"},
-});
 
 /// The balance of angular momentum about the origin (ledger/angular_ledger.hpp), likewise.
-inline constexpr auto total_columns = std::to_array<PartColumn>({
+inline constexpr auto total_columns = std::to_array<Column>({
     {"angular_momentum_x", "N m s", "of all that takes part, about the origin; 0 in 2D"},
     {"angular_momentum_y", "N m s", "likewise"},
     {"angular_momentum_z", "N m s", "likewise"},
@@ -65,6 +49,7 @@ struct PartSums {
   Vector3 centre, momentum;                    // [m]; [kg m/s]
   double kinetic = 0.0;                        // [J]
   Vector3 angular_momentum = Vector3::zero();  // about the centre [N m s]
+  Matrix3 inertia{};                           // about the centre [kg m^2]
   bool prescribed = false;                     // is its motion
 };
 
@@ -72,9 +57,6 @@ struct PartSums {
 /// depend on no order of patches or threads.
 template <int D>
 std::vector<PartSums> part_sums(Domain<D>& domain);
-
-/// As `part_columns`, row by row.
-std::vector<double> rows_of(const std::vector<PartSums>& parts);
 
 /// Angular momentum about the origin of all, and of bodies whose motion is prescribed [N m s].
 struct AngularTotals {

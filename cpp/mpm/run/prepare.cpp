@@ -64,6 +64,14 @@ void start_ledger(Domain<D>& domain) {
   const AngularTotals angular = angular_totals(part_sums(domain));
   ledger.angular.start = angular.all;
   ledger.angular.prescribed_start = angular.prescribed;
+  for (const Patch<D>& patch : domain.grid.patches) {
+    const ParticlePool<D>& pool = domain.pool_of(patch);
+    if (pool.at.energy < 0) continue;
+    PartEnergies& part =
+        domain.part_energies[domain.group_of[static_cast<std::size_t>(patch.body)]];
+    for (const std::uint32_t row : pool.rows(patch))
+      part.add({pool.columns.component(pool.at.energy)[row] * pool.volume()[row], 0.0, 0.0});
+  }
   ledger.start_prescribed(domain.bodies, domain.grid.patches, domain.pools,
                           *domain.grid.partition.comm);
 }
@@ -88,6 +96,7 @@ void prepare(Simulation<D>& simulation) {
   if (domain.has_contact())
     connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
   domain.sums.resize(domain.grid.patches.size());
+  if (domain.grid.walls.exist) domain.face_parts.resize(domain.grid.patches.size());
   list_kinds(domain);
   start_settling(simulation);
   start_motions(domain);

@@ -82,6 +82,14 @@ struct Pieces {
   std::span<const double> arms;              // from the particle to the piece [m], (pieces, D)
 };
 
+/// A face of the box that is not free; vectors have zeros behind the dimension.
+struct FaceRecord {
+  std::string name;                 // "x_min" to "z_max"
+  std::array<double, 3> force{};    // of the last step, of the bodies on it [N]
+  std::array<double, 3> impulse{};  // since the start [N s]
+  double area = 0.0;                // of the face [m^2; in 2D m]
+};
+
 struct Bytes {
   std::size_t particles = 0, grid = 0, contact = 0, other = 0;
 };

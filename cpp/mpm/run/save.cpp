@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 13;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 14;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
@@ -20,19 +20,26 @@ void exchange_body(StateStream& stream, Body<D>& body) {
   if (body.is_prescribed()) stream(body.motion->before, body.motion->now);
 }
 
-/// Of all ranks; restored, the first has it.
-void exchange_removed(StateStream& stream, Removed& removed) {
-  std::int64_t count = all_sum(stream.comm(), static_cast<std::int64_t>(removed.count));
-  stream(count);
-  Removed all{static_cast<std::size_t>(count), removed.sums};
-  all_sum(stream.comm(), all.sums);
-  for (ExactSum& sum : all.sums) {
+/// Of all ranks; restored, the first has them.
+void exchange_sums(StateStream& stream, std::span<ExactSum> sums) {
+  std::vector<ExactSum> all(sums.begin(), sums.end());
+  all_sum(stream.comm(), all);
+  for (ExactSum& sum : all) {
     std::array<std::int64_t, ExactSum::words> words;
     sum.write(words);
     stream(words);
     sum = ExactSum::read(words);
   }
-  if (stream.restores()) removed = stream.comm().rank() == 0 ? all : Removed{};
+  if (!stream.restores()) return;
+  const bool first = stream.comm().rank() == 0;
+  for (std::size_t k = 0; k < sums.size(); ++k) sums[k] = first ? all[k] : ExactSum{};
+}
+void exchange_removed(StateStream& stream, Removed& removed) {
+  std::int64_t count = all_sum(stream.comm(), static_cast<std::int64_t>(removed.count));
+  stream(count);
+  exchange_sums(stream, removed.sums);
+  if (stream.restores())
+    removed.count = stream.comm().rank() == 0 ? static_cast<std::size_t>(count) : 0;
 }
 
 /// The lists anew, from where particles are: none depends on those that there were.
@@ -81,6 +88,9 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   stream(domain.time, domain.time_step, domain.step, domain.gravity);
   exchange_removed(stream, domain.eroded);
   exchange_removed(stream, domain.outflow);
+  for (PartEnergies& part : domain.part_energies) exchange_sums(stream, part.sums);
+  exchange_sums(stream, domain.faces_in_step);
+  exchange_sums(stream, domain.faces);
   stream.same(domain.rigid.size(), other_case);
   stream.array(std::span(domain.rigid));
   stream(simulation.coarsenings, simulation.next_time_step, domain.ledger);

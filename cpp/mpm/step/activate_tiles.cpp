@@ -101,6 +101,8 @@ void activate_tiles(Domain<D>& domain) {
                   domain.list_scratch);
   domain.sums.assign(domain.grid.patches.size(), {});
   domain.rigid_at_walls = Vector3::zero();
+  domain.rigid_at_faces = {};
+  if (domain.grid.walls.exist) domain.face_parts.assign(domain.grid.patches.size(), {});
   if (changed && domain.has_contact()) connect_contact(domain, divided);
   if (domain.has_contact())
     exchange_guests(domain.contact, domain.grid, domain.bodies, domain.pools);

@@ -114,41 +114,42 @@ DampedWork advance_damped_block(const Domain<D>& domain, const Patch<D>& patch,
   return sums;
 }
 
-/// Angular impulse of the walls on the nodes that they hold: they take up force and weight along
-/// these axes. Before `hold_at_walls`.
+/// Impulses of the walls on the nodes that they hold: they take up force and weight along these
+/// axes. Before `hold_at_walls`.
 template <int D>
-Vector3 impulse_of_holding(const Domain<D>& domain, const Patch<D>& patch,
-                           const NodeBlock<D>& block, const double* own) {
-  const Vector3 moment = moment_held(domain.grid, patch, own, [&](int node) {
-    return block.vector(node, force_at) + block.mass()[node] * domain.gravity;
+void add_impulses_of_holding(const Domain<D>& domain, const Patch<D>& patch,
+                             const NodeBlock<D>& block, const double* own, const Reaction<D>& to) {
+  add_holding(domain.grid, patch, own, to, [&](int node) {
+    return -domain.time_step * (block.vector(node, force_at) + block.mass()[node] * domain.gravity);
   });
-  return -domain.time_step * moment;
 }
 
-/// Angular impulses on the nodes of a patch, once these and those beyond walls have their
-/// increments.
+/// Impulses of walls and gravity on the nodes of a patch, once these and those beyond walls have
+/// their increments.
 template <int D>
-void add_angular_impulses(const Domain<D>& domain, const Patch<D>& patch, const NodeBlock<D>& block,
-                          const double* own, AngularImpulses& sums) {
+void add_impulses(Domain<D>& domain, std::size_t p, const NodeBlock<D>& block, const double* own) {
   const double dt = domain.time_step;
+  const Patch<D>& patch = domain.grid.patches[p];
   const auto& grid = domain.grid;
   const bool has_gravity = dot(domain.gravity, domain.gravity) > 0.0;
   Vector3 mass_moment = Vector3::zero();
   if (has_gravity) mass_moment = first_moment(grid, patch, block, own);
   if (patch.at_wall) {
     // What is left of the moment of folding (walls/reactions.hpp), by who owns the node beyond.
-    sums.walls += moment_of_folding(grid, patch, [&](int node) {
+    const Reaction<D> walls = reaction_of(domain, p, &AngularImpulses::walls);
+    add_folding(grid, patch, walls, [&](int node) {
       const double m = patch.counts(node) ? block.mass()[node] : 0.0;
       return m * (dt * domain.gravity - block.vector(node, increment_at));
     });
-    if (grid.walls.absorb()) sums.walls += dt * moment_of_dashpots(grid, patch, block, own);
+    if (grid.walls.absorb()) add_dashpots(grid, patch, block, own, dt, walls);
     // The mass of a node beyond a wall is with that of its image too.
     for_each_ghost_node(grid, patch, [&](int node, int image, const WallImage<D>&) {
       const double m = patch.counts(node) ? block.mass()[node] : 0.0;
       mass_moment += m * (place_of(grid, patch, node) - place_of(grid, patch, image));
     });
   }
-  if (has_gravity) sums.gravity += dt * cross(mass_moment, in_space<D>(domain.gravity));
+  if (has_gravity)
+    domain.sums[p].angular.gravity += dt * cross(mass_moment, in_space<D>(domain.gravity));
 }
 
 /// Eq. (8) for the nodes of a block, with the damping of its body, of which the sums are set.
@@ -185,7 +186,9 @@ void advance_nodes(Domain<D>& domain) {
     double own[BlockShape<D>::nodes_max];
     own_nodes(grid, patch, own);
     PatchSums<D>& sums = domain.sums[p];
-    if (patch.at_wall) sums.angular.walls += impulse_of_holding(domain, patch, block, own);
+    if (patch.at_wall)
+      add_impulses_of_holding(domain, patch, block, own,
+                              reaction_of(domain, p, &AngularImpulses::walls));
     hold_at_walls(domain, patch, block);
     const NodeWork done = advance(domain, patch, block, own, sums);
     Work loads, dashpots;
@@ -206,7 +209,7 @@ void advance_nodes(Domain<D>& domain) {
     // are both turned do the same work as those of the image, which has the force.
     if (loaded) loads = work_of_loads(domain, p);
     if (domain.has_body_forces()) loads += work_of_body_force(domain, p);
-    add_angular_impulses(domain, patch, block, own, sums.angular);
+    add_impulses(domain, p, block, own);
     // What is left is work of internal and contact forces; loads, dashpots and gravity have terms
     // of their own in the ledger, with the velocity in the middle of the step.
     sums.force_work = dt * (done.work + weight_first) - loads.first - dashpots.first;

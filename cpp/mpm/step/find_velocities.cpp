@@ -28,39 +28,40 @@ void find(Domain<D>& domain, int at, F&& prescribed) {
   });
 }
 
-/// f(patch, block, its sum) for the patches at walls of bodies that take the velocity of the grid,
-/// to count what walls change of their angular momentum; a part of it was counted when momenta were
+/// f(patch, block, its reaction) for the patches at walls of bodies that take the velocity of the
+/// grid, to count what walls change of their momenta; a part of it was counted when these were
 /// folded.
 template <int D, class F>
 void for_each_mapped_at_walls(Domain<D>& domain, F&& f) {
   if (!takes_of_grid(domain)) return;
   for_each_patch(domain, deformable, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
-    if (patch.at_wall) f(patch, domain.grid.block(p), domain.sums[p].angular.mapped);
+    if (patch.at_wall)
+      f(patch, domain.grid.block(p), reaction_of(domain, p, &AngularImpulses::mapped));
   });
 }
 
 /// Nodes that walls hold lose their momentum.
 template <int D>
-void add_moments_held(Domain<D>& domain) {
+void add_reactions_held(Domain<D>& domain) {
   for_each_mapped_at_walls(
-      domain, [&](const Patch<D>& patch, const NodeBlock<D>& block, Vector3& sum) {
+      domain, [&](const Patch<D>& patch, const NodeBlock<D>& block, const Reaction<D>& to) {
         double own[BlockShape<D>::nodes_max];
         own_nodes(domain.grid, patch, own);
-        sum -= moment_held(domain.grid, patch, own, [&](int node) {
-          return grid_share_at(domain, patch, node) * block.vector(node, momentum_at);
+        add_holding(domain.grid, patch, own, to, [&](int node) {
+          return -grid_share_at(domain, patch, node) * block.vector(node, momentum_at);
         });
       });
 }
 
 /// Nodes beyond walls get the velocity of their images.
 template <int D>
-void add_moments_beyond(Domain<D>& domain) {
+void add_reactions_beyond(Domain<D>& domain) {
   for_each_mapped_at_walls(
-      domain, [&](const Patch<D>& patch, const NodeBlock<D>& block, Vector3& sum) {
-        sum -= moment_of_folding(domain.grid, patch, [&](int node) {
+      domain, [&](const Patch<D>& patch, const NodeBlock<D>& block, const Reaction<D>& to) {
+        add_folding(domain.grid, patch, to, [&](int node) {
           const double m = patch.counts(node) ? block.mass()[node] : 0.0;
-          return grid_share_at(domain, patch, node) * m * block.vector(node, velocity_at);
+          return -grid_share_at(domain, patch, node) * m * block.vector(node, velocity_at);
         });
       });
 }
@@ -69,7 +70,7 @@ void add_moments_beyond(Domain<D>& domain) {
 
 template <int D>
 void find_velocities(Domain<D>& domain) {
-  add_moments_held(domain);
+  add_reactions_held(domain);
   find(domain, velocity_at,
        [&](const Body<D>& body, const Patch<D>& patch, const NodeBlock<D>& block) {
          // That of the last step: in (6)-(7) a body has the velocity with which it arrives, in
@@ -77,7 +78,7 @@ void find_velocities(Domain<D>& domain) {
          // (docs/theory/motion.md).
          set_rigid_velocity(domain.grid, patch, block, body.motion->before);
        });
-  add_moments_beyond(domain);
+  add_reactions_beyond(domain);
 }
 
 template <int D>

@@ -14,6 +14,41 @@ void record_contacts(Domain<D>& domain) {
                      {domain.time_after, domain.time_step, domain.step + 1}, domain.threads);
 }
 
+namespace {
+
+/// The work of the stress in each group's patches.
+template <int D>
+void add_part_energies(Domain<D>& domain) {
+  for (std::size_t p = 0; p < domain.sums.size(); ++p) {
+    const auto body = static_cast<std::size_t>(domain.grid.patches[p].body);
+    const StressSums& stress = domain.sums[p].stress;
+    domain.part_energies[domain.group_of[body]].add(
+        {stress.internal, stress.plastic, stress.viscous});
+  }
+}
+
+/// The impulses of the box's faces in the step, and so far; of rigid bodies, which all ranks know,
+/// by the first.
+template <int D>
+void add_faces(Domain<D>& domain, bool is_first) {
+  if (!domain.grid.walls.exist) return;
+  domain.faces_in_step = {};
+  const auto add = [&](FaceImpulses<D>& part) {
+    std::size_t k = 0;
+    part.for_each([&](double x) {
+      if (x != 0.0) {
+        domain.faces_in_step[k].add(x);
+        domain.faces[k].add(x);
+      }
+      ++k;
+    });
+  };
+  for (FaceImpulses<D>& part : domain.face_parts) add(part);
+  if (is_first) add(domain.rigid_at_faces);
+}
+
+}  // namespace
+
 template <int D, bool forces_follow>
 void sum_energies(Domain<D>& domain) {
   // All sums over patches at once, exactly: no order of patches matters (decision 0038).
@@ -26,6 +61,8 @@ void sum_energies(Domain<D>& domain) {
   domain.ledger.add(domain.sums, domain.contact_sums, eroded, outflow, forces_follow,
                     is_affine(domain.transfer), comm);
   domain.ledger.angular.impulses.walls += domain.rigid_at_walls;
+  add_part_energies(domain);
+  add_faces(domain, comm.rank() == 0);
 }
 
 template void record_contacts<2>(Domain<2>&);

@@ -18,18 +18,18 @@ void fold(Domain<D>& domain, int at) {
                  [&](std::size_t p) { fold_at_walls(grid, grid.patches[p], grid.block(p), at); });
 }
 
-/// What folding does to the moment of the vector at number `at` of the records, times
-/// factor(patch, node), into the patches' sums; before it is folded.
+/// What folding does to the vector at number `at` of the records, times factor(patch, node), into
+/// the patches' sums; before it is folded.
 template <int D, class F>
-void add_moments(Domain<D>& domain, Kinds kinds, int at, Vector3 AngularImpulses::* sum,
-                 F&& factor) {
+void add_reactions(Domain<D>& domain, Kinds kinds, int at, Vector3 AngularImpulses::* sum,
+                   F&& factor) {
   auto& grid = domain.grid;
   if (!grid.has_ghosts()) return;
   for_each_patch(domain, kinds, [&](std::size_t p) {
     const NodeBlock<D> block = grid.block(p);
     const Patch<D>& patch = grid.patches[p];
-    domain.sums[p].angular.*sum += moment_of_folding(
-        grid, patch, [&](int node) { return factor(patch, node) * block.vector(node, at); });
+    add_folding(grid, patch, reaction_of(domain, p, sum),
+                [&](int node) { return factor(patch, node) * block.vector(node, at); });
   });
 }
 
@@ -38,7 +38,7 @@ void add_moments(Domain<D>& domain, Kinds kinds, int at, Vector3 AngularImpulses
 template <int D>
 void fold_momentum(Domain<D>& domain) {
   if (takes_of_grid(domain))
-    add_moments(
+    add_reactions(
         domain, deformable, momentum_at, &AngularImpulses::mapped,
         [&](const Patch<D>& patch, int node) { return grid_share_at(domain, patch, node); });
   fold(domain, momentum_at);
@@ -46,8 +46,8 @@ void fold_momentum(Domain<D>& domain) {
 
 template <int D>
 void fold_forces(Domain<D>& domain) {
-  add_moments(domain, deformable | free_rigid, force_at, &AngularImpulses::walls,
-              [&](const Patch<D>&, int) { return domain.time_step; });
+  add_reactions(domain, deformable | free_rigid, force_at, &AngularImpulses::walls,
+                [&](const Patch<D>&, int) { return domain.time_step; });
   fold(domain, force_at);
 }
 

@@ -49,13 +49,29 @@ struct Walls {
     if (!exist) return axes;
     for (int a = 0; a < D; ++a) {
       for (int side = 0; side < 2; ++side) {
-        const int depth = depth_beyond(node, a, side);
-        if (depth == 0 && face[a][side] == Wall::slip) axes |= 1u << a;
-        if (face[a][side] == Wall::fixed && (depth == 0 || (depth > 0 && !odd_at_fixed)))
-          axes |= all_axes;
+        if (!holds(face[a][side], depth_beyond(node, a, side))) continue;
+        axes |= axes_of(face[a][side], a);
       }
     }
     return axes;
+  }
+
+  /// The faces, as bits 2 axis + side, that hold a component of what a node has.
+  unsigned faces_holding(const Index<D>& node, int component) const {
+    return faces_where(node, [&](Wall wall, int axis, int depth) {
+      return holds(wall, depth) && (axes_of(wall, axis) >> component & 1u) != 0;
+    });
+  }
+  /// Those that turn it, of a node beyond them with an image.
+  unsigned faces_turning(const Index<D>& node, int component) const {
+    return faces_where(node, [&](Wall wall, int axis, int depth) {
+      return mirrors(wall, depth) && (axes_of(wall, axis) >> component & 1u) != 0;
+    });
+  }
+  /// Those of which it carries dashpots.
+  unsigned faces_absorbing(const Index<D>& node) const {
+    return faces_where(
+        node, [](Wall wall, int, int depth) { return wall == Wall::absorbing && depth == 0; });
   }
 
   /// Lies a node from `before` this one to `after` it, along any axis, on a fixed face or beyond?
@@ -78,10 +94,9 @@ struct Walls {
     for (int a = 0; a < D; ++a)
       for (int side = 0; side < 2; ++side) {
         const int depth = depth_beyond(node, a, side);
-        const bool slip = face[a][side] == Wall::slip;
-        if (depth <= 0 || !(slip || (odd_at_fixed && face[a][side] == Wall::fixed))) continue;
+        if (!mirrors(face[a][side], depth)) continue;
         beyond = true;
-        image.turned ^= slip ? 1u << a : all_axes;
+        image.turned ^= axes_of(face[a][side], a);
         image.node[static_cast<std::size_t>(a)] += (side == 0 ? 2 : -2) * depth;
       }
     if (!beyond) return {};
@@ -89,7 +104,25 @@ struct Walls {
   }
 
  private:
-  static constexpr unsigned all_axes = (1u << D) - 1u;
+  /// The axes along which a wall holds or turns what nodes have: a slip wall its normal.
+  static unsigned axes_of(Wall wall, int axis) {
+    return wall == Wall::slip ? 1u << axis : (1u << D) - 1u;
+  }
+  bool holds(Wall wall, int depth) const {
+    if (wall == Wall::slip) return depth == 0;
+    return wall == Wall::fixed && (depth == 0 || (depth > 0 && !odd_at_fixed));
+  }
+  bool mirrors(Wall wall, int depth) const {
+    return depth > 0 && (wall == Wall::slip || (wall == Wall::fixed && odd_at_fixed));
+  }
+  template <class F>
+  unsigned faces_where(const Index<D>& node, F&& f) const {
+    unsigned faces = 0;
+    for (int a = 0; exist && a < D; ++a)
+      for (int side = 0; side < 2; ++side)
+        if (f(face[a][side], a, depth_beyond(node, a, side))) faces |= 1u << (2 * a + side);
+    return faces;
+  }
   int depth_beyond(const Index<D>& node, int axis, int side) const {
     return side == 0 ? -node[axis] : node[axis] - cells[axis];
   }

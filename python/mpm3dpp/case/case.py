@@ -8,8 +8,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from itertools import accumulate, combinations_with_replacement
 from pathlib import Path
 from typing import Annotated, Any
@@ -28,12 +26,13 @@ from . import file as case_file
 from .body import Body
 from .checks import check_case
 from .choices import with_choices
-from .content import PRESETS, content_of, with_preset
+from .content import PRESETS, content_of, hash_of, with_preset
 from .detonation import Detonation
 from .grid import Grid
 from .loads import Load
 from .material import Material as Material  # also for those who import it from here
 from .parts import Contact, Output, Run
+from .probe import Probe
 
 
 class Case(CaseModel):
@@ -47,6 +46,7 @@ class Case(CaseModel):
             numbered after those of `body`.
         load: pressures and tractions on surfaces, by name.
         detonation: the points at which explosives are lit.
+        probe: what is looked at on the way, by name.
         text: the file's text, empty for a case built in Python.
         source: the file's path, None for a case built in Python.
         file_path: the whole path of the file that was read, as text; empty where none was.
@@ -63,6 +63,7 @@ class Case(CaseModel):
     grains: Annotated[dict[str, Grains], Field(default_factory=dict)]
     load: Annotated[dict[str, Load], Field(default_factory=dict)]
     detonation: list[Detonation] = Field(default_factory=list)
+    probe: Annotated[dict[str, Probe], Field(default_factory=dict)]
 
     _text: str = PrivateAttr("")
     _source: Path | None = PrivateAttr(None)
@@ -156,15 +157,11 @@ class Case(CaseModel):
 
     @property
     def case_hash(self) -> str:
-        """SHA-256 (hexadecimal) of the case in SI units, numbers to 12 digits, keys sorted.
+        """SHA-256 (hexadecimal) of the case in SI units, keys sorted.
 
         It depends neither on formatting nor on units nor on the names of files of particles.
         """
-        table = self.content()
-        if not self.grains:  # So that older cases keep their hash.
-            del table["grains"]
-        text = json.dumps(table, sort_keys=True, separators=(",", ":"))
-        return hashlib.sha256(text.encode()).hexdigest()
+        return hash_of(self.content())
 
     def content(self) -> dict[str, Any]:
         """Return what a run writes, when it was asked for: the table, numbers to 12 digits.
@@ -184,7 +181,7 @@ class Case(CaseModel):
 
     def part_path(self, name: str) -> KeyPath:
         """Return the path of an entry of `body` or `grains`."""
-        return ("grains" if name in self.grains else "body", name)
+        return "grains" if name in self.grains else "body", name
 
     @property
     def materials_used(self) -> list[str]:

@@ -19,6 +19,7 @@ from .detonation import check_detonations
 from .loads import check_loads
 from .material_checks import check_material
 from .motion import check_motion
+from .probe import check_probes
 
 if TYPE_CHECKING:
     from mpm3dpp.grains import Grains
@@ -71,6 +72,7 @@ def _bodies_together(case: Case) -> Found:
         yield violation(rule, "give one another strength", path=path)
     yield from check_detonations(case)
     yield from check_loads(case)
+    yield from check_probes(case, lambda material: _columns(case, material))
     yield from _body_forces(case)
     yield from _dampings(case)
     if case.run.settle is not None and not _acts_at_first(case):

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from typing import TYPE_CHECKING, Any
 
 from mpm3dpp.grains import Grains
@@ -47,6 +49,14 @@ def content_of(case: Case) -> dict[str, Any]:
             table["grains"][name]["file"] = grains.file.digest
     del table["output"]["checkpoint_interval"]
     return dict(_rounded(table))
+
+
+def hash_of(content: dict[str, Any]) -> str:
+    """Return the SHA-256 (hexadecimal) of what a case holds."""
+    # Without tables that older cases did not know, so that these keep their hash.
+    used = {k: v for k, v in content.items() if v or k not in ("grains", "probe")}
+    text = json.dumps(used, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _note_fill(table: dict[str, Any], part: Body | Grains, preset: str | None) -> None:

@@ -64,6 +64,14 @@ class History(_Strict):
         return self
 
 
+class Probe(_Strict):
+    """See `Probes.state`."""
+
+    table: Table
+    next: FiniteFloat
+    particle: Annotated[list[Count], Field(min_length=2, max_length=2)] | None
+
+
 class Run(_Strict):
     """Of the case: what is looked at before it is compared."""
 
@@ -86,6 +94,7 @@ class About(_Strict):
     wall_time: Annotated[FiniteFloat, Field(ge=0.0)]
     results: Results
     history: History
+    probes: dict[str, Probe]
     case: SomeCase
     made_by: dict[str, str]
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from mpm3dpp.base.errors import CaseError
 
-_COMPONENTS = {2: ("x", "y"), 3: ("x", "y", "z"), 6: ("xx", "yy", "zz", "yz", "xz", "xy")}
+COMPONENTS = {2: ("x", "y"), 3: ("x", "y", "z"), 6: ("xx", "yy", "zz", "yz", "xz", "xy")}
 
 
 def has_pandas() -> bool:
@@ -30,7 +30,7 @@ def columns_of(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
             found[name] = values
             continue
         count = values.shape[1]
-        words = _COMPONENTS.get(count, tuple(map(str, range(count))))
+        words = COMPONENTS.get(count, tuple(map(str, range(count))))
         found |= {f"{name}_{word}": values[:, k] for k, word in enumerate(words)}
     return found
 
@@ -46,3 +46,8 @@ def data_frame(arrays: Mapping[str, np.ndarray]) -> Any:
     except ImportError as error:
         raise CaseError("this needs pandas", "install it: pip install pandas") from error
     return pandas.DataFrame(columns_of(arrays))
+
+
+def maybe_frame(arrays: dict[str, np.ndarray]) -> Any:
+    """Return a `pandas.DataFrame` of the arrays where pandas is installed, else them."""
+    return data_frame(arrays) if has_pandas() else arrays

@@ -8,8 +8,8 @@ doubles, would be the larger part of a run's memory.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -19,6 +19,7 @@ from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.outputs import CHANGING, COLUMNS, DERIVED, STANDARD, UNITS
 from mpm3dpp.base.parts import equal_part
 
+from .frame_tables import Table, tables_of
 from .rows import FROM_VTK
 
 _PLACES = {2: (0, 1), 4: (0, 1, 2, 3), 6: FROM_VTK}
@@ -55,12 +56,14 @@ class Frame:
         rows: particles in each part that is a file of its own; the columns are those of one of
             them.
         columns: "position" first; all bodies one after another in their original order.
+        tables: see `frame_tables.tables_of`.
     """
 
     time: float
     step: int
     rows: list[int]
     columns: Iterable[Column]
+    tables: Mapping[str, Table] = field(default_factory=dict)
 
 
 def frame_of(
@@ -120,7 +123,8 @@ def frame_of(
             column(name, partial(derived, name)) for name in DERIVED if name not in CHANGING
         ]
     rows = [end - begin for begin, end in ends]
-    return Frame(float(simulation.time), int(simulation.step), rows, columns)
+    tables = tables_of(simulation, len(set(names)))
+    return Frame(float(simulation.time), int(simulation.step), rows, columns, tables)
 
 
 def column_units(simulation: Any) -> dict[str, str]:

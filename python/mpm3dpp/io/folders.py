@@ -31,7 +31,8 @@ def default_folder(case_file: Path) -> Path:
 
 
 # What a run writes beside the frames and the history, which it begins anew.
-_OF_A_RUN = ("manifest.json", "frame.png", "energies.png", "first_contact.png", "animation.gif")
+_PICTURES = ("frame.png", "energies.png", "probes.png", "first_contact.png", "animation.gif")
+_OF_A_RUN = ("manifest.json", *_PICTURES)
 
 
 def forget_last_run(folder: Path, checkpoint: bool = True) -> None:

@@ -11,29 +11,27 @@ frame, a slice of its particles, in such a file: `000012.h5`, `000012.1.h5`, ...
 from __future__ import annotations
 
 import contextlib
-import io
 import json
 import re
 import zlib
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.base.disk import replacing, writing
+from mpm3dpp.base.disk import writing
 from mpm3dpp.base.errors import CaseError
+
+from .frame_tables import Table, columns_of, write_tables
+from .new_h5 import new_h5
 
 if TYPE_CHECKING:
     import h5py
 
 CELLS = "cells"
 """Among the arrays that stand elsewhere: the cells."""
-
-LIBVER = ("v108", "v110")
-"""Versions of HDF5's format: from the first on tables have check sums; virtual data sets need the
-last."""
 
 _NAME = re.compile(r"(\d{6,})(?:\.(\d+))?\.h5")
 _CHUNK_BYTES = (1 << 32) - 1  # HDF5's limit
@@ -49,6 +47,7 @@ class FrameInfo:
         checks: name -> CRC-32 of each array that the file has.
         elsewhere: name -> number of the frame whose file has it.
         kinds: name -> components (0 for one number a particle) and type, of those in the file.
+        tables: name -> column -> CRC-32, of the tables that the file has (`io/frame_tables.py`).
     """
 
     time: float
@@ -58,6 +57,7 @@ class FrameInfo:
     checks: dict[str, int] = field(default_factory=dict)
     elsewhere: dict[str, int] = field(default_factory=dict)
     kinds: dict[str, tuple[int, str]] = field(default_factory=dict)
+    tables: dict[str, dict[str, int]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.rows = self.rows or [self.count]
@@ -112,22 +112,28 @@ def _files(folder: Path) -> list[tuple[int, int]]:
 
 
 def write_frame(
-    path: Path, info: FrameInfo, part: int, arrays: Iterable[tuple[str, np.ndarray]], level: int
+    path: Path,
+    info: FrameInfo,
+    part: int,
+    arrays: Iterable[tuple[str, np.ndarray]],
+    level: int,
+    tables: Mapping[str, Table],
 ) -> None:
     """Write the file of a frame, or of a part of it.
 
     Args:
         path: the file.
-        info: of which `checks` and `kinds` are filled here.
+        info: of which `checks`, `kinds` and `tables` are filled here.
         part: number of the part.
         arrays: (name, array as stored) of those that do not stand elsewhere, each asked for when
             the one before is in the file.
         level: of compression: 0 for none, else gzip's, 1 to 9, after a shuffle of bytes.
+        tables: of the frame; the first part has them.
 
     Raises:
         CaseError: the file cannot be written; there is none then.
     """
-    with _new_h5(path) as file:
+    with new_h5(path) as file:
         group = file.create_group("arrays")
         for name, column in arrays:
             info.checks[name] = zlib.crc32(column.data)
@@ -142,15 +148,18 @@ def write_frame(
             # There is one offset more than there are cells: the first part has the first.
             cells["Offsets"] = np.arange(first + (part > 0), last + 1, dtype=np.int64)
             cells["Connectivity"] = np.arange(first, last, dtype=np.int64)
+        if part == 0 and tables:
+            info.tables = write_tables(file, tables)
         about: dict[str, Any] = {"time": info.time, "step": info.step, "count": info.count}
         about |= {"checks": info.checks, "elsewhere": info.elsewhere, "rows": info.rows}
+        about |= {"tables": info.tables} if info.tables else {}
         file.attrs["frame"] = json.dumps(about, sort_keys=True)
 
 
 def read_info(path: Path) -> FrameInfo:
     """Return what the file of a frame holds. Raises `CaseError` if it is missing or damaged."""
-    with _frame(path) as file:
-        info = _info(file)
+    with open_frame(path) as file:
+        info = info_of(file)
         for name in info.checks:
             info.kinds[name] = _kind(file["arrays"][name])
         return info
@@ -179,12 +188,25 @@ def read_arrays(
     return {name: found[name] for name in wanted}
 
 
+def read_table(path: Path, name: str) -> dict[str, np.ndarray]:
+    """Return a table of a frame, columns by name.
+
+    Raises:
+        CaseError: the file has no such table, or is missing or damaged.
+    """
+    with open_frame(path) as file:
+        checks = info_of(file).tables.get(name)
+        if checks is not None:
+            return columns_of(file, name, checks)
+    raise CaseError(f"'{path}' has no table of {name}")
+
+
 def _read_part(
     folder: Path, frame: int, part: int, names: Collection[str]
 ) -> tuple[FrameInfo, dict[str, np.ndarray]]:
     """Return what the file of a part tells of its frame, and arrays that it has, as stored."""
-    with _frame(frame_path(folder, frame, part)) as file:
-        info, columns = _info(file), {}
+    with open_frame(frame_path(folder, frame, part)) as file:
+        info, columns = info_of(file), {}
         for name in names:
             columns[name] = column = file["arrays"][name][()]
             if len(column) != info.rows[part] or zlib.crc32(column.data) != info.checks[name]:
@@ -193,73 +215,7 @@ def _read_part(
 
 
 @contextlib.contextmanager
-def _new_h5(path: Path) -> Iterator[h5py.File]:
-    """Give an HDF5 file to write, which takes the place of `path` in one step (`replacing`).
-
-    HDF5 never hears of an error of the disk, for after one it cannot close its file, and takes the
-    process with it.
-    """
-    import h5py
-
-    with replacing(path) as raw:
-        target = _Deaf(raw)
-        with h5py.File(target, "w", libver=LIBVER) as file:
-            yield file
-        target.tell_error()
-
-
-class _Deaf(io.RawIOBase):
-    """A file that keeps its first error for later, and says to whoever writes that all is well."""
-
-    def __init__(self, raw: BinaryIO) -> None:
-        self._raw = raw
-        self._error: OSError | None = None
-        self._at = self._end = 0
-
-    def tell_error(self) -> None:
-        if self._error is not None:
-            raise self._error
-
-    def seekable(self) -> bool:
-        return True
-
-    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
-        self._at = offset + {io.SEEK_SET: 0, io.SEEK_CUR: self._at, io.SEEK_END: self._end}[whence]
-        return self._at
-
-    def tell(self) -> int:
-        return self._at
-
-    def write(self, data: Any) -> int:
-        size = memoryview(data).nbytes
-        self._try(lambda: self._write(data))
-        self._at += size
-        self._end = max(self._end, self._at)
-        return size
-
-    def truncate(self, size: int | None = None) -> int:
-        self._end = self._at if size is None else size
-        self._try(lambda: self._raw.truncate(self._end))
-        return self._end
-
-    def flush(self) -> None:
-        self._try(self._raw.flush)
-
-    def _write(self, data: Any) -> None:
-        if self._raw.tell() != self._at:  # A seek would empty the buffer.
-            self._raw.seek(self._at)
-        self._raw.write(data)
-
-    def _try(self, act: Any) -> None:
-        if self._error is None:
-            try:
-                act()
-            except OSError as error:
-                self._error = error
-
-
-@contextlib.contextmanager
-def _frame(path: Path) -> Iterator[h5py.File]:
+def open_frame(path: Path) -> Iterator[h5py.File]:
     """Give the file of a frame to read; what goes wrong in the block is one sentence."""
     import h5py
 
@@ -277,7 +233,7 @@ def _frame(path: Path) -> Iterator[h5py.File]:
         raise CaseError(rule, "bring it back, or use other frames") from error
 
 
-def _info(file: h5py.File) -> FrameInfo:
+def info_of(file: h5py.File) -> FrameInfo:
     return FrameInfo(**json.loads(file.attrs["frame"]))
 
 

@@ -122,7 +122,8 @@ class FramesWriter:
             info.elsewhere[CELLS] = self._cells[tuple(info.rows)]
         new: dict[str, bytes] = {}
         path = frame_path(self._folder, number, self._part)
-        write_frame(path, info, self._part, self._own(frame.columns, info, new), self._level)
+        arrays = self._own(frame.columns, info, new)
+        write_frame(path, info, self._part, arrays, self._level, frame.tables)
         with writing(path):
             check = checksum(path)
         assert check is not None  # for no size was given

@@ -86,8 +86,8 @@ class HistoryWriter:
         bodies: name of each body. Bodies of one name, grains, are taken together, and what they
             do to each other has no columns.
         contact: whether the run has contact; without it there are no pairs' columns.
-        parts: whether there are columns of bodies, `body_<a>_mass` and so on, and of the angular
-            momentum of all.
+        parts: whether there are columns of bodies and walls, and of the angular momentum of all.
+        walls: names of the faces of the box that are not free.
         every: keep the rows whose step is a multiple of this, and the last of each block.
         state: of a run that goes on, `state()` then; the files have what it says
             (`check_history`), and rows written later are cut off.
@@ -105,6 +105,7 @@ class HistoryWriter:
         bodies: Sequence[str],
         contact: bool = True,
         parts: bool = False,
+        walls: Sequence[str] = (),
         every: int = 1,
         state: Mapping[str, Any] | None = None,
         anew: bool = False,
@@ -117,13 +118,12 @@ class HistoryWriter:
         pairs = list(itertools.combinations(firsts, 2)) if contact else []
         self._pairs = {pair: k for k, pair in enumerate(pairs)} if len(pairs) <= PAIR_LIMIT else {}
         header = list(columns)
-        self._parts = PartCells(names, state["bodies"] if state else ()) if parts else None
+        first = state["bodies"] if state else ()
+        self._parts = PartCells(names, walls, first) if parts else None
         self._part_cells = self._parts.header if self._parts else []
         header += self._part_cells
-        for a, b in self._pairs:
-            for kind in ("force", "impulse"):
-                both = f"{self._bodies[a]}_{self._bodies[b]}"
-                header += [f"contact_{kind}_{both}_{x}" for x in _AXES]
+        for both in (f"{self._bodies[a]}_{self._bodies[b]}" for a, b in self._pairs):
+            header += [f"contact_{k}_{both}_{x}" for k in ("force", "impulse") for x in _AXES]
         make_folder(self.path.parent)
         known = [None, None] if state is None or anew else state["tables"]
         self._table = Table(self.path, header, known[0])
@@ -147,7 +147,7 @@ class HistoryWriter:
         Args:
             rows: the core's `history()`, shape (steps, columns).
             pairs: the core's `contact_groups()` after the last of these steps; None: not known.
-            parts: its `part_sums()` then; None: not asked for.
+            parts: `part_cells.sums_of` it then; None: not asked for.
         """
         if parts is not None:
             self.note_bodies(parts)
@@ -190,7 +190,7 @@ class HistoryWriter:
         return dict(self._summary)
 
     def note_bodies(self, parts: Sums) -> None:
-        """Take the core's `part_sums()` for the last that is known of the bodies."""
+        """Take these sums for the last that is known of the bodies."""
         if self._parts:
             self._parts.note(parts)
 

@@ -20,10 +20,12 @@ from mpm3dpp.base.errors import CaseError
 from .records import (
     ContactRecord,
     LoadRecord,
+    WallRecord,
     WarningRecord,
     contact_of,
     limiter_of,
     loads_of,
+    walls_of,
     warnings_of,
 )
 from .result_hash import Parts, result_hash
@@ -52,7 +54,7 @@ class Manifest:
         peak_memory_bytes: largest resident size of the process so far, the program, frames and
             checkpoints included, pictures not: they have a process of their own [bytes].
         bytes: of the core alone: particles, grid, contact, other.
-        loads: see `LoadRecord`, by name.
+        loads: see `LoadRecord`, by name.          walls: see `WallRecord`, by face.
         warnings: see `WarningRecord`.
         result_hash: see `mpm3dpp.io.result_hash`.
         contact: see `ContactRecord`.          end_time: time reached [s].
@@ -86,6 +88,7 @@ class Manifest:
     result_hash: str
     contact: ContactRecord
     loads: dict[str, LoadRecord]
+    walls: dict[str, WallRecord]
     warnings: list[WarningRecord]
     limiter: dict[str, Any] | None
     energies: dict[str, Any]
@@ -181,6 +184,7 @@ def build_manifest(
         result_hash=result_hash(simulation, columns),
         contact=contact_of(simulation, parts or bodies),
         loads=loads_of(simulation),
+        walls=walls_of(simulation),
         warnings=warnings_of(simulation, bodies),
         limiter=limiter_of(simulation, bodies),
         energies=dict(energies or {}),

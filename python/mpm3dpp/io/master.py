@@ -18,7 +18,8 @@ import numpy as np
 
 from mpm3dpp.base.disk import replacing
 
-from .frame_file import CELLS, LIBVER, FrameInfo, frame_path, frames_folder
+from .frame_file import CELLS, FrameInfo, frame_path, frames_folder
+from .new_h5 import LIBVER
 
 if TYPE_CHECKING:
     import h5py

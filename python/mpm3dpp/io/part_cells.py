@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The columns of `history.csv` for each body, and for the balance of angular momentum."""
+"""The columns of `history.csv` for each body and wall, and for the balance of angular momentum."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -15,23 +16,60 @@ PART_COLUMNS: dict[str, tuple[str, str]] = _core.part_columns
 TOTALS: dict[str, tuple[str, str]] = _core.total_columns
 """Unit and meaning of the columns before those of bodies."""
 
-Sums = tuple[list[float], np.ndarray]
-"""What `part_sums()` returns: TOTALS, and PART_COLUMNS of each body, shape (bodies, columns)."""
+WALL_COLUMNS: dict[str, tuple[str, str]] = {
+    "force_x": ("N", "force of the last step of the bodies on this face of the box"),
+    "force_y": ("N", "likewise"),
+    "force_z": ("N", "likewise; 0 in 2D"),
+    "impulse_x": ("N s", "its impulse so far"),
+    "impulse_y": ("N s", "likewise"),
+    "impulse_z": ("N s", "likewise; 0 in 2D"),
+    "pressure": ("Pa", "the force out of the box over the area of the whole face"),
+}
+"""Unit and meaning of the columns of each face of the box that is not free: `wall_x_min_force_x`,
+..."""
+
+Sums = tuple[list[float], np.ndarray, list[Any]]
+"""TOTALS; PART_COLUMNS of each body, shape (bodies, columns); and the core's faces of the box."""
 
 PART_LIMIT = 12
 """Most bodies, all grains of an entry being one, that get columns of their own."""
 
 
+def sums_of(core: Any) -> Sums:
+    """Return what the core's `Simulation` tells of bodies and walls now."""
+    totals, bodies = core.part_sums()
+    return totals, bodies, core.walls()
+
+
+def wall_pressure(face: Any) -> float:
+    """Return the mean pressure on a face of the box [Pa]: positive if bodies push out of it."""
+    axis, outward = "xyz".index(face.name[0]), 1.0 if face.name.endswith("max") else -1.0
+    return float(outward * face.force[axis] / face.area + 0.0)
+
+
+def of_body(history: Mapping[str, np.ndarray], body: str) -> dict[str, np.ndarray]:
+    """Return `time` and PART_COLUMNS of a body where the history has them."""
+    columns = {name: history[f"body_{body}_{name}"] for name in PART_COLUMNS}
+    told = ~np.isnan(columns["mass"])
+    return {"time": history["time"][told]} | {k: v[told] for k, v in columns.items()}
+
+
 class PartCells:
-    """What the history holds of the bodies.
+    """What the history holds of the bodies and of the walls.
 
     Args:
         names: of the bodies, all grains of an entry being one.
+        walls: names of the faces of the box that are not free.
         first: rows of the first sums of a run that goes on; none if it begins.
     """
 
-    def __init__(self, names: Sequence[str], first: Sequence[Sequence[float]] = ()) -> None:
-        self._names = list(names)
+    def __init__(
+        self,
+        names: Sequence[str],
+        walls: Sequence[str] = (),
+        first: Sequence[Sequence[float]] = (),
+    ) -> None:
+        self._names, self._walls = list(names), list(walls)
         self._told = self._names if len(names) <= PART_LIMIT else []
         self.first = np.array(first) if len(first) else None
         self._last = self.first
@@ -40,23 +78,21 @@ class PartCells:
     def header(self) -> list[str]:
         """Names of the columns."""
         told = [f"body_{name}_{column}" for name in self._told for column in PART_COLUMNS]
-        return [*TOTALS, *told]
+        walls = [f"wall_{name}_{column}" for name in self._walls for column in WALL_COLUMNS]
+        return [*TOTALS, *told, *walls]
 
     def note(self, sums: Sums) -> None:
-        """Keep the core's `part_sums()` if they are the first, and as the last."""
+        """Keep the sums of the bodies if they are the first, and as the last."""
         self._last = sums[1]
         if self.first is None:
             self.first = sums[1]
 
     def cells(self, sums: Sums) -> list[str]:
-        """Return the cells of a row.
-
-        Args:
-            sums: the core's `part_sums()`.
-        """
-        totals, parts = sums
+        """Return the cells of a row."""
+        totals, parts, faces = sums
         told = parts.ravel().tolist() if self._told else []
-        return [repr(value) for value in [*totals, *told]]
+        walls = [v for face in faces for v in (*face.force, *face.impulse, wall_pressure(face))]
+        return [repr(value) for value in [*totals, *told, *walls]]
 
     def records(self) -> dict[str, dict[str, dict[str, float]]]:
         """Return of each body what PART_COLUMNS were, `initial` and `final`."""

@@ -7,6 +7,8 @@ import dataclasses
 from collections.abc import Sequence
 from typing import Any
 
+from .part_cells import wall_pressure
+
 
 @dataclasses.dataclass
 class PairRecord:
@@ -47,6 +49,23 @@ class LoadRecord:
 
     impulse: list[float]
     force: list[float]
+    area: float
+
+
+@dataclasses.dataclass
+class WallRecord:
+    """What bodies have done to a face of the box.
+
+    Attributes:
+        force: of the last step on the face [N] (per metre in 2D).
+        impulse: of it so far [N s] (per metre in 2D).
+        pressure: the force out of the box over the area of the whole face [Pa].
+        area: of the face [m^2; in 2D m times 1 m].
+    """
+
+    force: list[float]
+    impulse: list[float]
+    pressure: float
     area: float
 
 
@@ -127,6 +146,16 @@ def loads_of(simulation: Any) -> dict[str, LoadRecord]:
     return {
         load.name: LoadRecord(list(load.impulse), list(load.force), float(load.area))
         for load in simulation.loads()
+    }
+
+
+def walls_of(simulation: Any) -> dict[str, WallRecord]:
+    """Return what bodies have done to the faces of the box that are not free, by name."""
+    return {
+        face.name: WallRecord(
+            list(face.force), list(face.impulse), wall_pressure(face), float(face.area)
+        )
+        for face in simulation.walls()
     }
 
 

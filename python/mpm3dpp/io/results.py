@@ -13,10 +13,13 @@ import numpy as np
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError, nearest
 
-from .data_frames import data_frame, has_pandas
-from .frame_file import frame_path, is_whole, read_arrays, read_info
+from .data_frames import data_frame, maybe_frame
+from .frame_file import frame_path, is_whole, read_arrays, read_info, read_table
 from .history import read_history
-from .rows import FROM_VTK, TO_VTK
+from .one_file import arrays_of_one_file
+from .part_cells import PART_COLUMNS, PART_LIMIT, of_body
+from .probe_tables import read_probe
+from .rows import FROM_VTK, is_tensor
 
 if TYPE_CHECKING:
     import pyvista
@@ -107,22 +110,8 @@ class Results:
         if self._folder:
             arrays = read_arrays(self._folder, frame, wanted)
         else:
-            arrays = self._arrays_of_one(frame, wanted)
-        return {k: v[:, FROM_VTK] if _is_tensor(v) else v for k, v in arrays.items()}
-
-    def _arrays_of_one(self, frame: int, names: Collection[str] | None) -> dict[str, np.ndarray]:
-        """Arrays of a frame, where earlier versions have put all frames into one file."""
-        steps = self._root["Steps"]
-        part = int(steps["PartOffsets"][frame])
-        count = int(self._root["NumberOfPoints"][part])
-        first = int(steps["PointOffsets"][frame])
-        arrays = {"position": self._root["Points"][first : first + count]}
-        for name, data in self._root["PointData"].items():
-            if names is not None and name not in names:
-                continue
-            first = int(steps["PointDataOffsets"][name][frame])
-            arrays[name] = data[first : first + count]
-        return arrays
+            arrays = arrays_of_one_file(self._root, frame, wanted)
+        return {k: v[:, FROM_VTK] if is_tensor(v) else v for k, v in arrays.items()}
 
     def to_pandas(self, frame: int, names: Collection[str] | None = None) -> Any:
         """Return a frame as a `pandas.DataFrame`, a row for each particle.
@@ -134,7 +123,6 @@ class Results:
             names: see `arrays`.
 
         Raises:
-            IndexError: there is no such frame.
             CaseError: pandas is not installed; or see `arrays`.
         """
         return data_frame(self.arrays(frame, names))
@@ -161,16 +149,44 @@ class Results:
         columns = {name: [frame[name][particle] for frame in frames] for name in frames[0]}
         return {"time": self.times} | {name: np.array(rows) for name, rows in columns.items()}
 
-    def history(self) -> Any:
+    def history(self, body: str | None = None) -> Any:
         """Return the table of the run, `history.csv`, by the names of its columns.
 
         That is a `pandas.DataFrame` where pandas is installed, else arrays by name.
 
+        Args:
+            body: if given, what this body had, or these grains together: `time` and the columns
+                `body_A_` of docs/reference/history.md, where they were written.
+
         Raises:
-            CaseError: the file is missing or damaged.
+            CaseError: there is no such body; a file is missing or damaged.
         """
-        table = read_history(self.path.parent)
-        return data_frame(table) if has_pandas() else table
+        if body is not None:
+            return maybe_frame(self._history_of(body))
+        return maybe_frame(read_history(self.path.parent))
+
+    def probe(self, name: str) -> Any:
+        """Return what a probe saw, its columns by name: time, step, particles, mass and fields.
+
+        That is a `pandas.DataFrame` where pandas is installed, else arrays by name.
+
+        Raises:
+            CaseError: there is no such probe, or its table is damaged.
+        """
+        return maybe_frame(read_probe(self.path.parent, arguments.text("name", name)))
+
+    def bodies_at(self, frame: int) -> Any:
+        """Return the table of all bodies in a frame, a row for each; columns as of `history`.
+
+        Raises:
+            IndexError: there is no such frame.
+            CaseError: there are 12 bodies or fewer; or a frame is missing or damaged.
+        """
+        frame = self.number(frame)
+        if len(self.bodies) <= PART_LIMIT or self._folder is None:
+            rule = f"frames have a table of bodies if these are more than {PART_LIMIT}"
+            raise CaseError(rule, "take history(body), which goes by the history")
+        return maybe_frame(read_table(frame_path(self._folder, frame), "bodies"))
 
     def nearest(self, time: float) -> int:
         """Number of the frame nearest to `time` [s].
@@ -190,19 +206,9 @@ class Results:
             IndexError: there is no such frame.
             CaseError: PyVista is not installed.
         """
-        try:
-            import pyvista
-        except ImportError as error:
-            raise CaseError(
-                "results[k] needs PyVista: pip install pyvista, or use results.arrays(k)"
-            ) from error
-        arrays = self.arrays(frame)
-        cloud = pyvista.PolyData(arrays.pop("position"))
-        for name, values in arrays.items():
-            cloud.point_data[name] = values[:, TO_VTK] if _is_tensor(values) else values
-        cloud.field_data["time"] = [float(self.times[frame])]
-        cloud.field_data["step"] = [int(self.steps[frame])]
-        return cloud
+        from .point_cloud import point_cloud
+
+        return point_cloud(self.arrays(frame), float(self.times[frame]), int(self.steps[frame]))
 
     def __iter__(self) -> Iterator[Any]:
         return (self[k] for k in range(len(self)))
@@ -236,15 +242,29 @@ class Results:
         where = self.arrays(0, ["body"])["body"] if len(self) else np.zeros(0, dtype=int)
         among = np.arange(len(where))
         if body is not None:
-            if arguments.text("body", body) not in self.bodies:
-                raise CaseError(
-                    "is not a body of these results", nearest(body, self.bodies), value=body
-                )
-            among = among[where == self.bodies.index(body)]
+            among = among[where == self._body(body)]
         if not -len(among) <= particle < len(among):
             of = f"body {body}" if body else f"'{self.path}'"
             raise IndexError(f"particle {particle} of {of}: it has {len(among):,} particles")
         return int(among[particle])
+
+    def _history_of(self, body: str) -> dict[str, np.ndarray]:
+        """Return what a body had over time, columns by name."""
+        number = self._body(body)
+        if len(self.bodies) > PART_LIMIT and self._folder is not None:
+            files = [frame_path(self._folder, k) for k in range(len(self))]
+            tables = [read_table(file, "bodies") for file in files]
+            rows = {name: [table[name][number] for table in tables] for name in PART_COLUMNS}
+            return {"time": self.times} | {name: np.array(row) for name, row in rows.items()}
+        return of_body(read_history(self.path.parent), body)
+
+    def _body(self, body: str) -> int:
+        """Return the number of a body. Raises `CaseError` if there is none of that name."""
+        if arguments.text("body", body) not in self.bodies:
+            raise CaseError(
+                "is not a body of these results", nearest(body, self.bodies), value=body
+            )
+        return self.bodies.index(body)
 
     def _must_be_open(self) -> None:
         if not self._open:
@@ -274,7 +294,3 @@ def open_results(path: str | Path) -> Results:
         CaseError: the file is missing or is not one of ours.
     """
     return Results(path)
-
-
-def _is_tensor(values: np.ndarray) -> bool:
-    return values.ndim == 2 and values.shape[1] == 6

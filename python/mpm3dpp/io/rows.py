@@ -11,10 +11,15 @@ FROM_VTK = (0, 1, 2, 4, 5, 3)
 """Our order taken from VTK's: where VTK has each of our components."""
 
 
+def is_tensor(values: np.ndarray) -> bool:
+    """Return whether an array has a symmetric tensor in each row."""
+    return values.ndim == 2 and values.shape[1] == 6
+
+
 def as_stored(array: np.ndarray) -> np.ndarray:
     """Return as stored: float32 (integers int32), two components as three, tensors in VTK order."""
     array = np.asarray(array)
-    if array.ndim == 2 and array.shape[1] == 6:
+    if is_tensor(array):
         array = array[:, TO_VTK]
     if array.ndim == 2 and array.shape[1] == 2:
         array = np.column_stack([array, np.zeros(len(array))])

@@ -33,8 +33,8 @@ def plot_results(
 
     Returns:
         paths of the pictures: `frame.png` (the last frame) or `frame_0012.png`,
-        `energies.png` when there is a history, `first_contact.png` when bodies touched,
-        `animation.gif`.
+        `energies.png` when there is a history, `probes.png` of probes, `first_contact.png` when
+        bodies touched, `animation.gif`.
 
     Raises:
         CaseError: there are no results, no such frame or no such array; or a picture could not be

@@ -10,6 +10,7 @@ from typing import Any
 from mpm3dpp.base.errors import CaseError, first_of
 from mpm3dpp.io.history import read_history
 from mpm3dpp.io.manifest import read_manifest
+from mpm3dpp.io.probe_tables import probe_names, read_probe
 from mpm3dpp.io.results import Results, open_results
 
 from .contact import first_contact
@@ -38,6 +39,7 @@ def draw_all(
         name = "frame.png" if frame == -1 else f"frame_{frame % count:04d}.png"
         yield save_frame(results, frame, out / name, colour)
         others: list[Callable[[], Path | None]] = [lambda: _energies(results, source, out)]
+        others.append(lambda: _probes(results, source, out))
         if animation:
             others.append(lambda: _animation(results, out, colour))
         others.append(lambda: first_contact(folder, out / "first_contact.png"))
@@ -63,6 +65,15 @@ def _energies(results: Results, source: Path, out: Path) -> Path | None:
     if len(history["time"]) == 0:
         return None
     return save_energies(history, out / "energies.png", results.dimension, results.bodies)
+
+
+def _probes(results: Results, source: Path, out: Path) -> Path | None:
+    tables = {name: read_probe(source, name) for name in probe_names(source)}
+    if not any(len(table["time"]) for table in tables.values()):
+        return None
+    from .probes import save_probes
+
+    return save_probes(tables, results.units, out / "probes.png")
 
 
 def _animation(results: Results, out: Path, colour: str) -> Path:

@@ -9,7 +9,7 @@ import os
 import time as clock
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mpm3dpp import _core
 from mpm3dpp.base.disk import writing
@@ -28,7 +28,11 @@ from mpm3dpp.io.checkpoint import (
 )
 from mpm3dpp.io.frame_file import frames_folder
 from mpm3dpp.io.history import PAIRS, HistoryWriter, check_history, has_no_history
+from mpm3dpp.io.probe_tables import check_probe, probe_path
 from mpm3dpp.io.vtkhdf import RESULTS, check_frames, has_no_results
+
+if TYPE_CHECKING:
+    from .probes import Probes
 
 # What a case may change before it goes on: nothing that a step made so far depends on.
 _LIMITS = ("energy_growth_limit", "outside_limit", "volume_limit")
@@ -44,6 +48,7 @@ class Checkpoint:
         path: of the file.          step: steps made.          time: reached [s].
         wall_time: that the run has taken so far [s].
         results: see `ResultsWriter.rows`.          history: see `HistoryWriter.state`.
+        probes: see `Probes.state`.
         case: see `Case.content`.          made_by: see `_program`.
     """
 
@@ -53,6 +58,7 @@ class Checkpoint:
     wall_time: float
     results: dict[str, Any]
     history: dict[str, Any]
+    probes: dict[str, Any]
     case: dict[str, Any]
     made_by: dict[str, str]
 
@@ -95,6 +101,9 @@ class Checkpoint:
         with _damaged(table, *([pairs] if pairs.exists() else [])):
             if not self.history_is_gone:
                 check_history(folder, self.history)
+        for name, of_probe in self.probes.items():
+            with _damaged(probe_path(folder, name)):
+                check_probe(folder, name, of_probe)
         with _damaged(results, frames_folder(results)):
             if not self.results_are_gone:
                 check_frames(results, self.results)
@@ -158,9 +167,13 @@ class Checkpoints:
         folder: of the run.
         case: of the run.
         before: from which it goes on, if it does.
+
+    Attributes:
+        probes: of the run, once there are any.
     """
 
     def __init__(self, folder: Path, case: Case, before: Checkpoint | None) -> None:
+        self.probes: Probes | None = None
         self._path = folder / CHECKPOINT
         self._case = case
         self._interval = case.output.checkpoint_interval
@@ -198,6 +211,7 @@ class Checkpoints:
             "wall_time": self.wall_time,
             "results": results.rows(),
             "history": history.state(),
+            "probes": self.probes.state() if self.probes else {},
             "case": self._case.content(),
             "made_by": _program(),
         }

@@ -52,7 +52,7 @@ def contact_table(manifest: Manifest) -> list[str]:
 def body_lines(manifest: Manifest) -> list[str]:
     """Return a line for each body that moves freely: the speed of its mass centre and its energy.
 
-    That is before and after, then the velocity; of grains the mean one.
+    That is before and after, then the velocity; of grains the mean one. And what has eroded.
     """
     flat = manifest.case.get("grid", {}).get("dimension") == 2
     unit, axes = ("J/m", "xy") if flat else ("J", "xyz")
@@ -65,9 +65,10 @@ def body_lines(manifest: Manifest) -> list[str]:
         before, after = (math.hypot(*velocity) for velocity in velocities)
         energies = " -> ".join(f"{found[k]['kinetic']:.4g}" for k in ("initial", "final"))
         final = [v if abs(v) > _ROUNDING * after else 0.0 for v in velocities[1]]
+        eroded = found["final"]["eroded_mass"]
         lines.append(
             f"{name}: {before:.4g} -> {after:.4g} m/s ({_listed(final)}), kinetic energy "
-            f"{energies} {unit}"
+            f"{energies} {unit}" + (f", eroded {eroded:.4g} kg{unit[1:]}" if eroded else "")
         )
     if len(lines) > _BODIES_SHOWN:
         more = len(lines) - _BODIES_SHOWN
@@ -152,6 +153,18 @@ def load_lines(manifest: Manifest) -> list[str]:
         f"load {name}: impulse [{_listed(load.impulse[numbers])}] N s{per}, at the end force "
         f"[{_listed(load.force[numbers])}] N{per} on {load.area:.4g} {square}"
         for name, load in manifest.loads.items()
+    ]
+
+
+def wall_lines(manifest: Manifest) -> list[str]:
+    """Return a line for each face of the box that bodies have pushed: force, pressure, impulse."""
+    flat = manifest.case.get("grid", {}).get("dimension") == 2
+    per, numbers = ("/m", slice(0, 2)) if flat else ("", slice(0, 3))
+    return [
+        f"wall {name}: at the end force [{_listed(wall.force[numbers])}] N{per}, pressure "
+        f"{wall.pressure:.4g} Pa on all of it; impulse [{_listed(wall.impulse[numbers])}] N s{per}"
+        for name, wall in manifest.walls.items()
+        if any(wall.impulse)
     ]
 
 

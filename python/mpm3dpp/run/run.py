@@ -17,12 +17,14 @@ from mpm3dpp.io.checkpoint import CHECKPOINT, no_checkpoint
 from mpm3dpp.io.folders import forget_last_run, only_run_in, writable_folder
 from mpm3dpp.io.history import HistoryWriter
 from mpm3dpp.io.manifest import Manifest, Status, build_manifest
+from mpm3dpp.io.part_cells import sums_of
 from mpm3dpp.io.vtkhdf import RESULTS, ResultsWriter
 from mpm3dpp.plots.apart import draw_apart
 from mpm3dpp.ranks.world import world
 
 from .checkpoints import Checkpoint, Checkpoints
 from .lead import background_writer, column_parts, follow, make_simulation, release
+from .probes import Probes
 from .progress import Progress
 from .report import (
     body_lines,
@@ -31,6 +33,7 @@ from .report import (
     gone_lines,
     load_lines,
     speed_line,
+    wall_lines,
     warning_lines,
 )
 from .resume import go_on, has_checkpoint
@@ -104,7 +107,7 @@ def _run_case(
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
         lines = [*body_lines(manifest), *contact_table(manifest), *load_lines(manifest)]
-        lines += gone_lines(manifest)
+        lines += [*wall_lines(manifest), *gone_lines(manifest)]
         lines += warning_lines(manifest)
         lines += [energy_line(manifest)]
         print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]), flush=True)
@@ -193,13 +196,15 @@ def _write_run(
         bodies=simulation.parts,
         contact=contact,
         parts=True,
+        walls=[face.name for face in core.walls()],
         every=case.output.history_every,
         state=before.history if before else None,
         anew=history_anew,
     )
+    probes = checkpoints.probes = Probes(simulation, folder, before.probes if before else None)
     unit = "J/m" if case.grid.dimension == 2 else "J"
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
-    with background_writer(simulation, file) as results, history, progress:
+    with background_writer(simulation, file) as results, history, probes, progress:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
         for sentence in [*simulation.notes, *notes]:
@@ -208,9 +213,11 @@ def _write_run(
             results.write(core)
         if before is not None and (kept is None or history_anew):  # Of the new files.
             tell(progress, checkpoints.write(core, results, history))
-        status, reason = step_to_end(simulation, checkpoints, results, history, progress, notice)
+        status, reason = step_to_end(
+            simulation, checkpoints, results, history, probes, progress, notice
+        )
         if status != "failed":
-            history.note_bodies(core.part_sums())
+            history.note_bodies(sums_of(core))
             tell(progress, checkpoints.write_last(core, results, history))
     simulation.summary = history.summary()
     return status, reason, history.bodies()

@@ -11,8 +11,10 @@ from mpm3dpp.base.signals import Notice
 from mpm3dpp.io.background import BackgroundWriter
 from mpm3dpp.io.history import HistoryWriter
 from mpm3dpp.io.manifest import Status
+from mpm3dpp.io.part_cells import sums_of
 
 from .checkpoints import Checkpoints
+from .probes import Probes
 from .progress import Progress
 from .simulation import Simulation
 
@@ -26,6 +28,7 @@ def step_to_end(
     checkpoints: Checkpoints,
     results: BackgroundWriter,
     history: HistoryWriter,
+    probes: Probes,
     progress: Progress,
     notice: Notice,
 ) -> tuple[Status, str | None]:
@@ -34,7 +37,7 @@ def step_to_end(
     Args:
         simulation: ready to step.
         checkpoints: written when they are due.
-        results, history: of the run, open.
+        results, history, probes: of the run, open.
         progress: where the user looks.
         notice: of the user's wish to stop.
     """
@@ -46,12 +49,14 @@ def step_to_end(
     told = len(core.warnings())  # Those of the parts of the run before.
     sums_every = max(_PARTS_EVERY, case.output.history_every)
     if core.step == 0:
-        history.append(core.history(), None, core.part_sums())
+        history.append(core.history(), None, sums_of(core))
+        probes.look(core)
     while core.time < case.run.end_time:
         failed, before, settling = None, core.step, core.time < 0.0
         try:
             # To the end of settling, when the clock jumps to 0: there is a frame.
-            simulation.advance(_steps(most, frames, core), 0.0 if settling else None)
+            until = min(frames[0] if frames else math.inf, probes.next)
+            simulation.advance(_steps(most, until, core), 0.0 if settling else None)
         except RunError as error:
             failed = str(error)
         told = _tell_new(progress, core, told)
@@ -64,11 +69,12 @@ def step_to_end(
         due = bool(frames) and core.time >= frames[0]
         # By the steps' numbers, so that a run that goes on has them in the same rows.
         summed = due or core.step // sums_every > before // sums_every
-        history.append(rows, pairs, core.part_sums() if summed else None)
+        history.append(rows, pairs, sums_of(core) if summed else None)
         if failed is not None:
             if core.failure.kind not in _NO_STATE:  # Else the last frame is the last good one.
                 results.write(core)
             return "failed", failed
+        probes.look(core)
         while frames and core.time >= frames[0]:
             frames.pop(0)
         if due or core.step // _BLOCK > before // _BLOCK:  # Not at each step: others are asked too.
@@ -107,12 +113,12 @@ def _touched(pairs: list[Any]) -> int:
     return sum(pair.first_step >= 0 for pair in pairs)
 
 
-def _steps(most: int, frames: list[float], core: Any) -> int:
-    """Return how many steps to make before the next look: not past the next frame's time.
+def _steps(most: int, until: float, core: Any) -> int:
+    """Return how many steps to make before the next look: not past a time, of a frame or a probe.
 
     Looks are at multiples of `most`, so that those at frames do not shift them.
     """
     most -= core.step % most
-    if not frames or core.dt <= 0.0:
+    if until == math.inf or core.dt <= 0.0:
         return most
-    return max(1, min(most, math.ceil((frames[0] - core.time) / core.dt)))
+    return max(1, min(most, math.ceil((until - core.time) / core.dt)))

@@ -12,7 +12,7 @@
 #include "mpm/run/columns.hpp"
 #include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
-#include "mpm/run/part_sums.hpp"
+#include "mpm/run/part_rows.hpp"
 #include "mpm/run/prepare.hpp"
 #include "mpm/run/save.hpp"
 #include "mpm/run/warnings.hpp"
@@ -175,7 +175,10 @@ std::vector<double> run_of(const Choice& choice, Comm& comm, States& states) {
   std::vector<double> numbers = simulation.history.take();
   gather(simulation, numbers);
   const auto parts = part_sums(simulation.domain);
-  for (const double x : rows_of(parts)) numbers.push_back(x);
+  for (const double x : part_rows(simulation.domain, parts)) numbers.push_back(x);
+  for (const FaceRecord& face : face_records(simulation.domain))
+    for (const double x : {face.force[0], face.force[1], face.impulse[0], face.impulse[1]})
+      numbers.push_back(x);
   for (const double x : balance_row(simulation.domain.ledger.angular, angular_totals(parts)))
     numbers.push_back(x);
   for (const PairRecord& pair : simulation.domain.contact.records.of_all_ranks(comm))

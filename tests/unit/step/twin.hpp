@@ -107,6 +107,7 @@ struct Twin {
     if (domain.has_contact())
       connect_tiles(domain.contact, grid, domain.bodies, domain.contact_settings.response);
     domain.sums.resize(grid.patches.size());
+    domain.face_parts.resize(grid.patches.size());
     start_ledger();
   }
 

@@ -1,5 +1,6 @@
 // Which axes walls hold at a node, and where nodes beyond them are mirrored to.
 #include "check.hpp"
+#include "mpm/walls/face_impulses.hpp"
 #include "mpm/walls/walls.hpp"
 
 namespace {
@@ -45,6 +46,18 @@ void test_walls(mpm::testing::Report& report) {
   CHECK(above.node == (Index<2>{4, 5}) && above.turned == 3u);
   const WallImage<2> corner = image_of(odd, {-1, 7});
   CHECK(corner.node == (Index<2>{1, 5}) && corner.turned == 2u);
+
+  // Which faces do it, as bits 2 axis + side: x_min is the first, y_max the fourth.
+  CHECK_EQUAL(slip.faces_holding({0, 6}, 0), 1u | 8u);  // at the edge both hold x
+  CHECK_EQUAL(slip.faces_holding({0, 6}, 1), 8u);
+  CHECK_EQUAL(slip.faces_turning({-2, 3}, 0), 1u);
+  CHECK_EQUAL(slip.faces_turning({-2, 3}, 1), 0u);
+  CHECK_EQUAL(odd.faces_turning({-1, 7}, 0), 1u | 8u);
+  CHECK_EQUAL(odd.faces_holding({4, 7}, 0), 0u);
+  CHECK_EQUAL(box(Wall::absorbing, Wall::free, false).faces_absorbing({0, 3}), 1u);
+  FaceImpulses<2> faces;
+  faces.add(1u | 8u, 0, 3.0);
+  CHECK(faces.of[0][0][0] == 1.5 && faces.of[1][1][0] == 1.5 && faces.of[0][1][0] == 0.0);
 
   Walls<2> none = odd;
   none.exist = false;

@@ -1,0 +1,203 @@
+#include "mpm/run/probes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "mpm/comm/all_sums.hpp"
+#include "mpm/run/derived_fields.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::infinity();
+
+/// A field: a column, or one that follows from the stress.
+struct Field {
+  std::string name;
+  const DerivedField* derived = nullptr;
+  int components = 1;
+};
+
+template <int D>
+Field field_named(const Domain<D>& domain, const std::string& name) {
+  const auto derived = std::ranges::find(derived_fields, name, &DerivedField::name);
+  if (derived != derived_fields.end()) return {name, &*derived, 1};
+  for (const ParticlePool<D>& pool : domain.pools)
+    for (const ColumnInfo& info : pool.columns.infos())
+      if (info.name == name) return {name, nullptr, name == "stress" ? 6 : info.components};
+  throw std::invalid_argument("no field is named " + name);
+}
+
+/// Where it stands among the pool's components, or -1.
+template <int D>
+int first_component(const ParticlePool<D>& pool, const Field& field) {
+  const auto info = std::ranges::find(pool.columns.infos(), field.name, &ColumnInfo::name);
+  return info == pool.columns.infos().end() ? -1 : info->first;
+}
+
+template <int D>
+ParticleState state_of(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row) {
+  ParticleState p{{}, pool.mass()[row] / body.initial_density, D};
+  for (int c = 0; c < Sym<double, D>::size; ++c)
+    p.stress[D == 2 && c == 3 ? 5 : c] = pool.stress(c)[row];
+  return p;
+}
+
+/// f(component, value) for what a particle has of a field.
+template <int D, class F>
+void for_each_value(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row,
+                    const Field& field, F&& f) {
+  if (field.derived != nullptr) return f(0, field.derived->value(state_of(body, pool, row)));
+  if (field.name == "stress") {
+    const ParticleState p = state_of(body, pool, row);
+    for (int c = 0; c < 6; ++c) f(c, p.stress[c]);
+    return;
+  }
+  const int first = first_component(pool, field);
+  if (first < 0) return;
+  for (int c = 0; c < field.components; ++c)
+    pool.columns.with_component(first + c, [&](const auto* from) { f(c, double{from[row]}); });
+}
+
+/// The weight with which a probe sees a particle, 0 if it does not.
+template <int D>
+double weight_of(const Probe& probe, const Body<D>&, const ParticlePool<D>& pool, std::uint32_t row,
+                 double cell_size) {
+  double weight = pool.mass()[row];
+  for (int a = 0; a < D; ++a) {
+    const double x = pool.x(a)[row];
+    const auto axis = static_cast<std::size_t>(a);
+    if (probe.kind == ProbeKind::point)
+      weight *= std::max(0.0, 1.0 - std::abs(x - probe.lower[axis]) / cell_size);
+    else if (probe.kind == ProbeKind::region)
+      weight *= probe.lower[axis] <= x && x <= probe.upper[axis] ? 1.0 : 0.0;
+  }
+  if (probe.kind == ProbeKind::particle && std::cmp_not_equal(pool.id[row], probe.particle))
+    return 0.0;
+  return weight;
+}
+
+/// Can a probe see particles of a patch, which lie in its tile?
+template <int D>
+bool reaches(const Domain<D>& domain, const Probe& probe, const Patch<D>& patch) {
+  if (probe.kind != ProbeKind::point && probe.kind != ProbeKind::region) return true;
+  const auto& grid = domain.grid;
+  const double wide = probe.kind == ProbeKind::point ? grid.cell_size : 0.0;
+  const auto& to = probe.kind == ProbeKind::point ? probe.lower : probe.upper;
+  const Vec<double, D> first = grid.position_of(grid.first_cell(patch.tile));
+  for (std::size_t a = 0; a < D; ++a) {
+    // A cell more on either side: particles of cells that are centred at nodes, and rounding.
+    const double low = first[static_cast<int>(a)] - grid.cell_size - wide;
+    const double high = first[static_cast<int>(a)] + (Tile<D>::cells + 1) * grid.cell_size + wide;
+    if (to[a] < low || probe.lower[a] > high) return false;
+  }
+  return true;
+}
+
+/// f(body, pool, row) for the particles of some bodies.
+template <int D, class Reaches, class F>
+void for_each_of(const Domain<D>& domain, const std::vector<int>& bodies, Reaches&& reaches,
+                 F&& f) {
+  std::vector<std::uint8_t> wanted(domain.bodies.size());
+  for (const int body : bodies) wanted.at(static_cast<std::size_t>(body)) = 1;
+  for (const Patch<D>& patch : domain.grid.patches) {
+    if (wanted[static_cast<std::size_t>(patch.body)] == 0 || !reaches(patch)) continue;
+    const ParticlePool<D>& pool = domain.pool_of(patch);
+    for (const std::uint32_t row : pool.rows(patch)) f(patch.body, pool, row);
+  }
+}
+
+/// What has been seen of a component.
+struct Seen {
+  ExactSum weight, sum;
+  double least = none, largest = -none;
+};
+
+}  // namespace
+
+template <int D>
+std::vector<double> look(const Domain<D>& domain, const Probe& probe) {
+  std::vector<Field> fields;
+  std::size_t components = 0;
+  for (const std::string& name : probe.fields)
+    components +=
+        static_cast<std::size_t>(fields.emplace_back(field_named(domain, name)).components);
+  std::int64_t count = 0;
+  ExactSum mass;
+  std::vector<Seen> seen(components);
+  for_each_of(
+      domain, probe.bodies, [&](const Patch<D>& patch) { return reaches(domain, probe, patch); },
+      [&](int number, const ParticlePool<D>& pool, std::uint32_t row) {
+        const Body<D>& body = domain.body_at(number);
+        const double weight = weight_of(probe, body, pool, row, domain.grid.cell_size);
+        if (weight == 0.0) return;
+        ++count;
+        mass.add(pool.mass()[row]);
+        Seen* of_field = seen.data();
+        for (const Field& field : fields) {
+          for_each_value(body, pool, row, field, [&](int c, double value) {
+            Seen& of = of_field[c];
+            of.weight.add(weight);
+            of.sum.add(weight * value);
+            of.least = std::min(of.least, value);
+            of.largest = std::max(of.largest, value);
+          });
+          of_field += field.components;
+        }
+      });
+  Comm& comm = *domain.grid.partition.comm;
+  std::vector<ExactSum> sums{mass};
+  std::vector<double> ends;
+  for (const Seen& of : seen) {
+    sums.push_back(of.weight);
+    sums.push_back(of.sum);
+    ends.push_back(-of.least);
+    ends.push_back(of.largest);
+  }
+  all_sum(comm, sums);
+  comm.all_max(ends);
+  std::vector<double> told{static_cast<double>(all_sum(comm, count)), sums[0].value()};
+  for (std::size_t k = 0; k < components; ++k) {
+    const double weight = sums[1 + 2 * k].value();
+    const bool any = weight > 0.0;
+    told.push_back(any ? sums[2 + 2 * k].value() / weight : std::nan(""));
+    told.push_back(any ? -ends[2 * k] : std::nan(""));
+    told.push_back(any ? ends[2 * k + 1] : std::nan(""));
+  }
+  return told;
+}
+
+template <int D>
+std::optional<std::array<std::int64_t, 2>> nearest_particle(const Domain<D>& domain,
+                                                            const std::vector<int>& bodies,
+                                                            const std::array<double, 3>& place) {
+  // The key of which the least is wanted: distance squared, body, number.
+  std::array<double, 3> best{none, none, none};
+  for_each_of(
+      domain, bodies, [](const Patch<D>&) { return true; },
+      [&](int body, const ParticlePool<D>& pool, std::uint32_t row) {
+        double square = 0.0;
+        for (int a = 0; a < D; ++a) {
+          const double d = pool.x(a)[row] - place[static_cast<std::size_t>(a)];
+          square += d * d;
+        }
+        best =
+            std::min(best, {square, static_cast<double>(body), static_cast<double>(pool.id[row])});
+      });
+  Comm& comm = *domain.grid.partition.comm;
+  const int rank = rank_of_largest(comm, {-best[0], -best[1], -best[2]});
+  broadcast(comm, rank, best);
+  if (best[0] == none) return {};
+  return std::array{static_cast<std::int64_t>(best[1]), static_cast<std::int64_t>(best[2])};
+}
+
+template std::vector<double> look<2>(const Domain<2>&, const Probe&);
+template std::vector<double> look<3>(const Domain<3>&, const Probe&);
+template std::optional<std::array<std::int64_t, 2>> nearest_particle<2>(
+    const Domain<2>&, const std::vector<int>&, const std::array<double, 3>&);
+template std::optional<std::array<std::int64_t, 2>> nearest_particle<3>(
+    const Domain<3>&, const std::vector<int>&, const std::array<double, 3>&);
+
+}  // namespace mpm

@@ -1,0 +1,35 @@
+#pragma once
+// What the faces of the box give to the bodies, each by itself.
+#include <array>
+#include <bit>
+
+#include "mpm/math/exact_sum.hpp"
+
+namespace mpm {
+
+template <int D>
+struct FaceImpulses {
+  double of[D][2][D] = {};  // [axis][lower, upper][component] [N s]
+
+  /// A component of an impulse that faces give together, as bits 2 axis + side: at an edge of the
+  /// box each gives the same, so that none comes before another.
+  void add(unsigned faces, int component, double impulse) {
+    const int count = std::popcount(faces);
+    for (int face = 0; face < 2 * D; ++face)
+      if (faces >> face & 1u) of[face / 2][face % 2][component] += impulse / count;
+  }
+  /// f(number) for all, in one order: 2 D D.
+  template <class F>
+  void for_each(F&& f) {
+    for (auto& axis : of)
+      for (auto& face : axis)
+        for (double& component : face) f(component);
+  }
+  static constexpr std::size_t numbers = 2 * D * D;
+};
+
+/// Sums of them, in the same order, which may be added up over ranks at any time.
+template <int D>
+using FaceSums = std::array<ExactSum, FaceImpulses<D>::numbers>;
+
+}  // namespace mpm

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The tables of probes: `probes/NAME.csv` in the folder of a run."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mpm3dpp.base.disk import checksum
+from mpm3dpp.base.errors import CaseError, nearest
+
+PROBES = "probes"
+
+
+def probe_path(folder: Path, name: str) -> Path:
+    """Return the table of a probe."""
+    return folder / PROBES / f"{name}.csv"
+
+
+def probe_names(folder: Path) -> list[str]:
+    """Return the names of the probes of a run by its folder, in order."""
+    return sorted(path.stem for path in (folder / PROBES).glob("*.csv"))
+
+
+def read_probe(folder: Path, name: str) -> dict[str, np.ndarray]:
+    """Return the table of a probe: column name -> array (rows,), float64; NaN where it saw nothing.
+
+    A last row that a killed run left unfinished is dropped.
+
+    Raises:
+        CaseError: there is no such probe, or its table is none of ours.
+    """
+    path = probe_path(folder, name)
+    try:
+        lines = path.read_text(encoding="utf-8").split("\n")[:-1]  # A whole row ends with one.
+        header, *rows = csv.reader(lines)
+        table = np.array([list(map(float, row)) for row in rows], dtype=float)
+        columns = table.reshape(len(rows), len(header))
+    except FileNotFoundError as error:
+        known = probe_names(folder)
+        remedy = nearest(name, known) if known else "give the case a table [probe.NAME]"
+        raise CaseError("is no probe of this run", remedy, value=name) from error
+    except (OSError, ValueError, csv.Error) as error:
+        raise CaseError(f"'{path}' is not a table of a probe: {error}") from error
+    return {title: columns[:, k] for k, title in enumerate(header)}
+
+
+def check_probe(folder: Path, name: str, state: Mapping[str, Any]) -> None:
+    """Raise `CaseError` if the table of a run that goes on has not the rows that it had.
+
+    It may be gone altogether, and begins anew then.
+    """
+    path, known = probe_path(folder, name), state["table"]
+    if not path.exists():
+        return
+    try:
+        now = checksum(path, known["size"])
+    except OSError as error:
+        raise CaseError(f"cannot read '{path}': permission denied") from error
+    if now != known["check"]:
+        raise CaseError(f"'{path}' is damaged: its rows are not those that were written")
