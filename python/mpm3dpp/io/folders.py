@@ -14,6 +14,7 @@ from mpm3dpp.base.errors import CaseError
 
 from .checkpoint import CHECKPOINT, PREVIOUS
 from .history import PAIRS
+from .probe_tables import PROBES
 
 
 def default_folder(case_file: Path) -> Path:
@@ -48,7 +49,8 @@ def forget_last_run(folder: Path, checkpoint: bool = True) -> None:
     """
     half = unfinished(Path(CHECKPOINT)).name
     anew = (PAIRS, half, PREVIOUS, CHECKPOINT)  # A run that begins anew may have no such table.
-    for name in (*_OF_A_RUN, *(anew if checkpoint else ())):
+    tables = (path.relative_to(folder) for path in (folder / PROBES).glob("*.csv"))
+    for name in (*_OF_A_RUN, *((*anew, *tables) if checkpoint else ())):
         try:
             (folder / name).unlink(missing_ok=True)
         except OSError as error:

@@ -15,6 +15,7 @@ from .style import PALETTE, new_figure, save, styled
 Tables = Mapping[str, Mapping[str, np.ndarray]]
 _NO_FIELDS = ("time", "step", "particles", "mass")
 _VECTOR = ("x", "y", "z")
+_WAY = "way from the start"
 _MOST = 6  # fields shown
 _NAME = 18  # letters of a probe's name in the legend
 
@@ -22,8 +23,8 @@ _NAME = 18  # letters of a probe's name in the legend
 def save_probes(tables: Tables, units: Mapping[str, str], path: Path) -> Path | None:
     """Draw the tables of probes and write the picture; None if there is nothing to draw.
 
-    Of vectors the size is drawn; of regions and bodies the range from the least to the largest is
-    shaded. Tensors are left to who reads the tables.
+    Of vectors the size is drawn, of positions the distance from the first; of regions and bodies
+    the range from the least to the largest is shaded. Tensors are left to who reads the tables.
 
     Args:
         tables: columns of each probe, by its name (`mpm3dpp.io.probe_tables.read_probe`).
@@ -35,6 +36,7 @@ def save_probes(tables: Tables, units: Mapping[str, str], path: Path) -> Path | 
         for field, lines in _curves(table).items():
             curves.setdefault(field, {})[name] = [table["time"], *lines]
     fields = list(curves)[:_MOST]
+    colours = dict(zip(tables, cycle(PALETTE), strict=False))
     if not fields:
         return None
     with styled():
@@ -47,12 +49,15 @@ def save_probes(tables: Tables, units: Mapping[str, str], path: Path) -> Path | 
         for axes, field in zip(grid.flat, fields, strict=False):
             found = curves[field]
             most = max(np.nanmax(np.abs(lines), initial=0.0) for _, *lines in found.values())
-            factor, unit = prefix(float(most), units.get(field, ""))
-            for colour, (name, (time, *lines)) in zip(cycle(PALETTE), found.items(), strict=False):
+            factor, unit = prefix(
+                float(most), units.get(field.strip("|"), "m" if field == _WAY else "")
+            )
+            for name, (time, *lines) in found.items():
                 mean, *ends = [factor * line for line in lines]
-                axes.plot(scale * time, mean, color=colour, label=short(name, _NAME))
+                axes.plot(scale * time, mean, color=colours[name], label=short(name, _NAME))
                 if ends:
-                    axes.fill_between(scale * time, *ends, color=colour, alpha=0.15, lw=0)
+                    axes.fill_between(scale * time, *ends, color=colours[name], alpha=0.15, lw=0)
+            axes.legend()
             axes.set_ylabel(f"{field} [{unit}]" if unit else field)
             axes.grid(True)
             axes.margins(x=0.0)
@@ -60,7 +65,6 @@ def save_probes(tables: Tables, units: Mapping[str, str], path: Path) -> Path | 
             axes.set_visible(False)
         for axes in list(grid.flat)[max(0, len(fields) - columns) : len(fields)]:
             axes.set_xlabel(f"time [{time_unit}]")
-        grid[0, 0].legend()
         figure.align_ylabels()
         return save(figure, path)
 
@@ -75,7 +79,10 @@ def _curves(table: Mapping[str, np.ndarray]) -> dict[str, list[np.ndarray]]:
             continue
         if end == "x" and all(f"{base}_{axis}" in table for axis in ("x", "y")):
             parts = [table[f"{base}_{axis}"] for axis in _VECTOR if f"{base}_{axis}" in table]
-            found[base] = [np.sqrt(np.sum(np.square(parts), axis=0))]
+            if base == "position":
+                parts = [part - part[:1] for part in parts]
+            size = np.sqrt(np.sum(np.square(parts), axis=0))
+            found[_WAY if base == "position" else f"|{base}|"] = [size]
         elif not (end in _VECTOR and f"{base}_x" in table) and f"{base}_xx" not in table:
             ends = [table[f"{name}_{which}"] for which in ("min", "max") if f"{name}_min" in table]
             found[name] = [table[name], *ends]
