@@ -119,8 +119,9 @@ velocity = [{ expression = "3*x - y" }, { expression = "2 + y" }]
 
 
 def test_a_gauge_in_a_bar_sees_the_wave_of_an_impact(tmp_path: Path) -> None:
-    """The case of the how-to. A bar meets a wall: sigma = rho c v and no velocity, when the wave has come (d'Alembert).
+    """The case of the how-to: a bar meets a wall, and behind the wave there is no velocity.
 
+    The stress is sigma = rho c v (d'Alembert), along the bar; across it nu / (1 - nu) of that.
     The mean of the plateau to 2 %, as the verification of such bars has it; the arrival, the time
     at half of it, to two cells of 30: short waves are slow on a grid, and the front is wide.
     """

@@ -49,12 +49,12 @@ def forget_last_run(folder: Path, checkpoint: bool = True) -> None:
     """
     half = unfinished(Path(CHECKPOINT)).name
     anew = (PAIRS, half, PREVIOUS, CHECKPOINT)  # A run that begins anew may have no such table.
-    tables = (path.relative_to(folder) for path in (folder / PROBES).glob("*.csv"))
-    for name in (*_OF_A_RUN, *((*anew, *tables) if checkpoint else ())):
+    old = [folder / name for name in (*_OF_A_RUN, *(anew if checkpoint else ()))]
+    for path in [*old, *((folder / PROBES).glob("*.csv") if checkpoint else ())]:
         try:
-            (folder / name).unlink(missing_ok=True)
+            path.unlink(missing_ok=True)
         except OSError as error:
-            raise cannot_write(folder / name, error) from error
+            raise cannot_write(path, error) from error
 
 
 @contextlib.contextmanager
