@@ -132,7 +132,7 @@ std::vector<FaceRecord> face_records(const Domain<D>& domain) {
   FaceSums<D> in_step = domain.faces_in_step, so_far = domain.faces;
   all_sum(comm, in_step);
   all_sum(comm, so_far);
-  for (std::size_t face = 0; face < 2 * D; ++face) {
+  for (std::size_t face = 0; face < std::size_t{2} * D; ++face) {
     const std::size_t axis = face / 2, side = face % 2;
     if (walls.face[axis][side] == Wall::free) continue;
     FaceRecord& record = records.emplace_back();

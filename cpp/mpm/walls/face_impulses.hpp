@@ -25,7 +25,7 @@ struct FaceImpulses {
       for (auto& face : axis)
         for (double& component : face) f(component);
   }
-  static constexpr std::size_t numbers = 2 * D * D;
+  static constexpr std::size_t numbers = std::size_t{2} * D * D;
 };
 
 /// Sums of them, in the same order, which may be added up over ranks at any time.
