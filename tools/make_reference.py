@@ -18,6 +18,7 @@ from mpm3dpp.case.detonation import Detonation
 from mpm3dpp.case.loads import Load
 from mpm3dpp.case.motion import Motion
 from mpm3dpp.case.probe import Probe, ProbeRegion
+from mpm3dpp.case.stop import Stop
 from mpm3dpp.grains import GrainLattice, GrainPacking, Grains
 from mpm3dpp.io import history as terms
 from mpm3dpp.io import part_cells
@@ -58,6 +59,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ("grains.NAME.packing", GrainPacking, ""),
     ("load.NAME", Load, ""),
     ("detonation", Detonation, "Written `[[detonation]]`, once for each point."),
+    ("run.stop", Stop, ""),
     ("probe.NAME", Probe, ""),
     ("probe.NAME.region", ProbeRegion, ""),
 )

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from mpm3dpp.case.particles import Particles
     from mpm3dpp.case.parts import Contact, ContactPair, Output, Run, Viscosity
     from mpm3dpp.case.probe import Probe, ProbeRegion
+    from mpm3dpp.case.stop import Stop
     from mpm3dpp.grains import GrainCentres, GrainLattice, GrainPacking, Grains
     from mpm3dpp.io import open_results
     from mpm3dpp.materials import Eos, Failure, Strength
@@ -66,6 +67,7 @@ _HOMES = {
     "case.motion": ("Motion",),
     "case.particles": ("Particles",),
     "case.probe": ("Probe", "ProbeRegion"),
+    "case.stop": ("Stop",),
     "case.parts": ("Contact", "ContactPair", "Output", "Run", "Viscosity"),
     "grains": ("GrainCentres", "GrainLattice", "GrainPacking", "Grains"),
     "io": ("open_results",),
@@ -105,6 +107,7 @@ __all__ = [
     "Run",
     "RunError",
     "Simulation",
+    "Stop",
     "Strength",
     "TimeFunction",
     "Viscosity",

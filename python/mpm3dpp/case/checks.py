@@ -20,6 +20,7 @@ from .loads import check_loads
 from .material_checks import check_material
 from .motion import check_motion
 from .probe import check_probes
+from .stop import check_stops
 
 if TYPE_CHECKING:
     from mpm3dpp.grains import Grains
@@ -35,8 +36,7 @@ def check_case(case: Case) -> None:
     """Check a whole case and fill in the defaults that depend on the dimension.
 
     Raises:
-        PydanticCustomError, ValidationError: one violation or several, with their paths in the
-            case: all that can be told without what another of them spoils.
+        PydanticCustomError, ValidationError: one violation or several, with their paths.
     """
     first = list(_entries(case))
     report([*first, *_pairs(case), *_interval(case)] if first else [])
@@ -72,6 +72,7 @@ def _bodies_together(case: Case) -> Found:
         yield violation(rule, "give one another strength", path=path)
     yield from check_detonations(case)
     yield from check_loads(case)
+    yield from check_stops(case)
     yield from check_probes(case, lambda material: _columns(case, material))
     yield from _body_forces(case)
     yield from _dampings(case)

@@ -55,6 +55,7 @@ def hash_of(content: dict[str, Any]) -> str:
     """Return the SHA-256 (hexadecimal) of what a case holds."""
     # Without tables that older cases did not know, so that these keep their hash.
     used = {k: v for k, v in content.items() if v or k not in ("grains", "probe")}
+    used["run"] = {k: v for k, v in used["run"].items() if v or k != "stop"}
     text = json.dumps(used, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
 

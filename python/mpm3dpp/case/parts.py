@@ -13,6 +13,7 @@ from mpm3dpp.base.settings import core_table
 from mpm3dpp.base.units import NonNegative, Quantity, Time
 
 from . import choices
+from .stop import Stop, one_or_more
 from .transfer import Transfer, WordOrTable
 
 _Viscosity: Any = core_table("run.viscosity")
@@ -48,6 +49,7 @@ class Run(_Run):
         viscosity: artificial bulk viscosity; None for none.
         settle: how bodies come to rest before the run; None for a run that begins with them as
             they are filled.
+        stop: conditions under which the run ends before, a table or a list of them.
     """
 
     end_time: Time
@@ -56,10 +58,12 @@ class Run(_Run):
     )
     viscosity: Viscosity | None = None
     settle: Settle | None = None
+    stop: list[Stop] = Field(default_factory=list)
 
     @classmethod
     def complete(cls, data: Any) -> Any:
         """Refuse keys that are in the table of the transfer now."""
+        data = one_or_more(data)
         moved = {
             "pic_damping": 'transfer = { flip = 1.0, pic_rate = "200 1/s" }',
             "flip_share": "transfer = { flip = 0.99 } or { aflip = 0.97 }",

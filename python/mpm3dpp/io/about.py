@@ -72,6 +72,13 @@ class Probe(_Strict):
     particle: Annotated[list[Count], Field(min_length=2, max_length=2)] | None
 
 
+class Watch(_Strict):
+    """See `Watch.state`."""
+
+    probes: dict[str, Probe]
+    stops: dict[str, bool]
+
+
 class Run(_Strict):
     """Of the case: what is looked at before it is compared."""
 
@@ -94,7 +101,7 @@ class About(_Strict):
     wall_time: Annotated[FiniteFloat, Field(ge=0.0)]
     results: Results
     history: History
-    probes: dict[str, Probe]
+    watch: Watch
     case: SomeCase
     made_by: dict[str, str]
 

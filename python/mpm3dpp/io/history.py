@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import csv
 import itertools
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,12 +12,12 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp import _core
-from mpm3dpp.base.disk import checksum, make_folder
+from mpm3dpp.base.disk import make_folder
 from mpm3dpp.base.errors import CaseError
 
 from .fields import numbered
 from .part_cells import PartCells, Sums
-from .table import Table
+from .table import Table, check_table
 
 TERMS: dict[str, dict[str, str]] = _core.history_terms
 """The columns of the table, before those of pairs: `unit`, `meaning`, `role` in the balance of the
@@ -60,17 +59,8 @@ def check_history(folder: Path, state: Mapping[str, Any]) -> None:
         state: `HistoryWriter.state` then.
     """
     for path, known in zip((folder / "history.csv", folder / PAIRS), state["tables"], strict=True):
-        if known is None:
-            continue
-        try:
-            now = checksum(path, known["size"])
-        except OSError as error:
-            reason = os.strerror(error.errno) if error.errno else str(error)
-            raise CaseError(f"cannot read '{path}': {reason.lower()}") from error
-        if now is None:
-            raise CaseError(f"'{path}' has lost rows since the checkpoint")
-        if now != known["check"]:
-            raise CaseError(f"'{path}' is damaged: its rows are not those that were written")
+        if known is not None:
+            check_table(path, known)
 
 
 class HistoryWriter:
@@ -193,6 +183,11 @@ class HistoryWriter:
         """Take these sums for the last that is known of the bodies."""
         if self._parts:
             self._parts.note(parts)
+
+    @property
+    def first_bodies(self) -> np.ndarray:
+        """Rows of what bodies had when the run began, shape (bodies, PART_COLUMNS)."""
+        return np.array(self._parts.first if self._parts else [])
 
     def bodies(self) -> dict[str, dict[str, dict[str, float]]]:
         """Return `initial` and `final` numbers of each body, grains of an entry together.

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from mpm3dpp.base.disk import checksum
 from mpm3dpp.base.errors import CaseError, nearest
+
+from .table import check_table
 
 PROBES = "probes"
 
@@ -54,12 +55,6 @@ def check_probe(folder: Path, name: str, state: Mapping[str, Any]) -> None:
 
     It may be gone altogether, and begins anew then.
     """
-    path, known = probe_path(folder, name), state["table"]
-    if not path.exists():
-        return
-    try:
-        now = checksum(path, known["size"])
-    except OSError as error:
-        raise CaseError(f"cannot read '{path}': permission denied") from error
-    if now != known["check"]:
-        raise CaseError(f"'{path}' is damaged: its rows are not those that were written")
+    path = probe_path(folder, name)
+    if path.exists():
+        check_table(path, state["table"])

@@ -11,7 +11,7 @@ import zlib
 from collections.abc import Mapping
 from pathlib import Path
 
-from mpm3dpp.base.disk import bring_to_disk, writing
+from mpm3dpp.base.disk import bring_to_disk, checksum, writing
 from mpm3dpp.base.errors import CaseError
 
 
@@ -61,3 +61,21 @@ class Table:
     def close(self) -> None:
         with writing(self._path):
             self._file.close()
+
+
+def check_table(path: Path, known: Mapping[str, int]) -> None:
+    """Raise `CaseError` if a table has not the rows that it had, and say which.
+
+    Args:
+        path: of the table.
+        known: what `Table.saved` returned then.
+    """
+    try:
+        now = checksum(path, known["size"])
+    except OSError as error:
+        reason = os.strerror(error.errno) if error.errno else str(error)
+        raise CaseError(f"cannot read '{path}': {reason.lower()}") from error
+    if now is None:
+        raise CaseError(f"'{path}' has lost rows since the checkpoint")
+    if now != known["check"]:
+        raise CaseError(f"'{path}' is damaged: its rows are not those that were written")

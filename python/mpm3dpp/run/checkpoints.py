@@ -32,11 +32,11 @@ from mpm3dpp.io.probe_tables import check_probe, probe_path
 from mpm3dpp.io.vtkhdf import RESULTS, check_frames, has_no_results
 
 if TYPE_CHECKING:
-    from .probes import Probes
+    from .watch import Watch
 
 # What a case may change before it goes on: nothing that a step made so far depends on.
 _LIMITS = ("energy_growth_limit", "outside_limit", "volume_limit")
-_MAY_CHANGE = {("title",), ("run", "end_time"), *(("run", key) for key in _LIMITS)}
+_MAY_CHANGE = {("title",), ("run", "end_time"), ("run", "stop"), *(("run", key) for key in _LIMITS)}
 _BITS = ("compiler", "flags", "isa", "velocity_and_stress")
 
 
@@ -48,7 +48,7 @@ class Checkpoint:
         path: of the file.          step: steps made.          time: reached [s].
         wall_time: that the run has taken so far [s].
         results: see `ResultsWriter.rows`.          history: see `HistoryWriter.state`.
-        probes: see `Probes.state`.
+        watch: see `Watch.state`.
         case: see `Case.content`.          made_by: see `_program`.
     """
 
@@ -58,7 +58,7 @@ class Checkpoint:
     wall_time: float
     results: dict[str, Any]
     history: dict[str, Any]
-    probes: dict[str, Any]
+    watch: dict[str, Any]
     case: dict[str, Any]
     made_by: dict[str, str]
 
@@ -101,7 +101,7 @@ class Checkpoint:
         with _damaged(table, *([pairs] if pairs.exists() else [])):
             if not self.history_is_gone:
                 check_history(folder, self.history)
-        for name, of_probe in self.probes.items():
+        for name, of_probe in self.watch["probes"].items():
             with _damaged(probe_path(folder, name)):
                 check_probe(folder, name, of_probe)
         with _damaged(results, frames_folder(results)):
@@ -169,11 +169,11 @@ class Checkpoints:
         before: from which it goes on, if it does.
 
     Attributes:
-        probes: of the run, once there are any.
+        watch: of the run, once there is one.
     """
 
     def __init__(self, folder: Path, case: Case, before: Checkpoint | None) -> None:
-        self.probes: Probes | None = None
+        self.watch: Watch | None = None
         self._path = folder / CHECKPOINT
         self._case = case
         self._interval = case.output.checkpoint_interval
@@ -211,7 +211,7 @@ class Checkpoints:
             "wall_time": self.wall_time,
             "results": results.rows(),
             "history": history.state(),
-            "probes": self.probes.state() if self.probes else {},
+            "watch": self.watch.state() if self.watch else {"probes": {}, "stops": {}},
             "case": self._case.content(),
             "made_by": _program(),
         }

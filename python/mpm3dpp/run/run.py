@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json as json_format
+import math
 import sys
 from pathlib import Path
 from typing import Any
@@ -24,7 +25,6 @@ from mpm3dpp.ranks.world import world
 
 from .checkpoints import Checkpoint, Checkpoints
 from .lead import background_writer, column_parts, follow, make_simulation, release
-from .probes import Probes
 from .progress import Progress
 from .report import (
     body_lines,
@@ -40,6 +40,7 @@ from .resume import go_on, has_checkpoint
 from .simulation import Simulation
 from .sliced_frames import fields_of
 from .stepping import step_to_end, tell
+from .watch import Call, Watch
 
 
 def run_case(
@@ -50,6 +51,8 @@ def run_case(
     json: bool = False,
     pictures: bool = True,
     resume: bool = False,
+    every: float | str | None = None,
+    call: Call | None = None,
 ) -> Manifest:
     """Run a case to its end: results.vtkhdf, history.csv, manifest.json and pictures in a folder.
 
@@ -65,6 +68,10 @@ def run_case(
         resume: go on from the checkpoint in the folder, in place of beginning anew, with the same
             results as a run in one go. A run that has come to its end may get a later one; its last
             two steps were fitted to the first.
+        every: time between two calls of `call` [s], or text with a unit.
+        call: a function of the `Simulation`, called at the start and at the first step at or after
+            each of these times; the run ends, with all outputs, when it returns False. It may look
+            at anything and change nothing.
 
     Raises:
         CaseError: a mistake in the case or the call, or a folder that cannot be written.
@@ -79,7 +86,7 @@ def run_case(
         return followed
     manifest: Manifest | None = None
     try:
-        manifest = _run_case(case, out, threads, quiet, json, pictures, resume)
+        manifest = _run_case(case, out, threads, quiet, json, pictures, resume, every, call)
     finally:
         release(manifest)
     return manifest
@@ -93,7 +100,15 @@ def _run_case(
     json: bool,
     pictures: bool,
     resume: bool,
+    every: float | str | None,
+    call: Call | None,
 ) -> Manifest:
+    if (every is None) != (call is None):
+        missing = "call" if call is None else "every"
+        raise CaseError("is missing", "every and call go together: give both", key=missing)
+    interval = math.inf if every is None else arguments.quantity("every", every, "s")
+    if not interval > 0.0:
+        raise CaseError("must be > 0", "give a time such as '1 us'", key="every", value=every)
     folder = arguments.path("out", out)
     _core.return_freed_memory()
     if not isinstance(case, Case):
@@ -102,7 +117,7 @@ def _run_case(
         raise no_checkpoint(folder / CHECKPOINT)
     writable_folder(folder)
     with only_run_in(folder):
-        manifest, late = _run(case, folder, threads, quiet or json, resume)
+        manifest, late = _run(case, folder, threads, quiet or json, resume, interval, call)
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
@@ -110,6 +125,8 @@ def _run_case(
         lines += [*wall_lines(manifest), *gone_lines(manifest)]
         lines += warning_lines(manifest)
         lines += [energy_line(manifest)]
+        if manifest.status == "completed" and manifest.reason:
+            lines += [manifest.reason]
         print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]), flush=True)
     can_go_on = "; --resume goes on" if has_checkpoint(folder) else ""
     if manifest.status == "interrupted" and not quiet:
@@ -127,7 +144,13 @@ def _run_case(
 
 
 def _run(
-    case: Case, folder: Path, threads: int | None, quiet: bool, resume: bool
+    case: Case,
+    folder: Path,
+    threads: int | None,
+    quiet: bool,
+    resume: bool,
+    every: float,
+    call: Call | None,
 ) -> tuple[Manifest, bool]:
     """Make the run, and write all but pictures; return also whether Ctrl-C came after its end."""
     before: Checkpoint | None = None
@@ -142,7 +165,7 @@ def _run(
         begin = simulation.step
         try:
             status, reason, of_bodies = _write_run(
-                simulation, folder, quiet, checkpoints, before, notes, notice
+                simulation, folder, quiet, checkpoints, before, notes, notice, every, call
             )
         except CaseError as error:  # The disk: it was no mistake when the run began.
             if simulation.step == begin:
@@ -183,6 +206,8 @@ def _write_run(
     before: Checkpoint | None,
     notes: list[str],
     notice: Notice,
+    every: float,
+    call: Call | None,
 ) -> tuple[Status, str | None, dict[str, Any]]:
     """Step to the end time, writing frames and history; return how it ended, why, and bodies."""
     case, core = simulation.case, simulation.core
@@ -201,10 +226,11 @@ def _write_run(
         state=before.history if before else None,
         anew=history_anew,
     )
-    probes = checkpoints.probes = Probes(simulation, folder, before.probes if before else None)
+    known = before.watch if before else None
+    watch = checkpoints.watch = Watch(simulation, folder, known, call, every)
     unit = "J/m" if case.grid.dimension == 2 else "J"
     progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
-    with background_writer(simulation, file) as results, history, probes, progress:
+    with background_writer(simulation, file) as results, history, watch, progress:
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
         for sentence in [*simulation.notes, *notes]:
@@ -214,7 +240,7 @@ def _write_run(
         if before is not None and (kept is None or history_anew):  # Of the new files.
             tell(progress, checkpoints.write(core, results, history))
         status, reason = step_to_end(
-            simulation, checkpoints, results, history, probes, progress, notice
+            simulation, checkpoints, results, history, watch, progress, notice
         )
         if status != "failed":
             history.note_bodies(sums_of(core))

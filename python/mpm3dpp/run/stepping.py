@@ -14,9 +14,9 @@ from mpm3dpp.io.manifest import Status
 from mpm3dpp.io.part_cells import sums_of
 
 from .checkpoints import Checkpoints
-from .probes import Probes
 from .progress import Progress
 from .simulation import Simulation
+from .watch import Watch
 
 _NO_STATE = ("non-finite", "negative volume")  # Failures after which particles have no values.
 _BLOCK = 64  # Steps between two looks at the clock, without contact.
@@ -28,7 +28,7 @@ def step_to_end(
     checkpoints: Checkpoints,
     results: BackgroundWriter,
     history: HistoryWriter,
-    probes: Probes,
+    watch: Watch,
     progress: Progress,
     notice: Notice,
 ) -> tuple[Status, str | None]:
@@ -37,25 +37,29 @@ def step_to_end(
     Args:
         simulation: ready to step.
         checkpoints: written when they are due.
-        results, history, probes: of the run, open.
+        results, history, watch: of the run, open.
         progress: where the user looks.
         notice: of the user's wish to stop.
     """
     case, core = simulation.case, simulation.core
     contact = case.contact_enabled
     most = min(case.output.history_every if contact else _BLOCK, core.history_capacity // 2)
+    sums_every = max(_PARTS_EVERY, case.output.history_every)
+    if case.run.stop:
+        most = min(most, sums_every)
     frames = [t for t in case.frame_times() if t > core.time]
     touched = _touched(core.contact_groups()) if contact else 0
     told = len(core.warnings())  # Those of the parts of the run before.
-    sums_every = max(_PARTS_EVERY, case.output.history_every)
     if core.step == 0:
-        history.append(core.history(), None, sums_of(core))
-        probes.look(core)
+        start = sums_of(core)
+        history.append(core.history(), None, start)
+        if ends := watch.look() or watch.end_of(start, history.first_bodies):
+            return "completed", ends
     while core.time < case.run.end_time:
         failed, before, settling = None, core.step, core.time < 0.0
         try:
             # To the end of settling, when the clock jumps to 0: there is a frame.
-            until = min(frames[0] if frames else math.inf, probes.next)
+            until = min(frames[0] if frames else math.inf, watch.next)
             simulation.advance(_steps(most, until, core), 0.0 if settling else None)
         except RunError as error:
             failed = str(error)
@@ -69,23 +73,28 @@ def step_to_end(
         due = bool(frames) and core.time >= frames[0]
         # By the steps' numbers, so that a run that goes on has them in the same rows.
         summed = due or core.step // sums_every > before // sums_every
-        history.append(rows, pairs, sums_of(core) if summed else None)
+        sums = sums_of(core) if summed else None
+        history.append(rows, pairs, sums)
         if failed is not None:
             if core.failure.kind not in _NO_STATE:  # Else the last frame is the last good one.
                 results.write(core)
             return "failed", failed
-        probes.look(core)
+        ends = watch.look()
+        if sums is not None and not ends:
+            ends = watch.end_of(sums, history.first_bodies)
         while frames and core.time >= frames[0]:
             frames.pop(0)
         if due or core.step // _BLOCK > before // _BLOCK:  # Not at each step: others are asked too.
             results.check()
         # A frame too whenever two entries first touch, but for those that do so while they settle.
-        if due or (_touched(pairs) > touched and core.time >= 0.0):
+        if due or ends or (_touched(pairs) > touched and core.time >= 0.0):
             results.write(core)
         touched = _touched(pairs)
         overlapped = core.contact_summary()["overlapped_nodes"] if contact else None
         kinetic, internal = rows[-1, 3:5]
         progress.update(core.time, core.step, core.dt, kinetic, internal, overlapped)
+        if ends:
+            return "completed", ends
         if notice.taken:
             return "interrupted", f"stopped by the user at t = {core.time:.6g} s"
         if checkpoints.due:
