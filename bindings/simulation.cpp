@@ -239,7 +239,10 @@ void def_records(SimulationClass& simulation) {
       .def("contact_pairs",
            of_any([](auto& s) { return s.domain.contact.records.of_all_ranks(comm_of(s)); }))
       .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))
-      .def("walls", of_any([](auto& s) { return face_records(s.domain); }))
+      .def("walls", of_any([](auto& s) {
+             require(s, Phase::ready, "call prepare() before walls()");
+             return face_records(s.domain);
+           }))
       .def("contact_summary", of_any_to([](auto& s) { return contact_summary(s); },
                                         [](const ContactSummary& told) {
                                           nb::dict d;

@@ -11,6 +11,8 @@ import pytest
 from commands import CASE, interrupted, mpm3dpp, one_sentence, write
 from mpm3dpp import Case, Probe, ProbeRegion, Simulation, load_case, open_results, run_case
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.probe import next_look
+from mpm3dpp.io import read_history, read_manifest
 from mpm3dpp.io.probe_tables import probe_path, read_probe
 
 DOCS = Path(__file__).resolve().parents[2] / "docs" / "how-to"
@@ -81,12 +83,34 @@ def test_a_region_and_a_body(run: Path) -> None:
         assert row["velocity_y_max"] == pytest.approx(velocity[:, 1].max(), rel=1e-5, abs=1e-6)
 
 
-def test_rows_are_as_far_apart_as_asked(run: Path) -> None:
-    """At the first step then or after; by default 500 in a run, or one a step."""
-    gauge, right = read_probe(run, "gauge"), read_probe(run, "right")
-    assert gauge["time"][0] == 0.0
-    assert np.all(np.diff(np.floor(gauge["time"] / 1e-4 + 1e-9)) >= 1) and len(gauge["time"]) > 70
-    assert len(right["time"]) > 100
+def test_rows_are_where_they_should_be(run: Path) -> None:
+    """At the first step at or after each time; by default a 500th of the run, or each step."""
+    history, gauge = read_history(run), read_probe(run, "gauge")
+    times = history["time"]
+    firsts = {float(times[np.searchsorted(times, k * 1e-4 - 1e-15)]) for k in range(81)}
+    assert set(gauge["time"].tolist()) == firsts and gauge["time"][-1] == times[-1]
+    assert np.array_equal(read_probe(run, "right")["time"], times)  # steps are longer than that
+
+
+def test_probes_change_nothing_else(tmp_path: Path) -> None:
+    """Neither rows of the history nor frames, nor the bits of the result."""
+    text = CASE.replace("frames = 4", "frames = 4\nhistory_every = 20")
+    found = []
+    for name, more in (("with", PROBES), ("without", "")):
+        run_case(write(tmp_path, text + more), tmp_path / name, threads=1, pictures=False)
+        with open_results(tmp_path / name) as results:
+            times = results.times.tolist()
+        history = (tmp_path / name / "history.csv").read_bytes()
+        found.append((history, times, read_manifest(tmp_path / name)["result_hash"]))
+    assert found[0] == found[1]
+
+
+@pytest.mark.parametrize("end", [6e-5, 0.3, 0.1 + 0.2, 1 / 3, 7e-3])
+def test_the_last_look_is_at_the_end(end: float) -> None:
+    probe, time, looks = Probe(body="a"), 0.0, 0
+    while time < end:
+        time, looks = next_look(probe, end, time), looks + 1
+    assert time == end and looks == 500
 
 
 def test_they_are_drawn_and_read(run: Path) -> None:
@@ -154,6 +178,7 @@ def test_any_number_of_ranks_and_threads_sees_the_same() -> None:
                 *core.probe("region", [0, 1], [0, 0], [0.03, 0.03], 0, ["pressure"]),
                 *core.probe("bodies", [1], [], [], 0, ["von_mises", "volume"]),
                 *core.nearest_particle([0, 1], [0.05, 0.02]),
+                *core.probe("particle", [1], [], [], 7, ["position", "affine_velocity"]),
             ]
         )
     assert found[0] == found[1] == found[2]
@@ -174,8 +199,9 @@ def test_a_run_that_goes_on_writes_the_same_tables(
     done = mpm3dpp("run", path, "--out", tmp_path / "parts", "--resume", cwd=tmp_path)
     assert done.returncode == 2 and "tip.csv' is damaged" in one_sentence(done.stderr)
     table.unlink()
-    done = mpm3dpp("run", path, "--out", tmp_path / "parts", "--resume", cwd=tmp_path)
-    assert done.returncode == 0 and table.exists()
+    for note in ("note: the table of probe tip was gone: a new one begins", ""):
+        done = mpm3dpp("run", path, "--out", tmp_path / "parts", "--resume", cwd=tmp_path)
+        assert done.returncode == 0 and table.exists() and note in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -188,6 +214,8 @@ def test_a_run_that_goes_on_writes_the_same_tables(
             'is not a body of this case; did you mean "right"',
         ),
         ('point = ["45 mm", "30 mm"]', 'point = ["45 mm"]', "must have two numbers in 2D"),
+        ('point = ["45 mm", "30 mm"]', "point = [0, 0, 0]", "must have 2 numbers, as grid.dim"),
+        ('"pressure"]', '"velocity"]', "is given twice; leave one out"),
         (
             '"pressure"',
             '"presure"',
@@ -216,7 +244,68 @@ def test_mistakes(tmp_path: Path, old: str, new: str, sentence: str) -> None:
 def test_a_new_run_forgets_the_probes_of_another(tmp_path: Path) -> None:
     run_case(write(tmp_path, CASE + PROBES), tmp_path / "out", threads=1, pictures=False)
     run_case(write(tmp_path), tmp_path / "out", threads=1, pictures=False)
-    assert list((tmp_path / "out" / "probes").iterdir()) == []
+    assert not (tmp_path / "out" / "probes").exists()
+
+
+SOIL = """
+[grid]
+dimension = 3
+cell_size = "10 mm"
+[grid.box]
+lower = [0, 0, 0]
+upper = ["40 mm", "40 mm", "80 mm"]
+walls = "slip"
+[run]
+end_time = "2 ms"
+gravity = [0, 0, "-9.81 m/s^2"]
+settle = { longest = "0.5 s" }
+[material.soil]
+density = "2000 kg/m^3"
+strength = { elastic = { E = "1 MPa", nu = 0.3 } }
+[body.soil]
+material = "soil"
+shape = { box = { lower = [0, 0, 0], upper = ["40 mm", "40 mm", "60 mm"] } }
+[probe.foot]
+point = ["20 mm", "20 mm", "20 mm"]
+fields = ["stress", "affine_velocity"]
+"""
+
+
+def test_a_gauge_in_a_column_that_has_settled(tmp_path: Path) -> None:
+    """In 3D: the weight of what is above it, from the time 0 on, and no row before.
+
+    The settled column is in balance to 0.1 %; the probe's cell has the mean of its depths.
+    """
+    run_case(write(tmp_path, SOIL), tmp_path / "out", threads=1, pictures=False)
+    table = read_probe(tmp_path / "out", "foot")
+    assert table["time"][0] == 0.0 and np.all(np.diff(table["time"]) > 0)
+    assert table["stress_zz"] == pytest.approx(-2000 * 9.81 * 0.04, rel=0.01)
+    assert len([name for name in table if name.startswith("affine_velocity_")]) == 9
+
+
+def test_a_particle_that_erodes_is_seen_no_more(tmp_path: Path) -> None:
+    failure = 'failure = { plastic_strain = { limit = 0.01, action = "erode" } }'
+    soft = 'strength = { elastic = { E = "1 MPa", nu = 0.3 } }'
+    plastic = 'strength = { j2 = { E = "1 MPa", nu = 0.3, Y0 = "1 kPa" } }'
+    case = CASE.replace(soft, f"{plastic}\n{failure}") + PROBES
+    run_case(write(tmp_path, case), tmp_path / "out", threads=1)
+    table = read_probe(tmp_path / "out", "tip")
+    gone = table["particles"] == 0
+    assert table["particles"][0] == 1 and gone[-1]
+    assert np.isnan(table["position_x"][gone]).all() and not np.isnan(table["stress_xx"][0])
+    assert (tmp_path / "out" / "probes.png").exists()
+
+
+def test_processes_see_what_one_does(tmp_path: Path) -> None:
+    pytest.importorskip("mpi4py")
+    write(tmp_path, CASE + PROBES)
+    for ranks in (1, 2):
+        words = ("run", "case.toml", "--out", f"of_{ranks}", "--no-pictures", "--ranks", ranks)
+        done = mpm3dpp(*words, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+    for name in ("gauge", "tip", "box", "right"):
+        files = [probe_path(tmp_path / f"of_{ranks}", name) for ranks in (1, 2)]
+        assert files[0].read_bytes() == files[1].read_bytes()
 
 
 def test_a_probe_from_python(tmp_path: Path) -> None:

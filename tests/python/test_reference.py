@@ -63,6 +63,7 @@ def test_every_column_of_the_history_is_described(tool, tmp_path, dimension):
     for name, column in product(case.body, tool.part_cells.PART_COLUMNS):
         written.remove(f"body_{name}_{column}")
     written += [f"body_A_{column}" for column in tool.part_cells.PART_COLUMNS]
+    written += [f"wall_x_min_{column}" for column in tool.part_cells.WALL_COLUMNS]
     page = (ROOT / "docs" / "reference" / "history.md").read_text()
     described = re.findall(r"^\| `(\w+)` \| \S.* \| \S.* \|$", page, re.M)
     assert described == [*written, *tool.terms.PAIR_MEANINGS]

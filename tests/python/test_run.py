@@ -269,6 +269,7 @@ def test_a_refused_run_leaves_no_folder(tmp_path: Path) -> None:
     for out in ("mine", "new"):
         done = mpm3dpp("run", "case.toml", "--out", out, cwd=tmp_path)
         assert done.returncode == 2 and "largest stable step" in done.stderr
+    assert mpm3dpp("run", "case.toml", cwd=tmp_path).returncode == 2  # results/NAME
     assert [path.name for path in tmp_path.iterdir() if path.is_dir()] == ["mine"]
 
 

@@ -17,24 +17,31 @@ constexpr double none = std::numeric_limits<double>::infinity();
 struct Field {
   std::string name;
   const DerivedField* derived = nullptr;
+  bool is_stress = false;
   int components = 1;
 };
 
 template <int D>
 Field field_named(const Domain<D>& domain, const std::string& name) {
   const auto derived = std::ranges::find(derived_fields, name, &DerivedField::name);
-  if (derived != derived_fields.end()) return {name, &*derived, 1};
+  if (derived != derived_fields.end()) return {name, &*derived, false, 1};
+  if (name == "stress") return {name, nullptr, true, 6};
   for (const ParticlePool<D>& pool : domain.pools)
     for (const ColumnInfo& info : pool.columns.infos())
-      if (info.name == name) return {name, nullptr, name == "stress" ? 6 : info.components};
+      if (info.name == name) return {name, nullptr, false, info.components};
   throw std::invalid_argument("no field is named " + name);
 }
 
-/// Where it stands among the pool's components, or -1.
+/// Where a column stands among the components of each pool, or -1; 0 for what is no column.
 template <int D>
-int first_component(const ParticlePool<D>& pool, const Field& field) {
-  const auto info = std::ranges::find(pool.columns.infos(), field.name, &ColumnInfo::name);
-  return info == pool.columns.infos().end() ? -1 : info->first;
+std::vector<int> first_components(const Domain<D>& domain, const Field& field) {
+  std::vector<int> firsts;
+  for (const ParticlePool<D>& pool : domain.pools) {
+    const auto info = std::ranges::find(pool.columns.infos(), field.name, &ColumnInfo::name);
+    const bool is_column = field.derived == nullptr && !field.is_stress;
+    firsts.push_back(!is_column ? 0 : info == pool.columns.infos().end() ? -1 : info->first);
+  }
+  return firsts;
 }
 
 template <int D>
@@ -45,17 +52,16 @@ ParticleState state_of(const Body<D>& body, const ParticlePool<D>& pool, std::ui
   return p;
 }
 
-/// f(component, value) for what a particle has of a field.
+/// f(component, value) for what a particle has of a field; `first` of its pool.
 template <int D, class F>
 void for_each_value(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row,
-                    const Field& field, F&& f) {
+                    const Field& field, int first, F&& f) {
   if (field.derived != nullptr) return f(0, field.derived->value(state_of(body, pool, row)));
-  if (field.name == "stress") {
+  if (field.is_stress) {
     const ParticleState p = state_of(body, pool, row);
     for (int c = 0; c < 6; ++c) f(c, p.stress[c]);
     return;
   }
-  const int first = first_component(pool, field);
   if (first < 0) return;
   for (int c = 0; c < field.components; ++c)
     pool.columns.with_component(first + c, [&](const auto* from) { f(c, double{from[row]}); });
@@ -63,8 +69,10 @@ void for_each_value(const Body<D>& body, const ParticlePool<D>& pool, std::uint3
 
 /// The weight with which a probe sees a particle, 0 if it does not.
 template <int D>
-double weight_of(const Probe& probe, const Body<D>&, const ParticlePool<D>& pool, std::uint32_t row,
+double weight_of(const Probe& probe, const ParticlePool<D>& pool, std::uint32_t row,
                  double cell_size) {
+  if (probe.kind == ProbeKind::particle && std::cmp_not_equal(pool.id[row], probe.particle))
+    return 0.0;
   double weight = pool.mass()[row];
   for (int a = 0; a < D; ++a) {
     const double x = pool.x(a)[row];
@@ -74,8 +82,6 @@ double weight_of(const Probe& probe, const Body<D>&, const ParticlePool<D>& pool
     else if (probe.kind == ProbeKind::region)
       weight *= probe.lower[axis] <= x && x <= probe.upper[axis] ? 1.0 : 0.0;
   }
-  if (probe.kind == ProbeKind::particle && std::cmp_not_equal(pool.id[row], probe.particle))
-    return 0.0;
   return weight;
 }
 
@@ -96,66 +102,98 @@ bool reaches(const Domain<D>& domain, const Probe& probe, const Patch<D>& patch)
   return true;
 }
 
-/// f(body, pool, row) for the particles of some bodies.
-template <int D, class Reaches, class F>
-void for_each_of(const Domain<D>& domain, const std::vector<int>& bodies, Reaches&& reaches,
-                 F&& f) {
+/// Which bodies are among some.
+template <int D>
+std::vector<std::uint8_t> marked(const Domain<D>& domain, const std::vector<int>& bodies) {
   std::vector<std::uint8_t> wanted(domain.bodies.size());
   for (const int body : bodies) wanted.at(static_cast<std::size_t>(body)) = 1;
-  for (const Patch<D>& patch : domain.grid.patches) {
-    if (wanted[static_cast<std::size_t>(patch.body)] == 0 || !reaches(patch)) continue;
-    const ParticlePool<D>& pool = domain.pool_of(patch);
-    for (const std::uint32_t row : pool.rows(patch)) f(patch.body, pool, row);
-  }
+  return wanted;
 }
 
-/// What has been seen of a component.
+/// What has been seen of a component in a patch, in the order of its particles, whichever thread.
 struct Seen {
-  ExactSum weight, sum;
-  double least = none, largest = -none;
+  double weight = 0.0, sum = 0.0, least = none, largest = -none;
 };
+struct PatchSeen {
+  std::int64_t count = 0;
+  double mass = 0.0;
+  std::vector<Seen> components;
+};
+
+/// What a probe looks for, and where it stands.
+struct Fields {
+  std::vector<Field> all;
+  std::vector<std::vector<int>> firsts;  // of each, by pools
+  std::size_t components = 0;
+};
+template <int D>
+Fields fields_of(const Domain<D>& domain, const Probe& probe) {
+  Fields fields;
+  for (const std::string& name : probe.fields) {
+    const Field& field = fields.all.emplace_back(field_named(domain, name));
+    fields.firsts.push_back(first_components(domain, field));
+    fields.components += static_cast<std::size_t>(field.components);
+  }
+  return fields;
+}
+
+template <int D>
+PatchSeen seen_in(const Domain<D>& domain, const Probe& probe, const Patch<D>& patch,
+                  const Fields& fields) {
+  PatchSeen part;
+  if (!reaches(domain, probe, patch)) return part;
+  const Body<D>& body = domain.body_of(patch);
+  const ParticlePool<D>& pool = domain.pool_of(patch);
+  const auto pool_number = static_cast<std::size_t>(body.material);
+  for (const std::uint32_t row : pool.rows(patch)) {
+    const double weight = weight_of(probe, pool, row, domain.grid.cell_size);
+    if (weight == 0.0) continue;
+    part.components.resize(fields.components);
+    ++part.count;
+    part.mass += pool.mass()[row];
+    Seen* of_field = part.components.data();
+    for (std::size_t k = 0; k < fields.all.size(); of_field += fields.all[k++].components)
+      for_each_value(body, pool, row, fields.all[k], fields.firsts[k][pool_number],
+                     [&](int c, double value) {
+                       Seen& of = of_field[c];
+                       of.weight += weight;
+                       of.sum += weight * value;
+                       of.least = std::min(of.least, value);
+                       of.largest = std::max(of.largest, value);
+                     });
+  }
+  return part;
+}
 
 }  // namespace
 
 template <int D>
-std::vector<double> look(const Domain<D>& domain, const Probe& probe) {
-  std::vector<Field> fields;
-  std::size_t components = 0;
-  for (const std::string& name : probe.fields)
-    components +=
-        static_cast<std::size_t>(fields.emplace_back(field_named(domain, name)).components);
+std::vector<double> look(Domain<D>& domain, const Probe& probe) {
+  const Fields fields = fields_of(domain, probe);
+  const std::vector<std::uint8_t> wanted = marked(domain, probe.bodies);
+  const auto& patches = domain.grid.patches;
+  const std::size_t components = fields.components;
+  std::vector<PatchSeen> parts(patches.size());
+  domain.threads.for_each(patches.size(), [&](std::size_t p) {
+    if (wanted[static_cast<std::size_t>(patches[p].body)] != 0)
+      parts[p] = seen_in(domain, probe, patches[p], fields);
+  });
   std::int64_t count = 0;
-  ExactSum mass;
-  std::vector<Seen> seen(components);
-  for_each_of(
-      domain, probe.bodies, [&](const Patch<D>& patch) { return reaches(domain, probe, patch); },
-      [&](int number, const ParticlePool<D>& pool, std::uint32_t row) {
-        const Body<D>& body = domain.body_at(number);
-        const double weight = weight_of(probe, body, pool, row, domain.grid.cell_size);
-        if (weight == 0.0) return;
-        ++count;
-        mass.add(pool.mass()[row]);
-        Seen* of_field = seen.data();
-        for (const Field& field : fields) {
-          for_each_value(body, pool, row, field, [&](int c, double value) {
-            Seen& of = of_field[c];
-            of.weight.add(weight);
-            of.sum.add(weight * value);
-            of.least = std::min(of.least, value);
-            of.largest = std::max(of.largest, value);
-          });
-          of_field += field.components;
-        }
-      });
-  Comm& comm = *domain.grid.partition.comm;
-  std::vector<ExactSum> sums{mass};
-  std::vector<double> ends;
-  for (const Seen& of : seen) {
-    sums.push_back(of.weight);
-    sums.push_back(of.sum);
-    ends.push_back(-of.least);
-    ends.push_back(of.largest);
+  std::vector<ExactSum> sums(1 + 2 * components);  // mass; weight and sum of each component
+  std::vector<double> ends(2 * components, -none);
+  for (const PatchSeen& part : parts) {
+    if (part.count == 0) continue;
+    count += part.count;
+    sums[0].add(part.mass);
+    for (std::size_t k = 0; k < components; ++k) {
+      const Seen& of = part.components[k];
+      sums[1 + 2 * k].add(of.weight);
+      sums[2 + 2 * k].add(of.sum);
+      ends[2 * k] = std::max(ends[2 * k], -of.least);
+      ends[2 * k + 1] = std::max(ends[2 * k + 1], of.largest);
+    }
   }
+  Comm& comm = *domain.grid.partition.comm;
   all_sum(comm, sums);
   comm.all_max(ends);
   std::vector<double> told{static_cast<double>(all_sum(comm, count)), sums[0].value()};
@@ -175,17 +213,20 @@ std::optional<std::array<std::int64_t, 2>> nearest_particle(const Domain<D>& dom
                                                             const std::array<double, 3>& place) {
   // The key of which the least is wanted: distance squared, body, number.
   std::array<double, 3> best{none, none, none};
-  for_each_of(
-      domain, bodies, [](const Patch<D>&) { return true; },
-      [&](int body, const ParticlePool<D>& pool, std::uint32_t row) {
-        double square = 0.0;
-        for (int a = 0; a < D; ++a) {
-          const double d = pool.x(a)[row] - place[static_cast<std::size_t>(a)];
-          square += d * d;
-        }
-        best =
-            std::min(best, {square, static_cast<double>(body), static_cast<double>(pool.id[row])});
-      });
+  const std::vector<std::uint8_t> wanted = marked(domain, bodies);
+  for (const Patch<D>& patch : domain.grid.patches) {
+    if (wanted[static_cast<std::size_t>(patch.body)] == 0) continue;
+    const ParticlePool<D>& pool = domain.pool_of(patch);
+    for (const std::uint32_t row : pool.rows(patch)) {
+      double square = 0.0;
+      for (int a = 0; a < D; ++a) {
+        const double d = pool.x(a)[row] - place[static_cast<std::size_t>(a)];
+        square += d * d;
+      }
+      best = std::min(best,
+                      {square, static_cast<double>(patch.body), static_cast<double>(pool.id[row])});
+    }
+  }
   Comm& comm = *domain.grid.partition.comm;
   const int rank = rank_of_largest(comm, {-best[0], -best[1], -best[2]});
   broadcast(comm, rank, best);
@@ -193,8 +234,8 @@ std::optional<std::array<std::int64_t, 2>> nearest_particle(const Domain<D>& dom
   return std::array{static_cast<std::int64_t>(best[1]), static_cast<std::int64_t>(best[2])};
 }
 
-template std::vector<double> look<2>(const Domain<2>&, const Probe&);
-template std::vector<double> look<3>(const Domain<3>&, const Probe&);
+template std::vector<double> look<2>(Domain<2>&, const Probe&);
+template std::vector<double> look<3>(Domain<3>&, const Probe&);
 template std::optional<std::array<std::int64_t, 2>> nearest_particle<2>(
     const Domain<2>&, const std::vector<int>&, const std::array<double, 3>&);
 template std::optional<std::array<std::int64_t, 2>> nearest_particle<3>(

@@ -34,9 +34,9 @@ struct Probe {
 /// What it sees: how many particles, their mass [kg], and of each component of each field the mean
 /// by mass, at a place by nearness too, the least and the largest; of no particle no number. Stress
 /// has six components, xx yy zz yz xz xy. Of bodies without a field nothing is seen. By all ranks
-/// at once. Throws std::invalid_argument if no body has a field.
+/// at once. Throws std::invalid_argument if no material has a field.
 template <int D>
-std::vector<double> look(const Domain<D>& domain, const Probe& probe);
+std::vector<double> look(Domain<D>& domain, const Probe& probe);
 
 /// The body and number of the particle of some bodies that is nearest to a place [m]; of equally
 /// near ones the first. None if there is no particle. By all ranks at once.

@@ -86,7 +86,7 @@ struct Pieces {
 struct FaceRecord {
   std::string name;                 // "x_min" to "z_max"
   std::array<double, 3> force{};    // of the last step, of the bodies on it [N]
-  std::array<double, 3> impulse{};  // since the start [N s]
+  std::array<double, 3> impulse{};  // since the start, that of settling too [N s]
   double area = 0.0;                // of the face [m^2; in 2D m]
 };
 

@@ -18,6 +18,7 @@ from mpm3dpp.base.units import Point, Time
 if TYPE_CHECKING:
     from .case import Case
 
+_LONGEST = 200  # bytes of a name, which is that of a file
 SAMPLES = 500
 """Of a probe that says nothing else, in all of a run."""
 
@@ -42,12 +43,13 @@ class Probe(CaseModel):
 
     Attributes:
         point: a place that stays where it is [m], D numbers.
-        particle: the particle nearest to this place at the start [m], wherever it goes.
+        particle: the particle nearest to this place at the start [m], before the run settles,
+            wherever it goes.
         region: the particles in a box.
         body: the name of a body, or of an entry of grains, that is looked at alone; with neither
             point nor particle nor region all of it.
         fields: what is looked at: "velocity", "stress", "pressure", "von_mises", "position" or any
-            column of a material.
+            column of a material; by default the velocity, pressure and von Mises stress.
         every: time between two looks [s], each at the first step then or after; by default a
             500th of the run's end time.
     """
@@ -92,7 +94,7 @@ def check_probes(
     dimension, parts = case.grid.dimension, case.parts()
     for name, probe in case.probe.items():
         where: Path = ("probe", name)
-        if not name.isprintable() or "/" in name or name in ("", ".", ".."):
+        if not name.isprintable() or "/" in name or not 0 < len(name.encode()) <= _LONGEST:
             rule = "cannot be the name of a file"
             yield violation(rule, "use letters and digits", path=where)
         corners: list[tuple[Path, Any]] = [
@@ -122,6 +124,9 @@ def check_probes(
         stored = (column for part in seen for column in columns(parts[part].material))
         known = list(dict.fromkeys((*COLUMNS, *DERIVED, *stored)))
         for k, field in enumerate(probe.fields):
+            if field in probe.fields[:k]:
+                path = (*where, "fields", k)
+                yield violation("is given twice", "leave one out", value=field, path=path)
             if field not in known:
                 rule = "is no field of what the probe looks at"
                 path = (*where, "fields", k)
@@ -131,4 +136,5 @@ def check_probes(
 def next_look(probe: Probe, end_time: float, time: float) -> float:
     """Return the first time after `time` at which a probe of a run to `end_time` looks [s]."""
     every = probe.every or end_time / SAMPLES
-    return every * (math.floor(time / every + 1e-9) + 1)
+    then = every * (math.floor(time / every + 1e-9) + 1)
+    return end_time if abs(then - end_time) < 1e-9 * end_time else then  # Where it rounds.

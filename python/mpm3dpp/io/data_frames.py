@@ -11,12 +11,17 @@ import numpy as np
 
 from mpm3dpp.base.errors import CaseError
 
-COMPONENTS = {2: ("x", "y"), 3: ("x", "y", "z"), 6: ("xx", "yy", "zz", "yz", "xz", "xy")}
+_COMPONENTS = {2: ("x", "y"), 3: ("x", "y", "z"), 6: ("xx", "yy", "zz", "yz", "xz", "xy")}
 
 
 def has_pandas() -> bool:
     """Return whether pandas is installed."""
     return importlib.util.find_spec("pandas") is not None
+
+
+def component_words(count: int) -> tuple[str, ...]:
+    """Return what stands behind the name of an array for each of its components."""
+    return _COMPONENTS.get(count, tuple(map(str, range(count))))
 
 
 def columns_of(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -29,8 +34,7 @@ def columns_of(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         if values.ndim == 1:
             found[name] = values
             continue
-        count = values.shape[1]
-        words = COMPONENTS.get(count, tuple(map(str, range(count))))
+        words = component_words(values.shape[1])
         found |= {f"{name}_{word}": values[:, k] for k, word in enumerate(words)}
     return found
 

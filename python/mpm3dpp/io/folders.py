@@ -14,7 +14,7 @@ from mpm3dpp.base.errors import CaseError
 
 from .checkpoint import CHECKPOINT, PREVIOUS
 from .history import PAIRS
-from .probe_tables import PROBES
+from .probe_tables import PROBES, tables_of_probes
 
 
 def default_folder(case_file: Path) -> Path:
@@ -50,11 +50,14 @@ def forget_last_run(folder: Path, checkpoint: bool = True) -> None:
     half = unfinished(Path(CHECKPOINT)).name
     anew = (PAIRS, half, PREVIOUS, CHECKPOINT)  # A run that begins anew may have no such table.
     old = [folder / name for name in (*_OF_A_RUN, *(anew if checkpoint else ()))]
-    for path in [*old, *((folder / PROBES).glob("*.csv") if checkpoint else ())]:
+    for path in [*old, *(tables_of_probes(folder) if checkpoint else ())]:
         try:
             path.unlink(missing_ok=True)
         except OSError as error:
             raise cannot_write(path, error) from error
+    if checkpoint:
+        with contextlib.suppress(OSError):  # Not there, or the user has files of their own in it.
+            (folder / PROBES).rmdir()
 
 
 @contextlib.contextmanager
@@ -90,14 +93,14 @@ def folder_of_run(path: Path) -> Iterator[None]:
     Raises:
         CaseError: it cannot be made or written.
     """
-    is_new = not path.exists()
+    new = [folder for folder in (path, *path.parents) if not os.path.exists(folder)]
     writable_folder(path)
     try:
         yield
     finally:
-        if is_new:
-            with contextlib.suppress(OSError):  # Not empty: it is kept.
-                path.rmdir()
+        with contextlib.suppress(OSError):  # Not empty: it is kept.
+            for folder in new:
+                folder.rmdir()
 
 
 def writable_folder(path: Path) -> Path:

@@ -158,8 +158,8 @@ def write_frame(
 
 def read_info(path: Path) -> FrameInfo:
     """Return what the file of a frame holds. Raises `CaseError` if it is missing or damaged."""
-    with open_frame(path) as file:
-        info = info_of(file)
+    with _frame(path) as file:
+        info = _info(file)
         for name in info.checks:
             info.kinds[name] = _kind(file["arrays"][name])
         return info
@@ -194,8 +194,8 @@ def read_table(path: Path, name: str) -> dict[str, np.ndarray]:
     Raises:
         CaseError: the file has no such table, or is missing or damaged.
     """
-    with open_frame(path) as file:
-        checks = info_of(file).tables.get(name)
+    with _frame(path) as file:
+        checks = _info(file).tables.get(name)
         if checks is not None:
             return columns_of(file, name, checks)
     raise CaseError(f"'{path}' has no table of {name}")
@@ -205,8 +205,8 @@ def _read_part(
     folder: Path, frame: int, part: int, names: Collection[str]
 ) -> tuple[FrameInfo, dict[str, np.ndarray]]:
     """Return what the file of a part tells of its frame, and arrays that it has, as stored."""
-    with open_frame(frame_path(folder, frame, part)) as file:
-        info, columns = info_of(file), {}
+    with _frame(frame_path(folder, frame, part)) as file:
+        info, columns = _info(file), {}
         for name in names:
             columns[name] = column = file["arrays"][name][()]
             if len(column) != info.rows[part] or zlib.crc32(column.data) != info.checks[name]:
@@ -215,7 +215,7 @@ def _read_part(
 
 
 @contextlib.contextmanager
-def open_frame(path: Path) -> Iterator[h5py.File]:
+def _frame(path: Path) -> Iterator[h5py.File]:
     """Give the file of a frame to read; what goes wrong in the block is one sentence."""
     import h5py
 
@@ -233,7 +233,7 @@ def open_frame(path: Path) -> Iterator[h5py.File]:
         raise CaseError(rule, "bring it back, or use other frames") from error
 
 
-def info_of(file: h5py.File) -> FrameInfo:
+def _info(file: h5py.File) -> FrameInfo:
     return FrameInfo(**json.loads(file.attrs["frame"]))
 
 

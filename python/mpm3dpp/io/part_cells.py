@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp import _core
+from mpm3dpp.base.errors import CaseError
 
 PART_COLUMNS: dict[str, tuple[str, str]] = _core.part_columns
 """Unit and meaning of the core's `part_sums` of each body: columns `body_A_mass`, ..."""
@@ -20,7 +21,7 @@ WALL_COLUMNS: dict[str, tuple[str, str]] = {
     "force_x": ("N", "force of the last step of the bodies on this face of the box"),
     "force_y": ("N", "likewise"),
     "force_z": ("N", "likewise; 0 in 2D"),
-    "impulse_x": ("N s", "its impulse so far"),
+    "impulse_x": ("N s", "its impulse so far, that of settling among it"),
     "impulse_y": ("N s", "likewise"),
     "impulse_z": ("N s", "likewise; 0 in 2D"),
     "pressure": ("Pa", "the force out of the box over the area of the whole face"),
@@ -48,8 +49,14 @@ def wall_pressure(face: Any) -> float:
 
 
 def of_body(history: Mapping[str, np.ndarray], body: str) -> dict[str, np.ndarray]:
-    """Return `time` and PART_COLUMNS of a body where the history has them."""
-    columns = {name: history[f"body_{body}_{name}"] for name in PART_COLUMNS}
+    """Return `time` and PART_COLUMNS of a body where the history has them.
+
+    Those of earlier versions have fewer. Raises `CaseError` if there is none.
+    """
+    names = [name for name in PART_COLUMNS if f"body_{body}_{name}" in history]
+    if "mass" not in names:
+        raise CaseError(f"the history has no columns of {body}", "run the case again")
+    columns = {name: history[f"body_{body}_{name}"] for name in names}
     told = ~np.isnan(columns["mass"])
     return {"time": history["time"][told]} | {k: v[told] for k, v in columns.items()}
 

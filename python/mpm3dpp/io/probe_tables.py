@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,6 +16,8 @@ from mpm3dpp.base.errors import CaseError, nearest
 from .table import check_table
 
 PROBES = "probes"
+FIRST_COLUMNS = ("time", "step", "particles", "mass")
+"""Of every table; those of the fields follow."""
 
 
 def probe_path(folder: Path, name: str) -> Path:
@@ -22,9 +25,19 @@ def probe_path(folder: Path, name: str) -> Path:
     return folder / PROBES / f"{name}.csv"
 
 
+def tables_of_probes(folder: Path) -> list[Path]:
+    """Return the tables of probes in the folder of a run, in order; other files are the user's."""
+    found = []
+    for path in sorted((folder / PROBES).glob("*.csv")):
+        with contextlib.suppress(OSError), open(path, "rb") as file:
+            if file.readline().startswith(",".join(FIRST_COLUMNS).encode()):
+                found.append(path)
+    return found
+
+
 def probe_names(folder: Path) -> list[str]:
     """Return the names of the probes of a run by its folder, in order."""
-    return sorted(path.stem for path in (folder / PROBES).glob("*.csv"))
+    return [path.stem for path in tables_of_probes(folder)]
 
 
 def read_probe(folder: Path, name: str) -> dict[str, np.ndarray]:

@@ -58,7 +58,7 @@ class WallRecord:
 
     Attributes:
         force: of the last step on the face [N] (per metre in 2D).
-        impulse: of it so far [N s] (per metre in 2D).
+        impulse: of it so far, that of settling too [N s] (per metre in 2D).
         pressure: the force out of the box over the area of the whole face [Pa].
         area: of the face [m^2; in 2D m times 1 m].
     """

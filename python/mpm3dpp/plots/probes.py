@@ -9,11 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
+from mpm3dpp.io.probe_tables import FIRST_COLUMNS
+
 from .labels import prefix, short
 from .style import PALETTE, new_figure, save, styled
 
 Tables = Mapping[str, Mapping[str, np.ndarray]]
-_NO_FIELDS = ("time", "step", "particles", "mass")
 _VECTOR = ("x", "y", "z")
 _WAY = "way from the start"
 _MOST = 6  # fields shown
@@ -71,7 +72,7 @@ def save_probes(tables: Tables, units: Mapping[str, str], path: Path) -> Path | 
 
 def _curves(table: Mapping[str, np.ndarray]) -> dict[str, list[np.ndarray]]:
     """Return of each scalar the mean and, if there are, the ends; of each vector its size."""
-    names = [name for name in table if name not in _NO_FIELDS]
+    names = [name for name in table if name not in FIRST_COLUMNS]
     found: dict[str, list[np.ndarray]] = {}
     for name in names:
         base, _, end = name.rpartition("_")

@@ -10,8 +10,8 @@ from typing import Any
 
 from mpm3dpp.base.disk import make_folder
 from mpm3dpp.case.probe import Probe, next_look
-from mpm3dpp.io.data_frames import COMPONENTS
-from mpm3dpp.io.probe_tables import PROBES, probe_path
+from mpm3dpp.io.data_frames import component_words
+from mpm3dpp.io.probe_tables import FIRST_COLUMNS, PROBES, probe_path
 from mpm3dpp.io.table import Table
 
 from .simulation import Simulation
@@ -25,6 +25,9 @@ class Probes:
         folder: of the run; the tables are in its folder `probes`.
         state: of a run that goes on, `state()` then.
 
+    Attributes:
+        lost: names of the probes whose tables are gone, and begin anew.
+
     Raises:
         CaseError: a probe finds no particle, or a table cannot be written.
     """
@@ -35,10 +38,15 @@ class Probes:
         case = simulation.case
         if case.probe:
             make_folder(folder / PROBES)
-        self._probes = [
-            _Probe(name, probe, simulation, folder, (state or {}).get(name))
-            for name, probe in case.probe.items()
-        ]
+        known = state or {}
+        self.lost = [name for name in known if not probe_path(folder, name).exists()]
+        self._probes: list[_Probe] = []
+        try:
+            for name, probe in case.probe.items():
+                self._probes.append(_Probe(name, probe, simulation, folder, known.get(name)))
+        except BaseException:
+            self.close()
+            raise
 
     @property
     def next(self) -> float:
@@ -122,9 +130,9 @@ class _Probe:
 def header_of(probe: Probe, widths: list[int]) -> list[str]:
     """Return the columns of a probe's table, whose fields have so many components each."""
     several = probe.kind not in ("point", "particle")
-    names = ["time", "step", "particles", "mass"]
+    names = [*FIRST_COLUMNS]
     for field, width in zip(probe.fields, widths, strict=True):
-        words = [f"_{word}" for word in COMPONENTS[width]] if width > 1 else [""]
+        words = [f"_{word}" for word in component_words(width)] if width > 1 else [""]
         for word in words:
             names += [f"{field}{word}{end}" for end in (("", "_min", "_max") if several else ("",))]
     return names

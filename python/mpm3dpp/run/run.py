@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import json as json_format
-import math
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +40,7 @@ from .resume import go_on, has_checkpoint
 from .simulation import Simulation
 from .sliced_frames import fields_of
 from .stepping import step_to_end, tell
-from .watch import Call, Watch
+from .watch import Call, Watch, interval_of
 
 
 def run_case(
@@ -103,12 +103,7 @@ def _run_case(
     every: float | str | None,
     call: Call | None,
 ) -> Manifest:
-    if (every is None) != (call is None):
-        missing = "call" if call is None else "every"
-        raise CaseError("is missing", "every and call go together: give both", key=missing)
-    interval = math.inf if every is None else arguments.quantity("every", every, "s")
-    if not interval > 0.0:
-        raise CaseError("must be > 0", "give a time such as '1 us'", key="every", value=every)
+    interval = interval_of(every, call)
     folder = arguments.path("out", out)
     _core.return_freed_memory()
     if not isinstance(case, Case):
@@ -122,8 +117,7 @@ def _run_case(
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
         lines = [*body_lines(manifest), *contact_table(manifest), *load_lines(manifest)]
-        lines += [*wall_lines(manifest), *gone_lines(manifest)]
-        lines += warning_lines(manifest)
+        lines += [*wall_lines(manifest), *gone_lines(manifest), *warning_lines(manifest)]
         lines += [energy_line(manifest)]
         if manifest.status == "completed" and manifest.reason:
             lines += [manifest.reason]
@@ -211,33 +205,37 @@ def _write_run(
 ) -> tuple[Status, str | None, dict[str, Any]]:
     """Step to the end time, writing frames and history; return how it ended, why, and bodies."""
     case, core = simulation.case, simulation.core
-    contact = case.contact_enabled
     kept = None if before is None or before.results_are_gone else before.results
     history_anew = before is not None and before.history_is_gone
     file = _results_writer(simulation, folder, kept)
-    history = HistoryWriter(
-        folder / "history.csv",
-        columns=core.history_columns,
-        bodies=simulation.parts,
-        contact=contact,
-        parts=True,
-        walls=[face.name for face in core.walls()],
-        every=case.output.history_every,
-        state=before.history if before else None,
-        anew=history_anew,
-    )
-    known = before.watch if before else None
-    watch = checkpoints.watch = Watch(simulation, folder, known, call, every)
-    unit = "J/m" if case.grid.dimension == 2 else "J"
-    progress = Progress(case.run.end_time, quiet=quiet, energy_unit=unit)
-    with background_writer(simulation, file) as results, history, watch, progress:
+    with ExitStack() as stack:
+        results = stack.enter_context(background_writer(simulation, file))
+        history = stack.enter_context(
+            HistoryWriter(
+                folder / "history.csv",
+                columns=core.history_columns,
+                bodies=simulation.parts,
+                contact=case.contact_enabled,
+                parts=True,
+                walls=[face.name for face in core.walls()],
+                every=case.output.history_every,
+                state=before.history if before else None,
+                anew=history_anew,
+            )
+        )
+        seen = before.watch if before else None
+        watch = checkpoints.watch = Watch(simulation, folder, seen, call, every)
+        stack.enter_context(watch)
+        unit = "J/m" if case.grid.dimension == 2 else "J"
+        progress = stack.enter_context(Progress(case.run.end_time, quiet=quiet, energy_unit=unit))
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
-        for sentence in [*simulation.notes, *notes]:
+        gone = [f"the table of probe {name} was gone: a new one begins" for name in watch.lost]
+        for sentence in [*simulation.notes, *notes, *gone]:
             progress.note(f"note: {sentence}")
         if kept is None and core.time >= 0.0:  # Else it settles first.
             results.write(core)
-        if before is not None and (kept is None or history_anew):  # Of the new files.
+        if before is not None and (kept is None or history_anew or gone):  # Of the new files.
             tell(progress, checkpoints.write(core, results, history))
         status, reason = step_to_end(
             simulation, checkpoints, results, history, watch, progress, notice

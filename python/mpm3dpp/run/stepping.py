@@ -56,11 +56,12 @@ def step_to_end(
         if ends := watch.look() or watch.end_of(start, history.first_bodies):
             return "completed", ends
     while core.time < case.run.end_time:
-        failed, before, settling = None, core.step, core.time < 0.0
+        failed, ends, before, settling = None, None, core.step, core.time < 0.0
         try:
             # To the end of settling, when the clock jumps to 0: there is a frame.
-            until = min(frames[0] if frames else math.inf, watch.next)
-            simulation.advance(_steps(most, until, core), 0.0 if settling else None)
+            ends = _advance(
+                simulation, _steps(most, frames, core), 0.0 if settling else None, watch
+            )
         except RunError as error:
             failed = str(error)
         told = _tell_new(progress, core, told)
@@ -79,7 +80,6 @@ def step_to_end(
             if core.failure.kind not in _NO_STATE:  # Else the last frame is the last good one.
                 results.write(core)
             return "failed", failed
-        ends = watch.look()
         if sums is not None and not ends:
             ends = watch.end_of(sums, history.first_bodies)
         while frames and core.time >= frames[0]:
@@ -122,12 +122,32 @@ def _touched(pairs: list[Any]) -> int:
     return sum(pair.first_step >= 0 for pair in pairs)
 
 
-def _steps(most: int, until: float, core: Any) -> int:
-    """Return how many steps to make before the next look: not past a time, of a frame or a probe.
+def _steps(most: int, frames: list[float], core: Any) -> int:
+    """Return how many steps to make before the next look: not past the next frame's time.
 
     Looks are at multiples of `most`, so that those at frames do not shift them.
     """
     most -= core.step % most
-    if until == math.inf or core.dt <= 0.0:
+    if not frames or core.dt <= 0.0:
         return most
-    return max(1, min(most, math.ceil((until - core.time) / core.dt)))
+    return max(1, min(most, math.ceil((frames[0] - core.time) / core.dt)))
+
+
+def _advance(simulation: Simulation, steps: int, end: float | None, watch: Watch) -> str | None:
+    """Make steps, with looks of `watch` between them; return why the run is to end, if it is.
+
+    So these looks move neither rows of the history nor frames.
+    """
+    core = simulation.core
+    last = core.step + steps
+    while core.step < last:
+        wanted = last - core.step
+        if watch.next < math.inf and core.dt > 0.0:
+            left = math.ceil((watch.next - core.time) / core.dt)
+            # Half of the way, and in the end one by one: steps may grow.
+            wanted = max(1, min(wanted, left // 2))
+        made = simulation.advance(wanted, end)
+        ends = watch.look()
+        if ends or made < wanted:
+            return ends
+    return None

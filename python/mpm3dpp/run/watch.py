@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from mpm3dpp.base import arguments
+from mpm3dpp.base.errors import CaseError
 from mpm3dpp.case.stop import Stop
 from mpm3dpp.io.fields import numbered
 from mpm3dpp.io.part_cells import PART_COLUMNS, Sums
@@ -27,6 +29,17 @@ _WORDS = {
     "kinetic_below": "has a kinetic energy below {:.6g} J",
 }
 _COLUMN = {name: k for k, name in enumerate(PART_COLUMNS)}
+
+
+def interval_of(every: float | str | None, call: Call | None) -> float:
+    """Return the time between two calls [s], infinite without a function. Raises `CaseError`."""
+    if (every is None) != (call is None):
+        missing = "call" if call is None else "every"
+        raise CaseError("is missing", "every and call go together: give both", key=missing)
+    interval = math.inf if every is None else arguments.quantity("every", every, "s")
+    if not interval > 0.0:
+        raise CaseError("must be > 0", "give a time such as '1 us'", key="every", value=every)
+    return interval
 
 
 class Watch:
@@ -61,6 +74,11 @@ class Watch:
         self._next_call = math.inf
         if call is not None:
             self._next_call = every * math.ceil(max(simulation.time, 0.0) / every)
+
+    @property
+    def lost(self) -> list[str]:
+        """Names of the probes whose tables are gone, and begin anew."""
+        return self._probes.lost
 
     @property
     def next(self) -> float:
