@@ -153,6 +153,9 @@ class FakeSimulation:
     def loads(self) -> list[Any]:
         return []
 
+    def walls(self) -> list[Any]:
+        return []
+
     def warnings(self) -> list[Any]:
         return []
 

@@ -69,24 +69,33 @@ def test_what_pic_takes_is_no_reason_for_smaller_steps() -> None:
     assert energy_line(told).endswith("; what run.transfer takes is in it")
 
 
-def of_body(velocity: tuple[float, float, float], kinetic: float) -> dict[str, float]:
+def of_body(
+    velocity: tuple[float, float, float], kinetic: float, eroded: float = 0.0
+) -> dict[str, float]:
     return {
         **dict(zip(("velocity_x", "velocity_y", "velocity_z"), velocity, strict=True)),
         "kinetic": kinetic,
+        "eroded_mass": eroded,
     }
 
 
 def test_a_line_for_each_body_that_moves_freely() -> None:
-    ball = {"initial": of_body((0, 0, -800), 3200.0), "final": of_body((321, 1e-11, -537), 1957.3)}
+    ball = {
+        "initial": of_body((0, 0, -800), 3200.0),
+        "final": of_body((321, 1e-11, -537), 1957.3, 2e-3),
+    }
     rest = {"initial": of_body((0, 0, 0), 0.0), "final": of_body((0, 0, -1e-3), 1e-9)}
     case = {"body": {"tool": {"motion": {}}, "ball": {"motion": None}}}
     found: Any = SimpleNamespace(bodies={"ball": ball, "tool": rest, "plate": rest}, case=case)
     assert body_lines(found) == [
-        "ball: 800 -> 625.6 m/s (321, 0, -537), kinetic energy 3200 -> 1957 J",
+        "ball: 800 -> 625.6 m/s (321, 0, -537), kinetic energy 3200 -> 1957 J, eroded 0.002 kg",
         "plate: 0 -> 0.001 m/s (0, 0, -0.001), kinetic energy 0 -> 1e-09 J",
     ]
     case["grid"] = {"dimension": 2}
-    assert body_lines(found)[0] == "ball: 0 -> 321 m/s (321, 0), kinetic energy 3200 -> 1957 J/m"
+    assert (
+        body_lines(found)[0]
+        == "ball: 0 -> 321 m/s (321, 0), kinetic energy 3200 -> 1957 J/m, eroded 0.002 kg/m"
+    )
     found.bodies = {f"grain {k}": rest for k in range(12)}
     assert body_lines(found)[-1] == "... and 2 more bodies, in manifest.json"
     assert len(body_lines(found)) == 11

@@ -31,6 +31,7 @@ _FRAME_BYTES = (
 _PARTICLE_BYTES, _NODE_BYTES = {2: 96, 3: 128}, {2: 150, 3: 200}
 
 
+_HISTORY_BYTES = 8 * (_core.Simulation.history_capacity + 1) * len(_core.history_terms)
 _WITH_EDGES = 1.15  # of a rank's part of the core's memory
 _PROGRAM_BYTES = 62 << 20
 """Python and the libraries of a run, and what its start leaves [bytes]: measured with CPython 3.11,
@@ -99,8 +100,9 @@ def _cells(case: Case, some: Particles, shift: float) -> tuple[np.ndarray, np.nd
 
 
 def memory_bytes(case: Case, bodies: Filled) -> int:
-    """Return about what the core will need, of particles and the nodes that each body reaches."""
-    basis, total = _core.bases[case.grid.basis], 0
+    """Return about what the core will need: of particles, the nodes that each body reaches, rows of
+    the history that wait."""
+    basis, total = _core.bases[case.grid.basis], _HISTORY_BYTES
     transfer, D = _core.transfers[case.run.transfer.word], case.grid.dimension
     taken = 8 * (D * D * transfer["affine"] + D * transfer["filters"] + case.has_springs)
     reached = np.arange(basis["nodes"]) - basis["before"]  # From a cell's own node, along an axis.
