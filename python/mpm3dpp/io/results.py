@@ -20,12 +20,13 @@ from .one_file import arrays_of_one_file
 from .part_cells import PART_COLUMNS, PART_LIMIT, of_body
 from .probe_tables import read_probe
 from .rows import FROM_VTK, is_tensor
+from .sampling import Sampling
 
 if TYPE_CHECKING:
     import pyvista
 
 
-class Results:
+class Results(Sampling):
     """The frames of one run; `results[k]` is a `pyvista.PolyData`, `arrays(k)` plain numpy.
 
     Attributes:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 TO_VTK = (0, 1, 2, 5, 3, 4)
@@ -14,6 +16,17 @@ FROM_VTK = (0, 1, 2, 4, 5, 3)
 def is_tensor(values: np.ndarray) -> bool:
     """Return whether an array has a symmetric tensor in each row."""
     return values.ndim == 2 and values.shape[1] == 6
+
+
+GONE = 3
+"""In the column `failed`: from here on a particle takes no part any more (3: eroded, 4: left)."""
+
+
+def takes_part(arrays: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return which particles of a frame take part, shape (n,); of one without `failed` all."""
+    if "failed" not in arrays:
+        return np.ones(len(arrays["position"]), dtype=bool)
+    return ~(arrays["failed"] >= GONE)  # NaN where nothing can fail.
 
 
 def as_stored(array: np.ndarray) -> np.ndarray:

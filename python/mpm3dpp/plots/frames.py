@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mpm3dpp.io.rows import takes_part
+
 from .flat import draw_particles, set_view
 from .labels import at_time, choose, length_unit, prefix
 from .line import draw_line, line_axis
@@ -39,7 +41,6 @@ class View:
 
 
 _BLOCK = 65536  # particles that are coloured at a time
-_GONE = 3  # in the column `failed`: eroded; 4: left the region that is kept
 
 
 PLACED = ("size", "body", "grain", "material", "failed")
@@ -53,9 +54,7 @@ def drawn(results: Results, frame: int, colour: str | None = None) -> dict[str, 
     """
     needed = _needed(results, colour)
     arrays = results.arrays(frame) if needed is None else results.arrays(frame, needed)
-    if "failed" not in arrays:
-        return arrays
-    stays = ~(arrays["failed"] >= _GONE)  # NaN where nothing can fail
+    stays = takes_part(arrays)
     return arrays if stays.all() else {name: values[stays] for name, values in arrays.items()}
 
 
