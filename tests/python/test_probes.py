@@ -296,15 +296,14 @@ def test_a_particle_that_erodes_is_seen_no_more(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "probes.png").exists()
 
 
-def test_processes_see_what_one_does(tmp_path: Path) -> None:
+def test_processes_see_what_one_does(run: Path, tmp_path: Path) -> None:
     pytest.importorskip("mpi4py")
     write(tmp_path, CASE + PROBES)
-    for ranks in (1, 2):
-        words = ("run", "case.toml", "--out", f"of_{ranks}", "--no-pictures", "--ranks", ranks)
-        done = mpm3dpp(*words, cwd=tmp_path)
-        assert done.returncode == 0, done.stderr
+    words = ("run", "case.toml", "--out", "out", "--no-pictures", "--ranks", 2, "--threads", 1)
+    done = mpm3dpp(*words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
     for name in ("gauge", "tip", "box", "right"):
-        files = [probe_path(tmp_path / f"of_{ranks}", name) for ranks in (1, 2)]
+        files = [probe_path(folder, name) for folder in (run, tmp_path / "out")]
         assert files[0].read_bytes() == files[1].read_bytes()
 
 
