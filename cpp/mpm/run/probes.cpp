@@ -111,13 +111,13 @@ std::vector<std::uint8_t> marked(const Domain<D>& domain, const std::vector<int>
 }
 
 /// What has been seen of a component in a patch, in the order of its particles, whichever thread.
-struct Seen {
+struct SeenComponent {
   double weight = 0.0, sum = 0.0, least = none, largest = -none;
 };
 struct PatchSeen {
   std::int64_t count = 0;
   double mass = 0.0;
-  std::vector<Seen> components;
+  std::vector<SeenComponent> components;
 };
 
 /// What a probe looks for, and where it stands.
@@ -151,11 +151,11 @@ PatchSeen seen_in(const Domain<D>& domain, const Probe& probe, const Patch<D>& p
     part.components.resize(fields.components);
     ++part.count;
     part.mass += pool.mass()[row];
-    Seen* of_field = part.components.data();
+    SeenComponent* of_field = part.components.data();
     for (std::size_t k = 0; k < fields.all.size(); of_field += fields.all[k++].components)
       for_each_value(body, pool, row, fields.all[k], fields.firsts[k][pool_number],
                      [&](int c, double value) {
-                       Seen& of = of_field[c];
+                       SeenComponent& of = of_field[c];
                        of.weight += weight;
                        of.sum += weight * value;
                        of.least = std::min(of.least, value);
@@ -186,7 +186,7 @@ std::vector<double> look(Domain<D>& domain, const Probe& probe) {
     count += part.count;
     sums[0].add(part.mass);
     for (std::size_t k = 0; k < components; ++k) {
-      const Seen& of = part.components[k];
+      const SeenComponent& of = part.components[k];
       sums[1 + 2 * k].add(of.weight);
       sums[2 + 2 * k].add(of.sum);
       ends[2 * k] = std::max(ends[2 * k], -of.least);
