@@ -11,9 +11,9 @@ import pytest
 from commands import CASE, interrupted, mpm3dpp, one_sentence, write
 from mpm3dpp import Case, Probe, ProbeRegion, Simulation, load_case, open_results, run_case
 from mpm3dpp.base.errors import CaseError
-from mpm3dpp.case.probe import next_look
 from mpm3dpp.io import read_history, read_manifest
 from mpm3dpp.io.probe_tables import probe_path, read_probe
+from mpm3dpp.run.probes import next_look
 
 DOCS = Path(__file__).resolve().parents[2] / "docs" / "how-to"
 PROBES = """

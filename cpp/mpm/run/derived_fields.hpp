@@ -14,6 +14,14 @@ struct ParticleState {
   int dimension;
 };
 
+template <int D>
+ParticleState particle_state(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row) {
+  ParticleState p{{}, pool.mass()[row] / body.initial_density, D};
+  for (int c = 0; c < Sym<double, D>::size; ++c)
+    p.stress[D == 2 && c == 3 ? 5 : c] = pool.stress(c)[row];
+  return p;
+}
+
 struct DerivedField {
   std::string_view name, unit, meaning;
   bool constant;  // it stays as it is at the start

@@ -76,9 +76,7 @@ void round_derived(const Domain<D>& domain, const Slices& slices, const std::str
     const ParticlePool<D>& of = domain.pools[m];
     gather(comm, slices, 1, std::array{0}, to, [&](auto&& f) {
       for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
-        ParticleState p{{}, of.mass()[row] / domain.bodies[b].initial_density, D};
-        for (int c = 0; c < Sym<double, D>::size; ++c)
-          p.stress[D == 2 && c == 3 ? 5 : c] = of.stress(c)[row];
+        const ParticleState p = particle_state(domain.bodies[b], of, row);
         f(first[b] + of.id[row], 0, static_cast<float>(field->value(p)));
       });
     });

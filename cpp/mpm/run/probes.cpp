@@ -44,21 +44,13 @@ std::vector<int> first_components(const Domain<D>& domain, const Field& field) {
   return firsts;
 }
 
-template <int D>
-ParticleState state_of(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row) {
-  ParticleState p{{}, pool.mass()[row] / body.initial_density, D};
-  for (int c = 0; c < Sym<double, D>::size; ++c)
-    p.stress[D == 2 && c == 3 ? 5 : c] = pool.stress(c)[row];
-  return p;
-}
-
 /// f(component, value) for what a particle has of a field; `first` of its pool.
 template <int D, class F>
 void for_each_value(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row,
                     const Field& field, int first, F&& f) {
-  if (field.derived != nullptr) return f(0, field.derived->value(state_of(body, pool, row)));
+  if (field.derived != nullptr) return f(0, field.derived->value(particle_state(body, pool, row)));
   if (field.is_stress) {
-    const ParticleState p = state_of(body, pool, row);
+    const ParticleState p = particle_state(body, pool, row);
     for (int c = 0; c < 6; ++c) f(c, p.stress[c]);
     return;
   }

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -131,10 +130,3 @@ def check_probes(
                 rule = "is no field of what the probe looks at"
                 path = (*where, "fields", k)
                 yield violation(rule, nearest(field, known), value=field, path=path)
-
-
-def next_look(probe: Probe, end_time: float, time: float) -> float:
-    """Return the first time after `time` at which a probe of a run to `end_time` looks [s]."""
-    every = probe.every or end_time / SAMPLES
-    then = every * (math.floor(time / every + 1e-9) + 1)
-    return end_time if abs(then - end_time) < 1e-9 * end_time else then  # Where it rounds.

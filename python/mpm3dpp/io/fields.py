@@ -127,6 +127,12 @@ def frame_of(
     return Frame(float(simulation.time), int(simulation.step), rows, columns, tables)
 
 
+def column_components(simulation: Any) -> dict[str, int]:
+    """Return the components of every column that bodies of this simulation have, by name."""
+    bodies = range(simulation.body_count)
+    return {c.name: int(c.components) for b in bodies for c in simulation.columns(b)}
+
+
 def column_units(simulation: Any) -> dict[str, str]:
     """Unit of every array that a frame of this simulation can have, name -> unit."""
     units = dict(UNITS)
@@ -149,12 +155,10 @@ def _column(
 
 def _components(simulation: Any, name: str) -> int:
     """Return those of a column of the core. Raises `CaseError` where no body has it."""
-    known: set[str] = set()
-    for b in range(simulation.body_count):
-        for column in simulation.columns(b):
-            if column.name == name:
-                return int(column.components)
-            known.add(column.name)
+    components = column_components(simulation)
+    if name in components:
+        return components[name]
+    known = set(components)
     raise CaseError(
         f"output.fields: no material of this case stores '{name}'; "
         f"choose from {', '.join(sorted(known - set(STANDARD))) or 'the standard fields only'}"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import abc
 from collections.abc import Collection, Sequence
 from typing import Any
 
@@ -17,7 +18,7 @@ _AXES = "xyz"
 _MOST_NODES = 50_000_000  # of a grid
 
 
-class Sampling:
+class Sampling(abc.ABC):
     """What results have beside the particles themselves; of `Results`.
 
     A value at a place is the mean of the particles less than a cell away along each axis, by their
@@ -26,11 +27,10 @@ class Sampling:
 
     dimension: int
     cell_size: float
-    times: np.ndarray
 
+    @abc.abstractmethod
     def arrays(self, frame: int, names: Collection[str] | None = None) -> dict[str, np.ndarray]:
         """See `Results`."""
-        raise NotImplementedError
 
     def section(
         self,

@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from mpm3dpp.base.disk import make_folder
-from mpm3dpp.case.probe import Probe, next_look
+from mpm3dpp.case.probe import SAMPLES, Probe
 from mpm3dpp.io.data_frames import component_words
+from mpm3dpp.io.fields import column_components
 from mpm3dpp.io.probe_tables import FIRST_COLUMNS, PROBES, probe_path
 from mpm3dpp.io.table import Table
 
@@ -94,10 +95,12 @@ class _Probe:
         if self._particle is not None:
             self._bodies = self._particle[:1]
         self.next = state["next"] if state else 0.0
-        widths = [_components(core, field) for field in probe.fields]
+        # What is no column follows from others; stress has six components in 2D too.
+        known = column_components(core) | {"stress": 6}
+        widths = [known.get(field, 1) for field in probe.fields]
         path = probe_path(folder, name)
-        known = state["table"] if state and path.exists() else None
-        self.table = Table(path, header_of(probe, widths), known)
+        saved = state["table"] if state and path.exists() else None
+        self.table = Table(path, header_of(probe, widths), saved)
 
     def look(self, core: Any) -> None:
         """Write a row."""
@@ -127,6 +130,17 @@ class _Probe:
         return list(map(int, found))
 
 
+def next_multiple(every: float, time: float) -> float:
+    """Return the first multiple of `every` after a time [s]."""
+    return every * (math.floor(time / every + 1e-9) + 1)
+
+
+def next_look(probe: Probe, end_time: float, time: float) -> float:
+    """Return the first time after `time` at which a probe of a run to `end_time` looks [s]."""
+    then = next_multiple(probe.every or end_time / SAMPLES, time)
+    return end_time if abs(then - end_time) < 1e-9 * end_time else then  # Where it rounds.
+
+
 def header_of(probe: Probe, widths: list[int]) -> list[str]:
     """Return the columns of a probe's table, whose fields have so many components each."""
     several = probe.kind not in ("point", "particle")
@@ -136,13 +150,3 @@ def header_of(probe: Probe, widths: list[int]) -> list[str]:
         for word in words:
             names += [f"{field}{word}{end}" for end in (("", "_min", "_max") if several else ("",))]
     return names
-
-
-def _components(core: Any, field: str) -> int:
-    if field == "stress":
-        return 6
-    for body in range(core.body_count):
-        for column in core.columns(body):
-            if column.name == field:
-                return int(column.components)
-    return 1  # It follows from others.

@@ -16,7 +16,7 @@ from mpm3dpp.case.stop import Stop
 from mpm3dpp.io.fields import numbered
 from mpm3dpp.io.part_cells import PART_COLUMNS, Sums
 
-from .probes import Probes
+from .probes import Probes, next_multiple
 from .simulation import Simulation
 
 Call = Callable[[Simulation], bool | None]
@@ -91,7 +91,7 @@ class Watch:
         self._probes.look(core)
         if self._call is None or core.time < self._next_call:
             return None
-        self._next_call = self._every * (math.floor(core.time / self._every + 1e-9) + 1)
+        self._next_call = next_multiple(self._every, core.time)
         if self._call(self._simulation) is False:
             return f"stopped by the function that was called at t = {core.time:.6g} s"
         return None
