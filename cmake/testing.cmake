@@ -5,9 +5,6 @@ list(REMOVE_ITEM unit_sources "${CMAKE_CURRENT_SOURCE_DIR}/tests/unit/module.cpp
 add_library(mpm_unit OBJECT ${unit_sources})
 target_include_directories(mpm_unit PUBLIC tests/unit)
 target_link_libraries(mpm_unit PUBLIC mpm_core_${tested_level})
-if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)   # else CMake warns of it
-  target_precompile_headers(mpm_unit REUSE_FROM mpm_core_${tested_level})
-endif()
 
 # Allocations are counted (tests/unit/run/count_allocations.cpp): our calls of an allocating function
 # go through a wrapper.

@@ -5,12 +5,16 @@
 #include <cstddef>
 #include <exception>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace mpm::testing {
+
+/// What 1 and the number after it differ by.
+inline constexpr double eps = std::numeric_limits<double>::epsilon();
 
 /// What one test found. A test that checked nothing has not passed.
 class Report {

@@ -10,7 +10,6 @@
 namespace mpm {
 namespace {
 
-constexpr const char* damaged = "its contacts are damaged";
 constexpr double least_share =
     1e-6;  // of a particle's mass, for a node to count as a first contact
 
@@ -205,9 +204,9 @@ void PairRecords::check_restored(std::size_t bodies, bool keep) {
     const PairRecord& r = records_[k];
     const bool later =
         k == 0 || std::pair(records_[k - 1].a, records_[k - 1].b) < std::pair(r.a, r.b);
-    StateStream::check(is_body(r.a) && is_body(r.b) && r.a < r.b && later, damaged);
+    StateStream::check(is_body(r.a) && is_body(r.b) && r.a < r.b && later, damaged_contacts);
   }
-  StateStream::check(sums_.size() == records_.size(), damaged);
+  StateStream::check(sums_.size() == records_.size(), damaged_contacts);
   if (!keep) {
     records_.clear();
     sums_.clear();

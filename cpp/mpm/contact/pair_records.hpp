@@ -11,6 +11,9 @@
 
 namespace mpm {
 
+/// What is said of a checkpoint whose contacts make no sense.
+inline constexpr const char* damaged_contacts = "its contacts are damaged";
+
 struct PairRecord {
   int a = 0, b = 0;        // bodies, a < b; or groups of bodies, a <= b
   std::int64_t pairs = 0;  // of bodies, that the record is the sum of

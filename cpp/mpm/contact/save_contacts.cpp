@@ -10,8 +10,6 @@
 namespace mpm {
 namespace {
 
-constexpr const char* damaged = "its contacts are damaged";
-
 /// Pairs of two bodies or more.
 bool is_pair_count(std::uint32_t pairs) {
   const auto sides = static_cast<std::uint32_t>(std::lround(0.5 + std::sqrt(0.25 + 2.0 * pairs)));
@@ -47,7 +45,7 @@ void exchange_planes(Contact<D>& contact, StateStream& stream, const Partition<D
   stream.vector(counts);
   stream.vector(pairs);
   if (!stream.restores()) return;
-  const auto check = [](bool holds) { StateStream::check(holds, damaged); };
+  const auto check = [](bool holds) { StateStream::check(holds, damaged_contacts); };
   check(tiles.size() == cached.size() && hashes.size() == counts.size() &&
         solved.size() == counts.size());
   std::vector<KeptTile<D>> all(tiles.size());
@@ -89,10 +87,10 @@ void exchange_contact(Contact<D>& contact, StateStream& stream, std::size_t bodi
   if (!stream.restores()) return;
   contact.unconverged.store(first ? static_cast<std::size_t>(unconverged) : 0);
   for (const std::size_t size : {contact.cache.displacement.size(), contact.cache.fastest.size()})
-    StateStream::check(size == 0 || size == bodies, damaged);
+    StateStream::check(size == 0 || size == bodies, damaged_contacts);
   StateStream::check(contact.counts.bodies_max >= 0 &&
                          static_cast<std::size_t>(contact.counts.bodies_max) <= bodies,
-                     damaged);
+                     damaged_contacts);
   contact.records.check_restored(bodies, first);
   for (std::size_t b = 0; b < contact.cache.fastest.size(); ++b)
     if (contact.cache.fastest[b] > 0.0) contact.cache.moving.push_back(static_cast<int>(b));

@@ -10,14 +10,14 @@ namespace mpm {
 namespace {
 
 /// A letter begins with these, and their number.
-struct GroupHead {
+struct GivenHead {
   std::int32_t body;
   std::uint32_t count;
   std::uint64_t states;
 };
 
 /// The particles of a body that go to a rank.
-struct Group {
+struct GivenGroup {
   int body;
   std::vector<std::uint32_t> which;
 };
@@ -76,7 +76,7 @@ void write_group(Letter& letter, const GivenParticles& given,
 }
 
 template <int D>
-void read_group(Reader& reader, const GroupHead& head, GivenParticles& given) {
+void read_group(Reader& reader, const GivenHead& head, GivenParticles& given) {
   const auto append = [&](std::vector<double>& values, std::size_t width) {
     for (std::size_t k = 0; k < head.count * width; ++k) values.push_back(reader.read<double>());
   };
@@ -94,14 +94,14 @@ void read_group(Reader& reader, const GroupHead& head, GivenParticles& given) {
 
 /// Which of its particles this rank gives to each.
 template <int D>
-std::vector<std::vector<Group>> groups_of_ranks(const TileGrid<D>& grid,
-                                                const std::vector<Body<D>>& bodies,
-                                                const Owners<D>& owners) {
-  std::vector<std::vector<Group>> groups(owners.first.size());
+std::vector<std::vector<GivenGroup>> groups_of_ranks(const TileGrid<D>& grid,
+                                                     const std::vector<Body<D>>& bodies,
+                                                     const Owners<D>& owners) {
+  std::vector<std::vector<GivenGroup>> groups(owners.first.size());
   for (std::size_t b = 0; b < bodies.size(); ++b)
     for (std::size_t k = 0; bodies[b].given && k < bodies[b].given->count(); ++k) {
       const int rank = owners.rank_of(tile_of(grid, *bodies[b].given, k));
-      std::vector<Group>& of_rank = groups[static_cast<std::size_t>(rank)];
+      std::vector<GivenGroup>& of_rank = groups[static_cast<std::size_t>(rank)];
       if (of_rank.empty() || std::cmp_not_equal(of_rank.back().body, b))
         of_rank.push_back({static_cast<int>(b), {}});
       of_rank.back().which.push_back(static_cast<std::uint32_t>(k));
@@ -113,16 +113,16 @@ std::vector<std::vector<Group>> groups_of_ranks(const TileGrid<D>& grid,
 template <int D>
 std::vector<Letter> write_all(const TileGrid<D>& grid, std::vector<Body<D>>& bodies,
                               const Owners<D>& owners) {
-  const std::vector<std::vector<Group>> groups = groups_of_ranks(grid, bodies, owners);
+  const std::vector<std::vector<GivenGroup>> groups = groups_of_ranks(grid, bodies, owners);
   std::vector<Letter> letters(groups.size());
   for (std::size_t rank = 0; rank < groups.size(); ++rank) {
     letters[rank].rank = static_cast<int>(rank);
     if (groups[rank].empty()) continue;
     write(letters[rank], groups[rank].size());
-    for (const Group& group : groups[rank]) {
+    for (const GivenGroup& group : groups[rank]) {
       const auto count = static_cast<std::uint32_t>(group.which.size());
       const auto& given = *bodies[static_cast<std::size_t>(group.body)].given;
-      write(letters[rank], GroupHead{group.body, count, given.states.size()});
+      write(letters[rank], GivenHead{group.body, count, given.states.size()});
     }
   }
   // Body by body, so that memory does not hold all twice.
@@ -130,7 +130,7 @@ std::vector<Letter> write_all(const TileGrid<D>& grid, std::vector<Body<D>>& bod
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     for (std::size_t rank = 0; rank < groups.size(); ++rank) {
       if (next[rank] == groups[rank].size()) continue;
-      const Group& group = groups[rank][next[rank]];
+      const GivenGroup& group = groups[rank][next[rank]];
       if (std::cmp_not_equal(group.body, b)) continue;
       write_group<D>(letters[rank], *bodies[b].given, group.which);
       ++next[rank];
@@ -142,10 +142,10 @@ std::vector<Letter> write_all(const TileGrid<D>& grid, std::vector<Body<D>>& bod
 
 /// The heads of a letter's groups; room is made for what they tell of.
 template <int D>
-std::vector<GroupHead> read_heads(Reader& reader, std::vector<Body<D>>& bodies) {
-  std::vector<GroupHead> heads(reader.read<std::size_t>());
-  for (GroupHead& head : heads) {
-    head = reader.read<GroupHead>();
+std::vector<GivenHead> read_heads(Reader& reader, std::vector<Body<D>>& bodies) {
+  std::vector<GivenHead> heads(reader.read<std::size_t>());
+  for (GivenHead& head : heads) {
+    head = reader.read<GivenHead>();
     std::unique_ptr<GivenParticles>& given = bodies[static_cast<std::size_t>(head.body)].given;
     if (!given) given = std::make_unique<GivenParticles>();
     const std::size_t count = given->numbers.capacity() + head.count;
@@ -173,10 +173,10 @@ std::optional<Owners<D>> give_to_owners(TileGrid<D>& grid, std::vector<Body<D>>&
   Letter& kept = letters[static_cast<std::size_t>(comm.rank())];
   if (!kept.bytes.empty()) mail.in.push_back(std::move(kept));
   std::vector<Reader> readers(mail.in.begin(), mail.in.end());
-  std::vector<std::vector<GroupHead>> heads(readers.size());
+  std::vector<std::vector<GivenHead>> heads(readers.size());
   for (std::size_t k = 0; k < heads.size(); ++k) heads[k] = read_heads(readers[k], bodies);
   for (std::size_t k = 0; k < readers.size(); ++k) {
-    for (const GroupHead& head : heads[k])
+    for (const GivenHead& head : heads[k])
       read_group<D>(readers[k], head, *bodies[static_cast<std::size_t>(head.body)].given);
     mail.in[k] = {};
   }

@@ -140,14 +140,20 @@ Vector3 turning(const ParticlePool<D>& pool, std::uint32_t row) {
   return w;
 }
 
+template <int D>
+Vector3 velocity_in_space(const ParticlePool<D>& pool, std::uint32_t row) {
+  Vec<double, D> v;
+  for (int a = 0; a < D; ++a) v[a] = pool.v(a)[row];
+  return in_space<D>(v);
+}
+
 /// Angular momentum of a particle about a point [N m s], with that of the affine part.
 template <int D>
 Vector3 angular_momentum(const ParticlePool<D>& pool, std::uint32_t row, double affine_moment,
                          const Vector3& about) {
-  Vec<double, D> v;
-  for (int a = 0; a < D; ++a) v[a] = pool.v(a)[row];
   const Vector3 arm = in_space<D>(pool.position_of(row)) - about;
-  return pool.mass()[row] * (cross(arm, in_space<D>(v)) + affine_moment * turning(pool, row));
+  return pool.mass()[row] *
+         (cross(arm, velocity_in_space(pool, row)) + affine_moment * turning(pool, row));
 }
 
 /// Recoverable energy of a particle, which is kept per initial volume m / rho_0 [J].

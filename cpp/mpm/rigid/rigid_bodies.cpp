@@ -12,13 +12,6 @@ Vector3 position(const ParticlePool<D>& pool, std::uint32_t row) {
   return in_space<D>(pool.position_of(row));
 }
 
-template <int D>
-Vector3 velocity(const ParticlePool<D>& pool, std::uint32_t row) {
-  Vec<double, D> v;
-  for (int a = 0; a < D; ++a) v[a] = pool.v(a)[row];
-  return in_space<D>(v);
-}
-
 /// f(body, k) for the rigid bodies of which there is anything left to move; k: place among them.
 template <int D, class F>
 void for_each_moving(Domain<D>& domain, F&& f) {
@@ -43,7 +36,7 @@ void gather(Domain<D>& domain) {
     const ParticlePool<D>& pool = domain.pool_of(patch);
     const Vector3 centre = domain.rigid[rigid_of(domain, patch)].centre;
     for (const std::uint32_t row : pool.rows(patch)) {
-      parts[p].add(pool.mass()[row], position(pool, row) - centre, velocity(pool, row));
+      parts[p].add(pool.mass()[row], position(pool, row) - centre, velocity_in_space(pool, row));
       for (int a = 0; a < D; ++a)
         // In cells from node 0, as walls are.
         parts[p].extent.add(a, domain.grid.among_nodes(pool.x(a)[row], a));

@@ -31,13 +31,6 @@ std::vector<std::array<double, count>> sum_groups(Domain<D>& domain, F&& of_part
   return sums;
 }
 
-template <int D>
-Vector3 velocity(const ParticlePool<D>& pool, std::uint32_t row) {
-  Vec<double, D> v;
-  for (int a = 0; a < D; ++a) v[a] = pool.v(a)[row];
-  return in_space<D>(v);
-}
-
 }  // namespace
 
 template <int D>
@@ -46,7 +39,8 @@ std::vector<PartSums> part_sums(Domain<D>& domain) {
   const auto linear =
       sum_groups<8>(domain, [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t) {
         const double m = pool.mass()[row];
-        const Vector3 x = m * in_space<D>(pool.position_of(row)), p = m * velocity(pool, row);
+        const Vector3 x = m * in_space<D>(pool.position_of(row)),
+                      p = m * velocity_in_space(pool, row);
         return std::array{m, x[0], x[1], x[2], p[0], p[1], p[2], kinetic_energy(pool, row, moment)};
       });
   std::vector<PartSums> parts(linear.size());

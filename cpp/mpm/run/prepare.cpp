@@ -17,22 +17,22 @@
 namespace mpm {
 namespace {
 
-void check(bool condition, const char* sentence) {
+void check_setting(bool condition, const char* sentence) {
   if (!condition) throw std::invalid_argument(sentence);
 }
 
 template <int D>
 void check_bodies(const Domain<D>& domain) {
   const auto is_rigid = [](const Body<D>& b) { return !b.deforms(); };
-  check(!std::ranges::all_of(domain.bodies, is_rigid),
-        "all bodies are rigid, so no wave limits the time step: one must deform");
-  check(!domain.grid.bonded || std::ranges::none_of(domain.bodies, is_rigid),
-        "bodies are bonded, so none can be rigid");
+  check_setting(!std::ranges::all_of(domain.bodies, is_rigid),
+                "all bodies are rigid, so no wave limits the time step: one must deform");
+  check_setting(!domain.grid.bonded || std::ranges::none_of(domain.bodies, is_rigid),
+                "bodies are bonded, so none can be rigid");
   const auto damped_otherwise = [&](const Body<D>& b) {
     return b.damping != domain.bodies[0].damping;
   };
-  check(!domain.grid.bonded || std::ranges::none_of(domain.bodies, damped_otherwise),
-        "bodies are bonded and move as one, so all must have the same damping");
+  check_setting(!domain.grid.bonded || std::ranges::none_of(domain.bodies, damped_otherwise),
+                "bodies are bonded and move as one, so all must have the same damping");
 }
 
 /// Give the particles of bodies with prescribed motion their velocities at the start.
@@ -82,7 +82,7 @@ template <int D>
 void prepare(Simulation<D>& simulation) {
   Domain<D>& domain = simulation.domain;
   require(simulation, Phase::building, "prepare() has been called already");
-  check(!domain.bodies.empty(), "there is no body");
+  check_setting(!domain.bodies.empty(), "there is no body");
   check_bodies(domain);
   simulation.phase = Phase::broken;  // until all is done
   domain.grid.partition.shares_tiles = domain.has_contact();
@@ -105,7 +105,7 @@ void prepare(Simulation<D>& simulation) {
   start_contact(domain);
   probe_speeds(domain);
   const std::string problem = choose_time_step(simulation);
-  check(problem.empty(), problem.c_str());
+  check_setting(problem.empty(), problem.c_str());
   // The fastest speed of all, whatever steps are made.
   const double cfl = simulation.settings.run.cfl;
   const double fastest = cfl * domain.grid.cell_size / stable_time_step(domain, cfl);

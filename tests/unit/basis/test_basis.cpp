@@ -12,8 +12,8 @@
 namespace {
 
 using namespace mpm;
+using mpm::testing::eps;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
 // Sums over at most 64 nodes of products of three factors, the largest of which is one.
 constexpr double tolerance = 64 * eps;
 

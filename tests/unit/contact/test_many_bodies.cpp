@@ -142,7 +142,7 @@ void check_together(mpm::testing::Report& report, Crowd<D> crowd) {
 }
 
 template <int D>
-void check_dimension(mpm::testing::Report& report) {
+void check_bodies(mpm::testing::Report& report) {
   std::mt19937_64 random(5);
   for (std::size_t count = 3; count <= 6; ++count)
     for (int n = 0; n < 25; ++n) {
@@ -156,8 +156,8 @@ void check_dimension(mpm::testing::Report& report) {
 }  // namespace
 
 void test_many_bodies(mpm::testing::Report& report) {
-  check_dimension<2>(report);
-  check_dimension<3>(report);
+  check_bodies<2>(report);
+  check_bodies<3>(report);
   // Newton's row: one body meets four at rest; all then move together, as plastic impact demands.
   std::mt19937_64 random(1);
   Crowd<2> row(random, 5, 0.0);

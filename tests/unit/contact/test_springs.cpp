@@ -12,7 +12,7 @@
 namespace {
 
 using namespace mpm;
-constexpr double eps = std::numeric_limits<double>::epsilon();
+using mpm::testing::eps;
 constexpr BasisId spline = basis_id<QuadraticBSpline>;
 
 double quadratic(double d) {

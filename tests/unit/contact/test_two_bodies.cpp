@@ -7,10 +7,10 @@
 namespace {
 
 using namespace mpm;
+using mpm::testing::eps;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
 // About ten roundings of quantities of the size of the momenta, which are below 100.
-constexpr double tolerance = 1000 * eps;
+constexpr double rounding = 1000 * eps;
 
 template <int D>
 struct Meeting {
@@ -58,9 +58,9 @@ void check_momentum(mpm::testing::Report& report, std::mt19937_64& random) {
     m.template solve<false>();
     approaching += approach > 0.0;
     const Vec<double, D> removed = std::max(approach, 0.0) * m.pair.normal;
-    CHECK_CLOSE(distance(m.sides[0].momentum, p_r - removed), 0.0, tolerance);  // eq. (6)
-    CHECK_CLOSE(distance(m.sides[1].momentum, p_s + removed), 0.0, tolerance);  // eq. (7)
-    CHECK_CLOSE(m.pair.normal_impulse, std::max(approach, 0.0), tolerance);
+    CHECK_CLOSE(distance(m.sides[0].momentum, p_r - removed), 0.0, rounding);  // eq. (6)
+    CHECK_CLOSE(distance(m.sides[1].momentum, p_s + removed), 0.0, rounding);  // eq. (7)
+    CHECK_CLOSE(m.pair.normal_impulse, std::max(approach, 0.0), rounding);
     CHECK_EQUAL(norm(m.pair.friction_impulse), 0.0);
   }
   CHECK(approaching > 50 && approaching < 150, approaching);  // both branches are tested
@@ -84,9 +84,9 @@ void check_forces(mpm::testing::Report& report, std::mt19937_64& random) {
     m.template solve<true>();
     if (nor > 0.0) ++(fric < tan ? slipping : sticking);
     const Vec<double, D> impulse = nor * m.pair.normal + fric * s_r;
-    CHECK_CLOSE(distance(m.sides[0].momentum, p_r - impulse), 0.0, tolerance);  // eq. (11)
-    CHECK_CLOSE(distance(m.sides[1].momentum, p_s + impulse), 0.0, tolerance);  // eq. (12)
-    CHECK_CLOSE(distance(m.pair.friction_impulse, fric * s_r), 0.0, tolerance);
+    CHECK_CLOSE(distance(m.sides[0].momentum, p_r - impulse), 0.0, rounding);  // eq. (11)
+    CHECK_CLOSE(distance(m.sides[1].momentum, p_s + impulse), 0.0, rounding);  // eq. (12)
+    CHECK_CLOSE(distance(m.pair.friction_impulse, fric * s_r), 0.0, rounding);
   }
   CHECK(slipping > 20 && sticking > 20, slipping, sticking);
 }

@@ -29,7 +29,7 @@ void check_arithmetic(mpm::testing::Report& report) {
 }
 
 template <int W>
-void check_transpose(mpm::testing::Report& report) {
+void check_lanes(mpm::testing::Report& report) {
   Batch<W> of[4];
   for (int k = 0; k < 4; ++k)
     for (int n = 0; n < W; ++n) of[k].v[n] = 10.0 * n + k;
@@ -46,6 +46,6 @@ void check_transpose(mpm::testing::Report& report) {
 void test_node_batch(mpm::testing::Report& report) {
   check_arithmetic<4>(report);
   check_arithmetic<8>(report);
-  check_transpose<4>(report);
-  if constexpr (native_lanes >= 8) check_transpose<8>(report);
+  check_lanes<4>(report);
+  if constexpr (native_lanes >= 8) check_lanes<8>(report);
 }

@@ -18,7 +18,7 @@ Vec<double, D> any_vector(std::mt19937_64& random) {
 }
 
 template <int D>
-void check_dimension(mpm::testing::Report& report) {
+void check_loads(mpm::testing::Report& report) {
   std::mt19937_64 random(7);
   for (int trial = 0; trial < 100; ++trial) {
     Mat<double, D> L, spin;
@@ -55,6 +55,6 @@ void check_dimension(mpm::testing::Report& report) {
 }  // namespace
 
 void test_surface_load(mpm::testing::Report& report) {
-  check_dimension<2>(report);
-  check_dimension<3>(report);
+  check_loads<2>(report);
+  check_loads<3>(report);
 }

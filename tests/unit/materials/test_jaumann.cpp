@@ -7,8 +7,7 @@
 namespace {
 
 using namespace mpm;
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
+using mpm::testing::eps;
 
 template <int D>
 Mat<double, D> random_skew(std::mt19937_64& random, double size) {

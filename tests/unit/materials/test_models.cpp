@@ -10,9 +10,9 @@
 namespace {
 
 using namespace mpm;
+using mpm::testing::eps;
 using mpm::testing::example, mpm::testing::hard, mpm::testing::soft;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr double modulus = 1e8;
 constexpr int steps = 40;
 

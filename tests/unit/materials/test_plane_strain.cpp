@@ -9,14 +9,14 @@
 namespace {
 
 using namespace mpm;
+using mpm::testing::eps;
 using mpm::testing::hard, mpm::testing::soft;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr double modulus = 1e8;
+constexpr double stress_scale = 1e8;
 constexpr BulkViscosity viscosity{1.5, 0.1};
 
 template <class M>
-ModelChoice chosen(const M& model, double yield) {
+ModelChoice flat_choice(const M& model, double yield) {
   ModelChoice choice{std::string(model.name), {}};
   for (const auto& p : M::params)
     choice.parameters[std::string(p.name)] =
@@ -26,14 +26,14 @@ ModelChoice chosen(const M& model, double yield) {
 }
 
 template <int D>
-struct Point {
+struct OnePoint {
   Material material;
   Columns columns;
   MaterialColumns at{};
   MaterialBlock<D> block;
   StressSums sums;
 
-  explicit Point(const MaterialChoice& choice) : material(make_material(choice)) {
+  explicit OnePoint(const MaterialChoice& choice) : material(make_material(choice)) {
     at.velocity = columns.add("velocity", "m/s", D, Precision::rounded);
     at.mass = columns.add("mass", "kg", 1);
     at.volume = columns.add("volume", "m^3", 1);
@@ -63,8 +63,8 @@ struct Point {
 /// Returns how many of its steps have made plastic strain; the tolerances are those of test_models,
 /// some four roundings a step of stresses as large as the modulus.
 int check_choice(mpm::testing::Report& report, const MaterialChoice& choice) {
-  Point<2> flat(choice);
-  Point<3> solid(choice);
+  OnePoint<2> flat(choice);
+  OnePoint<3> solid(choice);
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> any(-0.05, 0.05), decades(-3.7, 0.0);
   constexpr int steps = 40;
@@ -85,7 +85,7 @@ int check_choice(mpm::testing::Report& report, const MaterialChoice& choice) {
     for (const ColumnInfo& info : flat.columns.infos()) {
       if (info.name == "velocity") continue;
       const ColumnInfo& in_3d = solid.columns.info(info.name);
-      const double scale = info.unit == "1" || info.unit == "K" ? 1e3 : modulus;
+      const double scale = info.unit == "1" || info.unit == "K" ? 1e3 : stress_scale;
       for (int c = 0; c < info.components; ++c) {
         const int other = info.components == 1 ? 0 : place[c];
         const double a = flat.value(info, c), b = solid.value(in_3d, other);
@@ -99,10 +99,10 @@ int check_choice(mpm::testing::Report& report, const MaterialChoice& choice) {
       plastic = flat.value(info, 0);
     }
     const StressSums &a = flat.sums, &b = solid.sums;
-    CHECK_CLOSE(a.internal, b.internal, near * modulus);
-    CHECK_CLOSE(a.plastic, b.plastic, near * modulus);
-    CHECK_CLOSE(a.viscous, b.viscous, near * (modulus + b.viscous));
-    CHECK_CLOSE(a.force_power, b.force_power, near * (modulus + std::abs(b.force_power)));
+    CHECK_CLOSE(a.internal, b.internal, near * stress_scale);
+    CHECK_CLOSE(a.plastic, b.plastic, near * stress_scale);
+    CHECK_CLOSE(a.viscous, b.viscous, near * (stress_scale + b.viscous));
+    CHECK_CLOSE(a.force_power, b.force_power, near * (stress_scale + std::abs(b.force_power)));
     CHECK_CLOSE(a.fastest, b.fastest, near * b.fastest);
     const double speed = sound_speed<3>(solid.material, solid.columns, solid.at, 0, 0.5);
     CHECK_CLOSE(sound_speed<2>(flat.material, flat.columns, flat.at, 0, 0.5), speed, near * speed);
@@ -114,10 +114,10 @@ int check_choice(mpm::testing::Report& report, const MaterialChoice& choice) {
 }  // namespace
 
 void test_plane_strain(mpm::testing::Report& report) {
-  const ModelChoice linear{"linear", {{"K", modulus}}};
+  const ModelChoice linear{"linear", {{"K", stress_scale}}};
   StrengthModels::for_each([&]<class Model>(const Model& model) {
     for (const double yield : {hard, soft}) {
-      const ModelChoice strength = chosen(model, yield);
+      const ModelChoice strength = flat_choice(model, yield);
       using State = typename Model::template State<double, 2>;
       constexpr bool plastic = requires(State s) { s.plastic_strain; };
       if (Model::eos != EosUse::must) {
@@ -129,11 +129,14 @@ void test_plane_strain(mpm::testing::Report& report) {
     }
   });
   EosModels::for_each([&](const auto& model) {
-    check_choice(report, {1000.0, {"fluid", {}}, chosen(model, hard), {}, viscosity});
+    check_choice(report, {1000.0, {"fluid", {}}, flat_choice(model, hard), {}, viscosity});
   });
   FailureModels::for_each([&](const auto& model) {
     for (const char* action : {"no_shear", "no_tension", "erode"})
-      check_choice(
-          report, {1000.0, chosen(J2{}, soft), linear, {{chosen(model, soft), action}}, viscosity});
+      check_choice(report, {1000.0,
+                            flat_choice(J2{}, soft),
+                            linear,
+                            {{flat_choice(model, soft), action}},
+                            viscosity});
   });
 }

@@ -7,8 +7,8 @@
 namespace {
 
 using namespace mpm;
+using mpm::testing::eps;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr double near = 48 * eps;  // 1e-14: roundings of 12 rotations, most of which do nothing
 
 template <int D>
@@ -58,7 +58,7 @@ std::vector<Sym<double, D>> samples() {
 }
 
 template <int D>
-void check_dimension(mpm::testing::Report& report) {
+void check_eigenvalues(mpm::testing::Report& report) {
   const auto all = samples<D>();
   for (const auto& a : all) check_definition(report, a);
 
@@ -96,7 +96,7 @@ void check_sorted(mpm::testing::Report& report) {
 }  // namespace
 
 void test_eigen(mpm::testing::Report& report) {
-  check_dimension<2>(report);
-  check_dimension<3>(report);
+  check_eigenvalues<2>(report);
+  check_eigenvalues<3>(report);
   check_sorted(report);
 }

@@ -7,8 +7,7 @@
 namespace {
 
 using namespace mpm;
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
+using mpm::testing::eps;
 
 struct Samples {
   std::mt19937_64 random{7};
@@ -50,7 +49,7 @@ Mat<double, 3> full(const Mat<double, D>& f) {
 }
 
 template <int D>
-void check_dimension(mpm::testing::Report& report) {
+void check_tensors(mpm::testing::Report& report) {
   Samples samples;
   for (int n = 0; n < 100; ++n) {
     const auto a = samples.symmetric<D>(), b = samples.symmetric<D>();
@@ -98,8 +97,8 @@ void check_von_mises(mpm::testing::Report& report) {
 }  // namespace
 
 void test_tensor(mpm::testing::Report& report) {
-  check_dimension<2>(report);
-  check_dimension<3>(report);
+  check_tensors<2>(report);
+  check_tensors<3>(report);
   check_von_mises<2>(report);
   check_von_mises<3>(report);
   CHECK_EQUAL((Sym<double, 3>::index(1, 2)), 3);  // the order xx yy zz yz xz xy

@@ -84,7 +84,7 @@ void check_nobody(Report& report) {
 }
 
 template <int D>
-void check_all(Report& report) {
+void check_classes(Report& report) {
   for (const BasisId basis : {basis_id<Linear>, basis_id<Gimp>}) {
     Scattered<D> world(3, basis, false, 80);
     CHECK_EQUAL(check_cells(report, world), std::size_t{0});
@@ -99,6 +99,6 @@ void check_all(Report& report) {
 }  // namespace
 
 void test_classify(Report& report) {
-  check_all<2>(report);
-  check_all<3>(report);
+  check_classes<2>(report);
+  check_classes<3>(report);
 }

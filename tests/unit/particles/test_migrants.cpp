@@ -145,7 +145,7 @@ void check_moves(Report& report, unsigned seed, bool bonded, double way, Counts&
 }
 
 template <int D>
-void check_all(Report& report) {
+void check_migrants(Report& report) {
   Counts counts;
   for (const bool bonded : {false, true})
     for (unsigned seed = 1; seed <= 20; ++seed)
@@ -157,6 +157,6 @@ void check_all(Report& report) {
 }  // namespace
 
 void test_migrants(Report& report) {
-  check_all<2>(report);
-  check_all<3>(report);
+  check_migrants<2>(report);
+  check_migrants<3>(report);
 }

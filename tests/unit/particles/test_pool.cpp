@@ -13,7 +13,7 @@ using namespace mpm::testing;
 
 /// Every row of every pool is once among those of some body, and says who it is.
 template <int D>
-void check_rows(Report& report) {
+void check_pool(Report& report) {
   Scattered<D> world(5, basis_id<Linear>, false, 50);
   for (int round = 0; round < 3; ++round) {
     world.move(2.0);
@@ -60,8 +60,8 @@ void check_room(Report& report) {
 }  // namespace
 
 void test_pool(Report& report) {
-  check_rows<2>(report);
-  check_rows<3>(report);
+  check_pool<2>(report);
+  check_pool<3>(report);
   check_room<2>(report);
   check_room<3>(report);
   for (const std::uint32_t n : {0u, 1u, 1000u}) CHECK(room_for(n) > n && spare_room(n) > 0, n);

@@ -14,7 +14,7 @@ using namespace mpm;
 constexpr std::uint32_t particles = 60;
 
 template <int D>
-struct World {
+struct MovingWorld {
   Threads threads;
   TileGrid<D> grid;
   ListScratch<D> scratch;
@@ -23,7 +23,7 @@ struct World {
   Removed eroded, outflow;
 
   /// Three bodies, the first and the last of one material.
-  World(std::mt19937_64& random, int thread_count, bool bonded) : threads(thread_count) {
+  MovingWorld(std::mt19937_64& random, int thread_count, bool bonded) : threads(thread_count) {
     grid.cell_size = 0.5;
     grid.bonded = bonded;
     grid.outflow_box.exist = true;  // so that there are the columns that particles which leave need
@@ -59,7 +59,7 @@ struct World {
 };
 
 template <int D>
-void check_lists(mpm::testing::Report& report, World<D>& world, int round) {
+void check_updated(mpm::testing::Report& report, MovingWorld<D>& world, int round) {
   std::vector<std::set<std::uint32_t>> seen(world.pools.size());
   std::vector<std::size_t> listed(world.bodies.size(), 0);
   for (const Patch<D>& patch : world.grid.patches) {
@@ -97,8 +97,8 @@ std::vector<std::uint32_t> check_rounds(mpm::testing::Report& report, int thread
                                         bool bonded) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> move(-2.0, 2.0);
-  World<D> world(random, thread_count, bonded);
-  check_lists(report, world, -1);
+  MovingWorld<D> world(random, thread_count, bonded);
+  check_updated(report, world, -1);
   std::size_t failed = 0;
   for (int round = 0; round < 60; ++round) {
     const auto moved = static_cast<int>(random() % 3);  // the other bodies stay as they are
@@ -117,7 +117,7 @@ std::vector<std::uint32_t> check_rounds(mpm::testing::Report& report, int thread
     }
     update_cell_lists(world.grid, world.bodies, world.pools, world.threads, world.scratch,
                       &world.eroded, &world.outflow);
-    check_lists(report, world, round);
+    check_updated(report, world, round);
     CHECK(other == world.rows_of((moved + 1) % 3), round);
     world.scratch.moved = {0, 1, 2};
     if (round % 10 == 9)

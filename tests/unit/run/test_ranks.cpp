@@ -30,7 +30,7 @@ constexpr bool sanitized = false;
 #endif
 
 /// What a test chooses beside the default.
-struct Choice {
+struct RankedCase {
   const char* name;
   std::function<void(Settings&)> set = [](Settings&) {};
   bool load = false, force = false, erodes = false;
@@ -56,7 +56,7 @@ void add_block(Simulation<D>& simulation, int material, double from, double spee
 }
 
 template <int D>
-void build(Simulation<D>& simulation, const Choice& choice) {
+void build(Simulation<D>& simulation, const RankedCase& choice) {
   MaterialChoice material{1000.0, {"neo_hookean", {{"K", 1e7}, {"G", 3e6}}}, {}, {}};
   material.volume_averaging = choice.averages;
   if (choice.erodes) material.failures = {{{"principal_stress", {{"limit", 1e6}}}, "erode"}};
@@ -147,7 +147,7 @@ void restore_from(Simulation<D>& simulation, const std::vector<std::byte>& bytes
 }
 
 template <int D>
-std::vector<double> run_of(const Choice& choice, Comm& comm, States& states) {
+std::vector<double> run_of(const RankedCase& choice, Comm& comm, States& states) {
   Settings settings;
   settings.grid.dimension = D;
   settings.grid.cell_size = 1.0;
@@ -202,7 +202,7 @@ std::vector<double> run_of(const Choice& choice, Comm& comm, States& states) {
 
 /// What the first rank ends with; what all tell is the same.
 template <int D>
-std::vector<double> run_on(const Choice& choice, int ranks, States& states) {
+std::vector<double> run_on(const RankedCase& choice, int ranks, States& states) {
   const auto count = static_cast<std::size_t>(ranks);
   std::vector<std::vector<double>> outcomes(count);
   std::vector<std::exception_ptr> errors(count);
@@ -237,7 +237,7 @@ void check_same(mpm::testing::Report& report, const std::vector<double>& some,
 }
 
 template <int D>
-void check(mpm::testing::Report& report, const Choice& choice) {
+void check(mpm::testing::Report& report, const RankedCase& choice) {
   States first;
   const std::vector<double> alone = run_on<D>(choice, 1, first);
   for (const int ranks : {2, 3, 8}) {
@@ -264,8 +264,8 @@ void put_walls(Settings& settings) {
   settings.grid.walls = {Wall::free, Wall::slip, Wall::fixed, Wall::absorbing, Wall::slip};
 }
 
-std::vector<Choice> choices() {
-  std::vector<Choice> all;
+std::vector<RankedCase> choices() {
+  std::vector<RankedCase> all;
   for (const Scheme scheme : {Scheme::usf, Scheme::usl, Scheme::musl})
     all.push_back({"scheme", [=](Settings& s) { s.run.scheme = scheme; }});
   Bases::for_each([&](BasisId basis, const auto&) {
@@ -366,7 +366,7 @@ std::vector<Choice> choices() {
 }  // namespace
 
 void test_ranks(mpm::testing::Report& report) {
-  for (const Choice& choice : choices()) {
+  for (const RankedCase& choice : choices()) {
     check<2>(report, choice);
     if (!sanitized) check<3>(report, choice);
   }

@@ -15,7 +15,7 @@ std::size_t place(Scheme scheme, bool fused, std::string_view name) {
 }
 
 template <int D>
-void check_lists(mpm::testing::Report& report) {
+void check_fused(mpm::testing::Report& report) {
   using S = Stages<D>;
   // The stress is updated between the mappings, from the first and for the second.
   CHECK_THROWS(fuse(Schemes<D>::usf, S::map_both), "needs the first");
@@ -53,8 +53,8 @@ void check_lists(mpm::testing::Report& report) {
 }  // namespace
 
 void test_fuse(mpm::testing::Report& report) {
-  check_lists<2>(report);
-  check_lists<3>(report);
+  check_fused<2>(report);
+  check_fused<3>(report);
   for (std::size_t k = 0; k < data_names.size(); ++k) CHECK(!data_names[k].empty(), k);
   CHECK_EQUAL(std::size_t{1} << (data_names.size() - 1), std::size_t{Data::force_pressure});
 }

@@ -106,7 +106,7 @@ void check_widths(Report& report) {
 }
 
 template <int D>
-void check_all(Report& report) {
+void check_stages(Report& report) {
   check_widths<D>(report);
   Bases::for_each([&](BasisId basis, const auto&) {
     check_transfers<D>(report, basis);
@@ -138,6 +138,6 @@ void check_all(Report& report) {
 }  // namespace
 
 void test_stages(Report& report) {
-  check_all<2>(report);
-  check_all<3>(report);
+  check_stages<2>(report);
+  check_stages<3>(report);
 }

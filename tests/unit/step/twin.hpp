@@ -39,7 +39,7 @@ struct Choice {
   int filter_order = 1;
   std::int64_t filter_every = 1;
   bool averages = false;  // volumes over cells
-  std::array<Wall, 2 * D> walls{};
+  std::array<Wall, std::size_t{2} * D> walls{};
 };
 
 template <int D>
