@@ -28,8 +28,9 @@ auto of_any_to(F f, Convert convert) {
 
 Comm& comm_of(auto& simulation) { return *simulation.domain.grid.partition.comm; }
 
-/// The numbers of the particles, and what probes see, among the methods of the class.
+/// The numbers of the particles, what probes see, and tables, among the methods of the class.
 void def_columns(SimulationClass& simulation);
 void def_probes(SimulationClass& simulation);
+void def_tables(SimulationClass& simulation);
 
 }  // namespace mpm::bindings

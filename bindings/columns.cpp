@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "any.hpp"
+#include "mpm/run/derived_fields.hpp"
 #include "mpm/run/frame.hpp"
 #include "mpm/run/measures.hpp"
 #include "one_thread.hpp"
@@ -98,7 +99,9 @@ void def_columns(SimulationClass& simulation) {
       .def(
           "rounded_derived",
           [](AnySimulation& either, const std::string& name, const std::vector<int>& writers) {
-            return rows_of_slice(either, writers, 1, 0.0F,
+            const auto* const field = std::ranges::find(derived_fields, name, &DerivedField::name);
+            const int width = field == derived_fields.end() ? 1 : field->components;
+            return rows_of_slice(either, writers, static_cast<std::size_t>(width), 0.0F,
                                  [&](auto& s, const Slices& slices, std::span<float> to) {
                                    round_derived(s.domain, slices, name, to);
                                  });

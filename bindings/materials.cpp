@@ -32,7 +32,8 @@ std::vector<std::string> names_of_columns(const Material& material, bool may_lea
   grid.cell_size = 1.0;
   grid.outflow_box.exist = may_leave;
   ParticlePool<D> pool = make_pool(material, grid, columns_of(transfer));
-  if (forced) add_force_columns(pool, of_start);
+  if (forced) add_force_column(pool);
+  if (of_start) add_start_positions(pool);
   if (springs) add_set_back(pool);
   std::vector<std::string> names;
   for (const ColumnInfo& info : pool.columns.infos()) names.push_back(info.name);

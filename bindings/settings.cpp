@@ -6,7 +6,9 @@
 #include "catalogue.hpp"
 #include "mpm/ledger/history.hpp"
 #include "mpm/math/expression.hpp"
+#include "mpm/run/contact_rows.hpp"
 #include "mpm/run/derived_fields.hpp"
+#include "mpm/run/grain_rows.hpp"
 #include "mpm/run/part_rows.hpp"
 
 namespace mpm::bindings {
@@ -68,7 +70,9 @@ nb::dict all_derived_fields() {
     nb::dict row;
     row["unit"] = text(field.unit);
     row["meaning"] = text(field.meaning);
-    row["constant"] = field.constant;
+    row["constant"] = field.kept == Kept::once;
+    row["on_request"] = field.kept == Kept::on_request;
+    row["components"] = field.components;
     fields[text(field.name)] = row;
   }
   return fields;
@@ -127,6 +131,8 @@ void add_catalogues(nb::module_& m) {
   m.attr("transfers") = all_transfers();
   m.attr("history_terms") = all_history_terms();
   m.attr("part_columns") = described(part_columns);
+  m.attr("grain_columns") = described(grain_columns);
+  m.attr("contact_columns") = described(contact_columns);
   m.attr("total_columns") = described(total_columns);
   m.attr("load_kinds") = all_load_kinds();
   m.attr("derived_fields") = all_derived_fields();

@@ -8,7 +8,6 @@
 #include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/pair_groups.hpp"
-#include "mpm/run/part_rows.hpp"
 #include "mpm/run/prepare.hpp"
 #include "mpm/run/save.hpp"
 #include "mpm/run/time_step.hpp"
@@ -78,7 +77,7 @@ void def_building(SimulationClass& simulation) {
 
 /// What acts on the bodies.
 void def_acting(SimulationClass& simulation) {
-  simulation
+  simulation.def("keep_start_positions", of_any([](auto& s) { keep_start_positions(s); }))
       .def("set_motion",
            of_any([](auto& s, int body, const Functions3& velocity, const Functions3& spin,
                      const std::array<double, 3>& centre) {
@@ -224,25 +223,9 @@ void def_records(SimulationClass& simulation) {
                                 [](std::vector<double> rows) {
                                   return to_numpy(std::move(rows), history_terms.size());
                                 }))
-      .def("part_sums",
-           of_any_to(
-               [](auto& s) {
-                 require(s, Phase::ready, "call prepare() before part_sums()");
-                 const auto parts = part_sums(s.domain);
-                 return std::pair(balance_row(s.domain.ledger.angular, angular_totals(parts)),
-                                  part_rows(s.domain, parts));
-               },
-               [](auto sums) {
-                 return nb::make_tuple(sums.first,
-                                       to_numpy(std::move(sums.second), part_columns.size()));
-               }))
       .def("contact_pairs",
            of_any([](auto& s) { return s.domain.contact.records.of_all_ranks(comm_of(s)); }))
       .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))
-      .def("walls", of_any([](auto& s) {
-             require(s, Phase::ready, "call prepare() before walls()");
-             return face_records(s.domain);
-           }))
       .def("contact_summary", of_any_to([](auto& s) { return contact_summary(s); },
                                         [](const ContactSummary& told) {
                                           nb::dict d;
@@ -282,6 +265,7 @@ void add_simulation(nb::module_& m) {
   def_telling(simulation);
   def_columns(simulation);
   def_records(simulation);
+  def_tables(simulation);
   def_probes(simulation);
   def_costs(simulation);
 }

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from mpm3dpp import _core
+
 COLUMNS = (
     *("step", "time", "dt", "kinetic", "internal", "plastic", "viscous", "friction", "contact"),
     *("springs", "external", "absorbed", "damped", "eroded", "left", "bounded"),
@@ -48,6 +50,9 @@ class FakeSimulation:
         self.total_mass = 1000.0 * self.particle_count * SIZE**dimension
         self.history_columns = list(COLUMNS)
         self._rows: list[list[float]] = []
+
+    def grains_and_contacts(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.zeros((2, len(_core.grain_columns))), np.zeros((0, len(_core.contact_columns)))
 
     def advance(self, steps: int) -> None:
         for _ in range(steps):

@@ -18,7 +18,14 @@ def test_module_is_built():
     )
 
 
-@pytest.mark.parametrize("name", sorted(TESTS))
+SLOW = {"two_and_eight_ranks"}
+"""Minutes: with three ranks the same is in `ranks`."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(k, marks=[pytest.mark.slow] if k in SLOW else []) for k in sorted(TESTS)],
+)
 def test_unit(name):
     checks, failures = TESTS[name]()
     assert not failures, "\n" + "\n".join(failures)

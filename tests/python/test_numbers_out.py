@@ -83,7 +83,7 @@ def test_many_bodies_have_a_table_in_each_frame(tmp_path: Path) -> None:
         assert found["velocity_x"][0] == pytest.approx(3.0) and mass.min() > 0.0
         file = tmp_path / "out" / "results.frames" / "000001.h5"
         data = bytearray(file.read_bytes())
-        at = data.find(mass[1:2].tobytes())
+        at = data.rfind(mass[1:2].tobytes())  # That of the grains has the same.
         data[at] ^= 1
         file.write_bytes(data)
         with pytest.raises(CaseError, match="frame 1 is damaged"):

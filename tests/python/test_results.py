@@ -94,7 +94,7 @@ def test_every_array_and_time_reads_back(tmp_path: Path, dimension: int) -> None
     assert results.units["stress"] == "Pa"
     for k, frame in enumerate(frames):
         arrays = results.arrays(k)
-        assert set(arrays) == {*frame, "size"}
+        assert set(arrays) == {*frame, "size", "id"}
         for name, values in frame.items():
             kind = np.int32 if name in ("body", "material") else np.float32
             assert arrays[name].dtype == kind
@@ -212,7 +212,7 @@ def test_constant_arrays_are_stored_once(tmp_path: Path) -> None:
     for k in range(5):
         with h5py.File(tmp_path / "results.frames" / f"00000{k}.h5") as file:
             stored = {"position", "velocity", "stress", "pressure", "von_mises", "damage"}
-            constant = {"body", "material", "size"} if k == 0 else set()
+            constant = {"id", "body", "material", "size"} if k == 0 else set()
             assert set(file["arrays"]) == stored | constant
 
 
@@ -334,7 +334,7 @@ def test_a_folder_can_be_moved(tmp_path: Path) -> None:
     with h5py.File(tmp_path / "after" / "results.vtkhdf") as file:
         points = file["VTKHDF/Points"][2 * count : 3 * count]
     np.testing.assert_array_equal(points, frames[2]["position"].astype(np.float32))
-    assert len(open_results(tmp_path / "after").arrays(4)) == len(frames[0]) + 1
+    assert len(open_results(tmp_path / "after").arrays(4)) == len(frames[0]) + 2
 
 
 def test_a_missing_frame_is_no_frame_of_zeros(tmp_path: Path) -> None:
@@ -350,7 +350,7 @@ def test_a_missing_frame_is_no_frame_of_zeros(tmp_path: Path) -> None:
     (folder / "000003.h5").write_bytes(data[:at] + b"\x01" + data[at + 1 :])
     (folder / "000004.h5").write_bytes(data[:500])
     with open_results(tmp_path) as results:
-        assert len(results) == 5 and len(results.arrays(1)) == len(frames[1]) + 1
+        assert len(results) == 5 and len(results.arrays(1)) == len(frames[1]) + 2
         with pytest.raises(CaseError, match=r"frame 2 is missing: there is no file .*000002\.h5"):
             results.arrays(2)
         for k in (3, 4):

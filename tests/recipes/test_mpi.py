@@ -53,14 +53,21 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return dict(json.loads(out.read_text()))
 
 
-@pytest.mark.parametrize(("ranks", "piece"), [(2, 1000), (4, "")])
-def test_examples(
-    tmp_path: Path, each_way: str, alone: dict[str, str], ranks: int, piece: int | str
+def test_examples(tmp_path: Path, each_way: str, alone: dict[str, str]) -> None:
+    """By two ranks, with letters that go in pieces."""
+    check_examples(tmp_path, each_way, alone, 2, 1000)
+
+
+def test_examples_by_four_ranks(tmp_path: Path, way: str, alone: dict[str, str]) -> None:
+    check_examples(tmp_path, way, alone, 4)
+
+
+def check_examples(
+    folder: Path, through: str, alone: dict[str, str], ranks: int, piece: int | str = ""
 ) -> None:
-    """Also with letters that go in pieces."""
-    out = tmp_path / "found.json"
+    out = folder / "found.json"
     words = mpiexec(ranks, PROGRAMS / "digests.py", out, 10, piece)
-    subprocess.run(words, env=environment(each_way), check=True, timeout=600)
+    subprocess.run(words, env=environment(through), check=True, timeout=600)
     found = json.loads(out.read_text())
     assert found.pop("ranks") == str(ranks)
     assert len(found) == 7 and found == {k: v for k, v in alone.items() if k != "ranks"}
@@ -113,7 +120,7 @@ def test_so_many_ranks_that_they_would_take_all_memory(tmp_path: Path, way: str)
 
 
 def test_ctrl_c_and_any_number_of_ranks_goes_on(tmp_path: Path, way: str) -> None:
-    write(tmp_path, CASE.replace('"10 mm"', '"2 mm"'))
+    write(tmp_path, CASE.replace('"10 mm"', '"3 mm"'))
     assert run(way, tmp_path, "case.toml", "--out", "straight", "--no-pictures").returncode == 0
     words = command("run", "case.toml", "--out", "out", "--no-pictures", "--ranks", 3)
     with subprocess.Popen(words, cwd=tmp_path, env=environment(way)) as job:

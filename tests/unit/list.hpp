@@ -68,6 +68,7 @@
   X(derived_fields) \
   X(slices) \
   X(ranks) \
+  X(two_and_eight_ranks) \
   X(step_watch) \
   X(timers) \
   X(no_allocation) \

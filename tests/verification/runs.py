@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -209,7 +209,21 @@ def _with_impulses() -> Iterator[Run]:
     yield Run("E10", groups.offset_spheres, scheme, 3, numerics, more, slow=True)
 
 
-_WRITTEN = list(_runs())
+_SECONDS = (bars.five_bars, rolling.rolling_on_discs, incline.rolling, chain.disc_column)
+"""What takes seconds with each of the numerics."""
+
+
+def _with_others_slow(runs: Iterable[Run]) -> Iterator[Run]:
+    """Return the runs, of those that take seconds only GIMP's with MUSL as quick ones.
+
+    So are those that are made of them, which have what a case gets.
+    """
+    for run in runs:
+        other = run.make in _SECONDS and (run.basis, run.scheme) != ("gimp", "musl")
+        yield replace(run, slow=run.slow or other)
+
+
+_WRITTEN = list(_with_others_slow(_runs()))
 # Runs that differ in their factor alone are one with the default's.
 RUNS = list(
     {run.title: run for run in [*_WRITTEN, *_with_defaults(_WRITTEN), *_with_impulses()]}.values()

@@ -120,6 +120,12 @@ std::size_t bytes_of(const Contact<D>& contact) {
          size(contact.last_tiles) + size(contact.rigid_share);
 }
 
+/// No step has been made on this grid.
+template <int D>
+void forget_nodes(Contact<D>& contact) {
+  for (ContactPart<D>& part : contact.parts) part.nodes.clear();
+}
+
 /// Grid coordinates of a node.
 template <int D>
 Index<D> place_of(const Contact<D>& contact, const TileGrid<D>& grid, const ContactNode& node) {

@@ -139,10 +139,13 @@ ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
 }
 
 template <int D>
-void add_force_columns(ParticlePool<D>& pool, bool of_start) {
+void add_force_column(ParticlePool<D>& pool) {
   if (pool.body_force < 0) pool.body_force = pool.columns.add("body_force", "m/s^2", D);
-  if (of_start && pool.start_position < 0)
-    pool.start_position = pool.columns.add("start_position", "m", D);
+}
+
+template <int D>
+void add_start_positions(ParticlePool<D>& pool) {
+  if (pool.start_position < 0) pool.start_position = pool.columns.add("start_position", "m", D);
 }
 
 template <int D>
@@ -232,8 +235,10 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
 
 template ParticlePool<2> make_pool<2>(const Material&, const TileGrid<2>&, const TransferColumns&);
 template ParticlePool<3> make_pool<3>(const Material&, const TileGrid<3>&, const TransferColumns&);
-template void add_force_columns<2>(ParticlePool<2>&, bool);
-template void add_force_columns<3>(ParticlePool<3>&, bool);
+template void add_force_column<2>(ParticlePool<2>&);
+template void add_force_column<3>(ParticlePool<3>&);
+template void add_start_positions<2>(ParticlePool<2>&);
+template void add_start_positions<3>(ParticlePool<3>&);
 template void add_set_back<2>(ParticlePool<2>&);
 template void add_set_back<3>(ParticlePool<3>&);
 template Body<2> make_body<2>(const std::string&, const Material&, const ParticlePool<2>&,

@@ -17,10 +17,12 @@ template <int D>
 ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
                           const TransferColumns& transfer = {});
 
-/// Declare the columns of particles with a body force, and their places at the start if it is a
-/// formula of these; before the pool is filled.
+/// Declare the columns of particles with a body force, or that keep their places at the start;
+/// before the pool is filled.
 template <int D>
-void add_force_columns(ParticlePool<D>& pool, bool of_start);
+void add_force_column(ParticlePool<D>& pool);
+template <int D>
+void add_start_positions(ParticlePool<D>& pool);
 
 /// Give a pool a column for how far surfaces are set back in contact; before the pool is filled.
 template <int D>

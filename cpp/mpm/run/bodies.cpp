@@ -147,6 +147,12 @@ void set_state(Simulation<D>& simulation, int number, const std::string& column,
 }
 
 template <int D>
+void keep_start_positions(Simulation<D>& simulation) {
+  require(simulation, Phase::building, "places at the start must be kept before prepare()");
+  for (ParticlePool<D>& pool : simulation.domain.pools) add_start_positions(pool);
+}
+
+template <int D>
 void set_motion(Simulation<D>& simulation, int number, const std::array<TimeFunction, 3>& velocity,
                 const std::array<TimeFunction, 3>& spin, const std::array<double, 3>& centre) {
   Domain<D>& domain = simulation.domain;
@@ -251,6 +257,8 @@ template int add_slice<3>(Simulation<3>&, const std::string&, int, std::size_t, 
                           std::span<const double>, std::span<const double>, double);
 template void set_state<2>(Simulation<2>&, int, const std::string&, std::span<const double>);
 template void set_state<3>(Simulation<3>&, int, const std::string&, std::span<const double>);
+template void keep_start_positions<2>(Simulation<2>&);
+template void keep_start_positions<3>(Simulation<3>&);
 template void set_motion<2>(Simulation<2>&, int, const std::array<TimeFunction, 3>&,
                             const std::array<TimeFunction, 3>&, const std::array<double, 3>&);
 template void set_motion<3>(Simulation<3>&, int, const std::array<TimeFunction, 3>&,

@@ -38,6 +38,10 @@ int add_slice(Simulation<D>& simulation, const std::string& name, int material, 
 template <int D>
 void set_state(Simulation<D>& simulation, int body, const std::string& column,
                std::span<const double> values);
+/// Let all particles keep their places at the start, for the field `displacement`; before
+/// prepare().
+template <int D>
+void keep_start_positions(Simulation<D>& simulation);
 /// Prescribe the motion of a body, which is rigid then: the velocity of a centre and the spin about
 /// it (in 2D of the third axis), as functions of time; before prepare().
 template <int D>

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -70,15 +71,20 @@ void round_derived(const Domain<D>& domain, const Slices& slices, const std::str
     throw std::invalid_argument("no derived field is named " + name);
   const std::vector<std::size_t> first = first_places(domain);
   Comm& comm = *domain.grid.partition.comm;
-  if (to.size() < slices.of(comm.rank()).count())
+  const auto width = static_cast<std::size_t>(field->components);
+  if (to.size() < slices.of(comm.rank()).count() * width)
     throw std::invalid_argument("round_derived: wrong size");
+  std::vector<int> places(width);
+  std::iota(places.begin(), places.end(), 0);
   for (std::size_t m = 0; m < domain.pools.size(); ++m) {
     const ParticlePool<D>& of = domain.pools[m];
-    gather(comm, slices, 1, std::array{0}, to, [&](auto&& f) {
-      for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
-        const ParticleState p = particle_state(domain.bodies[b], of, row);
-        f(first[b] + of.id[row], 0, static_cast<float>(field->value(p)));
-      });
+    gather(comm, slices, width, places, to, [&](auto&& f) {
+      for (int c = 0; c < field->components; ++c)
+        for_each_row_of(domain, m, [&](std::size_t b, std::uint32_t row) {
+          const ParticleState p = particle_state(domain, domain.bodies[b], of, row);
+          f(first[b] + of.id[row], static_cast<std::size_t>(c),
+            static_cast<float>(field->value(p, c)));
+        });
     });
   }
 }

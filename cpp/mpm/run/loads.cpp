@@ -71,7 +71,8 @@ void add_body_force(Simulation<D>& simulation, const std::vector<int>& bodies,
     check(body.deforms(), ": it is rigid, and a body force acts on bodies that deform");
     check(body.force < 0, ": it has a body force already");
     body.force = static_cast<int>(domain.body_forces.size());
-    add_force_columns(domain.pool_of(body), force.is_of_start());
+    add_force_column(domain.pool_of(body));
+    if (force.is_of_start()) add_start_positions(domain.pool_of(body));
   }
   domain.body_forces.push_back(std::move(force));
 }

@@ -71,11 +71,11 @@ std::vector<double> part_rows(const Domain<D>& domain, const std::vector<PartSum
     const PartSums& part = parts[g];
     rows.push_back(part.mass);
     add(part.centre);
-    add((part.mass > 0.0 ? 1.0 / part.mass : 0.0) * part.momentum);
+    add(velocity_of(part));
     add(part.momentum);
     rows.push_back(part.kinetic);
     add(part.angular_momentum);
-    add(spin_of(part.inertia, part.angular_momentum, D == 2 ? 4u : 7u));
+    add(spin_of(part, D));
     rows.push_back(works[g].internal - gone[g].recoverable.value());
     rows.push_back(works[g].plastic);
     rows.push_back(works[g].viscous);

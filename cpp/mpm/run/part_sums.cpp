@@ -7,10 +7,11 @@ namespace {
 
 /// Exact sums of some numbers over the patches of each group.
 template <std::size_t count, int D, class F>
-std::vector<std::array<double, count>> sum_groups(Domain<D>& domain, F&& of_particle) {
-  const std::size_t groups = domain.part_energies.size();
+std::vector<std::array<double, count>> sum_groups(Domain<D>& domain, const Grouping& grouping,
+                                                  F&& of_particle) {
+  const std::size_t groups = grouping.count;
   const auto group_of = [&](std::size_t p) {
-    return domain.group_of[static_cast<std::size_t>(domain.grid.patches[p].body)];
+    return grouping.number[static_cast<std::size_t>(domain.grid.patches[p].body)];
   };
   std::vector<std::array<double, count>> parts(domain.grid.patches.size());
   domain.threads.for_each(parts.size(), [&](std::size_t p) {
@@ -34,10 +35,10 @@ std::vector<std::array<double, count>> sum_groups(Domain<D>& domain, F&& of_part
 }  // namespace
 
 template <int D>
-std::vector<PartSums> part_sums(Domain<D>& domain) {
+std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping) {
   const double moment = domain.grid.affine_moment();
-  const auto linear =
-      sum_groups<8>(domain, [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t) {
+  const auto linear = sum_groups<8>(
+      domain, grouping, [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t) {
         const double m = pool.mass()[row];
         const Vector3 x = m * in_space<D>(pool.position_of(row)),
                       p = m * velocity_in_space(pool, row);
@@ -51,8 +52,8 @@ std::vector<PartSums> part_sums(Domain<D>& domain) {
     parts[g].momentum = {s[4], s[5], s[6]};
     parts[g].kinetic = s[7];
   }
-  const auto turning =
-      sum_groups<9>(domain, [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t group) {
+  const auto turning = sum_groups<9>(
+      domain, grouping, [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t group) {
         const Vector3 centre = parts[group].centre;
         const Vector3 L = angular_momentum(pool, row, moment, centre);
         RigidSums of;
@@ -71,7 +72,7 @@ std::vector<PartSums> part_sums(Domain<D>& domain) {
     parts[g].inertia = {{{s[3], s[8], s[7]}, {s[8], s[4], s[6]}, {s[7], s[6], s[5]}}};
   }
   for (std::size_t b = 0; b < domain.bodies.size(); ++b)
-    parts[domain.group_of[b]].prescribed = domain.bodies[b].is_prescribed();
+    parts[grouping.number[b]].prescribed = domain.bodies[b].is_prescribed();
   return parts;
 }
 
@@ -95,7 +96,7 @@ std::vector<double> balance_row(const AngularLedger& ledger, const AngularTotals
   return row;
 }
 
-template std::vector<PartSums> part_sums<2>(Domain<2>&);
-template std::vector<PartSums> part_sums<3>(Domain<3>&);
+template std::vector<PartSums> part_sums<2>(Domain<2>&, const Grouping&);
+template std::vector<PartSums> part_sums<3>(Domain<3>&, const Grouping&);
 
 }  // namespace mpm

@@ -2,6 +2,7 @@
 // What each body has: mass, centre, momentum, energy, angular momentum. Bodies of one group, the
 // grains of an entry, count as one. And the balance of the angular momentum of all.
 #include <array>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -53,10 +54,27 @@ struct PartSums {
   bool prescribed = false;                     // is its motion
 };
 
-/// Of each group, in the order of the groups' first bodies; zeros for one without particles. They
-/// depend on no order of patches or threads.
+inline Vector3 velocity_of(const PartSums& part) {
+  return (part.mass > 0.0 ? 1.0 / part.mass : 0.0) * part.momentum;
+}
+inline Vector3 spin_of(const PartSums& part, int dimension) {
+  return spin_of(part.inertia, part.angular_momentum, dimension == 2 ? 4u : 7u);
+}
+
+/// Which of some sums each body counts for.
+struct Grouping {
+  std::span<const std::size_t> number;  // of each body
+  std::size_t count;                    // of sums
+};
+
+/// Zeros where there are no particles. They depend on no order of patches or threads.
 template <int D>
-std::vector<PartSums> part_sums(Domain<D>& domain);
+std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping);
+/// Of each group, in the order of the groups' first bodies.
+template <int D>
+std::vector<PartSums> part_sums(Domain<D>& domain) {
+  return part_sums(domain, Grouping{domain.group_of, domain.part_energies.size()});
+}
 
 /// Angular momentum about the origin of all, and of bodies whose motion is prescribed [N m s].
 struct AngularTotals {

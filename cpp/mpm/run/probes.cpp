@@ -24,7 +24,7 @@ struct Field {
 template <int D>
 Field field_named(const Domain<D>& domain, const std::string& name) {
   const auto derived = std::ranges::find(derived_fields, name, &DerivedField::name);
-  if (derived != derived_fields.end()) return {name, &*derived, false, 1};
+  if (derived != derived_fields.end()) return {name, &*derived, false, derived->components};
   if (name == "stress") return {name, nullptr, true, 6};
   for (const ParticlePool<D>& pool : domain.pools)
     for (const ColumnInfo& info : pool.columns.infos())
@@ -46,12 +46,12 @@ std::vector<int> first_components(const Domain<D>& domain, const Field& field) {
 
 /// f(component, value) for what a particle has of a field; `first` of its pool.
 template <int D, class F>
-void for_each_value(const Body<D>& body, const ParticlePool<D>& pool, std::uint32_t row,
-                    const Field& field, int first, F&& f) {
-  if (field.derived != nullptr) return f(0, field.derived->value(particle_state(body, pool, row)));
-  if (field.is_stress) {
-    const ParticleState p = particle_state(body, pool, row);
-    for (int c = 0; c < 6; ++c) f(c, p.stress[c]);
+void for_each_value(const Domain<D>& domain, const Body<D>& body, const ParticlePool<D>& pool,
+                    std::uint32_t row, const Field& field, int first, F&& f) {
+  if (field.derived != nullptr || field.is_stress) {
+    const ParticleState p = particle_state(domain, body, pool, row);
+    for (int c = 0; c < field.components; ++c)
+      f(c, field.is_stress ? p.stress[c] : field.derived->value(p, c));
     return;
   }
   if (first < 0) return;
@@ -145,7 +145,7 @@ PatchSeen seen_in(const Domain<D>& domain, const Probe& probe, const Patch<D>& p
     part.mass += pool.mass()[row];
     SeenComponent* of_field = part.components.data();
     for (std::size_t k = 0; k < fields.all.size(); of_field += fields.all[k++].components)
-      for_each_value(body, pool, row, fields.all[k], fields.firsts[k][pool_number],
+      for_each_value(domain, body, pool, row, fields.all[k], fields.firsts[k][pool_number],
                      [&](int c, double value) {
                        SeenComponent& of = of_field[c];
                        of.weight += weight;

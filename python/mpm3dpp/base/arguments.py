@@ -43,6 +43,13 @@ def quantity(name: str, value: Any, unit: str) -> float:
         raise CaseError(error.rule, error.remedy, key=name, value=value) from None
 
 
+def place(name: str, value: Any, dimension: int) -> np.ndarray:
+    """Return a place [m], shape (D,); its numbers may be text with a unit."""
+    if isinstance(value, str) or not hasattr(value, "__len__") or len(value) != dimension:
+        raise CaseError(f"must have {dimension} numbers", "give a place [m]", key=name, value=value)
+    return np.array([quantity(name, number, "m") for number in value])
+
+
 def text(name: str, value: Any) -> str:
     """Return text."""
     if not isinstance(value, str):

@@ -12,7 +12,7 @@ from mpm3dpp import _core
 from mpm3dpp.base.errors import Path, nearest, report, violation
 from mpm3dpp.base.expression import Expression
 from mpm3dpp.base.model import plain
-from mpm3dpp.base.outputs import COLUMNS, STANDARD
+from mpm3dpp.base.outputs import COLUMNS, ON_REQUEST, STANDARD
 from mpm3dpp.base.time_functions import at
 
 from .detonation import check_detonations
@@ -269,7 +269,7 @@ def _columns(case: Case, material: str) -> list[str]:
 
 def _output(case: Case) -> Found:
     stored = dict.fromkeys(name for used in case.materials_used for name in _columns(case, used))
-    extra = [name for name in stored if name not in STANDARD]
+    extra = [name for name in (*ON_REQUEST, *stored) if name not in STANDARD]
     for index, word in enumerate(case.output.fields):
         if word not in (*STANDARD, *extra):
             rule = "is not a column that this case stores"

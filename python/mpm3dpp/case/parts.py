@@ -90,8 +90,9 @@ class Output(CaseModel):
             of its own.
         interval: time between frames [s], in place of `frames`.
         history_every: steps between two rows of the history table.
-        fields: columns to write beyond position, velocity, stress, pressure, von_mises, body and
-            material, for example "volume" or a state column of a material.
+        fields: what to write beyond position, velocity, stress, pressure, von_mises, id, body and
+            material: "density", "sound_speed", "displacement" from the start, "volume", or a state
+            column of a material.
         picture: the column that colours the picture and the animation.
         animation: whether a run ends with an animation of its frames, `animation.gif`.
         compression: of the frames: 0 for none, else the level of gzip, 1 to 9. Level 1 makes the

@@ -16,7 +16,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mpm3dpp.base.errors import CaseError
-from mpm3dpp.base.outputs import CHANGING, COLUMNS, DERIVED, STANDARD, UNITS
+from mpm3dpp.base.names import grain_numbers, numbered
+from mpm3dpp.base.outputs import CHANGING, COLUMNS, CONSTANT, DERIVED, ON_REQUEST, STANDARD, UNITS
 from mpm3dpp.base.parts import equal_part
 
 from .frame_tables import Table, tables_of
@@ -24,12 +25,6 @@ from .rows import FROM_VTK
 
 _PLACES = {2: (0, 1), 4: (0, 1, 2, 3), 6: FROM_VTK}
 """Where VTK has our components: vectors have three there, tensors xx yy zz xy yz xz."""
-
-
-def numbered(names: Sequence[str]) -> tuple[list[str], list[int]]:
-    """Return the different names in their order, and the number of each name in that list."""
-    numbers = {name: k for k, name in enumerate(dict.fromkeys(names))}
-    return list(numbers), [numbers[name] for name in names]
 
 
 class Column(NamedTuple):
@@ -91,15 +86,20 @@ def frame_of(
     Returns:
         A frame with position [m] and velocity [m/s] (n, 3), z = 0 in 2D; stress [Pa] (n, 6) in
         VTK's order xx yy zz xy yz xz; pressure and von_mises [Pa] (n,); further columns with their
-        own number of components; and, if constant: body and material (n,); grain (n,), the body's
-        number among those of its name, if any name comes twice; size [m] (n,), the edge of the
-        square or cube of the particle's volume at the start.
+        own number of components; and, if constant: id (n,), the particle's number among all; body
+        and material (n,); grain (n,), the body's number among those of its name, if any name comes
+        twice; size [m] (n,), the edge of the square or cube of the particle's volume at the
+        start.
 
     Raises:
         CaseError: no body has a column of that name.
     """
     stored = {name: _components(simulation, name) for name in COLUMNS}
-    stored |= {name: _components(simulation, name) for name in fields if name not in STANDARD}
+    stored |= {
+        name: _components(simulation, name)
+        for name in fields
+        if name not in (*STANDARD, *ON_REQUEST)
+    }
     widths = {name: _width(name, components) for name, components in stored.items()}
     ends = [
         equal_part(int(simulation.particle_count), k, len(writers)) for k in range(len(writers))
@@ -115,15 +115,17 @@ def frame_of(
         for name, width in widths.items()
     ]
     derived = partial(_derived, simulation, list(writers))
-    columns += [column(name, partial(derived, name)) for name in CHANGING]
+    asked = [name for name in ON_REQUEST if name in fields]
+    columns += [
+        column(name, partial(derived, name), DERIVED[name]["components"])
+        for name in (*CHANGING, *asked)
+    ]
     if constants:
         fixed = _constants(simulation, names, materials, first, last)
         columns += [column(name, make) for name, make in fixed.items()]
-        columns += [
-            column(name, partial(derived, name)) for name in DERIVED if name not in CHANGING
-        ]
+        columns += [column(name, partial(derived, name)) for name in CONSTANT]
     rows = [end - begin for begin, end in ends]
-    tables = tables_of(simulation, len(set(names)))
+    tables = tables_of(simulation, names)
     return Frame(float(simulation.time), int(simulation.step), rows, columns, tables)
 
 
@@ -183,13 +185,16 @@ def _constants(
         return lambda: np.repeat(np.asarray(numbers, dtype=np.int32), np.diff(ends))
 
     different, numbers = numbered(names)
-    made = {"body": of_body(numbers), "material": of_body(materials)}
+    made = {
+        "id": lambda: np.arange(first, last, dtype=np.int32),
+        "body": of_body(numbers),
+        "material": of_body(materials),
+    }
     if len(different) < len(numbers):
-        firsts = [numbers.index(k) for k in range(len(different))]
-        made["grain"] = of_body([b - firsts[k] for b, k in enumerate(numbers)])
+        made["grain"] = of_body(grain_numbers(names))
     return made
 
 
 def _derived(simulation: Any, writers: list[int], name: str) -> np.ndarray:
     values: np.ndarray = simulation.rounded_derived(name, writers)
-    return values[:, 0]
+    return values if values.shape[1] > 1 else values[:, 0]

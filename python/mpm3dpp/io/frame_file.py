@@ -57,7 +57,7 @@ class FrameInfo:
     checks: dict[str, int] = field(default_factory=dict)
     elsewhere: dict[str, int] = field(default_factory=dict)
     kinds: dict[str, tuple[int, str]] = field(default_factory=dict)
-    tables: dict[str, dict[str, int]] = field(default_factory=dict)
+    tables: dict[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.rows = self.rows or [self.count]

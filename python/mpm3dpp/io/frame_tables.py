@@ -1,53 +1,80 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables in the file of a frame, which have rows of their own: of bodies, where there are many."""
+"""Tables in the file of a frame, which have rows of their own: of bodies, grains and contacts."""
 
 from __future__ import annotations
 
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from mpm3dpp import _core
+from mpm3dpp.base.names import grain_numbers, numbered
 
 from .part_cells import PART_COLUMNS, PART_LIMIT
 
 if TYPE_CHECKING:
     import h5py
 
-Table = Mapping[str, np.ndarray]
-"""Columns by name, a row in each for each thing that the table is of."""
+Table = np.ndarray
+"""A structured array: a row for each thing that the table is of, columns by name."""
+
+GRAIN_COLUMNS: dict[str, tuple[str, str]] = {
+    "entry": ("1", "number of its entry of the case, as the names of `Results.bodies` count"),
+    "grain": ("1", "its number among the grains of the entry, 0 for a body"),
+    **_core.grain_columns,
+}
+"""Unit and meaning of the columns of a frame's table `grains`, a row for each body."""
+
+CONTACT_COLUMNS: dict[str, tuple[str, str]] = _core.contact_columns
+"""Unit and meaning of the columns of a frame's table `contacts`; bodies are rows of `grains`."""
+
+_WHOLE = {"entry", "grain", "contacts", "a", "b"}
 
 
-def tables_of(simulation: Any, bodies: int) -> dict[str, Table]:
+def tables_of(simulation: Any, names: Sequence[str]) -> dict[str, Table]:
     """Return the tables of the present state of the core's `Simulation`; all ranks ask at once.
 
     Args:
         simulation: the core's.
-        bodies: how many there are, all grains of an entry being one; with more than PART_LIMIT,
-            whose columns the history does not have, there is a table `bodies` of PART_COLUMNS.
+        names: of each body; bodies of one name are grains. With more than one body there are
+            tables `grains` of GRAIN_COLUMNS and `contacts` of CONTACT_COLUMNS, and with more than
+            PART_LIMIT names, of which the history has no columns, `bodies` of PART_COLUMNS.
     """
-    if bodies <= PART_LIMIT:
-        return {}
-    rows = simulation.part_sums()[1]
-    return {"bodies": {name: rows[:, k].copy() for k, name in enumerate(PART_COLUMNS)}}
+    tables: dict[str, Table] = {}
+    if len(names) > 1:
+        grains, contacts = simulation.grains_and_contacts()
+        told = np.column_stack([numbered(names)[1], grain_numbers(names), grains])
+        tables["grains"] = _table(told, list(GRAIN_COLUMNS))
+        tables["contacts"] = _table(contacts, list(CONTACT_COLUMNS))
+    if len(set(names)) > PART_LIMIT:
+        tables["bodies"] = _table(simulation.part_sums()[1], list(PART_COLUMNS))
+    return tables
 
 
-def write_tables(file: h5py.File, tables: Mapping[str, Table]) -> dict[str, dict[str, int]]:
-    """Write tables into the file of a frame; return the check sum of each column."""
-    checks: dict[str, dict[str, int]] = {}
-    for name, columns in tables.items():
-        group = file.create_group(f"tables/{name}")
-        checks[name] = {}
-        for key, column in columns.items():
-            group.create_dataset(key, data=column)
-            checks[name][key] = zlib.crc32(np.ascontiguousarray(column).data)
-    return checks
+def write_tables(file: h5py.File, tables: Mapping[str, Table]) -> dict[str, int]:
+    """Write tables into the file of a frame; return the check sum of each."""
+    for name, table in tables.items():
+        file.create_dataset(f"tables/{name}", data=table)
+    return {name: zlib.crc32(table.tobytes()) for name, table in tables.items()}
 
 
-def columns_of(file: h5py.File, name: str, checks: Mapping[str, int]) -> dict[str, np.ndarray]:
-    """Return a table in the file of a frame. Raises `ValueError` if it is not what was written."""
-    columns = {key: file[f"tables/{name}/{key}"][()] for key in checks}
-    for key, column in columns.items():
-        if zlib.crc32(column.data) != checks[key]:
-            raise ValueError(key)
-    return columns
+def columns_of(file: h5py.File, name: str, check: int) -> dict[str, np.ndarray]:
+    """Return a table in the file of a frame, columns by name.
+
+    Raises:
+        ValueError: it is not what was written.
+    """
+    table = file[f"tables/{name}"][()]
+    if zlib.crc32(table.tobytes()) != check:
+        raise ValueError(name)
+    return {key: np.ascontiguousarray(table[key]) for key in table.dtype.names}
+
+
+def _table(rows: np.ndarray, names: Sequence[str]) -> Table:
+    kinds = [(name, np.int32 if name in _WHOLE else np.float64) for name in names]
+    table = np.empty(len(rows), dtype=kinds)
+    for k, name in enumerate(names):
+        table[name] = rows[:, k]
+    return table

@@ -18,11 +18,13 @@ import numpy as np
 
 from mpm3dpp.base.disk import bring_folder_to_disk, checksum, writing
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.names import numbered
+from mpm3dpp.base.outputs import CONSTANT, NUMBERS
 
-from .fields import Column, Frame, frame_of, numbered
+from .fields import Column, Frame, frame_of
 from .frame_file import CELLS, FrameInfo, frame_path, read_arrays, write_frame
 
-_CONSTANT = ("body", "grain", "material", "size")
+_CONSTANT = (*NUMBERS, *CONSTANT)
 
 
 class FramesWriter:

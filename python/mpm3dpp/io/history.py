@@ -14,8 +14,8 @@ import numpy as np
 from mpm3dpp import _core
 from mpm3dpp.base.disk import make_folder
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.names import numbered
 
-from .fields import numbered
 from .part_cells import PartCells, Sums
 from .table import Table, check_table
 

@@ -15,6 +15,7 @@ from mpm3dpp.base.errors import CaseError, nearest
 
 from .data_frames import data_frame, maybe_frame
 from .frame_file import frame_path, is_whole, read_arrays, read_info, read_table
+from .grain_results import GrainResults
 from .history import read_history
 from .one_file import arrays_of_one_file
 from .part_cells import PART_COLUMNS, PART_LIMIT, of_body
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     import pyvista
 
 
-class Results(Sampling):
+class Results(Sampling, GrainResults):
     """The frames of one run; `results[k]` is a `pyvista.PolyData`, `arrays(k)` plain numpy.
 
     Attributes:
@@ -175,19 +176,6 @@ class Results(Sampling):
             CaseError: there is no such probe, or its table is damaged.
         """
         return maybe_frame(read_probe(self.path.parent, arguments.text("name", name)))
-
-    def bodies_at(self, frame: int) -> Any:
-        """Return the table of all bodies in a frame, a row for each; columns as of `history`.
-
-        Raises:
-            IndexError: there is no such frame.
-            CaseError: there are 12 bodies or fewer; or a frame is missing or damaged.
-        """
-        frame = self.number(frame)
-        if len(self.bodies) <= PART_LIMIT or self._folder is None:
-            rule = f"frames have a table of bodies if these are more than {PART_LIMIT}"
-            raise CaseError(rule, "take history(body), which goes by the history")
-        return maybe_frame(read_table(frame_path(self._folder, frame), "bodies"))
 
     def nearest(self, time: float) -> int:
         """Number of the frame nearest to `time` [s].

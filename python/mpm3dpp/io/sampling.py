@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Collection, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -88,7 +87,10 @@ class Sampling(abc.ABC):
             CaseError: a wrong argument; or see `arrays`.
         """
         count = arguments.whole_number("count", count, 2, 1_000_000)
-        ends = [self._place(key, place) for key, place in (("start", start), ("end", end))]
+        ends = [
+            arguments.place(key, place, self.dimension)
+            for key, place in (("start", start), ("end", end))
+        ]
         share = np.linspace(0.0, 1.0, count)[:, None]
         places = (1.0 - share) * ends[0] + share * ends[1]
         positions, volumes, values = self._particles(frame, name)
@@ -159,12 +161,6 @@ class Sampling(abc.ABC):
         seen = takes_part(arrays) & np.isfinite(values.reshape(len(values), -1)).all(axis=1)
         volumes = np.asarray(arrays["size"], dtype=float) ** self.dimension
         return positions[seen], volumes[seen], values[seen]
-
-    def _place(self, key: str, place: Any) -> np.ndarray:
-        if isinstance(place, str) or not hasattr(place, "__len__") or len(place) != self.dimension:
-            rule = f"must have {self.dimension} numbers"
-            raise CaseError(rule, "give a place [m]", key=key, value=place)
-        return np.array([arguments.quantity(key, value, "m") for value in place])
 
     def _at(
         self, places: np.ndarray, positions: np.ndarray, volumes: np.ndarray, values: np.ndarray

@@ -16,8 +16,9 @@ import numpy as np
 
 from mpm3dpp.base.disk import bring_folder_to_disk, checksum, make_folder, unfinished, writing
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.names import numbered
 
-from .fields import Column, Frame, column_units, numbered
+from .fields import Column, Frame, column_units
 from .frame_file import frame_numbers, frame_path, frames_folder, read_info, remove_frames
 from .frames_writer import FramesWriter
 from .master import write_master

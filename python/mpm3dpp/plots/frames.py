@@ -168,15 +168,20 @@ def _draw_space(
 
 def _key(axes: Axes, results: Results, colour: str, bar: ColourBar | None) -> None:
     """The colour bar, as high as the axes, or the legend of the bodies or materials."""
-    figure: Any = axes.figure
     if bar is not None:
-        place = axes.inset_axes((1.025, 0.0, 0.022, 1.0))
-        figure.colorbar(bar.mappable, cax=place, label=bar.label, extend=bar.extend)
-        place.yaxis.label.set_fontsize(9)
-        place.spines["outline"].set_linewidth(0.6)
+        draw_bar(axes, bar)
         return
     names = results.bodies if colour == "body" else results.materials
+    figure: Any = axes.figure
     legend_of_bodies(figure, names)
+
+
+def draw_bar(axes: Axes, bar: ColourBar) -> None:
+    """A colour bar beside axes, as high as they are."""
+    place, figure = axes.inset_axes((1.025, 0.0, 0.022, 1.0)), axes.figure
+    figure.colorbar(bar.mappable, cax=place, label=bar.label, extend=bar.extend)
+    place.yaxis.label.set_fontsize(9)
+    place.spines["outline"].set_linewidth(0.6)
 
 
 @dataclasses.dataclass

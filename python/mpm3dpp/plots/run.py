@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,8 @@ from mpm3dpp.io.probe_tables import probe_names, read_probe
 from mpm3dpp.io.results import Results, open_results
 
 from .contact import first_contact
+
+_A_HEAP = 10  # Grains of a name, from which their forces are drawn.
 
 
 def draw_all(
@@ -40,6 +43,7 @@ def draw_all(
         yield save_frame(results, frame, out / name, colour)
         others: list[Callable[[], Path | None]] = [lambda: _energies(results, source, out)]
         others.append(lambda: _probes(results, source, out))
+        others.append(lambda: _forces(results, frame, out))
         if animation:
             others.append(lambda: _animation(results, out, colour))
         others.append(lambda: first_contact(folder, out / "first_contact.png"))
@@ -74,6 +78,16 @@ def _probes(results: Results, source: Path, out: Path) -> Path | None:
     from .probes import save_probes
 
     return save_probes(tables, results.units, out / "probes.png")
+
+
+def _forces(results: Results, frame: int, out: Path) -> Path | None:
+    if "grains" not in results.tables(frame):
+        return None
+    if max(Counter(results.grains(frame)["name"]).values()) < _A_HEAP:
+        return None
+    from .force_network import save_force_network
+
+    return save_force_network(results, frame, out / "force_network.png")
 
 
 def _animation(results: Results, out: Path, colour: str) -> Path:

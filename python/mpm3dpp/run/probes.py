@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm3dpp.base.disk import make_folder
+from mpm3dpp.base.outputs import DERIVED
 from mpm3dpp.case.probe import SAMPLES, Probe
 from mpm3dpp.io.data_frames import component_words
 from mpm3dpp.io.fields import column_components
@@ -95,8 +96,9 @@ class _Probe:
         if self._particle is not None:
             self._bodies = self._particle[:1]
         self.next = state["next"] if state else 0.0
-        # What is no column follows from others; stress has six components in 2D too.
-        known = column_components(core) | {"stress": 6}
+        # Stress has six components in 2D too.
+        derived = {name: int(field["components"]) for name, field in DERIVED.items()}
+        known = column_components(core) | derived | {"stress": 6}
         widths = [known.get(field, 1) for field in probe.fields]
         path = probe_path(folder, name)
         saved = state["table"] if state and path.exists() else None

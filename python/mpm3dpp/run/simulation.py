@@ -93,6 +93,9 @@ class Simulation:
         entries.reverse()
         while entries:  # What the core has taken is dropped, so that memory holds it once.
             add_part(self.core, case, entries.pop(), numbers, world)
+        asked = [case.output.fields, *(probe.fields for probe in case.probe.values())]
+        if any("displacement" in fields for fields in asked):
+            self.core.keep_start_positions()
         for name, part in case.parts().items():
             if part.body_force is not None:
                 self.core.add_body_force(

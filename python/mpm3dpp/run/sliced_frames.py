@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.names import numbered
 from mpm3dpp.case.case import Case
 from mpm3dpp.io.background import FRAME_SHARE, FrameThread
-from mpm3dpp.io.fields import frame_of, numbered
+from mpm3dpp.io.fields import frame_of
 from mpm3dpp.io.frame_file import FrameInfo, frames_folder
 from mpm3dpp.io.frames_writer import FramesWriter
 from mpm3dpp.ranks.world import World, together

@@ -12,8 +12,8 @@ import numpy as np
 
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.names import numbered
 from mpm3dpp.case.stop import Stop
-from mpm3dpp.io.fields import numbered
 from mpm3dpp.io.part_cells import PART_COLUMNS, Sums
 
 from .probes import Probes, next_multiple

@@ -8,14 +8,14 @@ namespace {
 
 using namespace mpm;
 
-double value(std::string_view name, const ParticleState& state) {
+double value(std::string_view name, const ParticleState& state, int component = 0) {
   for (const DerivedField& field : derived_fields)
-    if (field.name == name) return field.value(state);
+    if (field.name == name) return field.value(state, component);
   throw std::logic_error("there is no such field");
 }
 
 ParticleState stressed(double xx, double yy, double zz, double yz, double xz, double xy) {
-  return {{xx, yy, zz, yz, xz, xy}, 8.0, 3};
+  return {{xx, yy, zz, yz, xz, xy}, {1.0, 2.0, 3.0}, 8.0, 7.0, 3};
 }
 
 }  // namespace
@@ -56,7 +56,9 @@ void test_derived_fields(mpm::testing::Report& report) {
   }
   // The edge of a cube of 8 m^3, of a square of 9 m^2.
   CHECK_CLOSE(value("size", under_water), 2.0, rounding);
-  CHECK_CLOSE(value("size", {{}, 9.0, 2}), 3.0, rounding);
+  CHECK_CLOSE(value("size", {{}, {}, 9.0, 7.0, 2}), 3.0, rounding);
+  CHECK_EQUAL(value("density", under_water), 7.0);
+  for (int a = 0; a < 3; ++a) CHECK_EQUAL(value("displacement", under_water, a), a + 1.0);
   for (const DerivedField& field : derived_fields)
-    CHECK_EQUAL(field.constant, field.name == std::string_view("size"));
+    CHECK_EQUAL(field.kept == Kept::once, field.name == std::string_view("size"));
 }

@@ -10,6 +10,8 @@
 #include "mpm/run/advance.hpp"
 #include "mpm/run/bodies.hpp"
 #include "mpm/run/columns.hpp"
+#include "mpm/run/contact_rows.hpp"
+#include "mpm/run/grain_rows.hpp"
 #include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/part_rows.hpp"
@@ -164,15 +166,20 @@ std::vector<double> run_of(const RankedCase& choice, Comm& comm, States& states)
   build(simulation, choice);
   prepare(simulation);
   std::mt19937_64 random(3);
+  std::vector<double> told;  // in the last round
   if (states.from != nullptr) restore_from(simulation, *states.from);
   for (int round = states.from != nullptr ? saved_after : 0; round < rounds; ++round) {
     if (round == saved_after && comm.rank() == 0) states.left.clear();
     if (round == saved_after && states.saves && !simulation.failure)
       save_to(simulation, states.left);
     advance(simulation, 10, 1e9, nullptr);
+    const std::vector<double> contacts = contact_rows(simulation.domain);
+    told = contacts;
+    for (const double x : grain_rows(simulation.domain, contacts)) told.push_back(x);
     shuffle_owners(simulation, random);
   }
   std::vector<double> numbers = simulation.history.take();
+  numbers.insert(numbers.end(), told.begin(), told.end());
   gather(simulation, numbers);
   const auto parts = part_sums(simulation.domain);
   for (const double x : part_rows(simulation.domain, parts)) numbers.push_back(x);
@@ -236,12 +243,15 @@ void check_same(mpm::testing::Report& report, const std::vector<double>& some,
   CHECK(same == alone.size(), what, ranks, dimension, same, alone.size());
 }
 
+/// Three ranks, or the other numbers.
+enum class Counts { three, others };
+
 template <int D>
-void check(mpm::testing::Report& report, const RankedCase& choice) {
+void check(mpm::testing::Report& report, const RankedCase& choice, Counts counts) {
   States first;
   const std::vector<double> alone = run_on<D>(choice, 1, first);
   for (const int ranks : {2, 3, 8}) {
-    if (sanitized && ranks != 3) continue;
+    if ((ranks == 3) != (counts == Counts::three)) continue;
     try {
       const bool saves = ranks == 3;
       States states{saves, nullptr, {}};
@@ -367,7 +377,14 @@ std::vector<RankedCase> choices() {
 
 void test_ranks(mpm::testing::Report& report) {
   for (const RankedCase& choice : choices()) {
-    check<2>(report, choice);
-    if (!sanitized) check<3>(report, choice);
+    check<2>(report, choice, Counts::three);
+    if (!sanitized) check<3>(report, choice, Counts::three);
+  }
+}
+
+void test_two_and_eight_ranks(mpm::testing::Report& report) {
+  for (const RankedCase& choice : choices()) {
+    check<2>(report, choice, Counts::others);
+    if (!sanitized) check<3>(report, choice, Counts::others);
   }
 }
