@@ -14,7 +14,7 @@ namespace {
 constexpr double none = std::numeric_limits<double>::infinity();
 
 /// A field: a column, or one that follows from the stress.
-struct Field {
+struct SeenField {
   std::string name;
   const DerivedField* derived = nullptr;
   bool is_stress = false;
@@ -22,7 +22,7 @@ struct Field {
 };
 
 template <int D>
-Field field_named(const Domain<D>& domain, const std::string& name) {
+SeenField field_named(const Domain<D>& domain, const std::string& name) {
   const auto derived = std::ranges::find(derived_fields, name, &DerivedField::name);
   if (derived != derived_fields.end()) return {name, &*derived, false, derived->components};
   if (name == "stress") return {name, nullptr, true, 6};
@@ -34,7 +34,7 @@ Field field_named(const Domain<D>& domain, const std::string& name) {
 
 /// Where a column stands among the components of each pool, or -1; 0 for what is no column.
 template <int D>
-std::vector<int> first_components(const Domain<D>& domain, const Field& field) {
+std::vector<int> first_components(const Domain<D>& domain, const SeenField& field) {
   std::vector<int> firsts;
   for (const ParticlePool<D>& pool : domain.pools) {
     const auto info = std::ranges::find(pool.columns.infos(), field.name, &ColumnInfo::name);
@@ -47,7 +47,7 @@ std::vector<int> first_components(const Domain<D>& domain, const Field& field) {
 /// f(component, value) for what a particle has of a field; `first` of its pool.
 template <int D, class F>
 void for_each_value(const Domain<D>& domain, const Body<D>& body, const ParticlePool<D>& pool,
-                    std::uint32_t row, const Field& field, int first, F&& f) {
+                    std::uint32_t row, const SeenField& field, int first, F&& f) {
   if (field.derived != nullptr || field.is_stress) {
     const ParticleState p = particle_state(domain, body, pool, row);
     for (int c = 0; c < field.components; ++c)
@@ -114,7 +114,7 @@ struct PatchSeen {
 
 /// What a probe looks for, and where it stands.
 struct Fields {
-  std::vector<Field> all;
+  std::vector<SeenField> all;
   std::vector<std::vector<int>> firsts;  // of each, by pools
   std::size_t components = 0;
 };
@@ -122,7 +122,7 @@ template <int D>
 Fields fields_of(const Domain<D>& domain, const Probe& probe) {
   Fields fields;
   for (const std::string& name : probe.fields) {
-    const Field& field = fields.all.emplace_back(field_named(domain, name));
+    const SeenField& field = fields.all.emplace_back(field_named(domain, name));
     fields.firsts.push_back(first_components(domain, field));
     fields.components += static_cast<std::size_t>(field.components);
   }

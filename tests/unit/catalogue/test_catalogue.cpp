@@ -102,8 +102,9 @@ void test_catalogue(Report& report) {
     CHECK(std::abs(balance) == 1.0 && balance == ledger.residual(), balance, ledger.residual());
     *term = 0.0;
   }
-  const ParticleState particle{{-3.0, 0.0, 0.0, 0.0, 0.0, 4.0}, 0.25, 2};
+  // Those of every frame, in the order in which files have them.
+  const ParticleState particle{{-3.0, 0.0, 0.0, 0.0, 0.0, 4.0}, {}, 0.25, 1.0, 2};
   const double expected[] = {1.0, std::sqrt(9.0 + 48.0), 0.5};
-  for (std::size_t k = 0; k < derived_fields.size(); ++k)
-    CHECK_CLOSE(derived_fields[k].value(particle), expected[k], 1e-15);
+  for (std::size_t k = 0; k < std::size(expected); ++k)
+    CHECK_CLOSE(derived_fields[k].value(particle, 0), expected[k], 1e-15);
 }

@@ -244,14 +244,14 @@ void check_same(mpm::testing::Report& report, const std::vector<double>& some,
 }
 
 /// Three ranks, or the other numbers.
-enum class Counts { three, others };
+enum class RankCounts { three, others };
 
 template <int D>
-void check(mpm::testing::Report& report, const RankedCase& choice, Counts counts) {
+void check(mpm::testing::Report& report, const RankedCase& choice, RankCounts counts) {
   States first;
   const std::vector<double> alone = run_on<D>(choice, 1, first);
   for (const int ranks : {2, 3, 8}) {
-    if ((ranks == 3) != (counts == Counts::three)) continue;
+    if ((ranks == 3) != (counts == RankCounts::three)) continue;
     try {
       const bool saves = ranks == 3;
       States states{saves, nullptr, {}};
@@ -377,14 +377,14 @@ std::vector<RankedCase> choices() {
 
 void test_ranks(mpm::testing::Report& report) {
   for (const RankedCase& choice : choices()) {
-    check<2>(report, choice, Counts::three);
-    if (!sanitized) check<3>(report, choice, Counts::three);
+    check<2>(report, choice, RankCounts::three);
+    if (!sanitized) check<3>(report, choice, RankCounts::three);
   }
 }
 
 void test_two_and_eight_ranks(mpm::testing::Report& report) {
   for (const RankedCase& choice : choices()) {
-    check<2>(report, choice, Counts::others);
-    if (!sanitized) check<3>(report, choice, Counts::others);
+    check<2>(report, choice, RankCounts::others);
+    if (!sanitized) check<3>(report, choice, RankCounts::others);
   }
 }

@@ -241,7 +241,8 @@ struct Twin {
                                    {"number", size},
                                    {"multiply", 0.0}});
     domain.bodies[1].force = 0;
-    add_force_columns(domain.pools[0], force.is_of_start());
+    add_force_column(domain.pools[0]);
+    if (force.is_of_start()) add_start_positions(domain.pools[0]);
     reference.bodies[1].force = [](const auto& x, const auto& X, double t) {
       Vec<double, D> b;
       for (int a = 0; a < D; ++a) b[a] = size * x[1] * std::sin(3.0 * x[a] + X[0] + 1e5 * t);
