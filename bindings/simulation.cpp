@@ -99,6 +99,10 @@ void def_acting(SimulationClass& simulation) {
              add_body_force(s, bodies, value);
            }),
            nb::arg("bodies"), nb::arg("value"))
+      .def("set_body_force", of_any([](auto& s, int body, const Input& values) {
+             set_body_force(s, body, span_of(values));
+           }),
+           nb::arg("body"), nb::arg("values"))
       .def("add_damping",
            of_any([](auto& s, const std::vector<int>& bodies, const TimeFunction& mass,
                      const TimeFunction& local) { add_damping(s, bodies, mass, local); }),

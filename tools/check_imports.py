@@ -21,6 +21,7 @@ LAYERS = {
     "run": 7,
     "material_test": 7,
     "bench": 8,
+    "sweep": 8,
     "reproduce": 9,
     "cli": 10,
 }

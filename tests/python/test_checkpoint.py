@@ -38,7 +38,7 @@ def stopped(folder: Path, kind: signal.Signals) -> None:
     deadline = time.monotonic() + 30
     checkpoint, history = folder / "out" / "checkpoint.zip", folder / "out" / "history.csv"
     try:
-        while not (checkpoint.exists() and history.stat().st_size > 1_000_000):
+        while not (checkpoint.exists() and history.stat().st_size > 300_000):
             assert run.poll() is None and time.monotonic() < deadline
             time.sleep(0.02)
         run.send_signal(kind)

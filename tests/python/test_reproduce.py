@@ -14,10 +14,11 @@ from typer.testing import CliRunner
 
 from mpm3dpp import Case, RunError, reproduce
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.changes import with_changes
 from mpm3dpp.cli.app import app
 from mpm3dpp.plots import space
 from mpm3dpp.reproduce import examples, paper
-from mpm3dpp.reproduce.examples import EXAMPLES, change_lines, changed, fewer_spheres, load
+from mpm3dpp.reproduce.examples import EXAMPLES, change_lines, fewer_spheres, load
 from mpm3dpp.reproduce.page import as_html
 from mpm3dpp.reproduce.runs import Done, Measured
 from mpm3dpp.reproduce.tables import comparison
@@ -278,7 +279,8 @@ def test_quick_sizes_are_smaller(cases: Path) -> None:
     quick, changes = load(EXAMPLES["penetration"], "", cases, "quick")
     assert quick.grid.cell_size == pytest.approx(2e-3)
     assert "grid.cell_size = 0.002" in change_lines(changes)
-    few = changed(SPHERES, "x.toml", fewer_spheres(2)(Case.from_text(SPHERES)))
+    case = Case.from_text(SPHERES, "x.toml")
+    few = with_changes(case, fewer_spheres(2)(case))
     assert few.grains["spheres"].count == 8
     assert few.grid.box is not None
     assert few.grid.box.upper == pytest.approx((4e-3, 4e-3, 6e-3))

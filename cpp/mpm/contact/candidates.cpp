@@ -128,6 +128,7 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
     throw std::length_error("bodies lie in more than 134 million tiles; give larger cells");
   std::swap(contact.last_tiles, tiles);
   tiles.clear();
+  forget_nodes(contact);  // which count in these tiles
   contact.has_rigid = contact.has_free_rigid = false;
   // By what the case has: ranks may not know alike who is left.
   for (const Body<D>& body : bodies) {

@@ -9,10 +9,11 @@
 namespace mpm {
 
 /// [m/s^2], along each axis: of the present place x, y, z, of the place at the start X, Y, Z and of
-/// the time t, which in a step is that of its middle.
+/// the time t, which in a step is that of its middle. Or what the program has given each particle.
 template <int D>
 struct BodyForce {
   std::array<Expression, D> value;
+  bool given = false;  // in the column of the particles
 
   bool is_of_start() const {
     return std::ranges::any_of(value, [](const Expression& one) {

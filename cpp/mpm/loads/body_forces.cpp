@@ -94,7 +94,8 @@ void add_body_forces(Domain<D>& domain) {
     const int number = domain.body_of(patch).force;
     if (number < 0) return;
     ParticlePool<D>& pool = domain.pool_of(patch);
-    evaluate_force(domain, domain.body_forces[static_cast<std::size_t>(number)], patch, pool);
+    const BodyForce<D>& body_force = domain.body_forces[static_cast<std::size_t>(number)];
+    if (!body_force.given) evaluate_force(domain, body_force, patch, pool);
     domain.sums[p].angular.loads += angular_impulse(domain, patch, pool, domain.sums[p].applied);
     const NodeBlock<D> block = domain.grid.block(p);
     for_each_weight(domain, patch, [&](std::uint32_t row, int node, double N) {

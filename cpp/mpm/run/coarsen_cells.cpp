@@ -43,7 +43,6 @@ void coarsen_cells(Simulation<D>& simulation) {
   build_cell_lists(grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
   for (Patch<D>& patch : grid.patches) patch.left_cell = true;  // what has just failed still leaves
   invalidate_pairs(domain.contact);
-  forget_nodes(domain.contact);
   if (domain.has_contact())
     connect_tiles(domain.contact, grid, domain.bodies, domain.contact_settings.response);
   // The affine part of velocities stays; its energy goes with the square of the cells.

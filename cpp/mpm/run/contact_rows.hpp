@@ -24,8 +24,9 @@ inline constexpr auto contact_columns = std::to_array<Column>({
     {"slip", "m/s", "the work of friction over its impulse; 0 where nothing slips"},
 });
 
-/// As `contact_columns`, row by row, in the order of (a, b); none before the first step and right
-/// after a restart or a doubling of the cells. By all ranks at once, each of which gets them all;
+/// As `contact_columns`, row by row, in the order of (a, b); none before the first step, and where
+/// the tiles were connected anew since the last one: after a restart, a doubling of the cells, or
+/// new velocities. By all ranks at once, each of which gets them all;
 /// they depend on no number of threads or ranks.
 template <int D>
 std::vector<double> contact_rows(Domain<D>& domain);

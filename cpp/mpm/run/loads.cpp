@@ -60,9 +60,11 @@ void add_body_force(Simulation<D>& simulation, const std::vector<int>& bodies,
                     const std::vector<Expression::Program>& value) {
   Domain<D>& domain = simulation.domain;
   require(simulation, Phase::building, "body forces must be added before prepare()");
-  if (value.size() != D) throw std::invalid_argument("a body force must have D formulas");
   BodyForce<D> force;
-  for (std::size_t a = 0; a < D; ++a) force.value[a] = Expression(value[a]);
+  force.given = value.empty();
+  if (!force.given && value.size() != D)
+    throw std::invalid_argument("a body force must have D formulas");
+  for (std::size_t a = 0; a < value.size(); ++a) force.value[a] = Expression(value[a]);
   for (const int number : bodies) {
     Body<D>& body = domain.body_at(number);
     const auto check = [&](bool condition, const char* rule) {
@@ -75,6 +77,23 @@ void add_body_force(Simulation<D>& simulation, const std::vector<int>& bodies,
     if (force.is_of_start()) add_start_positions(domain.pool_of(body));
   }
   domain.body_forces.push_back(std::move(force));
+}
+
+template <int D>
+void set_body_force(Simulation<D>& simulation, int number, std::span<const double> values) {
+  Domain<D>& domain = simulation.domain;
+  require(simulation, Phase::ready, "call prepare() before set_body_force()");
+  const Body<D>& body = domain.body_at(number);
+  if (body.force < 0 || !domain.body_forces[static_cast<std::size_t>(body.force)].given)
+    throw std::invalid_argument(body.name + ": it takes no force from the program");
+  if (values.size() != body.count * D) throw std::invalid_argument("forces must be (n, D)");
+  check_finite(values, "forces");
+  ParticlePool<D>& pool = domain.pool_of(body);
+  for_each_row(domain.grid.patches, pool, number, body.removed_here, [&](std::uint32_t row) {
+    for (std::size_t a = 0; a < D; ++a)
+      pool.columns.component(pool.body_force + static_cast<int>(a))[row] =
+          values[pool.id[row] * D + a];
+  });
 }
 
 template <int D>
@@ -154,6 +173,8 @@ template void add_body_force<2>(Simulation<2>&, const std::vector<int>&,
                                 const std::vector<Expression::Program>&);
 template void add_body_force<3>(Simulation<3>&, const std::vector<int>&,
                                 const std::vector<Expression::Program>&);
+template void set_body_force<2>(Simulation<2>&, int, std::span<const double>);
+template void set_body_force<3>(Simulation<3>&, int, std::span<const double>);
 template void add_damping<2>(Simulation<2>&, const std::vector<int>&, const TimeFunction&,
                              const TimeFunction&);
 template void add_damping<3>(Simulation<3>&, const std::vector<int>&, const TimeFunction&,

@@ -60,7 +60,6 @@ void rebuild(Domain<D>& domain, std::vector<Patch<D>> bodies, const StateStream&
   for (Patch<D>& patch : domain.grid.patches) patch.left_cell = !patch.foreign;
   if (domain.has_contact())
     connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
-  forget_nodes(domain.contact);
   probe_speeds(domain);
 }
 

@@ -43,6 +43,18 @@ def quantity(name: str, value: Any, unit: str) -> float:
         raise CaseError(error.rule, error.remedy, key=name, value=value) from None
 
 
+def finite_numbers(name: str, value: Any, shape: tuple[int, ...], rows: str) -> np.ndarray:
+    """Return finite numbers of a shape; `rows` says what there is one for."""
+    try:
+        found = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        found = np.array(np.nan)
+    if found.shape != shape or not np.isfinite(found).all():
+        remedy = f"give an array of the shape {shape}, {rows}"
+        raise CaseError(f"must be finite numbers, shape {shape}", remedy, key=name)
+    return np.ascontiguousarray(found)
+
+
 def place(name: str, value: Any, dimension: int) -> np.ndarray:
     """Return a place [m], shape (D,); its numbers may be text with a unit."""
     if isinstance(value, str) or not hasattr(value, "__len__") or len(value) != dimension:
@@ -55,6 +67,13 @@ def text(name: str, value: Any) -> str:
     if not isinstance(value, str):
         raise CaseError("must be text", "write a name in quotation marks", key=name, value=value)
     return value
+
+
+def texts(name: str, value: Any) -> list[str]:
+    """Return a list of text."""
+    if isinstance(value, str) or not hasattr(value, "__iter__"):
+        raise CaseError("must be a list of names", 'write ["ball"]', key=name, value=value)
+    return [text(name, one) for one in value]
 
 
 def path(name: str, value: Any) -> Path:

@@ -122,15 +122,20 @@ def nearest(word: str, known: Iterable[str]) -> str:
         known: the words that are valid there.
     """
     words = [str(name) for name in known]
+    listing = ", ".join(words)
+    if guess := guessed(word, words):
+        return f"{guess} (valid here: {listing})"
+    return f"valid here: {listing}" if words else "nothing is valid here yet"
+
+
+def guessed(word: str, known: Iterable[str]) -> str:
+    """Return the question whether the nearest known word was meant; empty if none is near."""
+    words = list(known)
     lower = [name.lower() for name in words]
     # What somebody shortens is a part of the word: "bspline" means "quadratic_bspline".
     close = [name for name in lower if len(word) > 2 and word.lower() in name]
     close = close or difflib.get_close_matches(word.lower(), lower, 1, 0.5)
-    listing = ", ".join(words)
-    if close:
-        best = next(name for name in words if name.lower() == close[0])
-        return f'did you mean "{best}"? (valid here: {listing})'
-    return f"valid here: {listing}" if words else "nothing is valid here yet"
+    return f'did you mean "{words[lower.index(close[0])]}"?' if close else ""
 
 
 def violation(

@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import accumulate, combinations_with_replacement
 from pathlib import Path
 from typing import Annotated, Any
@@ -20,10 +21,10 @@ from mpm3dpp.base.errors import CaseError, from_validation, key_text
 from mpm3dpp.base.errors import Path as KeyPath
 from mpm3dpp.base.model import CaseModel, Choice, Text
 from mpm3dpp.grains import Grains
-from mpm3dpp.shapes.base import KINDS
 
 from . import file as case_file
 from .body import Body
+from .changes import paths_of, with_changes
 from .checks import check_case
 from .choices import with_choices
 from .content import PRESETS, content_of, hash_of, with_preset
@@ -33,6 +34,7 @@ from .loads import Load
 from .material import Material as Material  # also for those who import it from here
 from .parts import Contact, Output, Run
 from .probe import Probe
+from .schema import schema_of
 
 
 class Case(CaseModel):
@@ -47,7 +49,7 @@ class Case(CaseModel):
         load: pressures and tractions on surfaces, by name.
         detonation: the points at which explosives are lit.
         probe: what is looked at on the way, by name.
-        text: the file's text, empty for a case built in Python.
+        text: the file's text, empty for a case built in Python or with keys changed.
         source: the file's path, None for a case built in Python.
         file_path: the whole path of the file that was read, as text; empty where none was.
     """
@@ -66,6 +68,7 @@ class Case(CaseModel):
     probe: Annotated[dict[str, Probe], Field(default_factory=dict)]
 
     _text: str = PrivateAttr("")
+    _changes: dict[tuple[str, ...], Any] = PrivateAttr(default_factory=dict)
     _source: Path | None = PrivateAttr(None)
     _file_path: str = PrivateAttr("")
     _lines: dict[KeyPath, int] = PrivateAttr(default_factory=dict)
@@ -91,8 +94,8 @@ class Case(CaseModel):
 
     @property
     def text(self) -> str:
-        """Text of the case file; empty for a case built in Python."""
-        return self._text
+        """Text of the case file; empty for a case built in Python, or with keys changed."""
+        return "" if self._changes else self._text
 
     @property
     def source(self) -> Path | None:
@@ -154,6 +157,15 @@ class Case(CaseModel):
             raise case_file.too_deep(name) from None
         case._lines, case._source = lines, Path(name)
         return case
+
+    def with_(self, changes: Mapping[str, Any]) -> Case:
+        """Return this case with other values of some keys: `case.with_({"contact.friction": 0.2})`.
+
+        A value is a number in SI units, text with a unit, a list or a table; None takes the key
+        out. Places in lists count from 0: `contact.pair.0.friction`. Raises
+        `CaseError` for a case of no file, a key that there is not, and what breaks a rule.
+        """
+        return with_changes(self, paths_of(changes))
 
     @property
     def case_hash(self) -> str:
@@ -279,17 +291,7 @@ class Case(CaseModel):
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
         """Return the JSON schema of case files, for editors that complete and check TOML."""
-        schema = cls.model_json_schema()
-        definitions = schema.setdefault("$defs", {})
-        definitions["shape"] = {
-            "type": "object",
-            "additionalProperties": False,
-            "minProperties": 1,
-            "maxProperties": 1,
-            "properties": {kind: shape.model_json_schema() for kind, shape in KINDS.items()},
-        }
-        definitions["Body"]["properties"]["shape"] = {"$ref": "#/$defs/shape"}
-        return schema
+        return schema_of(cls)
 
 
 def load_case(path: str | Path) -> Case:

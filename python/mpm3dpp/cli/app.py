@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mpm3dpp.base.errors import CaseError
-from mpm3dpp.base.readers import PROGRAMS
 
 from .export import export
+from .import_file import import_file
 from .materials import material_test, materials
-from .options import CaseFile, Json, Ranks, Threads, Units
+from .options import CaseFile, Changes, Json, Ranks, Threads, Units, print_notes
+from .sweep import sweep
 
 if TYPE_CHECKING:
     from mpm3dpp.case.case import Case
@@ -33,19 +34,20 @@ app = typer.Typer(
 )
 
 
-def _load(path: Path, units: str | None, quiet: bool = False) -> Case:
+def _load(
+    path: Path, units: str | None, quiet: bool = False, changes: list[str] | None = None
+) -> Case:
     """Return the case of a file; what to know about it goes to stderr."""
     from mpm3dpp.importers import load_any
 
     loaded, notes = load_any(path, units)
     if not quiet:
-        _print_notes(notes)
+        print_notes(notes)
+    if changes:
+        from mpm3dpp.case.changes import changes_of, with_changes
+
+        loaded = with_changes(loaded, changes_of(changes))
     return loaded
-
-
-def _print_notes(notes: list[str]) -> None:
-    for note in notes:
-        typer.echo(f"note: {note}", err=True)
 
 
 class Scheme(str, enum.Enum):
@@ -95,6 +97,7 @@ def run(
     ranks: Ranks = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
     json: Json = False,
+    changes: Changes = None,
     units: Units = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on from the checkpoint in the folder.")
@@ -115,7 +118,8 @@ def run(
     from mpm3dpp.run.resume import refuse_to_begin_anew
 
     count = ranks or 1
-    loaded = _load(case, units, quiet or count > 1)  # Of several one will tell the notes.
+    # Of several one will tell the notes.
+    loaded = _load(case, units, quiet or count > 1, changes)
     folder = out if out is not None else default_folder(case)
     if resume and anew:
         raise CaseError("--resume and --anew cannot be given together", "give one of them")
@@ -150,6 +154,7 @@ def _on_ranks(ranks: int, threads: int | None) -> int:
 def check(
     case: CaseFile,
     units: Units = None,
+    changes: Changes = None,
     ranks: Annotated[
         int, typer.Option(min=1, help="Also the memory of each of so many processes.")
     ] = 1,
@@ -159,7 +164,7 @@ def check(
     from mpm3dpp.fill.build import build
     from mpm3dpp.run.summary import echo
 
-    loaded = _load(case, units)
+    loaded = _load(case, units, changes=changes)
     bodies = build(loaded)
     typer.echo(echo(loaded, bodies, ranks))
     refuse_time_step(loaded, bodies)
@@ -178,27 +183,6 @@ def preview(
     loaded = _load(case, units)
     target = out if out is not None else writable_folder(default_folder(case)) / "preview.png"
     typer.echo(draw(loaded, target))
-
-
-@app.command(name="import")
-def import_(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help=f"Input file of {PROGRAMS}.")],
-    out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="Case file; default NAME.toml here.")
-    ] = None,
-    units: Units = None,
-    force: Annotated[bool, typer.Option("--force", help="Write over files.")] = False,
-) -> None:
-    """Write an input file of another program as a case file in SI units."""
-    from mpm3dpp.importers import import_file
-    from mpm3dpp.importers.write import write_case
-
-    found = import_file(file, units)
-    target = out if out is not None else Path(f"{file.stem}.toml")
-    written = write_case(found, target, force)
-    _print_notes(found.notes)
-    for path in written:
-        typer.echo(path)
 
 
 @app.command()
@@ -294,6 +278,8 @@ def reproduce(
             typer.echo(path)
 
 
+app.command("import")(import_file)
 app.command()(export)
+app.command()(sweep)
 app.command()(materials)
 app.command("material-test")(material_test)

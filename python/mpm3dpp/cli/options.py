@@ -18,6 +18,14 @@ Units = Annotated[
     str | None,
     typer.Option(help=f"{_UNITS}."),
 ]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Another value of a key of the case, such as contact.friction=0.2; may be repeated.",
+    ),
+]
 Threads = Annotated[
     int | None,
     typer.Option(min=1, help="Threads; default OMP_NUM_THREADS, else all cores."),
@@ -31,3 +39,9 @@ Ranks = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+
+
+def print_notes(notes: list[str]) -> None:
+    """Tell what to know about a case, on the error output."""
+    for note in notes:
+        typer.echo(f"note: {note}", err=True)

@@ -32,7 +32,10 @@ def default_folder(case_file: Path) -> Path:
 
 
 # What a run writes beside the frames and the history, which it begins anew.
-_PICTURES = ("frame.png", "energies.png", "probes.png", "first_contact.png", "animation.gif")
+_PICTURES = (
+    *("frame.png", "energies.png", "probes.png", "first_contact.png", "force_network.png"),
+    "animation.gif",
+)
 _OF_A_RUN = ("manifest.json", *_PICTURES)
 
 

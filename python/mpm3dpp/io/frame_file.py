@@ -47,7 +47,7 @@ class FrameInfo:
         checks: name -> CRC-32 of each array that the file has.
         elsewhere: name -> number of the frame whose file has it.
         kinds: name -> components (0 for one number a particle) and type, of those in the file.
-        tables: name -> column -> CRC-32, of the tables that the file has (`io/frame_tables.py`).
+        tables: name -> CRC-32, of the tables that the file has (`io/frame_tables.py`).
     """
 
     time: float

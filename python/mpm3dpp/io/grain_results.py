@@ -68,11 +68,11 @@ class GrainResults(abc.ABC):
         """
         table = self._table(frame, "grains")
         names = np.array(self.bodies, dtype=object)[table["entry"]]
-        chosen = names == names
+        columns = {"name": names} | {k: v for k, v in table.items() if k != "entry"}
         if body is not None:
             chosen = table["entry"] == self._body(body)
-        columns = {"name": names} | {k: v for k, v in table.items() if k != "entry"}
-        return maybe_frame({k: v[chosen] for k, v in columns.items()})
+            columns = {k: v[chosen] for k, v in columns.items()}
+        return maybe_frame(columns)
 
     def contacts(self, frame: int = -1) -> Any:
         """Return the table of all contacts in a frame, a row for each pair of bodies that act.
@@ -134,7 +134,11 @@ class GrainResults(abc.ABC):
         return float(part.sum() / np.prod(high - low))
 
     def surface(
-        self, frame: int = -1, along: str = "x", up: str | None = None, width: float | str = 0.0
+        self,
+        frame: int = -1,
+        along: str = "x",
+        up: str | None = None,
+        width: float | str | None = None,
     ) -> dict[str, np.ndarray]:
         """Return how high the particles reach along an axis.
 
@@ -153,11 +157,17 @@ class GrainResults(abc.ABC):
             IndexError: there is no such frame.
             CaseError: there are no two such axes; or see `arrays`.
         """
-        known = _AXES[: self.dimension]
+        known = list(_AXES[: self.dimension])
         up = known[-1] if up is None else up
         if along not in known or up not in known or along == up:
             raise CaseError(f"must be two of {', '.join(known)}", key="along, up", value=along)
-        strip = arguments.quantity("width", width, "m") or 2.0 * self.cell_size
+        strip = 2.0 * self.cell_size
+        if width is not None:
+            strip = arguments.quantity("width", width, "m")
+        if not strip > 0.0:
+            raise CaseError(
+                "must be > 0", "give a length, or leave it out", key="width", value=width
+            )
         arrays = self.arrays(frame, ["size", "failed"])
         kept = takes_part(arrays)
         x = arrays["position"][kept][:, _AXES.index(along)].astype(float)
@@ -175,7 +185,7 @@ class GrainResults(abc.ABC):
         frame: int = -1,
         along: str = "x",
         up: str | None = None,
-        width: float | str = 0.0,
+        width: float | str | None = None,
     ) -> float:
         """Return the slope of a surface [degrees]: of the straight line nearest to its heights.
 

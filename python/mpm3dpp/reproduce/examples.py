@@ -11,11 +11,11 @@ from typing import Any
 from mpm3dpp.base.errors import CaseError, key_text, nearest
 from mpm3dpp.case import file as case_file
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.changes import Changes, with_changes
 
 from . import paper
 
 SIZES = ("quick", "paper")
-Changes = dict[tuple[str, ...], Any]
 
 
 @dataclass(frozen=True)
@@ -181,36 +181,18 @@ def load(example: Example, label: str, folder: Path, size: str) -> tuple[Case, C
         CaseError: the case has a mistake, or lacks what the size changes.
     """
     path = folder / example.files[label]
-    text = case_file.read_text(path)
-    whole = Case.from_text(text, str(path))
-    changes: Changes = {("output", "frames"): example.frames, ("output", "interval"): None}
+    whole = Case.from_text(case_file.read_text(path), str(path))
+    changes: dict[tuple[str, ...], Any] = {
+        ("output", "frames"): example.frames,
+        ("output", "interval"): None,
+    }
     if size == "quick":
         try:
             changes |= example.quick(whole)
         except (AttributeError, AssertionError, KeyError, TypeError):
             rule = f"is not laid out as the example {example.name}, so that it has no quick size"
             raise CaseError(rule, "give --size paper", place=str(path)) from None
-    return changed(text, str(path), changes), changes
-
-
-def changed(text: str, name: str, changes: Changes) -> Case:
-    """Return a case with some keys changed.
-
-    Args:
-        text: of the case file.
-        name: of the file, for messages and for the files that it names.
-        changes: a value in SI units for each key, given as its path; None removes the key.
-    """
-    tables = case_file.parse(text, name)
-    for path, value in changes.items():
-        table = tables
-        for key in path[:-1]:
-            table = table.setdefault(key, {})
-        if value is None:
-            table.pop(path[-1], None)
-        else:
-            table[path[-1]] = value
-    return Case.from_tables(tables, name, case_file.locate_keys(text))
+    return with_changes(whole, changes), changes
 
 
 def change_lines(changes: Changes) -> list[str]:

@@ -15,15 +15,15 @@ import numpy as np
 from mpm3dpp.base.errors import CaseError, RunError
 from mpm3dpp.bench.report import progress
 from mpm3dpp.bench.worker import forget_peak
-from mpm3dpp.case import file as case_file
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.changes import Changes, with_changes
 from mpm3dpp.io.history import read_history
 from mpm3dpp.io.manifest import read_manifest
 from mpm3dpp.io.results import open_results
 from mpm3dpp.plots.frames import drawn
 from mpm3dpp.run.run import run_case
 
-from .examples import Changes, Example, changed, load
+from .examples import Example, load
 from .timing import TURNS, Timed, in_turns
 
 Say = Callable[[str], None]
@@ -110,7 +110,7 @@ def run_example(
         try:
             with progress(quiet) as told:
                 begin = example.timed_from * case.run.end_time
-                found.timed = in_turns(_variants(case, changes), steps, threads, begin, told)
+                found.timed = in_turns(_variants(case), steps, threads, begin, told)
         except RunError as error:
             found.wrong.append(str(error))
     return found
@@ -122,12 +122,9 @@ def say(sentence: str, quiet: bool) -> None:
         print(sentence, file=sys.stderr, flush=True)
 
 
-def _variants(case: Case, changes: Changes) -> dict[str, Case]:
+def _variants(case: Case) -> dict[str, Case]:
     """Return the case for each turn of the timing."""
-    path = case.source
-    assert path is not None
-    text = case_file.read_text(path)
-    return {turn: changed(text, str(path), changes | more) for turn, more in TURNS.items()}
+    return {turn: with_changes(case, more) for turn, more in TURNS.items()}
 
 
 def held_cells(done: Done) -> tuple[np.ndarray, np.ndarray]:

@@ -15,9 +15,8 @@ from mpm3dpp.base.errors import RunError
 from mpm3dpp.bench import WARM_UP, block_lengths
 from mpm3dpp.bench.worker import advance, timed_block
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.changes import Changes
 from mpm3dpp.run.simulation import Simulation
-
-from .examples import Changes
 
 TURNS: dict[str, Changes] = {
     "off": {("contact", "enabled"): False},

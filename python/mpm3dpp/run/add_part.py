@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The filled bodies of an entry of a case, handed to the core."""
+"""The filled bodies of an entry of a case, and what acts on bodies, handed to the core."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.expression import program_of
 from mpm3dpp.base.settings import functions
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import lighting_times
@@ -86,3 +89,33 @@ def _set_motion(core: Any, number: int, motion: Motion, centre: np.ndarray) -> N
     spin = (0.0, 0.0, *spin) if len(spin) == 1 else spin
     place = [*centre.tolist(), 0.0][:3]
     core.set_motion(number, functions(motion.velocity), functions(spin), place)
+
+
+def add_actions(
+    core: Any, case: Case, numbers_of: Callable[[str], list[int]], forced: Sequence[str]
+) -> None:
+    """Give the core the forces, dampings and frictions of a case, and what its fields need.
+
+    Args:
+        core: of the simulation.
+        case: of it.
+        numbers_of: the bodies that a name stands for.
+        forced: names of those that the program gives forces.
+    """
+    asked = [case.output.fields, *(probe.fields for probe in case.probe.values())]
+    if any("displacement" in fields for fields in asked):
+        core.keep_start_positions()
+    for name in forced:
+        try:
+            core.add_body_force(numbers_of(name), [])
+        except ValueError as error:
+            raise CaseError(str(error), "leave it out of forced", key="forced") from None
+    for name, part in case.parts().items():
+        if part.body_force is not None:
+            core.add_body_force(numbers_of(name), list(map(program_of, part.body_force)))
+    for damping, names in case.dampings():
+        numbers = [number for name in names for number in numbers_of(name)]
+        mass, local, _ = functions((damping.mass, damping.local))
+        core.add_damping(numbers, mass, local)
+    for a, b, friction in case.frictions():
+        core.set_friction(a, b, friction)

@@ -5,9 +5,7 @@ from __future__ import annotations
 
 import json as json_format
 import sys
-from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
 
 from mpm3dpp import _core
 from mpm3dpp.base import arguments
@@ -16,16 +14,13 @@ from mpm3dpp.base.signals import Notice, as_exceptions
 from mpm3dpp.case.case import Case, load_case
 from mpm3dpp.io.checkpoint import CHECKPOINT, no_checkpoint
 from mpm3dpp.io.folders import forget_last_run, only_run_in, writable_folder
-from mpm3dpp.io.history import HistoryWriter
-from mpm3dpp.io.manifest import Manifest, Status, build_manifest
-from mpm3dpp.io.part_cells import sums_of
-from mpm3dpp.io.vtkhdf import RESULTS, ResultsWriter
+from mpm3dpp.io.manifest import Manifest
 from mpm3dpp.plots.apart import draw_apart
 from mpm3dpp.ranks.world import world
 
 from .checkpoints import Checkpoint, Checkpoints
-from .lead import background_writer, column_parts, follow, make_simulation, release
-from .progress import Progress
+from .lead import follow, make_simulation, release
+from .recording import Recording
 from .report import (
     body_lines,
     contact_table,
@@ -37,10 +32,7 @@ from .report import (
     warning_lines,
 )
 from .resume import go_on, has_checkpoint
-from .simulation import Simulation
-from .sliced_frames import fields_of
-from .stepping import step_to_end, tell
-from .watch import Call, Watch, interval_of
+from .watch import Call, interval_of
 
 
 def run_case(
@@ -157,19 +149,19 @@ def _run(
     with Notice() as notice:
         forget_last_run(folder, checkpoint=before is None)
         begin = simulation.step
+        recording = Recording(
+            simulation, folder, checkpoints, before, notes, quiet, notice, every, call
+        )
         try:
-            status, reason, of_bodies = _write_run(
-                simulation, folder, quiet, checkpoints, before, notes, notice, every, call
-            )
+            with recording:
+                recording.advance()
         except CaseError as error:  # The disk: it was no mistake when the run began.
             if simulation.step == begin:
                 raise
             can_go_on = ", and --resume goes on" if has_checkpoint(folder) else ""
             raise RunError(f"{error}; what was written before is in {folder}{can_go_on}") from error
-        manifest = _manifest(simulation, status, reason, checkpoints.wall_time, begin)
-        manifest.energies, manifest.bodies = simulation.summary, of_bodies
-        manifest.write(folder)
-        return manifest, status == "completed" and notice.taken
+        manifest = recording.write_manifest(begin)
+        return manifest, manifest.status == "completed" and notice.taken
 
 
 def _draw(folder: Path, quiet: bool) -> None:
@@ -190,106 +182,3 @@ def _draw(folder: Path, quiet: bool) -> None:
     except Exception as error:
         if not quiet:
             print(f"no picture: {error}", file=sys.stderr)
-
-
-def _write_run(
-    simulation: Simulation,
-    folder: Path,
-    quiet: bool,
-    checkpoints: Checkpoints,
-    before: Checkpoint | None,
-    notes: list[str],
-    notice: Notice,
-    every: float,
-    call: Call | None,
-) -> tuple[Status, str | None, dict[str, Any]]:
-    """Step to the end time, writing frames and history; return how it ended, why, and bodies."""
-    case, core = simulation.case, simulation.core
-    kept = None if before is None or before.results_are_gone else before.results
-    history_anew = before is not None and before.history_is_gone
-    file = _results_writer(simulation, folder, kept)
-    with ExitStack() as stack:
-        results = stack.enter_context(background_writer(simulation, file))
-        history = stack.enter_context(
-            HistoryWriter(
-                folder / "history.csv",
-                columns=core.history_columns,
-                bodies=simulation.parts,
-                contact=case.contact_enabled,
-                parts=True,
-                walls=[face.name for face in core.walls()],
-                every=case.output.history_every,
-                state=before.history if before else None,
-                anew=history_anew,
-            )
-        )
-        seen = before.watch if before else None
-        watch = checkpoints.watch = Watch(simulation, folder, seen, call, every)
-        stack.enter_context(watch)
-        unit = "J/m" if case.grid.dimension == 2 else "J"
-        progress = stack.enter_context(Progress(case.run.end_time, quiet=quiet, energy_unit=unit))
-        for sentence in simulation.warnings:
-            progress.note(f"warning: {sentence}")
-        gone = [f"the table of probe {name} was gone: a new one begins" for name in watch.lost]
-        for sentence in [*simulation.notes, *notes, *gone]:
-            progress.note(f"note: {sentence}")
-        if kept is None and core.time >= 0.0:  # Else it settles first.
-            results.write(core)
-        if before is not None and (kept is None or history_anew or gone):  # Of the new files.
-            tell(progress, checkpoints.write(core, results, history))
-        status, reason = step_to_end(
-            simulation, checkpoints, results, history, watch, progress, notice
-        )
-        if status != "failed":
-            history.note_bodies(sums_of(core))
-            tell(progress, checkpoints.write_last(core, results, history))
-    simulation.summary = history.summary()
-    return status, reason, history.bodies()
-
-
-def _results_writer(
-    simulation: Simulation, folder: Path, kept: dict[str, Any] | None
-) -> ResultsWriter:
-    """Return the writer of the frames; `kept`: those that are there, as `ResultsWriter.rows`."""
-    case, ranks = simulation.case, world()
-    return ResultsWriter(
-        folder / RESULTS,
-        bodies=simulation.parts,
-        materials=simulation.materials,
-        dimension=case.grid.dimension,
-        cell_size=case.grid.cell_size,
-        origin=case.grid.lower,
-        fields=fields_of(case),
-        compression=case.output.compression,
-        title=case.title,
-        case_hash=case.case_hash,
-        rows=kept,
-        writers=ranks.writers(case.output.files) if ranks else (0,),
-    )
-
-
-def _manifest(
-    simulation: Simulation, status: Status, reason: str | None, wall_time: float, begin: int
-) -> Manifest:
-    from mpm3dpp import __version__
-
-    case, ranks = simulation.case, world()
-    return build_manifest(
-        simulation.core,
-        version=__version__,
-        case=case.table(),
-        case_text=case.text,
-        case_file=case.file_path,
-        bodies=simulation.bodies,
-        parts=simulation.parts,
-        cell_size=case.grid.cell_size,
-        threads=simulation.threads,
-        mpi=ranks.library + ("" if ranks.native else ", through mpi4py") if ranks else None,
-        wall_time=wall_time,
-        status=status,
-        resumed_step=begin,
-        reason=reason,
-        case_hash=case.case_hash,
-        build=_core.build_info(),
-        columns=column_parts(simulation),
-    )

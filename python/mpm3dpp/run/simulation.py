@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +12,7 @@ import numpy as np
 from mpm3dpp import _core
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError, RunError, nearest
-from mpm3dpp.base.expression import program_of
 from mpm3dpp.base.machine import thread_count
-from mpm3dpp.base.settings import functions
 from mpm3dpp.case.case import Case
 from mpm3dpp.fill.advisories import notes, overlap
 from mpm3dpp.fill.build import build, warnings
@@ -22,7 +20,7 @@ from mpm3dpp.fill.point_warnings import point_warnings
 from mpm3dpp.io.checkpoint import read_about, restore_checkpoint, write_checkpoint
 from mpm3dpp.ranks.world import World
 
-from .add_part import add_part
+from .add_part import add_actions, add_part
 from .checkpoints import check_same
 from .core_settings import core_settings
 
@@ -41,6 +39,8 @@ class Simulation:
             which moves no bit; by default 1.05, infinite for never.
         ranks: parts of the grid, each worked on by a thread of its own as by a process, with what
             processes tell each other; to test that their number moves no bit.
+        forced: names of bodies and grains to whose particles the program will give forces,
+            `set_body_force`.
         world: processes that work on it, `mpm3dpp.ranks.world.world()`; each calls the same
             functions. Columns and records are those of all in the first of them.
 
@@ -49,7 +49,7 @@ class Simulation:
         bodies: the bodies' names, in the order of their numbers; those of grains come last.
         parts: of each body, the name of its entry in the case: its own, or that of its grains.
         warnings, notes: sentences about the case, for the user.
-        summary: energies of the whole run, once `run_case` has made it.
+        is_recorded: whether a run is being written, which takes the history.
         core: the compiled simulation (`mpm3dpp._core.Simulation`).
 
     Raises:
@@ -66,6 +66,7 @@ class Simulation:
         imbalance_limit: float | None = None,
         ranks: int = 1,
         world: World | None = None,
+        forced: Sequence[str] = (),
     ) -> None:
         if not isinstance(case, Case):
             remedy = 'give what mpm3dpp.load_case("case.toml") returns, or make a Case'
@@ -93,26 +94,14 @@ class Simulation:
         entries.reverse()
         while entries:  # What the core has taken is dropped, so that memory holds it once.
             add_part(self.core, case, entries.pop(), numbers, world)
-        asked = [case.output.fields, *(probe.fields for probe in case.probe.values())]
-        if any("displacement" in fields for fields in asked):
-            self.core.keep_start_positions()
-        for name, part in case.parts().items():
-            if part.body_force is not None:
-                self.core.add_body_force(
-                    self._numbers(name), list(map(program_of, part.body_force))
-                )
-        for damping, names in case.dampings():
-            numbers_of = [number for name in names for number in self._numbers(name)]
-            mass, local, _ = functions((damping.mass, damping.local))
-            self.core.add_damping(numbers_of, mass, local)
-        for a, b, friction in case.frictions():
-            self.core.set_friction(a, b, friction)
+        self.is_recorded = False
+        self._forced = set(arguments.texts("forced", forced))
+        add_actions(self.core, case, self._numbers, forced)
         try:
             self.core.prepare()
         except ValueError as error:
             raise self._refusal(str(error)) from None
         self.notes += overlap(case, self.core.contact_summary())
-        self.summary: dict[str, Any] = {}
 
     def _refusal(self, sentence: str) -> CaseError:
         """Return the mistake for what the core says of bodies that are all there."""
@@ -134,6 +123,11 @@ class Simulation:
     def time(self) -> float:
         """Time reached [s]."""
         return self.core.time
+
+    @property
+    def dt(self) -> float:
+        """Length of the next step [s]; the last ones before an end time are shorter."""
+        return self.core.dt
 
     @property
     def step(self) -> int:
@@ -221,18 +215,43 @@ class Simulation:
             and self.case.body[body].motion is not None
         ):
             raise CaseError("has a prescribed motion", "remove motion from it", value=body)
-        if body not in self.bodies:
-            raise CaseError("is not a body of the case", nearest(body, self.bodies), value=body)
-        number = self.bodies.index(body)
-        shape = self.core.body_particle_count(number), self.case.grid.dimension
-        try:
-            values = np.asarray(velocities, dtype=float)
-        except (TypeError, ValueError):
-            values = np.array(math.nan)
-        if values.shape != shape or not np.isfinite(values).all():
-            remedy = f"give an array of the shape {shape}, a row for each particle"
-            raise CaseError("must be finite numbers, shape (n, D)", remedy, key="velocities")
-        self.core.set_velocity(number, np.ascontiguousarray(values))
+        number = self._number(body)
+        self.core.set_velocity(number, self._vectors("velocities", velocities, number))
+
+    def set_body_force(self, body: str, forces: np.ndarray) -> None:
+        """Give the particles of a body a force per mass [m/s^2], from the next step on.
+
+        It stays until another is given, and is zero at first. The body is one of those that
+        `Simulation(case, forced=["ball"])` names. Its work is in the column `external`.
+
+        Args:
+            body: its name.
+            forces: shape (n, D), in the order of filling.
+
+        Raises:
+            CaseError: there is no such body, it is not forced, or `forces` do not fit.
+        """
+        number = self._number(body)
+        if self._forced.isdisjoint([body, self.parts[number]]):
+            remedy = f'make it with Simulation(case, forced=["{body}"])'
+            raise CaseError("takes no force from the program", remedy, value=body)
+        self.core.set_body_force(number, self._vectors("forces", forces, number))
+
+    def history(self) -> dict[str, np.ndarray]:
+        """Return what the history has of the steps made since this was last called.
+
+        Returns:
+            The first columns of `history.csv` by name, shape (steps,): step, time, dt, energies and
+            so on; of the last 4,096 steps at most.
+
+        Raises:
+            CaseError: the run is written (`record`, `run_case`), which takes them.
+        """
+        if self.is_recorded:
+            rule = "has no history while the run is written"
+            raise CaseError(rule, "read history.csv afterwards", key="simulation")
+        rows = self.core.history()
+        return {name: rows[:, k].copy() for k, name in enumerate(self.core.history_columns)}
 
     def save(self, path: str | Path) -> None:
         """Write the state to a file, in one step; `restore` goes on from it.
@@ -266,6 +285,16 @@ class Simulation:
         except CaseError as error:
             remedy = "give a state that was saved with this case"
             raise CaseError(error.rule, remedy, key=error.key, value=error.value) from error
+
+    def _number(self, body: str) -> int:
+        """Return the number of a single body. Raises `CaseError` if there is none of that name."""
+        if arguments.text("body", body) not in self.bodies:
+            raise CaseError("is not a body of the case", nearest(body, self.bodies), value=body)
+        return self.bodies.index(body)
+
+    def _vectors(self, key: str, values: Any, number: int) -> np.ndarray:
+        shape = self.core.body_particle_count(number), self.case.grid.dimension
+        return arguments.finite_numbers(key, values, shape, "a row for each particle")
 
     def _numbers(self, body: str) -> list[int]:
         """Return the numbers of the bodies that a name stands for."""

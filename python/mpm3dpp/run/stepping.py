@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from mpm3dpp.base.errors import RunError
 from mpm3dpp.base.signals import Notice
 from mpm3dpp.io.background import BackgroundWriter
@@ -18,21 +20,16 @@ from .progress import Progress
 from .simulation import Simulation
 from .watch import Watch
 
+Outcome = tuple[Status, str | None]
+"""How a run ended, and why."""
+
 _NO_STATE = ("non-finite", "negative volume")  # Failures after which particles have no values.
 _BLOCK = 64  # Steps between two looks at the clock, without contact.
 _PARTS_EVERY = 16  # Steps between two rows with the sums of bodies, at least.
 
 
-def step_to_end(
-    simulation: Simulation,
-    checkpoints: Checkpoints,
-    results: BackgroundWriter,
-    history: HistoryWriter,
-    watch: Watch,
-    progress: Progress,
-    notice: Notice,
-) -> tuple[Status, str | None]:
-    """Step to the end time; return how it ended, and why.
+class Stepping:
+    """The steps of a run.
 
     Args:
         simulation: ready to step.
@@ -41,39 +38,92 @@ def step_to_end(
         progress: where the user looks.
         notice: of the user's wish to stop.
     """
-    case, core = simulation.case, simulation.core
-    contact = case.contact_enabled
-    most = min(case.output.history_every if contact else _BLOCK, core.history_capacity // 2)
-    sums_every = max(_PARTS_EVERY, case.output.history_every)
-    if case.run.stop:
-        most = min(most, sums_every)
-    frames = [t for t in case.frame_times() if t > core.time]
-    touched = _touched(core.contact_groups()) if contact else 0
-    told = len(core.warnings())  # Those of the parts of the run before.
-    if core.step == 0:
-        start = sums_of(core)
-        history.append(core.history(), None, start)
-        if ends := watch.look() or watch.end_of(start, history.first_bodies):
-            return "completed", ends
-    while core.time < case.run.end_time:
-        failed, ends, before, settling = None, None, core.step, core.time < 0.0
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        checkpoints: Checkpoints,
+        results: BackgroundWriter,
+        history: HistoryWriter,
+        watch: Watch,
+        progress: Progress,
+        notice: Notice,
+    ) -> None:
+        self._simulation, self._checkpoints, self._results = simulation, checkpoints, results
+        self._history, self._watch, self._progress = history, watch, progress
+        self._notice = notice
+        case, core = simulation.case, simulation.core
+        self._contact = case.contact_enabled
+        every = case.output.history_every
+        most = min(every if self._contact else _BLOCK, core.history_capacity // 2)
+        self._sums_every = max(_PARTS_EVERY, every)
+        self._most = min(most, self._sums_every) if case.run.stop else most
+        self._frames = [t for t in case.frame_times() if t > core.time]
+        self._touched = _touched(core.contact_groups()) if self._contact else 0
+        self._told = len(core.warnings())  # Those of the parts of the run before.
+        self._begun = False
+        # The steps between the last look and the next.
+        self._last_look = self._next_look = core.step
+        self._settles = False
+
+    def advance(self, last_step: float = math.inf) -> Outcome | None:
+        """Step to the end time, or to a step; return how the run ended and why, None if it goes on.
+
+        Where it is interrupted so changes nothing of what is written.
+        """
+        core = self._simulation.core
+        if core.step == 0 and not self._begun:
+            self._begun = True
+            start = sums_of(core)
+            self._history.append(core.history(), None, start)
+            if ends := self._watch.look() or self._watch.end_of(start, self._history.first_bodies):
+                return "completed", ends
+        while core.time < self._simulation.case.run.end_time:
+            if core.step >= last_step:
+                return None
+            if core.step >= self._next_look:
+                self._last_look, self._settles = core.step, core.time < 0.0
+                self._next_look = core.step + _steps(self._most, self._frames, core)
+            outcome, looked = self._make_steps(last_step)
+            if outcome is not None:
+                return outcome
+            if looked and self._checkpoints.due:
+                told = self._checkpoints.write(core, self._results, self._history)
+                tell(self._progress, told)
+        return "completed", None
+
+    def flush(self) -> None:
+        """Write the rows of the steps since the last look, where the run ends between two."""
+        core = self._simulation.core
+        self._history.append(core.history(), core.contact_groups() if self._contact else [])
+
+    def _make_steps(self, last_step: float) -> tuple[Outcome | None, bool]:
+        """Make steps to the next look or to `last_step`; return how the run ended, if it did, and
+        whether it was a look."""
+        core = self._simulation.core
+        failed, ends, until = None, None, min(self._next_look, last_step)
         try:
             # To the end of settling, when the clock jumps to 0: there is a frame.
-            ends = _advance(
-                simulation, _steps(most, frames, core), 0.0 if settling else None, watch
-            )
+            end = 0.0 if self._settles else None
+            ends = _advance(self._simulation, int(until - core.step), end, self._watch)
         except RunError as error:
             failed = str(error)
-        told = _tell_new(progress, core, told)
-        rows, pairs = core.history(), core.contact_groups() if contact else []
-        if settling and core.time >= 0.0:
-            ratio = rows[rows[:, 1] >= 0.0, core.history_columns.index("unbalanced")][0]
-            settled = case.run.settle is not None and ratio <= case.run.settle.ratio
-            word = "settled" if settled else "not settled"
-            progress.note(f"{word}: forces out of balance are {ratio:.3g} of those applied")
-        due = bool(frames) and core.time >= frames[0]
+        is_end = core.time >= self._simulation.case.run.end_time
+        if not (ends or failed or is_end) and core.step == until < self._next_look:
+            return None, False
+        return self._look(ends, failed), True
+
+    def _look(self, ends: str | None, failed: str | None) -> Outcome | None:
+        """Write what is due; return how the run has ended, if it has."""
+        core, history, results = self._simulation.core, self._history, self._results
+        before, self._next_look = self._last_look, core.step
+        self._told = _tell_new(self._progress, core, self._told)
+        rows, pairs = core.history(), core.contact_groups() if self._contact else []
+        if self._settles and core.time >= 0.0:
+            self._tell_settled(rows)
+        due = bool(self._frames) and core.time >= self._frames[0]
         # By the steps' numbers, so that a run that goes on has them in the same rows.
-        summed = due or core.step // sums_every > before // sums_every
+        summed = due or core.step // self._sums_every > before // self._sums_every
         sums = sums_of(core) if summed else None
         history.append(rows, pairs, sums)
         if failed is not None:
@@ -81,25 +131,30 @@ def step_to_end(
                 results.write(core)
             return "failed", failed
         if sums is not None and not ends:
-            ends = watch.end_of(sums, history.first_bodies)
-        while frames and core.time >= frames[0]:
-            frames.pop(0)
+            ends = self._watch.end_of(sums, history.first_bodies)
+        while self._frames and core.time >= self._frames[0]:
+            self._frames.pop(0)
         if due or core.step // _BLOCK > before // _BLOCK:  # Not at each step: others are asked too.
             results.check()
         # A frame too whenever two entries first touch, but for those that do so while they settle.
-        if due or ends or (_touched(pairs) > touched and core.time >= 0.0):
-            results.write(core)
         touched = _touched(pairs)
-        overlapped = core.contact_summary()["overlapped_nodes"] if contact else None
+        if due or ends or (touched > self._touched and core.time >= 0.0):
+            results.write(core)
+        self._touched = touched
+        overlapped = core.contact_summary()["overlapped_nodes"] if self._contact else None
         kinetic, internal = rows[-1, 3:5]
-        progress.update(core.time, core.step, core.dt, kinetic, internal, overlapped)
+        self._progress.update(core.time, core.step, core.dt, kinetic, internal, overlapped)
         if ends:
             return "completed", ends
-        if notice.taken:
+        if self._notice.taken:
             return "interrupted", f"stopped by the user at t = {core.time:.6g} s"
-        if checkpoints.due:
-            tell(progress, checkpoints.write(core, results, history))
-    return "completed", None
+        return None
+
+    def _tell_settled(self, rows: np.ndarray) -> None:
+        core, settle = self._simulation.core, self._simulation.case.run.settle
+        ratio = rows[rows[:, 1] >= 0.0, core.history_columns.index("unbalanced")][0]
+        word = "settled" if settle is not None and ratio <= settle.ratio else "not settled"
+        self._progress.note(f"{word}: forces out of balance are {ratio:.3g} of those applied")
 
 
 def _tell_new(progress: Progress, core: Any, told: int) -> int:
