@@ -44,14 +44,14 @@ def quantity(name: str, value: Any, unit: str) -> float:
 
 
 def finite_numbers(name: str, value: Any, shape: tuple[int, ...], rows: str) -> np.ndarray:
-    """Return finite numbers of a shape; `rows` says what there is one for."""
+    """Return finite numbers of a shape (n, D); `rows` says what there is one for."""
     try:
         found = np.asarray(value, dtype=float)
     except (TypeError, ValueError):
         found = np.array(np.nan)
     if found.shape != shape or not np.isfinite(found).all():
         remedy = f"give an array of the shape {shape}, {rows}"
-        raise CaseError(f"must be finite numbers, shape {shape}", remedy, key=name)
+        raise CaseError("must be finite numbers, shape (n, D)", remedy, key=name)
     return np.ascontiguousarray(found)
 
 

@@ -162,7 +162,7 @@ class Case(CaseModel):
         """Return this case with other values of some keys: `case.with_({"contact.friction": 0.2})`.
 
         A value is a number in SI units, text with a unit, a list or a table; None takes the key
-        out. Places in lists count from 0: `contact.pair.0.friction`. Raises
+        out, if it is there. Places in lists count from 0: `contact.pair.0.friction`. Raises
         `CaseError` for a case of no file, a key that there is not, and what breaks a rule.
         """
         return with_changes(self, paths_of(changes))

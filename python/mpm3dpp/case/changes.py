@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from mpm3dpp.base.errors import CaseError, nearest
+from mpm3dpp.base.errors import CaseError
 
 from . import file as case_file
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Changes = Mapping[tuple[str, ...], Any]
 """A value for each key, given as its path: a number in SI units, text with a unit, a list or a
-table; None takes the key out."""
+table; None takes the key out, if it is there."""
 
 
 def with_changes(case: Case, changes: Changes) -> Case:
@@ -82,9 +82,8 @@ def changed_tables(text: str, name: str, changes: Changes) -> dict[str, Any]:
         place = path[-1] if isinstance(table, dict) else _number(table, path[-1], path)
         if value is not None:
             table[place] = copy.deepcopy(value)
-        elif isinstance(table, dict) and place not in table:
-            rule = "is not in the case, and cannot be taken out"
-            raise CaseError(rule, nearest(path[-1], table), key=".".join(path))
+        elif isinstance(table, dict):
+            table.pop(place, None)
         else:
             del table[place]
     return tables
