@@ -120,7 +120,7 @@ std::size_t bytes_of(const Contact<D>& contact) {
          size(contact.last_tiles) + size(contact.rigid_share);
 }
 
-/// Those of the last step.
+/// Drop the overlapped nodes of the last step, which name tiles by their numbers.
 template <int D>
 void forget_nodes(Contact<D>& contact) {
   for (ContactPart<D>& part : contact.parts) part.nodes.clear();

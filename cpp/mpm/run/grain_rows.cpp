@@ -20,11 +20,11 @@ std::size_t column_of(std::string_view name) {
 
 std::vector<Pushed> pushed_by(const std::vector<double>& contacts, std::size_t bodies) {
   std::vector<Pushed> all(bodies);
-  const std::size_t force_at = column_of("force_x");
+  const std::size_t a_at = column_of("a"), b_at = column_of("b"), force_at = column_of("force_x");
   for (std::size_t row = 0; row < contacts.size(); row += contact_columns.size()) {
     const double* const at = &contacts[row];
-    Pushed& a = all[static_cast<std::size_t>(at[column_of("a")])];
-    Pushed& b = all[static_cast<std::size_t>(at[column_of("b")])];
+    Pushed& a = all[static_cast<std::size_t>(at[a_at])];
+    Pushed& b = all[static_cast<std::size_t>(at[b_at])];
     const Vector3 force{at[force_at], at[force_at + 1], at[force_at + 2]};
     a.force += force;
     b.force -= force;

@@ -22,6 +22,8 @@ from .plan import Planned
 
 Say = Callable[[str], None]
 
+_WAS_THERE, _COMPLETED = "was there", "completed"
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -106,9 +108,6 @@ def run_all(
                 future.cancel()
             raise
     return found
-
-
-_WAS_THERE, _COMPLETED = "was there", "completed"
 
 
 def _run(
