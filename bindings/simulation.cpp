@@ -99,7 +99,7 @@ void def_acting(SimulationClass& simulation) {
              add_body_force(s, bodies, value);
            }),
            nb::arg("bodies"), nb::arg("value"))
-      .def("set_body_force", of_any([](auto& s, int body, const Input& values) {
+      .def("set_body_force", changing_any([](auto& s, int body, const Input& values) {
              set_body_force(s, body, span_of(values));
            }),
            nb::arg("body"), nb::arg("values"))
@@ -110,7 +110,7 @@ void def_acting(SimulationClass& simulation) {
       .def("set_friction",
            of_any([](auto& s, int a, int b, double mu) { set_pair_friction(s.domain, a, b, mu); }),
            nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"))
-      .def("set_velocity", of_any([](auto& s, int body, const Input& velocities) {
+      .def("set_velocity", changing_any([](auto& s, int body, const Input& velocities) {
              set_velocity(s, body, span_of(velocities));
            }),
            nb::arg("body"), nb::arg("velocities"))
@@ -137,7 +137,7 @@ void def_stepping(SimulationClass& simulation) {
               const InterruptFlag interrupt;
               if (PyErr_CheckSignals() != 0) throw nb::python_error();
               const nb::gil_scoped_release without_lock;
-              made = either.visit(
+              made = either.visit_as_is(
                   [&](auto& s) { return advance(s, max_steps, end_time, interrupt.get()); });
             }
             if (PyErr_CheckSignals() != 0) throw nb::python_error();
@@ -157,91 +157,119 @@ void def_stepping(SimulationClass& simulation) {
           [](AnySimulation& either, const nb::callable& readinto, std::size_t size) {
             const AtWork here(either);
             const auto transfer = transfer_by(readinto);
-            either.visit([&](auto& s) { restore(s, transfer, size); });
+            either.visit([&](auto& s) {
+              s.device.reset();
+              restore(s, transfer, size);
+            });
           },
           nb::arg("readinto"), nb::arg("size"))
-      .def("set_threads", of_any([](auto& s, int count) { s.domain.threads.resize(count); }),
+      .def("use_device", of_any([](auto& s) { use_device(s); }))
+      .def_static("device",
+                  [] {
+                    const DeviceInfo info = device_info();
+                    nb::dict d;
+                    d["name"] = info.name;
+                    d["bytes"] = info.bytes;
+                    d["free_bytes"] = info.free_bytes;
+                    d["bandwidth"] = info.bandwidth;
+                    d["fma_per_second"] = info.fma_per_second;
+                    return d;
+                  })
+      .def_prop_ro("device_bytes", of_any_as_is([](auto& s) {
+                     return s.device ? s.device->run->bytes() : std::size_t{0};
+                   }))
+      .def(
+          "device_times",
+          as_is_to(
+              [](auto& s) { return s.device ? s.device->run->times() : std::vector<DeviceTime>{}; },
+              [](const auto& times) {
+                nb::dict d;
+                for (const DeviceTime& time : times)
+                  d[time.name.c_str()] = 1e-3 * time.milliseconds;
+                return d;
+              }))
+      .def("set_threads", of_any_as_is([](auto& s, int count) { s.domain.threads.resize(count); }),
            nb::arg("count"));
 }
 
 /// What it tells of itself.
 void def_telling(SimulationClass& simulation) {
-  simulation.def_prop_ro("time", of_any([](auto& s) { return s.domain.time; }))
-      .def_prop_ro("dt", of_any([](auto& s) { return s.next_time_step; }))
-      .def_prop_ro("step", of_any([](auto& s) { return s.domain.step; }))
-      .def_prop_ro("body_count", of_any([](auto& s) { return s.domain.bodies.size(); }))
+  simulation.def_prop_ro("time", of_any_as_is([](auto& s) { return s.domain.time; }))
+      .def_prop_ro("dt", of_any_as_is([](auto& s) { return s.next_time_step; }))
+      .def_prop_ro("step", of_any_as_is([](auto& s) { return s.domain.step; }))
+      .def_prop_ro("body_count", of_any_as_is([](auto& s) { return s.domain.bodies.size(); }))
       .def("body_particle_count",
            of_any([](auto& s, int body) { return s.domain.body_at(body).count; }), nb::arg("body"))
-      .def_prop_ro("particle_count", of_any([](auto& s) { return particle_count(s.domain); }))
-      .def_prop_ro("total_mass", of_any([](auto& s) { return total_mass(s.domain); }))
+      .def_prop_ro("particle_count", of_any_as_is([](auto& s) { return particle_count(s.domain); }))
+      .def_prop_ro("total_mass", of_any_as_is([](auto& s) { return total_mass(s.domain); }))
       .def("eroded",
            of_any_to([](auto& s) { return sum_of(s.domain.eroded, comm_of(s)); }, dict_of))
       .def("left", of_any_to([](auto& s) { return sum_of(s.domain.outflow, comm_of(s)); }, dict_of))
       .def("loads", of_any([](auto& s) { return load_records(s.domain); }))
-      .def_prop_ro("failure", of_any([](auto& s) { return s.failure; }))
+      .def_prop_ro("failure", of_any_as_is([](auto& s) { return s.failure; }))
       .def("limiter", of_any([](auto& s) { return find_limiter(s.domain); }))
-      .def("warnings", of_any([](auto& s) { return warnings(s); }));
+      .def("warnings", of_any_as_is([](auto& s) { return warnings(s); }));
 }
 
 /// What it takes: times, what passes between ranks, memory.
 void def_costs(SimulationClass& simulation) {
   simulation
-      .def("timers", of_any_to([](auto& s) { return s.timers.seconds(); },
-                               [](const auto& times) {
-                                 nb::dict d;
-                                 for (const auto& [name, seconds] : times)
-                                   d[nb::str(name.data(), name.size())] = seconds;
-                                 return d;
-                               }))
-      .def("reset_timers", of_any([](auto& s) {
+      .def("timers", as_is_to([](auto& s) { return s.timers.seconds(); },
+                              [](const auto& times) {
+                                nb::dict d;
+                                for (const auto& [name, seconds] : times)
+                                  d[nb::str(name.data(), name.size())] = seconds;
+                                return d;
+                              }))
+      .def("reset_timers", of_any_as_is([](auto& s) {
              s.timers.reset();
              s.passed = {};
            }))
-      .def("ranks", of_any_to([](auto& s) { return ranks_summary(s); },
-                              [](const RanksSummary& told) {
-                                nb::dict d;
-                                d["ranks"] = told.ranks;
-                                d["letters"] = told.letters;
-                                d["bytes"] = told.bytes;
-                                d["exchanges"] = told.exchanges;
-                                d["reductions"] = told.reductions;
-                                d["share"] = told.share;
-                                d["imbalance"] = told.imbalance;
-                                return d;
-                              }))
-      .def("bytes", of_any_to([](auto& s) { return bytes_of(s); },
-                              [](const Bytes& b) {
-                                nb::dict d;
-                                d["particles"] = b.particles;
-                                d["grid"] = b.grid;
-                                d["contact"] = b.contact;
-                                d["other"] = b.other;
-                                return d;
-                              }));
+      .def("ranks", as_is_to([](auto& s) { return ranks_summary(s); },
+                             [](const RanksSummary& told) {
+                               nb::dict d;
+                               d["ranks"] = told.ranks;
+                               d["letters"] = told.letters;
+                               d["bytes"] = told.bytes;
+                               d["exchanges"] = told.exchanges;
+                               d["reductions"] = told.reductions;
+                               d["share"] = told.share;
+                               d["imbalance"] = told.imbalance;
+                               return d;
+                             }))
+      .def("bytes", as_is_to([](auto& s) { return bytes_of(s); },
+                             [](const Bytes& b) {
+                               nb::dict d;
+                               d["particles"] = b.particles;
+                               d["grid"] = b.grid;
+                               d["contact"] = b.contact;
+                               d["other"] = b.other;
+                               return d;
+                             }));
 }
 
 /// What has happened: history, contacts.
 void def_records(SimulationClass& simulation) {
   simulation
-      .def("history", of_any_to([](auto& s) { return s.history.take(); },
-                                [](std::vector<double> rows) {
-                                  return to_numpy(std::move(rows), history_terms.size());
-                                }))
+      .def("history", as_is_to([](auto& s) { return s.history.take(); },
+                               [](std::vector<double> rows) {
+                                 return to_numpy(std::move(rows), history_terms.size());
+                               }))
       .def("contact_pairs",
            of_any([](auto& s) { return s.domain.contact.records.of_all_ranks(comm_of(s)); }))
       .def("contact_groups", of_any([](auto& s) { return group_pairs(s.domain); }))
-      .def("contact_summary", of_any_to([](auto& s) { return contact_summary(s); },
-                                        [](const ContactSummary& told) {
-                                          nb::dict d;
-                                          d["overlapped_nodes"] = told.overlapped;
-                                          d["overlapped_nodes_max"] = told.overlapped_max;
-                                          d["bodies_per_node_max"] = told.bodies_max;
-                                          d["unconverged_nodes"] = told.unconverged;
-                                          d["set_back_particles"] = told.set_back_particles;
-                                          d["set_back_most"] = told.set_back_most;
-                                          d["bytes"] = told.bytes;
-                                          return d;
-                                        }));
+      .def("contact_summary", as_is_to([](auto& s) { return contact_summary(s); },
+                                       [](const ContactSummary& told) {
+                                         nb::dict d;
+                                         d["overlapped_nodes"] = told.overlapped;
+                                         d["overlapped_nodes_max"] = told.overlapped_max;
+                                         d["bodies_per_node_max"] = told.bodies_max;
+                                         d["unconverged_nodes"] = told.unconverged;
+                                         d["set_back_particles"] = told.set_back_particles;
+                                         d["set_back_most"] = told.set_back_most;
+                                         d["bytes"] = told.bytes;
+                                         return d;
+                                       }));
   simulation
       .def_prop_ro_static("history_columns",
                           [](nb::handle) {

@@ -37,7 +37,8 @@ LAYERS = {
     "rigid": 9,
     "walls": 9,
     "loads": 9,
-    "run": 10,
+    "device": 10,
+    "run": 11,
 }
 TOGETHER = {"step", "rigid", "walls", "loads"}  # The stages: those of a subject in its folder.
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"][^>"]+)[>"]')

@@ -1,5 +1,5 @@
-// Compiled for a device, not run: every basis, strength model, equation of state and failure model in
-// a kernel, with the number that it has there.
+// Compiled for a device, not run: every basis, strength model, equation of state and failure model
+// in a kernel, with the number that it has there.
 #include "mpm/basis/basis.hpp"
 #include "mpm/materials/catalogue.hpp"
 #include "mpm/math/tensor.hpp"
@@ -36,16 +36,14 @@ __global__ void damage(M model, const Condition<double, D>* at,
 }
 
 void instantiate() {
-  Bases::for_each([]<class B>(BasisId, const B& basis) {
-    weights<B><<<1, 32>>>(basis, nullptr, nullptr);
-  });
+  Bases::for_each(
+      []<class B>(BasisId, const B& basis) { weights<B><<<1, 32>>>(basis, nullptr, nullptr); });
   StrengthModels::for_each([]<class M>(const M& model) {
     stress<2, M><<<1, 32>>>(model, nullptr, nullptr, nullptr, nullptr);
     stress<3, M><<<1, 32>>>(model, nullptr, nullptr, nullptr, nullptr);
   });
-  EosModels::for_each([]<class M>(const M& model) {
-    pressure<M><<<1, 32>>>(model, nullptr, nullptr);
-  });
+  EosModels::for_each(
+      []<class M>(const M& model) { pressure<M><<<1, 32>>>(model, nullptr, nullptr); });
   FailureModels::for_each([]<class M>(const M& model) {
     damage<2, M><<<1, 32>>>(model, nullptr, nullptr, nullptr);
     damage<3, M><<<1, 32>>>(model, nullptr, nullptr, nullptr);

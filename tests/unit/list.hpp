@@ -30,6 +30,7 @@
   X(models) \
   X(material) \
   X(plane_strain) \
+  X(take_through) \
   X(mohr_coulomb) \
   X(walls) \
   X(rigid_motion) \

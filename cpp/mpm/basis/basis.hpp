@@ -1,7 +1,6 @@
 #pragma once
 // Every basis, one line in all. From it come the case's words, checks and documentation.
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 #include "mpm/basis/gimp.hpp"
@@ -24,10 +23,13 @@ template <BasisModel... B>
 struct BasisList : ChoiceList<BasisId, B...> {
   static constexpr int before_max = std::max({B::before...});
   static constexpr int after_max = std::max({B::nodes - 1 - B::before...});
-  static constexpr std::array<Reach, sizeof...(B)> reach = {
-      Reach{B::before, B::nodes - 1 - B::before, B::own_node}...};
-  static constexpr std::array<bool, sizeof...(B)> odd_at_fixed_walls = {B::odd_at_fixed_walls...};
-  static constexpr std::array<double, sizeof...(B)> second_moments = {B::second_moment...};
+  static constexpr Reach reach(BasisId id) {
+    return value_at(id, Reach{B::before, B::nodes - 1 - B::before, B::own_node}...);
+  }
+  static constexpr bool odd_at_fixed_walls(BasisId id) {
+    return value_at(id, B::odd_at_fixed_walls...);
+  }
+  static constexpr double second_moment(BasisId id) { return value_at(id, B::second_moment...); }
 
   /// f(basis of particles with that edge [cells]).
   template <class F>
@@ -39,6 +41,17 @@ struct BasisList : ChoiceList<BasisId, B...> {
   static void for_each(F&& f) {
     ChoiceList<BasisId, B...>::for_each(f, 0.5);
   }
+
+ private:
+  /// By comparison: a device reads no table of the host's.
+  template <class Value, class... Rest>
+  static constexpr Value value_at(BasisId id, Value first, Rest... rest) {
+    if constexpr (sizeof...(rest) == 0)
+      return first;
+    else
+      return id == BasisId{} ? first
+                             : value_at(static_cast<BasisId>(static_cast<int>(id) - 1), rest...);
+  }
 };
 
 using Bases = BasisList<Gimp, Linear, QuadraticBSpline>;
@@ -49,17 +62,13 @@ inline constexpr BasisId basis_id = Bases::id_of<B>();
 template <>
 inline constexpr auto words<BasisId> = Bases::words_of();
 
-constexpr Reach reach_of(BasisId id) { return Bases::reach[static_cast<std::size_t>(id)]; }
+constexpr Reach reach_of(BasisId id) { return Bases::reach(id); }
 
-constexpr bool odd_at_fixed_walls(BasisId id) {
-  return Bases::odd_at_fixed_walls[static_cast<std::size_t>(id)];
-}
+constexpr bool odd_at_fixed_walls(BasisId id) { return Bases::odd_at_fixed_walls(id); }
 
 /// D of APIC along an axis: the sum of N_i (x_i - x)^2 over the nodes [cells^2], if it is the same
 /// at all places; else 0.
-constexpr double second_moment(BasisId id) {
-  return Bases::second_moments[static_cast<std::size_t>(id)];
-}
+constexpr double second_moment(BasisId id) { return Bases::second_moment(id); }
 
 /// Half the width of the box over which a particle's function is the mean of the hat [cells], from
 /// the particles' edge at the start [cells].

@@ -200,7 +200,7 @@ class TileParticles {
     std::array<CellsAround, Bases::count> all;
     for (std::size_t b = 0; b < all.size(); ++b) {
       CellsAround& cells = all[b];
-      const Reach& reach = Bases::reach[b];
+      const Reach reach = reach_of(static_cast<BasisId>(b));
       cells.width = reach.before + reach.after + 1;
       for (int k = 0; k < power(cells.width, D); ++k)
         for (int a = 0, left = k, stride = 1; a < D; ++a, left /= cells.width, stride *= edge) {

@@ -9,6 +9,7 @@
 
 namespace mpm {
 
+#if !defined(__CUDACC__)
 /// Lanes over the particles of a cell: no more than it holds if there are two along each axis.
 template <int D>
 inline constexpr int cell_lanes = std::min(native_lanes, 1 << D);
@@ -17,6 +18,7 @@ inline constexpr int cell_lanes = std::min(native_lanes, 1 << D);
 /// a register costs half (Zen 4).
 template <int D>
 inline constexpr int few_lanes = cell_lanes<D> == 8 ? 4 : cell_lanes<D>;
+#endif
 
 /// Lanes over particles of which contact makes sums across the lanes: these decide normals and
 /// gaps, so the width is the same whatever the instruction set.
@@ -30,10 +32,16 @@ struct LaneRows {
   std::uint32_t row[W];
   int count;
   bool contiguous;  // the rows are in sequence
-  std::uint32_t operator[](int k) const { return row[k]; }
+  MPM_HD std::uint32_t operator[](int k) const { return row[k]; }
 
-  LaneRows(const std::uint32_t* rows, std::size_t available) {
+  MPM_HD LaneRows(const std::uint32_t* rows, std::size_t available) {
     count = available < W ? static_cast<int>(available) : W;
+    if constexpr (W == 1) {
+      // nvcc makes wrong code of std::copy_n here.
+      row[0] = rows[0];
+      contiguous = true;
+      return;
+    }
     if (count == W) {
       std::copy_n(rows, W, row);
       contiguous = in_sequence(rows);
@@ -49,7 +57,7 @@ struct LaneRows {
 
  private:
   /// Two numbers at a time.
-  static bool in_sequence(const std::uint32_t* rows) {
+  MPM_HD static bool in_sequence(const std::uint32_t* rows) {
     const std::uint64_t first = rows[0], one_each = std::uint64_t{1} << 32 | 1;
     std::uint64_t expected = first | (first + 1) << 32, other = 0;
     for (int k = 0; k + 1 < W; k += 2, expected += 2 * one_each) {
@@ -66,14 +74,14 @@ template <int W>
 struct WholeRows {
   static constexpr int lanes = W, count = W;
   std::uint32_t first;
-  std::uint32_t operator[](int k) const { return first + static_cast<std::uint32_t>(k); }
+  MPM_HD std::uint32_t operator[](int k) const { return first + static_cast<std::uint32_t>(k); }
 };
 
 /// f(rows) for rows of a list, W at a time; as WholeRows where they are, so that the loop over a
 /// column that is in order is one of plain vectors.
 template <int W, class F>
-[[gnu::always_inline]] inline void for_each_lanes(const std::uint32_t* rows, std::uint32_t count,
-                                                  F&& f) {
+MPM_HD MPM_INLINE inline void for_each_lanes(const std::uint32_t* rows, std::uint32_t count,
+                                             F&& f) {
   for (std::uint32_t k = 0; k < count; k += W) {
     const LaneRows<W> lanes(rows + k, count - k);
     if constexpr (W == 1)
@@ -86,6 +94,16 @@ template <int W, class F>
 }
 
 /// A column is one of doubles or of floats.
+template <class Number>
+MPM_HD double load(const Number* column, const LaneRows<1>& rows) {
+  return column[rows.row[0]];
+}
+template <class Number>
+MPM_HD void store(Number* column, const LaneRows<1>& rows, double value) {
+  column[rows.row[0]] = static_cast<Number>(value);
+}
+
+#if !defined(__CUDACC__)
 template <class Number, int W>
 Batch<W> load(const Number* column, const WholeRows<W>& rows) {
   return Batch<W>::load(column + rows.first);
@@ -108,11 +126,6 @@ Batch<W> load(const Number* column, const LaneRows<W>& rows) {
   return b;
 }
 
-template <class Number>
-double load(const Number* column, const LaneRows<1>& rows) {
-  return column[rows.row[0]];
-}
-
 template <class Number, int W>
 void store(Number* column, const LaneRows<W>& rows, Batch<W> value) {
   if (rows.contiguous && rows.count == W) {
@@ -121,11 +134,6 @@ void store(Number* column, const LaneRows<W>& rows, Batch<W> value) {
   }
   for (int k = 0; k < W; ++k)
     if (k < rows.count) column[rows.row[k]] = static_cast<Number>(value.v[k]);
-}
-
-template <class Number>
-void store(Number* column, const LaneRows<1>& rows, double value) {
-  column[rows.row[0]] = static_cast<Number>(value);
 }
 
 /// Zero in the lanes that repeat the last row.
@@ -137,5 +145,6 @@ template <int W>
 Batch<W> of_valid(const WholeRows<W>&, Batch<W> value) {
   return value;
 }
+#endif
 
 }  // namespace mpm

@@ -17,7 +17,7 @@ struct CellCoordinates {
   double cells_per_metre;
 
   template <class T>
-  T in_cells(T x, int axis) const {
+  MPM_HD T in_cells(T x, int axis) const {
     return (x - T(origin[axis])) * T(cells_per_metre);
   }
 };
@@ -26,7 +26,7 @@ struct CellCoordinates {
 /// coordinate. A particle exactly on a cell's face would give force to nodes to which it gives no
 /// mass; it is held 1e-12 cells away.
 template <class T>
-T local_coordinate(T cells, double cell) {
+MPM_HD T local_coordinate(T cells, double cell) {
   constexpr double from_face = 1e-12;
   return min(max(cells - T(cell), T(from_face)), T(1.0 - from_face));
 }
@@ -41,7 +41,7 @@ struct GridGeometry {
   Index<D> anchor{};
   Walls<D> walls;
 
-  CellCoordinates<D> coordinates() const {
+  MPM_HD CellCoordinates<D> coordinates() const {
     Vec<double, D> corner = origin;
     // With GIMP and the quadratic B-spline a node lies amid its cell, so that all particles of a
     // cell reach the same 3^D nodes (decision 0022).
@@ -50,15 +50,15 @@ struct GridGeometry {
   }
   /// Position along an axis in cells from the corner of cell 0.
   template <class T>
-  T in_cells(T x, int axis) const {
+  MPM_HD T in_cells(T x, int axis) const {
     return coordinates().in_cells(x, axis);
   }
   /// The same from node 0: between which nodes it is.
-  double among_nodes(double x, int axis) const {
+  MPM_HD double among_nodes(double x, int axis) const {
     return CellCoordinates<D>{origin, 1.0 / cell_size}.in_cells(x, axis);
   }
   /// Cell coordinates of a position.
-  Index<D> cell_of(const Vec<double, D>& x) const {
+  MPM_HD Index<D> cell_of(const Vec<double, D>& x) const {
     const CellCoordinates<D> cells = coordinates();
     Index<D> i;
     for (int a = 0; a < D; ++a)
@@ -66,12 +66,12 @@ struct GridGeometry {
     return i;
   }
   /// Position of a node [m].
-  Vec<double, D> position_of(const Index<D>& node) const {
+  MPM_HD Vec<double, D> position_of(const Index<D>& node) const {
     Vec<double, D> x;
     for (int a = 0; a < D; ++a) x[a] = origin[a] + cell_size * node[a];
     return x;
   }
-  Index<D> tile_of(const Index<D>& cell) const {
+  MPM_HD Index<D> tile_of(const Index<D>& cell) const {
     Index<D> t;
     for (int a = 0; a < D; ++a) {
       const int i = cell[a] - anchor[a];
@@ -81,7 +81,7 @@ struct GridGeometry {
     return t;
   }
   /// Coordinates of a tile's first cell, which are those of that cell's own node too.
-  Index<D> first_cell(const Index<D>& tile) const {
+  MPM_HD Index<D> first_cell(const Index<D>& tile) const {
     Index<D> c;
     for (int a = 0; a < D; ++a) c[a] = anchor[a] + tile[a] * Tile<D>::cells;
     return c;
@@ -90,7 +90,7 @@ struct GridGeometry {
   /// The tile of a position and the number of its cell there. By the expression that all kernels
   /// use (CellCoordinates): a particle at a face must not be in one cell here and in the next one
   /// there.
-  std::pair<Index<D>, int> tile_and_cell(const Vec<double, D>& x) const {
+  MPM_HD std::pair<Index<D>, int> tile_and_cell(const Vec<double, D>& x) const {
     const Index<D> cell = cell_of(x), tile = tile_of(cell);
     Index<D> local = first_cell(tile);
     for (std::size_t a = 0; a < D; ++a) local[a] = cell[a] - local[a];
@@ -99,11 +99,11 @@ struct GridGeometry {
 
   /// D of APIC: sum over the nodes of N_i (x_i - x)^2 along an axis, the same at all places, [m^2];
   /// 0 where it is not.
-  double affine_moment() const { return second_moment(basis) * cell_size * cell_size; }
+  MPM_HD double affine_moment() const { return second_moment(basis) * cell_size * cell_size; }
   /// Nodes around a cell's own that its particles reach.
-  Reach reach() const { return reach_of(basis); }
+  MPM_HD Reach reach() const { return reach_of(basis); }
   /// Do nodes beyond walls follow their images before them?
-  bool has_ghosts() const { return walls.exist && reach().before > 0; }
+  MPM_HD bool has_ghosts() const { return walls.exist && reach().before > 0; }
 };
 
 }  // namespace mpm

@@ -3,6 +3,8 @@
 // line and moves all its fields at once.
 #include <cstddef>
 
+#include "mpm/math/host_device.hpp"
+
 namespace mpm {
 
 /// A record is two halves of four numbers: mass and velocity, then the force and a number that is
@@ -21,10 +23,10 @@ inline constexpr int momentum_at = velocity_at, ghost_weight_at = force_at, incr
 template <int width>
 struct Nodes {
   double* data;
-  double* operator[](int node) const { return data + std::ptrdiff_t{node} * width; }
+  MPM_HD double* operator[](int node) const { return data + std::ptrdiff_t{node} * width; }
   /// The same, counted from a node, or from a number of each.
-  Nodes from(int node) const { return {(*this)[node]}; }
-  Nodes at(int number) const { return {data + number}; }
+  MPM_HD Nodes from(int node) const { return {(*this)[node]}; }
+  MPM_HD Nodes at(int number) const { return {data + number}; }
 };
 using NodeRecords = Nodes<record>;
 using HalfRecords = Nodes<half_record>;
@@ -33,7 +35,7 @@ using HalfRecords = Nodes<half_record>;
 template <int width>
 struct NodeField {
   double* first;
-  double& operator[](int node) const { return first[std::ptrdiff_t{node} * width]; }
+  MPM_HD double& operator[](int node) const { return first[std::ptrdiff_t{node} * width]; }
 };
 
 }  // namespace mpm

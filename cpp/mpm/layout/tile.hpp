@@ -61,7 +61,11 @@ struct Tile {
     if (by <= -cells || by >= cells) return 0;
     const int bits = by * power(cells, static_cast<int>(axis));
     // What would leave the tile is cut off before, else it would come back in as the next row.
+#if defined(__CUDA_ARCH__)
+    set &= staying(axis, by);  // a device reads no table of the host's
+#else
     set &= stay[axis][static_cast<std::size_t>(by + cells)];
+#endif
     return bits < 0 ? set >> -bits : set << bits;
   }
   /// Offset -1, 0, 1 along each axis of neighbour k, and back. Neighbours are numbered in the order
@@ -84,14 +88,19 @@ struct Tile {
   }
 
  private:
-  /// The cells that stay in the tile when they move by -cells to cells along an axis.
+  /// The cells that stay in the tile when they move by so many along an axis.
+  static constexpr std::uint64_t staying(std::size_t axis, int by) {
+    std::uint64_t kept = 0;
+    for (int i = 0; i < cells; ++i)
+      if (i + by >= 0 && i + by < cells) kept |= slice(axis, i);
+    return kept;
+  }
+  /// The same for -cells to cells.
   static constexpr auto stay = [] {
     std::array<std::array<std::uint64_t, 2 * cells + 1>, D> kept{};
     for (std::size_t a = 0; a < D; ++a)
       for (int by = -cells; by <= cells; ++by)
-        for (int i = 0; i < cells; ++i)
-          if (i + by >= 0 && i + by < cells)
-            kept[a][static_cast<std::size_t>(by + cells)] |= slice(a, i);
+        kept[a][static_cast<std::size_t>(by + cells)] = staying(a, by);
     return kept;
   }();
 };

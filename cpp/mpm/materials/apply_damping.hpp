@@ -7,10 +7,10 @@ namespace mpm {
 
 /// s = beta C : D, C : D = lambda tr(D) 1 + 2 G D, of the rate D that has strained the material in
 /// this step. The volumes are those of after the step.
-template <class T, int D>
-[[gnu::flatten]] void apply_damping(const Material& material, const BlockColumns<D>& columns,
-                                    const StressSettings& settings, const MaterialBlock<D>& block,
-                                    StressSums& sums) {
+template <class T, int D, int N>
+MPM_FLATTEN MPM_HD void apply_damping(const MaterialView& material, const BlockColumns<D>& columns,
+                                      const StressSettings& settings,
+                                      const MaterialBlock<D, N>& block, StressSums& sums) {
   const StiffnessDamping& damping = material.damping;
   const double per_step = damping.beta / settings.time_step;
   const T two_G(2.0 * per_step * damping.shear),

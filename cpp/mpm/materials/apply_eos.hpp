@@ -6,14 +6,14 @@ namespace mpm {
 
 /// dp/drho at constant entropy [m^2/s^2], from dE = -p dV: V^2 (p B - A' - B' E) / rho0.
 template <class T>
-T sound_speed_squared(const LinearInEnergy<T>& at, T V, T energy, double density) {
+MPM_HD T sound_speed_squared(const LinearInEnergy<T>& at, T V, T energy, double density) {
   return max(V * V * (at.pressure(energy) * at.B - at.dA - at.dB * energy) * T(1.0 / density),
              T(0.0));
 }
 
 /// p (1 + B dV/2) = A + B E, E the energy of the end but for the work -p dV/2 of the new pressure.
 template <class T>
-T pressure_at_end(const LinearInEnergy<T>& line, T V, T energy, T change) {
+MPM_HD T pressure_at_end(const LinearInEnergy<T>& line, T V, T energy, T change) {
   // Debris of many times its volume may close by more than its initial volume in one step, where
   // the energy's part of the denominator would pass zero; a shock begins below that volume, as heat
   // swells a solid by less than a fifth.
@@ -30,12 +30,12 @@ inline constexpr int energy_steps = 5;
 /// The energy per initial volume grows by the work of the deviator, of the pressure (mean of old
 /// and new) and of the artificial viscosity; with p = A + B E that gives p in closed form. Where p
 /// is not linear in E, the same with its tangent is a step of Newton's method.
-template <class T, int D, class Model>
-[[gnu::flatten]] void apply_eos(const Model model, const Material& material,
-                                const BlockColumns<D>& columns, const StressSettings& settings,
-                                MaterialBlock<D>& block, StressWriter<T, D>& writer) {
-  const bool burns = material.burns(), damped = material.damps();
-  const bool viscosity = settings.viscosity.active(), last = material.failures.empty();
+template <class T, int D, int N, class Model>
+MPM_FLATTEN MPM_HD void apply_eos(const Model model, const MaterialView& material,
+                                  const BlockColumns<D>& columns, const StressSettings& settings,
+                                  MaterialBlock<D, N>& block, StressWriter<T, D>& writer) {
+  const bool burns = material.burns, damped = material.damps;
+  const bool viscosity = settings.viscosity.active(), last = !material.judged;
   const EosBounds bounds = material.bounds;
   for_each_group<T>(block, [&](const Group<T, D>& group) {
     const VolumeChange<T> volume_change(group.read(columns.mass), group.read(columns.volume),

@@ -1,42 +1,40 @@
 #pragma once
 // The third part: what has failed, and what failure does to the stress.
+#include "mpm/materials/failure_list.hpp"
 #include "mpm/materials/stress_writer.hpp"
 
 namespace mpm {
 
 /// A particle stays failed; of several models that it fails by, the strongest action is done.
-template <class T, int D>
-[[gnu::flatten]] void apply_failures(const Material& material, const BlockColumns<D>& columns,
-                                     const StressSettings& settings, MaterialBlock<D>& block,
-                                     StressWriter<T, D>& writer, StressSums& sums) {
+/// `failures` is what for_each_failure() takes.
+template <class T, int D, int N, class Failures>
+MPM_FLATTEN MPM_HD void apply_failures(const MaterialView& material, const Failures& failures,
+                                       const BlockColumns<D>& columns,
+                                       const StressSettings& settings, MaterialBlock<D, N>& block,
+                                       StressWriter<T, D>& writer, StressSums& sums) {
   double* state_at = columns.failure_state;
-  for (const Failing& failing : material.failures)
-    std::visit(
-        [&]<class Model>(const Model& model) {
-          using State = typename Model::template State<T, D>;
-          const T action(static_cast<double>(failing.action));
-          for_each_group<T>(block, [&](const Group<T, D>& group) {
-            const StepKinematics<T, D> kinematics(group, block, columns, material.density,
-                                                  settings);
-            const T energy = columns.energy ? group.read(columns.energy) : T(0.0);
-            const Condition<T, D> condition{group.get_stress(block),
-                                            kinematics.motion.gradient,
-                                            group.get(block.plastic_strain),
-                                            group.get(block.plastic_increment),
-                                            group.get(block.temperature),
-                                            energy,
-                                            settings.time_step};
-            State state = group.template read_state<State>(state_at, columns.stride);
-            const T damage = model.damage(condition, state);
-            group.write_state(state_at, columns.stride, state);
-            const T failed = group.read(columns.failed);
-            // The largest: actions are numbered by what they take, and a failed particle does not
-            // heal.
-            group.write(columns.failed, max(failed, select(damage >= T(1.0), action, T(0.0))));
-          });
-          state_at += state_size<State, T> * columns.stride;
-        },
-        failing.model);
+  for_each_failure(failures, [&]<class Model>(const Model& model, FailureAction done) {
+    using State = typename Model::template State<T, D>;
+    const T action(static_cast<double>(done));
+    for_each_group<T>(block, [&](const Group<T, D>& group) {
+      const StepKinematics<T, D> kinematics(group, block, columns, material.density, settings);
+      const T energy = columns.energy ? group.read(columns.energy) : T(0.0);
+      const Condition<T, D> condition{group.get_stress(block),
+                                      kinematics.motion.gradient,
+                                      group.get(block.plastic_strain),
+                                      group.get(block.plastic_increment),
+                                      group.get(block.temperature),
+                                      energy,
+                                      settings.time_step};
+      State state = group.template read_state<State>(state_at, columns.stride);
+      const T damage = model.damage(condition, state);
+      group.write_state(state_at, columns.stride, state);
+      const T failed = group.read(columns.failed);
+      // The largest: actions are numbered by what they take, and a failed particle does not heal.
+      group.write(columns.failed, max(failed, select(damage >= T(1.0), action, T(0.0))));
+    });
+    state_at += state_size<State, T> * columns.stride;
+  });
 
   const T gone(static_cast<double>(FailureAction::erode));
   auto eroded = T(1.0) < T(0.0);

@@ -7,13 +7,14 @@ namespace mpm {
 /// The model is a copy, which no store to a column can change. Which part is the last is decided
 /// for the block, not in lanes: the last part of the way writes, the others leave their values in
 /// the block, which stays in the first-level cache (decision 0009).
-template <class T, int D, class Model>
-[[gnu::flatten]] void apply_strength(const Model model, const Material& material,
-                                     const BlockColumns<D>& columns, const StressSettings& settings,
-                                     MaterialBlock<D>& block, StressWriter<T, D>& writer) {
+template <class T, int D, int N, class Model>
+MPM_FLATTEN MPM_HD void apply_strength(const Model model, const MaterialView& material,
+                                       const BlockColumns<D>& columns,
+                                       const StressSettings& settings, MaterialBlock<D, N>& block,
+                                       StressWriter<T, D>& writer) {
   using State = typename Model::template State<T, D>;
-  const bool viscosity = settings.viscosity.active(), judged = !material.failures.empty();
-  const bool last = !material.eos && !judged;
+  const bool viscosity = settings.viscosity.active(), judged = material.judged;
+  const bool last = !material.has_eos && !judged;
   for_each_group<T>(block, [&](const Group<T, D>& group) {
     const StepKinematics<T, D> kinematics(group, block, columns, material.density, settings);
     const StrainIncrement<T, D>& motion = kinematics.motion;
@@ -28,9 +29,9 @@ template <class T, int D, class Model>
     T speed(0.0), q(0.0);
     // By the model where it can be known: functions that a model does not have are not asked for.
     if constexpr (Model::eos != EosUse::never)
-      if (material.eos) speed = model.other_speed_squared(state, motion.J);
+      if (material.has_eos) speed = model.other_speed_squared(state, motion.J);
     if constexpr (Model::eos != EosUse::must)
-      if (!material.eos) {
+      if (!material.has_eos) {
         speed = model.sound_speed(stress, state, motion.J);
         if (viscosity) {
           const T damping = kinematics.volume_change.viscous_speed(settings, speed);
@@ -46,7 +47,7 @@ template <class T, int D, class Model>
     group.put(block.dissipated, dissipated);
     group.put(block.speed, speed);
     group.put(block.viscous_pressure, q);
-    if (material.eos) {
+    if (material.has_eos) {
       const StressWork<T> work = kinematics.work(settings, stress_before, stress);
       group.put(block.volume, kinematics.volume_change.after);
       group.put(block.dilation, kinematics.volume_change.dilation);

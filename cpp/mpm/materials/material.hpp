@@ -45,7 +45,7 @@ struct BulkViscosity {
               Rule::not_negative},
       Setting{"linear", &Self::linear, "factor of the term that damps the ringing behind them",
               Rule::not_negative}};
-  bool active() const { return quadratic > 0.0 || linear > 0.0; }
+  MPM_HD bool active() const { return quadratic > 0.0 || linear > 0.0; }
 };
 
 /// Damping in proportion to the stiffness, Rayleigh's beta: beside the stress of the models, and no
@@ -54,7 +54,7 @@ struct StiffnessDamping {
   double beta = 0.0;                   // [s]
   double pressure = 0.0, shear = 0.0;  // moduli rho c^2 of both waves [Pa]
 
-  bool active() const { return beta > 0.0; }
+  MPM_HD bool active() const { return beta > 0.0; }
 };
 
 /// What an equation of state must not exceed. The pressure of a solid is linear in its energy also
@@ -67,7 +67,7 @@ struct EosBounds {
 
   /// Is a mean stress that limit, as far as it may have been rounded to a float?
   template <class T>
-  auto limits(T mean_stress) const {
+  MPM_HD auto limits(T mean_stress) const {
     return mean_stress >= T(tension * (1.0 - 1e-6));
   }
 
@@ -76,14 +76,13 @@ struct EosBounds {
   /// The energy without the work that tension at its limit has done on a change of volume: that
   /// opens voids between fragments, and heats nothing.
   template <class T>
-  [[gnu::noinline, gnu::cold]] T without_voids(T energy, T mean_stress, T change) const {
+  MPM_COLD MPM_HD T without_voids(T energy, T mean_stress, T change) const {
     return energy - select(limits(mean_stress), T(0.5) * mean_stress * change, T(0.0));
   }
   /// The pressure within the bounds; `energy` is that of the end but for the new pressure's work,
   /// `lowest` the pressure about the lowest energy.
   template <class T>
-  [[gnu::noinline, gnu::cold]] T held(T pressure, T energy, T change,
-                                      LinearInEnergy<T> lowest) const {
+  MPM_COLD MPM_HD T held(T pressure, T energy, T change, LinearInEnergy<T> lowest) const {
     const auto below = energy - T(0.5) * pressure * change < T(lowest_energy);
     return max(select(below, lowest.pressure(T(lowest_energy)), pressure), T(-tension));
   }

@@ -2,27 +2,15 @@
 
 #include <limits>
 
-#include "mpm/materials/apply_damping.hpp"
-#include "mpm/materials/apply_eos.hpp"
-#include "mpm/materials/apply_failure.hpp"
-#include "mpm/materials/apply_strength.hpp"
+#include "mpm/materials/take_through.hpp"
 
 namespace mpm {
 template <class T, int D>
 void update_block(const Material& material, Columns& all, const MaterialColumns& at,
                   MaterialBlock<D>& block, const StressSettings& settings, StressSums& sums) {
   const BlockColumns<D> columns(all, at);
-  StressWriter<T, D> writer(columns, settings, material);
-  std::visit(
-      [&](const auto& model) { apply_strength(model, material, columns, settings, block, writer); },
-      material.strength);
-  if (material.eos)
-    std::visit(
-        [&](const auto& model) { apply_eos(model, material, columns, settings, block, writer); },
-        *material.eos);
-  if (!material.failures.empty()) apply_failures(material, columns, settings, block, writer, sums);
-  writer.add_to(sums);
-  if (material.damping.active()) apply_damping<T>(material, columns, settings, block, sums);
+  take_through<T>(view_of(material), material.strength, material.eos, material.failures, columns,
+                  settings, block, sums);
 }
 
 template <int D>
@@ -130,7 +118,7 @@ double sound_speed(const Material& material, const Columns& columns, const Mater
   const double c = speed_of_models<D>(material, columns, at, row, cell_size);
   if (!material.damping.active()) return c;
   const double specific = columns.value(at.volume, row) / columns.value(at.mass, row);
-  return speed_with_damping(material, c, specific, cell_size);
+  return speed_with_damping(view_of(material), c, specific, cell_size);
 }
 
 double sound_speed_at_start(const Material& material) {

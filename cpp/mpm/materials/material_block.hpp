@@ -8,11 +8,17 @@
 
 namespace mpm {
 
-/// Up to `capacity` particles. A register may be stored past the last one.
-template <int D>
+/// Up to `most` particles. A register may be stored past the last one. On a device it is one
+/// particle, in the registers of a thread.
+template <int D, int most = 128>
 struct MaterialBlock {
-  static constexpr int capacity = 128;
+  static constexpr int capacity = most;
+#if defined(__CUDACC__)
+  static_assert(most == 1);
+  static constexpr int room = 1;
+#else
   static constexpr int room = capacity + native_lanes;
+#endif
   using Values = double[room];
 
   std::size_t count = 0;

@@ -15,16 +15,16 @@ struct StressUpdate {
 template <class T, int D>
 class StressWriter {
  public:
-  StressWriter(const BlockColumns<D>& columns, const StressSettings& settings,
-               const Material& material)
+  MPM_HD StressWriter(const BlockColumns<D>& columns, const StressSettings& settings,
+                      const MaterialView& material)
       : columns_(columns), settings_(settings), material_(material), bounds_(material.bounds) {}
 
   /// `work`: with the stress at the end of the step. `mean_stress`: over the step the average of a
   /// third of the stress's trace, which works on the change of volume. `with_eos`: is there, or may
   /// there be, an equation of state, and with it an energy and its bounds?
   template <bool with_eos>
-  void add(const Group<T, D>& group, const VolumeChange<T>& volume_change,
-           const StressWork<T>& work, T mean_stress, const StressUpdate<T, D>& after) {
+  MPM_HD void add(const Group<T, D>& group, const VolumeChange<T>& volume_change,
+                  const StressWork<T>& work, T mean_stress, const StressUpdate<T, D>& after) {
     const auto valid = group.valid();
     // Written so that no number counts as negative too.
     negative_ = negative_ | (valid & !(volume_change.after > T(0.0)));
@@ -83,13 +83,13 @@ class StressWriter {
     fastest_ = max(fastest_, select(valid, speed + sqrt(dot(v, v)), T(0.0)));
   }
   template <bool with_eos>
-  void add(const Group<T, D>& group, const StepKinematics<T, D>& kinematics,
-           const Sym<T, D>& before, const StressUpdate<T, D>& after) {
+  MPM_HD void add(const Group<T, D>& group, const StepKinematics<T, D>& kinematics,
+                  const Sym<T, D>& before, const StressUpdate<T, D>& after) {
     add<with_eos>(group, kinematics.volume_change, kinematics.work(settings_, before, after.stress),
                   T(1.0 / 6.0) * trace(before + after.stress), after);
   }
 
-  void add_to(StressSums& sums) const {
+  MPM_HD void add_to(StressSums& sums) const {
     sums.internal += sum(internal_);
     sums.plastic += sum(dissipated_);
     sums.viscous += sum(viscous_);
@@ -108,8 +108,8 @@ class StressWriter {
   /// Keep the energy within the bounds. `first`, `last`: mean stresses before and after. Work that
   /// tension at its limit does opens voids between fragments, in place of straining the matter: it
   /// is taken, and given back when they close. What is missing to the least energy is given.
-  [[gnu::noinline, gnu::cold]] static Taken bound(EosBounds bounds, VolumeChange<T> volume_change,
-                                                  T first, T last, T energy) {
+  MPM_COLD MPM_HD static Taken bound(EosBounds bounds, VolumeChange<T> volume_change, T first,
+                                     T last, T energy) {
     const T limited = T(0.5) * (select(bounds.limits(first), first, T(0.0)) +
                                 select(bounds.limits(last), last, T(0.0)));
     const T opening = volume_change.work(limited);
@@ -120,7 +120,7 @@ class StressWriter {
 
   const BlockColumns<D>& columns_;
   const StressSettings& settings_;
-  const Material& material_;
+  const MaterialView& material_;
   const EosBounds bounds_;
   T internal_ = T(0.0), dissipated_ = T(0.0), viscous_ = T(0.0), force_power_ = T(0.0),
     bounded_ = T(0.0), floor_ = T(0.0), fastest_ = T(0.0);

@@ -12,11 +12,6 @@
 
 #include "mpm/math/unrolled.hpp"
 
-// Where the processor can, a b + c is rounded once; never where bits are to be the same on all.
-#if (defined(__FMA__) || defined(__aarch64__)) && !defined(MPM_SAME_BITS)
-#define MPM_FUSES
-#endif
-
 namespace mpm {
 
 #if defined(__AVX512F__)

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <concepts>
 
-#include "mpm/math/host_device.hpp"
+#include "mpm/math/elementary.hpp"
 // A device has no vector types.
 #if !defined(__CUDACC__)
 #include "mpm/math/batch.hpp"
@@ -14,20 +14,16 @@
 
 namespace mpm {
 
-MPM_HD inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
-MPM_HD inline double fma(double a, double b, double c) {
-#if defined(MPM_FUSES)
-  return __builtin_fma(a, b, c);
+// A device's double has the bits of lanes; the host's, the oracle, those of the library.
+#if defined(__CUDA_ARCH__)
+MPM_HD inline double log(double a) { return log_by_series(a); }
+MPM_HD inline double exp(double a) { return exp_by_series(a); }
+MPM_HD inline double pow(double a, double b) { return pow_by_series(a, b); }
 #else
-  return a * b + c;
-#endif
-}
-MPM_HD inline double min(double a, double b) { return a < b ? a : b; }
-MPM_HD inline double max(double a, double b) { return a > b ? a : b; }
-MPM_HD inline double sqrt(double a) { return std::sqrt(a); }
 MPM_HD inline double log(double a) { return std::log(a); }
 MPM_HD inline double exp(double a) { return std::exp(a); }
 MPM_HD inline double pow(double a, double b) { return std::pow(a, b); }
+#endif
 MPM_HD inline double sum(double a) { return a; }
 MPM_HD inline double largest(double a) { return a; }
 MPM_HD inline bool any(bool a) { return a; }
@@ -39,7 +35,11 @@ inline constexpr double tiny = 1e-300;
 /// Size of a number; below it, what a comparison of two numbers gives.
 template <class T>
 MPM_HD T absolute(T a) {
+#if defined(__CUDA_ARCH__)
+  return fabs(a);  // as of lanes: of zero without a sign
+#else
   return max(a, -a);
+#endif
 }
 template <class T>
 using Truth = decltype(T(0.0) < T(0.0));
@@ -76,22 +76,17 @@ concept Real = requires(T a, T b) {
   T(1.0);
 };
 
-#if !defined(__CUDACC__)
 /// Lanes from and to memory in sequence, and those before `count`, for a number or a Batch.
 template <class T>
-T load_lanes(const double* from) {
+MPM_HD T load_lanes(const double* from) {
   if constexpr (std::is_same_v<T, double>)
     return *from;
   else
     return T::load(from);
 }
-inline void store_lanes(double* to, double value) { *to = value; }
-template <int W>
-void store_lanes(double* to, Batch<W> value) {
-  value.store(to);
-}
+MPM_HD inline void store_lanes(double* to, double value) { *to = value; }
 template <class T>
-Truth<T> lanes_before(int count) {
+MPM_HD Truth<T> lanes_before(int count) {
   if constexpr (std::is_same_v<T, double>)
     return count > 0;
   else
@@ -101,9 +96,14 @@ Truth<T> lanes_before(int count) {
 /// How many numbers a T holds.
 template <class T>
 inline constexpr int lanes_of = 1;
+
+#if !defined(__CUDACC__)
+template <int W>
+void store_lanes(double* to, Batch<W> value) {
+  value.store(to);
+}
 template <int W>
 inline constexpr int lanes_of<Batch<W>> = W;
-
 #endif
 
 }  // namespace mpm

@@ -11,6 +11,7 @@
 #include "mpm/run/measures.hpp"
 #include "mpm/run/settle.hpp"
 #include "mpm/run/time_step.hpp"
+#include "mpm/run/use_device.hpp"
 #include "mpm/run/watch.hpp"
 #include "mpm/step/overlap.hpp"
 
@@ -28,14 +29,29 @@ void begin_step(Domain<D>& domain, double time_after) {
   domain.time_after = time_after;
 }
 
+/// Look at all particles; those on a device only if it has seen something.
+template <int D>
+void look_or_trust(Simulation<D>& simulation) {
+  if (simulation.device && simulation.device->report.odd == 0) {
+    simulation.watch.looked = simulation.domain.step;
+    return;
+  }
+  bring_home(simulation);
+  look(simulation);
+}
+
 template <int D>
 void make_step(Simulation<D>& simulation, double time_after) {
   Domain<D>& domain = simulation.domain;
   begin_step(domain, time_after);
   if (domain.settles()) begin_settling_step(simulation);
-  run_stages(domain, simulation.stages, [&](std::size_t k) {
-    simulation.timers.time(k, [&] { simulation.stages[k].run(domain); });
-  });
+  const bool looks = (domain.step + 1) % look_every == 0;
+  if (simulation.device)
+    step_on_device(*simulation.device, domain, looks);
+  else
+    run_stages(domain, simulation.stages, [&](std::size_t k) {
+      simulation.timers.time(k, [&] { simulation.stages[k].run(domain); });
+    });
   const bool settling = domain.settles();
   domain.time = time_after;
   ++domain.step;
@@ -46,7 +62,7 @@ void make_step(Simulation<D>& simulation, double time_after) {
   update_time_step(simulation);
   if (simulation.failure) return;
   watch_step(simulation);
-  if (domain.step % look_every == 0) look(simulation);
+  if (looks) look_or_trust(simulation);
   if (must_coarsen(simulation)) coarsen_cells(simulation);
 }
 
@@ -57,6 +73,7 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
                      const std::atomic<bool>* stop) {
   require(simulation, Phase::ready, "call prepare() before advance()");
   if (!std::isfinite(end_time)) throw std::invalid_argument("end_time must be a finite number");
+  if (simulation.wants_device) use_device(simulation);
   Domain<D>& domain = simulation.domain;
   Comm& comm = *domain.grid.partition.comm;
   const Traffic before = comm.traffic();
@@ -80,7 +97,10 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   simulation.passed.steps += made;
   const bool looked = simulation.watch.looked == domain.step;
-  if (made > 0 && domain.time >= end_time && !looked && !simulation.failure) look(simulation);
+  if (made > 0 && domain.time >= end_time && !looked && !simulation.failure) {
+    bring_home(simulation);
+    look(simulation);
+  }
   return made;
 }
 

@@ -10,7 +10,7 @@
 
 #include "mpm/comm/counted_comm.hpp"
 #include "mpm/comm/threads_comm.hpp"
-#include "mpm/run/simulation.hpp"
+#include "mpm/run/use_device.hpp"
 
 namespace mpm {
 
@@ -109,10 +109,19 @@ class AnySimulation {
   AnySimulation(const AnySimulation&) = delete;
   AnySimulation& operator=(const AnySimulation&) = delete;
 
-  /// f(simulation), with a Simulation<2> or a Simulation<3>; of several ranks with each.
+  /// f(simulation), with a Simulation<2> or a Simulation<3>; of several ranks with each. What a
+  /// device has of the particles may be newer than what f finds.
+  template <class F>
+  decltype(auto) visit_as_is(F&& f) {
+    return std::visit([&](auto& team) { return team.visit(f); }, of_);
+  }
+  /// The same with the particles as they are now.
   template <class F>
   decltype(auto) visit(F&& f) {
-    return std::visit([&](auto& team) { return team.visit(f); }, of_);
+    return visit_as_is([&](auto& simulation) -> decltype(auto) {
+      bring_home(simulation);
+      return f(simulation);
+    });
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "mpm/run/time_step.hpp"
+#include "mpm/run/use_device.hpp"
 
 namespace mpm {
 
@@ -67,10 +68,12 @@ void find_failure(Simulation<D>& simulation) {
   negative = any_of_all(*domain.grid.partition.comm, negative);
   if (negative || !std::isfinite(domain.ledger.kinetic) ||
       !std::isfinite(domain.ledger.residual())) {
+    bring_home(simulation);
     simulation.failure = first_failure(domain);
     return;
   }
   if (domain.ledger.growth() <= simulation.settings.run.energy_growth_limit) return;
+  bring_home(simulation);
   const Limiter fastest = find_limiter(domain);
   std::ostringstream text;
   if (fastest.body < 0)

@@ -7,7 +7,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "mpm/domain.hpp"
+#include "mpm/device/on_device.hpp"
 #include "mpm/run/history_rows.hpp"
 #include "mpm/run/notes.hpp"
 #include "mpm/run/records.hpp"
@@ -43,6 +43,8 @@ struct Simulation {
   Phase phase = Phase::building;
   std::optional<Failure> failure;
   Watch<D> watch;
+  bool wants_device = false;            // to make the steps (use_device.hpp) ...
+  std::unique_ptr<OnDevice<D>> device;  // ... and has the particles
   HistoryRows history;
 };
 

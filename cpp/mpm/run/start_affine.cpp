@@ -69,21 +69,22 @@ void start_affine(Domain<D>& domain, int body) {
   // on one side only, each takes away a part of the error.
   constexpr int most = 200;
   double first = 0.0;
+  std::vector<double> changes;  // of each patch
   for (int k = 0; k < most; ++k) {
     map_momentum(domain);
     fold_momentum(domain);
     exchange_momentum(domain);
     find_velocities(domain);
-    double change = 0.0;
-    for (std::size_t p = 0; p < domain.grid.patches.size(); ++p) {
+    changes.assign(domain.grid.patches.size(), 0.0);
+    domain.threads.for_each(changes.size(), [&](std::size_t p) {
       const Patch<D>& patch = domain.grid.patches[p];
-      if (!is_meant(patch)) continue;
+      if (!is_meant(patch)) return;
       with_basis(domain.grid, domain.body_of(patch), [&]<BasisModel B>(const B& basis) {
-        if constexpr (B::second_moment > 0.0)
-          change = std::max(change, take_affine(domain, p, basis));
+        if constexpr (B::second_moment > 0.0) changes[p] = take_affine(domain, p, basis);
       });
-    }
-    change = all_max(*domain.grid.partition.comm, change);
+    });
+    const double change = all_max(*domain.grid.partition.comm,
+                                  changes.empty() ? 0.0 : *std::ranges::max_element(changes));
     first = std::max(first, change);
     if (change <= 1e-14 * first) return;
   }

@@ -6,6 +6,7 @@
 
 #include "mpm/comm/all_sums.hpp"
 #include "mpm/run/find_failure.hpp"
+#include "mpm/run/use_device.hpp"
 
 namespace mpm {
 namespace {
@@ -31,6 +32,7 @@ double wave_speed(const Domain<D>& domain, const Patch<D>& patch, std::size_t ro
 template <int D>
 void probe_speeds(Domain<D>& domain) {
   domain.sums.resize(domain.grid.patches.size());
+  domain.sums_of_bodies = false;
   for (std::size_t p = 0; p < domain.sums.size(); ++p) {
     const Patch<D>& patch = domain.grid.patches[p];
     const ParticlePool<D>& pool = domain.pool_of(patch);
@@ -65,7 +67,7 @@ void note_fastest(Domain<D>& domain) {
   for (ParticlePool<D>& pool : domain.pools) pool.fastest = 0.0;
   double of_all = 0.0;
   for (std::size_t p = 0; p < domain.sums.size(); ++p) {
-    double& fastest = domain.pool_of(domain.grid.patches[p]).fastest;
+    double& fastest = domain.pool_of(domain.bodies[body_of_sums(domain, p)]).fastest;
     fastest = std::max(fastest, domain.sums[p].stress.fastest);
     of_all = std::max(of_all, fastest);
   }
@@ -102,6 +104,7 @@ template <int D>
 void update_time_step(Simulation<D>& simulation) {
   const std::string problem = choose_time_step(simulation);
   if (problem.empty()) return;
+  bring_home(simulation);
   const Domain<D>& domain = simulation.domain;
   simulation.failure = failure_at(domain, "time step", find_limiter(domain), problem);
 }
@@ -112,7 +115,17 @@ Limiter find_limiter(const Domain<D>& domain) {
   // The fastest patch of all, in their order the first.
   std::vector<double> key(2 + D, -std::numeric_limits<double>::infinity());
   std::size_t fastest = 0;
-  if (domain.sums.size() == domain.grid.patches.size())
+  const auto look_in = [&](const Patch<D>& patch) {
+    const ParticlePool<D>& pool = domain.pool_of(patch);
+    for (const std::uint32_t row : pool.rows(patch)) {
+      const double c = wave_speed(domain, patch, row), v = speed_of(pool, row);
+      if (c + v > result.sound_speed + result.speed || result.body < 0)
+        result = {particle_at(pool, patch.body, row), c, v};
+    }
+  };
+  if (domain.sums_of_bodies)  // a device's, which is alone
+    for (const Patch<D>& patch : domain.grid.patches) look_in(patch);
+  else if (domain.sums.size() == domain.grid.patches.size())
     for (std::size_t p = 0; p < domain.sums.size(); ++p)
       if (const double speed = domain.sums[p].stress.fastest; speed > key[0]) {
         key[0] = speed;
@@ -120,14 +133,9 @@ Limiter find_limiter(const Domain<D>& domain) {
       }
   if (key[0] > -std::numeric_limits<double>::infinity()) {
     const Patch<D>& patch = domain.grid.patches[fastest];
-    const ParticlePool<D>& pool = domain.pool_of(patch);
     key[1] = -patch.body;
     for (std::size_t a = 0; a < D; ++a) key[2 + a] = -patch.tile[D - 1 - a];
-    for (const std::uint32_t row : pool.rows(patch)) {
-      const double c = wave_speed(domain, patch, row), v = speed_of(pool, row);
-      if (c + v > result.sound_speed + result.speed || result.body < 0)
-        result = {particle_at(pool, patch.body, row), c, v};
-    }
+    look_in(patch);
   }
   Comm& comm = *domain.grid.partition.comm;
   broadcast(comm, rank_of_largest(comm, key), result);

@@ -5,6 +5,7 @@
 #include "mpm/contact/find_nodes.hpp"
 #include "mpm/run/find_failure.hpp"
 #include "mpm/run/time_step.hpp"
+#include "mpm/run/use_device.hpp"
 #include "mpm/run/warnings.hpp"
 
 namespace mpm {
@@ -131,6 +132,7 @@ void watch_step(Simulation<D>& simulation) {
   const double work =
       domain.has_loads() ? watch.load_energy(domain.ledger.load_work, domain.ledger.largest) : 0.0;
   if (median == 0.0 && made == 0.0 && work == 0.0) return;
+  bring_home(simulation);
   const Limiter fastest =
       find_limiter(domain);  // an unstable particle is the fastest, or soon will be
   if (fastest.body < 0) return;

@@ -16,12 +16,12 @@ template <int D, int count>
 class NodalField {
  public:
   /// `first`: the records from the first node in reach on.
-  NodalField(const NodeRecords& first, const NodeStrides<D>& stride)
+  MPM_HD NodalField(const NodeRecords& first, const NodeStrides<D>& stride)
       : first_(first), stride_(stride) {}
 
   /// The vector at number `at` of the records.
   template <int at, class T>
-  Vec<T, D> vector(const Weights<T, D, count>& w) const {
+  MPM_HD Vec<T, D> vector(const Weights<T, D, count>& w) const {
     Vec<T, D> total = Vec<T, D>::zero();
     for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
       // Along x first: N_y N_z is then multiplied in once a row, not at every node. Rows come y
@@ -37,7 +37,7 @@ class NodalField {
 
   /// Derivatives of that vector with respect to xi: [i][j] of component i along axis j.
   template <int at, class T>
-  std::array<Vec<T, D>, D> gradients(const Weights<T, D, count>& w) const {
+  MPM_HD std::array<Vec<T, D>, D> gradients(const Weights<T, D, count>& w) const {
     std::array<Vec<T, D>, D> g;
     g.fill(Vec<T, D>::zero());
     for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
@@ -63,8 +63,8 @@ class NodalField {
   /// The vector at number `at` of the records, and its first moments sum N_i f_i (x_i - x) [cells]:
   /// [i][j] of component i along axis j.
   template <int at, class T>
-  void value_and_moments(const Weights<T, D, count>& w, const Moments<T, D, count>& M,
-                         Vec<T, D>& total, Mat<T, D>& moments) const {
+  MPM_HD void value_and_moments(const Weights<T, D, count>& w, const Moments<T, D, count>& M,
+                                Vec<T, D>& total, Mat<T, D>& moments) const {
     total = Vec<T, D>::zero();
     for (auto& row : moments.c)
       for (T& each : row) each = T(0.0);
@@ -89,7 +89,7 @@ class NodalField {
  private:
   /// f(y, z, records) for the rows of nodes along x; one layer in 2D.
   template <class F>
-  [[gnu::always_inline]] void for_each_row(F&& f) const {
+  MPM_HD MPM_INLINE void for_each_row(F&& f) const {
     unrolled<D == 3 ? count : 1>([&](auto z) MPM_INLINE {
       unrolled<count>([&](auto y) MPM_INLINE { f(y, z, first_.from(stride_.to(0, y, z))); });
     });
@@ -97,7 +97,7 @@ class NodalField {
   /// Of a row, whose records begin at the number that is wanted: the sum with factors along x. It
   /// begins with a product: 0 + a b would be an addition that the compiler must keep.
   template <class T>
-  [[gnu::always_inline]] static T along(const NodeRecords& row, const T* x) {
+  MPM_HD MPM_INLINE static T along(const NodeRecords& row, const T* x) {
     T sum = x[0] * T(*row[0]);
     unrolled<count - 1>([&](auto k) MPM_INLINE { sum = fma(x[k + 1], T(*row[k + 1]), sum); });
     return sum;

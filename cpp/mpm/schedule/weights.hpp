@@ -2,6 +2,7 @@
 // The weights of particles at the nodes around their cell.
 #include "mpm/basis/basis.hpp"
 #include "mpm/layout/block_shape.hpp"
+#include "mpm/math/unrolled.hpp"
 #include "mpm/math/vec.hpp"
 
 namespace mpm {
@@ -20,8 +21,7 @@ struct Weights<T, D, 2> {
 
 /// Of particles in the lanes, from their position in the cell.
 template <BasisModel B, class T, int D>
-[[gnu::always_inline]] inline Weights<T, D, B::nodes> weights_at(const B& basis,
-                                                                 const Vec<T, D>& xi) {
+MPM_HD MPM_INLINE inline Weights<T, D, B::nodes> weights_at(const B& basis, const Vec<T, D>& xi) {
   if constexpr (B::nodes == 2)
     return {xi};
   else
@@ -37,8 +37,8 @@ struct Moments {
   T axis[D][count];
 };
 template <BasisModel B, class T, int D>
-[[gnu::always_inline]] inline Moments<T, D, B::nodes> moments_at(const Vec<T, D>& xi,
-                                                                 const Weights<T, D, B::nodes>& w) {
+MPM_HD MPM_INLINE inline Moments<T, D, B::nodes> moments_at(const Vec<T, D>& xi,
+                                                            const Weights<T, D, B::nodes>& w) {
   Moments<T, D, B::nodes> M;
   unrolled<D>([&](auto a) MPM_INLINE {
     unrolled<B::nodes>([&](auto k) MPM_INLINE {
@@ -54,13 +54,14 @@ template <int D>
 struct NodeStrides {
   int row, layer;
 
-  explicit NodeStrides(const BlockShape<D>& shape)
+  MPM_HD explicit NodeStrides(const BlockShape<D>& shape)
       : row(shape.nodes[0]), layer(D == 3 ? shape.nodes[0] * shape.nodes[1] : 0) {}
+  MPM_HD NodeStrides(int to_next_row, int to_next_layer) : row(to_next_row), layer(to_next_layer) {}
   /// To the node so many steps further along each axis.
-  int to(int x, int y, int z) const { return x + y * row + z * layer; }
+  MPM_HD int to(int x, int y, int z) const { return x + y * row + z * layer; }
   /// From a cell's own node to the first that its particles reach, which the block holds: it is cut
   /// to the reach of the occupied cells (decision 0013).
-  int to_first(int before) const { return -before * (1 + row + layer); }
+  MPM_HD int to_first(int before) const { return -before * (1 + row + layer); }
 };
 
 }  // namespace mpm

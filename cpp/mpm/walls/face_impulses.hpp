@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "mpm/math/exact_sum.hpp"
+#include "mpm/math/host_device.hpp"
 
 namespace mpm {
 
@@ -13,14 +14,14 @@ struct FaceImpulses {
 
   /// A component of an impulse that faces give together, as bits 2 axis + side: at an edge of the
   /// box each gives the same, so that none comes before another.
-  void add(unsigned faces, int component, double impulse) {
+  MPM_HD void add(unsigned faces, int component, double impulse) {
     const int count = std::popcount(faces);
     for (int face = 0; face < 2 * D; ++face)
       if (faces >> face & 1u) of[face / 2][face % 2][component] += impulse / count;
   }
   /// f(number) for all, in one order: 2 D D.
   template <class F>
-  void for_each(F&& f) {
+  MPM_HD void for_each(F&& f) {
     for (auto& axis : of)
       for (auto& face : axis)
         for (double& component : face) f(component);

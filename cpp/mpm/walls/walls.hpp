@@ -4,6 +4,7 @@
 
 #include "mpm/catalogue/words.hpp"
 #include "mpm/layout/tile.hpp"
+#include "mpm/math/host_device.hpp"
 
 namespace mpm {
 
@@ -24,7 +25,9 @@ struct WallImage {
   unsigned turned;
 
   /// A component of a vector, as the image has it.
-  double component(double value, int axis) const { return turned >> axis & 1u ? -value : value; }
+  MPM_HD double component(double value, int axis) const {
+    return turned >> axis & 1u ? -value : value;
+  }
 };
 
 template <int D>
@@ -34,7 +37,7 @@ struct Walls {
   Wall face[D][2] = {};       // [axis][lower, upper]
   bool odd_at_fixed = false;  // (BasisModel)
 
-  bool absorb() const {
+  MPM_HD bool absorb() const {
     bool any = false;
     for (const auto& faces : face)
       any = any || faces[0] == Wall::absorbing || faces[1] == Wall::absorbing;
@@ -44,7 +47,7 @@ struct Walls {
   /// Bit a is set if a node may not move along axis a. Nodes beyond a fixed face are held like
   /// those on it, or have images. On a slip face the normal velocity is 0 by symmetry, as for a
   /// turned component v = -v.
-  unsigned constrained_axes(const Index<D>& node) const {
+  MPM_HD unsigned constrained_axes(const Index<D>& node) const {
     unsigned axes = 0;
     if (!exist) return axes;
     for (int a = 0; a < D; ++a) {
@@ -57,25 +60,25 @@ struct Walls {
   }
 
   /// The faces, as bits 2 axis + side, that hold a component of what a node has.
-  unsigned faces_holding(const Index<D>& node, int component) const {
+  MPM_HD unsigned faces_holding(const Index<D>& node, int component) const {
     return faces_where(node, [&](Wall wall, int axis, int depth) {
       return holds(wall, depth) && (axes_of(wall, axis) >> component & 1u) != 0;
     });
   }
   /// Those that turn it, of a node beyond them with an image.
-  unsigned faces_turning(const Index<D>& node, int component) const {
+  MPM_HD unsigned faces_turning(const Index<D>& node, int component) const {
     return faces_where(node, [&](Wall wall, int axis, int depth) {
       return mirrors(wall, depth) && (axes_of(wall, axis) >> component & 1u) != 0;
     });
   }
   /// Those of which it carries dashpots.
-  unsigned faces_absorbing(const Index<D>& node) const {
+  MPM_HD unsigned faces_absorbing(const Index<D>& node) const {
     return faces_where(
         node, [](Wall wall, int, int depth) { return wall == Wall::absorbing && depth == 0; });
   }
 
   /// Lies a node from `before` this one to `after` it, along any axis, on a fixed face or beyond?
-  bool fixes_near(const Index<D>& node, int before, int after) const {
+  MPM_HD bool fixes_near(const Index<D>& node, int before, int after) const {
     if (!exist) return false;
     for (int a = 0; a < D; ++a)
       if ((face[a][0] == Wall::fixed && depth_beyond(node, a, 0) >= -before) ||
@@ -87,7 +90,7 @@ struct Walls {
   /// Of a node beyond a slip face, which is a plane of symmetry, or beyond a fixed one if that is
   /// odd: where it is mirrored to, as deep before the face. Beyond two faces, at an edge of the
   /// box, it is mirrored twice; a component that is turned twice is as it was (hence ^=).
-  std::optional<WallImage<D>> image(const Index<D>& node) const {
+  MPM_HD std::optional<WallImage<D>> image(const Index<D>& node) const {
     if (!exist) return {};
     WallImage<D> image{node, 0};
     bool beyond = false;
@@ -105,25 +108,25 @@ struct Walls {
 
  private:
   /// The axes along which a wall holds or turns what nodes have: a slip wall its normal.
-  static unsigned axes_of(Wall wall, int axis) {
+  MPM_HD static unsigned axes_of(Wall wall, int axis) {
     return wall == Wall::slip ? 1u << axis : (1u << D) - 1u;
   }
-  bool holds(Wall wall, int depth) const {
+  MPM_HD bool holds(Wall wall, int depth) const {
     if (wall == Wall::slip) return depth == 0;
     return wall == Wall::fixed && (depth == 0 || (depth > 0 && !odd_at_fixed));
   }
-  bool mirrors(Wall wall, int depth) const {
+  MPM_HD bool mirrors(Wall wall, int depth) const {
     return depth > 0 && (wall == Wall::slip || (wall == Wall::fixed && odd_at_fixed));
   }
   template <class F>
-  unsigned faces_where(const Index<D>& node, F&& f) const {
+  MPM_HD unsigned faces_where(const Index<D>& node, F&& f) const {
     unsigned faces = 0;
     for (int a = 0; exist && a < D; ++a)
       for (int side = 0; side < 2; ++side)
         if (f(face[a][side], a, depth_beyond(node, a, side))) faces |= 1u << (2 * a + side);
     return faces;
   }
-  int depth_beyond(const Index<D>& node, int axis, int side) const {
+  MPM_HD int depth_beyond(const Index<D>& node, int axis, int side) const {
     return side == 0 ? -node[axis] : node[axis] - cells[axis];
   }
 };

@@ -4,7 +4,7 @@
 
 #include "check.hpp"
 #include "example.hpp"
-#include "mpm/materials/material_block.hpp"
+#include "one_point.hpp"
 
 namespace {
 
@@ -26,45 +26,23 @@ ModelChoice flat_choice(const M& model, double yield) {
 }
 
 template <int D>
-struct OnePoint {
-  Material material;
-  Columns columns;
-  MaterialColumns at{};
-  MaterialBlock<D> block;
-  StressSums sums;
-
-  explicit OnePoint(const MaterialChoice& choice) : material(make_material(choice)) {
-    at.velocity = columns.add("velocity", "m/s", D, Precision::rounded);
-    at.mass = columns.add("mass", "kg", 1);
-    at.volume = columns.add("volume", "m^3", 1);
-    at.stress = columns.add("stress", "Pa", Sym<double, D>::size, Precision::rounded);
-    add_material_columns<D>(material, columns, at);
-    columns.allocate(1);
-    for (int a = 0; a < D; ++a) columns.rounded(at.velocity + a)[0] = 0.0;
-    columns.component(at.mass)[0] = material.density;
-    columns.component(at.volume)[0] = 1.0;
-    start_material_columns<D>(material, columns, at);
-    if (choice.strength.name == "high_explosive")
-      columns.component(columns.info("lighting_time").first)[0] = 0.0;
-    block.row[0] = 0;
-    block.count = 1;
-  }
+struct StrainedPoint : mpm::testing::OnePoint<D> {
+  using mpm::testing::OnePoint<D>::OnePoint;
   void move(const Mat<double, 2>& gradient, double time_step, double time) {
     for (int i = 0; i < D; ++i)
-      for (int j = 0; j < D; ++j) block.gradient[i][j][0] = i < 2 && j < 2 ? gradient[i][j] : 0.0;
-    const StressSettings settings{time_step, time, 0.5, material.viscosity, true};
-    update_block<double, D>(material, columns, at, block, settings, sums);
-  }
-  double value(const ColumnInfo& info, int component) const {
-    return columns.value(info.first + component, 0);
+      for (int j = 0; j < D; ++j)
+        this->block.gradient[i][j][0] = i < 2 && j < 2 ? gradient[i][j] : 0.0;
+    const StressSettings settings{time_step, time, 0.5, this->material.viscosity, true};
+    update_block<double, D>(this->material, this->columns, this->at, this->block, settings,
+                            this->sums);
   }
 };
 
 /// Returns how many of its steps have made plastic strain; the tolerances are those of test_models,
 /// some four roundings a step of stresses as large as the modulus.
 int check_choice(mpm::testing::Report& report, const MaterialChoice& choice) {
-  OnePoint<2> flat(choice);
-  OnePoint<3> solid(choice);
+  StrainedPoint<2> flat(choice);
+  StrainedPoint<3> solid(choice);
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> any(-0.05, 0.05), decades(-3.7, 0.0);
   constexpr int steps = 40;

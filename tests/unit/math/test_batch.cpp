@@ -147,6 +147,7 @@ void test_log(mpm::testing::Report& report) {
     double x = near(random);
     if (n % 4 == 1) x = 1.0 + (x - 1.0) * 1e-6;
     if (n % 2 == 0) x = std::ldexp(x, static_cast<int>(exponent(random)));
+    CHECK_EQUAL(log_by_series(x), lane_log<W>(x));  // as a device has it
     const long double exact = std::log(static_cast<long double>(x));
     const double rounded = static_cast<double>(exact);
     const double next = std::nextafter(std::abs(rounded), std::numeric_limits<double>::infinity());
@@ -176,7 +177,9 @@ void test_exp_and_pow(mpm::testing::Report& report) {
   for (int n = 0; n < 200000; ++n) {
     const double x = n % 2 ? wide(random) : near(random);
     worst = std::max(worst, ulps(exp(T(x))[W - 1], std::exp(static_cast<long double>(x))));
+    CHECK_EQUAL(exp_by_series(x), exp(T(x))[W - 1]);
     const double b = base(random), y = 4.0 * near(random);
+    CHECK_EQUAL(pow_by_series(b, y), pow(T(b), T(y))[0]);
     const long double power = std::pow(static_cast<long double>(b), static_cast<long double>(y));
     const double allowed = 2.0 + 2.0 * std::abs(y * std::log(b));
     worst_pow = std::max(worst_pow, ulps(pow(T(b), T(y))[W - 1], power) / allowed);

@@ -14,16 +14,16 @@ struct Aflip : Apic {
 
   double alpha;
 
-  explicit Aflip(double share = 1.0) : alpha(share) {}
+  MPM_HD explicit Aflip(double share = 1.0) : alpha(share) {}
 
   /// Where nodes of the particle lie on a fixed wall it is APIC. FLIP does not learn that the wall
   /// holds them, while C_p does: v_p of a layer that slides along the wall stays, C_p shears it,
   /// and both together give the next nodes more than any particle has (decision 0052).
-  Aflip at_fixed_walls() const { return Aflip(0.0); }
+  MPM_HD Aflip at_fixed_walls() const { return Aflip(0.0); }
 
   /// v_p = alpha (v_p + sum dv_i N_ip) + (1 - alpha) sum v_i N_ip.
   template <class T>
-  MPM_INLINE T take(T v, T dv, T of_grid) const {
+  MPM_HD MPM_INLINE T take(T v, T dv, T of_grid) const {
     return fma(T(alpha), (v + dv) - of_grid, of_grid);
   }
 };

@@ -17,14 +17,14 @@ struct Apic : Flip {
   /// From particle p to node i: m_i += m_p N_ip, eq. (2); p_i += N_ip m_p (v_p + C_p (x_i - x_p)),
   /// with the first moment M_ip = N_ip (x_i - x_p).
   template <class P, class N, class M, class Node>
-  MPM_INLINE static void give(const P& p, const N& N_ip, const M& M_ip, Node& node) {
+  MPM_HD MPM_INLINE static void give(const P& p, const N& N_ip, const M& M_ip, Node& node) {
     node.m += p.m * N_ip;
     node.p += p.mv * N_ip + p.mC * M_ip;
   }
 
   /// A component of v_p after the step: v_p = sum v_i N_ip, of which `of_grid` is the sum.
   template <class T>
-  MPM_INLINE T take(T, T, T of_grid) const {
+  MPM_HD MPM_INLINE T take(T, T, T of_grid) const {
     return of_grid;
   }
 };

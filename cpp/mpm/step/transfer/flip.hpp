@@ -16,7 +16,7 @@ struct Flip {
 
   /// From particle p to node i: m_i += m_p N_ip, eq. (2); p_i += m_p N_ip v_p, eq. (3).
   template <class P, class N, class Node>
-  MPM_INLINE static void give(const P& p, const N& N_ip, Node& node) {
+  MPM_HD MPM_INLINE static void give(const P& p, const N& N_ip, Node& node) {
     // One product for both, so that v_i = p_i / m_i of a body that moves as one is v_p but for
     // rounding.
     const auto m_ip = p.m * N_ip;
@@ -26,7 +26,7 @@ struct Flip {
 
   /// A component of v_p after the step: v_p += sum dv_i N_ip, eq. (17), of which `dv` is the sum.
   template <class T>
-  MPM_INLINE T take(T v, T dv) const {
+  MPM_HD MPM_INLINE T take(T v, T dv) const {
     return v + dv;
   }
 };

@@ -10,12 +10,12 @@ struct FlipPic : Flip {
 
   double pic;
 
-  explicit FlipPic(double share) : pic(share) {}
+  MPM_HD explicit FlipPic(double share) : pic(share) {}
 
   /// v_p += sum dv_i N_ip, eq. (17), then v_p += pic (sum v_i N_ip - v_p), the latter sum
   /// `of_grid`.
   template <class T>
-  MPM_INLINE T take(T v, T dv, T of_grid) const {
+  MPM_HD MPM_INLINE T take(T v, T dv, T of_grid) const {
     // Momentum is kept, as sum m_p N_ip = m_i: the sum over particles of m_p times the grid's
     // velocity is sum m_i v_i (docs/theory/step.md, PIC damping).
     const T flip = v + dv;

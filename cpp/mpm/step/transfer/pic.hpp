@@ -13,7 +13,7 @@ struct Pic : Flip {
 
   /// A component of v_p after the step: v_p = sum v_i N_ip, of which `of_grid` is the sum.
   template <class T>
-  MPM_INLINE T take(T, T, T of_grid) const {
+  MPM_HD MPM_INLINE T take(T, T, T of_grid) const {
     return of_grid;
   }
 };

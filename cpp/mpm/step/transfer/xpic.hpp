@@ -15,7 +15,7 @@ struct Xpic : Flip {
 
   /// A component of v_p after the step: v_p + sum dv_i N_ip - u_p, with u = (I - S S+)^k V.
   template <class T>
-  MPM_INLINE T take(T v, T dv, T unseen) const {
+  MPM_HD MPM_INLINE T take(T v, T dv, T unseen) const {
     return (v + dv) - unseen;
   }
 };

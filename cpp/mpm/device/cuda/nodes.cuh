@@ -1,0 +1,342 @@
+#pragma once
+// The stages of the nodes: a block of threads a tile of nodes, a thread a node. Sums over the
+// patches in the order of the tiles, eq. (3), walls, eq. (8).
+#include "mpm/device/cuda/views.cuh"
+#include "mpm/walls/face_impulses.hpp"
+
+namespace mpm {
+
+/// What a step is for nodes.
+template <int D>
+struct NodeStep {
+  GridGeometry<D> grid;
+  double time_step;
+  Vec<double, D> gravity;
+  bool has_gravity, ghosts;
+  bool takes_of_grid;        // do particles take the velocity of the grid?
+  bool other_at_fixed;       // all of it at fixed walls? (step/fixed_walls.hpp)
+  const double* grid_share;  // of each body
+  double* sums;              // [DeviceSum][node tile]
+  std::size_t tiles;
+};
+
+/// A node beyond a wall whose image its own patches hold: one cell before the wall.
+template <int D>
+struct Image {
+  bool exists = false;
+  WallImage<D> image{};
+
+  __device__ Image(const GridGeometry<D>& grid, bool ghosts, const Index<D>& node) {
+    if (!ghosts) return;
+    const auto found = grid.walls.image(node);
+    if (!found) return;
+    exists = true;
+    for (int a = 0; a < D; ++a) {
+      const int way = found->node[a] - node[a];
+      exists = exists && way <= 2 && way >= -2;
+    }
+    image = *found;
+  }
+};
+
+/// By number, as nvcc makes wrong code of comparisons of arrays.
+template <int D>
+__device__ bool same_place(const Index<D>& x, const Index<D>& y) {
+  bool same = true;
+  for (int a = 0; a < D; ++a) same = same && x[a] == y[a];
+  return same;
+}
+
+template <int D>
+__device__ Vec<double, 3> in_three(const Vec<double, D>& v) {
+  return {v[0], v[1], D == 3 ? v[D - 1] : 0.0};
+}
+__device__ inline Vec<double, 3> cross_of(const Vec<double, 3>& x, const Vec<double, 3>& y) {
+  return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+}
+
+/// What a thread adds to the sums of its node tile.
+struct NodeSums {
+  double of[DeviceSum::of_nodes];
+
+  __device__ NodeSums() {
+    for (double& x : of) x = 0.0;
+  }
+  __device__ void add_vector(int at, const Vec<double, 3>& v) {
+    for (int a = 0; a < 3; ++a) of[at + a] += v[a];
+  }
+  /// An impulse at a place, by the faces of_component(axis).
+  template <int D, class F>
+  __device__ void add_reaction(int at, const Vec<double, D>& place, const Vec<double, D>& impulse,
+                               F&& of_component) {
+    add_vector(at, cross_of(in_three(place), in_three(impulse)));
+    for (int a = 0; a < D; ++a)
+      if (impulse[a] != 0.0) add_to_faces(of_component(a), a, impulse[a]);
+  }
+  /// As FaceImpulses::add.
+  __device__ void add_to_faces(unsigned faces, int component, double impulse) {
+    const int count = __popc(faces);
+    for (int face = 0; face < 6; ++face)
+      if (faces >> face & 1u) of[DeviceSum::faces + 3 * face + component] += impulse / count;
+  }
+  /// x_i x R s - x_g x s and R s - s of a node beyond walls (walls/reactions.hpp).
+  template <int D>
+  __device__ void add_folding(int at, const GridGeometry<D>& grid, const AnIndex<D>& node,
+                              const WallImage<D>& image, const Vec<double, D>& s) {
+    Vec<double, D> of_image;
+    for (int a = 0; a < D; ++a) of_image[a] = image.component(s[a], a);
+    add_vector(at, cross_of(in_three(grid.position_of(image.node)), in_three(of_image)) -
+                       cross_of(in_three(grid.position_of(node)), in_three(s)));
+    for (int a = 0; a < D; ++a)
+      if (of_image[a] != s[a])
+        add_to_faces(grid.walls.faces_turning(node, a), a, of_image[a] - s[a]);
+  }
+  /// By all threads of the block; the first `count` of them.
+  __device__ void write(double* sums, std::size_t tiles, std::size_t tile, int count) {
+    __shared__ double scratch[2];
+    for (int k = 0; k < DeviceSum::of_nodes; ++k)
+      if (k < count) {
+        const double all = block_sum<64>(of[k], scratch);
+        if (threadIdx.x == 0) sums[k * tiles + tile] += all;
+      }
+  }
+};
+
+template <int D>
+__device__ double grid_share_at(const NodeStep<D>& step, std::int32_t body,
+                                const AnIndex<D>& node) {
+  if (step.other_at_fixed && step.grid.walls.fixes_near(node, 0, 0)) return 1.0;
+  return step.grid_share[body];
+}
+
+/// What is done with the nodes of a tile at once: mass and momentum to velocities; forces to
+/// increments, advanced; MUSL's momenta to velocities.
+struct NodeWork {
+  bool momentum, forces, remapped;
+};
+
+template <class B, int D, bool momentum, bool forces, bool remapped>
+__global__ void __launch_bounds__(64)
+    sum_nodes(NodeTileView<D> nodes, PartialView partial, NodeStep<D> step) {
+  const std::size_t tile = blockIdx.x;
+  const int i = threadIdx.x;
+  const Index<D> in_tile = Tile<D>::cell_index(i), first = step.grid.first_cell(nodes.tile[tile]);
+  Index<D> node;
+  for (int a = 0; a < D; ++a) node[a] = first[a] + in_tile[a];
+  const bool near_wall = step.grid.walls.exist;
+  const Image<D> ghost(step.grid, step.ghosts, node);
+  constexpr int half = half_record;
+
+  // m, p; f: sums over the patches that hold the node.
+  double m = 0.0;
+  Vec<double, D> p = Vec<double, D>::zero(), f = p, given = p;  // given: f before it is folded
+  for (int k = 0; k < Tile<D>::neighbours; ++k) {
+    const std::int32_t holder = nodes.holders[tile * Tile<D>::neighbours + k];
+    if (holder < 0) continue;
+    const Index<D> offset = Tile<D>::offset(k);
+    Index<D> in_block;
+    bool held = true;
+    for (int a = 0; a < D; ++a) {
+      in_block[a] = in_tile[a] - Tile<D>::cells * offset[a] - Block<B, D>::low;
+      held = held && in_block[a] >= 0 && in_block[a] < Block<B, D>::edge;
+    }
+    if (!held) continue;
+    const std::size_t block = std::size_t(holder) * Block<B, D>::nodes;
+    const auto read = [&](const HalfRecord* of, const Index<D>& at, double (&to)[half]) {
+      const HalfRecord q = of[block + Block<B, D>::node(at)];
+      to[0] = q.x;
+      to[1] = q.y;
+      to[2] = q.z;
+      to[3] = q.w;
+    };
+    double q[half], r[half];
+    if constexpr (momentum || remapped) read(partial.first, in_block, q);
+    if constexpr (forces) read(partial.second, in_block, r);
+    if constexpr (forces)
+      for (int a = 0; a < D; ++a) given[a] += r[a];
+    if (step.ghosts && !ghost.exists) {
+      // What the patch has given beyond walls to nodes of which this is the image; first what
+      // gravity is to lack there, then what is folded, in the order of the block
+      // (walls/mirror.hpp).
+      double weight[D] = {};
+      const auto for_each_ghost = [&](auto&& use) {
+        Index<D> way{};
+        const auto visit = [&] {
+          Index<D> other, at;
+          bool inside = true, same = true;
+          for (int a = 0; a < D; ++a) {
+            other[a] = node[a] + way[a];
+            at[a] = in_block[a] + way[a];
+            inside = inside && at[a] >= 0 && at[a] < Block<B, D>::edge;
+            same = same && way[a] == 0;
+          }
+          if (same || !inside) return;
+          const Image<D> image(step.grid, true, other);
+          if (image.exists && same_place<D>(image.image.node, node)) use(at, image.image);
+        };
+        if constexpr (D == 3)
+          for (way[2] = -2; way[2] <= 2; way[2] += 2)
+            for (way[1] = -2; way[1] <= 2; way[1] += 2)
+              for (way[0] = -2; way[0] <= 2; way[0] += 2) visit();
+        else
+          for (way[1] = -2; way[1] <= 2; way[1] += 2)
+            for (way[0] = -2; way[0] <= 2; way[0] += 2) visit();
+      };
+      double of_ghost[half];
+      if constexpr (forces) {
+        for_each_ghost([&](const Index<D>& at, const WallImage<D>& image) {
+          read(partial.first, at, of_ghost);
+          for (int a = 0; a < D; ++a)
+            if (image.turned >> a & 1u) weight[a] -= 2.0 * of_ghost[0] * step.gravity[a];
+        });
+        for (int a = 0; a < D; ++a) r[a] += weight[a];
+        for_each_ghost([&](const Index<D>& at, const WallImage<D>& image) {
+          read(partial.second, at, of_ghost);
+          for (int a = 0; a < D; ++a) r[a] += image.component(of_ghost[a], a);
+        });
+      }
+      if constexpr (momentum || remapped)
+        for_each_ghost([&](const Index<D>& at, const WallImage<D>& image) {
+          read(partial.first, at, of_ghost);
+          const int vector = momentum ? 1 : 0;
+          if constexpr (momentum) q[0] += of_ghost[0];
+          for (int a = 0; a < D; ++a) q[vector + a] += image.component(of_ghost[vector + a], a);
+        });
+    }
+    if constexpr (momentum) m += q[0];
+    if constexpr (momentum || remapped)
+      for (int a = 0; a < D; ++a) p[a] += q[(momentum ? 1 : 0) + a];
+    if constexpr (forces)
+      for (int a = 0; a < D; ++a) f[a] += r[a];
+  }
+
+  HalfRecord* const of_node =
+      reinterpret_cast<HalfRecord*>(nodes.records) + 2 * (tile * NodeTileView<D>::nodes + i);
+  const unsigned held_axes = near_wall ? step.grid.walls.constrained_axes(node) : 0u;
+  Vec<double, D> v;
+  NodeSums sums;
+  const Vec<double, D> place = step.grid.position_of(node);
+  if constexpr (momentum) {
+    const double inverse = m > 0.0 ? 1.0 / m : 0.0;
+    if (step.takes_of_grid && near_wall) {
+      const double share = grid_share_at(step, nodes.body[tile], node);
+      if (ghost.exists) {
+        sums.add_folding(DeviceSum::mapped, step.grid, node, ghost.image, share * p);
+      } else if (held_axes != 0) {
+        Vec<double, D> s = Vec<double, D>::zero();
+        for (int a = 0; a < D; ++a)
+          if (held_axes >> a & 1u) s[a] = -share * p[a];
+        sums.add_reaction(DeviceSum::mapped, place, s,
+                          [&](int a) { return step.grid.walls.faces_holding(node, a); });
+      }
+    }
+    for (int a = 0; a < D; ++a) v[a] = held_axes >> a & 1u ? 0.0 : p[a] * inverse;
+    if (ghost.exists) v = Vec<double, D>::zero();  // that of the image, in reflect_nodes
+  } else {
+    const HalfRecord q = of_node[0];
+    m = q.x;
+    v = Vec<double, D>{};
+    v[0] = q.y;
+    v[1] = q.z;
+    if constexpr (D == 3) v[D - 1] = q.w;
+  }
+  if constexpr (forces) {
+    if (ghost.exists) {
+      sums.add_folding(DeviceSum::walls, step.grid, node, ghost.image, step.time_step * given);
+      f = Vec<double, D>::zero();
+      const Vec<double, D> to_image = place - step.grid.position_of(ghost.image.node);
+      if (step.has_gravity) sums.add_vector(DeviceSum::mass_moment, m * in_three(to_image));
+    } else if (step.has_gravity) {
+      sums.add_vector(DeviceSum::mass_moment, m * in_three(place));
+    }
+    if (held_axes != 0) {
+      if (!ghost.exists) {
+        Vec<double, D> s = Vec<double, D>::zero();
+        for (int a = 0; a < D; ++a)
+          if (held_axes >> a & 1u) s[a] = -step.time_step * (f[a] + m * step.gravity[a]);
+        sums.add_reaction(DeviceSum::walls, place, s,
+                          [&](int a) { return step.grid.walls.faces_holding(node, a); });
+      }
+      for (int a = 0; a < D; ++a)
+        if (held_axes >> a & 1u) f[a] = -m * step.gravity[a];
+    }
+    const double own = ghost.exists ? 0.0 : 1.0, impulse = m > 0.0 ? step.time_step / m : 0.0;
+    double dv[3] = {0.0, 0.0, 0.0};
+    for (int a = 0; a < D; ++a) {
+      const double weight = m * step.gravity[a];
+      dv[a] = impulse * (f[a] + weight);
+      sums.of[DeviceSum::work] += own * f[a] * v[a];
+      sums.of[DeviceSum::gravity_first] += own * weight * v[a];
+      sums.of[DeviceSum::gravity_second] += own * weight * dv[a];
+      v[a] += dv[a];
+    }
+    of_node[1] = {dv[0], dv[1], dv[2], 0.0};
+  }
+  if constexpr (momentum || forces) of_node[0] = {m, v[0], v[1], D == 3 ? v[D - 1] : 0.0};
+  if constexpr (remapped) {
+    const double inverse = m > 0.0 ? 1.0 / m : 0.0;
+    for (int a = 0; a < D; ++a) p[a] = held_axes >> a & 1u ? 0.0 : p[a] * inverse;
+    of_node[1] = {p[0], p[1], D == 3 ? p[D - 1] : 0.0, 0.0};
+  }
+  if constexpr (momentum || forces)
+    sums.write(step.sums, step.tiles, tile,
+               near_wall ? int{DeviceSum::of_nodes} : int{DeviceSum::walls});
+}
+
+/// Nodes beyond walls take what their images have, and what that gives to the ledger: after the
+/// velocities (`first`), the increments (`advanced`), or the remapped velocities (`second` alone).
+template <int D, bool first, bool second, bool advanced, bool mapped>
+__global__ void __launch_bounds__(64) reflect_nodes(NodeTileView<D> nodes, NodeStep<D> step) {
+  const std::size_t tile = blockIdx.x;
+  const int i = threadIdx.x;
+  Index<D> node = Tile<D>::cell_index(i);
+  const Index<D> in_tile = node, corner = step.grid.first_cell(nodes.tile[tile]);
+  for (int a = 0; a < D; ++a) node[a] += corner[a];
+  const Image<D> ghost(step.grid, step.ghosts, node);
+  if (!__syncthreads_or(ghost.exists)) return;
+  NodeSums sums;
+  if (ghost.exists) {
+    Index<D> offset, there;
+    for (int a = 0; a < D; ++a) {
+      const int k = in_tile[a] + ghost.image.node[a] - node[a];
+      offset[a] = tile_offset<D>(k);
+      there[a] = k - offset[a] * Tile<D>::cells;
+    }
+    const std::int32_t other =
+        nodes.beside[tile * Tile<D>::neighbours + Tile<D>::neighbour(offset)];
+    double* const own = nodes.records + record * (tile * NodeTileView<D>::nodes + i);
+    if (other >= 0) {
+      const double* const image =
+          nodes.records +
+          record * (std::size_t(other) * NodeTileView<D>::nodes + Tile<D>::cell(there));
+      const double m = own[mass_at];
+      Vec<double, D> v, dv;
+      for (int a = 0; a < D; ++a) {
+        v[a] = ghost.image.component(image[velocity_at + a], a);
+        dv[a] = ghost.image.component(image[increment_at + a], a);
+        if constexpr (first) own[velocity_at + a] = v[a];
+        if constexpr (second) own[increment_at + a] = dv[a];
+      }
+      if constexpr (advanced) {
+        for (int a = 0; a < D; ++a) {
+          if (!(ghost.image.turned >> a & 1u)) continue;
+          const double weight = 2.0 * m * step.gravity[a], change = image[increment_at + a];
+          sums.of[DeviceSum::work] += weight * (image[velocity_at + a] - change);
+          sums.of[DeviceSum::gravity_first] -= weight * (image[velocity_at + a] - change);
+          sums.of[DeviceSum::gravity_second] -= weight * change;
+        }
+        sums.add_folding(DeviceSum::walls, step.grid, node, ghost.image,
+                         m * (step.time_step * step.gravity - dv));
+      }
+      if constexpr (mapped)
+        if (step.takes_of_grid) {
+          const Vec<double, D> before = advanced ? v - dv : v;
+          sums.add_folding(DeviceSum::mapped, step.grid, node, ghost.image,
+                           (-grid_share_at(step, nodes.body[tile], node) * m) * before);
+        }
+    }
+  }
+  if constexpr (advanced || mapped) sums.write(step.sums, step.tiles, tile, DeviceSum::of_nodes);
+}
+
+}  // namespace mpm

@@ -1,0 +1,178 @@
+#include "mpm/device/on_device.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "mpm/device/library.hpp"
+#include "mpm/step/fixed_walls.hpp"
+
+namespace mpm {
+namespace {
+
+/// The transfer of the step, as a device names it, and the number that it is made with.
+template <int D>
+std::pair<DeviceTransfer, double> transfer_of(const Domain<D>& domain, double own) {
+  std::pair<DeviceTransfer, double> found{DeviceTransfer::flip, 1.0};
+  with_transfer(domain, own, [&]<class T>(const T& transfer) {
+    if constexpr (std::is_same_v<T, FlipPic>) found = {DeviceTransfer::flip_pic, transfer.pic};
+    if constexpr (std::is_same_v<T, Pic>) found = {DeviceTransfer::pic, 1.0};
+    if constexpr (std::is_same_v<T, Apic>) found = {DeviceTransfer::apic, 1.0};
+    if constexpr (std::is_same_v<T, Aflip>) found = {DeviceTransfer::aflip, transfer.alpha};
+  });
+  return found;
+}
+
+/// Sums of a device's report, of one body, as those of a patch are.
+template <int D>
+void take_sums(const double* sums, double fastest, const Vec<double, D>& gravity, double dt,
+               PatchSums<D>& to, FaceImpulses<D>& faces) {
+  using S = DeviceSum;
+  const auto vector = [&](int at) { return Vector3{sums[at], sums[at + 1], sums[at + 2]}; };
+  to = {};
+  to.force_work = dt * sums[S::work];
+  to.gravity_first = dt * sums[S::gravity_first];
+  to.gravity_second = 0.5 * dt * sums[S::gravity_second];
+  to.angular.gravity = dt * cross(vector(S::mass_moment), in_space<D>(gravity));
+  to.angular.walls = vector(S::walls);
+  to.angular.mapped = vector(S::mapped);
+  to.kinetic = sums[S::kinetic];
+  to.second_order = sums[S::second_order];
+  to.transferred = sums[S::transferred];
+  for (int a = 0; a < D; ++a) to.momentum[a] = sums[S::momentum + a];
+  to.stress.internal = sums[S::internal];
+  to.stress.plastic = sums[S::plastic];
+  to.stress.viscous = sums[S::viscous];
+  to.stress.damped = sums[S::damped];
+  to.stress.bounded = sums[S::bounded];
+  to.stress.energy_floor = sums[S::energy_floor];
+  to.stress.force_power = sums[S::force_power];
+  to.stress.fastest = fastest;
+  for (int axis = 0; axis < D; ++axis)
+    for (int side = 0; side < 2; ++side)
+      for (int a = 0; a < D; ++a)
+        faces.of[axis][side][a] = sums[S::faces + 3 * (2 * axis + side) + a];
+}
+
+}  // namespace
+
+DeviceInfo device_info() {
+  DeviceInfo info;
+  std::string why;
+  device_library().info(info, why);
+  if (info.name.empty()) throw std::runtime_error("no device can be used: " + why);
+  return info;
+}
+
+template <int D>
+std::string not_on_device(const Domain<D>& domain, Scheme scheme) {
+  if (sizeof(Storage) != sizeof(double)) return "a build with floats";
+  if (!domain.grid.partition.alone()) return "several ranks";
+  if (scheme == Scheme::usl) return "run.scheme = \"usl\"";
+  if (filters(domain.transfer)) return "run.transfer = \"xpic\"";
+  if (domain.has_contact()) return "contact between bodies";
+  // Kernels take any number of bodies and materials, but no card has run them with more than one.
+  if (domain.bodies.size() > 1) return "several bodies";
+  if (domain.has_rigid() || domain.has_prescribed()) return "rigid bodies";
+  if (domain.has_loads()) return "loads on surfaces";
+  if (domain.has_body_forces()) return "body forces";
+  if (!domain.dampings.empty()) return "damping of bodies";
+  if (domain.grid.walls.absorb()) return "absorbing walls";
+  if (domain.grid.outflow_box.exist) return "a region that particles leave";
+  if (domain.averages_volume()) return "volume averaging";
+  if (domain.settles()) return "a run that settles";
+  for (const Material& material : domain.materials) {
+    if (!material.failures.empty()) return "failure models";
+    if (material.damping.active()) return "damping of materials";
+  }
+  return {};
+}
+
+template <int D>
+std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
+  const std::string missing = not_on_device(domain, scheme);
+  if (!missing.empty())
+    throw std::invalid_argument("steps on a device do not know " + missing +
+                                " yet: run without one");
+  device_info();
+  auto device = std::make_unique<OnDevice<D>>();
+  device->stress_first = scheme == Scheme::usf;
+  DeviceProblem<D> problem;
+  problem.grid = domain.grid;
+  problem.stress_first = device->stress_first;
+  problem.disorder = domain.disorder;
+  std::vector<std::vector<std::uint32_t>> body_of(domain.pools.size());
+  for (std::size_t m = 0; m < domain.pools.size(); ++m)
+    body_of[m].assign(domain.pools[m].count(), DevicePool::no_body);
+  for (const Patch<D>& patch : domain.grid.patches)
+    for (const std::uint32_t row : domain.pool_of(patch).rows(patch))
+      body_of[pool_number(domain.bodies, patch.body)][row] = static_cast<std::uint32_t>(patch.body);
+  for (std::size_t m = 0; m < domain.pools.size(); ++m) {
+    ParticlePool<D>& pool = domain.pools[m];
+    device->pools.push_back({&domain.materials[m], &pool.columns, pool.at, pool.position,
+                             pool.affine, pool.id.data(), body_of[m].data()});
+  }
+  problem.pools = device->pools;
+  for (const Body<D>& body : domain.bodies)
+    problem.bodies.push_back({body.material, body.mean_edge / domain.grid.cell_size});
+  device->run = make_device_run(problem);
+  // Only the columns are asked for later.
+  for (DevicePool& pool : device->pools) pool.id = pool.body = nullptr;
+  domain.sums_of_bodies = true;
+  return device;
+}
+
+template <int D>
+void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
+  DeviceStep<D> step;
+  step.time_step = domain.time_step;
+  step.strain_time = domain.step_before;
+  // As in the step's settings on the host (step/update_stress.cpp).
+  step.time_after = domain.time + domain.time_step;
+  step.gravity = domain.gravity;
+  step.takes_of_grid = takes_of_grid(domain);
+  step.look = look;
+  for (const ParticlePool<D>& pool : domain.pools) {
+    const double own = own_step(domain, pool);
+    const auto [transfer, share] = transfer_of(domain, own);
+    step.transfer = transfer;
+    step.share.push_back(share);
+    step.grid_share.push_back(grid_share(domain, own));
+  }
+  device.run->step(step, device.report);
+  device.ahead = true;
+  const std::size_t bodies = domain.bodies.size();
+  domain.sums.resize(bodies);
+  domain.face_parts.assign(bodies, {});
+  domain.contact_sums = {};
+  domain.rigid_at_walls = Vector3::zero();
+  domain.rigid_at_faces = {};
+  for (std::size_t b = 0; b < bodies; ++b)
+    take_sums(device.report.sums.data() + b * DeviceSum::count, device.report.fastest[b],
+              domain.gravity, domain.time_step, domain.sums[b], domain.face_parts[b]);
+  if (device.report.negative_volume) domain.sums[0].stress.negative_volume = true;
+  if (device.stress_first)
+    Stages<D>::template sum_energies<true>.run(domain);
+  else
+    Stages<D>::template sum_energies<false>.run(domain);
+}
+
+template <int D>
+void fetch_from_device(OnDevice<D>& device, Domain<D>& domain) {
+  if (!device.ahead) return;
+  device.run->give_back(device.pools);
+  // The lists are made again from where the particles are, if the host makes a step.
+  for (Patch<D>& patch : domain.grid.patches) patch.left_cell = true;
+  device.ahead = false;
+}
+
+template std::string not_on_device<2>(const Domain<2>&, Scheme);
+template std::string not_on_device<3>(const Domain<3>&, Scheme);
+template std::unique_ptr<OnDevice<2>> start_on_device<2>(Domain<2>&, Scheme);
+template std::unique_ptr<OnDevice<3>> start_on_device<3>(Domain<3>&, Scheme);
+template void step_on_device<2>(OnDevice<2>&, Domain<2>&, bool);
+template void step_on_device<3>(OnDevice<3>&, Domain<3>&, bool);
+template void fetch_from_device<2>(OnDevice<2>&, Domain<2>&);
+template void fetch_from_device<3>(OnDevice<3>&, Domain<3>&);
+
+}  // namespace mpm

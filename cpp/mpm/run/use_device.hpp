@@ -1,0 +1,28 @@
+#pragma once
+// A run whose steps a device makes. The host keeps its bodies, its ledger and the time; it is given
+// the particles when somebody wants to read them.
+#include "mpm/run/simulation.hpp"
+
+namespace mpm {
+
+/// Let a device make the steps from now on; once it is ready to step. Throws std::invalid_argument,
+/// in one sentence, for what steps there do not know; std::runtime_error without a device, or with
+/// too little memory.
+template <int D>
+void use_device(Simulation<D>& simulation) {
+  require(simulation, Phase::ready, "call prepare() before use_device()");
+  if (simulation.settings.grid.coarsening)
+    throw std::invalid_argument(
+        "steps on a device do not know grid.coarsening yet: run without one");
+  simulation.wants_device = true;
+  if (!simulation.device)
+    simulation.device = start_on_device(simulation.domain, simulation.settings.run.scheme);
+}
+
+/// Give the host the particles as they are now, if a device has them.
+template <int D>
+void bring_home(Simulation<D>& simulation) {
+  if (simulation.device) fetch_from_device(*simulation.device, simulation.domain);
+}
+
+}  // namespace mpm
