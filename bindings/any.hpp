@@ -62,5 +62,7 @@ Comm& comm_of(auto& simulation) { return *simulation.domain.grid.partition.comm;
 void def_columns(SimulationClass& simulation);
 void def_probes(SimulationClass& simulation);
 void def_tables(SimulationClass& simulation);
+/// Steps on a GPU, among them too.
+void def_device(SimulationClass& simulation);
 
 }  // namespace mpm::bindings

@@ -163,31 +163,6 @@ void def_stepping(SimulationClass& simulation) {
             });
           },
           nb::arg("readinto"), nb::arg("size"))
-      .def("use_device", of_any([](auto& s) { use_device(s); }))
-      .def_static("device",
-                  [] {
-                    const DeviceInfo info = device_info();
-                    nb::dict d;
-                    d["name"] = info.name;
-                    d["bytes"] = info.bytes;
-                    d["free_bytes"] = info.free_bytes;
-                    d["bandwidth"] = info.bandwidth;
-                    d["fma_per_second"] = info.fma_per_second;
-                    return d;
-                  })
-      .def_prop_ro("device_bytes", of_any_as_is([](auto& s) {
-                     return s.device ? s.device->run->bytes() : std::size_t{0};
-                   }))
-      .def(
-          "device_times",
-          as_is_to(
-              [](auto& s) { return s.device ? s.device->run->times() : std::vector<DeviceTime>{}; },
-              [](const auto& times) {
-                nb::dict d;
-                for (const DeviceTime& time : times)
-                  d[time.name.c_str()] = 1e-3 * time.milliseconds;
-                return d;
-              }))
       .def("set_threads", of_any_as_is([](auto& s, int count) { s.domain.threads.resize(count); }),
            nb::arg("count"));
 }
@@ -299,6 +274,7 @@ void add_simulation(nb::module_& m) {
   def_records(simulation);
   def_tables(simulation);
   def_probes(simulation);
+  def_device(simulation);
   def_costs(simulation);
 }
 

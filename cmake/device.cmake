@@ -8,10 +8,10 @@ if(MPM_CUDA STREQUAL "AUTO")
     return()
   endif()
 endif()
-enable_language(CUDA)
-if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES OR CMAKE_CUDA_ARCHITECTURES STREQUAL "52")
+if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)   # before the language, which has a default of its own
   set(CMAKE_CUDA_ARCHITECTURES 90)
 endif()
+enable_language(CUDA)
 
 set(device_flags --expt-relaxed-constexpr -fmad=false -Werror=cross-execution-space-call
                  -Xcompiler=-ffp-contract=off -diag-suppress=177)

@@ -12,13 +12,13 @@ benchmark with a twin (`two_cubes`) takes turns with it, block by block, for an 
   negative.
 - Bandwidth and arithmetic: measured by the same process after its memory has been read. How the
   traffic and the operations of a step are counted: see `traffic.py` and `operations.py`.
+- With a device both limits are nominal, of its clocks, and the traffic is the same count: what
+  the stages of the step must move, whatever its kernels do.
 """
 
 from __future__ import annotations
 
 import json as json_format
-import platform
-import statistics
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
@@ -28,11 +28,13 @@ from typing import Any
 from mpm3dpp.base.errors import CaseError, nearest
 from mpm3dpp.base.machine import MEMORY, PARTICLE_BYTES_WITH_GRID
 from mpm3dpp.io.folders import writable_folder
+from mpm3dpp.run.device import CPU, CUDA, ONE_PROCESS
 
 from .cases import BENCHES, Bench
-from .operations import operations_per_particle_step
 from .process import Part, Process
-from .traffic import bytes_per_particle_step
+from .result import machine, result_of
+
+__all__ = ["BENCHES", "block_lengths", "find", "machine", "main", "measure", "series"]
 
 BLOCKS = 5
 STEPS = 400  # So that a block of 80 steps holds several crossings of whole layers of particles.
@@ -60,6 +62,7 @@ def measure(
     steps: int | None = None,
     told: Callable[[int, int], None] | None = None,
     ranks: int = 1,
+    device: str = CPU,
 ) -> dict[str, Any]:
     """Measure a benchmark.
 
@@ -71,6 +74,7 @@ def measure(
         steps: how many are timed.
         told: called with (parts done, parts in all) as the measurement goes on.
         ranks: processes, each with so many threads.
+        device: "cpu" or "cuda", which makes the steps.
 
     Returns:
         What `--json` prints: `particles`, `threads`, `ns_per_particle_step`, `stages` [ns per
@@ -78,21 +82,23 @@ def measure(
         `bandwidth_GBps`, `bandwidth_fraction`, `arithmetic_GFLOPS`, `arithmetic_fraction`; what
         was measured (`bench`, `scheme`, `size`, `steps`, `version`, `machine`, `isa`); `ranks` and
         what passes between them, see `Manifest.ranks`; `blocks`,
-        all blocks [ns]; and with a twin `without_contact_ns` and `contact_ratio` (`elastic3d_ns`,
-        `elastic3d_ratio` for `jc`, `debris` and `gimp3d`), the median over pairs of blocks.
+        all blocks [ns]; `device`, its name or "cpu", and with one `device_bytes_per_particle`,
+        `stages` being its kernels, of steps of their own; and with a twin `without_contact_ns` and
+        `contact_ratio` (`elastic3d_ns`, `elastic3d_ratio` for `jc`, `debris` and `gimp3d`), the
+        median over pairs of blocks.
 
     Raises:
         CaseError: there is no such benchmark, not with this scheme, or no memory for this size.
-        RunError: it could not be run to its end.
+        RunError: it could not be run to its end, or there is no device that can.
     """
     bench = find(name)
-    _allow(bench, scheme)
+    _allow(bench, scheme, device, ranks)
     cells = size or bench.size
-    specs = [Part(part, cells, threads, ranks) for part in (name, bench.twin) if part]
+    specs = [Part(part, cells, threads, ranks, device) for part in (name, bench.twin) if part]
     lengths = block_lengths(steps or STEPS)
     _check_memory(specs)
     blocks, ends = _in_turns(specs, scheme, lengths, told)
-    return _result(bench, specs[0], scheme, sum(lengths), blocks, ends[0])
+    return result_of(bench, specs[0], scheme, sum(lengths), blocks, ends[0])
 
 
 def series(
@@ -103,6 +109,7 @@ def series(
     steps: int | None = None,
     told: Callable[[int, int], None] | None = None,
     ranks: Sequence[int] = (1,),
+    device: str = CPU,
 ) -> list[dict[str, Any]]:
     """Measure a benchmark for every size with every number of ranks and of threads, in turns.
 
@@ -110,21 +117,28 @@ def series(
     The twin of a benchmark is left out. Arguments, results and errors are those of `measure`.
     """
     bench = find(name)
-    _allow(bench, scheme)
+    _allow(bench, scheme, device, max(ranks))
     lengths = block_lengths(steps or STEPS)
     specs = [
-        Part(name, size, count, parts) for size in sizes for parts in ranks for count in threads
+        Part(name, size, count, parts, device)
+        for size in sizes
+        for parts in ranks
+        for count in threads
     ]
     _check_memory(specs)
     blocks, ends = _in_turns(specs, scheme, lengths, told)
     alone = replace(bench, twin="")
     return [
-        _result(alone, part, scheme, sum(lengths), [found], end)
+        result_of(alone, part, scheme, sum(lengths), [found], end)
         for part, found, end in zip(specs, blocks, ends, strict=True)
     ]
 
 
-def _allow(bench: Bench, scheme: str) -> None:
+def _allow(bench: Bench, scheme: str, device: str, ranks: int) -> None:
+    if device not in (CPU, CUDA):
+        raise CaseError("must be cpu or cuda", nearest(device, (CPU, CUDA)), key="device")
+    if device == CUDA and ranks > 1:
+        raise CaseError(f"{ONE_PROCESS}: leave --ranks out")
     if bench.loose and scheme == "usl":
         raise CaseError(
             "cannot be measured with USL, which is unstable where particles enter empty cells",
@@ -184,70 +198,6 @@ def _in_turns(
     return blocks, ends
 
 
-def _result(
-    bench: Bench,
-    part: Part,
-    scheme: str,
-    steps: int,
-    blocks: list[list[dict[str, Any]]],
-    last: dict[str, Any],
-) -> dict[str, Any]:
-    """Put the measurements together; see `measure`."""
-    from mpm3dpp import __version__
-
-    size = part.size
-    count = bench.particles(size)
-    median = statistics.median_low(block["ns"] for block in blocks[0])
-    block = next(block for block in blocks[0] if block["ns"] == median)
-    stages = block["stages"]
-    moved = sum(bytes_per_particle_step(list(stages), bench.dimension, bench.state).values())
-    made = sum(
-        operations_per_particle_step(list(stages), bench.dimension, bench.basis, bench.law).values()
-    )
-    memory = {key: last["bytes"][key] / count for key in ("particles", "grid", "contact")}
-    total = last["growth"] / count
-    result: dict[str, Any] = {
-        "bench": bench.name,
-        "version": __version__,
-        "machine": machine(),
-        "isa": last["isa"],
-        "scheme": scheme,
-        "size": size,
-        "steps": steps,
-        "particles": count,
-        "threads": part.threads,
-        **block["exchange"],
-        "ns_per_particle_step": median,
-        "blocks": [block["ns"] for block in blocks[0]],
-        "stages": stages,
-        "bytes_per_particle": {**memory, "other": total - sum(memory.values()), "total": total},
-        "bandwidth_GBps": last["bandwidth"],
-        "bytes_moved_per_particle_step": moved,
-        "bandwidth_fraction": moved / median / last["bandwidth"],
-        "arithmetic_GFLOPS": last["arithmetic"],
-        "operations_per_particle_step": made,
-        "arithmetic_fraction": made / median / last["arithmetic"],
-        "overlapped_nodes": last["overlapped_nodes"],
-    }
-    if bench.twin:
-        pairs = zip(*blocks, strict=True)
-        key = "without_contact" if bench.contact else bench.twin
-        result[f"{key}_ns"] = statistics.median(block["ns"] for block in blocks[1])
-        ratio = statistics.median(a["ns"] / b["ns"] for a, b in pairs)
-        result["contact_ratio" if bench.contact else f"{key}_ratio"] = ratio
-    return result
-
-
-def machine() -> str:
-    """Return the processor's name as the system gives it, else its architecture."""
-    try:
-        text = Path("/proc/cpuinfo").read_text()
-    except OSError:
-        text = ""
-    names = [line.partition(":")[2].strip() for line in text.splitlines() if "model name" in line]
-    return names[0] if names else platform.machine()
-
-
 def main(
     name: str,
     sizes: Sequence[int] = (),
@@ -257,6 +207,7 @@ def main(
     json: bool = False,
     plot: Path | None = None,
     ranks: Sequence[int] = (1,),
+    device: str = CPU,
 ) -> None:
     """Measure a benchmark and print a table, or JSON, and draw it; see `measure` and `series`."""
     from .report import progress, show, show_series
@@ -272,10 +223,10 @@ def main(
         try:
             if alone:
                 size = next(iter(sizes), None)
-                results = [measure(name, size, threads[0], scheme, steps, told, ranks[0])]
+                results = [measure(name, size, threads[0], scheme, steps, told, ranks[0], device)]
             else:
                 sizes = sizes or (bench.size,)
-                results = series(name, sizes, threads, scheme, steps, told, ranks)
+                results = series(name, sizes, threads, scheme, steps, told, ranks, device)
         except CaseError as error:
             if error.key != "size":
                 raise

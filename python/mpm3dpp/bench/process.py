@@ -12,15 +12,22 @@ from typing import Any, NamedTuple
 from mpm3dpp.base import child
 from mpm3dpp.base.errors import RunError
 from mpm3dpp.ranks.launch import command_of
+from mpm3dpp.run.device import CPU
 
 
 class Part(NamedTuple):
-    """What is measured: a benchmark in a size, with threads of each of some ranks."""
+    """What is measured: a benchmark in a size, with threads of each of some ranks, or a device."""
 
     name: str
     size: int
     threads: int
     ranks: int
+    device: str = CPU
+
+    @property
+    def on_device(self) -> bool:
+        """Whether a device makes the steps."""
+        return self.device != CPU
 
 
 class Process:
@@ -33,6 +40,7 @@ class Process:
             "bench.worker",
             part.name,
             *numbers,
+            part.device,
             by=by,
             env=os.environ | added,
             stdout=subprocess.PIPE,

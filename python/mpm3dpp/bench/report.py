@@ -57,7 +57,7 @@ def show(result: dict[str, Any]) -> None:
 
     console = Console(highlight=False)
     console.print(headline(result), markup=False, soft_wrap=True)
-    console.print(_stages(result))
+    console.print(_kernels(result) if _on_device(result) else _stages(result))
     for line in lines(result):
         console.print(line, markup=False, soft_wrap=True)
 
@@ -83,9 +83,9 @@ def show_series(results: list[dict[str, Any]]) -> None:
             f"{result['particles']:,}",
             f"{result['ranks']}",
             f"{result['threads']}",
-            f"{ns:.1f}",
+            f"{ns:.3f}" if _on_device(result) else f"{ns:.1f}",
             f"{ns / first['ns_per_particle_step']:.3f}",
-            f"{result['bytes_per_particle']['total']:.1f}",
+            f"{_memory(result):.1f}",
             *(_exchange(result) if several else limits),
         )
     console = Console(highlight=False)
@@ -97,10 +97,16 @@ def show_series(results: list[dict[str, Any]]) -> None:
     console.print(table)
     for line in (
         "ns per particle-step and their ratio to the first row; bytes per particle at the peak;",
-        *(_ABOUT_EXCHANGE if several else ("bandwidth used, and measured in the same run",)),
+        *(_ABOUT_EXCHANGE if several else (_about_bandwidth(first),)),
         f"machine    {first['machine']}, {first['isa']}",
     ):
         console.print(line, markup=False, soft_wrap=True)
+
+
+def _about_bandwidth(first: dict[str, Any]) -> str:
+    if _on_device(first):
+        return f"of {first['device']}; bandwidth used, and its nominal one"
+    return "bandwidth used, and measured in the same run"
 
 
 _ABOUT_EXCHANGE = (
@@ -118,15 +124,42 @@ def _exchange(result: dict[str, Any]) -> tuple[str, ...]:
     )
 
 
+def _memory(result: dict[str, Any]) -> float:
+    """Return the bytes per particle, of the device if there is one."""
+    own = result["bytes_per_particle"]["total"]
+    return float(result.get("device_bytes_per_particle", own))
+
+
 def headline(result: dict[str, Any]) -> str:
     """Return what was measured, in one line."""
     threads, ranks = result["threads"], result["ranks"]
     of_ranks = f" of each of {ranks} ranks" if ranks > 1 else ""
+    on = f"{threads} thread{'s' if threads > 1 else ''}{of_ranks}"
+    if _on_device(result):
+        on = result["device"]
     return (
         f"{result['bench']}: {BENCHES[result['bench']].about}; {result['particles']:,} particles, "
-        f"{result['scheme'].upper()}, {threads} thread{'s' if threads > 1 else ''}"
-        f"{of_ranks}, {result['steps']} steps"
+        f"{result['scheme'].upper()}, {on}, {result['steps']} steps"
     )
+
+
+def _on_device(result: dict[str, Any]) -> bool:
+    return "device_bytes_per_particle" in result
+
+
+def _kernels(result: dict[str, Any]) -> Any:
+    """Return the table of a device, whose kernels are no stages."""
+    from rich.table import Table
+
+    kernels = result["stages"]
+    total = sum(kernels.values()) or 1.0
+    table = Table(show_footer=True, caption="per particle and step, timed in steps of their own")
+    table.add_column("kernels", footer="all", no_wrap=True)
+    table.add_column("ns", footer=f"{total:.3f}", justify="right")
+    table.add_column("share", footer="100 %", justify="right")
+    for name, ns in kernels.items():
+        table.add_row(name, f"{ns:.3f}", f"{100 * ns / total:.0f} %")
+    return table
 
 
 def _stages(result: dict[str, Any]) -> Any:
@@ -155,17 +188,25 @@ def lines(result: dict[str, Any]) -> list[str]:
     parts = ", ".join(f"{key} {memory[key]:.1f}" for key in memory if key != "total")
     used = result["bytes_moved_per_particle_step"] / result["ns_per_particle_step"]
     cached = ": most comes from the caches" if result["bandwidth_fraction"] > 1.0 else ""
+    device = _on_device(result)
+    places = 3 if device else 1
+    limit = "nominal" if device else "measured now"
     found = [
-        f"time       {result['ns_per_particle_step']:.1f} ns per particle-step, the median of "
-        f"{len(blocks)} blocks from {min(blocks):.1f} to {max(blocks):.1f}",
+        f"time       {result['ns_per_particle_step']:.{places}f} ns per particle-step, the median "
+        f"of {len(blocks)} blocks from {min(blocks):.{places}f} to {max(blocks):.{places}f}",
         f"memory     {memory['total']:.1f} bytes per particle at the peak: {parts}",
         f"bandwidth  {used:.1f} of {result['bandwidth_GBps']:.1f} GB/s "
-        f"({100 * result['bandwidth_fraction']:.0f} %{cached}), as counted; the limit is measured "
-        "now",
+        f"({100 * result['bandwidth_fraction']:.0f} %{cached}), as counted; the limit is {limit}",
         f"arithmetic {result['operations_per_particle_step'] / result['ns_per_particle_step']:.1f} "
         f"of {result['arithmetic_GFLOPS']:.1f} GFLOP/s "
         f"({100 * result['arithmetic_fraction']:.0f} %), as the equations are written",
     ]
+    if device:
+        found.insert(
+            2,
+            f"device     {result['device_bytes_per_particle']:.1f} bytes of its memory per "
+            "particle; the line above is the host's",
+        )
     if result["ranks"] > 1:
         share, kilobytes, letters, imbalance = _exchange(result)
         found.append(

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The process in which a benchmark runs alone, so that no earlier memory hides its own.
 
-    python -m mpm3dpp.bench.worker NAME SIZE THREADS SCHEME WARM_UP
+    python -m mpm3dpp.bench.worker NAME SIZE THREADS SCHEME WARM_UP [DEVICE]
 
 It answers commands on standard input with one line of JSON each on standard output: `block N`
 makes and times N steps, `finish` reads the memory and then, in the same process and state of the
@@ -20,6 +20,7 @@ from typing import Any
 
 from mpm3dpp import _core
 from mpm3dpp.ranks.world import World, world
+from mpm3dpp.run.device import CPU
 
 from .cases import BENCHES, make
 
@@ -64,15 +65,38 @@ def timed_block(simulation: Any, steps: int) -> dict[str, Any]:
     }
 
 
+def measure_device(simulation: Any, steps: int) -> dict[str, Any]:
+    """Return what the device takes in `steps` more steps, and what it can do at best.
+
+    Returns:
+        `device`, its name; `device_bytes`; `kernels` [ns per particle-step]; `bandwidth` [GB/s] and
+        `arithmetic` [GFLOP/s], those that its clocks give.
+    """
+    simulation.device_times()  # From now on kernels are timed, which makes steps slower.
+    advance(simulation, steps)
+    scale = 1e9 / (steps * simulation.particle_count)
+    about = simulation.device()
+    return {
+        "device": about["name"],
+        "device_bytes": simulation.device_bytes,
+        "kernels": {name: spent * scale for name, spent in simulation.device_times().items()},
+        "bandwidth": about["bandwidth"] / 1e9,
+        "arithmetic": 2e-9 * about["fma_per_second"],
+    }
+
+
 def main(arguments: list[str]) -> None:
     """Serve the commands of `mpm3dpp.bench.main`."""
     name, scheme = arguments[0], arguments[3]
     size, threads, warm_up = int(arguments[1]), int(arguments[2]), int(arguments[4])
+    device = arguments[5] if len(arguments) > 5 else CPU
     ranks = world()
     forget_peak()
     before = status_bytes("VmRSS")
     comm = ranks.for_core() if ranks else None
     simulation = make(_core, BENCHES[name], size, threads, scheme, comm)
+    if device != CPU:
+        simulation.use_device()
     advance(simulation, warm_up)
     answer({"ready": True}, ranks)
     for command, *values in orders(ranks):
@@ -86,9 +110,13 @@ def main(arguments: list[str]) -> None:
                 "overlapped_nodes": simulation.contact_summary()["overlapped_nodes"],
                 "isa": _core.build_info()["isa"],
             }
+            if device != CPU:
+                result |= measure_device(simulation, warm_up)
             del simulation  # The arrays of the bandwidth test take its place.
-            result["bandwidth"] = _core.measure_bandwidth(threads)
-            result["arithmetic"] = _core.measure_arithmetic(threads)
+            if device == CPU:
+                result["device"] = CPU
+                result["bandwidth"] = _core.measure_bandwidth(threads)
+                result["arithmetic"] = _core.measure_arithmetic(threads)
             answer(result, ranks)
             return
 
@@ -116,5 +144,5 @@ def answer(content: dict[str, Any], ranks: World | None = None) -> None:
 if __name__ == "__main__":
     try:
         main(sys.argv[1:])
-    except (RuntimeError, MemoryError) as error:
+    except (RuntimeError, ValueError, MemoryError) as error:
         answer({"error": str(error) or "there is not enough memory"})

@@ -19,7 +19,20 @@ from mpm3dpp.base.errors import CaseError
 from .export import export
 from .import_file import import_file
 from .materials import material_test, materials
-from .options import CaseFile, Changes, Json, Ranks, Threads, Units, print_notes
+from .options import (
+    BenchDevice,
+    BenchDevices,
+    CaseFile,
+    Changes,
+    Device,
+    Devices,
+    Json,
+    Ranks,
+    Scheme,
+    Threads,
+    Units,
+    print_notes,
+)
 from .sweep import sweep
 
 if TYPE_CHECKING:
@@ -48,14 +61,6 @@ def _load(
 
         loaded = with_changes(loaded, changes_of(changes))
     return loaded
-
-
-class Scheme(str, enum.Enum):
-    """When the stress is updated; see `Run.scheme`."""
-
-    usf = "usf"
-    usl = "usl"
-    musl = "musl"
 
 
 def _version(wanted: bool) -> None:
@@ -95,6 +100,7 @@ def run(
     ] = None,
     threads: Threads = None,
     ranks: Ranks = None,
+    device: Devices = Device.cpu,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
     json: Json = False,
     changes: Changes = None,
@@ -123,6 +129,8 @@ def run(
     folder = out if out is not None else default_folder(case)
     if resume and anew:
         raise CaseError("--resume and --anew cannot be given together", "give one of them")
+    if device == Device.cuda and count > 1:
+        raise CaseError("--device cuda makes the steps of one process: leave --ranks out")
     with folder_of_run(folder):
         if not resume and not anew:
             refuse_to_begin_anew(folder, loaded)
@@ -130,8 +138,9 @@ def run(
             raise typer.Exit(_on_ranks(count, threads))
         from mpm3dpp.run.run import run_case  # The slowest import: after the mistakes.
 
-        pictures = not no_pictures
-        run_case(loaded, folder, threads, quiet=quiet, json=json, pictures=pictures, resume=resume)
+        run_case(
+            *(loaded, folder, threads, quiet, json, not no_pictures, resume), device=device.value
+        )
 
 
 def _on_ranks(ranks: int, threads: int | None) -> int:
@@ -230,6 +239,7 @@ def bench(
         typer.Option(min=1, help="Processes, by MPI; 1 if not given. May be given again."),
     ] = None,
     scheme: Annotated[Scheme, typer.Option(help="Scheme.")] = Scheme.musl,
+    device: BenchDevices = BenchDevice.cpu,
     steps: Annotated[int | None, typer.Option(min=1, help="Steps that are timed; 400.")] = None,
     json: Json = False,
     plot: Annotated[Path | None, typer.Option(help="Picture to write, a PNG.")] = None,
@@ -240,7 +250,9 @@ def bench(
     """
     from mpm3dpp.bench import main as measure
 
-    measure(name, size or (), threads or (1,), scheme.value, steps, json, plot, ranks or (1,))
+    counts = ranks or (1,)
+    sizes, workers = size or (), threads or (1,)
+    measure(name, sizes, workers, scheme.value, steps, json, plot, counts, device.value)
 
 
 class Size(str, enum.Enum):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import enum
 from pathlib import Path
 from typing import Annotated
 
@@ -37,6 +38,43 @@ Ranks = Annotated[
         help="Processes of this machine, by MPI, each with its share of the threads; on "
         "others start `mpiexec -n N mpm3dpp run CASE`.",
     ),
+]
+
+
+class Scheme(str, enum.Enum):
+    """When the stress is updated; see `Run.scheme`."""
+
+    usf = "usf"
+    usl = "usl"
+    musl = "musl"
+
+
+class Device(str, enum.Enum):
+    """Who makes the steps; see `mpm3dpp.run.device`."""
+
+    cpu = "cpu"
+    cuda = "cuda"
+    auto = "auto"
+
+
+class BenchDevice(str, enum.Enum):
+    """Who makes the steps of a benchmark."""
+
+    cpu = "cpu"
+    cuda = "cuda"
+
+
+Devices = Annotated[
+    Device,
+    typer.Option(
+        "--device",
+        help="Who makes the steps: the processor; cuda, an NVIDIA GPU, with the same results; "
+        "auto, it if there is one that can, else the processor.",
+    ),
+]
+BenchDevices = Annotated[
+    BenchDevice,
+    typer.Option("--device", help="Who makes the steps: the processor, or cuda, an NVIDIA GPU."),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 

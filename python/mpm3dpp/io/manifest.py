@@ -47,8 +47,10 @@ class Manifest:
             `exchanges` and `reductions` in which all take part; the `share` of the steps' time that
             went with that, waiting included, and the `imbalance`, the longest time at work over
             the mean.
+        device: that made the steps of the last part, by its name; "cpu" for the processor.
         particles, steps: counts.          wall_time: of the run [s].
-        ns_per_particle_step, stages: time in the steps and in each stage [ns].
+        ns_per_particle_step, stages: time in the steps and in each stage [ns]; with a device in the
+            steps of the last part.
         resumed_step: from which the run went on last with `--resume`, else 0. Steps, times and
             energies are those of all its parts together, `threads` and memory those of the last.
         peak_memory_bytes: largest resident size of the process so far, the program, frames and
@@ -76,6 +78,7 @@ class Manifest:
     cell_size: float
     particles: int
     threads: int
+    device: str
     ranks: dict[str, Any]
     steps: int
     resumed_step: int
@@ -127,6 +130,8 @@ def build_manifest(
     parts: Sequence[str] | None = None,
     cell_size: float,
     threads: int,
+    device: str = "cpu",
+    device_seconds: float = 0.0,
     mpi: str | None = None,
     wall_time: float,
     status: Status,
@@ -148,6 +153,8 @@ def build_manifest(
         parts: name under which contact reports each body; grains have one. Default `bodies`.
         cell_size: [m].
         threads: used, by each process.
+        device: name of the one that made the steps.
+        device_seconds: that it took for them [s].
         mpi: name of the MPI, if there are several.
         wall_time: of the whole run [s].
         status: how the run ended.
@@ -161,6 +168,9 @@ def build_manifest(
     build = build or {}
     work = max(1, int(simulation.particle_count) * int(simulation.step))
     stages = {name: 1e9 * t / work for name, t in simulation.timers().items()}
+    if device != "cpu":
+        made = int(simulation.particle_count) * (int(simulation.step) - resumed_step)
+        stages = {"steps on the device": 1e9 * device_seconds / max(1, made)}
     return Manifest(
         version=version,
         case_hash=case_hash or hash_case(case),
@@ -172,6 +182,7 @@ def build_manifest(
         cell_size=float(cell_size),
         particles=int(simulation.particle_count),
         threads=int(threads),
+        device=device,
         ranks={"mpi": mpi, **simulation.ranks()},
         steps=int(simulation.step),
         resumed_step=resumed_step,

@@ -20,6 +20,7 @@ from mpm3dpp.io.result_hash import Parts
 from mpm3dpp.io.vtkhdf import ResultsWriter
 from mpm3dpp.ranks.world import World, world
 
+from .device import CPU
 from .simulation import Simulation
 from .sliced_frames import SlicedFrames
 
@@ -71,13 +72,13 @@ class _Leading:
             raise
 
 
-def make_simulation(case: Case, threads: int | None) -> Simulation:
+def make_simulation(case: Case, threads: int | None, device: str = CPU) -> Simulation:
     """Return the simulation of a case: of this process, or led by it if there are others."""
     ranks = world()
     if ranks is None:
-        return Simulation(case, threads)
-    ranks.tell("make", case, threads)
-    simulation = _make(case, threads, ranks)
+        return Simulation(case, threads, device=device)
+    ranks.tell("make", case, threads, device)
+    simulation = _make(case, threads, device, ranks)
     simulation.core = _Leading(simulation.core, "core", ranks)
     return simulation
 
@@ -122,9 +123,9 @@ def _told(value: Any) -> Any:
     return len if callable(value) else value
 
 
-def _make(case: Case, threads: int | None, ranks: World) -> Simulation:
+def _make(case: Case, threads: int | None, device: str, ranks: World) -> Simulation:
     try:
-        return Simulation(case, threads, world=ranks)
+        return Simulation(case, threads, world=ranks, device=device)
     except Exception as error:
         ranks.fail(str(error))
         raise
@@ -169,7 +170,7 @@ def follow(ranks: World) -> Any:
             if what == "make":
                 simulation, own = None, {}
                 with contextlib.suppress(Exception):  # The first process has met the same.
-                    simulation = _make(about[0], about[1], ranks)
+                    simulation = _make(about[0], about[1], about[2], ranks)
                     own["core"] = simulation.core
                 continue
             try:

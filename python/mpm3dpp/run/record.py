@@ -75,7 +75,8 @@ def record(
     leaves the block early or by an exception.
 
     Args:
-        simulation: one that has made no step.
+        simulation: one that has made no step; `Simulation(case, device="cuda")` has a GPU make
+            them.
         out: the output folder; it is made. Results in it are replaced.
         resume: go on from the checkpoint in the folder.
         quiet: no progress.

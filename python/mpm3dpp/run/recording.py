@@ -134,6 +134,8 @@ class Recording:
         )
         for sentence in simulation.warnings:
             progress.note(f"warning: {sentence}")
+        if simulation.device.told:
+            progress.note(f"note: {simulation.device.told}")
         gone = [f"the table of probe {name} was gone: a new one begins" for name in watch.lost]
         for sentence in [*simulation.notes, *self._notes, *gone]:
             progress.note(f"note: {sentence}")
@@ -189,6 +191,8 @@ def _manifest(
         parts=simulation.parts,
         cell_size=case.grid.cell_size,
         threads=simulation.threads,
+        device=simulation.device.name,
+        device_seconds=simulation.device_seconds,
         mpi=ranks.library + ("" if ranks.native else ", through mpi4py") if ranks else None,
         wall_time=wall_time,
         status=status,

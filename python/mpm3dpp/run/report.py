@@ -176,12 +176,14 @@ def speed_line(manifest: Manifest) -> str:
     """Return the line about speed and memory; all parts of a run that went on count together."""
     used = sum(manifest.bytes.values()) / max(1, manifest.particles)
     threads = "1 thread" if manifest.threads == 1 else f"{manifest.threads} threads"
-    on = f"on {threads}"
+    on = f"on {threads if manifest.device == 'cpu' else manifest.device}"
     ranks = manifest.ranks
     if ranks["ranks"] > 1:
         on += f" of each of {ranks['ranks']} ranks ({ranks['mpi']}), "
         on += f"{ranks['share']:.0%} of the time in exchange, imbalance {ranks['imbalance']:.2f}"
-    if manifest.resumed_step:
+    if manifest.resumed_step and manifest.device != "cpu":
+        on += f" (from step {manifest.resumed_step:,} on)"
+    elif manifest.resumed_step:
         on = f"in all parts of the run (from step {manifest.resumed_step:,} {on})"
     return (
         f"{manifest.status}: {manifest.steps:,} steps of {manifest.particles:,} particles in "

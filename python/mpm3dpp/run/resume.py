@@ -43,6 +43,7 @@ def go_on(
         before.check(case)
         simulation = make()
         restore_checkpoint(path, simulation.core)
+        simulation.take_device()
         if (simulation.core.step, simulation.core.time) != (before.step, before.time):
             raise DamagedError(f"the checkpoint '{path}' is damaged: its parts differ", ANEW)
         return simulation, before

@@ -19,6 +19,7 @@ from mpm3dpp.plots.apart import draw_apart
 from mpm3dpp.ranks.world import world
 
 from .checkpoints import Checkpoint, Checkpoints
+from .device import CPU
 from .lead import follow, make_simulation, release
 from .recording import Recording
 from .report import (
@@ -45,6 +46,7 @@ def run_case(
     resume: bool = False,
     every: float | str | None = None,
     call: Call | None = None,
+    device: str = CPU,
 ) -> Manifest:
     """Run a case to its end: results.vtkhdf, history.csv, manifest.json and pictures in a folder.
 
@@ -64,9 +66,11 @@ def run_case(
         call: a function of the `Simulation`, called at the start and at the first step at or after
             each of these times; the run ends, with all outputs, when it returns False. It may look
             at anything and change nothing.
+        device: who makes the steps: "cpu"; "cuda", a GPU, with the same bits; "auto", it if it can,
+            else the processor.
 
     Raises:
-        CaseError: a mistake in the case or the call, or a folder that cannot be written.
+        CaseError: a mistake in the case or the call, a folder that cannot be written, or no device.
         RunError: the run became unstable, or the disk is full; what was written before is kept.
         KeyboardInterrupt: the user stopped it; what was computed is kept.
     """
@@ -78,7 +82,7 @@ def run_case(
         return followed
     manifest: Manifest | None = None
     try:
-        manifest = _run_case(case, out, threads, quiet, json, pictures, resume, every, call)
+        manifest = _run_case(case, out, threads, quiet, json, pictures, resume, every, call, device)
     finally:
         release(manifest)
     return manifest
@@ -94,6 +98,7 @@ def _run_case(
     resume: bool,
     every: float | str | None,
     call: Call | None,
+    device: str,
 ) -> Manifest:
     interval = interval_of(every, call)
     folder = arguments.path("out", out)
@@ -104,7 +109,7 @@ def _run_case(
         raise no_checkpoint(folder / CHECKPOINT)
     writable_folder(folder)
     with only_run_in(folder):
-        manifest, late = _run(case, folder, threads, quiet or json, resume, interval, call)
+        manifest, late = _run(case, folder, threads, quiet or json, resume, interval, call, device)
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
@@ -137,14 +142,17 @@ def _run(
     resume: bool,
     every: float,
     call: Call | None,
+    device: str,
 ) -> tuple[Manifest, bool]:
     """Make the run, and write all but pictures; return also whether Ctrl-C came after its end."""
     before: Checkpoint | None = None
     notes: list[str] = []
     if resume:
-        simulation, before, notes = go_on(folder, case, lambda: make_simulation(case, threads))
+        simulation, before, notes = go_on(
+            folder, case, lambda: make_simulation(case, threads, device)
+        )
     else:
-        simulation = make_simulation(case, threads)
+        simulation = make_simulation(case, threads, device)
     checkpoints = Checkpoints(folder, case, before)
     with Notice() as notice:
         forget_last_run(folder, checkpoint=before is None)
@@ -155,7 +163,7 @@ def _run(
         try:
             with recording:
                 recording.advance()
-        except CaseError as error:  # The disk: it was no mistake when the run began.
+        except CaseError as error:  # Disk or device: it was no mistake when the run began.
             if simulation.step == begin:
                 raise
             can_go_on = ", and --resume goes on" if has_checkpoint(folder) else ""

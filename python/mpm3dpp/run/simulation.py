@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time as clock
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from mpm3dpp.ranks.world import World
 from .add_part import add_actions, add_part
 from .checkpoints import check_same
 from .core_settings import core_settings
+from .device import CPU, check_device, take_device
 
 
 class Simulation:
@@ -43,6 +45,8 @@ class Simulation:
             `set_body_force`.
         world: processes that work on it, `mpm3dpp.ranks.world.world()`; each calls the same
             functions. Columns and records are those of all in the first of them.
+        device: who makes the steps: "cpu"; "cuda", a GPU, with the same bits; "auto", it if it can,
+            else the processor.
 
     Attributes:
         case: as given.
@@ -50,11 +54,13 @@ class Simulation:
         parts: of each body, the name of its entry in the case: its own, or that of its grains.
         warnings, notes: sentences about the case, for the user.
         is_recorded: whether a run is being written, which takes the history.
+        device: who makes the steps, `mpm3dpp.run.device.Device`.
+        device_seconds: that a device has taken for steps [s].
         core: the compiled simulation (`mpm3dpp._core.Simulation`).
 
     Raises:
         CaseError: the case cannot be filled, or the core refuses a parameter, or an argument is
-            wrong.
+            wrong, or there is no such device, or none that knows all that the case has.
     """
 
     def __init__(
@@ -67,10 +73,12 @@ class Simulation:
         ranks: int = 1,
         world: World | None = None,
         forced: Sequence[str] = (),
+        device: str = CPU,
     ) -> None:
         if not isinstance(case, Case):
             remedy = 'give what mpm3dpp.load_case("case.toml") returns, or make a Case'
             raise CaseError("must be a Case", remedy, key="case", value=case)
+        self._wanted = check_device(device, alone=world is None)
         filled = build(case, world)
         self.case, self._world = case, world
         cores = world.cores_of_rank() if world else None
@@ -102,6 +110,16 @@ class Simulation:
         except ValueError as error:
             raise self._refusal(str(error)) from None
         self.notes += overlap(case, self.core.contact_summary())
+        self.device_seconds = 0.0
+        self.take_device()
+
+    def take_device(self) -> None:
+        """Let the device that was asked for make the steps, also once a state has been restored.
+
+        Raises:
+            CaseError: it cannot.
+        """
+        self.device = take_device(self.core, self._wanted, alone=self._world is None)
 
     def _refusal(self, sentence: str) -> CaseError:
         """Return the mistake for what the core says of bodies that are all there."""
@@ -147,7 +165,7 @@ class Simulation:
         Raises:
             CaseError: `steps` is no whole number >= 0, or `end_time` no time, which is finite.
             RunError: the run has become unstable: who, where, when and why.
-            RuntimeError: another thread is at work in this simulation.
+            RuntimeError: another thread is at work in this simulation, or the device has failed.
         """
         made = 0
         steps = arguments.whole_number("steps", steps, 0)
@@ -156,7 +174,10 @@ class Simulation:
             end = arguments.quantity("end_time", end_time, "s")
         while made < steps:
             wanted = min(steps - made, self.core.history_capacity)
+            begin = clock.perf_counter()
             done = self.core.advance(wanted, end)
+            if self.device.name != CPU:
+                self.device_seconds += clock.perf_counter() - begin
             made += done
             if self.core.failure is not None:
                 raise RunError(self.core.failure.message)
@@ -282,6 +303,7 @@ class Simulation:
             before = read_about(path).get("case")
             check_same(path, before if isinstance(before, dict) else {}, self.case)
             restore_checkpoint(path, self.core)
+            self.take_device()
         except CaseError as error:
             remedy = "give a state that was saved with this case"
             raise CaseError(error.rule, remedy, key=error.key, value=error.value) from error

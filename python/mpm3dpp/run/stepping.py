@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mpm3dpp.base.errors import RunError
+from mpm3dpp.base.errors import CaseError, RunError
 from mpm3dpp.base.signals import Notice
 from mpm3dpp.io.background import BackgroundWriter
 from mpm3dpp.io.history import HistoryWriter
@@ -16,6 +16,7 @@ from mpm3dpp.io.manifest import Status
 from mpm3dpp.io.part_cells import sums_of
 
 from .checkpoints import Checkpoints
+from .device import CPU
 from .progress import Progress
 from .simulation import Simulation
 from .watch import Watch
@@ -26,6 +27,7 @@ Outcome = tuple[Status, str | None]
 _NO_STATE = ("non-finite", "negative volume")  # Failures after which particles have no values.
 _BLOCK = 64  # Steps between two looks at the clock, without contact.
 _PARTS_EVERY = 16  # Steps between two rows with the sums of bodies, at least.
+_PARTS_EVERY_OF_DEVICE = 512  # Where particles must be brought home for them.
 
 
 class Stepping:
@@ -56,7 +58,9 @@ class Stepping:
         self._contact = case.contact_enabled
         every = case.output.history_every
         most = min(every if self._contact else _BLOCK, core.history_capacity // 2)
-        self._sums_every = max(_PARTS_EVERY, every)
+        # Where they may end the run it is the same step with and without a device.
+        rare = simulation.device.name != CPU and not case.run.stop
+        self._sums_every = max(_PARTS_EVERY_OF_DEVICE if rare else _PARTS_EVERY, every)
         self._most = min(most, self._sums_every) if case.run.stop else most
         self._frames = [t for t in case.frame_times() if t > core.time]
         self._touched = _touched(core.contact_groups()) if self._contact else 0
@@ -191,7 +195,8 @@ def _steps(most: int, frames: list[float], core: Any) -> int:
 def _advance(simulation: Simulation, steps: int, end: float | None, watch: Watch) -> str | None:
     """Make steps, with looks of `watch` between them; return why the run is to end, if it is.
 
-    So these looks move neither rows of the history nor frames.
+    So these looks move neither rows of the history nor frames. Raises `CaseError` if a device
+    fails.
     """
     core = simulation.core
     last = core.step + steps
@@ -201,7 +206,12 @@ def _advance(simulation: Simulation, steps: int, end: float | None, watch: Watch
             left = math.ceil((watch.next - core.time) / core.dt)
             # Half of the way, and in the end one by one: steps may grow.
             wanted = max(1, min(wanted, left // 2))
-        made = simulation.advance(wanted, end)
+        try:
+            made = simulation.advance(wanted, end)
+        except RuntimeError as error:
+            if simulation.device.name == CPU:
+                raise
+            raise CaseError(str(error)) from error
         ends = watch.look()
         if ends or made < wanted:
             return ends

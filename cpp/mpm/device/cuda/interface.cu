@@ -18,7 +18,11 @@ MPM_EXPORT void mpm_device_info(mpm::DeviceInfo& info, std::string& why) {
   int count = 0;
   const cudaError_t code = cudaGetDeviceCount(&count);
   if (code != cudaSuccess || count == 0) {
-    why = code == cudaSuccess ? "there is no NVIDIA card" : cudaGetErrorString(code);
+    int driver = 0;
+    cudaDriverGetVersion(&driver);
+    why = driver == 0           ? "there is no driver of an NVIDIA card"
+          : code == cudaSuccess ? "there is no NVIDIA card"
+                                : cudaGetErrorString(code);
     return;
   }
   cudaDeviceProp card;
