@@ -3,6 +3,7 @@
 //   mpm_device_check compare [STEPS]         every material, basis, transfer and scheme
 //   mpm_device_check time [MILLIONS ...]     nanoseconds per particle and step, by kernel
 //   mpm_device_check one NAME                a short run, for compute-sanitizer
+//   mpm_device_check trace BASIS TRANSFER SCHEME STEPS [SPEED]   what differs first
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -307,7 +308,8 @@ int main(int count, char** words) {
         if (name == words[2]) compare<3>(name, Problem{.cells = 4}, choice, 20);
     } else {
       std::fprintf(stderr,
-                   "usage: mpm_device_check compare [STEPS] | time [MILLIONS ...] | one NAME\n");
+                   "usage: mpm_device_check compare [STEPS] | time [MILLIONS ...] | one NAME | "
+                   "trace BASIS TRANSFER SCHEME STEPS [SPEED]\n");
       return 2;
     }
   } catch (const std::exception& error) {

@@ -30,6 +30,13 @@ CARD = {
     "fma_per_second": 1e13,
 }
 
+CANNOT = pytest.mark.parametrize(
+    "found",
+    [{"missing": RuntimeError(NONE)}, {"refusal": ValueError(CONTACT)}],
+    ids=["none", "refused"],
+)
+"""What keeps a device from making the steps."""
+
 
 def fake(
     patch: pytest.MonkeyPatch, missing: Exception | None = None, refusal: Exception | None = None
@@ -66,11 +73,7 @@ def run(patch: pytest.MonkeyPatch, *words: Any) -> int:
     return int(end.value.code or 0)
 
 
-@pytest.mark.parametrize(
-    "found",
-    [{"missing": RuntimeError(NONE)}, {"refusal": ValueError(CONTACT)}],
-    ids=["none", "refused"],
-)
+@CANNOT
 def test_cuda_that_cannot_is_one_sentence(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -94,11 +97,7 @@ def test_without_a_device_no_particle_is_made(
         Simulation(load_case(write(tmp_path)), device="cuda")
 
 
-@pytest.mark.parametrize(
-    "found",
-    [{"missing": RuntimeError(NONE)}, {"refusal": ValueError(CONTACT)}],
-    ids=["none", "refused"],
-)
+@CANNOT
 def test_auto_falls_back_and_says_why(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,

@@ -97,7 +97,7 @@ struct DeviceReport {
   std::size_t patches = 0, node_tiles = 0;
 };
 
-/// How long kernels took, and what they moved, of steps since the last time it was asked [ms].
+/// How long a kernel took in the steps since the last time it was asked [ms].
 struct DeviceTime {
   std::string name;
   double milliseconds = 0.0;

@@ -130,7 +130,9 @@ def run(
     if resume and anew:
         raise CaseError("--resume and --anew cannot be given together", "give one of them")
     if device == Device.cuda and count > 1:
-        raise CaseError("--device cuda makes the steps of one process: leave --ranks out")
+        from mpm3dpp.run.device import ONE_PROCESS
+
+        raise CaseError(f"{ONE_PROCESS}: leave --ranks out")
     with folder_of_run(folder):
         if not resume and not anew:
             refuse_to_begin_anew(folder, loaded)

@@ -23,7 +23,8 @@ struct ParticleStep {
   std::size_t patches;
 };
 
-enum class DeviceAlso { nothing, remap, move };
+/// What is done beside eq. (17) while the particles are at hand.
+enum class DeviceAlso { remap, move };
 
 /// The transfer of a step, with the share of a material.
 template <class Transfer>

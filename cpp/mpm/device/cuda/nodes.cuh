@@ -111,10 +111,6 @@ __device__ double grid_share_at(const NodeStep<D>& step, std::int32_t body,
 
 /// What is done with the nodes of a tile at once: mass and momentum to velocities; forces to
 /// increments, advanced; MUSL's momenta to velocities.
-struct NodeWork {
-  bool momentum, forces, remapped;
-};
-
 template <class B, int D, bool momentum, bool forces, bool remapped>
 __global__ void __launch_bounds__(64)
     sum_nodes(NodeTileView<D> nodes, PartialView partial, NodeStep<D> step) {

@@ -74,7 +74,6 @@ template <int D>
 struct TileKey {
   static constexpr int bits = D == 3 ? 14 : 21;
   static constexpr int half = 1 << (bits - 1);
-  static constexpr int bodies = 1 << 22;
 
   MPM_HD static std::uint64_t of(int body, const Index<D>& tile) {
     std::uint64_t key = static_cast<std::uint64_t>(body);
