@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from command_server import run
 from mpm3dpp import Case, run_case
 
 CASE = """\
@@ -43,14 +44,17 @@ def write(folder: Path, text: str = CASE) -> Path:
     return path
 
 
-def command(*arguments: Any) -> list[str]:
-    return [sys.executable, "-m", "mpm3dpp", *map(str, arguments)]
+def command(*arguments: Any, pictures: bool = False) -> list[str]:
+    """Return the words of the command; a run draws no pictures, which take seconds, unless told."""
+    words = [sys.executable, "-m", "mpm3dpp", *map(str, arguments)]
+    if arguments[0] == "run" and not pictures and "--no-pictures" not in words:
+        words.append("--no-pictures")
+    return words
 
 
-def mpm3dpp(*arguments: Any, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        command(*arguments), cwd=cwd, capture_output=True, text=True, timeout=60, check=False
-    )
+def mpm3dpp(*arguments: Any, cwd: Path, pictures: bool = False) -> subprocess.CompletedProcess[str]:
+    """Run the command to its end, in a fork of a process that has its modules loaded."""
+    return run(command(*arguments, pictures=pictures)[3:], cwd, timeout=60)
 
 
 def one_sentence(text: str) -> str:

@@ -3,15 +3,12 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
+from commands import mpm3dpp
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.case.case import load_case
 from mpm3dpp.fill.build import build
@@ -214,7 +211,6 @@ EDITS: list[tuple[str, ...]] = [
      "would need some", "larger grid.cell_size", "shape = { disc"),
 ]
 # fmt: on
-SOME = EDITS[::6]
 JARGON = re.compile(r"pydantic|validation|valueerror|traceback|input_type|nonetype|ctx", re.I)
 
 
@@ -239,30 +235,11 @@ def check_sentence(sentence: str, place: str, key: str, rule: str, remedy: str) 
     assert not JARGON.search(sentence.removeprefix(place)), sentence
 
 
-@pytest.fixture(scope="module")
-def commands(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Path, str, object]]:
-    """`mpm3dpp check` run on some rows: name -> (file, place, finished process)."""
-    folder = tmp_path_factory.mktemp("cases")
-    files = {edit[0]: write(folder, edit) for edit in SOME}
-
-    def check(item: tuple[str, tuple[Path, str]]) -> tuple[str, tuple[Path, str, object]]:
-        name, (path, place) = item
-        return name, (path, place, command("check", str(path)))
-
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return dict(pool.map(check, files.items()))
-
-
-def command(*arguments: str) -> subprocess.CompletedProcess[str]:
-    line = [sys.executable, "-m", "mpm3dpp", *arguments]
-    return subprocess.run(line, capture_output=True, text=True, timeout=120)
-
-
 def test_the_good_case_is_good(tmp_path: Path) -> None:
     path = tmp_path / "case.toml"
     path.write_text(GOOD)
     assert len(build(load_case(path))) == 2
-    done = command("check", str(path))
+    done = mpm3dpp("check", path, cwd=path.parent)
     assert (done.returncode, done.stderr) == (0, "")
     assert "body left: " in done.stdout
 
@@ -275,11 +252,11 @@ def test_functions(edit: tuple[str, ...], tmp_path: Path) -> None:
     check_sentence(str(caught.value), place, *edit[3:6])
 
 
-@pytest.mark.parametrize("edit", SOME, ids=lambda edit: edit[0])
-def test_command(edit: tuple[str, ...], commands: dict[str, tuple[Path, str, object]]) -> None:
-    """It tells what the functions say; a process each, so not all of them."""
-    _, place, done = commands[edit[0]]
-    assert isinstance(done, subprocess.CompletedProcess)
+@pytest.mark.parametrize("edit", EDITS, ids=lambda edit: edit[0])
+def test_command(edit: tuple[str, ...], tmp_path: Path) -> None:
+    """It tells what the functions say."""
+    path, place = write(tmp_path, edit)
+    done = mpm3dpp("check", path, cwd=tmp_path)
     assert done.returncode == 2
     assert done.stdout == ""
     sentence = done.stderr.removesuffix("\n").removeprefix("mpm3dpp: error: ")
@@ -297,7 +274,7 @@ def test_files_that_cannot_be_read(tmp_path: Path, content: str | bytes | None, 
         path.mkdir()
     elif isinstance(content, bytes):
         path.write_bytes(content)
-    done = command("check", str(path))
+    done = mpm3dpp("check", path, cwd=path.parent)
     assert done.returncode == 2
     assert rule in done.stderr
     assert done.stderr.startswith(f"mpm3dpp: error: {path}: ")
@@ -326,7 +303,7 @@ def test_unwritable_folder(tmp_path: Path) -> None:
     path, file = tmp_path / "case.toml", tmp_path / "file"
     path.write_text(GOOD)
     file.write_text("")
-    done = command("run", str(path), "--out", str(file / "results"))
+    done = mpm3dpp("run", path, "--out", file / "results", cwd=tmp_path)
     assert done.returncode == 2
     assert "cannot write" in done.stderr
     assert "--out" in done.stderr
@@ -343,7 +320,7 @@ def test_unwritable_folder(tmp_path: Path) -> None:
     ],
     ids=["no case", "unknown command", "no threads", "unknown model"],
 )
-def test_command_line_mistakes(arguments: list[str]) -> None:
-    done = command(*arguments)
+def test_command_line_mistakes(arguments: list[str], tmp_path: Path) -> None:
+    done = mpm3dpp(*arguments, cwd=tmp_path)
     assert done.returncode == 2
     assert "Traceback" not in done.stderr

@@ -216,7 +216,7 @@ def test_a_run_tells_the_grains_as_one(tmp_path: Path, capsys: Any) -> None:
     falling = LATTICE.replace("count = [3, 2]", "count = [3, 1]") + "velocity = [0, -20]\n"
     case = grains(falling + PLATE, more="[contact]\nfriction = 0.2\n")
     out = tmp_path / "out"
-    manifest = run_case(case, out, threads=1, quiet=False)
+    manifest = run_case(case, out, threads=1, quiet=False, pictures=False)
     [pair] = [p for p in manifest.contact.pairs if p.bodies == ["plate", "sand"]]
     assert pair.pairs == 3
     assert manifest.contact.bodies == 4

@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from commands import mpm3dpp
 from mpm3dpp import Case, CaseError, Simulation, load_case, run_case
 from mpm3dpp.fill.build import build
 from mpm3dpp.importers import import_file, load_any
@@ -476,35 +475,30 @@ def test_it_runs(tmp_path: Path) -> None:
     assert manifest.status == "completed" and len(notes) == 1
 
 
-def command(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    line = [sys.executable, "-m", "mpm3dpp", *words]
-    return subprocess.run(line, capture_output=True, text=True, cwd=folder, check=False)
-
-
 def test_the_command_line(tmp_path: Path) -> None:
     (tmp_path / "x.mpm").write_text(edited((" 0.5 0 0 0", " 0.3 0 0 0")))
-    done = command(tmp_path, "import", "x.mpm", "-o", "y.toml")
+    done = mpm3dpp("import", "x.mpm", "-o", "y.toml", cwd=tmp_path)
     assert (done.returncode, done.stdout.split()) == (0, ["y.toml", "y_body_1.csv"])
     assert done.stderr.startswith("note: units mm-g-N-ms")
     for name in ("x.mpm", "y.toml"):
-        done = command(tmp_path, "check", name)
+        done = mpm3dpp("check", name, cwd=tmp_path)
         assert done.returncode == 0 and "64 particles" in done.stdout
     csv, kept = (tmp_path / "y_body_1.csv"), "my own"
     csv.write_text(kept)
     for name in ("y.toml", "y_body_1.csv"):
-        done = command(tmp_path, "import", "x.mpm", "-o", "y.toml")
+        done = mpm3dpp("import", "x.mpm", "-o", "y.toml", cwd=tmp_path)
         assert done.stderr.startswith(f"mpm3dpp: error: {name} is there already; give another name")
         assert (done.returncode, csv.read_text()) == (2, kept)
         (tmp_path / "y.toml").unlink(missing_ok=True)
-    done = command(tmp_path, "import", "x.mpm", "-o", "y.toml", "--force")
+    done = mpm3dpp("import", "x.mpm", "-o", "y.toml", "--force", cwd=tmp_path)
     assert (done.returncode, csv.read_text().count("my own")) == (0, 0)
     (tmp_path / "z.mpm").write_text(GOOD.replace("endi\n", "bimp\nendi\n"))
     for words in (("check", "z.mpm"), ("run", "z.mpm"), ("import", "z.mpm"), ("run", "no.mpm"),
                   ("import", "y.toml"), ("check", "y.toml", "--units", "SI")):  # fmt: skip
-        done = command(tmp_path, *words)
+        done = mpm3dpp(*words, cwd=tmp_path)
         assert done.returncode == 2 and "Traceback" not in done.stderr
         assert done.stderr.count("mpm3dpp: error: ") == 1
-    done = command(tmp_path, "import", "y.toml")
+    done = mpm3dpp("import", "y.toml", cwd=tmp_path)
     assert (
         "y.toml is a case file, but import wants an input file of MPM3D-F90 (.mpm)" in done.stderr
     )

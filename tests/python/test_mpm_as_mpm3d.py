@@ -5,24 +5,18 @@ from __future__ import annotations
 
 import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from commands import mpm3dpp
 from mpm3dpp import CaseError
 from mpm3dpp.fill.build import build
 from mpm3dpp.importers import import_file
 from mpm3dpp.importers.mpm3d.statements import REFUSED, STATEMENTS
 from mpm3dpp.importers.write import write_case
 from mpm_text import GOOD, MATE, PART, TWO, edited, of, with_part
-
-
-def command(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    line = [sys.executable, "-m", "mpm3dpp", *words]
-    return subprocess.run(line, capture_output=True, text=True, cwd=folder, check=False)
 
 
 def test_a_body_that_sticks_out_of_a_free_face_widens_the_box() -> None:
@@ -145,7 +139,7 @@ def test_force_does_not_destroy_the_source(tmp_path: Path) -> None:
     os.link(source, tmp_path / "hard.toml")
     names = ["a.mpm", "in/a.mpm", "in/../in/a.mpm", "A.MPM", str(source), "link.toml", "hard.toml"]
     for name in names:
-        done = command(tmp_path, "import", "in/a.mpm", "-o", name, "--force")
+        done = mpm3dpp("import", "in/a.mpm", "-o", name, "--force", cwd=tmp_path)
         assert done.returncode == 2 and "Traceback" not in done.stderr, name
         assert "give a" in done.stderr and done.stderr.count("mpm3dpp: error:") == 1
         assert source.read_text() == GOOD
@@ -162,7 +156,7 @@ def test_force_does_not_destroy_the_source(tmp_path: Path) -> None:
 def test_several_problems_on_the_command_line(tmp_path: Path) -> None:
     (tmp_path / "x.mpm").write_text(GOOD.replace("endi\n", "bimp\nQuLo 2\nendi\n"))
     for words in (("check", "x.mpm"), ("import", "x.mpm"), ("run", "x.mpm")):
-        done = command(tmp_path, *words)
+        done = mpm3dpp(*words, cwd=tmp_path)
         assert done.returncode == 2
         lines = done.stderr.splitlines()
         assert lines[0].startswith("mpm3dpp: error: x.mpm:25: bimp asks for")

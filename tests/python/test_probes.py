@@ -39,7 +39,7 @@ body = "right"
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("run")
     write(folder, CASE + PROBES)
-    done = mpm3dpp("run", "case.toml", "--out", "out", cwd=folder)
+    done = mpm3dpp("run", "case.toml", "--out", "out", cwd=folder, pictures=True)
     assert done.returncode == 0, done.stderr
     return folder / "out"
 

@@ -39,7 +39,8 @@ KEYS = (
 def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, str]:
     """Return the output folder of a finished run, and what it printed."""
     folder = tmp_path_factory.mktemp("run")
-    done = mpm3dpp("run", write(folder), "--out", folder / "out", "--threads", 1, cwd=folder)
+    words = ("run", write(folder), "--out", folder / "out", "--threads", 1)
+    done = mpm3dpp(*words, cwd=folder, pictures=True)
     assert done.returncode == 0, done.stderr
     return folder / "out", done.stdout, done.stderr
 
@@ -130,7 +131,7 @@ def test_run_case_from_python(tmp_path: Path, capfd: pytest.CaptureFixture[str])
     assert manifest.to_dict() == read_manifest(tmp_path / "out")
     printed = capfd.readouterr()
     assert (printed.out, printed.err) == ("", "")
-    again = run_case(file, tmp_path / "out", threads=1)  # The file, into the same folder.
+    again = run_case(file, tmp_path / "out", threads=1, pictures=False)  # The file, again here.
     assert again.result_hash == manifest.result_hash
     with open_results(tmp_path / "out") as results:
         assert results.case_hash == case.case_hash
@@ -158,18 +159,24 @@ def test_what_became_of_each_body(tmp_path: Path, capfd: pytest.CaptureFixture[s
     assert history["body_left_velocity_x"][-1] == found["left"]["final"]["velocity_x"]
 
 
-def start_long_run(folder: Path) -> subprocess.Popen[str]:
+def frames_of(folder: Path) -> int:
+    with open_results(folder / "out") as results:
+        return len(results)
+
+
+def start_long_run(folder: Path, pictures: bool = False) -> subprocess.Popen[str]:
     """Start a run without end and return when it has written a few frames."""
+    words = ("run", write(folder, LONG), "--out", folder / "out", "--threads", 1, "--quiet")
     run = subprocess.Popen(
-        command("run", write(folder, LONG), "--out", folder / "out", "--threads", 1, "--quiet"),
+        command(*words, pictures=pictures),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
     )
-    deadline = time.monotonic() + 30
+    deadline = time.monotonic() + 60
     history = folder / "out" / "history.csv"
-    while not history.exists() or history.stat().st_size < 200_000:
+    while not history.exists() or history.stat().st_size < 200_000 or frames_of(folder) < 2:
         if run.poll() is not None or time.monotonic() > deadline:
             run.kill()
             pytest.fail(str(run.communicate()))
@@ -179,7 +186,8 @@ def start_long_run(folder: Path) -> subprocess.Popen[str]:
 
 @pytest.mark.parametrize("kind", [signal.SIGINT, signal.SIGTERM])
 def test_control_c_ends_cleanly_and_keeps_the_results(tmp_path: Path, kind: signal.Signals) -> None:
-    run = start_long_run(tmp_path)
+    pictures = kind == signal.SIGINT
+    run = start_long_run(tmp_path, pictures)
     run.send_signal(kind)
     out, err = run.communicate(timeout=30)
     assert (run.returncode, out) == (130, "")
@@ -190,7 +198,7 @@ def test_control_c_ends_cleanly_and_keeps_the_results(tmp_path: Path, kind: sign
     with open_results(tmp_path / "out") as results:
         assert len(results) >= 2
         assert np.isfinite(results.arrays(-1)["velocity"]).all()
-    assert list((tmp_path / "out").glob("*.png"))
+    assert bool(list((tmp_path / "out").glob("*.png"))) == pictures
 
 
 def test_a_killed_run_leaves_readable_frames(tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ import pytest
 
 import mpi_jobs
 from commands import CASE, command, mpm3dpp, one_sentence, write
-from mpi_jobs import PROGRAMS, environment, job, mpiexec, run
+from mpi_jobs import PROGRAMS, environment, has_module, job, mpiexec, run
 from mpm3dpp.io.checkpoint import read_about
 from mpm3dpp.ranks import launch
 
@@ -53,9 +53,15 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return dict(json.loads(out.read_text()))
 
 
-def test_examples(tmp_path: Path, each_way: str, alone: dict[str, str]) -> None:
+def test_examples(tmp_path: Path, way: str, alone: dict[str, str]) -> None:
     """By two ranks, with letters that go in pieces."""
-    check_examples(tmp_path, each_way, alone, 2, 1000)
+    check_examples(tmp_path, way, alone, 2, 1000)
+
+
+@pytest.mark.slow
+def test_examples_through_mpi4py(tmp_path: Path, alone: dict[str, str]) -> None:
+    has_module()  # Skips the test where there is no MPI.
+    check_examples(tmp_path, "mpi4py", alone, 2, 1000)
 
 
 def test_examples_by_four_ranks(tmp_path: Path, way: str, alone: dict[str, str]) -> None:
@@ -120,7 +126,7 @@ def test_so_many_ranks_that_they_would_take_all_memory(tmp_path: Path, way: str)
 
 
 def test_ctrl_c_and_any_number_of_ranks_goes_on(tmp_path: Path, way: str) -> None:
-    write(tmp_path, CASE.replace('"10 mm"', '"3 mm"'))
+    write(tmp_path, CASE.replace('"10 mm"', '"5 mm"'))
     assert run(way, tmp_path, "case.toml", "--out", "straight", "--no-pictures").returncode == 0
     words = command("run", "case.toml", "--out", "out", "--no-pictures", "--ranks", 3)
     with subprocess.Popen(words, cwd=tmp_path, env=environment(way)) as job:
@@ -166,8 +172,16 @@ def ranks_of(job: subprocess.Popen[Any]) -> list[int]:
     return found
 
 
-@pytest.mark.parametrize("kills", [2, pytest.param(20, marks=pytest.mark.slow)])
-def test_killed_ranks(tmp_path: Path, each_way: str, kills: int) -> None:
+def test_killed_ranks(tmp_path: Path, way: str) -> None:
+    check_kills(tmp_path, way, 2)
+
+
+@pytest.mark.slow
+def test_many_killed_ranks(tmp_path: Path, each_way: str) -> None:
+    check_kills(tmp_path, each_way, 20)
+
+
+def check_kills(tmp_path: Path, way: str, kills: int) -> None:
     """The job ends at once, and nothing is lost but the time since the last checkpoint."""
     write(tmp_path, LONG)
     chance, state = random.Random(2026), tmp_path / "out" / "checkpoint.zip"
@@ -176,7 +190,7 @@ def test_killed_ranks(tmp_path: Path, each_way: str, kills: int) -> None:
         more = ["--resume"] if kill else []
         words = command("run", "case.toml", "--out", "out", "--no-pictures", "--ranks", 3, *more)
         with subprocess.Popen(
-            words, cwd=tmp_path, env=environment(each_way), stderr=subprocess.PIPE, text=True
+            words, cwd=tmp_path, env=environment(way), stderr=subprocess.PIPE, text=True
         ) as job:
             wait_for(lambda: state.exists() and step_of(state) > max(reached, default=0))
             time.sleep(0.3 * chance.random())
@@ -190,8 +204,8 @@ def test_killed_ranks(tmp_path: Path, each_way: str, kills: int) -> None:
     # A run may be given another end when it goes on.
     write(tmp_path, LONG.replace("100 s", f"{1000 * read_about(state)['time'] + 1} ms"))
     plain = ("case.toml", "--no-pictures", "--threads", 1, "--quiet")
-    assert run(each_way, tmp_path, *plain, "--out", "out", "--resume").returncode == 0
-    assert run(each_way, tmp_path, *plain, "--out", "straight").returncode == 0
+    assert run(way, tmp_path, *plain, "--out", "out", "--resume").returncode == 0
+    assert run(way, tmp_path, *plain, "--out", "straight").returncode == 0
     found = [json.loads((tmp_path / name / "manifest.json").read_text()) for name in BOTH]
     assert found[0]["result_hash"] == found[1]["result_hash"]
     assert found[0]["resumed_step"] >= reached[-1]

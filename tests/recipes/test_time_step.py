@@ -75,7 +75,7 @@ def test_a_run_whose_waves_or_particles_become_too_fast_stops(tmp_path: Path) ->
     with pytest.raises(
         RunError, match=r"^time step at step .* run.time_step = .* s is larger than"
     ):
-        run_case(case, tmp_path / "falls", threads=1)
+        run_case(case, tmp_path / "falls", threads=1, pictures=False)
     simulation = Simulation(case, threads=1)
     with pytest.raises(RunError):
         simulation.advance(1000)

@@ -209,22 +209,23 @@ def _with_impulses() -> Iterator[Run]:
     yield Run("E10", groups.offset_spheres, scheme, 3, numerics, more, slow=True)
 
 
-_SECONDS = (bars.five_bars, rolling.rolling_on_discs, incline.rolling, chain.disc_column)
+_SECONDS = (
+    *(bars.five_bars, rolling.rolling_on_discs, incline.rolling, chain.disc_column),
+    *(written.spinning_disc, examples.sod_tube),
+)
 """What takes seconds with each of the numerics."""
 
 
 def _with_others_slow(runs: Iterable[Run]) -> Iterator[Run]:
-    """Return the runs, of those that take seconds only GIMP's with MUSL as quick ones.
-
-    So are those that are made of them, which have what a case gets.
-    """
+    """Return the runs, of those that take seconds only what a case gets as quick ones."""
     for run in runs:
-        other = run.make in _SECONDS and (run.basis, run.scheme) != ("gimp", "musl")
-        yield replace(run, slow=run.slow or other)
+        fine = run.options.get("cells", 0) >= (200 if run.dimension == 2 else 26)
+        seconds = run.make in _SECONDS or fine
+        long = (seconds and run.basis != DEFAULT) or (fine and run.make is bars.five_bars)
+        yield replace(run, slow=run.slow or long)
 
 
-_WRITTEN = list(_with_others_slow(_runs()))
+_WRITTEN = list(_runs())
 # Runs that differ in their factor alone are one with the default's.
-RUNS = list(
-    {run.title: run for run in [*_WRITTEN, *_with_defaults(_WRITTEN), *_with_impulses()]}.values()
-)
+_ALL = {run.title: run for run in [*_WRITTEN, *_with_defaults(_WRITTEN), *_with_impulses()]}
+RUNS = list(_with_others_slow(_ALL.values()))

@@ -20,13 +20,13 @@ struct GroupHead {
 };
 
 /// The particles of a body that go to a rank.
-struct Group {
+struct GroupToRank {
   int rank, body;
   std::vector<std::uint32_t> rows{};
 };
 
 template <int D>
-void write_group(Letter& letter, const Group& group, const ParticlePool<D>& pool) {
+void write_group(Letter& letter, const GroupToRank& group, const ParticlePool<D>& pool) {
   const std::span<const std::uint32_t> rows = group.rows;
   write(letter, GroupHead{group.body, static_cast<std::uint32_t>(rows.size())});
   write_rows(letter, pool.id.data(), rows);
@@ -54,9 +54,9 @@ void read_group(Reader& reader, ParticlePool<D>& pool, std::span<const std::uint
 
 /// Take the migrants that have come into tiles of other ranks out of the list, in groups.
 template <int D>
-std::vector<Group> take_leaving(const TileGrid<D>& grid, std::vector<Migrant<D>>& migrants) {
+std::vector<GroupToRank> take_leaving(const TileGrid<D>& grid, std::vector<Migrant<D>>& migrants) {
   const Partition<D>& partition = grid.partition;
-  std::vector<Group> groups;
+  std::vector<GroupToRank> groups;
   for (Migrant<D>& migrant : migrants) {
     // Most go to patches that this rank has.
     if (migrant.patch >= 0 && !partition.divided &&
@@ -82,14 +82,14 @@ void exchange_migrants(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                        std::vector<ParticlePool<D>>& pools, ListScratch<D>& scratch) {
   Mail& mail = grid.partition.mail.migrants;
   mail.out.clear();
-  const std::vector<Group> groups = take_leaving(grid, scratch.migrants);
+  const std::vector<GroupToRank> groups = take_leaving(grid, scratch.migrants);
   std::map<int, std::vector<std::size_t>> counts;  // by rank, of each pool
-  for (const Group& group : groups)
+  for (const GroupToRank& group : groups)
     counts.try_emplace(group.rank, pools.size()).first->second[pool_number(bodies, group.body)] +=
         group.rows.size();
   for (const auto& [rank, of_pools] : counts)
     for (const std::size_t count : of_pools) write(letter_to(mail, rank), count);
-  for (const Group& group : groups) {
+  for (const GroupToRank& group : groups) {
     ParticlePool<D>& pool = pools[pool_number(bodies, group.body)];
     write_group(letter_to(mail, group.rank), group, pool);
     pool.free_rows.insert(pool.free_rows.end(), group.rows.begin(), group.rows.end());

@@ -5,9 +5,9 @@
 
 namespace mpm::reference {
 
-/// f_i -= C_i (v_i + dt a_i / 2), C_i = sum rho c A_p N_i over the particles in the cells along the
-/// face: c is the speed of pressure waves along the normal, of shear waves along the face; A_p =
-/// m_p / (rho h); N_i are the hats on the face.
+/// f_i -= C_i (v_i + dt a_i / 2), C_i = sum rho c A_p N_i over the particles in the cells before
+/// the face: c is the speed of pressure waves along the normal, of shear waves along the face; A_p
+/// = m_p / (rho h); N_i are the hats on the face.
 template <int D>
 void absorb_at_walls(Step<D>& step) {
   for (Body<D>& b : step.bodies) {
@@ -21,8 +21,8 @@ void absorb_at_walls(Step<D>& step) {
         for (int side = 0; side < 2; ++side) {
           const auto axis = static_cast<std::size_t>(normal);
           const std::int32_t face = side == 0 ? 0 : step.walls.cells[axis];
-          if (step.walls.face[normal][side] != Wall::absorbing ||
-              std::abs(p.x[normal] / step.h - face) >= 1.0)
+          const double x = p.x[normal] / step.h, depth = side == 0 ? x - face : face - x;
+          if (step.walls.face[normal][side] != Wall::absorbing || depth < 0.0 || depth >= 1.0)
             continue;
           Index<D> low, high;
           for (std::size_t a = 0; a < D; ++a) {

@@ -14,7 +14,7 @@ struct Exchanged {
   int first, last;
   bool forces;
 };
-constexpr Exchanged momentum{0, force_at, false}, forces{force_at, record, true},
+constexpr Exchanged momenta{0, force_at, false}, forces{force_at, record, true},
     both{0, record, true};
 // The mass is that of the first mapping and has been summed: a second time it would count each
 // holder's share twice or more.
@@ -30,7 +30,7 @@ void start(Domain<D>& domain) {
 }
 
 template <Exchanged what, int D>
-void exchange(Domain<D>& domain) {
+void exchange_nodes(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
   const bool absorbs = what.forces && grid.has_dashpots;
   if (!grid.partition.alone()) {
@@ -47,11 +47,11 @@ void exchange(Domain<D>& domain) {
 
 template <int D>
 void start_momentum(Domain<D>& domain) {
-  start<momentum>(domain);
+  start<momenta>(domain);
 }
 template <int D>
 void exchange_momentum(Domain<D>& domain) {
-  exchange<momentum>(domain);
+  exchange_nodes<momenta>(domain);
 }
 
 template <int D>
@@ -60,7 +60,7 @@ void start_forces(Domain<D>& domain) {
 }
 template <int D>
 void exchange_forces(Domain<D>& domain) {
-  exchange<forces>(domain);
+  exchange_nodes<forces>(domain);
 }
 
 template <int D>
@@ -69,7 +69,7 @@ void start_momentum_and_forces(Domain<D>& domain) {
 }
 template <int D>
 void exchange_momentum_and_forces(Domain<D>& domain) {
-  exchange<both>(domain);
+  exchange_nodes<both>(domain);
 }
 
 template <int D>
@@ -78,7 +78,7 @@ void start_remapped(Domain<D>& domain) {
 }
 template <int D>
 void exchange_remapped(Domain<D>& domain) {
-  exchange<remapped>(domain);
+  exchange_nodes<remapped>(domain);
 }
 
 template void start_momentum<2>(Domain<2>&);

@@ -58,7 +58,9 @@ class CaseModel(BaseModel, metaclass=_CaseMeta):
     by_position: ClassVar[str] = ""
     formerly: ClassVar[dict[str, str]] = {}  # Key of the release before -> key, for this one.
     _renamed: tuple[str, ...] = PrivateAttr(())  # Those keys that were given.
-    model_config = ConfigDict(extra="forbid", validate_assignment=True, protected_namespaces=())
+    model_config = ConfigDict(
+        extra="forbid", validate_assignment=True, protected_namespaces=(), defer_build=True
+    )
 
     @model_validator(mode="wrap")
     @classmethod

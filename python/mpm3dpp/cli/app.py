@@ -43,6 +43,7 @@ app = typer.Typer(
     help="Material point method: impact and frictional contact of any number of bodies.",
     no_args_is_help=True,
     add_completion=False,
+    rich_markup_mode=None,  # It takes as long to load as all else.
     pretty_exceptions_enable=False,
 )
 
@@ -119,7 +120,10 @@ def run(
         bool, typer.Option("--no-pictures", help="Draw none; `mpm3dpp plot` draws them later.")
     ] = False,
 ) -> None:
-    """Run a case: frames, history, manifest and pictures in the output folder."""
+    """Run a case: frames, history, manifest and pictures.
+
+    mpm3dpp run case.toml --set contact.friction=0.2 --out results/rough
+    """
     from mpm3dpp.io.folders import default_folder, folder_of_run
     from mpm3dpp.run.resume import refuse_to_begin_anew
 
@@ -148,7 +152,7 @@ def run(
 def _on_ranks(ranks: int, threads: int | None) -> int:
     """Run this command again, on several ranks, and return its exit code."""
     from mpm3dpp.ranks.launch import launch
-    from mpm3dpp.ranks.world import started
+    from mpm3dpp.ranks.launcher import started
 
     words, skips = [], False
     for word in sys.argv[1:]:
@@ -170,7 +174,10 @@ def check(
         int, typer.Option(min=1, help="Also the memory of each of so many processes.")
     ] = 1,
 ) -> None:
-    """Check a case and say what it amounts to, without running it."""
+    """Check a case and say what it amounts to.
+
+    mpm3dpp check case.toml
+    """
     from mpm3dpp.fill.advisories import refuse_time_step
     from mpm3dpp.fill.build import build
     from mpm3dpp.run.summary import echo
@@ -187,7 +194,10 @@ def preview(
     out: Annotated[Path | None, typer.Option(help="Picture; default in results/NAME.")] = None,
     units: Units = None,
 ) -> None:
-    """Draw the particles of a case before it runs."""
+    """Draw the particles of a case before it runs.
+
+    mpm3dpp preview case.toml --out start.png
+    """
     from mpm3dpp.io.folders import default_folder, writable_folder
     from mpm3dpp.plots import preview as draw
 
@@ -207,7 +217,10 @@ def plot(
     colour: Annotated[str | None, typer.Option(help="Column that colours particles.")] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the pictures.")] = None,
 ) -> None:
-    """Make the pictures of a run again."""
+    """Make the pictures of a run again.
+
+    mpm3dpp plot results/rings --frame 10 --colour pressure
+    """
     from mpm3dpp.plots.run import draw_all
 
     if not folder.is_dir():
@@ -246,9 +259,11 @@ def bench(
     json: Json = False,
     plot: Annotated[Path | None, typer.Option(help="Picture to write, a PNG.")] = None,
 ) -> None:
-    """Measure the speed: time per particle-step and stage, memory, bandwidth.
+    """Measure the speed: time per particle-step and stage.
 
-    With several sizes or numbers of threads or ranks: how these grow.
+    Memory and bandwidth too; with several sizes or numbers of threads or ranks, how these grow.
+
+    mpm3dpp bench spheres --size 1000 --threads 1 --threads 2
     """
     from mpm3dpp.bench import main as measure
 
@@ -281,7 +296,9 @@ def reproduce(
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
-    """Run the examples of Ma, Zhang & Huang (2010): a page with their tables and figures.
+    """Run the examples of Ma, Zhang & Huang (2010).
+
+    Make a page with their tables and figures.
 
     mpm3dpp reproduce --only rings --only spheres
     """

@@ -28,7 +28,7 @@ def main() -> None:
     signals.end_at_once()
     _mend_streams()
     os.environ["MPLBACKEND"] = "agg"  # Pictures go into files, whatever the user's notebooks need.
-    from mpm3dpp.ranks.world import started
+    from mpm3dpp.ranks.launcher import started
 
     if started() is None:
         _command()

@@ -21,7 +21,7 @@ def import_file(
     units: Units = None,
     force: Annotated[bool, typer.Option("--force", help="Write over files.")] = False,
 ) -> None:
-    """Write an input file of another program as a case file in SI units."""
+    """Write an input file of MPM3D as a case file in SI units."""
     from mpm3dpp.importers import import_file as read
     from mpm3dpp.importers.write import write_case
 

@@ -16,7 +16,10 @@ def materials(
         str | None, typer.Argument(metavar="[NAME]", help="A model or a named material, in detail.")
     ] = None,
 ) -> None:
-    """List the material models and named materials; with NAME parameters, units and sources."""
+    """List material models and named materials.
+
+    With NAME: parameters, units and sources.
+    """
     from mpm3dpp.materials import listing
 
     typer.echo(listing(name))
@@ -61,7 +64,7 @@ def material_test(
     ] = None,
     json: Json = False,
 ) -> None:
-    """Draw a material's stress-strain curve or its shock Hugoniot, from a single point.
+    """Draw stress-strain curves and Hugoniots of a point.
 
     mpm3dpp material-test copper_ofhc --test uniaxial-stress --rate 1e4 --to 0.5
 

@@ -38,7 +38,9 @@ def sweep(
         bool, typer.Option("--pictures/--no-pictures", help="Draw those of each run.")
     ] = False,
 ) -> None:
-    """Run a case with several values of some keys; write a table and a picture.
+    """Run a case with several values of some keys.
+
+    Write a table and a picture.
 
     mpm3dpp sweep case.toml --set contact.friction=0,0.1,0.2 --jobs 2
 

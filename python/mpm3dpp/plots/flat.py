@@ -33,7 +33,9 @@ def set_view(
 def pixels_per_unit(axes: Axes) -> float:
     """Pixels per unit of length on axes with equal scales."""
     figure: Any = axes.figure
-    figure.draw_without_rendering()
+    if (engine := figure.get_layout_engine()) is not None:
+        engine.execute(figure)
+    axes.apply_aspect()
     left, right = axes.get_xlim()
     return float(axes.get_window_extent().width / (right - left))
 

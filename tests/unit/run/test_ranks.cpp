@@ -118,8 +118,8 @@ void shuffle_owners(Simulation<D>& simulation, std::mt19937_64& random) {
   take_owners(grid, owners);
 }
 
-/// Steps by which a run of other ranks goes on, from a state in the middle of it.
-constexpr int rounds = 8, saved_after = 4;
+/// Rounds of ten steps; other ranks go on from a state in the middle of them.
+constexpr int rounds = 4, saved_after = 2;
 
 /// The states that runs of some numbers of ranks have left, by rank 0.
 struct States {

@@ -132,7 +132,7 @@ struct Twin {
 
  private:
   static constexpr int box_cells = D == 2 ? 11 : 7;  // along an axis: more than one tile
-  static constexpr std::size_t particles = 150;
+  static constexpr std::size_t particles = 60;
   static constexpr double density = 1000.0, E = 1e9, nu = 0.3;
 
   double any() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }
