@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
 from mpm3dpp import Body, Case, Contact, Grid, Material, Run, _core, load_case, shapes
 
@@ -15,6 +16,17 @@ CELL = 2.0**-7
 
 SCHEMES = ("usf", "usl", "musl")
 BASES = tuple(_core.bases)
+_QUICK = (("usf", "quadratic_bspline"), ("musl", "gimp"), ("usl", "linear"))
+each_numerics = pytest.mark.parametrize(
+    ("scheme", "basis"),
+    [
+        pytest.param(scheme, basis, marks=() if (scheme, basis) in _QUICK else pytest.mark.slow)
+        for scheme in SCHEMES
+        for basis in BASES
+    ],
+)
+"""Every scheme with every basis, for what takes seconds; each of them once, and the default, else
+is slow: the unit test `stages` has every pair against the reference step."""
 DENSITY, YOUNG = 1000.0, 1e6
 
 

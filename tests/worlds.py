@@ -68,6 +68,7 @@ class World:
             bodies[name] = Body(
                 material=entry.material,
                 particles=Particles((positions @ q.T)[there], volumes[there], velocities),
+                initial=entry.initial if isinstance(entry, Body) else None,  # geostatic ones
                 body_force=self._force(entry.body_force),
                 damping=entry.damping,
             )

@@ -76,7 +76,10 @@ def peak(folder: Path, what: str) -> int:
     return int(json.loads(done.stdout))
 
 
-@pytest.mark.parametrize(("edge", "end", "dimension"), [(240, "0.02 ms", 2), (20, "0.05 ms", 3)])
+@pytest.mark.parametrize(
+    ("edge", "end", "dimension"),
+    [(240, "0.02 ms", 2), pytest.param(20, "0.05 ms", 3, marks=pytest.mark.slow)],
+)
 def test_frames_and_checkpoints_take_a_fourth_of_stepping_at_most(
     tmp_path: Path, edge: int, end: str, dimension: int
 ) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases import BASES, CELL, SCHEMES, block, box, materials, three_blocks
+from cases import BASES, CELL, SCHEMES, block, box, each_numerics, materials, three_blocks
 from mpm3dpp import Body, Case, CaseError, Grid, Motion, Run, RunError, Simulation
 from mpm3dpp.fill.build import build
 from mpm3dpp.run.summary import echo
@@ -153,8 +153,7 @@ def outcome(simulation: Simulation) -> list[bytes]:
     return [*columns, core.history().tobytes()]
 
 
-@pytest.mark.parametrize("basis", BASES)
-@pytest.mark.parametrize("scheme", SCHEMES)
+@each_numerics
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_the_same_bits(tmp_path: Path, dimension: int, scheme: str, basis: str) -> None:
     """With other threads, stages one by one, sorted at every step, and after a restart."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cases import BASES, SCHEMES, everything, three_blocks
+from cases import BASES, SCHEMES, each_numerics, everything, three_blocks
 from mpm3dpp import Case, Simulation
 from mpm3dpp.io.result_hash import result_hash
 
@@ -22,8 +22,7 @@ def hashes(case: Case, steps: int, threads: int = 1) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("basis", BASES)
-@pytest.mark.parametrize("scheme", SCHEMES)
+@each_numerics
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_everything(tmp_path: Path, dimension: int, scheme: str, basis: str) -> None:
     for left in ("absorbing", "slip"):

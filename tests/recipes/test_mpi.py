@@ -18,7 +18,7 @@ import pytest
 
 import mpi_jobs
 from commands import CASE, command, mpm3dpp, one_sentence, write
-from mpi_jobs import PROGRAMS, environment, has_module, job, mpiexec, run
+from mpi_jobs import PROGRAMS, environment, job, mpiexec, run
 from mpm3dpp.io.checkpoint import read_about
 from mpm3dpp.ranks import launch
 
@@ -53,19 +53,14 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return dict(json.loads(out.read_text()))
 
 
-def test_examples(tmp_path: Path, way: str, alone: dict[str, str]) -> None:
-    """By two ranks, with letters that go in pieces."""
-    check_examples(tmp_path, way, alone, 2, 1000)
-
-
 @pytest.mark.slow
-def test_examples_through_mpi4py(tmp_path: Path, alone: dict[str, str]) -> None:
-    has_module()  # Skips the test where there is no MPI.
-    check_examples(tmp_path, "mpi4py", alone, 2, 1000)
+def test_examples_by_two_ranks(tmp_path: Path, each_way: str, alone: dict[str, str]) -> None:
+    check_examples(tmp_path, each_way, alone, 2)
 
 
 def test_examples_by_four_ranks(tmp_path: Path, way: str, alone: dict[str, str]) -> None:
-    check_examples(tmp_path, way, alone, 4)
+    """With letters that go in pieces."""
+    check_examples(tmp_path, way, alone, 4, 1000)
 
 
 def check_examples(
@@ -102,10 +97,10 @@ def test_a_run_writes_and_tells_once(tmp_path: Path, each_way: str) -> None:
     [
         (CASE.replace("8 ms", "8 parsec"), (), 'run.end_time = "8 parsec" has the unit'),
         (CASE.replace("cfl = 0.3", "time_step = 1.0"), (), "larger than the largest stable step"),
-        (GRAINS, (), "which is no finite number"),
+        pytest.param(GRAINS, (), "which is no finite number", marks=pytest.mark.slow),
         (TINY, (), "holds no particle: it measures"),
-        (CASE, ("--out", "case.toml"), "case.toml"),
-        (CASE, ("--resume",), "there is no checkpoint"),
+        pytest.param(CASE, ("--out", "case.toml"), "case.toml", marks=pytest.mark.slow),
+        pytest.param(CASE, ("--resume",), "there is no checkpoint", marks=pytest.mark.slow),
     ],
 )
 def test_a_mistake_is_told_once(
@@ -127,15 +122,15 @@ def test_so_many_ranks_that_they_would_take_all_memory(tmp_path: Path, way: str)
 
 def test_ctrl_c_and_any_number_of_ranks_goes_on(tmp_path: Path, way: str) -> None:
     write(tmp_path, CASE.replace('"10 mm"', '"5 mm"'))
-    assert run(way, tmp_path, "case.toml", "--out", "straight", "--no-pictures").returncode == 0
+    assert mpm3dpp("run", "case.toml", "--out", "straight", cwd=tmp_path).returncode == 0
     words = command("run", "case.toml", "--out", "out", "--no-pictures", "--ranks", 3)
     with subprocess.Popen(words, cwd=tmp_path, env=environment(way)) as job:
         wait_for((tmp_path / "out" / "history.csv").exists)
         job.send_signal(signal.SIGINT)
         assert job.wait(60) == 130
-    for ranks in (2, 1):
-        more = ("--resume", "--no-pictures", "--ranks", ranks)
-        assert run(way, tmp_path, "case.toml", "--out", "out", *more).returncode == 0
+    on = ("case.toml", "--out", "out", "--resume")
+    assert run(way, tmp_path, *on, "--ranks", 2).returncode == 0
+    assert mpm3dpp("run", *on, cwd=tmp_path).returncode == 0
     found = [json.loads((tmp_path / name / "manifest.json").read_text()) for name in BOTH]
     assert found[0]["result_hash"] == found[1]["result_hash"]
 

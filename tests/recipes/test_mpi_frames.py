@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,12 @@ def parts(folder: Path, frame: int) -> list[str]:
     return sorted(path.name for path in (folder / "results.frames").glob(f"{frame:06d}*.h5"))
 
 
+def by(ranks: int, way: str, folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    if ranks == 1:
+        return mpm3dpp("run", *PLAIN, *words, cwd=folder)
+    return run(way, folder, *PLAIN, *words, "--ranks", ranks)
+
+
 def same_frames(some: Path, others: Path) -> None:
     a, b = open_results(some), open_results(others)
     assert len(a) == len(b) > 2 and a.fields == b.fields
@@ -36,8 +43,8 @@ def test_readers_see_no_difference(tmp_path: Path, way: str) -> None:
     """Ours, and VTK's, which reads the file that tells where the frames are."""
     pytest.importorskip("vtkmodules")
     write(tmp_path, TEXT)
-    assert run(way, tmp_path, *PLAIN, "--out", "one").returncode == 0
-    done = run(way, tmp_path, *PLAIN, "--out", "three", "--ranks", 3)
+    assert by(1, way, tmp_path, "--out", "one").returncode == 0
+    done = by(3, way, tmp_path, "--out", "three")
     assert done.returncode == 0, done.stderr
     one, three = tmp_path / "one", tmp_path / "three"
     assert parts(one, 1) == ["000001.h5"]
@@ -80,27 +87,26 @@ def test_any_number_of_ranks_goes_on_with_the_frames(tmp_path: Path, way: str) -
     ways = {"one": (1, 1), "out": (3, 2)}
     write(tmp_path, text.replace('"8 ms"', '"4 ms"'))
     for name, (ranks, _) in ways.items():
-        assert run(way, tmp_path, *PLAIN, "--out", name, "--ranks", ranks).returncode == 0
+        assert by(ranks, way, tmp_path, "--out", name).returncode == 0
     write(tmp_path, text)
     part = tmp_path / "out" / "results.frames" / "000001.2.h5"
     whole = part.read_bytes()
-    on = (*PLAIN, "--out", "out", "--resume", "--ranks", 2)
+    on = (*PLAIN, "--out", "out", "--resume")
     part.write_bytes(whole[:-1])
-    done = run(way, tmp_path, *on)
+    done = mpm3dpp("run", *on, cwd=tmp_path)
     assert done.returncode == 2 and "frame 1 is damaged" in one_sentence(done.stderr)
     part.unlink()
-    done = run(way, tmp_path, *on)
+    done = mpm3dpp("run", *on, cwd=tmp_path)
     assert done.returncode == 2 and "frame 1 is missing" in one_sentence(done.stderr)
     part.write_bytes(whole)
     for name, (_, ranks) in ways.items():
-        more = ("--out", name, "--resume", "--ranks", ranks)
-        done = run(way, tmp_path, *PLAIN, *more)
+        done = by(ranks, way, tmp_path, "--out", name, "--resume")
         assert done.returncode == 0, done.stderr
     assert [len(parts(tmp_path / "out", k)) for k in (1, 6)] == [3, 2]
     same_frames(tmp_path / "one", tmp_path / "out")
 
 
-@pytest.mark.parametrize("rank", [0, 2])
+@pytest.mark.parametrize("rank", [pytest.param(0, marks=pytest.mark.slow), 2])
 def test_a_full_disk_of_one_rank(tmp_path: Path, way: str, rank: int) -> None:
     """A sentence, and the frames before it stay."""
     write(tmp_path, TEXT)

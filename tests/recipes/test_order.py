@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from cases import BASES, SCHEMES, everything
+from cases import each_numerics, everything
 from mpm3dpp import Simulation, _core
 from mpm3dpp.bench import cases as bench
 from mpm3dpp.io.result_hash import result_hash
@@ -22,8 +22,7 @@ def digest(core: Any, steps: int) -> str:
     return result_hash(core) + core.history().tobytes().hex()
 
 
-@pytest.mark.parametrize("basis", BASES)
-@pytest.mark.parametrize("scheme", SCHEMES)
+@each_numerics
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_everything(tmp_path: Path, dimension: int, scheme: str, basis: str) -> None:
     case = everything(tmp_path, dimension, scheme, basis, "slip")

@@ -110,7 +110,7 @@ def slow(*values: Any) -> Any:
 
 @pytest.mark.parametrize(
     ("text", "steps"),
-    [(RINGS, 1800), (GRAINS, 1500), (IMPACT, 600)],
+    [(RINGS, 1300), (GRAINS, 800), (IMPACT, 600)],
     ids=["two rings", "fifty grains", "impact with erosion"],
 )
 @pytest.mark.parametrize("basis", [slow("gimp"), "quadratic_bspline"])
@@ -166,7 +166,7 @@ def test_another_world_is_the_same_with_affine_transfers(text: str, steps: int, 
 
 @pytest.mark.parametrize(
     ("text", "steps"),
-    [(RINGS, 1500), (GRAINS, 750), (IMPACT, 500)],
+    [slow(RINGS, 1500), (GRAINS, 750), (IMPACT, 500)],
     ids=["two rings", "fifty grains", "impact with erosion"],
 )
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cases import BASES, CELL, SCHEMES, block, everything, materials, three_blocks
+from cases import CELL, block, each_numerics, everything, materials, three_blocks
 from mpm3dpp import Case, Contact, Grid, Run, Simulation
 from mpm3dpp.io.result_hash import result_hash
 
@@ -46,8 +46,7 @@ def check(case: Case, folder: Path, steps: int, threads: tuple[int, int] = (1, 2
     return again
 
 
-@pytest.mark.parametrize("basis", BASES)
-@pytest.mark.parametrize("scheme", SCHEMES)
+@each_numerics
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_everything(tmp_path: Path, dimension: int, scheme: str, basis: str) -> None:
     for left, travel in (("absorbing", 0.0), ("slip", 0.05)):

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cases import BASES, CELL, SCHEMES, three_blocks
+from cases import BASES, CELL, SCHEMES, each_numerics, three_blocks
 from mpm3dpp import Simulation
 from mpm3dpp.io.result_hash import result_hash
 from outcomes import different, outcome, steps_of
@@ -14,7 +14,8 @@ from outcomes import different, outcome, steps_of
 CASES = [(d, scheme, basis) for d in (2, 3) for scheme in SCHEMES for basis in BASES]
 
 
-@pytest.mark.parametrize(("dimension", "scheme", "basis"), CASES)
+@each_numerics
+@pytest.mark.parametrize("dimension", [2, 3])
 def test_any_number_of_threads(dimension: int, scheme: str, basis: str) -> None:
     case = three_blocks(dimension, scheme, grid={"basis": basis})
     steps = steps_of(dimension, scheme, basis)

@@ -67,7 +67,10 @@ def settle(sim: Simulation) -> dict[str, np.ndarray]:
 
 @pytest.mark.parametrize(
     ("dimension", "scheme", "basis"),
-    [*((2, scheme, basis) for scheme in SCHEMES for basis in BASES), (3, "musl", "gimp")],
+    [
+        *((2, scheme, basis) for scheme in SCHEMES for basis in BASES),
+        pytest.param(3, "musl", "gimp", marks=pytest.mark.slow),
+    ],
 )
 def test_a_column_begins_at_rest(scheme: str, basis: str, dimension: int) -> None:
     """sigma_yy = -rho g (H - y) within 1 % of the largest, and nothing moves from there on."""

@@ -137,13 +137,19 @@ void set_state(Simulation<D>& simulation, int number, const std::string& column,
   Body<D>& b = simulation.domain.body_at(number);
   const ColumnInfo& info = simulation.domain.pool_of(b).columns.info(column);
   const Share share = b.share();
-  const bool of_all = values.size() == b.count;
-  if (info.components != 1 || (!of_all && values.size() != share.count()))
-    throw std::invalid_argument(column + ": a state that is set must be (n,)");
+  const auto width = static_cast<std::size_t>(info.components);
+  const bool of_all = values.size() == b.count * width;
+  if (!of_all && values.size() != share.count() * width)
+    throw std::invalid_argument(column + ": a state that is set must be (n,) or (n, components)");
   check_finite(values, column);
   if (!b.given) return;
-  b.given->states.emplace_back(
-      info.first, of_all ? share.of(values, 1) : std::vector(values.begin(), values.end()));
+  const std::vector<double> own =
+      of_all ? share.of(values, width) : std::vector(values.begin(), values.end());
+  for (std::size_t c = 0; c < width; ++c) {
+    std::vector<double> component(own.size() / width);
+    for (std::size_t i = 0; i < component.size(); ++i) component[i] = own[i * width + c];
+    b.given->states.emplace_back(info.first + static_cast<int>(c), std::move(component));
+  }
 }
 
 template <int D>

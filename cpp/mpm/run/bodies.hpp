@@ -33,8 +33,9 @@ template <int D>
 int add_slice(Simulation<D>& simulation, const std::string& name, int material, std::size_t count,
               std::size_t first, std::span<const double> positions,
               std::span<const double> velocities, double volume);
-/// Values of a state column of a body, one component, in the order in which the user gave the
-/// particles, of all or of those that this rank was given; before prepare().
+/// Values of a column of a body, its stress or a state, (n, components) row by row in the order in
+/// which the user gave the particles, of all or of those that this rank was given; before
+/// prepare().
 template <int D>
 void set_state(Simulation<D>& simulation, int body, const std::string& column,
                std::span<const double> values);

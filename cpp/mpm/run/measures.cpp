@@ -39,11 +39,26 @@ std::array<double, 3> momentum(const Domain<D>& domain) {
 }
 
 template <int D>
+double energy_at_start(const ParticlePool<D>& pool, const Body<D>& body, std::uint32_t row) {
+  const double volume = pool.volume()[row];
+  if (pool.at.energy >= 0) return pool.columns.component(pool.at.energy)[row] * volume;
+  Sym<double, D> stress;
+  for (int c = 0; c < Sym<double, D>::size; ++c) stress.c[c] = pool.stress(c)[row];
+  const double equivalent = von_mises(stress), mean = trace(stress) / 3.0;
+  if (equivalent == 0.0 && mean == 0.0) return 0.0;
+  const double rho = body.initial_density, G = std::pow(body.shear_impedance, 2) / rho;
+  const double K = std::pow(body.pressure_impedance, 2) / rho - 4.0 / 3.0 * G;
+  return volume * (0.5 * mean * mean / K + equivalent * equivalent / (6.0 * G));
+}
+
+template <int D>
 double initial_internal_energy(const Domain<D>& domain) {
   ExactSum total;
-  domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
-    if (of.at.energy >= 0) total.add(of.columns.component(of.at.energy)[row] * of.volume()[row]);
-  });
+  for (const Patch<D>& patch : domain.grid.patches) {
+    const ParticlePool<D>& pool = domain.pool_of(patch);
+    for (const std::uint32_t row : pool.rows(patch))
+      total.add(energy_at_start(pool, domain.body_of(patch), row));
+  }
   all_sum(*domain.grid.partition.comm, {&total, 1});
   return total.value();
 }
@@ -161,6 +176,8 @@ template double kinetic_energy<2>(const Domain<2>&);
 template double kinetic_energy<3>(const Domain<3>&);
 template std::array<double, 3> momentum<2>(const Domain<2>&);
 template std::array<double, 3> momentum<3>(const Domain<3>&);
+template double energy_at_start<2>(const ParticlePool<2>&, const Body<2>&, std::uint32_t);
+template double energy_at_start<3>(const ParticlePool<3>&, const Body<3>&, std::uint32_t);
 template double initial_internal_energy<2>(const Domain<2>&);
 template double initial_internal_energy<3>(const Domain<3>&);
 template std::size_t particle_count<2>(const Domain<2>&);

@@ -66,11 +66,10 @@ void start_ledger(Domain<D>& domain) {
   ledger.angular.prescribed_start = angular.prescribed;
   for (const Patch<D>& patch : domain.grid.patches) {
     const ParticlePool<D>& pool = domain.pool_of(patch);
-    if (pool.at.energy < 0) continue;
     PartEnergies& part =
         domain.part_energies[domain.group_of[static_cast<std::size_t>(patch.body)]];
     for (const std::uint32_t row : pool.rows(patch))
-      part.add({pool.columns.component(pool.at.energy)[row] * pool.volume()[row], 0.0, 0.0});
+      part.add({energy_at_start(pool, domain.body_of(patch), row), 0.0, 0.0});
   }
   ledger.start_prescribed(domain.bodies, domain.grid.patches, domain.pools,
                           *domain.grid.partition.comm);

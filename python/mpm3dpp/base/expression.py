@@ -259,12 +259,13 @@ class Field(Vector):
         return {"anyOf": [*form["anyOf"], {"type": "object"}], "description": text}
 
 
-_AT_START = ("x", "y", "z", "r")
-VelocityField = Annotated[tuple[float | Expression, ...], Field("m/s", variables=_AT_START)]
+AT_START = ("x", "y", "z", "r")
+"""Variables of a formula of the place at the start: r is the distance from the mass centre."""
+VelocityField = Annotated[tuple[float | Expression, ...], Field("m/s", variables=AT_START)]
 ForceField = Annotated[
     tuple[float | Expression, ...],
     Field("m/s^2", variables=("x", "y", "z", "X", "Y", "Z", "t")),
 ]
 SpinField = Annotated[
-    tuple[float | Expression, ...], Field("rad/s", scalar=True, variables=_AT_START)
+    tuple[float | Expression, ...], Field("rad/s", scalar=True, variables=AT_START)
 ]

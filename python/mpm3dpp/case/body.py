@@ -16,6 +16,7 @@ from mpm3dpp.shapes.base import MaybeShape
 from mpm3dpp.shapes.shells import LATTICE, SHELLS, WAYS, default_way, takes_shells, unmoved
 
 from .grid import Grid
+from .initial import Initial
 from .motion import MaybeMotion
 from .particles import AnyParticles
 
@@ -37,6 +38,7 @@ class Body(CaseModel):
         velocity: initial velocity [m/s], D numbers or formulas of x, y, z, r; default zero.
         angular_velocity: initial spin about the mass centre [rad/s]: one number or formula in 2D,
             three in 3D; default zero. Stored as a tuple.
+        initial: the stress and the state that it begins with; None for none.
         body_force: force per mass beside gravity [m/s^2], D numbers or formulas of the present
             place x, y, z, the place at the start X, Y, Z and the time t; None for none.
         damping: what damps its motion beside its material, in proportion to the mass or locally;
@@ -53,6 +55,7 @@ class Body(CaseModel):
     fill: Annotated[str, Choice(WAYS)] | None = None
     velocity: VelocityField = ()
     angular_velocity: SpinField = ()
+    initial: Initial | None = None
     body_force: ForceField | None = None
     damping: Damping | None = None
     motion: MaybeMotion = None

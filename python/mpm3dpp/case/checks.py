@@ -16,6 +16,7 @@ from mpm3dpp.base.outputs import COLUMNS, ON_REQUEST, STANDARD
 from mpm3dpp.base.time_functions import at
 
 from .detonation import check_detonations
+from .initial import check_initial
 from .loads import check_loads
 from .material_checks import check_material
 from .motion import check_motion
@@ -243,6 +244,8 @@ def _check_body(case: Case, body: Body, path: Path) -> Found:
     yield from _check_motion(case, body, path)
     if body.motion is not None:
         yield from check_motion(case, body, path)
+    if body.material in case.material:
+        yield from check_initial(case, body, path)
     if body.particles is not None and body.particles.velocities is not None:
         given = [name for name in ("velocity", "angular_velocity") if any(getattr(body, name))]
         for name in [*given, *(["motion"] if body.motion is not None else [])]:

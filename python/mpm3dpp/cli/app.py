@@ -33,6 +33,7 @@ from .options import (
     Units,
     print_notes,
 )
+from .study import study
 from .sweep import sweep
 
 if TYPE_CHECKING:
@@ -312,5 +313,6 @@ def reproduce(
 app.command("import")(import_file)
 app.command()(export)
 app.command()(sweep)
+app.command()(study)
 app.command()(materials)
 app.command("material-test")(material_test)

@@ -4,11 +4,30 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from .options import CaseFile
+
+if TYPE_CHECKING:
+    from mpm3dpp.sweep.sweep import Swept
+
+
+Jobs = Annotated[int, typer.Option("--jobs", "-j", min=1, help="Runs at a time.")]
+RunThreads = Annotated[
+    int | None, typer.Option(min=1, help="Threads of each run; default: the cores shared out.")
+]
+Number = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="A number to compare, such as ball.velocity_x or kinetic; may be repeated. "
+        "All are in the CSV file."
+    ),
+]
+RunPictures = Annotated[
+    bool, typer.Option("--pictures/--no-pictures", help="Draw those of each run.")
+]
 
 
 def sweep(
@@ -23,20 +42,10 @@ def sweep(
         ),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder; default results/NAME_sweep.")] = None,
-    jobs: Annotated[int, typer.Option("--jobs", "-j", min=1, help="Runs at a time.")] = 1,
-    threads: Annotated[
-        int | None, typer.Option(min=1, help="Threads of each run; default: the cores shared out.")
-    ] = None,
-    number: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="A number to compare, such as ball.velocity_x or kinetic; may be repeated. "
-            "All are in sweep.csv."
-        ),
-    ] = None,
-    pictures: Annotated[
-        bool, typer.Option("--pictures/--no-pictures", help="Draw those of each run.")
-    ] = False,
+    jobs: Jobs = 1,
+    threads: RunThreads = None,
+    number: Number = None,
+    pictures: RunPictures = False,
 ) -> None:
     """Run a case with several values of some keys.
 
@@ -47,24 +56,26 @@ def sweep(
     Runs that have been completed before are not made again.
     """
     from mpm3dpp.importers import load_any
-    from mpm3dpp.io.folders import default_folder
+    from mpm3dpp.io.folders import beside_default
     from mpm3dpp.sweep.sweep import run_sweep
 
-    folder = out
-    if folder is None:
-        usual = default_folder(case)
-        folder = usual.with_name(f"{usual.name}_sweep")
-    done = run_sweep(
-        load_any(case)[0],
-        case,
-        values or [],
-        folder,
-        jobs=jobs,
-        threads=threads,
-        numbers=number or [],
-        pictures=pictures,
-        say=lambda text: typer.echo(text, err=True),
+    tell(
+        run_sweep(
+            load_any(case)[0],
+            case,
+            values or [],
+            out or beside_default(case, "sweep"),
+            jobs=jobs,
+            threads=threads,
+            numbers=number or [],
+            pictures=pictures,
+            say=lambda text: typer.echo(text, err=True),
+        )
     )
+
+
+def tell(done: Swept) -> None:
+    """Print what has come of several runs; end with 1 if some have failed."""
     for line in done.lines:
         typer.echo(line)
     for path in done.files:

@@ -55,20 +55,14 @@ def start_velocities(
     spins = any(entry.angular_velocity)
     if not spins and not any(isinstance(value, Expression) for value in entry.velocity):
         return np.array([entry.velocity], dtype=float)
-    if counts is None:
-        arm = positions - mass_centre(positions, volumes, world)
-    else:
-        # In the same way for one grain as for many: they may be made in any groups.
-        sums = np.add.reduceat(positions, np.cumsum(counts) - counts, axis=0)
-        arm = positions - np.repeat(sums / counts[:, None], counts, axis=0)
     dimension = positions.shape[1]
-    places = dict(zip("xyz", positions.T, strict=False))
-    places["r"] = np.sqrt((arm**2).sum(axis=1))
+    arm = arms_of(positions, volumes, counts, world)
+    places = places_of(positions, arm)
 
     def values(name: str) -> list[Any]:
         path = (*case.part_path(part), name)
         given = enumerate(getattr(entry, name))
-        return [_value(case, value, places, (*path, index)) for index, value in given]
+        return [value_at(case, value, places, (*path, index)) for index, value in given]
 
     velocity = np.stack(np.broadcast_arrays(*values("velocity")), axis=-1)
     velocity = velocity.reshape(-1, dimension).copy()
@@ -80,7 +74,25 @@ def start_velocities(
     return velocity + np.cross(np.stack(np.broadcast_arrays(*spin), axis=-1), arm)
 
 
-def _value(
+def arms_of(
+    positions: Array, volumes: Array, counts: NDArray[np.int64] | None, world: Any = None
+) -> Array:
+    """Return the ways from the mass centre of its body to each particle [m]; see above."""
+    if counts is None:
+        return positions - mass_centre(positions, volumes, world)
+    # In the same way for one grain as for many: they may be made in any groups.
+    sums = np.add.reduceat(positions, np.cumsum(counts) - counts, axis=0)
+    return positions - np.repeat(sums / counts[:, None], counts, axis=0)
+
+
+def places_of(positions: Array, arm: Array) -> dict[str, Array]:
+    """Return the variables of formulas at the start, by name."""
+    places = dict(zip("xyz", positions.T, strict=False))
+    places["r"] = np.sqrt((arm**2).sum(axis=1))
+    return places
+
+
+def value_at(
     case: Case, value: float | Expression, places: Mapping[str, Array], path: KeyPath
 ) -> float | Array:
     """Return a number, or the values of a formula at particles, shape (n,)."""

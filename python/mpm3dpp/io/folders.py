@@ -31,6 +31,12 @@ def default_folder(case_file: Path) -> Path:
     return Path("results") / stem
 
 
+def beside_default(case_file: Path, what: str) -> Path:
+    """Return `results/NAME_WHAT`, for several runs of a case."""
+    usual = default_folder(case_file)
+    return usual.with_name(f"{usual.name}_{what}")
+
+
 # What a run writes beside the frames and the history, which it begins anew.
 _PICTURES = (
     *("frame.png", "energies.png", "probes.png", "first_contact.png", "force_network.png"),

@@ -16,21 +16,28 @@ from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import lighting_times
 from mpm3dpp.case.loads import add_load, pieces
 from mpm3dpp.case.motion import Motion
+from mpm3dpp.fill.initial import Overburden, start_columns
 from mpm3dpp.fill.parts import FilledPart, Particles
 from mpm3dpp.fill.slices import near_points
 from mpm3dpp.ranks.world import World, share_of
 
 
 def add_part(
-    core: Any, case: Case, part: FilledPart, materials: dict[str, int], world: World | None
+    core: Any,
+    case: Case,
+    part: FilledPart,
+    materials: dict[str, int],
+    above: Overburden | None,
+    world: World | None,
 ) -> None:
-    """Add the bodies of an entry, with their motion, loads and times at which they are lit.
+    """Add the bodies of an entry, with their motion, loads, and what they begin with.
 
     Args:
         core: the core's simulation.
         case: of which the entry is.
         part: the entry.
         materials: their numbers in the core.
+        above: what presses on them, where a stress is geostatic.
         world: processes that each give a share of the grains, or a slice of a body.
     """
     material = materials[part.material]
@@ -46,6 +53,8 @@ def add_part(
     motion = case.body[part.name].motion
     if motion is not None:
         _set_motion(core, number, motion, motion.middle(positions, volumes, shared))
+    for name, values in start_columns(case, part, positions, volumes, above, shared).items():
+        core.set_state(number, name, values)
     arrival = lighting_times(case, part.name, positions)
     if arrival is not None:
         core.set_state(number, "lighting_time", arrival)

@@ -17,6 +17,7 @@ from mpm3dpp.base.machine import thread_count
 from mpm3dpp.case.case import Case
 from mpm3dpp.fill.advisories import notes, overlap
 from mpm3dpp.fill.build import build, warnings
+from mpm3dpp.fill.initial import overburden
 from mpm3dpp.fill.point_warnings import point_warnings
 from mpm3dpp.io.checkpoint import read_about, restore_checkpoint, write_checkpoint
 from mpm3dpp.ranks.world import World
@@ -98,10 +99,11 @@ class Simulation:
         self.core = _core.Simulation(settings, world.for_core() if world else None)
         used = dict.fromkeys(part.material for part in entries)
         numbers = {name: self._add_material(name) for name in used}
+        above = overburden(case, filled, world)
         del filled
         entries.reverse()
         while entries:  # What the core has taken is dropped, so that memory holds it once.
-            add_part(self.core, case, entries.pop(), numbers, world)
+            add_part(self.core, case, entries.pop(), numbers, above, world)
         self.is_recorded = False
         self._forced = set(arguments.texts("forced", forced))
         add_actions(self.core, case, self._numbers, forced)

@@ -10,6 +10,7 @@ from mpm3dpp.base.expression import Expression
 from mpm3dpp.base.time_functions import TimeFunction, highest
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.grid import FACES, GridCoarsening
+from mpm3dpp.case.initial import GEOSTATIC, Initial
 from mpm3dpp.plots.labels import scaled
 
 Quantity = float | TimeFunction | Expression
@@ -116,6 +117,9 @@ def condition_lines(case: Case) -> list[str]:
         if part.body_force is not None:
             force = vector_in_words(part.body_force, "m/s^2")
             lines.append(f"body force on {name}: {force}")
+    for name, body in case.body.items():
+        if begins := _initial_in_words(body.initial):
+            lines.append(f"at the start of {name}: {begins}")
     for name in case.materials_used:
         if beta := case.material[name].beta:
             lines.append(f"damping of {name}: {_number(beta, 's')} times its stiffness")
@@ -128,3 +132,16 @@ def condition_lines(case: Case) -> list[str]:
         names = pair.bodies or [f"all {name}" for name in pair.materials or ()]
         lines.append(f"friction: {pair.friction:g} between {' and '.join(names)}")
     return lines
+
+
+def _initial_in_words(initial: Initial | None) -> str:
+    """Return what a body begins with; "" for nothing."""
+    if initial is None:
+        return ""
+    words = [f"{column} by the case" for column in initial.state]
+    if initial.stress == GEOSTATIC:
+        K0 = "nu / (1 - nu)" if initial.K0 is None else f"{initial.K0:g}"
+        words.insert(0, f"geostatic stress, K0 {K0}")
+    elif initial.stress is not None:
+        words.insert(0, "a stress by the case")
+    return ", ".join(words)

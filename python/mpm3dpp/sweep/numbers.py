@@ -74,4 +74,6 @@ def chosen(case: Case, names: Sequence[str]) -> list[str]:
     if names:
         return list(dict.fromkeys(names))
     free = [name for name in bodies if getattr(case.parts()[name], "motion", None) is None]
-    return [*(f"{name}.speed" for name in free[:6]), "kinetic", "internal", "friction_work"]
+    shown = [*(f"{name}.speed" for name in free[:6]), "kinetic", "internal"]
+    touching = case.contact_enabled and (len(case.body) > 1 or case.grains)
+    return [*shown, "friction_work"] if touching else shown

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import cycle
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,10 @@ from mpm3dpp.plots.style import PALETTE, new_figure, save, styled
 from .numbers import unit_of
 from .plan import Planned
 from .runs import Outcome
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _MOST = 6  # panels
 
@@ -40,26 +45,33 @@ def save_sweep(
     if not curves:
         return None
     with styled():
-        shown = list(names)[:_MOST]
-        columns = 1 if len(shown) == 1 else 2
-        rows = -(-len(shown) // columns)
-        figure = new_figure(4.5 * columns, 2.7 * rows + 0.3)
-        grid = figure.subplots(rows, columns, squeeze=False)
-        for axes, name in zip(grid.flat, shown, strict=False):
+        figure, panels = panels_of(names)
+        for name, axes in panels.items():
             for (label, points), colour in zip(curves.items(), cycle(PALETTE), strict=False):
                 there = sorted((x, numbers[name]) for x, numbers in points if name in numbers)
                 x, y = np.array(there).reshape(-1, 2).T
                 axes.plot(x, y, "o-", color=colour, markersize=3.5, label=short(label, 36))
-            axes.set_ylabel(f"{name} [{of}]" if (of := unit_of(name)) else name)
             axes.set_xlabel(f"{key} [{unit}]" if unit else key)
-            axes.grid(True)
             if scale is None:
                 axes.set_xticks(places, [short(value, 14) for value in values])
         if len(curves) > 1:
-            grid.flat[0].legend()
-        for axes in list(grid.flat)[len(shown) :]:
-            axes.set_visible(False)
+            next(iter(panels.values())).legend()
         return save(figure, path)
+
+
+def panels_of(names: Sequence[str]) -> tuple[Figure, dict[str, Axes]]:
+    """Return a figure with a panel for each of the first numbers, their axes named."""
+    shown = list(names)[:_MOST]
+    columns = 1 if len(shown) == 1 else 2
+    rows = -(-len(shown) // columns)
+    figure = new_figure(4.5 * columns, 2.7 * rows + 0.3)
+    grid = list(figure.subplots(rows, columns, squeeze=False).flat)
+    for axes, name in zip(grid, shown, strict=False):
+        axes.set_ylabel(f"{name} [{of}]" if (of := unit_of(name)) else name)
+        axes.grid(True)
+    for axes in grid[len(shown) :]:
+        axes.set_visible(False)
+    return figure, dict(zip(shown, grid, strict=False))
 
 
 def _scale(values: Sequence[str]) -> tuple[list[float], str] | None:

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a body begins with beside its velocity: stress and state (`initial` of a body)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Field
+from pydantic_core import PydanticCustomError
+
+from mpm3dpp.base.errors import Path, below, nearest, report, violation
+from mpm3dpp.base.expression import AT_START, Expression
+from mpm3dpp.base.expression import Field as Components
+from mpm3dpp.base.model import CaseModel
+from mpm3dpp.base.time_functions import at
+from mpm3dpp.base.units import Quantity
+from mpm3dpp.materials import catalogue, state_columns
+from mpm3dpp.materials.catalogue import KINDS
+
+if TYPE_CHECKING:
+    from .body import Body
+    from .case import Case
+
+GEOSTATIC = "geostatic"
+PARTS = {2: ("xx", "yy", "zz", "xy"), 3: ("xx", "yy", "zz", "yz", "xz", "xy")}
+"""Components of the stress, in the order of the core."""
+
+
+class _Stress(Components):
+    """The word `geostatic`, or four components in 2D and six in 3D."""
+
+    def parse(self, value: Any) -> Any:
+        if isinstance(value, str) and value == GEOSTATIC:
+            return value
+        if isinstance(value, str) or not hasattr(value, "__len__") or len(value) not in (4, 6):
+            rule = f'must be "{GEOSTATIC}", or four numbers in 2D and six in 3D'
+            order = "; ".join(f"{', '.join(parts)} in {D}D" for D, parts in PARTS.items())
+            raise violation(rule, f"the order is {order}", value=value)
+        found, mistakes = [], []
+        for index, item in enumerate(value):
+            try:
+                found.append(self.item(item))
+            except ValueError as error:
+                mistakes += below(error, (index,))
+        report(mistakes)
+        return tuple(found)
+
+
+class _State(Quantity):
+    """Values of state columns by their names, numbers or formulas."""
+
+    def parse(self, value: Any) -> Any:
+        if not isinstance(value, Mapping):
+            raise violation("must be a table", "write { temperature = 400 }", value=value)
+        units = _units()
+        found, mistakes = {}, []
+        for name, given in value.items():
+            try:
+                if name not in units:
+                    raise violation("is no state of a material", nearest(str(name), units))
+                found[name] = Components(units[name], variables=AT_START).item(given)
+            except (PydanticCustomError, ValueError) as error:
+                mistakes += below(error, (str(name),))
+        report(mistakes)
+        return found
+
+
+def _units() -> dict[str, str]:
+    """Return the units of all states of one number, by name."""
+    models = (model for kind in KINDS for model in catalogue(kind).values())
+    states = (state for model in models for state in model.state)
+    return {s.name: "" if s.unit == "1" else s.unit for s in states if s.name not in _TENSORS}
+
+
+_TENSORS = ("left_cauchy_green", "strain")
+
+
+StressField = Annotated[str | tuple[float | Expression, ...], _Stress("Pa", variables=AT_START)]
+
+
+class Initial(CaseModel):
+    """`initial` of a body: the stress and the state that it begins with.
+
+    Attributes:
+        stress: "geostatic", of the weight of all that stands above, as gravity is at t = 0; or its
+            components [Pa], tension positive: xx, yy, zz, xy in 2D and xx, yy, zz, yz, xz, xy in
+            3D, numbers or formulas of x, y, z, r; None for none.
+        K0: of a geostatic stress, the horizontal over the vertical one; default nu / (1 - nu), as
+            in a layer that cannot widen.
+        state: state columns of its material by name, such as `{ temperature = "500 K" }`, numbers
+            or formulas of x, y, z, r.
+    """
+
+    stress: StressField | None = None
+    K0: Annotated[float, Quantity("", ">= 0")] | None = None
+    state: Annotated[dict[str, float | Expression], _State("")] = Field(default_factory=dict)
+
+
+def check_initial(case: Case, body: Body, path: Path) -> Iterator[PydanticCustomError]:
+    """Find what `initial` of a body has that the body, its material or gravity does not."""
+    initial = body.initial
+    if initial is None:
+        return
+    path, D = (*path, "initial"), case.grid.dimension
+    if body.motion is not None or case.material[body.material].strength.model == "rigid":
+        yield violation("is of a body that does not deform", "remove it", path=path)
+        return
+    yield from _formulas(initial, D, path)
+    material = case.material[body.material]
+    known = [name for name in state_columns(material.models) if name not in _TENSORS]
+    for name in initial.state:
+        if name not in known:
+            rule = f'is no state of the material "{body.material}"'
+            remedy = f"it has {', '.join(known) or 'none'}"
+            yield violation(rule, remedy, path=(*path, "state", name))
+    if initial.stress is None:
+        if initial.K0 is not None:
+            rule = "is for a geostatic stress"
+            yield violation(rule, f'add stress = "{GEOSTATIC}"', path=(*path, "K0"))
+        return
+    to_stress = (*path, "stress")
+    if material.eos is not None:
+        rule = f"has its pressure from the equation of state {material.eos.model}"
+        yield violation(rule, "remove the stress, or the eos", path=to_stress)
+    if "left_cauchy_green" in state_columns(material.models):
+        rule = f"has its stress from its strain, as {material.strength.model} is"
+        yield violation(rule, "give another strength, such as elastic", path=to_stress)
+    if initial.stress != GEOSTATIC:
+        if len(initial.stress) != len(PARTS[D]):
+            rule = f"must have {len(PARTS[D])} numbers in {D}D"
+            yield violation(rule, f"the order is {', '.join(PARTS[D])}", path=to_stress)
+        return
+    if sum(at(g, 0.0) != 0.0 for g in case.run.gravity) != 1:
+        rule = "needs gravity along one axis at t = 0"
+        example = ", ".join(["0"] * (D - 1) + ['"-9.81 m/s^2"'])
+        yield violation(rule, f"give run.gravity = [{example}]", path=to_stress)
+
+
+def _formulas(initial: Initial, D: int, path: Path) -> Iterator[PydanticCustomError]:
+    """Find formulas of z in 2D."""
+    stress = () if isinstance(initial.stress, str) else initial.stress or ()
+    given = [((*path, "stress", k), value) for k, value in enumerate(stress)]
+    given += [((*path, "state", name), value) for name, value in initial.state.items()]
+    for where, value in given:
+        if isinstance(value, Expression) and D == 2 and "z" in value.variables:
+            rule = "is a formula of z, and grid.dimension = 2"
+            yield violation(rule, "leave z out", value=value.text, path=(*where, "expression"))

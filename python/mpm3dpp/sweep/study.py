@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A case on ever finer grids: what its numbers converge to, and how sure they are."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from pathlib import Path
+
+from mpm3dpp.base.disk import make_folder, replacing
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.case import Case
+
+from .numbers import chosen, unit_of
+from .plan import plan_of
+from .richardson import Converged, convergence
+from .runs import Outcome, Say, run_all
+from .study_picture import save_study
+from .sweep import Swept
+
+KEY = "grid.cell_size"
+_LEAST = 3  # grids, of which an order is told
+_NOT_COMPARED = ("wall_time", "steps")
+
+
+def run_study(
+    case: Case,
+    file: Path,
+    cells: int,
+    ratio: float,
+    finest: str | None,
+    out: Path,
+    jobs: int,
+    threads: int | None,
+    numbers: Sequence[str],
+    pictures: bool,
+    say: Say,
+) -> Swept:
+    """Run a case on some grids; tell order, extrapolated value and uncertainty of its numbers.
+
+    Args:
+        case: of the file.
+        file: the case file.
+        cells: how many sizes of cells, three at least.
+        ratio: of a size to the next, more than 1.
+        finest: the smallest size, as a case file has it; by default that of the case.
+        out: the folder: of each run one, `study.csv` and `study.png`.
+        jobs: runs at a time.
+        threads: of each run.
+        numbers: that the table and the picture show, see `numbers.numbers_of`.
+        pictures: whether each run draws its own.
+        say: tells the user as runs end.
+
+    Raises:
+        CaseError: a mistake in the sizes or numbers, before any run begins; the disk is full.
+    """
+    if cells < _LEAST:
+        raise CaseError("is too few to tell an order", "give 3 or more", key="--cells", value=cells)
+    if not 1.0 < ratio < 100.0:
+        raise CaseError("must be between 1 and 100", "give 2", key="--ratio", value=ratio)
+    changed = case if finest is None else case.with_({KEY: finest})
+    smallest = changed.grid.cell_size
+    sizes = [smallest * ratio**k for k in reversed(range(cells))]
+    plan = plan_of(case, [f"{KEY}={','.join(map(repr, sizes))}"], out)
+    names = chosen(case, numbers)
+    make_folder(out)
+    outcomes = run_all(plan, file, jobs, threads, pictures, say)
+    failed = sum(not outcome.numbers for outcome in outcomes)
+    if failed:
+        lines = [
+            f"{planned.words()}: {outcome.said}"
+            for planned, outcome in zip(plan, outcomes, strict=True)
+            if not outcome.numbers
+        ]
+        return Swept([*lines, "no order is told: every grid must come to its end"], [], failed)
+    told = {name: convergence(_values(outcomes, name), ratio) for name in _all_names(outcomes)}
+    table = out / "study.csv"
+    _write_table(sizes, outcomes, told, table)
+    picture = save_study(sizes, outcomes, {name: told[name] for name in names}, out / "study.png")
+    return Swept(_lines(sizes, outcomes, {name: told[name] for name in names}), [table, picture], 0)
+
+
+def _all_names(outcomes: Sequence[Outcome]) -> list[str]:
+    everywhere = set.intersection(*(set(outcome.numbers) for outcome in outcomes))
+    return [x for x in outcomes[-1].numbers if x in everywhere and x not in _NOT_COMPARED]
+
+
+def _values(outcomes: Sequence[Outcome], name: str) -> list[float]:
+    return [outcome.numbers[name] for outcome in outcomes]
+
+
+def _write_table(
+    sizes: Sequence[float], outcomes: Sequence[Outcome], told: dict[str, Converged], path: Path
+) -> None:
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    of_sizes = [f"cell_size={size!r}" for size in sizes]
+    rows.writerow(["number", "unit", *of_sizes, "order", "extrapolated", "uncertainty", "said"])
+    for name, found in told.items():
+        told_of = (found.order, found.extrapolated, found.uncertainty)
+        cells = ["" if x is None else repr(x) for x in told_of]
+        values = map(repr, _values(outcomes, name))
+        rows.writerow([name, unit_of(name), *values, *cells, found.said])
+    with replacing(path) as file:
+        file.write(text.getvalue().encode())
+
+
+def _lines(
+    sizes: Sequence[float], outcomes: Sequence[Outcome], told: dict[str, Converged]
+) -> list[str]:
+    """Return the lines of the table for the terminal, a number each."""
+    head = ["cells [mm]", *(f"{1e3 * size:.5g}" for size in sizes)]
+    rows = [[*head, "order", "extrapolated", "uncertainty"]]
+    for name, found in told.items():
+        unit = unit_of(name)
+        cells = [f"{value:.6g}" for value in _values(outcomes, name)]
+        order = found.said if found.order is None else f"{found.order:.2f}"
+        cells.append(order)
+        for number, digits in ((found.extrapolated, 6), (found.uncertainty, 2)):
+            cells.append("" if number is None else f"{number:.{digits}g}")
+        rows.append([f"{name} [{unit}]" if unit else name, *cells])
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(map(str.rjust, row, widths)).rstrip() for row in rows]
