@@ -5,7 +5,8 @@ list(REMOVE_ITEM unit_sources "${CMAKE_CURRENT_SOURCE_DIR}/tests/unit/module.cpp
 add_library(mpm_unit OBJECT ${unit_sources})
 target_include_directories(mpm_unit PUBLIC tests/unit)
 target_link_libraries(mpm_unit PUBLIC mpm_core_${tested_level})
-target_compile_options(mpm_unit PRIVATE $<$<CONFIG:Release>:-O1>)   # half the time; what they test is -O3
+target_compile_options(mpm_unit PRIVATE $<$<CONFIG:Release>:-O1>)
+# (half the time; what is not inlined of the headers may then be their copy, in the tests' binaries)
 
 # Allocations are counted (tests/unit/run/count_allocations.cpp): our calls of an allocating function
 # go through a wrapper.

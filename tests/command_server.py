@@ -2,7 +2,8 @@
 """The command in forks of a process that has its modules loaded: a start of its own takes a second.
 
 Without arguments it is that process: for each line of standard input, a JSON object with `words`,
-`cwd`, `environ`, `out` and `err`, it runs the command, and prints its exit code.
+`cwd`, `environ`, `out` and `err`, it runs the command, and prints its exit code. What modules read
+of the environment when they are loaded is that of the first call.
 """
 
 from __future__ import annotations
@@ -46,7 +47,11 @@ def run(words: list[str], cwd: Path | str, timeout: float) -> subprocess.Complet
             os.killpg(server.pid, signal.SIGKILL)
             _server.cache_clear()
             raise subprocess.TimeoutExpired(words, timeout)
-        code = int(server.stdout.readline())
+        told = server.stdout.readline()
+        if not told:
+            _server.cache_clear()
+            raise RuntimeError(f"the server of commands has ended with {server.wait()}")
+        code = int(told)
         texts = []
         for file in (out, err):
             file.seek(0)
@@ -70,7 +75,7 @@ def _serve() -> bool:
             os.chdir(job["cwd"])
             os.environ.clear()
             os.environ.update(job["environ"])
-            sys.argv[1:] = job["words"]
+            sys.argv[:] = ["mpm3dpp", *job["words"]]
             files = [
                 (os.devnull, os.O_RDONLY),
                 (job["out"], os.O_WRONLY),

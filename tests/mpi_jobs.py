@@ -40,7 +40,7 @@ def has_module() -> bool:
     return told.stdout.strip() != "None"
 
 
-@pytest.fixture(scope="module", params=["module", pytest.param("mpi4py", marks=pytest.mark.slow)])
+@pytest.fixture(scope="module", params=["module", "mpi4py"])
 def each_way(request: pytest.FixtureRequest) -> str:
     """How the core speaks to MPI; skipped where it cannot."""
     if not has_module() and request.param == "module":

@@ -15,6 +15,7 @@ from mpm3dpp.base.damping import Damping, MaterialDamping
 from mpm3dpp.base.rules import requirement
 from mpm3dpp.case import body, case, grid, parts, transfer
 from mpm3dpp.case.detonation import Detonation
+from mpm3dpp.case.initial import Initial
 from mpm3dpp.case.loads import Load
 from mpm3dpp.case.motion import Motion
 from mpm3dpp.case.probe import Probe, ProbeRegion
@@ -49,6 +50,7 @@ TABLES: tuple[tuple[str, type, str], ...] = (
     ("body.NAME", body.Body, ""),
     ("body.NAME.damping", Damping, "Likewise in `grains.NAME`."),
     ("body.NAME.motion", Motion, ""),
+    ("body.NAME.initial", Initial, "[More](../how-to/run-a-case.md#begin-under-stress)."),
     (
         "grains.NAME",
         Grains,

@@ -44,15 +44,7 @@ strength = { elastic = { E = "1 MPa", nu = 0.3 } }
 
 def run(folder: Path, action: str) -> str:
     (folder / "case.toml").write_text(CASE.replace("ACTION", action))
-    line = [
-        "run",
-        str(folder / "case.toml"),
-        "--out",
-        str(folder),
-        "--threads",
-        "1",
-        "--no-pictures",
-    ]
+    line = ["run", str(folder / "case.toml"), "--out", str(folder), "--threads", "1"]
     done = CliRunner().invoke(app, [*line, "--no-pictures"])
     assert done.exit_code == 0, done.output
     return done.output

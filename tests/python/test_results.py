@@ -126,6 +126,9 @@ def test_vtk_reads_every_frame(tmp_path: Path, compression: int) -> None:
         assert (cloud.GetNumberOfPoints(), cloud.GetNumberOfVerts()) == (count, count)
         points = vtk_to_numpy(cloud.GetPoints().GetData())
         np.testing.assert_array_equal(points, frame["position"].astype(np.float32))
+        names = cloud.GetFieldData().GetAbstractArray("body_names")
+        assert [names.GetValue(i) for i in range(names.GetNumberOfValues())] == ["left", "right"]
+        assert cloud.GetFieldData().GetArray("step").GetValue(0) == open_results(tmp_path).steps[k]
         for name in set(frame) - {"position"}:
             expected = frame[name][:, TO_VTK] if name == "stress" else frame[name]
             array = vtk_to_numpy(cloud.GetPointData().GetArray(name))

@@ -11,7 +11,7 @@ import pytest
 
 from commands import CASE, mpm3dpp, one_sentence, write
 from mpm3dpp.io import read_manifest
-from mpm3dpp.sweep.richardson import SAFETY, convergence
+from mpm3dpp.sweep.richardson import CAREFUL, SAFETY, convergence
 
 DOCS = Path(__file__).resolve().parents[2] / "docs" / "how-to"
 
@@ -31,6 +31,7 @@ def test_a_higher_order_than_the_method_s_is_told_and_not_extrapolated_with() ->
     found = convergence([1.0 + h**4 for h in (4.0, 2.0, 1.0)], 2.0)
     assert found.order == pytest.approx(4.0)
     assert found.extrapolated == pytest.approx(2.0 - 15.0 / 3.0)
+    assert found.uncertainty == pytest.approx(CAREFUL * 15.0 / 3.0)
 
 
 @pytest.mark.parametrize(
@@ -39,6 +40,10 @@ def test_a_higher_order_than_the_method_s_is_told_and_not_extrapolated_with() ->
         ([1.0, 2.0, 1.5], "oscillates", 0.5),
         ([1.0, 2.0, 2.0], "oscillates", 0.5),
         ([1.0, 2.0, 4.0], "does not converge", None),
+        ([0.0, 1.0, -9.0], "does not converge", None),
+        ([1.0, 1.0, 2.0], "does not converge", None),
+        ([1.0, 2.0, math.nan], "no number", None),
+        ([math.nan, 1.0, 1.0], "no number", None),
         ([1.0, 2.0, 2.9], "too slow to tell", None),
         ([5.0, 5.0, 5.0], "the same", 0.0),
         ([0.0, 0.0, 0.0], "the same", 0.0),
@@ -88,6 +93,7 @@ def test_a_study(tmp_path: Path) -> None:
         (("--cells", 2), "--cells = 2 is too few to tell an order; give 3 or more"),
         (("--ratio", 1), "--ratio = 1.0 must be between 1 and 100; give 2"),
         (("--finest", "1 kg"), 'grid.cell_size = "1 kg"'),
+        (("--number", "wall_time"), '--number = "wall_time" converges to nothing; give another'),
         (("--number", "left.sped"), 'did you mean "left.speed"'),
     ],
 )
@@ -104,3 +110,13 @@ def test_a_run_that_fails_is_told(tmp_path: Path) -> None:
     done = mpm3dpp(*words, cwd=tmp_path)
     assert done.returncode == 1
     assert "grid.cell_size = 0.001: " in done.stdout and "no order is told" in done.stdout
+
+
+def test_a_box_that_is_no_whole_cells_of_each_size(tmp_path: Path) -> None:
+    box = 'box = { lower = [0, 0], upper = ["160 mm", "80 mm"] }'
+    text = CASE.replace("[run]", f"{box}\n[run]")
+    words = ("study", write(tmp_path, text), "--out", "out", "--ratio", 1.5)
+    done = mpm3dpp(*words, cwd=tmp_path)
+    said = one_sentence(done.stderr)
+    assert done.returncode == 2 and "does not go with cells of 0.0225 m and 0.015 m" in said
+    assert "choose another --ratio" in said

@@ -135,9 +135,9 @@ def test_ctrl_c_and_any_number_of_ranks_goes_on(tmp_path: Path, way: str) -> Non
     assert found[0]["result_hash"] == found[1]["result_hash"]
 
 
-def test_one_that_fails_alone_ends_all(tmp_path: Path, each_way: str) -> None:
+def test_one_that_fails_alone_ends_all(tmp_path: Path, way: str) -> None:
     words = mpiexec(3, PROGRAMS / "one_fails.py", write(tmp_path), 1)
-    done = job(each_way, tmp_path, words)
+    done = job(way, tmp_path, words)
     assert done.returncode != 0
     assert "rank 1 cannot go on, and with it the run: no column is named speed" in done.stderr
 

@@ -221,7 +221,8 @@ def _with_others_slow(runs: Iterable[Run]) -> Iterator[Run]:
     for run in runs:
         fine = run.options.get("cells", 0) >= (200 if run.dimension == 2 else 26)
         seconds = run.make in _SECONDS or fine
-        long = (seconds and run.basis != DEFAULT) or (fine and run.make is bars.five_bars)
+        other = run.basis.partition("~")[0] != DEFAULT
+        long = (seconds and other) or (fine and run.make is bars.five_bars)
         yield replace(run, slow=run.slow or long)
 
 

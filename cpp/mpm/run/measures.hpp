@@ -13,11 +13,11 @@ template <int D>
 double kinetic_energy(const Domain<D>& domain);  // [J]
 template <int D>
 std::array<double, 3> momentum(const Domain<D>& domain);  // [kg m/s]
-/// What the particles' material has at the start, by its equation of state [J].
-/// Of a particle: that of its equation of state, or the elastic one of the stress that it begins
-/// with, V (p^2 / 2K + s:s / 4G) [J].
+/// What the material of a particle has at the start: the energy of its equation of state, or the
+/// elastic one of the stress that it begins with, V (p^2 / 2K + s:s / 4G) [J].
 template <int D>
 double energy_at_start(const ParticlePool<D>& pool, const Body<D>& body, std::uint32_t row);
+/// Of all particles [J].
 template <int D>
 double initial_internal_energy(const Domain<D>& domain);
 template <int D>

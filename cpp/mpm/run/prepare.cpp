@@ -65,11 +65,17 @@ void start_ledger(Domain<D>& domain) {
   ledger.angular.start = angular.all;
   ledger.angular.prescribed_start = angular.prescribed;
   for (const Patch<D>& patch : domain.grid.patches) {
-    const ParticlePool<D>& pool = domain.pool_of(patch);
+    ParticlePool<D>& pool = domain.pool_of(patch);
+    const Body<D>& body = domain.body_of(patch);
     PartEnergies& part =
         domain.part_energies[domain.group_of[static_cast<std::size_t>(patch.body)]];
-    for (const std::uint32_t row : pool.rows(patch))
-      part.add({energy_at_start(pool, domain.body_of(patch), row), 0.0, 0.0});
+    for (const std::uint32_t row : pool.rows(patch)) {
+      const double energy = energy_at_start(pool, body, row);
+      part.add({energy, 0.0, 0.0});
+      if (pool.at.recoverable >= 0 && energy != 0.0)  // what it takes along if it is removed
+        pool.columns.component(pool.at.recoverable)[row] =
+            energy * body.initial_density / pool.mass()[row];
+    }
   }
   ledger.start_prescribed(domain.bodies, domain.grid.patches, domain.pools,
                           *domain.grid.partition.comm);

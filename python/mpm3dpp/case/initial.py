@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -46,6 +47,9 @@ class _Stress(Components):
         report(mistakes)
         return tuple(found)
 
+    def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
+        return {"description": f'`"{GEOSTATIC}"`, or a list of 4 numbers in 2D and 6 in 3D [Pa]'}
+
 
 class _State(Quantity):
     """Values of state columns by their names, numbers or formulas."""
@@ -59,11 +63,26 @@ class _State(Quantity):
             try:
                 if name not in units:
                     raise violation("is no state of a material", nearest(str(name), units))
-                found[name] = Components(units[name], variables=AT_START).item(given)
+                found[name] = got = Components(units[name], variables=AT_START).item(given)
+                least, most = allowed(name)
+                if isinstance(got, float) and not least <= got <= most:
+                    rule = "must be between 0 and 1" if most == 1.0 else "must be >= 0"
+                    raise violation(rule, value=given)
             except (PydanticCustomError, ValueError) as error:
                 mistakes += below(error, (str(name),))
         report(mistakes)
         return found
+
+    def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
+        return {"type": "object"}
+
+
+_SHARES = ("damage", "burn_fraction")
+
+
+def allowed(name: str) -> tuple[float, float]:
+    """Return the least and the largest value of a state."""
+    return (0.0, 1.0) if name in _SHARES else (0.0, math.inf)
 
 
 def _units() -> dict[str, str]:
@@ -83,13 +102,14 @@ class Initial(CaseModel):
     """`initial` of a body: the stress and the state that it begins with.
 
     Attributes:
-        stress: "geostatic", of the weight of all that stands above, as gravity is at t = 0; or its
-            components [Pa], tension positive: xx, yy, zz, xy in 2D and xx, yy, zz, yz, xz, xy in
-            3D, numbers or formulas of x, y, z, r; None for none.
+        stress: "geostatic", of the weight of the deformable bodies above, as gravity is at t = 0
+            (not of grains, rigid or moved bodies and loads); or its components [Pa], tension
+            positive: xx, yy, zz, xy in 2D and xx, yy, zz, yz, xz, xy in 3D, numbers or formulas of
+            x, y, z, r; None for none.
         K0: of a geostatic stress, the horizontal over the vertical one; default nu / (1 - nu), as
             in a layer that cannot widen.
-        state: state columns of its material by name, such as `{ temperature = "500 K" }`, numbers
-            or formulas of x, y, z, r.
+        state: states of its material that are one number, by name, such as
+            `{ temperature = "500 K" }`: numbers or formulas of x, y, z, r.
     """
 
     stress: StressField | None = None

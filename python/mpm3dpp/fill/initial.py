@@ -4,9 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +12,7 @@ from numpy.typing import NDArray
 from mpm3dpp.base.expression import Expression
 from mpm3dpp.base.time_functions import at
 from mpm3dpp.case.case import Case, Material
-from mpm3dpp.case.initial import GEOSTATIC, PARTS, Initial
+from mpm3dpp.case.initial import GEOSTATIC, PARTS, Initial, allowed
 from mpm3dpp.ranks.world import World
 
 from .parts import Filled, FilledPart
@@ -143,6 +141,12 @@ def start_columns(
         return np.broadcast_to(np.asarray(found, dtype=float), len(positions)).copy()
 
     found = {name: column(value, "state", name) for name, value in initial.state.items()}
+    for name, values in found.items():
+        least, most = allowed(name)
+        if values.size and not (least <= values.min() and values.max() <= most):
+            rule = f"gives values from {values.min():g} to {values.max():g}"
+            remedy = "it must be between 0 and 1" if most == 1.0 else "it must be >= 0"
+            raise case.error((*path, "state", name), rule, remedy)
     if initial.stress == GEOSTATIC and above is not None:
         K0 = _at_rest(case.material[part.material], initial)
         vertical = above.at(positions)
@@ -158,12 +162,5 @@ def start_columns(
 
 def _at_rest(material: Material, initial: Initial) -> float:
     """Return K0: that given, else nu / (1 - nu) of the elastic part."""
-    if initial.K0 is not None:
-        return initial.K0
-    given: Mapping[str, Any] = material.strength.parameters
-    if "nu" in given:
-        nu = float(given["nu"])
-    else:
-        K, G = float(given["K"]), float(given["G"])
-        nu = (3.0 * K - 2.0 * G) / (2.0 * (3.0 * K + G))
-    return nu / (1.0 - nu)
+    nu: float = material.strength.parameters.get("nu", 0.0)
+    return nu / (1.0 - nu) if initial.K0 is None else initial.K0

@@ -53,8 +53,7 @@ def write_master(path: Path, frames: Sequence[FrameInfo], meta: Mapping[str, Any
         steps["Values"] = np.array([frame.time for frame in frames], dtype=float)
         for name in ("PointDataOffsets", "CellDataOffsets", "FieldDataOffsets"):
             steps.create_group(name)
-        root["FieldData"]["step"] = np.array([frame.step for frame in frames], dtype=np.int64)
-        steps["FieldDataOffsets"]["step"] = np.arange(len(frames))
+        _place_field_data(root, steps, frames, meta)
         _place_cells(root, steps, folder, frames)
         for name in frames[0].names if frames else ():
             rows = [f.rows if name in f.checks else [] for f in frames]
@@ -72,6 +71,23 @@ def write_master(path: Path, frames: Sequence[FrameInfo], meta: Mapping[str, Any
         file.create_group("mpm3dpp").attrs["run"] = json.dumps(about)
     with replacing(path) as raw:
         raw.write(image.getbuffer())
+
+
+def _place_field_data(
+    root: h5py.Group, steps: h5py.Group, frames: Sequence[FrameInfo], meta: Mapping[str, Any]
+) -> None:
+    """The step of each frame, and the names of the bodies that the array `body` counts."""
+    import h5py
+
+    names = np.array([name.encode() for name in meta["bodies"]], dtype=object)
+    root["FieldData"]["step"] = np.array([frame.step for frame in frames], dtype=np.int64)
+    # VTK takes strings of any length, and those of ASCII only by their type.
+    kind = h5py.string_dtype("ascii")
+    root["FieldData"].create_dataset("body_names", data=names, dtype=kind)
+    sizes = steps.create_group("FieldDataSizes")
+    for name, first, count in (("step", 1, 1), ("body_names", 0, len(names))):
+        steps["FieldDataOffsets"][name] = first * np.arange(len(frames))
+        sizes[name] = np.array([[1, count]] * len(frames), dtype=np.int64).reshape(-1, 2)
 
 
 def _place_cells(

@@ -13,7 +13,7 @@ from mpm3dpp.base.errors import CaseError
 from mpm3dpp.case.case import Case
 
 from .numbers import chosen, unit_of
-from .plan import plan_of
+from .plan import Planned, plan_of
 from .richardson import Converged, convergence
 from .runs import Outcome, Say, run_all
 from .study_picture import save_study
@@ -62,8 +62,12 @@ def run_study(
     changed = case if finest is None else case.with_({KEY: finest})
     smallest = changed.grid.cell_size
     sizes = [smallest * ratio**k for k in reversed(range(cells))]
-    plan = plan_of(case, [f"{KEY}={','.join(map(repr, sizes))}"], out)
     names = chosen(case, numbers)
+    for name in names:
+        if name in _NOT_COMPARED:
+            remedy = "give another, such as kinetic"
+            raise CaseError("converges to nothing", remedy, key="--number", value=name)
+    plan = _plan(case, sizes, out)
     make_folder(out)
     outcomes = run_all(plan, file, jobs, threads, pictures, say)
     failed = sum(not outcome.numbers for outcome in outcomes)
@@ -77,8 +81,19 @@ def run_study(
     told = {name: convergence(_values(outcomes, name), ratio) for name in _all_names(outcomes)}
     table = out / "study.csv"
     _write_table(sizes, outcomes, told, table)
-    picture = save_study(sizes, outcomes, {name: told[name] for name in names}, out / "study.png")
-    return Swept(_lines(sizes, outcomes, {name: told[name] for name in names}), [table, picture], 0)
+    shown = {name: told[name] for name in names if name in told}
+    picture = save_study(sizes, outcomes, shown, out / "study.png")
+    return Swept(_lines(sizes, outcomes, shown), [table, picture], 0)
+
+
+def _plan(case: Case, sizes: Sequence[float], out: Path) -> list[Planned]:
+    try:
+        return plan_of(case, [f"{KEY}={','.join(map(repr, sizes))}"], out)
+    except CaseError as error:
+        given = " and ".join(f"{size:.6g} m" for size in sizes)
+        rule = f"does not go with cells of {given} ({error})"
+        remedy = "choose another --ratio, --cells or --finest; a box must be whole cells of each"
+        raise CaseError(rule, remedy, key="the case") from None
 
 
 def _all_names(outcomes: Sequence[Outcome]) -> list[str]:
@@ -115,7 +130,7 @@ def _lines(
     for name, found in told.items():
         unit = unit_of(name)
         cells = [f"{value:.6g}" for value in _values(outcomes, name)]
-        order = found.said if found.order is None else f"{found.order:.2f}"
+        order = found.said or f"{found.order:.2f}"
         cells.append(order)
         for number, digits in ((found.extrapolated, 6), (found.uncertainty, 2)):
             cells.append("" if number is None else f"{number:.{digits}g}")
