@@ -163,6 +163,24 @@ shape = { polygon = { points = [["-100 mm", 0], ["100 mm", 0], [0, "50 mm"]] } }
 """
 
 
+def test_the_surface_of_grains_is_not_that_of_what_holds_them(tmp_path: Path) -> None:
+    lid = """
+[body.lid]
+material = "soft"
+shape = { box = { lower = ["-29 mm", "52 mm"], upper = ["29 mm", "57 mm"] } }
+motion = "fixed"
+"""
+    text = PILE.replace("20 ms", "1 ms") + lid
+    run_case(write(tmp_path, text), tmp_path / "out", threads=1, pictures=False)
+    with open_results(tmp_path / "out") as results:
+        of_grains = results.surface()
+        assert 0.0 < of_grains["y"].max() < 0.042
+        np.testing.assert_array_equal(results.surface(body="sand")["y"], of_grains["y"])
+        assert results.surface(body="lid")["y"].max() == pytest.approx(0.057, abs=1e-6)
+        with pytest.raises(CaseError, match='did you mean "lid"'):
+            results.surface(body="lad")
+
+
 def test_the_slope_of_a_heap(tmp_path: Path) -> None:
     """Two flanks of atan(1/2); steps of particles are a quarter of a strip at most."""
     run_case(write(tmp_path, WEDGE), tmp_path / "out", threads=1, pictures=False)

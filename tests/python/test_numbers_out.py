@@ -171,3 +171,10 @@ def test_conditions_that_cannot_be(
 ) -> None:
     done = mpm3dpp("export", results.path.parent, "--where", where, cwd=tmp_path)
     assert done.returncode == 2 and sentence in one_sentence(done.stderr)
+
+
+def test_a_frame_that_there_is_not(tmp_path: Path) -> None:
+    run_case(write(tmp_path), tmp_path / "out", threads=1, pictures=False)
+    done = mpm3dpp("export", "out", "--frame", 99, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "--frame = 99 is no frame: there are " in one_sentence(done.stderr)

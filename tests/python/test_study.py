@@ -92,7 +92,8 @@ def test_a_study(tmp_path: Path) -> None:
     [
         (("--cells", 2), "--cells = 2 is too few to tell an order; give 3 or more"),
         (("--ratio", 1), "--ratio = 1.0 must be between 1 and 100; give 2"),
-        (("--finest", "1 kg"), 'grid.cell_size = "1 kg"'),
+        (("--finest", "1 kg"), '--finest = "1 kg" has the unit "kg" (a mass) but must be a length'),
+        (("--finest", "-1"), '--finest = "-1" must be > 0'),
         (("--number", "wall_time"), '--number = "wall_time" converges to nothing; give another'),
         (("--number", "left.sped"), 'did you mean "left.speed"'),
     ],
@@ -120,3 +121,13 @@ def test_a_box_that_is_no_whole_cells_of_each_size(tmp_path: Path) -> None:
     said = one_sentence(done.stderr)
     assert done.returncode == 2 and "does not go with cells of 0.0225 m and 0.015 m" in said
     assert "choose another --ratio" in said
+
+
+def test_a_coarse_grid_that_fails_is_left_out(tmp_path: Path) -> None:
+    """The finer ones tell the order all the same; the command ends as one that has failed."""
+    words = ("study", write(tmp_path), "--out", "out", "--cells", 4, "--finest", "25 mm")
+    done = mpm3dpp(*words, "--number", "left.speed", cwd=tmp_path)
+    assert done.returncode == 1
+    first, head, *_ = done.stdout.splitlines()
+    assert first.startswith("grid.cell_size = 0.2: error: ") and "holds no particle" in first
+    assert head.split()[:5] == ["cells", "[mm]", "100", "50", "25"]

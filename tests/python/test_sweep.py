@@ -14,6 +14,7 @@ from mpm3dpp import Case, load_case
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.case.changes import value_of, values_of
 from mpm3dpp.io import read_manifest
+from mpm3dpp.sweep import runs
 
 CONTACT = (
     CASE
@@ -168,3 +169,12 @@ def test_mistakes_in_sweeps(tmp_path: Path, words: tuple[str, ...], sentence: st
     write(tmp_path, CASE.replace('"8 ms"', '"0.1 ms"'))
     done = mpm3dpp("sweep", "case.toml", "--out", "out", *words, cwd=tmp_path)
     assert done.returncode == 2 and sentence in one_sentence(done.stderr)
+
+
+def test_of_several_mistakes_of_a_run_the_first_is_told() -> None:
+    told = (
+        "note: x\nmpm3dpp: error: a must be b\nmpm3dpp: error: c must be d\nmpm3dpp: 2 mistakes\n"
+    )
+    assert runs._why(told) == "error: a must be b (and 1 more)"
+    assert runs._why("mpm3dpp: error: a must be b\n") == "error: a must be b"
+    assert runs._why("") == ""

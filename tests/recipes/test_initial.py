@@ -10,6 +10,8 @@ import pytest
 
 from commands import CASE
 from mpm3dpp import Body, Case, CaseError, Simulation, shapes
+from mpm3dpp.fill import advisories
+from mpm3dpp.fill.build import build
 from worlds import World
 
 COLUMN = """
@@ -147,7 +149,9 @@ def test_components_of_a_stress_by_formulas() -> None:
         ("{ stress = [1, 2, 3] }", "must be"),
         ("{ stress = [1, 2, 3, 4, 5, 6] }", "must have 4 numbers in 2D; the order is xx, yy, zz"),
         ('{ stress = "geostatic" }', "needs gravity along one axis at t = 0; give run.gravity"),
-        ("{ K0 = 0.5 }", 'is for a geostatic stress; add stress = "geostatic"'),
+        ("{ K0 = 0.5 }", 'is for a geostatic stress; give stress = "geostatic"'),
+        ("{ stress = [0, 1, 0, 0], K0 = 1 }", "body.left.initial.K0 is for a geostatic stress"),
+        ("{}", "body.left.initial is empty; give stress or state"),
         ("{ state = { temperatur = 3 } }", 'did you mean "temperature"'),
         ("{ state = { temperature = 3 } }", 'is no state of the material "soft"; it has none'),
         ("{ state = { damage = 2 } }", "state.damage = 2 must be between 0 and 1"),
@@ -214,3 +218,11 @@ def test_what_is_removed_takes_its_energy_along() -> None:
         rows = dict(zip(sim.core.history_columns, sim.core.history()[-1], strict=True))
     assert abs(rows["internal"]) < 1e-9 * rows["left"]
     assert rows["kinetic"] == 0.0
+
+
+@pytest.mark.parametrize(("K0", "said"), [("0.1", True), ("0.5", False), ("4", True)])
+def test_a_stress_beyond_the_strength_is_noted(K0: str, said: bool) -> None:
+    """Rankine's bounds for 35 degrees: 0.271 and 3.69."""
+    case = column(2, SAND, f", K0 = {K0}")
+    notes = " ".join(advisories.notes(case, build(case)))
+    assert ("give one between 0.271 and 3.69" in notes) == said

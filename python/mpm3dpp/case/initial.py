@@ -134,10 +134,13 @@ def check_initial(case: Case, body: Body, path: Path) -> Iterator[PydanticCustom
             rule = f'is no state of the material "{body.material}"'
             remedy = f"it has {', '.join(known) or 'none'}"
             yield violation(rule, remedy, path=(*path, "state", name))
+    if initial.K0 is not None and initial.stress != GEOSTATIC:
+        yield violation(
+            "is for a geostatic stress", f'give stress = "{GEOSTATIC}"', path=(*path, "K0")
+        )
     if initial.stress is None:
-        if initial.K0 is not None:
-            rule = "is for a geostatic stress"
-            yield violation(rule, f'add stress = "{GEOSTATIC}"', path=(*path, "K0"))
+        if initial.K0 is None and not initial.state:
+            yield violation("is empty", "give stress or state, or remove it", path=path)
         return
     to_stress = (*path, "stress")
     if material.eos is not None:

@@ -9,6 +9,8 @@ from typing import Annotated
 
 import typer
 
+from mpm3dpp.base.errors import CaseError
+
 
 class Format(str, enum.Enum):
     """See `io.export.export`."""
@@ -26,7 +28,10 @@ def export(
     frame: Annotated[int, typer.Option(help="Frame; negative counts from the end.")] = -1,
     every: Annotated[bool, typer.Option("--all", help="All frames.")] = False,
     where: Annotated[
-        str, typer.Option(help='Particles, such as "body=plate, pressure > 1 MPa".')
+        str,
+        typer.Option(
+            help='Particles, such as "body=plate, pressure > 1 MPa": commas between, all must hold.'
+        ),
     ] = "",
     out: Annotated[
         Path | None, typer.Option(help="The file; with --all the folder. Default: DIR/export.")
@@ -41,6 +46,9 @@ def export(
     from mpm3dpp.io.results import open_results
 
     with open_results(folder) as results:
+        if not every and not -len(results) <= frame < len(results):
+            rule = f"is no frame: there are {len(results)}"
+            raise CaseError(rule, "counted from 0", key="--frame", value=frame)
         folder = out if every and out is not None else folder / "export"
         for k in range(len(results)) if every else [results.number(frame)]:
             target = folder / file_name(k, kind.value)

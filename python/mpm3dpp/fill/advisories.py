@@ -15,8 +15,10 @@ from mpm3dpp.base.time_functions import TimeFunction
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import EXPLOSIVE
 from mpm3dpp.case.grid import FACES
+from mpm3dpp.case.initial import GEOSTATIC
 from mpm3dpp.ranks.world import World, together
 
+from .initial import at_rest
 from .parts import Filled, FilledPart
 
 _FASTEST = 10.0  # Times the speed of sound; the fastest impacts in laboratories are at 2 to 3.
@@ -43,6 +45,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *_rigid(case),
         *_detonations(case, bodies, world),
         *_walls(case),
+        *_beyond_strength(case),
         *_locking(case),
         *_springs(case, bodies),
         *_narrow(case, bodies),
@@ -115,6 +118,25 @@ def _materials(case: Case) -> list[str]:
                 f"{key}.eos.jwl is of the products of an explosive, but its strength "
                 f"{strength.model} does not detonate: the whole energy E0 presses from the start; "
                 f"give strength = {{ {EXPLOSIVE} = ... }} unless that is meant"
+            )
+    return found
+
+
+def _beyond_strength(case: Case) -> list[str]:
+    """Geostatic stresses that a soil without cohesion yields under (Rankine 1857)."""
+    found = []
+    for name, body in case.body.items():
+        given = case.material[body.material].strength.parameters
+        if body.initial is None or body.initial.stress != GEOSTATIC:
+            continue
+        if "friction_angle" not in given or given.get("cohesion"):
+            continue
+        sine = math.sin(given["friction_angle"])
+        least, K0 = (1.0 - sine) / (1.0 + sine), at_rest(case.material[body.material], body.initial)
+        if not least <= K0 <= 1.0 / least:
+            found.append(
+                f"body.{name}.initial.K0 = {K0:.3g} is beyond the strength of {body.material}, "
+                f"which yields at once; give one between {least:.3g} and {1.0 / least:.3g}"
             )
     return found
 

@@ -148,7 +148,7 @@ def start_columns(
             remedy = "it must be between 0 and 1" if most == 1.0 else "it must be >= 0"
             raise case.error((*path, "state", name), rule, remedy)
     if initial.stress == GEOSTATIC and above is not None:
-        K0 = _at_rest(case.material[part.material], initial)
+        K0 = at_rest(case.material[part.material], initial)
         vertical = above.at(positions)
         stress = np.zeros((len(positions), len(PARTS[case.grid.dimension])))
         for k in range(3):
@@ -160,7 +160,7 @@ def start_columns(
     return found
 
 
-def _at_rest(material: Material, initial: Initial) -> float:
+def at_rest(material: Material, initial: Initial) -> float:
     """Return K0: that given, else nu / (1 - nu) of the elastic part."""
     nu: float = material.strength.parameters.get("nu", 0.0)
     return nu / (1.0 - nu) if initial.K0 is None else initial.K0

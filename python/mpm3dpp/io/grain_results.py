@@ -139,6 +139,7 @@ class GrainResults(abc.ABC):
         along: str = "x",
         up: str | None = None,
         width: float | str | None = None,
+        body: str | None = None,
     ) -> dict[str, np.ndarray]:
         """Return how high the particles reach along an axis.
 
@@ -148,6 +149,8 @@ class GrainResults(abc.ABC):
             up: axis of the heights; default the last.
             width: of the strips whose highest particle counts [m], or text with a unit; default
                 two cells.
+            body: whose particles, or of which entry of grains; default all grains where there are
+                any, so that a drum around them is no part of their surface, else all bodies.
 
         Returns:
             `along` -> middles of the strips in which there are particles, `up` -> the upper faces
@@ -155,7 +158,7 @@ class GrainResults(abc.ABC):
 
         Raises:
             IndexError: there is no such frame.
-            CaseError: there are no two such axes; or see `arrays`.
+            CaseError: there are no two such axes, or no such body; or see `arrays`.
         """
         known = list(_AXES[: self.dimension])
         up = known[-1] if up is None else up
@@ -168,8 +171,12 @@ class GrainResults(abc.ABC):
             raise CaseError(
                 "must be > 0", "give a length, or leave it out", key="width", value=width
             )
-        arrays = self.arrays(frame, ["size", "failed"])
+        arrays = self.arrays(frame, ["size", "failed", "body", "grain"])
         kept = takes_part(arrays)
+        if body is not None:
+            kept &= arrays["body"] == self._body(body)
+        elif "grain" in arrays and arrays["grain"].any():
+            kept &= np.isin(arrays["body"], np.unique(arrays["body"][arrays["grain"] > 0]))
         x = arrays["position"][kept][:, _AXES.index(along)].astype(float)
         top = arrays["position"][kept][:, _AXES.index(up)] + 0.5 * arrays["size"][kept]
         strips = np.floor(x / strip).astype(int)
@@ -186,13 +193,15 @@ class GrainResults(abc.ABC):
         along: str = "x",
         up: str | None = None,
         width: float | str | None = None,
+        body: str | None = None,
     ) -> float:
         """Return the slope of a surface [degrees]: of the straight line nearest to its heights.
 
         Args:
             start, end: of the slope on the axis `along` [m], or text with a unit: for a heap a
                 flank, for a drum its middle.
-            frame, along, up, width: see `surface`. For grains a width of two diameters is good.
+            frame, along, up, width, body: see `surface`. A width of two grains is
+                good.
 
         Returns:
             The angle, positive where the surface rises along the axis.
@@ -201,7 +210,7 @@ class GrainResults(abc.ABC):
             IndexError: there is no such frame.
             CaseError: there are not three strips with particles; or see `surface`.
         """
-        profile = self.surface(frame, along, up, width)
+        profile = self.surface(frame, along, up, width, body)
         x, heights = profile.values()
         low, high = (arguments.quantity(k, v, "m") for k, v in (("start", start), ("end", end)))
         chosen = (x >= low) & (x <= high)

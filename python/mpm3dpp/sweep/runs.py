@@ -123,12 +123,20 @@ def _run(
         words += ["--set", f"{key}={value}"]
     code, told = processes.run(words)
     if code != 0:
-        last = told.strip().splitlines()[-1:] or [f"it ended with exit code {code}"]
-        return Outcome(last[0].removeprefix("mpm3dpp: "))
+        return Outcome(_why(told) or f"it ended with exit code {code}")
     numbers = _numbers(planned)
     if numbers is None:
         return Outcome("the case file has changed since the sweep began")
     return Outcome(_COMPLETED, numbers)
+
+
+def _why(told: str) -> str:
+    """Return what was said last; of several mistakes the first, and how many more there are."""
+    lines = told.strip().splitlines() or [""]
+    first = next((k for k, line in enumerate(lines) if line.startswith("mpm3dpp: error: ")), -1)
+    mistakes = len(lines) - 1 - first if lines[-1].endswith(" mistakes") and first >= 0 else 1
+    more = f" (and {mistakes - 1} more)" if mistakes > 1 else ""
+    return lines[first].removeprefix("mpm3dpp: ") + more
 
 
 def _numbers(planned: Planned) -> dict[str, float] | None:

@@ -10,7 +10,9 @@ from pathlib import Path
 
 from mpm3dpp.base.disk import make_folder, replacing
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.units import to_si
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.changes import value_of
 
 from .numbers import chosen, unit_of
 from .plan import Planned, plan_of
@@ -59,8 +61,7 @@ def run_study(
         raise CaseError("is too few to tell an order", "give 3 or more", key="--cells", value=cells)
     if not 1.0 < ratio < 100.0:
         raise CaseError("must be between 1 and 100", "give 2", key="--ratio", value=ratio)
-    changed = case if finest is None else case.with_({KEY: finest})
-    smallest = changed.grid.cell_size
+    smallest = case.grid.cell_size if finest is None else _length(finest)
     sizes = [smallest * ratio**k for k in reversed(range(cells))]
     names = chosen(case, numbers)
     for name in names:
@@ -70,20 +71,34 @@ def run_study(
     plan = _plan(case, sizes, out)
     make_folder(out)
     outcomes = run_all(plan, file, jobs, threads, pictures, say)
-    failed = sum(not outcome.numbers for outcome in outcomes)
-    if failed:
-        lines = [
-            f"{planned.words()}: {outcome.said}"
-            for planned, outcome in zip(plan, outcomes, strict=True)
-            if not outcome.numbers
-        ]
-        return Swept([*lines, "no order is told: every grid must come to its end"], [], failed)
+    failures = [
+        f"{planned.words()}: {outcome.said}"
+        for planned, outcome in zip(plan, outcomes, strict=True)
+        if not outcome.numbers
+    ]
+    failed = len(failures)
+    good = next((k for k, o in enumerate(reversed(outcomes)) if not o.numbers), len(outcomes))
+    if good < _LEAST:
+        rule = "no order is told: the three finest grids must come to their ends"
+        return Swept([*failures, rule], [], failed)
+    sizes, outcomes = sizes[-good:], outcomes[-good:]
     told = {name: convergence(_values(outcomes, name), ratio) for name in _all_names(outcomes)}
     table = out / "study.csv"
     _write_table(sizes, outcomes, told, table)
     shown = {name: told[name] for name in names if name in told}
     picture = save_study(sizes, outcomes, shown, out / "study.png")
-    return Swept(_lines(sizes, outcomes, shown), [table, picture], 0)
+    return Swept([*failures, *_lines(sizes, outcomes, shown)], [table, picture], failed)
+
+
+def _length(text: str) -> float:
+    """Return a length, in metres where no unit is given."""
+    try:
+        found = to_si(value_of(text), "m")
+    except CaseError as error:
+        raise CaseError(error.rule, error.remedy, key="--finest", value=text) from None
+    if found <= 0.0:
+        raise CaseError("must be > 0", 'give one such as "1 mm"', key="--finest", value=text)
+    return found
 
 
 def _plan(case: Case, sizes: Sequence[float], out: Path) -> list[Planned]:

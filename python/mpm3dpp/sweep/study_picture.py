@@ -36,6 +36,8 @@ def save_study(
                 along = (fine / h[-1]) ** min(found.order, MOST)
                 curve = found.extrapolated + (y[-1] - found.extrapolated) * along
                 label = f"order {found.order:.2f}"
+                if found.order > MOST:
+                    label = f"order {MOST:g} (found {found.order:.2f})"
                 axes.plot(fine, curve, "-", color=PALETTE[1], linewidth=1, label=label)
                 axes.plot(0.0, found.extrapolated, "x", color=PALETTE[1], label="extrapolated")
             axes.set_xlim(left=0.0)
