@@ -254,6 +254,10 @@ class Vector(Quantity):
         if len(value) not in ((0, 1, 2, 3) if self.scalar else (2, 3)):
             rule = "must have two numbers in 2D and three in 3D"
             raise violation(rule, _give_vector(self.unit), value=value)
+        return self.items(value)
+
+    def items(self, value: Any) -> tuple[Any, ...]:
+        """Return all components in SI units, or raise every violation in them."""
         found, mistakes = [], []
         for index, item in enumerate(value):
             try:

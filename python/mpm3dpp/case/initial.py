@@ -38,14 +38,7 @@ class _Stress(Components):
             rule = f'must be "{GEOSTATIC}", or four numbers in 2D and six in 3D'
             order = "; ".join(f"{', '.join(parts)} in {D}D" for D, parts in PARTS.items())
             raise violation(rule, f"the order is {order}", value=value)
-        found, mistakes = [], []
-        for index, item in enumerate(value):
-            try:
-                found.append(self.item(item))
-            except ValueError as error:
-                mistakes += below(error, (index,))
-        report(mistakes)
-        return tuple(found)
+        return self.items(value)
 
     def __get_pydantic_json_schema__(self, _schema: Any, _handler: Any) -> dict[str, Any]:
         return {"description": f'`"{GEOSTATIC}"`, or a list of 4 numbers in 2D and 6 in 3D [Pa]'}

@@ -96,9 +96,7 @@ def _columns(positions: Array, axis: int, cell: float) -> Array:
 def _layer(
     part: FilledPart, axis: int, up: float, cell: float, weight: float, world: World | None
 ) -> _Layer:
-    ends = np.concatenate(
-        [part.survey.lower.min(axis=0)[None], part.survey.upper.max(axis=0)[None]]
-    )
+    ends = np.stack([part.survey.lower.min(axis=0), part.survey.upper.max(axis=0)])
     first, last = _columns(ends, axis, cell)
     shape = tuple(int(n) for n in last - first + 1)
     top, below = np.full(shape, -np.inf), np.full(shape, -np.inf)

@@ -200,8 +200,7 @@ class GrainResults(abc.ABC):
         Args:
             start, end: of the slope on the axis `along` [m], or text with a unit: for a heap a
                 flank, for a drum its middle.
-            frame, along, up, width, body: see `surface`. A width of two grains is
-                good.
+            frame, along, up, width, body: see `surface`; two grains are a good width.
 
         Returns:
             The angle, positive where the surface rises along the axis.

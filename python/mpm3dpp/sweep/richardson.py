@@ -39,7 +39,7 @@ def convergence(values: Sequence[float], ratio: float) -> Converged:
 
     The order is p = ln((f_3 - f_2) / (f_2 - f_1)) / ln r and the extrapolated value f_0 = f_1 +
     (f_1 - f_2) / (r^p - 1), with f_1 on the finest grid and p = 2 where it is more; the uncertainty
-    is 1.25 |f_1 - f_0|, or 3 times that where p is more than 2.1 (Roache 1998, sec. 5.6, the grid
+    is 1.25 |f_1 - f_0|, or 3 |f_1 - f_0| where p is more than 2.1 (Roache 1998, the grid
     convergence index, not divided by the value). Values that swing less and less tell no order;
     their uncertainty is half of their range (Stern, Wilson, Coleman & Paterson 2001).
 
