@@ -73,11 +73,17 @@ def test_pictures_of_a_run(tmp_path: Path) -> None:
         assert animation.n_frames == 4
 
 
-@pytest.mark.parametrize("colour", ["body", "speed", "velocity_y", "stress_xy", "von_mises"])
-def test_colours(tmp_path: Path, colour: str) -> None:
-    made = plots.plot_results(make_run(tmp_path), frame=1, colour=colour, out=tmp_path / "new")
+def test_a_frame_in_another_folder(tmp_path: Path) -> None:
+    made = plots.plot_results(make_run(tmp_path), frame=1, colour="speed", out=tmp_path / "new")
     assert made[0] == tmp_path / "new" / "frame_0001.png"
     pixels(made[0])
+
+
+def test_colours(tmp_path: Path) -> None:
+    results = open_results(make_run(tmp_path))
+    for colour in ("body", "velocity_y", "stress_xy", "von_mises"):
+        frames.draw_frame(results, 1, colour, dpi=50).savefig(tmp_path / "frame.png")
+        pixels(tmp_path / "frame.png")
 
 
 def test_wrong_colour_frame_and_folder(tmp_path: Path) -> None:
@@ -102,7 +108,8 @@ def test_a_picture_that_cannot_be_drawn_takes_no_other_with_it(tmp_path: Path) -
 
 
 @pytest.mark.usefixtures("without_pyvista")
-def test_three_dimensions_without_pyvista(tmp_path: Path) -> None:
+def test_three_dimensions_without_pyvista(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(space, "PIXELS", 400)
     made = plots.plot_results(make_run(tmp_path, dimension=3), colour="body")
     image = pixels(made[0])
     blue = (image[..., 2] > image[..., 0] + 0.3).mean()

@@ -148,7 +148,7 @@ def test_another_world_is_the_same_with_xpic(text: str, steps: int) -> None:
 
 @pytest.mark.parametrize(
     ("text", "steps"),
-    [(RINGS, 900), (GRAINS, 750), (IMPACT, 500)],
+    [slow(RINGS, 900), slow(GRAINS, 750), (IMPACT, 500)],
     ids=["two rings", "fifty grains", "impact with erosion"],
 )
 @pytest.mark.parametrize(
@@ -166,7 +166,7 @@ def test_another_world_is_the_same_with_affine_transfers(text: str, steps: int, 
 
 @pytest.mark.parametrize(
     ("text", "steps"),
-    [slow(RINGS, 1500), (GRAINS, 750), (IMPACT, 500)],
+    [slow(RINGS, 1500), slow(GRAINS, 750), (IMPACT, 500)],
     ids=["two rings", "fifty grains", "impact with erosion"],
 )
 @pytest.mark.parametrize(
@@ -187,7 +187,7 @@ def test_another_world_is_the_same_with_averaged_volumes(text: str, steps: int, 
 
 @pytest.mark.parametrize(
     ("text", "steps"),
-    [(RINGS, 900), (GRAINS, 750), (IMPACT, 500)],
+    [slow(RINGS, 900), (GRAINS, 750), (IMPACT, 500)],
     ids=["two rings", "fifty grains", "impact with erosion"],
 )
 def test_another_world_is_the_same_with_springs(text: str, steps: int) -> None:

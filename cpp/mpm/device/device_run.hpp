@@ -15,10 +15,10 @@
 namespace mpm {
 
 /// Raised whenever what follows changes.
-inline constexpr int device_version = 1;
+inline constexpr int device_version = 2;
 
 /// The transfer of a step (step/transfer/transfer.hpp).
-enum class DeviceTransfer { flip, flip_pic, pic, apic, aflip };
+enum class DeviceTransfer { flip, flip_pic, aflip };
 
 /// The columns of one material's particles, in the host's memory.
 struct DevicePool {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "mpm/device/library.hpp"
@@ -14,10 +15,10 @@ namespace {
 template <int D>
 std::pair<DeviceTransfer, double> transfer_of(const Domain<D>& domain, double own) {
   std::pair<DeviceTransfer, double> found{DeviceTransfer::flip, 1.0};
-  with_transfer(domain, own, [&]<class T>(const T& transfer) {
+  with_transfer(domain, own, [&](const auto& of_run) {
+    const auto transfer = taken_by(of_run);
+    using T = std::remove_const_t<decltype(transfer)>;
     if constexpr (std::is_same_v<T, FlipPic>) found = {DeviceTransfer::flip_pic, transfer.pic};
-    if constexpr (std::is_same_v<T, Pic>) found = {DeviceTransfer::pic, 1.0};
-    if constexpr (std::is_same_v<T, Apic>) found = {DeviceTransfer::apic, 1.0};
     if constexpr (std::is_same_v<T, Aflip>) found = {DeviceTransfer::aflip, transfer.alpha};
   });
   return found;

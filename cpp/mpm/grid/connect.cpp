@@ -12,6 +12,16 @@ bool before(const TileGrid<D>& grid, const Patch<D>& p, int body, const Index<D>
   return grid.bonded ? tile_less<D>(p.tile, tile) : patch_less<D>(p.body, p.tile, body, tile);
 }
 
+/// In a tile the lowest body leads that has particles there. Empty patches may stay a while, with
+/// one number of ranks longer than with another: they come last, so that no sum is shared out
+/// between patches by how long.
+template <int D>
+bool leads(const Patch<D>& p, const Patch<D>& q) {
+  if (p.tile != q.tile) return tile_less<D>(p.tile, q.tile);
+  const bool empty = p.cells() == 0;
+  return empty != (q.cells() == 0) ? !empty : p.body < q.body;
+}
+
 template <int D>
 void choose_primaries(TileGrid<D>& grid) {
   std::vector<Patch<D>>& patches = grid.patches;
@@ -20,16 +30,13 @@ void choose_primaries(TileGrid<D>& grid) {
   std::iota(primaries.begin(), primaries.end(), 0u);
   for (std::uint32_t p = 0; p < patches.size(); ++p) patches[p].primary = p;
   if (!grid.bonded) return;
-  std::sort(primaries.begin(), primaries.end(), [&](std::uint32_t x, std::uint32_t y) {
-    const Patch<D>&p = patches[x], &q = patches[y];
-    return p.tile != q.tile ? tile_less<D>(p.tile, q.tile) : p.body < q.body;
-  });
+  std::sort(primaries.begin(), primaries.end(),
+            [&](std::uint32_t x, std::uint32_t y) { return leads(patches[x], patches[y]); });
   grid.by_tile = primaries;
   primaries.clear();
   for (const std::uint32_t p : grid.by_tile) {
     if (primaries.empty() || patches[primaries.back()].tile != patches[p].tile)
       primaries.push_back(p);
-    // by_tile is by body within a tile: the lowest body leads, whatever the threads do.
     patches[p].primary = primaries.back();
   }
 }
@@ -73,6 +80,14 @@ void connect(TileGrid<D>& grid) {
 }
 
 template <int D>
+bool leaders_are_known(const TileGrid<D>& grid) {
+  if (!grid.bonded) return true;
+  return std::ranges::is_sorted(grid.by_tile, [&](std::uint32_t x, std::uint32_t y) {
+    return leads(grid.patches[x], grid.patches[y]);
+  });
+}
+
+template <int D>
 int find_patch(const TileGrid<D>& grid, int body, const Index<D>& tile) {
   const auto at = std::lower_bound(
       grid.patches.begin(), grid.patches.end(), tile,
@@ -83,6 +98,8 @@ int find_patch(const TileGrid<D>& grid, int body, const Index<D>& tile) {
 
 template void connect<2>(TileGrid<2>&);
 template void connect<3>(TileGrid<3>&);
+template bool leaders_are_known<2>(const TileGrid<2>&);
+template bool leaders_are_known<3>(const TileGrid<3>&);
 template int find_patch<2>(const TileGrid<2>&, int, const Index<2>&);
 template int find_patch<3>(const TileGrid<3>&, int, const Index<3>&);
 

@@ -68,8 +68,7 @@ bool exchange_patches(TileGrid<D>& grid) {
   Mail& mail = partition.mail.patches;
   mail.out.clear();
   for (Patch<D>& patch : grid.patches) {
-    // The first of bonded bodies in a tile has the nodes of all, though it be empty.
-    if (patch.foreign || partition.leaves(patch) || (patch.occupied == 0 && !grid.bonded)) continue;
+    if (patch.foreign || partition.leaves(patch) || patch.occupied == 0) continue;
     for (const int rank : readers_of(partition, patch))
       write(letter_to(mail, rank),
             ForeignPatch<D>{patch.body, patch.tile, patch.occupied, partition.comm->rank()});

@@ -21,7 +21,7 @@ struct TileGrid : GridGeometry<D> {
   Partition<D> partition;
 
   // Made by connect().
-  std::vector<std::uint32_t> by_tile;    // if bonded: all patches, by tile, then by body
+  std::vector<std::uint32_t> by_tile;    // if bonded: all patches, by tile, those that lead first
   std::vector<std::uint32_t> primaries;  // those whose nodes are summed with their neighbours'
 
   // Made by cut_blocks().

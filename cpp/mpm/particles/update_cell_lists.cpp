@@ -254,8 +254,8 @@ bool update_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
   scratch.lists = nullptr;
   scratch.marks = nullptr;
   if (!alone && exchange_patches(grid)) changed = true;
-  // Numbers have changed, and with them everyone's neighbours.
-  if (changed) connect(grid);
+  // Numbers have changed, and with them everyone's neighbours; or a body has left a tile.
+  if (changed || !leaders_are_known(grid)) connect(grid);
   cut_blocks(grid, threads);
   return changed;
 }

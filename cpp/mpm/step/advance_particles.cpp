@@ -185,9 +185,10 @@ void advance(Domain<D>& domain) {
       if (!body.deforms())
         advance_rigid_patch<lanes>(domain, p, basis);
       else
-        with_transfer_for<B>(
-            domain, own_step(domain, domain.pool_of(patch)),
-            [&](const auto& transfer) { advance_patch<lanes, also>(domain, p, basis, transfer); });
+        with_transfer_for<B>(domain, own_step(domain, domain.pool_of(patch)),
+                             [&](const auto& transfer) {
+                               advance_patch<lanes, also>(domain, p, basis, taken_by(transfer));
+                             });
     });
   });
 }

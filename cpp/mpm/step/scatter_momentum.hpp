@@ -1,5 +1,7 @@
 #pragma once
 // From particles to nodes, as the transfer of the run says.
+#include <type_traits>
+
 #include "mpm/schedule/scatter.hpp"
 #include "mpm/step/transfer/transfer.hpp"
 
@@ -13,8 +15,10 @@ void scatter_by_transfer(const Domain<D>& domain, const Patch<D>& patch, const N
   with_basis_and_lanes(
       grid, domain.body_of(patch), patch, [&]<BasisModel B>(const B& basis, auto lanes) {
         with_transfer_for<B>(domain, 1.0, [&]<class Transfer>(const Transfer&) {
-          constexpr bool affine = Transfer::affine && (what & gives_momentum) != 0;
-          scatter_by<Mapping<typename Transfer::Gives>, what | (affine ? gives_affine : 0u), lanes>(
+          // Forces are mapped alike by all.
+          constexpr bool momentum = (what & gives_momentum) != 0;
+          using Gives = std::conditional_t<momentum, typename Transfer::Gives, Flip>;
+          scatter_by<Mapping<Gives>, what | (Gives::affine ? gives_affine : 0u), lanes>(
               basis, grid, pool, pool.at.velocity, patch, nodes);
         });
       });

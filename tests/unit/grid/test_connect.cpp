@@ -43,7 +43,7 @@ int find(const TileGrid<D>& grid, int body, const Index<D>& tile) {
 }
 
 /// The neighbours of a patch are those of its body in the tiles around it; of bonded bodies, of the
-/// first in each tile the first ones.
+/// first with particles in each tile the first ones.
 template <int D>
 void check_neighbours(mpm::testing::Report& report, bool bonded) {
   const mpm::testing::Tiles<D> tiles(basis_id<Linear>, bonded);
@@ -52,8 +52,12 @@ void check_neighbours(mpm::testing::Report& report, bool bonded) {
   std::map<Index<D>, int> first;
   for (int p = 0; const Patch<D>& patch : grid.patches) {
     at[{patch.body, patch.tile}] = p;
-    first.try_emplace(patch.tile, p++);
+    const auto [leader, is_first] = first.try_emplace(patch.tile, p);
+    const auto& before = grid.patches[static_cast<std::size_t>(leader->second)];
+    if (!is_first && before.cells() == 0 && patch.cells() != 0) leader->second = p;
+    ++p;
   }
+  CHECK(leaders_are_known(grid));
   const auto found = [](const auto& map, const auto& key) {
     const auto entry = map.find(key);
     return entry == map.end() ? -1 : entry->second;
@@ -98,6 +102,22 @@ void check_two_bodies(mpm::testing::Report& report, bool bonded) {
     }
 }
 
+/// Of two bonded bodies in a tile the first leads until it is empty.
+template <int D>
+void check_leaders(mpm::testing::Report& report) {
+  mpm::testing::Tiles<D> tiles(basis_id<Linear>, true);
+  std::vector<Patch<D>>& patches = tiles.grid.patches;
+  patches.assign(2, {});
+  patches[1].body = 1;
+  patches[0].occupied = patches[1].occupied = 1;
+  tiles.connect();
+  CHECK(patches[0].primary == 0 && patches[1].primary == 0);
+  patches[0].occupied = 0;
+  CHECK(!leaders_are_known(tiles.grid));
+  tiles.connect();
+  CHECK(patches[0].primary == 1 && patches[1].primary == 1 && leaders_are_known(tiles.grid));
+}
+
 }  // namespace
 
 void test_connect(mpm::testing::Report& report) {
@@ -111,4 +131,6 @@ void test_connect(mpm::testing::Report& report) {
     check_two_bodies<2>(report, bonded);
     check_two_bodies<3>(report, bonded);
   }
+  check_leaders<2>(report);
+  check_leaders<3>(report);
 }

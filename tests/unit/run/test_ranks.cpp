@@ -41,12 +41,16 @@ struct RankedCase {
   bool averages = false;  // volumes over cells
 };
 
+/// Particles along an edge of a block.
+template <int D>
+constexpr std::int32_t block_edge = D == 2 ? 23 : 9;
+
 /// A block of particles, half a cell apart, that spins about the origin and flies.
 template <int D>
 void add_block(Simulation<D>& simulation, int material, double from, double speed) {
   std::vector<double> x, v;
   Index<D> low{}, high;
-  high.fill(D == 2 ? 31 : 11);
+  high.fill(block_edge<D>);
   for_each_index<D>(low, high, [&](const Index<D>& i) {
     for (std::size_t a = 0; a < D; ++a) x.push_back(0.25 + 0.5 * i[a] + (a == 0 ? from : 0.0));
     const double* at = &x[x.size() - D];
@@ -67,8 +71,9 @@ void build(Simulation<D>& simulation, const RankedCase& choice) {
   const int stone =
       add_material(simulation, {2000.0, choice.rigid ? rigid : elastic, {}, {}, {1.5, 0.06}});
   add_block(simulation, rubber, 0.0, 0.0);
-  add_block(simulation, stone, D == 2 ? 16.0 : 6.0, 25.0);
-  add_block(simulation, rubber, D == 2 ? -20.0 : -8.0, 60.0);
+  constexpr double length = 0.5 * block_edge<D>;
+  add_block(simulation, stone, length + 0.5, 25.0);
+  add_block(simulation, rubber, -length - 2.5, 60.0);
   if (choice.prescribed) {
     TimeFunction shaking(10.0), turning(5.0);
     shaking.amplitude = 200.0;
@@ -78,7 +83,7 @@ void build(Simulation<D>& simulation, const RankedCase& choice) {
   if (choice.load)
     for (const char* kind : {"pressure", "traction"}) {
       std::vector<std::uint32_t> particles(60);
-      for (std::uint32_t k = 0; k < 60; ++k) particles[k] = 13 * k;
+      for (std::uint32_t k = 0; k < 60; ++k) particles[k] = 8 * k;
       const std::vector<double> sizes(60, 0.5), vectors(60 * std::size_t{D}, 0.3);
       add_load(simulation, kind, 0, kind, {TimeFunction(1e4), TimeFunction(2e4), TimeFunction(1e3)},
                {particles, vectors, sizes, vectors});

@@ -139,5 +139,8 @@ void check_stages(Report& report) {
 
 void test_stages(Report& report) {
   check_stages<2>(report);
-  check_stages<3>(report);
+  check_widths<3>(report);
+  check_transfers<3>(report, basis_id<Gimp>);
 }
+
+void test_stages_in_space(Report& report) { check_stages<3>(report); }

@@ -93,8 +93,9 @@ void check_take(mpm::testing::Report& report) {
   for (int k = 0; k < 100; ++k) {
     const double v = any(random), dv = any(random), grid = any(random);
     CHECK_EQUAL(Flip().take(v, dv), v + dv);
-    CHECK_EQUAL(FlipPic(0.0).take(v, dv, grid), v + dv);
-    CHECK_CLOSE(FlipPic(1.0).take(v, dv, grid), grid, rounding);
+    CHECK_CLOSE(FlipPic(0.0).take(v, dv, grid), v + dv, rounding);
+    CHECK_EQUAL(taken_by(Pic()).take(v, dv, grid), Pic().take(v, dv, grid));
+    CHECK_EQUAL(taken_by(Apic()).take(v, dv, grid), Apic().take(v, dv, grid));
     const double share = 0.5 + 0.5 * any(random);
     const double taken = FlipPic(share).take(v, dv, grid);
     CHECK_CLOSE(taken, (1.0 - share) * (v + dv) + share * grid, 2.0 * rounding);

@@ -184,11 +184,6 @@ void RunOnDevice<D>::with_transfer(const DeviceStep<D>& step, F&& f) {
       return f.template operator()<Flip>();
     case DeviceTransfer::flip_pic:
       return f.template operator()<FlipPic>();
-    case DeviceTransfer::pic:
-      return f.template operator()<Pic>();
-    case DeviceTransfer::apic:
-      if constexpr (B::second_moment > 0.0) return f.template operator()<Apic>();
-      break;
     case DeviceTransfer::aflip:
       if constexpr (B::second_moment > 0.0) return f.template operator()<Aflip>();
       break;
@@ -238,15 +233,14 @@ void RunOnDevice<D>::make_step(const DeviceStep<D>& step) {
   const PartialView partial = this->partial();
   const MoveView moves = lists_.begin_moves(spare_column_.data());
   const ParticleStep<D> particles = particle_step(step, moves);
-  const bool affine =
-      step.transfer == DeviceTransfer::apic || step.transfer == DeviceTransfer::aflip;
+  const bool affine = step.transfer == DeviceTransfer::aflip;
   const NodeStep<D> of_nodes{grid_,
                              step.time_step,
                              step.gravity,
                              dot(step.gravity, step.gravity) > 0.0,
                              grid_.has_ghosts(),
                              step.takes_of_grid,
-                             step.transfer == DeviceTransfer::aflip,
+                             affine,
                              grid_shares_.data(),
                              node_sums_.data(),
                              lists_.node_tiles()};

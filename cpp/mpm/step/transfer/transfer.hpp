@@ -86,6 +86,18 @@ void with_transfer(const Domain<D>& domain, double own, F&& f) {
   });
 }
 
+/// The transfer by which particles take their velocity, to the same bits: PIC and APIC are those
+/// with a share at one end of it, so that the loops over particles are not compiled for them too.
+template <TransferModel T>
+auto taken_by(const T& transfer) {
+  if constexpr (std::is_same_v<T, Pic>)
+    return FlipPic(1.0);
+  else if constexpr (std::is_same_v<T, Apic>)
+    return Aflip(0.0);
+  else
+    return transfer;
+}
+
 /// The share of the grid's velocity in that which particles take; the rest is FLIP.
 template <int D>
 double grid_share(const Domain<D>& domain, double own) {
