@@ -22,6 +22,7 @@ LAYERS = {
     "material_test": 7,
     "bench": 8,
     "sweep": 8,
+    "reports": 8,
     "reproduce": 9,
     "cli": 10,
 }

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from mpm3dpp.grains import GrainCentres, GrainLattice, GrainPacking, Grains
     from mpm3dpp.io import open_results
     from mpm3dpp.materials import Eos, Failure, Strength
+    from mpm3dpp.reports import report
     from mpm3dpp.run.record import record
     from mpm3dpp.run.run import run_case
     from mpm3dpp.run.simulation import Simulation
@@ -73,6 +74,7 @@ _HOMES = {
     "grains": ("GrainCentres", "GrainLattice", "GrainPacking", "Grains"),
     "io": ("open_results",),
     "materials": ("Eos", "Failure", "Strength"),
+    "reports": ("report",),
     "run.record": ("record",),
     "run.run": ("run_case",),
     "run.simulation": ("Simulation",),
@@ -118,6 +120,7 @@ __all__ = [
     "load_case",
     "open_results",
     "record",
+    "report",
     "run_case",
     "shapes",
 ]

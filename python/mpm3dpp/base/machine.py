@@ -5,7 +5,10 @@ from __future__ import annotations
 
 import contextlib
 import os
+import platform
 import resource
+import shlex
+import sys
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
@@ -91,3 +94,21 @@ def thread_count(wanted: int | None, cores: int | None = None) -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+def processor_name() -> str:
+    """Return the processor's name as the system gives it, else its architecture."""
+    try:
+        text = Path("/proc/cpuinfo").read_text()
+    except OSError:
+        text = ""
+    names = [line.partition(":")[2].strip() for line in text.splitlines() if "model name" in line]
+    return names[0] if names else platform.machine()
+
+
+def command_line() -> str:
+    """Return the command that started this process, as one would type it."""
+    program, *words = sys.argv or [""]
+    path = Path(program)
+    name = path.parent.name if path.name == "__main__.py" else path.name
+    return shlex.join([name, *words])

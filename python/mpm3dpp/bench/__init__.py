@@ -32,9 +32,9 @@ from mpm3dpp.run.device import CPU, CUDA, ONE_PROCESS
 
 from .cases import BENCHES, Bench
 from .process import Part, Process
-from .result import machine, result_of
+from .result import result_of
 
-__all__ = ["BENCHES", "block_lengths", "find", "machine", "main", "measure", "series"]
+__all__ = ["BENCHES", "block_lengths", "find", "main", "measure", "series"]
 
 BLOCKS = 5
 STEPS = 400  # So that a block of 80 steps holds several crossings of whole layers of particles.

@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-import platform
 import statistics
-from pathlib import Path
 from typing import Any
 
 from mpm3dpp import _core
+from mpm3dpp.base.machine import processor_name
 
 from .cases import Bench
 from .operations import operations_per_particle_step
@@ -41,7 +40,7 @@ def result_of(
     result: dict[str, Any] = {
         "bench": bench.name,
         "version": __version__,
-        "machine": machine(),
+        "machine": processor_name(),
         "isa": last["isa"],
         "scheme": scheme,
         "size": size,
@@ -71,13 +70,3 @@ def result_of(
         ratio = statistics.median(a["ns"] / b["ns"] for a, b in pairs)
         result["contact_ratio" if bench.contact else f"{key}_ratio"] = ratio
     return result
-
-
-def machine() -> str:
-    """Return the processor's name as the system gives it, else its architecture."""
-    try:
-        text = Path("/proc/cpuinfo").read_text()
-    except OSError:
-        text = ""
-    names = [line.partition(":")[2].strip() for line in text.splitlines() if "model name" in line]
-    return names[0] if names else platform.machine()

@@ -33,6 +33,7 @@ from .options import (
     Units,
     print_notes,
 )
+from .report import report
 from .study import study
 from .sweep import sweep
 
@@ -171,9 +172,7 @@ def check(
     case: CaseFile,
     units: Units = None,
     changes: Changes = None,
-    ranks: Annotated[
-        int, typer.Option(min=1, help="Also the memory of each of so many processes.")
-    ] = 1,
+    ranks: Annotated[int, typer.Option(min=1, help="Memory and time of so many processes.")] = 1,
 ) -> None:
     """Check a case and say what it amounts to.
 
@@ -181,12 +180,14 @@ def check(
     """
     from mpm3dpp.fill.advisories import refuse_time_step
     from mpm3dpp.fill.build import build
+    from mpm3dpp.run.estimate import estimate_line
     from mpm3dpp.run.summary import echo
 
     loaded = _load(case, units, changes=changes)
     bodies = build(loaded)
     typer.echo(echo(loaded, bodies, ranks))
     refuse_time_step(loaded, bodies)
+    typer.echo(estimate_line(loaded, bodies, ranks))
 
 
 @app.command()
@@ -312,6 +313,7 @@ def reproduce(
 
 app.command("import")(import_file)
 app.command()(export)
+app.command()(report)
 app.command()(sweep)
 app.command()(study)
 app.command()(materials)

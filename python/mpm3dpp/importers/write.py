@@ -95,13 +95,13 @@ def case_text(found: Imported, tables: dict[str, Any]) -> str:
         f"with units {found.units}; here SI units."
     ]
     lines += [f"# - {_comment(note)}" for note in found.notes]
-    lines.append(f"title = {_value(tables['title'])}")
+    lines.append(f"title = {value_text(tables['title'])}")
     for name, table in tables.items():
         if name == "title":
             continue
         if name in _NAMED:
             for key, inner in table.items():
-                lines += _section(f"[{name}.{_key(key)}]", inner, _line(found, name, key))
+                lines += _section(f"[{name}.{key_text(key)}]", inner, _line(found, name, key))
         elif isinstance(table, list):
             for index, inner in enumerate(table):
                 lines += _section(f"[[{name}]]", inner, _line(found, name, index))
@@ -114,7 +114,7 @@ def _section(head: str, table: dict[str, Any], origin: str) -> list[str]:
     lines = ["", f"{head}{origin}"]
     for key, value in table.items():
         unit = f"  # {_UNITS[key]}" if key in _UNITS else ""
-        lines.append(f"{_key(key)} = {_value(value)}{unit}")
+        lines.append(f"{key_text(key)} = {value_text(value)}{unit}")
     return lines
 
 
@@ -127,19 +127,20 @@ def _comment(text: str) -> str:
     return "".join(c if c.isprintable() else "?" for c in text)
 
 
-def _key(key: str) -> str:
+def key_text(key: str) -> str:
+    """Return a key as TOML, quoted if it must be."""
     return key if _BARE.fullmatch(key) else json.dumps(key)
 
 
-def _value(value: Any) -> str:
+def value_text(value: Any) -> str:
     """Return a value as TOML; numbers come back to the last bit."""
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, dict):
-        inner = ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items())
+        inner = ", ".join(f"{key_text(key)} = {value_text(item)}" for key, item in value.items())
         return f"{{ {inner} }}"
     if isinstance(value, (list, tuple)):
-        return f"[{', '.join(map(_value, value))}]"
+        return f"[{', '.join(map(value_text, value))}]"
     if isinstance(value, str):
         return json.dumps(_comment(value), ensure_ascii=False)
     return repr(value).lower() if isinstance(value, bool) else repr(value)

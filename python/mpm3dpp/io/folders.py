@@ -42,7 +42,8 @@ _PICTURES = (
     *("frame.png", "energies.png", "probes.png", "first_contact.png", "force_network.png"),
     "animation.gif",
 )
-_OF_A_RUN = ("manifest.json", *_PICTURES)
+REPORT = "report.html"
+_OF_A_RUN = ("manifest.json", REPORT, *_PICTURES)
 
 
 def forget_last_run(folder: Path, checkpoint: bool = True) -> None:
@@ -93,6 +94,17 @@ def only_run_in(folder: Path) -> Iterator[None]:
         yield
     finally:
         os.close(handle)
+
+
+def is_run_in(folder: Path) -> bool:
+    """Return whether a run goes on in a folder; False where the system has no locks."""
+    try:
+        with only_run_in(folder):
+            return False
+    except CaseError:
+        return True
+    except OSError:  # It cannot be opened.
+        return False
 
 
 @contextlib.contextmanager

@@ -16,6 +16,7 @@ import numpy as np
 
 from mpm3dpp.base.disk import write_atomically
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.machine import command_line, processor_name
 
 from .records import (
     ContactRecord,
@@ -58,12 +59,14 @@ class Manifest:
         bytes: of the core alone: particles, grid, contact, other.
         loads: see `LoadRecord`, by name.          walls: see `WallRecord`, by face.
         warnings: see `WarningRecord`.
+        notes: what was told before the first step, "note: ..." or "warning: ...".
         result_hash: see `mpm3dpp.io.result_hash`.
         contact: see `ContactRecord`.          end_time: time reached [s].
         status, reason: "completed", "interrupted" or "failed", and why.
         limiter: who limits the time step: body, particle, sound_speed and speed [m/s].
         energies: see `HistoryWriter.summary`.          bodies: see `HistoryWriter.bodies`.
         compiler, flags, isa, platform, python: how it was built and where it ran.
+        processor: its name.          command: what was typed, or the program that made the run.
         case, case_text: the whole case as data, and the text of its file.
         case_file: whole path of that file; empty where none was read.
     """
@@ -93,6 +96,7 @@ class Manifest:
     loads: dict[str, LoadRecord]
     walls: dict[str, WallRecord]
     warnings: list[WarningRecord]
+    notes: list[str]
     limiter: dict[str, Any] | None
     energies: dict[str, Any]
     bodies: dict[str, dict[str, dict[str, float]]]
@@ -100,7 +104,9 @@ class Manifest:
     flags: str
     isa: str
     platform: str
+    processor: str
     python: str
+    command: str
     case: dict[str, Any]
     case_text: str
     case_file: str
@@ -141,6 +147,7 @@ def build_manifest(
     case_hash: str | None = None,
     build: Mapping[str, Any] | None = None,
     columns: Parts | None = None,
+    notes: Sequence[str] = (),
 ) -> Manifest:
     """Collect the record of a run from the core's `Simulation`.
 
@@ -164,6 +171,7 @@ def build_manifest(
         case_hash: when the case has its own; else SHA-256 of the canonical JSON of `case`.
         build: the core's `build_info()`.
         columns: see `result_hash`.
+        notes: what was told before the first step.
     """
     build = build or {}
     work = max(1, int(simulation.particle_count) * int(simulation.step))
@@ -197,6 +205,7 @@ def build_manifest(
         loads=loads_of(simulation),
         walls=walls_of(simulation),
         warnings=warnings_of(simulation, bodies),
+        notes=list(notes),
         limiter=limiter_of(simulation, bodies),
         energies=dict(energies or {}),
         bodies={},
@@ -204,7 +213,9 @@ def build_manifest(
         flags=str(build.get("flags", "unknown")),
         isa=str(build.get("isa", "unknown")),
         platform=platform.platform(),
+        processor=processor_name(),
         python=platform.python_version(),
+        command=command_line(),
         case=dict(case),
         case_text=case_text,
         case_file=case_file,

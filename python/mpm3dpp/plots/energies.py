@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Energies, ledger, momentum and contact force of a run over time, in one picture."""
+"""Energies, ledger, momentum and contact force of a run over time, in one picture or each alone."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,26 +36,41 @@ def draw_energies(
         dimension: 2 (per metre of thickness) or 3.
         bodies: their names, which tell where in the name of a column one ends and the next begins.
     """
-    per = "/m" if dimension == 2 else ""
-    forces = _forces(history, bodies or [])
+    run = _Run(history, dimension, _forces(history, bodies or []))
     with styled():
         figure = new_figure(10.0, 5.6)
         grid = figure.subplots(2, 2, sharex=True)
-        factor, unit = prefix(float(np.nanmax(history["time"], initial=0.0)), "s")
-        time = history["time"] * factor
-        _energies(grid[0, 0], time, history, f"J{per}")
-        _ledger(grid[0, 1], time, history)
-        _momentum(grid[1, 0], time, history, f"N s{per}", dimension)
-        if forces:
-            _contact(grid[1, 1], time, forces, f"N{per}")
-        else:
-            _steps(grid[1, 1], time, history)
-        for axes in grid.flat:
+        names = ("energies", "ledger", "momentum", "contact" if run.forces else "steps")
+        for axes, name in zip(grid.flat, names, strict=True):
+            _PANELS[name](axes, run)
             axes.grid(True)
             axes.margins(x=0.0)
         for axes in grid[1]:
-            axes.set_xlabel(f"time [{unit}]")
+            axes.set_xlabel(f"time [{run.unit}]")
         figure.align_ylabels()
+    return figure
+
+
+def draw_panel(
+    name: str,
+    history: dict[str, np.ndarray],
+    dimension: int = 3,
+    bodies: list[str] | None = None,
+) -> Figure | None:
+    """Draw one of "energies", "ledger", "residual", "momentum", "contact" and "steps" alone.
+
+    Arguments are those of `draw_energies`. None where bodies have not touched, for "contact".
+    """
+    run = _Run(history, dimension, _forces(history, bodies or []))
+    if name == "contact" and not run.forces:
+        return None
+    with styled():
+        figure = new_figure(7.2, 3.0)
+        axes = figure.add_subplot()
+        _PANELS[name](axes, run)
+        axes.grid(True)
+        axes.margins(x=0.0)
+        axes.set_xlabel(f"time [{run.unit}]")
     return figure
 
 
@@ -69,7 +86,22 @@ def save_energies(
         return save(figure, path)
 
 
-def _energies(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray], unit: str) -> None:
+@dataclass
+class _Run:
+    """What is drawn: the history of a run, and the contact force of each pair."""
+
+    history: dict[str, np.ndarray]
+    dimension: int
+    forces: dict[str, np.ndarray]
+
+    def __post_init__(self) -> None:
+        factor, self.unit = prefix(float(np.nanmax(self.history["time"], initial=0.0)), "s")
+        self.time = self.history["time"] * factor
+        self.per = "/m" if self.dimension == 2 else ""
+
+
+def _energies(axes: Axes, run: _Run) -> None:
+    time, history, unit = run.time, run.history, f"J{run.per}"
     scale = _scale(history)
     curves = {name: history[name] for name in _MAIN}
     for name in _OTHERS:
@@ -94,8 +126,9 @@ def _total(history: dict[str, np.ndarray]) -> np.ndarray:
     return held - supplied
 
 
-def _ledger(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray]) -> None:
+def _ledger(axes: Axes, run: _Run) -> None:
     """Size of every term that is not kinetic or internal, as a share of the largest energy."""
+    time, history = run.time, run.history
     scale = _scale(history)
     least = 1e-18
     colours = cycle(PALETTE)
@@ -120,22 +153,34 @@ def _ledger(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray]) -> Non
     axes.set_title("Ledger: where energy went", loc="left")
 
 
-def _momentum(
-    axes: Axes, time: np.ndarray, history: dict[str, np.ndarray], unit: str, dimension: int
-) -> None:
-    parts = {x: history[f"momentum_{x}"] for x in "xyz"[:dimension]}
+def _residual(axes: Axes, run: _Run) -> None:
+    curve = run.history["residual"]
+    factor, unit = _small(np.abs(curve).max(initial=0.0), f"J{run.per}")
+    axes.plot(run.time, factor * curve, color="black", lw=0.8)
+    axes.set_ylabel(f"residual [{unit}]")
+    axes.set_title("Residual of the ledger", loc="left")
+
+
+def _small(largest: float, unit: str) -> tuple[float, str]:
+    """Return `prefix`; of rounding there is none, the axis shows the power of ten."""
+    factor, prefixed = prefix(largest, unit)
+    return (1.0, unit) if factor >= 1e12 else (factor, prefixed)
+
+
+def _momentum(axes: Axes, run: _Run) -> None:
+    parts = {x: run.history[f"momentum_{x}"] for x in "xyz"[: run.dimension]}
     changes = {x: part - part[0] if len(part) else part for x, part in parts.items()}
-    factor, unit = prefix(max(np.abs(c).max(initial=0.0) for c in changes.values()), unit)
-    if factor >= 1e12:  # rounding: no prefix, the axis shows the power of ten
-        factor, unit = 1.0, unit[1:]
+    largest = max(np.abs(c).max(initial=0.0) for c in changes.values())
+    factor, unit = _small(largest, f"N s{run.per}")
     for colour, (x, change) in zip(PALETTE, changes.items(), strict=False):
-        axes.plot(time, factor * change, color=colour, lw=0.8, label=x)
+        axes.plot(run.time, factor * change, color=colour, lw=0.8, label=x)
     axes.set_ylabel(f"change of momentum [{unit}]")
     axes.set_title("Total momentum", loc="left")
     _key(axes)
 
 
-def _contact(axes: Axes, time: np.ndarray, forces: dict[str, np.ndarray], unit: str) -> None:
+def _contact(axes: Axes, run: _Run) -> None:
+    time, forces, unit = run.time, run.forces, f"N{run.per}"
     factor, unit = prefix(max(float(np.nanmax(f)) for f in forces.values()), unit)
     order = sorted(forces, key=lambda name: -np.nansum(forces[name]))
     for colour, name in zip(PALETTE, order[:_MOST_PAIRS], strict=False):
@@ -148,12 +193,23 @@ def _contact(axes: Axes, time: np.ndarray, forces: dict[str, np.ndarray], unit: 
     _key(axes)
 
 
-def _steps(axes: Axes, time: np.ndarray, history: dict[str, np.ndarray]) -> None:
-    factor, unit = prefix(float(history["dt"].max(initial=0.0)), "s")
-    axes.plot(time, factor * history["dt"], color=PALETTE[0])
+def _steps(axes: Axes, run: _Run) -> None:
+    dt = run.history["dt"]
+    factor, unit = prefix(float(dt.max(initial=0.0)), "s")
+    axes.plot(run.time, factor * dt, color=PALETTE[0])
     axes.set_ylabel(f"step [{unit}]")
     axes.set_ylim(bottom=0.0)
     axes.set_title("Time step", loc="left")
+
+
+_PANELS: dict[str, Callable[[Axes, _Run], None]] = {
+    "energies": _energies,
+    "ledger": _ledger,
+    "residual": _residual,
+    "momentum": _momentum,
+    "contact": _contact,
+    "steps": _steps,
+}
 
 
 def _key(axes: Axes) -> None:

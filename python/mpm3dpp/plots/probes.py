@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from itertools import cycle
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from mpm3dpp.io.probe_tables import FIRST_COLUMNS
 
 from .labels import prefix, short
 from .style import PALETTE, new_figure, save, styled
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Tables = Mapping[str, Mapping[str, np.ndarray]]
 _VECTOR = ("x", "y", "z")
@@ -22,7 +26,19 @@ _NAME = 18  # letters of a probe's name in the legend
 
 
 def save_probes(tables: Tables, units: Mapping[str, str], path: Path) -> Path | None:
-    """Draw the tables of probes and write the picture; None if there is nothing to draw.
+    """Draw the tables of probes and write the picture, a PNG; None if there is nothing to draw.
+
+    Other arguments are those of `draw_probes`.
+    """
+    figure = draw_probes(tables, units)
+    if figure is None:
+        return None
+    with styled():
+        return save(figure, path)
+
+
+def draw_probes(tables: Tables, units: Mapping[str, str]) -> Figure | None:
+    """Draw the tables of probes; the caller saves them. None if there is nothing to draw.
 
     Of vectors the size is drawn, of positions the distance from the first; of regions and bodies
     the range from the least to the largest is shaded. Tensors are left to who reads the tables.
@@ -30,7 +46,6 @@ def save_probes(tables: Tables, units: Mapping[str, str], path: Path) -> Path | 
     Args:
         tables: columns of each probe, by its name (`mpm3dpp.io.probe_tables.read_probe`).
         units: of the fields.
-        path: of the picture, a PNG.
     """
     curves: dict[str, dict[str, list[np.ndarray]]] = {}
     for name, table in tables.items():
@@ -67,7 +82,7 @@ def save_probes(tables: Tables, units: Mapping[str, str], path: Path) -> Path | 
         for axes in list(grid.flat)[max(0, len(fields) - columns) : len(fields)]:
             axes.set_xlabel(f"time [{time_unit}]")
         figure.align_ylabels()
-        return save(figure, path)
+    return figure
 
 
 def _curves(table: Mapping[str, np.ndarray]) -> dict[str, list[np.ndarray]]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm3dpp.base.errors import CaseError, RunError, nearest
-from mpm3dpp.base.machine import thread_count
+from mpm3dpp.base.machine import processor_name, thread_count
 from mpm3dpp.io.folders import writable_folder
 
 from .examples import EXAMPLES, SIZES, chosen, folder_of_cases
@@ -60,7 +60,6 @@ def reproduce(
         __version__,
         _core,  # With what follows the slowest imports: after mistakes.
     )
-    from mpm3dpp.bench import machine
 
     from . import page, pictures
     from .runs import run_example, say
@@ -74,7 +73,7 @@ def reproduce(
             drawn[figure] = pictures.make(figure, found, folder)
     build = {
         "version": __version__,
-        "machine": machine(),
+        "machine": processor_name(),
         "isa": _core.build_info()["isa"],
         "threads": workers,
     }

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-import html
 from pathlib import Path
 from typing import Any
+
+from mpm3dpp.reports.markup import document
 
 from . import paper
 from .examples import Example, change_lines
@@ -19,13 +20,6 @@ _SOURCE = (
     "Deformation and Contact of Numerous Grains*, CMES: Computer Modeling in Engineering & "
     "Sciences 55 (1), 2010, section 4"
 )
-_STYLE = """\
-body { font: 16px/1.5 sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
-table { border-collapse: collapse; margin: 1rem 0; display: block; overflow-x: auto; }
-td, th { border-bottom: 1px solid #ddd; padding: 0.2rem 0.7rem; }
-img { max-width: 100%; }
-code { background: #f4f4f4; }
-"""
 
 
 def compose(
@@ -151,12 +145,7 @@ def as_html(text: str, title: str = TITLE) -> str:
     """Return a page of Markdown with tables as a page of HTML."""
     from markdown_it import MarkdownIt
 
-    body = MarkdownIt("commonmark").enable("table").render(text)
-    return (
-        f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f"<title>{html.escape(title)}</title>\n<style>\n{_STYLE}</style>\n</head>\n<body>\n"
-        f"{body}</body>\n</html>\n"
-    )
+    return document(title, MarkdownIt("commonmark").enable("table").render(text))
 
 
 def write(text: str, out: Path) -> list[Path]:

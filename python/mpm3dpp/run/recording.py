@@ -82,6 +82,7 @@ class Recording:
         wall_time = self._checkpoints.wall_time
         manifest = _manifest(self._simulation, status, reason, wall_time, begin)
         manifest.energies, manifest.bodies = self._history.summary(), self._history.bodies()
+        manifest.notes = self._told
         manifest.write(self._folder)
         return manifest
 
@@ -132,13 +133,13 @@ class Recording:
         self._progress = progress = stack.enter_context(
             Progress(case.run.end_time, quiet=self._quiet, energy_unit=unit)
         )
-        for sentence in simulation.warnings:
-            progress.note(f"warning: {sentence}")
-        if simulation.device.told:
-            progress.note(f"note: {simulation.device.told}")
         gone = [f"the table of probe {name} was gone: a new one begins" for name in watch.lost]
-        for sentence in [*simulation.notes, *self._notes, *gone]:
-            progress.note(f"note: {sentence}")
+        device = [simulation.device.told] if simulation.device.told else []
+        notes = [*device, *simulation.notes, *self._notes, *gone]
+        self._told = [f"warning: {sentence}" for sentence in simulation.warnings]
+        self._told += [f"note: {sentence}" for sentence in notes]
+        for sentence in self._told:
+            progress.note(sentence)
         if kept is None and core.time >= 0.0:  # Else it settles first.
             self.frames.write(core)
         if before is not None and (kept is None or history_anew or gone):  # Of the new files.

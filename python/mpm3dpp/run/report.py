@@ -15,6 +15,16 @@ _OF_A_KIND = 3  # warnings shown
 _NUMERICAL_WARNING = 0.05
 
 
+def summary_lines(manifest: Manifest) -> list[str]:
+    """Return the lines of the whole summary."""
+    lines = [*body_lines(manifest), *contact_table(manifest), *load_lines(manifest)]
+    lines += [*wall_lines(manifest), *gone_lines(manifest), *warning_lines(manifest)]
+    lines.append(energy_line(manifest))
+    if manifest.status == "completed" and manifest.reason:
+        lines.append(manifest.reason)
+    return [*lines, speed_line(manifest)]
+
+
 def contact_table(manifest: Manifest) -> list[str]:
     """Return the lines about contact: overlapped nodes, pairs, bytes, share of the step's time."""
     contact = manifest.contact

@@ -22,16 +22,7 @@ from .checkpoints import Checkpoint, Checkpoints
 from .device import CPU
 from .lead import follow, make_simulation, release
 from .recording import Recording
-from .report import (
-    body_lines,
-    contact_table,
-    energy_line,
-    gone_lines,
-    load_lines,
-    speed_line,
-    wall_lines,
-    warning_lines,
-)
+from .report import summary_lines
 from .resume import go_on, has_checkpoint
 from .watch import Call, interval_of
 
@@ -113,12 +104,7 @@ def _run_case(
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))
     elif not quiet:
-        lines = [*body_lines(manifest), *contact_table(manifest), *load_lines(manifest)]
-        lines += [*wall_lines(manifest), *gone_lines(manifest), *warning_lines(manifest)]
-        lines += [energy_line(manifest)]
-        if manifest.status == "completed" and manifest.reason:
-            lines += [manifest.reason]
-        print("\n".join([*lines, speed_line(manifest), f"results in {folder}"]), flush=True)
+        print("\n".join([*summary_lines(manifest), f"results in {folder}"]), flush=True)
     can_go_on = "; --resume goes on" if has_checkpoint(folder) else ""
     if manifest.status == "interrupted" and not quiet:
         text = f"mpm3dpp: {manifest.reason}; results are in {folder}{can_go_on}"

@@ -68,15 +68,17 @@ def _step_rule(case: Case) -> str:
 
 
 def frames_in_words(case: Case, particles: int) -> str:
-    """Return the number of frames, and the room that they need on the disk if it is much.
+    """Return the number of frames, and the room that they need on the disk.
 
     Those at first contacts come on top: nobody knows yet how many.
     """
     count = len(case.frame_times())
     room = count * _FRAME_BYTES * particles
-    much = f" of {room / 2**30:,.0f} GiB together" if room > 2**30 else ""
+    size = f"{room / 2**30:,.1f} GiB" if room > 2**30 else f"{room / 2**20:,.1f} MiB"
     touching = case.contact_enabled and (len(case.body) > 1 or case.grains)
-    return f"{count:,} frames{much}{' and one at each first contact' if touching else ''}"
+    return (
+        f"{count:,} frames of {size} together{' and one at each first contact' if touching else ''}"
+    )
 
 
 def occupied_cells(case: Case, bodies: Filled) -> int:

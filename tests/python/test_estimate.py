@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`check` tells how long a run will take."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from mpm3dpp import Case
+from mpm3dpp.fill.build import build
+from mpm3dpp.run import estimate
+from mpm3dpp.run.summary import time_step
+
+CASE = """
+[grid]
+dimension = 2
+cell_size = "1 mm"
+[run]
+end_time = "1 s"
+[material.steel]
+density = "7850 kg/m^3"
+strength = { elastic = { E = "210 GPa", nu = 0.3 } }
+[material.tool]
+density = "7850 kg/m^3"
+strength = { rigid = {} }
+[body.sheet]
+material = "steel"
+shape = { box = { lower = [0, 0], upper = ["10 mm", "5 mm"] } }
+[body.punch]
+material = "tool"
+shape = { box = { lower = ["0 mm", "10 mm"], upper = ["30 mm", "20 mm"] } }
+"""
+
+
+def test_the_time_is_steps_times_particles(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(estimate, "_seconds_per_particle_step", lambda *_: 1e-6)
+    monkeypatch.setenv("OMP_NUM_THREADS", "2")
+    case = Case.from_text(CASE)
+    bodies = build(case)
+    steps = 1.0 / time_step(case, bodies)
+    minutes = steps * bodies.particle_count * 1e-6 / 60.0
+    for ranks, workers in ((1, "2 threads"), (4, "4 ranks of 2 threads")):
+        line = estimate.estimate_line(case, bodies, ranks)
+        found = re.match(rf"estimate: about (\S+) (min|h) with {workers} on this machine", line)
+        assert found
+        told = float(found[1]) * (60.0 if found[2] == "h" else 1.0)
+        assert told == pytest.approx(minutes / ranks, rel=0.05)
+        assert "(1e+03 ns for a particle and step; contact and frames come on top)" in line
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_block_is_stepped_with_the_material_of_most(dimension: int) -> None:
+    """Of those that deform: the tool has more particles."""
+    text = CASE.replace("dimension = 2", f"dimension = {dimension}")
+    if dimension == 3:
+        text = re.sub(
+            r'\], upper = \[("\S+ mm"), ("\S+ mm")\]', r', 0], upper = [\1, \2, "3 mm"]', text
+        )
+    case = Case.from_text(text)
+    bodies = build(case)
+    assert estimate._material_of_most(case, bodies) == "steel"
+    assert 1e-10 < estimate._seconds_per_particle_step(case, bodies, 1) < 1e-2
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0.2, "less than a second"),
+        (1.2, "about 2 s"),
+        (119.0, "about 119 s"),
+        (1800.0, "about 30 min"),
+        (5.4e4, "about 15 h"),
+        (8.64e5, "about 10 days"),
+    ],
+)
+def test_words(seconds: float, words: str) -> None:
+    assert estimate._in_words(seconds) == words
