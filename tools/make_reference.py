@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Write docs/reference/ from the code: python tools/make_reference.py (mpm3dpp must be installed).
+"""Write docs/reference/ from the code, and docs/gallery.md from the examples.
+
+python tools/make_reference.py (mpm3dpp must be installed)
 
 The pages are committed; tests/python/test_reference.py fails while they differ from the code.
 """
@@ -10,6 +12,9 @@ import inspect
 import re
 from pathlib import Path
 from typing import Any
+
+from gallery import gallery_page
+from reference_python import python_page
 
 from mpm3dpp.base.damping import Damping, MaterialDamping
 from mpm3dpp.base.rules import requirement
@@ -186,7 +191,7 @@ def materials_page() -> str:
         plural = "equations of state" if kind == "eos" else f"{words}s"
         lines += [
             "",
-            f"# {plural[:1].upper()}{plural[1:]}: `{kind}`",
+            f"## {plural[:1].upper()}{plural[1:]}: `{kind}`",
         ]
         if kind == "failure":
             lines += ["`action` beside the parameters says what becomes of a particle that fails:"]
@@ -206,7 +211,7 @@ def models_of(kind: str) -> list[str]:
     """Return the Markdown lines of all models of a kind."""
     lines: list[str] = []
     for name, model in catalogue(kind).items():
-        lines += ["", f"## {name}", f"{model.doc[:1].upper()}{model.doc[1:]}.", ""]
+        lines += ["", f"### {name}", f"{model.doc[:1].upper()}{model.doc[1:]}.", ""]
         lines += [EOS_USE[model.eos], ""] if kind == "strength" else []
         lines += [f"Source: {model.source}.", "", "| parameter | unit | meaning | rule | default |"]
         lines += ["| --- | --- | --- | --- | --- |"]
@@ -244,14 +249,14 @@ def library_page() -> str:
     for material in library().values():
         if material.group != group:
             group = material.group
-            lines += ["", f"# {group.capitalize()}"]
+            lines += ["", f"## {group.capitalize()}"]
         lines += material_lines(material)
     return "\n".join(lines) + "\n"
 
 
 def material_lines(material: NamedMaterial) -> list[str]:
     """Return the Markdown lines of a named material."""
-    lines = ["", f"## {material.name}", f"{material.title}."]
+    lines = ["", f"### {material.name}", f"{material.title}."]
     lines += ["", "```toml", *lines_for_a_case(material), "```", ""]
     lines += ["| part | parameter | value | meaning | source |", "| --- | --- | --- | --- | --- |"]
     for part, name, value, meaning, source in rows(material):
@@ -307,18 +312,20 @@ def history_page() -> str:
 
 
 def pages() -> dict[str, str]:
-    """Return all pages: file name below docs/reference, text."""
+    """Return all pages: path below docs, text."""
     return {
-        "case.md": case_page(),
-        "history.md": history_page(),
-        "library.md": library_page(),
-        "materials.md": materials_page(),
+        "gallery.md": gallery_page(NOTE),
+        "reference/case.md": case_page(),
+        "reference/history.md": history_page(),
+        "reference/library.md": library_page(),
+        "reference/materials.md": materials_page(),
+        "reference/python.md": python_page(NOTE, {name: model for name, model, _ in TABLES}),
     }
 
 
 def main() -> None:
     """Write the pages."""
-    folder = Path(__file__).resolve().parents[1] / "docs" / "reference"
+    folder = Path(__file__).resolve().parents[1] / "docs"
     for name, text in pages().items():
         (folder / name).write_text(text)
         print(folder / name)

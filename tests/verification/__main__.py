@@ -5,17 +5,13 @@ from __future__ import annotations
 
 import argparse
 import math
-import re
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from .figure import Figure
-from .numerics import DEFAULT
+from .matrix import page, rows_of
 from .runs import RUNS, Run
-
-ABOUT = Path(__file__).parent / "about.md"
-HEAD = "| problem | resolution | figure | ours | answer | tolerance | |\n" + "| --- " * 7 + "|\n"
 
 
 def number(value: float | None) -> str:
@@ -51,8 +47,12 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="leave out the long runs")
     parser.add_argument("--basis", help="one basis only")
     parser.add_argument("--out", type=Path, help="the page to write")
+    parser.add_argument("--again", type=Path, help="run nothing: the rows of a page written before")
     parser.add_argument("--workers", type=int, default=1, help="runs at a time, each on one core")
     chosen = parser.parse_args()
+    if chosen.again:
+        (chosen.out or chosen.again).write_text(page(rows_of(chosen.again.read_text())))
+        return
     only = chosen.only.split(",") if chosen.only else None
     runs = [
         run
@@ -75,7 +75,7 @@ def main() -> None:
     total = f"{passed} of {judged} figures with a tolerance are within it"
     print(f"{total}; {seconds:.0f} s")
     if chosen.out:
-        chosen.out.write_text(page(rows, total))
+        chosen.out.write_text(page(rows))
 
 
 def _done(runs: list[Run], workers: int) -> Iterator[tuple[list[Figure], str, float]]:
@@ -85,35 +85,6 @@ def _done(runs: list[Run], workers: int) -> Iterator[tuple[list[Figure], str, fl
         return
     with ProcessPoolExecutor(workers) as pool:
         yield from pool.map(Run.figures, runs)
-
-
-def page(rows: list[tuple[str, list[str]]], total: str) -> str:
-    """Return the whole page: what it says about itself, then a table per problem."""
-    text = [
-        ABOUT.read_text(),
-        f"\n{total}.\n",
-        summary([line for _, lines in rows for line in lines]),
-    ]
-    for problem in sorted({name for name, _ in rows}, key=_order):
-        text.append(f"\n## {problem}\n\n{HEAD}")
-        text += [line for name, lines in rows if name == problem for line in lines]
-    return "".join(text)
-
-
-def summary(lines: list[str]) -> str:
-    """Return a table of how many figures pass, by basis and scheme."""
-    kinds = list(dict.fromkeys((run.basis, run.scheme) for run in RUNS if run.basis != "-"))
-    text = "\n| basis, scheme | passed, of those with a tolerance |\n| --- | --- |\n"
-    for basis, scheme in sorted(kinds, key=lambda kind: (kind[0] != DEFAULT, kind)):
-        own = [line for line in lines if re.match(rf"\| [^|]* {scheme} \dD {basis} \|", line)]
-        passed, failed = (sum(f"| {v} |" in line for line in own) for v in ("pass", "**FAIL**"))
-        text += f"| {basis}, {scheme} | {passed} of {passed + failed} |\n"
-    return text
-
-
-def _order(problem: str) -> tuple[int, str]:
-    digits = "".join(c for c in problem if c.isdigit())
-    return (int(digits) if digits else 99, problem)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from verification import bars
+from verification import bars, matrix
+from verification.runs import RUNS
 
 ROOT = Path(__file__).parents[2]
 
@@ -31,3 +32,19 @@ def test_the_dam_s_front_is_that_of_the_page() -> None:
     [times] = [row.split("|")[2:-1] for row in rows if row.startswith("| T ")]
     [ours] = [row.split("|")[2:-1] for row in rows if row.startswith("| here ")]
     assert {t.strip(): z.strip() for t, z in zip(times, ours, strict=True)}.items() <= found.items()
+
+
+def test_the_page_is_what_its_rows_and_about_md_give() -> None:
+    text = (ROOT / "docs" / "verification.md").read_text()
+    remedy = "run  python -m verification --again ../docs/verification.md  in tests/"
+    assert text == matrix.page(matrix.rows_of(text)), remedy
+
+
+def test_every_problem_has_a_row_in_the_summary() -> None:
+    assert {run.problem for run in RUNS} == set(matrix.SUBJECTS)
+    verdicts = [("2D", "pass"), ("2D", "**FAIL**"), ("3D", "pass"), ("3D", "reported")]
+    line = "| E1 vibration usf {} default | - | drift | 1 | 1 | ± 1 | {} |\n"
+    rows = [("E1", [line.format(*verdict) for verdict in verdicts])]
+    said = matrix.summary(rows)
+    assert said.startswith("2 of 3 figures")
+    assert "| [E1](#e1) vibration of a bar | 2D 1/2, 3D 1/1 |\n" in said
