@@ -10,7 +10,7 @@ endif()
 # addition says so (fma in math/batch.hpp): were it left to the compiler, two loops of one source
 # could give different bits.
 list(APPEND flags -ffp-contract=off -fno-math-errno -fno-trapping-math)
-# A unity build (pip install) parses each header once for eight files: a fifth less time. Names in
+# A unity build (pip install) parses each header once for many files: a fifth less time. Names in
 # anonymous namespaces must differ within it, and g++ warns of them as if they were a header's.
 check_cxx_compiler_flag(-Wsubobject-linkage MPM_HAS_SUBOBJECT_LINKAGE)
 if(CMAKE_UNITY_BUILD AND MPM_HAS_SUBOBJECT_LINKAGE)

@@ -4,6 +4,7 @@ list(REMOVE_ITEM unit_sources "${CMAKE_CURRENT_SOURCE_DIR}/tests/unit/module.cpp
      "${CMAKE_CURRENT_SOURCE_DIR}/tests/unit/main.cpp")
 add_library(mpm_unit OBJECT ${unit_sources})
 target_include_directories(mpm_unit PUBLIC tests/unit)
+set_target_properties(mpm_unit PROPERTIES UNITY_BUILD_BATCH_SIZE 40)
 target_link_libraries(mpm_unit PUBLIC mpm_core_${tested_level})
 target_compile_options(mpm_unit PRIVATE $<$<CONFIG:Release>:-O1>)
 # (half the time; what is not inlined of the headers may then be their copy, in the tests' binaries)
