@@ -43,8 +43,10 @@ if(NOT SKBUILD)
   endforeach()
 endif()
 
-# The cases of the examples go with an installed package, for `mpm3dpp reproduce`.
+# The cases of the examples and the pages go with an installed package, for `mpm3dpp examples | docs`.
 install(DIRECTORY examples/ DESTINATION mpm3dpp/examples FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv")
+install(DIRECTORY docs/ DESTINATION mpm3dpp/docs FILES_MATCHING PATTERN "*.md"
+        PATTERN "_*" EXCLUDE PATTERN "images" EXCLUDE)
 
 # Ranks by MPI, in a module of their own: the core does not know of it.
 if(NOT MPM_MPI STREQUAL "OFF")

@@ -15,6 +15,7 @@ LAYERS = {
     "grains": 2,
     "case": 3,
     "importers": 4,
+    "manual": 4,
     "fill": 4,
     "io": 5,
     "plots": 6,

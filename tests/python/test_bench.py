@@ -90,7 +90,7 @@ def test_table_names_every_stage(cubes, capsys):
 
 
 def test_help_names_the_benchmarks():
-    from mpm3dpp.cli.app import BENCH_NAMES
+    from mpm3dpp.cli.bench import BENCH_NAMES
 
     named = BENCH_NAMES.rstrip(".").replace(" or ", ", ").split(", ")
     assert named == list(cases.BENCHES)
@@ -130,10 +130,10 @@ def test_json_is_all_that_is_printed(capsys):
 
 def test_series_has_every_size_with_every_number_of_threads(tmp_path, capsys):
     told = []
-    found = bench.series("two_cubes", [3, 4], [1, 2], steps=2, told=lambda *part: told.append(part))
+    found = bench.series("two_cubes", [3, 4], [1], steps=2, told=lambda *part: told.append(part))
     assert [(result["size"], result["threads"]) for result in found] == [
-        *((3, 1), (3, 2)),
-        *((4, 1), (4, 2)),
+        (3, 1),
+        (4, 1),
     ]
     assert all(set(result) >= KEYS and "contact_ratio" not in result for result in found)
     assert told[-1][0] == told[-1][1]

@@ -59,8 +59,8 @@ def outcomes(folder: Path, count: int) -> dict[str, Any]:
 
 
 def test_a_sample_of_faults(tmp_path: Path) -> None:
-    found = outcomes(tmp_path, 20)
-    assert found["made"] == 20 and found["wrong"] == []
+    found = outcomes(tmp_path, 10)
+    assert found["made"] == 10 and found["wrong"] == []
 
 
 @pytest.mark.slow

@@ -23,6 +23,7 @@ from mpm3dpp import (
 )
 from mpm3dpp.base.neighbours import overlapping_boxes
 from mpm3dpp.fill.build import build
+from mpm3dpp.grains.packing import ball_volume
 from mpm3dpp.io.history import read_history
 from mpm3dpp.plots import preview
 from mpm3dpp.run.summary import echo
@@ -43,6 +44,9 @@ strength = { elastic = { E = "200 GPa", nu = 0.3 } }
 material = "glass"
 """
 LATTICE = 'lattice = { lower = ["0 mm", "0 mm"], count = [3, 2], radius = "2.5 mm" }\n'
+INSIDE = """\
+packing = { inside = { disc = { centre = [0, 0], radius = 0.01 } }, radius = 0.001, fraction = 0.3 }
+"""
 PLATE = """\
 [body.plate]
 material = "steel"
@@ -318,6 +322,24 @@ MISTAKES = [
         "either count or fraction",
     ),
     (
+        INSIDE.replace("fraction = 0.3", "count = 3"),
+        "grains.sand.packing.count",
+        "must not be given together with inside",
+    ),
+    (
+        INSIDE.replace("disc", "ring")
+        .replace("radius = 0.01", "inner_radius = 0.005, outer_radius = 0.01")
+        .replace("0.001", "0.003"),
+        "grains.sand.packing",
+        "holds no whole grain",
+    ),
+    (
+        INSIDE.replace("disc", "sphere").replace("[0, 0]", "[0, 0, 0]"),
+        "grains.sand.packing.inside",
+        "3D shape but grid.dimension = 2",
+    ),
+    ("packing = { radius = 0.001, fraction = 0.3 }\n", "grains.sand.packing.lower", "is missing"),
+    (
         "packing = { lower = [0, 0], upper = [0.01, 0.01], radius = [0.002, 0.001], count = 3 }\n",
         "grains.sand.packing.radius",
         "the smaller first",
@@ -333,6 +355,37 @@ MISTAKES = [
         "two different bodies",
     ),
 ]
+
+
+IN_SHAPES = {
+    "{ disc = { centre = [0.1, 0.2], radius = 0.05 } }": (
+        2,
+        lambda x: np.hypot(*(x - [0.1, 0.2]).T) - 0.05,
+    ),
+    "{ sphere = { centre = [0.1, 0.2, 0], radius = 0.05 } }": (
+        3,
+        lambda x: np.linalg.norm(x - [0.1, 0.2, 0.0], axis=1) - 0.05,
+    ),
+    "{ ring = { centre = [0, 0], inner_radius = 0.03, outer_radius = 0.05 } }": (
+        2,
+        lambda x: np.abs(np.linalg.norm(x, axis=1) - 0.04) - 0.01,
+    ),
+}
+
+
+@pytest.mark.parametrize("shape", IN_SHAPES)
+def test_a_packing_fills_a_shape(shape: str) -> None:
+    """Every grain lies in it as a whole, by the distance to its surface, and many do."""
+    dimension, distance = IN_SHAPES[shape]
+    text = f"packing = {{ inside = {shape}, radius = [0.003, 0.004], fraction = 0.5 }}\n"
+    sand = grains(text, dimension).grains["sand"]
+    centres, radii = sand.place(dimension)
+    assert (distance(centres) + radii).max() < 1e-9
+    assert len(radii) == sand.count == len(sand.names("sand"))
+    np.testing.assert_array_equal(radii, sand.radii())
+    room = np.pi * 0.05**2 if dimension == 2 else 4 / 3 * np.pi * 0.05**3
+    room -= np.pi * 0.03**2 if "ring" in shape else 0.0
+    assert 0.2 < ball_volume(radii, dimension).sum() / room < 0.6
 
 
 @pytest.mark.parametrize(("text", "key", "rule"), MISTAKES)

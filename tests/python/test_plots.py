@@ -14,7 +14,7 @@ from fake_core import COLUMNS, SIZE, FakeSimulation
 from mpm3dpp import open_results, plots
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io import HistoryWriter, ResultsWriter, build_manifest
-from mpm3dpp.plots import energies, flat, frames, labels, raster, space
+from mpm3dpp.plots import energies, flat, frames, labels, paint, raster, space
 
 
 def make_run(path: Path, dimension: int = 2, manifest: bool = True) -> Path:
@@ -129,6 +129,26 @@ def test_three_dimensions_with_pyvista(monkeypatch: pytest.MonkeyPatch) -> None:
     assert np.nonzero(red)[1].mean() < np.nonzero(blue)[1].mean()  # x goes to the right
 
 
+def test_one_look_with_and_without_a_graphics_card(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of some hundred balls the pictures differ in a few pixels at edges."""
+    random = np.random.default_rng(3)
+    points, sizes = random.uniform(0.0, 1.0, (400, 3)), random.uniform(0.05, 0.12, 400)
+    colours = random.uniform(0.2, 1.0, (400, 3))
+    lower, upper = -0.1 * np.ones(3), 1.1 * np.ones(3)
+    monkeypatch.setattr(space, "_has_graphics_card", lambda: True)
+    space._pyvista_works.cache_clear()
+    works = space._pyvista_works()
+    images = []
+    for with_card in (True, False):
+        monkeypatch.setattr(space, "_pyvista_works", lambda with_card=with_card: with_card)
+        if with_card and not works:
+            pytest.skip("PyVista cannot draw here")
+        image = space.render(points, sizes, colours, lower, upper, 400, view=(-30.0, 20.0))[0]
+        images.append(image.astype(int))
+    differs = np.abs(images[0] - images[1]).max(axis=2) > 24
+    assert images[0][..., 3].any() and differs.mean() < 0.01
+
+
 @pytest.mark.parametrize("manifest", [True, False])
 @pytest.mark.usefixtures("without_pyvista")
 def test_first_contact_picture(tmp_path: Path, manifest: bool) -> None:
@@ -237,13 +257,13 @@ def test_pairs_are_told_by_the_names_of_their_bodies() -> None:
 def test_torn_particles_do_not_take_the_colours() -> None:
     """Half a per cent of debris at a thousand times the pressure, or a few particles beyond."""
     bulk = np.linspace(-1.0, 1.0, 2000)
-    low, high = frames._range(np.concatenate([bulk, np.full(10, -900.0)]))
+    low, high = paint.colour_range(np.concatenate([bulk, np.full(10, -900.0)]))
     assert -1.01 < low < -0.9 and 0.9 < high <= 1.0
-    low, high = frames._range(np.append(bulk, 1.8))
+    low, high = paint.colour_range(np.append(bulk, 1.8))
     assert low == -1.0 and 0.9 < high < 1.1
-    assert frames._range(bulk) == (-1.0, 1.0)
+    assert paint.colour_range(bulk) == (-1.0, 1.0)
     wave = np.concatenate([np.zeros(1990), np.linspace(0.0, 1.0, 60)])  # Of few particles, but one.
-    assert frames._range(wave) == (0.0, 1.0)
+    assert paint.colour_range(wave) == (0.0, 1.0)
 
 
 def test_the_legend_of_a_frame_lies_over_nothing(tmp_path: Path) -> None:
@@ -274,7 +294,8 @@ def test_preview(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dimension: int
 
     names, blocks = ["left", "right"], FakeSimulation(dimension)._start
     size = np.full(len(blocks[0]), SIZE**dimension)
-    some = [SimpleNamespace(positions=block, volumes=size) for block in blocks]
+    counts = [len(blocks[0])]
+    some = [SimpleNamespace(positions=block, volumes=size, counts=counts) for block in blocks]
     parts = {
         name: SimpleNamespace(chunks=lambda one=one: [one])
         for name, one in zip(names, some, strict=True)
@@ -283,7 +304,11 @@ def test_preview(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dimension: int
     monkeypatch.setattr(mpm3dpp.fill.build, "fill_all", lambda case: filled)
     box = SimpleNamespace(lower=(0.0,) * dimension, upper=(0.03,) * dimension)
     grid = SimpleNamespace(
-        dimension=dimension, cell_size=2 * SIZE, origin=(0.0,) * dimension, box=box
+        dimension=dimension,
+        cell_size=2 * SIZE,
+        origin=(0.0,) * dimension,
+        box=box,
+        walls=("slip", "free", "fixed", "free", "free", "absorbing"),
     )
     case = SimpleNamespace(grid=grid, parts=lambda: names)
     path = plots.preview(case, tmp_path)

@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 
 from mpm3dpp import Case, RunError, reproduce
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.shipped import shipped
 from mpm3dpp.case.changes import with_changes
 from mpm3dpp.cli.app import app
 from mpm3dpp.plots import space
@@ -290,22 +291,11 @@ def test_quick_sizes_are_smaller(cases: Path) -> None:
 @pytest.mark.parametrize("name", EXAMPLES)
 @pytest.mark.parametrize("size", examples.SIZES)
 def test_the_examples_of_the_package_load(name: str, size: str) -> None:
-    folder, example = examples.folder_of_cases(), EXAMPLES[name]
+    folder, example = shipped("examples"), EXAMPLES[name]
     if not all((folder / file).is_file() for file in example.files.values()):
         pytest.skip("the example is not there")
     for label in example.files:
         load(example, label, folder, size)
-
-
-def test_the_cases_of_an_installed_package_go_first(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """They stand beside its modules; a checkout has them beside its folder python."""
-    package = tmp_path / "python" / "mpm3dpp"
-    monkeypatch.setattr(examples, "__file__", str(package / "reproduce" / "examples.py"))
-    assert examples.folder_of_cases() == tmp_path / "examples"
-    (package / "examples").mkdir(parents=True)
-    assert examples.folder_of_cases() == package / "examples"
 
 
 def test_what_is_missing_is_said_or_refused(cases: Path, tmp_path: Path) -> None:

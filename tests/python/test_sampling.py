@@ -68,6 +68,21 @@ def test_a_line(results: Results) -> None:
     assert np.isnan(beyond["pressure"]).all() and beyond["position"].shape == (5, d)
 
 
+def test_a_line_of_a_component_in_one_body(results: Results) -> None:
+    ends = np.array([0.011, 0.013, 0.02]), np.array([0.035, 0.027, 0.044])
+    start, end = (place[: results.dimension] for place in ends)
+    whole = results.line(start, end, "velocity", frame=0, count=9)["velocity"]
+    along_y = results.line(start, end, "velocity_y", frame=0, count=9, body="block")
+    np.testing.assert_allclose(along_y["velocity_y"], whole[:, 1], rtol=1e-12)
+    speed = results.on_grid("speed", 0)["speed"]
+    assert np.nanmax(speed) > 2.0 and speed.ndim == results.dimension
+    stress = results.line(start, end, "stress_yy", count=9)["stress_yy"]
+    tensors = results.line(start, end, "stress", count=9)["stress"]
+    np.testing.assert_array_equal(stress, tensors[:, 1])
+    with pytest.raises(CaseError, match='did you mean "block"'):
+        results.line(start, end, "pressure", body="blok")
+
+
 def test_a_grid(results: Results) -> None:
     d = results.dimension
     for spacing in (None, "5 mm"):

@@ -87,6 +87,19 @@ def test_a_study(tmp_path: Path) -> None:
     assert again.stdout == done.stdout and again.stderr.count("was there") == 3
 
 
+def test_other_keys_of_a_study(tmp_path: Path) -> None:
+    """The same for all its runs, and one may be taken out."""
+    words = ("--set", "run.end_time=50 us", "--set", "title=", "--number", "left.speed")
+    done = mpm3dpp("study", write(tmp_path), "--out", "out", *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    folders = [path for path in (tmp_path / "out").iterdir() if path.is_dir()]
+    cases = [read_manifest(folder)["case"] for folder in folders]
+    assert len(cases) == 3 and len({case["grid"]["cell_size"] for case in cases}) == 3
+    assert {case["run"]["end_time"] for case in cases} == {5e-5}
+    assert {case["title"] for case in cases} == {""}
+    assert "left.speed [m/s]" in done.stdout
+
+
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
@@ -94,6 +107,7 @@ def test_a_study(tmp_path: Path) -> None:
         (("--ratio", 1), "--ratio = 1.0 must be between 1 and 100; give 2"),
         (("--finest", "1 kg"), '--finest = "1 kg" has the unit "kg" (a mass) but must be a length'),
         (("--finest", "-1"), '--finest = "-1" must be > 0'),
+        (("--set", "grid.cell_size=1"), "grid.cell_size is what a study changes; give --finest"),
         (("--number", "wall_time"), '--number = "wall_time" converges to nothing; give another'),
         (("--number", "left.sped"), 'did you mean "left.speed"'),
     ],

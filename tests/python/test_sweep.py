@@ -15,6 +15,7 @@ from mpm3dpp.base.errors import CaseError
 from mpm3dpp.case.changes import value_of, values_of
 from mpm3dpp.io import read_manifest
 from mpm3dpp.sweep import runs
+from mpm3dpp.sweep.numbers import unit_of
 
 CONTACT = (
     CASE
@@ -57,6 +58,10 @@ def test_a_changed_case_is_the_case_with_that_value(
         ({"contact..friction": 1}, 'is no key; write one such as "contact.friction"'),
         ({("contact", "friction"): 1}, 'is no key; write one such as "contact.friction"'),
         ({"run.settle.ratio": None}, "cannot be changed: settle is no table of the case"),
+        (
+            {"body.lef.velocity": [1.0, 0.0]},
+            'body.lef.velocity cannot be changed: there is no body.lef; did you mean "left"?',
+        ),
     ],
 )
 def test_mistakes_in_changes(changes: Any, sentence: str) -> None:
@@ -104,9 +109,13 @@ def test_run_and_check_take_changes(tmp_path: Path) -> None:
     assert manifest["end_time"] == 2e-3 and manifest["case"]["title"] == "Short"
     checked = mpm3dpp("check", "case.toml", "--set", "grid.cell_size=5 mm", cwd=tmp_path)
     assert checked.returncode == 0 and "0.005 m" in checked.stdout
+    words = ("--set", "output.frames=", "--set", "output.interval=1 ms")
+    checked = mpm3dpp("check", "case.toml", *words, cwd=tmp_path)
+    assert checked.returncode == 0 and "9 frames" in checked.stdout
     for word, sentence in (
         ("run.end_tim=1", "did you mean"),
         ("run.end_time", "write KEY=VALUE"),
+        ("contact.friction=0,0.1", "takes one value; run several with `mpm3dpp sweep`"),
     ):
         done = mpm3dpp("check", "case.toml", "--set", word, cwd=tmp_path)
         assert done.returncode == 2 and sentence in one_sentence(done.stderr)
@@ -143,6 +152,25 @@ def test_a_sweep(tmp_path: Path) -> None:
     assert again.stdout == done.stdout
     more = tuple(word.replace("=0,0.3", "=0,0.1,0.3") for word in map(str, words))
     assert mpm3dpp(*more, "--number", "wall.x_min.force_x", cwd=tmp_path).stderr.count("there") == 4
+    tables = [(tmp_path / "out" / f"{stem}.csv").read_text() for stem in ("sweep_1", "sweep")]
+    assert [text.count("\n") for text in tables] == [5, 7]  # That of the other runs is kept.
+    assert (tmp_path / "out" / "sweep_1.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("name", "units"),
+    [
+        ("kinetic", ("J/m", "J")),
+        ("wall.x_min.force_x", ("N/m", "N")),
+        ("left.mass", ("kg/m", "kg")),
+        ("left.momentum_x", ("(N s)/m", "N s")),
+        ("left.speed", ("m/s", "m/s")),
+        ("left.velocity_x", ("m/s", "m/s")),
+        ("steps", ("", "")),
+    ],
+)
+def test_units_in_2d_are_those_of_a_metre_of_depth(name: str, units: tuple[str, str]) -> None:
+    assert (unit_of(name, 2), unit_of(name, 3)) == units
 
 
 def test_runs_that_fail_are_told_and_the_others_go_on(tmp_path: Path) -> None:

@@ -63,6 +63,53 @@ def test_a_uniform_one_is_gravity(scheme: str, basis: str) -> None:
                 assert np.abs(one - two).max() <= 1e-11 * size, (body, column)
 
 
+TOTAL = """
+[grid]
+dimension = 2
+cell_size = "10 mm"
+[run]
+end_time = "20 ms"
+[material.soft]
+density = "1000 kg/m^3"
+strength = { elastic = { E = "1 MPa", nu = 0.3 } }
+[body.block]
+material = "soft"
+shape = { box = { lower = [0, 0], upper = ["60 mm", "30 mm"] } }
+force = ["2 N", { expression = "1000 * t" }]
+body_force = ["3 m/s^2", 0]
+[grains.balls]
+material = "soft"
+lattice = { radius = "20 mm", count = [2, 1], lower = ["200 mm", 0] }
+force = [0, "-4 N"]
+"""
+
+
+def test_a_force_on_all_of_a_body() -> None:
+    """Newton: its momentum is the force times the time, and F(t) = a t gives a t^2 / 2, exactly as
+    the force is that of the middle of each step. Grains share theirs by mass.
+    """
+    case = Case.from_text(TOTAL)
+    simulation = Simulation(case, threads=1)
+    while simulation.time < 0.02:
+        simulation.advance(10)
+    t = simulation.time
+    mass, (along_x, along_y) = momentum(simulation, "block")
+    assert along_x == pytest.approx((2.0 + 3.0 * mass) * t, rel=1e-9)
+    assert along_y == pytest.approx(500.0 * t**2, rel=1e-9)
+    _, (along_x, along_y) = momentum(simulation, "balls")
+    assert along_y == pytest.approx(-4.0 * t, rel=1e-9) and abs(along_x) < 1e-12
+
+
+def momentum(simulation: Simulation, name: str) -> tuple[float, np.ndarray]:
+    """Return mass and momentum of a body, or of all the grains of an entry."""
+    core, mass, found = simulation.core, 0.0, np.zeros(2)
+    for body in simulation._numbers(name):
+        masses = core.column(body, "mass").ravel()
+        mass += masses.sum()
+        found += masses @ core.column(body, "velocity").reshape(len(masses), -1)[:, :2]
+    return float(mass), found
+
+
 MANUFACTURED = """
 [grid]
 dimension = 2

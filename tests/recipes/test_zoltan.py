@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from mpm3dpp import Simulation, load_case
-from mpm3dpp.reproduce.examples import folder_of_cases
+from mpm3dpp.base.shipped import shipped
 
 SOURCE = Path(__file__).parents[1] / "ranks" / "zoltan.cpp"
 HEADERS = Path("/usr/include/trilinos")  # Debian: libtrilinos-zoltan-dev
@@ -73,7 +73,7 @@ def surface(tiles: np.ndarray, part: np.ndarray) -> int:
 @pytest.mark.parametrize("parts", [2, 4, 8])
 def test_shares_beside_zoltan(zoltan: Path, parts: int) -> None:
     """Of a ball before a plate, of 542 tiles."""
-    case = load_case(folder_of_cases() / "02_penetration" / "case.toml")
+    case = load_case(shipped("examples") / "02_penetration" / "case.toml")
     simulation = Simulation(case, threads=1, ranks=parts)
     cells, owners, bodies = [], [], []
     for number, body in enumerate(simulation.bodies):

@@ -266,6 +266,7 @@ ForceField = Annotated[
     tuple[float | Expression, ...],
     Field("m/s^2", variables=("x", "y", "z", "X", "Y", "Z", "t")),
 ]
+TotalForce = Annotated[tuple[float | Expression, ...], Field("N", variables=("t",))]
 SpinField = Annotated[
     tuple[float | Expression, ...], Field("rad/s", scalar=True, variables=AT_START)
 ]

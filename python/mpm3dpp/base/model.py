@@ -130,6 +130,12 @@ class CaseModel(BaseModel, metaclass=_CaseMeta):
         except ValidationError as error:
             raise from_validation(error, prefix=(_table_name(type(self).__name__),)) from None
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the keys that were given, in SI units."""
+        from .model_html import model_html
+
+        return model_html(self)
+
     def table(self) -> dict[str, Any]:
         """Return the object as a table of a case file, in SI units, without absent keys."""
         pairs = ((name, getattr(self, name)) for name in type(self).model_fields)

@@ -9,8 +9,8 @@ from pydantic import model_validator
 
 from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import violation
-from mpm3dpp.base.expression import ForceField, SpinField, VelocityField
-from mpm3dpp.base.model import CaseModel, Choice, Count, Text
+from mpm3dpp.base.expression import ForceField, SpinField, TotalForce, VelocityField
+from mpm3dpp.base.model import CaseModel, Choice, Count, Flag, Text
 from mpm3dpp.base.units import PositiveLength
 from mpm3dpp.shapes.base import MaybeShape
 from mpm3dpp.shapes.shells import LATTICE, SHELLS, WAYS, default_way, takes_shells, unmoved
@@ -35,12 +35,16 @@ class Body(CaseModel):
         fill: how particles fill the shape: "shells", circles and spheres about the middle, the
             default for a disc, ring, sphere, cylinder or tube, also moved or turned; or "lattice",
             a lattice that is aligned with the grid's origin, for all others.
+        cut_at_box: leave out what of the shape lies beyond the faces of `grid.box`, as of a ball
+            behind planes of symmetry.
         velocity: initial velocity [m/s], D numbers or formulas of x, y, z, r; default zero.
         angular_velocity: initial spin about the mass centre [rad/s]: one number or formula in 2D,
             three in 3D; default zero. Stored as a tuple.
         initial: the stress and the state that it begins with; None for none.
         body_force: force per mass beside gravity [m/s^2], D numbers or formulas of the present
             place x, y, z, the place at the start X, Y, Z and the time t; None for none.
+        force: force on all of it [N; in 2D N per metre of thickness], shared out by mass, D numbers
+            or formulas of the time t; None for none.
         damping: what damps its motion beside its material, in proportion to the mass or locally;
             None for nothing.
         motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
@@ -53,10 +57,12 @@ class Body(CaseModel):
     particles_per_cell: Count | None = None
     spacing: PositiveLength | None = None
     fill: Annotated[str, Choice(WAYS)] | None = None
+    cut_at_box: Flag = False
     velocity: VelocityField = ()
     angular_velocity: SpinField = ()
     initial: Initial | None = None
     body_force: ForceField | None = None
+    force: TotalForce | None = None
     damping: Damping | None = None
     motion: MaybeMotion = None
 

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.errors import CaseError, guessed
 
 from . import file as case_file
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 Changes = Mapping[tuple[str, ...], Any]
 """A value for each key, given as its path: a number in SI units, text with a unit, a list or a
 table; None takes the key out, if it is there."""
+_NAMED = ("body", "grains", "material", "load", "probe")  # tables of tables that users name
 
 
 def with_changes(case: Case, changes: Changes) -> Case:
@@ -72,10 +73,11 @@ def changed_tables(text: str, name: str, changes: Changes) -> dict[str, Any]:
         changes: what is changed; tables that there are not are made.
 
     Raises:
-        CaseError: a key lies in what is no table.
+        CaseError: a key lies in what is no table, or in a body and the like that there is not.
     """
     tables = case_file.parse(text, name)
     for path, value in changes.items():
+        _check_name(tables, path)
         table: Any = tables
         for key in path[:-1]:
             table = _inner(table, key, path, value is not None)
@@ -90,9 +92,9 @@ def changed_tables(text: str, name: str, changes: Changes) -> dict[str, Any]:
 
 
 def assignment(text: str) -> tuple[str, str]:
-    """Return key and value of `KEY=VALUE`. Raises `CaseError` if it is none."""
+    """Return key and value, which may be empty, of `KEY=VALUE`. Raises `CaseError` for another."""
     key, sign, value = text.partition("=")
-    if not sign or not value.strip():
+    if not sign or not key.strip():
         remedy = "write KEY=VALUE, such as contact.friction=0.2"
         raise CaseError("is no change of a key", remedy, value=text)
     return key.strip(), value.strip()
@@ -107,12 +109,19 @@ def value_of(text: str) -> Any:
 
 
 def changes_of(assignments: Iterable[str]) -> Changes:
-    """Return the changes of texts `KEY=VALUE`. Raises `CaseError` if one is none."""
+    """Return the changes of texts `KEY=VALUE`, or `KEY=` to take a key out.
+
+    Raises:
+        CaseError: one is no such text, has several values, or a key is given twice.
+    """
     changes: dict[tuple[str, ...], Any] = {}
     for key, value in map(assignment, assignments):
         if path_of(key) in changes:
             raise CaseError("is given twice", "leave one out", key=key)
-        changes[path_of(key)] = value_of(value)
+        if len(values_of(value)) > 1:
+            remedy = "run several with `mpm3dpp sweep`, or put a text with commas in quotes"
+            raise CaseError("takes one value", remedy, key=key, value=value)
+        changes[path_of(key)] = value_of(value) if value else None
     return changes
 
 
@@ -130,6 +139,17 @@ def values_of(text: str) -> list[str]:
         else:
             found[-1] += letter
     return [value.strip() for value in found]
+
+
+def _check_name(tables: dict[str, Any], path: tuple[str, ...]) -> None:
+    """Refuse a key of a body and the like that the case has not: a whole one may be added."""
+    kind, name = (*path, "", "")[:2]
+    if kind not in _NAMED or len(path) <= len(("kind", "name")):
+        return
+    there = tables.get(kind)
+    if isinstance(there, dict) and name not in there:
+        rule = f"cannot be changed: there is no {kind}.{name}"
+        raise CaseError(rule, guessed(name, there), key=".".join(path))
 
 
 def _inner(table: Any, key: str, path: tuple[str, ...], make: bool) -> Any:

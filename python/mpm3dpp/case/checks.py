@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 from pydantic_core import PydanticCustomError
 
 from mpm3dpp import _core
-from mpm3dpp.base.errors import Path, nearest, report, violation
+from mpm3dpp.base.errors import CaseError, Path, nearest, report, violation
 from mpm3dpp.base.expression import Expression
 from mpm3dpp.base.model import plain
 from mpm3dpp.base.outputs import COLUMNS, ON_REQUEST, STANDARD
 from mpm3dpp.base.time_functions import at
 
+from .cut import cut_bodies
 from .detonation import check_detonations
+from .forces import check_forces, force_values
 from .initial import check_initial
 from .loads import check_loads
 from .material_checks import check_material
@@ -62,6 +64,7 @@ def _entries(case: Case) -> Found:
     yield from _check_vector(case.run, "gravity", dimension, ("run",))
     for name, body in case.body.items():
         yield from _check_body(case, body, ("body", name))
+    yield from cut_bodies(case)
     for name, grains in case.grains.items():
         yield from _check_grains(case, name, grains)
 
@@ -75,7 +78,7 @@ def _bodies_together(case: Case) -> Found:
     yield from check_loads(case)
     yield from check_stops(case)
     yield from check_probes(case, lambda material: _columns(case, material))
-    yield from _body_forces(case)
+    yield from check_forces(case)
     yield from _dampings(case)
     if case.run.settle is not None and not _acts_at_first(case):
         rule = (
@@ -91,7 +94,7 @@ def _acts_at_first(case: Case) -> bool:
     loads = (getattr(load, kind) for load in case.load.values() for kind in _core.load_kinds)
     values = [v for load in loads for v in (load if isinstance(load, tuple) else [load])]
     known = [v for v in [*case.run.gravity, *values] if v is not None]
-    forces = any(part.body_force is not None for part in case.parts().values())
+    forces = any(force_values(part) for part in case.parts().values())
     return forces or any(at(value, 0.0) for value in known)
 
 
@@ -158,14 +161,20 @@ def _check_grains(case: Case, name: str, grains: Grains) -> Found:
     if not name or name in case.body:
         rule = "has the name of a body" if name else "must have a name"
         yield violation(rule, "write another name, [grains.sand]", path=path)
-    others = {*case.body, *case.grains}
-    taken = next((one for one in grains.names(name) if one in others), None)
-    if taken is not None:
-        rule = f"has a grain {taken}, which is the name of another entry too"
-        yield violation(rule, "rename one of the two", path=path)
     wrong = grains.wrong_dimension(case.grid.dimension)
     if wrong is not None:
         yield violation(wrong[1], wrong[2], path=(*path, *wrong[0]))
+        return
+    try:
+        names = grains.names(name)
+    except CaseError as error:  # A shape that holds none.
+        yield violation(error.rule, error.remedy, path=(*path, grains.filling))
+        return
+    others = {*case.body, *case.grains}
+    taken = next((one for one in names if one in others), None)
+    if taken is not None:
+        rule = f"has a grain {taken}, which is the name of another entry too"
+        yield violation(rule, "rename one of the two", path=path)
     yield from _check_motion(case, grains, path)
 
 
@@ -196,23 +205,6 @@ def _formulas(body: Body | Grains, dimension: int, path: Path) -> Found:
                 rule = "is a formula of z, and grid.dimension = 2"
                 where = (*path, name, index, "expression")
                 yield violation(rule, "leave z out", value=value.text, path=where)
-
-
-def _body_forces(case: Case) -> Found:
-    """Yield the body forces with too few or too many numbers, or of bodies that do not deform."""
-    dimension = case.grid.dimension
-    for name, part in case.parts().items():
-        path = (*case.part_path(name), "body_force")
-        if part.body_force is None:
-            continue
-        if len(part.body_force) != dimension:
-            rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
-            remedy = f"it has {len(part.body_force)}, give {dimension}"
-            yield violation(rule, remedy, value=plain(part.body_force), path=path)
-        if case.is_rigid(name):
-            rule = "is of a body that does not deform, and acts on bodies that do"
-            remedy = "remove it, or give the body another material and no motion"
-            yield violation(rule, remedy, path=path)
 
 
 def _dampings(case: Case) -> Found:
@@ -255,8 +247,8 @@ def _check_body(case: Case, body: Body, path: Path) -> Found:
 
 def _columns(case: Case, material: str) -> list[str]:
     """Return the names of the columns that the core has for particles of a material."""
-    forces = [part.body_force for part in case.parts().values() if part.material == material]
-    given = [value for force in forces if force is not None for value in force]
+    parts = [part for part in case.parts().values() if part.material == material]
+    given = [value for part in parts for value in force_values(part)]
     return _core.column_names(
         dimension=case.grid.dimension,
         may_leave=case.grid.outflow_box is not None,

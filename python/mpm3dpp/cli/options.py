@@ -24,7 +24,8 @@ Changes = Annotated[
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help="Another value of a key of the case, such as contact.friction=0.2; may be repeated.",
+        help="Another value of a key of the case, such as contact.friction=0.2, or KEY= to take "
+        "it out; may be repeated.",
     ),
 ]
 Threads = Annotated[

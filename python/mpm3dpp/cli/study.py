@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from .options import CaseFile
+from .options import CaseFile, Changes
 from .sweep import Jobs, Number, RunPictures, RunThreads, tell
 
 
@@ -20,6 +20,7 @@ def study(
         str | None,
         typer.Option(metavar="LENGTH", help='Smallest cells, such as "1 mm"; default the case\'s.'),
     ] = None,
+    changes: Changes = None,
     out: Annotated[Path | None, typer.Option(help="Folder; default results/NAME_study.")] = None,
     jobs: Jobs = 1,
     threads: RunThreads = None,
@@ -45,6 +46,7 @@ def study(
             cells,
             ratio,
             finest,
+            changes or [],
             out or beside_default(case, "study"),
             jobs=jobs,
             threads=threads,

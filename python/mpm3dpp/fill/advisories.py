@@ -20,8 +20,8 @@ from mpm3dpp.ranks.world import World, together
 
 from .initial import at_rest
 from .parts import Filled, FilledPart
+from .unit_notes import unit_notes
 
-_FASTEST = 10.0  # Times the speed of sound; the fastest impacts in laboratories are at 2 to 3.
 _INCOMPRESSIBLE = 0.45
 _NARROW = 2.4  # Cells.
 _COARSE = 0.75  # Cells.
@@ -50,7 +50,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *_springs(case, bodies),
         *_narrow(case, bodies),
     ]
-    return found + _speeds(case, bodies)
+    return found + unit_notes(case, bodies)
 
 
 def overlap(case: Case, contact: dict[str, Any]) -> list[str]:
@@ -212,25 +212,6 @@ def _springs(case: Case, bodies: Filled) -> list[str]:
             f"the particles of {key_text(case.part_path(fine))} ({sizes[fine]:.3g} m), and springs "
             "reach no further; give a smaller one, or larger particles"
         )
-    return found
-
-
-def _speeds(case: Case, bodies: Filled) -> list[str]:
-    """Bodies that are so fast at the start that their velocity is perhaps in another unit."""
-    parts = case.parts()
-    sound = {name: case.material[part.material].sound_speed() for name, part in parts.items()}
-    quickest = max(c for name, c in sound.items() if not case.is_rigid(name))
-    found = []
-    for name, part in bodies.parts.items():
-        speed = float(part.survey.speeds.max())
-        own = quickest if case.is_rigid(name) else sound[name]
-        if speed > _FASTEST * own:
-            whose = "the other materials" if case.is_rigid(name) else "its material"
-            found.append(
-                f"{key_text(case.part_path(name))} moves at {speed:.4g} m/s, {speed / own:.3g} "
-                f"times the speed of sound in {whose} ({own:.4g} m/s); look at the unit of its "
-                "velocity (a plain number is in m/s) and at the stiffness"
-            )
     return found
 
 

@@ -3,6 +3,7 @@
 
 from .centres import GrainCentres
 from .filling import GrainFilling
-from .table import GrainLattice, GrainPacking, Grains
+from .packed import GrainPacking
+from .table import GrainLattice, Grains
 
 __all__ = ["GrainCentres", "GrainFilling", "GrainLattice", "GrainPacking", "Grains"]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.neighbours import near_pairs
+from mpm3dpp.shapes.base import Shape
 
 Array = NDArray[np.float64]
 
@@ -25,6 +26,8 @@ _PATIENCE = 200  # ... and rounds in which the overlap must fall ...
 _PROGRESS = 0.97  # ... to this share at least.
 _EXTRA = 1e-3  # Grains are pushed this share of their distance farther than they need.
 _PUSH = 0.6  # Share of an overlap that one round removes: more would shake dense packings.
+_DIRECTIONS = {2: 64, 3: 400}  # in which a grain is looked at, whether it lies in a shape
+_AT_A_TIME = 2000  # grains
 _SKIN = 0.3  # Pairs are listed this share of the mean radius beyond touching, and kept a while.
 
 
@@ -104,6 +107,40 @@ def pack(
         raise _cannot(radii, share, f"{left:,} pairs are still too close after pushing them apart")
     centres.setflags(write=False)
     return centres, radii
+
+
+def fitting(shape: Shape, centres: Array, radii: Array) -> NDArray[np.bool_]:
+    """Return which grains lie in a shape with all of their surface, shape (n,).
+
+    Args:
+        shape: of as many dimensions as the grains.
+        centres: [m], shape (n, D).          radii: [m], shape (n,).
+    """
+    directions, beyond = _directions(centres.shape[1])
+    found = np.ones(len(centres), dtype=bool)
+    for first in range(0, len(centres), _AT_A_TIME):
+        some = slice(first, first + _AT_A_TIME)
+        around = beyond * radii[some, None, None] * directions
+        points: Array = (centres[some, None, :] + around).reshape(-1, centres.shape[1])
+        found[some] = shape.contains(points).reshape(-1, len(directions)).all(axis=1)
+    return found
+
+
+def _directions(dimension: int) -> tuple[Array, float]:
+    """Return unit vectors, and how many times the radius a ball is held by points along these.
+
+    Between neighbours a flat wall could cut what they do not tell: 1 / cos of half their angle.
+    """
+    k = np.arange(_DIRECTIONS[dimension], dtype=float)
+    if dimension == 2:
+        angle = 2.0 * math.pi * k / len(k)
+        return np.column_stack([np.cos(angle), np.sin(angle)]), 1.0 / math.cos(math.pi / len(k))
+    # A spiral of equal areas; no place is farther than 2.65 / sqrt(n) from all of them (measured).
+    z = 1.0 - (2.0 * k + 1.0) / len(k)
+    angle = math.pi * (3.0 - math.sqrt(5.0)) * k
+    ring = np.sqrt(1.0 - z * z)
+    points = np.column_stack([ring * np.cos(angle), ring * np.sin(angle), z])
+    return points, 1.0 / math.cos(2.7 / math.sqrt(len(k)))
 
 
 def _cannot(radii: Array, share: float, reason: str) -> CaseError:

@@ -12,24 +12,23 @@ from pydantic import model_validator
 
 from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import CaseError, Path, violation
-from mpm3dpp.base.expression import ForceField, SpinField, VelocityField
+from mpm3dpp.base.expression import ForceField, SpinField, TotalForce, VelocityField
 from mpm3dpp.base.machine import BODY_BYTES, MEMORY, memory_text
-from mpm3dpp.base.model import MOST, CaseModel, Choice, Count, Exactly, Text
-from mpm3dpp.base.units import Point, PositiveLength, Quantity, Vector
+from mpm3dpp.base.model import CaseModel, Choice, Count, Text
+from mpm3dpp.base.units import Point, PositiveLength
 from mpm3dpp.shapes.shells import DEFAULT, LATTICE, SHELLS
 from mpm3dpp.shapes.shells import WAYS as FILLS
 
 from .centres import AnyCentres
-from .packing import MOST_GRAINS, draw_radii, pack
+from .packed import GrainPacking, Lengths, Wrong, needs
+from .packing import MOST_GRAINS
 
 Array = NDArray[np.float64]
-Wrong = tuple[Path, str, str]
 
 WAYS = ("lattice", "packing", "file")
 """The keys that say where grains stand; exactly one is given."""
 
 _TOUCH = 1e-9  # Equal grains may touch: the spacing may miss the diameter by this share.
-Lengths = Annotated[tuple[float, ...], Vector("m", scalar=True)]
 
 
 class GrainLattice(CaseModel):
@@ -61,9 +60,9 @@ class GrainLattice(CaseModel):
         """Return (path, rule, remedy) of the first key with too few or too many numbers."""
         for name, given in (("lower", self.lower), ("count", self.count)):
             if len(given) != dimension:
-                return _needs(name, len(given), dimension)
+                return needs(name, len(given), dimension)
         if len(self.spacing) not in (0, 1, dimension):
-            return _needs("spacing", len(self.spacing), dimension)
+            return needs("spacing", len(self.spacing), dimension)
         return None
 
     def ends(self) -> tuple[Array, Array]:
@@ -79,74 +78,6 @@ class GrainLattice(CaseModel):
         mesh = np.meshgrid(*axes, indexing="ij")
         centres = np.asarray(self.lower) + np.stack([x.ravel() for x in mesh], axis=1)
         return centres, np.full(len(centres), self.radius)
-
-
-class GrainPacking(CaseModel):
-    """Grains at random places in a box, none overlapping; the same for the same seed.
-
-    Attributes:
-        lower, upper: corners of the box that holds them [m], D numbers.
-        radius: one number [m], or the least and the most, drawn evenly between.
-        count: how many.
-        fraction: in place of `count`, the share of the box that they fill. Up to about 0.55 in 3D
-            and 0.75 in 2D a place is found for all.
-        gap: least distance of two surfaces [m].
-        seed: of the random numbers, a whole number >= 0.
-    """
-
-    lower: Point
-    upper: Point
-    radius: Lengths
-    count: Count | None = None
-    fraction: Annotated[float, Quantity("", "0 < f < 1")] | None = None
-    gap: Annotated[float, Quantity("m", ">= 0")] = 0.0
-    seed: Annotated[int, Exactly(int, 0, MOST)] = 0
-
-    @model_validator(mode="after")
-    def _consistent(self) -> GrainPacking:
-        if len(self.radius) not in (1, 2) or not 0 < self.radius[0] <= self.radius[-1]:
-            rule = "must be one length > 0, or two, the smaller first"
-            remedy = 'for example ["1 mm", "2 mm"]'
-            raise violation(rule, remedy, value=list(self.radius), path=("radius",))
-        if (self.count is None) == (self.fraction is None):
-            raise violation("must have either count or fraction", "give one of them")
-        if len(self.lower) != len(self.upper):
-            rule, remedy = "must have as many numbers as lower", "give two in 2D and three in 3D"
-            raise violation(rule, remedy, value=list(self.upper), path=("upper",))
-        for d, (low, high) in enumerate(zip(self.lower, self.upper, strict=True)):
-            if high - low < 2 * self.radius[-1]:
-                rule = f"is {high - low:g} m from lower, less than the largest grain's diameter"
-                remedy = "give a larger box or smaller grains"
-                raise violation(rule, remedy, value=high, path=("upper", d))
-        if len(self.radii()) == 0:
-            rule = "is less than one grain fills"
-            remedy = "give a larger fraction or smaller grains"
-            raise violation(rule, remedy, value=self.fraction, path=("fraction",))
-        return self
-
-    def wrong_dimension(self, dimension: int) -> Wrong | None:
-        """Return (path, rule, remedy) if the corners have too few or too many numbers."""
-        if len(self.lower) != dimension:
-            return _needs("lower", len(self.lower), dimension)
-        return None
-
-    def _volume(self) -> float:
-        """Return what the grains fill together [m^3; in 2D m^2]."""
-        return float(np.prod(np.subtract(self.upper, self.lower))) * (self.fraction or 0.0)
-
-    def radii(self) -> Array:
-        """Return the radii [m], shape (n,), without placing the grains."""
-        numbers = (self.radius[0], self.radius[-1], self.count, self._volume())
-        return draw_radii(*numbers, len(self.lower), self.seed)
-
-    def place(self, dimension: int) -> tuple[Array, Array]:
-        """Return centres [m], shape (n, D), and radii [m], shape (n,).
-
-        Raises:
-            CaseError: they cannot be placed.
-        """
-        numbers = (self.radius[0], self.radius[-1], self.count, self._volume())
-        return pack(self.lower, self.upper, *numbers, self.gap, self.seed)
 
 
 class Grains(CaseModel):
@@ -173,6 +104,8 @@ class Grains(CaseModel):
             in 2D, three in 3D; default zero. Stored as a tuple.
         body_force: force per mass of all beside gravity [m/s^2], D numbers or formulas of x, y, z,
             the place at the start X, Y, Z and the time t; None for none.
+        force: force on all of them together [N; in 2D N per metre of thickness], shared out by
+            mass, D numbers or formulas of the time t; None for none.
         damping: what damps their motion beside their material, in proportion to the mass or
             locally; None for nothing.
     """
@@ -188,6 +121,7 @@ class Grains(CaseModel):
     velocity: VelocityField = ()
     angular_velocity: SpinField = ()
     body_force: ForceField | None = None
+    force: TotalForce | None = None
     damping: Damping | None = None
 
     @model_validator(mode="after")
@@ -205,12 +139,13 @@ class Grains(CaseModel):
         if self.fill == SHELLS and self.align is not None:
             rule = f'goes with fill = "{LATTICE}" only'
             raise violation(rule, "remove one of the two", value=self.align, path=("align",))
-        need = self.count * BODY_BYTES
-        if self.count > MOST_GRAINS or need > MEMORY:
+        count = self.count if self.packing is None else len(self.packing.drawn())
+        need = count * BODY_BYTES
+        if count > MOST_GRAINS or need > MEMORY:
             rule = f"would be more than {MOST_GRAINS:,} grains"
-            if self.count <= MOST_GRAINS:
+            if count <= MOST_GRAINS:
                 rule = (
-                    f"would be {self.count:,} grains, which need {memory_text(need)} of memory at "
+                    f"would be {count:,} grains, which need {memory_text(need)} of memory at "
                     f"least, and there are {memory_text(MEMORY)}"
                 )
             remedy = "give fewer, or write lengths with their unit (a plain number is in metres)"
@@ -233,13 +168,20 @@ class Grains(CaseModel):
         if self.lattice is not None:
             return math.prod(self.lattice.count)
         if self.packing is not None:
-            return len(self.packing.radii())
+            return len(self.radii())
         return 0 if self.file is None else len(self.file.radii)
 
     def radii(self) -> Array:
-        """Return the radii [m], shape (n,), known without placing the grains."""
+        """Return the radii [m], shape (n,), known without placing the grains, but in a shape.
+
+        Raises:
+            CaseError: a packing cannot be made; its key is below the entry.
+        """
         if self.packing is not None:
-            return self.packing.radii()
+            try:
+                return self.packing.radii()
+            except CaseError as error:
+                raise CaseError(error.rule, error.remedy, key="packing") from None
         if self.file is not None:
             return self.file.radii
         assert self.lattice is not None
@@ -279,8 +221,3 @@ class Grains(CaseModel):
             return ("file",), rule, f"it has {self.file.dimension}"
         wrong = (self.lattice or self.packing).wrong_dimension(dimension)  # type: ignore[union-attr]
         return None if wrong is None else ((self.filling, *wrong[0]), wrong[1], wrong[2])
-
-
-def _needs(name: str, given: int, dimension: int) -> Wrong:
-    rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
-    return (name,), rule, f"it has {given}, give {dimension}"

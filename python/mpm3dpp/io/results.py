@@ -22,12 +22,13 @@ from .part_cells import PART_COLUMNS, PART_LIMIT, of_body
 from .probe_tables import read_probe
 from .rows import FROM_VTK, is_tensor
 from .sampling import Sampling
+from .shown import Shown
 
 if TYPE_CHECKING:
     import pyvista
 
 
-class Results(Sampling, GrainResults):
+class Results(Sampling, GrainResults, Shown):
     """The frames of one run; `results[k]` is a `pyvista.PolyData`, `arrays(k)` plain numpy.
 
     Attributes:

@@ -18,8 +18,25 @@ def is_tensor(values: np.ndarray) -> bool:
     return values.ndim == 2 and values.shape[1] == 6
 
 
+_AXES, _TENSOR = ("x", "y", "z"), ("xx", "yy", "zz", "yz", "xz", "xy")
 GONE = 3
 """In the column `failed`: from here on a particle takes no part any more (3: eroded, 4: left)."""
+
+
+def field_of(arrays: Mapping[str, np.ndarray], name: str) -> np.ndarray | None:
+    """Return an array by its name, "speed", or a component such as velocity_x or stress_xy.
+
+    None where there is no such array.
+    """
+    if name in arrays:
+        return arrays[name]
+    if name == "speed" and "velocity" in arrays:
+        return np.linalg.norm(arrays["velocity"], axis=1)
+    whole, _, component = name.rpartition("_")
+    if whole not in arrays or arrays[whole].ndim != 2:
+        return None
+    axes = _TENSOR if is_tensor(arrays[whole]) else _AXES
+    return arrays[whole][:, axes.index(component)] if component in axes else None
 
 
 def takes_part(arrays: Mapping[str, np.ndarray]) -> np.ndarray:

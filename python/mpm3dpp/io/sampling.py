@@ -11,7 +11,7 @@ import numpy as np
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError, nearest
 
-from .rows import takes_part
+from .rows import field_of, takes_part
 
 _AXES = "xyz"
 _MOST_NODES = 50_000_000  # of a grid
@@ -29,6 +29,10 @@ class Sampling(abc.ABC):
 
     @abc.abstractmethod
     def arrays(self, frame: int, names: Collection[str] | None = None) -> dict[str, np.ndarray]:
+        """See `Results`."""
+
+    @abc.abstractmethod
+    def _body(self, body: str) -> int:
         """See `Results`."""
 
     def section(
@@ -69,14 +73,16 @@ class Sampling(abc.ABC):
         name: str,
         frame: int = -1,
         count: int = 200,
+        body: str | None = None,
     ) -> dict[str, np.ndarray]:
         """Return a field along a straight line: `results.line((0, 0), (0.1, 0), "pressure")`.
 
         Args:
             start, end: of the line [m], or text with a unit; D numbers each.
-            name: of the field, an array of `arrays`.
+            name: of the field, an array of `arrays`, "speed", or a component such as "stress_yy".
             frame: see `arrays`.
             count: of places, evenly apart, both ends among them.
+            body: if given, of this body alone, or of these grains.
 
         Returns:
             "distance" from the start [m], shape (count,), "position" [m], shape (count, D), and the
@@ -93,7 +99,7 @@ class Sampling(abc.ABC):
         ]
         share = np.linspace(0.0, 1.0, count)[:, None]
         places = (1.0 - share) * ends[0] + share * ends[1]
-        positions, volumes, values = self._particles(frame, name)
+        positions, volumes, values = self._particles(frame, name, body)
         return {
             "distance": share[:, 0] * float(np.linalg.norm(ends[1] - ends[0])),
             "position": places,
@@ -101,13 +107,16 @@ class Sampling(abc.ABC):
         }
 
     def on_grid(
-        self, name: str, frame: int = -1, spacing: float | str | None = None
+        self,
+        name: str,
+        frame: int = -1,
+        spacing: float | str | None = None,
+        body: str | None = None,
     ) -> dict[str, np.ndarray]:
         """Return a field at the nodes of a grid about the particles: `results.on_grid("stress")`.
 
         Args:
-            name: of the field, an array of `arrays`.
-            frame: see `arrays`.
+            name, frame, body: see `line`.
             spacing: of the nodes [m], or text with a unit; by default a cell.
 
         Returns:
@@ -123,7 +132,7 @@ class Sampling(abc.ABC):
             step = arguments.quantity("spacing", spacing, "m")
         if not step > 0.0:
             raise CaseError("must be > 0", "give a length", key="spacing", value=spacing)
-        positions, volumes, values = self._particles(frame, name)
+        positions, volumes, values = self._particles(frame, name, body)
         if len(positions) == 0:
             raise CaseError("the frame has no particle left", "take an earlier one")
         low = np.floor(positions.min(axis=0) / step)
@@ -150,15 +159,21 @@ class Sampling(abc.ABC):
         shape = (*counts.tolist(), *values.shape[1:])
         return dict(zip(_AXES, axes, strict=False)) | {name: means.reshape(shape)}
 
-    def _particles(self, frame: int, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _particles(
+        self, frame: int, name: str, body: str | None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return place, volume at the start and value of the particles that have one."""
-        arrays = self.arrays(frame, [arguments.text("name", name), "size", "failed"])
-        if name not in arrays:
-            known = self.arrays(frame)
+        whole = "velocity" if name == "speed" else arguments.text("name", name).rpartition("_")[0]
+        arrays = self.arrays(frame, [name, whole, "size", "failed", "body"])
+        values = field_of(arrays, name)
+        if values is None:
+            known = [*self.arrays(frame), "speed", "velocity_x", "stress_xx"]
             raise CaseError("is not an array of these frames", nearest(name, known), value=name)
-        values = np.asarray(arrays[name], dtype=float)
+        values = np.asarray(values, dtype=float)
         positions = np.asarray(arrays["position"][:, : self.dimension], dtype=float)
         seen = takes_part(arrays) & np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+        if body is not None:
+            seen &= arrays["body"] == self._body(body)
         volumes = np.asarray(arrays["size"], dtype=float) ** self.dimension
         return positions[seen], volumes[seen], values[seen]
 

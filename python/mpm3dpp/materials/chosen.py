@@ -13,6 +13,7 @@ from mpm3dpp.base.model import CaseModel, Choice
 
 from .catalogue import KINDS, catalogue
 from .examples import example
+from .html import model_html
 from .parameters import check_parameters
 
 ACTIONS: dict[str, str] = _core.failure_actions[0]
@@ -42,6 +43,12 @@ class ChosenModel(CaseModel):
     def table(self) -> dict[str, Any]:
         """Return `{"neo_hookean": {"K": ..., "G": ...}}`, in SI units."""
         return {self.model: dict(self.parameters)}
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the parameters with their units and meanings."""
+        action = getattr(self, "action", "")
+        notes = f", {action}" if action else ""
+        return model_html(self.kind, self.model, self.parameters, notes)
 
 
 class Strength(ChosenModel):

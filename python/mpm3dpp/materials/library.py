@@ -75,6 +75,12 @@ class NamedMaterial:
         """Return the source of a number such as `strength.E`; None for a model's default."""
         return next((source for source in self.sources if key in source.gives), None)
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the numbers with their units, meanings and sources."""
+        from .html import named_html
+
+        return named_html(self)
+
 
 @lru_cache(maxsize=1)
 def library() -> dict[str, NamedMaterial]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,39 +11,57 @@ import numpy as np
 
 from mpm3dpp.base.disk import make_folder, replacing
 
-from .frames import draw_frame, view_of
+from .frames import View, draw_frame, view_of
+from .look import PLAIN, Look
 from .style import styled
 
 if TYPE_CHECKING:
     from mpm3dpp.io.results import Results
 
+Told = Callable[[int, int], None]
+"""Is called after each frame with the number of those drawn and of all."""
+
+LENGTH = 6.0  # seconds that the animation lasts, within the limits of the frame rate
 _DPI = 110
-_LENGTH = 6.0  # seconds that the animation lasts, within the limits of the frame rate
 _MOST_FRAMES = 150
 
 
-def save_animation(results: Results, path: Path, colour: str = "von_mises") -> Path:
+def save_animation(
+    results: Results,
+    path: Path,
+    colour: str = "von_mises",
+    look: Look = PLAIN,
+    most: int = _MOST_FRAMES,
+    told: Told | None = None,
+) -> Path:
     """Write the frames, evenly spaced in time, with one view and one range of colours.
 
     Args:
         results: of `open_results`.
         path: the GIF.
         colour: array that colours the particles, see `labels.choose`.
+        look: what else was asked for.
+        most: frames.
+        told: see `Told`.
 
     Raises:
         CaseError: there is no such array, or the file cannot be written.
     """
-    frames = _evenly(results.times)
-    view = view_of(results, frames, colour)
-    few = {k: _pixels(results, k, colour, view) for k in _spread(frames, 4)}
+    frames = evenly(results.times, most)
+    view = view_of(results, frames, colour, look)
+    few = dict(pictures(results, _spread(frames, 4), colour, look, view))
     palette = _palette(list(few.values()))
+    rest = pictures(results, [k for k in frames if k not in few], colour, look, view)
     shown, inked = [], []
     for frame in frames:  # A byte a pixel stays of each.
-        picture = few.pop(frame, None) or _pixels(results, frame, colour, view)
+        picture = few.pop(frame) if frame in few else next(rest)[1]
         inked.append(_inked(picture))
         shown.append(picture.quantize(palette=palette, dither=0))
-    shown = _without_margins(shown, [box for box in inked if box])
-    milliseconds = int(np.clip(1e3 * _LENGTH / len(shown), 40, 250))
+        if told is not None:
+            told(len(shown), len(frames))
+    if look.size is None:
+        shown = _without_margins(shown, [box for box in inked if box])
+    milliseconds = int(np.clip(1e3 * LENGTH / len(shown), 40, 250))
     durations = [milliseconds] * len(shown)
     durations[-1] = 1200
     make_folder(path.parent)
@@ -53,27 +72,32 @@ def save_animation(results: Results, path: Path, colour: str = "von_mises") -> P
     return path
 
 
-def _evenly(times: np.ndarray) -> list[int]:
+def evenly(times: np.ndarray, most: int) -> list[int]:
     """Frames nearest to evenly spaced times: extra frames must not make the motion falter."""
-    count = min(len(times), _MOST_FRAMES)
+    count = min(len(times), most)
     wanted = np.linspace(times[0], times[-1], count)
     nearest = [int(np.argmin(np.abs(times - time))) for time in wanted]
     return list(dict.fromkeys(nearest))
 
 
-def _spread(frames: list[int], count: int) -> list[int]:
-    """Some of the frames, from the first to the last."""
-    return [frames[k] for k in np.linspace(0, len(frames) - 1, count).astype(int)]
-
-
-def _pixels(results: Results, frame: int, colour: str, view: Any) -> Any:
+def pictures(
+    results: Results, frames: list[int], colour: str, look: Look, view: View
+) -> Iterator[tuple[int, Any]]:
+    """Yield the number and the picture of each frame, all of one size."""
     from PIL import Image
 
-    figure = draw_frame(results, frame, colour, view, _DPI)
-    with styled():
-        figure.canvas.draw()
-    pixels = np.asarray(figure.canvas.buffer_rgba())  # type: ignore[attr-defined]
-    return Image.fromarray(pixels[..., :3].copy())
+    for frame in frames:
+        figure = draw_frame(results, frame, colour, view, _DPI, look)
+        with styled():
+            figure.canvas.draw()
+        pixels = np.asarray(figure.canvas.buffer_rgba())  # type: ignore[attr-defined]
+        yield frame, Image.fromarray(pixels[..., :3].copy())
+
+
+def _spread(frames: list[int], count: int) -> list[int]:
+    """Some of the frames, from the first to the last."""
+    some = np.linspace(0, len(frames) - 1, count).astype(int)
+    return [frames[k] for k in dict.fromkeys(some.tolist())]
 
 
 def _palette(pictures: list[Any]) -> Any:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .flat import draw_particles, set_view
-from .frames import ColourBar, draw_bar, drawn, paper, sizes_of, view_of
+from .frames import drawn, paper, sizes_of, view_of
 from .labels import at_time, length_unit, prefix
+from .paint import ColourBar, draw_bar
 from .style import colour_scale, new_figure, save, styled
 
 if TYPE_CHECKING:

@@ -4,17 +4,23 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io.rows import takes_part
 
+from .arrows import draw_arrows, fastest_of
 from .flat import draw_particles, set_view
-from .labels import at_time, choose, length_unit, prefix
+from .grain_colours import colours_of_grains
+from .labels import at_time, choose, length_unit
 from .line import draw_line, line_axis
-from .style import DPI, body_colours, colour_scale, legend_of_bodies, new_figure, save, styled
+from .look import PLAIN, Look
+from .paint import BY_NAME, ColourBar, colour_range, draw_bar, paint
+from .style import DPI, legend_of_bodies, new_figure, save, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,6 +37,9 @@ class View:
         lower, upper: corners of the visible region [m], shape (3,).
         low, high: range of the coloured array, SI.
         along: axis over which the values are drawn, for bodies that are a line; None for others.
+        exact: whether the range was asked for, and is not to be rounded.
+        fastest: speed of the longest arrow [m/s].
+        grains: colours of the grains, by the number of their body, shape (grains, 3).
     """
 
     lower: np.ndarray
@@ -38,23 +47,34 @@ class View:
     low: float
     high: float
     along: int | None = None
-
-
-_BLOCK = 65536  # particles that are coloured at a time
+    exact: bool = False
+    fastest: float = 0.0
+    grains: Mapping[int, np.ndarray] = dataclasses.field(default_factory=dict)
 
 
 PLACED = ("size", "body", "grain", "material", "failed")
 """Arrays that say what is drawn where."""
 
+_SIZED = (7.0, 4.5)  # Least inches of a picture whose pixels are given: its text grows with it.
+_FILLED = (0.8, 0.8)  # Share of a picture of a given size that the image of particles fills.
 
-def drawn(results: Results, frame: int, colour: str | None = None) -> dict[str, np.ndarray]:
-    """Return the arrays of a frame without the particles that have eroded or left.
+
+def drawn(
+    results: Results, frame: int, colour: str | None = None, look: Look = PLAIN
+) -> dict[str, np.ndarray]:
+    """Return the arrays of a frame without the particles that have eroded or left, or are cut away.
 
     With a colour (see `labels.choose`) only those that a picture in it needs.
     """
     needed = _needed(results, colour)
+    if needed is not None and look.arrows:
+        needed.append("velocity")
     arrays = results.arrays(frame) if needed is None else results.arrays(frame, needed)
     stays = takes_part(arrays)
+    # In 2D particles at the edge of the picture are drawn in part.
+    margin = float(sizes_of(arrays, results).max(initial=0.0)) if results.dimension == 2 else 0.0
+    near = look.near(arrays["position"], 0.5 * margin)
+    stays = stays if near is None else stays & near
     return arrays if stays.all() else {name: values[stays] for name, values in arrays.items()}
 
 
@@ -67,32 +87,72 @@ def _needed(results: Results, colour: str | None) -> list[str] | None:
     return [*PLACED, *found] if found else None
 
 
-def view_of(results: Results, frames: list[int], colour: str) -> View:
-    """The view that holds all particles of some frames, with a margin, and all their values."""
+def view_of(results: Results, frames: list[int], colour: str, look: Look = PLAIN) -> View:
+    """The view that holds all particles of some frames, with a margin, and all their values.
+
+    Raises:
+        CaseError: there is no such array, or `look` does not suit the results.
+    """
+    look.check(results.dimension)
     lower, upper = np.full(3, np.inf), np.full(3, -np.inf)
-    least, most, low, high = np.inf, -np.inf, np.inf, -np.inf
+    least, most, low, high, fastest = np.inf, -np.inf, np.inf, -np.inf, 0.0
+    unit = ""
     for frame in frames:
-        arrays = drawn(results, frame, colour)
-        position = arrays["position"][np.isfinite(arrays["position"]).all(axis=1)]
+        arrays = drawn(results, frame, colour, look)
+        values, _, unit = choose(arrays, results.units, colour)
+        finite = np.isfinite(arrays["position"]).all(axis=1)
+        position, sizes = arrays["position"][finite], sizes_of(arrays, results)[finite]
         if len(position) == 0:
             continue
-        half = 0.5 * sizes_of(arrays, results).max()
+        half = 0.5 * sizes.max()
         lower = np.minimum(lower, position.min(axis=0) - half)
         upper = np.maximum(upper, position.max(axis=0) + half)
-        values = choose(arrays, results.units, colour)[0]
-        values = values[np.isfinite(values)]
-        if len(values):
-            bottom, top = _range(values)
+        if look.arrows:
+            fastest = max(fastest, fastest_of(arrays["velocity"]))
+        known = np.isfinite(values[finite])
+        if known.any() and look.range is None:
+            values, places = values[finite][known], position[known][:, : results.dimension]
+            bottom, top = colour_range(values, places, sizes[known])
             low, high = min(low, bottom), max(high, top)
             least, most = min(least, float(values.min())), max(most, float(values.max()))
     if not np.isfinite(lower).all():  # All are gone: an empty picture of where they were.
-        position = results.arrays(frames[0], ())["position"]
-        lower, upper = position.min(axis=0), position.max(axis=0) + results.cell_size
+        lower, upper = _empty(results, frames[0], look)
     margin = 0.03 * float(np.max(upper - lower))
     along = line_axis(lower, upper, results.cell_size, results.dimension)
-    if along is None or colour in ("body", "material"):
-        return View(lower - margin, upper + margin, low, high)
-    return View(lower - margin, upper + margin, least, most, along)  # Points hide no others.
+    lower, upper = lower - margin, upper + margin
+    if look.crop is not None and results.dimension == 2:  # In 3D what is left fills the picture.
+        lower[:2], upper[:2] = look.crop
+    view = View(lower, upper, low, high, fastest=fastest)
+    if colour == "body" and "grain" in results.fields:
+        view.grains = _grains(results, frames[0])
+    if along is not None and colour not in BY_NAME:
+        view.low, view.high, view.along = least, most, along  # Points hide no others.
+    if look.range is not None:
+        if colour in BY_NAME:
+            rule = f"is for colours with a scale, and those of {colour} have none"
+            raise CaseError(rule, "leave it out, or choose another colour", key="range")
+        (view.low, view.high), view.exact = look.range_in(unit) or (low, high), True
+    return view
+
+
+def _empty(results: Results, frame: int, look: Look) -> tuple[np.ndarray, np.ndarray]:
+    """Return the region in which nothing is. Raises `CaseError` where that was asked for."""
+    position = results.arrays(frame, ())["position"].astype(float)
+    position = position[np.isfinite(position).all(axis=1)]
+    if len(position) == 0:
+        return np.zeros(3), np.full(3, results.cell_size)
+    for name in ("crop", "section"):
+        if getattr(look, name) is not None and takes_part(results.arrays(frame, PLACED)).any():
+            low, high = position.min(axis=0), position.max(axis=0)
+            places = zip("xyz"[: results.dimension], low, high, strict=False)
+            where = ", ".join(f"{a} {b:.3g} to {c:.3g} m" for a, b, c in places)
+            raise CaseError("leaves no particle", f"they are at {where}", key=name)
+    return position.min(axis=0), position.max(axis=0) + results.cell_size
+
+
+def _grains(results: Results, frame: int) -> dict[int, np.ndarray]:
+    arrays = results.arrays(frame, ("body", "grain"))
+    return colours_of_grains(arrays["body"], arrays["grain"], arrays["position"].astype(float))
 
 
 def draw_frame(
@@ -101,6 +161,7 @@ def draw_frame(
     colour: str = "von_mises",
     view: View | None = None,
     dpi: float = DPI,
+    look: Look = PLAIN,
 ) -> Figure:
     """Draw one frame; the caller saves it.
 
@@ -110,138 +171,115 @@ def draw_frame(
         colour: array that colours the particles, see `labels.choose`.
         view: region and range of values; default those of this frame.
         dpi: pixels per inch.
+        look: what else was asked for.
 
     Raises:
-        CaseError: the frame has no such array.
+        CaseError: the frame has no such array, or `look` does not suit the results.
     """
-    view = view or view_of(results, [frame], colour)
-    arrays = drawn(results, frame, colour)
+    view = view or view_of(results, [frame], colour, look)
+    arrays = drawn(results, frame, colour, look)
     with styled():
         if view.along is not None:
-            figure = draw_line(results, arrays, colour, view, dpi)
+            figure = draw_line(results, arrays, colour, view, sheet((7.0, 3.4), dpi, look))
         elif results.dimension == 2:
-            figure = _draw_flat(results, arrays, colour, view, dpi)
+            figure = _draw_flat(results, arrays, colour, view, dpi, look)
         else:
-            figure = _draw_space(results, arrays, colour, view, dpi)
+            figure = _draw_space(results, arrays, colour, view, dpi, look)
         end = float(results.times[-1])
-        figure.axes[0].set_title(at_time(float(results.times[frame]), end), loc="left")
+        title = ", ".join(filter(None, [at_time(float(results.times[frame]), end), look.words]))
+        figure.axes[0].set_title(title, loc="left")
+    return figure
+
+
+def sheet(inches: tuple[float, float], dpi: float, look: Look) -> Figure:
+    """A figure of a size in inches, or of the pixels that were asked for."""
+    if look.size is None:
+        return new_figure(*inches, dpi)
+    dpi = min(pixels / least for pixels, least in zip(look.size, _SIZED, strict=True))
+    width, height = ((pixels + 0.01) / dpi for pixels in look.size)  # Cut to whole ones.
+    figure = new_figure(width, height, dpi)
+    figure.whole = True
     return figure
 
 
 def _draw_flat(
-    results: Results, arrays: dict[str, np.ndarray], colour: str, view: View, dpi: float
+    results: Results,
+    arrays: dict[str, np.ndarray],
+    colour: str,
+    view: View,
+    dpi: float,
+    look: Look,
 ) -> Figure:
     width, height = (view.upper - view.lower)[:2]
     factor, unit = length_unit(max(width, height))
-    figure = new_figure(*paper(width / height), dpi)
+    figure = sheet(paper(width / height), dpi, look)
     axes = figure.add_subplot()
     set_view(axes, factor * view.lower, factor * view.upper, unit)
     colours, mappable = paint(arrays, results, colour, view)
-    _key(axes, results, colour, mappable)
+    _key(axes, results, colour, mappable, view)
     points = factor * arrays["position"][:, :2].astype(float)
     sizes = factor * sizes_of(arrays, results)
     draw_particles(axes, points, sizes, arrays["body"], colours, grains=arrays.get("grain"))
+    if look.arrows:
+        draw_arrows(axes, points, arrays["velocity"][:, :2], arrays["body"], view.fastest)
     return figure
 
 
 def _draw_space(
-    results: Results, arrays: dict[str, np.ndarray], colour: str, view: View, dpi: float
+    results: Results,
+    arrays: dict[str, np.ndarray],
+    colour: str,
+    view: View,
+    dpi: float,
+    look: Look,
 ) -> Figure:
-    from .space import PIXELS, draw_box_axes, render
+    from .space import PIXELS, camera_for, draw_box_axes, render
 
     colours, mappable = paint(arrays, results, colour, view)
+    camera = camera_for(view.lower, view.upper, look.view)
+    pixels = float(PIXELS * dpi / DPI)
+    if look.size is not None:
+        room = np.multiply(_FILLED, look.size) / [camera.width, camera.height]
+        pixels = float(room.min()) * max(camera.width, camera.height)
+    sizes = sizes_of(arrays, results)
     image, camera = render(
-        arrays["position"],
-        sizes_of(arrays, results),
-        colours,
-        view.lower,
-        view.upper,
-        round(PIXELS * dpi / DPI),
+        *(arrays["position"], sizes, colours, view.lower, view.upper, round(pixels), look.view)
     )
-    height, width = image.shape[:2]
-    figure = new_figure(*paper(width / height), dpi)
+    figure = sheet(paper(image.shape[1] / image.shape[0]), dpi, look)
     axes = figure.add_subplot()
     draw_box_axes(axes, image, camera, view.lower, view.upper)
-    _key(axes, results, colour, mappable)
+    _key(axes, results, colour, mappable, view)
+    if look.arrows:
+        factor, _ = length_unit(float((view.upper - view.lower).max()))
+        across = np.column_stack([camera.right, camera.up, camera.towards])
+        places = factor * (arrays["position"].astype(float) - camera.centre) @ across
+        flat = arrays["velocity"].astype(float) @ across[:, :2]
+        draw_arrows(axes, places[:, :2], flat, arrays["body"], view.fastest, places[:, 2])
     return figure
 
 
-def _key(axes: Axes, results: Results, colour: str, bar: ColourBar | None) -> None:
+def _key(axes: Axes, results: Results, colour: str, bar: ColourBar | None, view: View) -> None:
     """The colour bar, as high as the axes, or the legend of the bodies or materials."""
     if bar is not None:
         draw_bar(axes, bar)
         return
     names = results.bodies if colour == "body" else results.materials
     figure: Any = axes.figure
-    legend_of_bodies(figure, names)
-
-
-def draw_bar(axes: Axes, bar: ColourBar) -> None:
-    """A colour bar beside axes, as high as they are."""
-    place, figure = axes.inset_axes((1.025, 0.0, 0.022, 1.0)), axes.figure
-    figure.colorbar(bar.mappable, cax=place, label=bar.label, extend=bar.extend)
-    place.yaxis.label.set_fontsize(9)
-    place.spines["outline"].set_linewidth(0.6)
-
-
-@dataclasses.dataclass
-class ColourBar:
-    """What a colour bar shows: colours with their range, label with unit, pointed ends."""
-
-    mappable: Any
-    label: str
-    extend: str
-
-
-def paint(
-    arrays: dict[str, np.ndarray], results: Any, colour: str, view: View
-) -> tuple[np.ndarray, ColourBar | None]:
-    """Colours of the particles (n, 3), and the colour bar (None: colours of bodies)."""
-    from matplotlib.cm import ScalarMappable
-
-    values, name, unit = choose(arrays, results.units, colour)
-    if colour in ("body", "material"):
-        return body_colours(values), None
-    colours, norm = colour_scale(colour, view.low, view.high)
-    factor, unit = prefix(max(abs(norm.vmin), abs(norm.vmax)), unit)
-    shown = type(norm)(norm.vmin * factor, norm.vmax * factor)
-    rgb = np.empty((len(values), 3), dtype=np.float32)
-    for first in range(0, len(values), _BLOCK):
-        some = values[first : first + _BLOCK].astype(float)
-        part = rgb[first : first + _BLOCK]
-        part[:] = colours(norm(np.nan_to_num(some, nan=norm.vmin)))[:, :3]
-        part[~np.isfinite(some)] = 0.75  # no such value there: grey
-    slack = 0.01 * (norm.vmax - norm.vmin)
-    below, above = (values < norm.vmin - slack).any(), (values > norm.vmax + slack).any()
-    extend = "both" if below and above else "min" if below else "max" if above else "neither"
-    label = f"{name} [{unit}]" if unit else name
-    return rgb, ColourBar(ScalarMappable(shown, colours), label, extend)
-
-
-# Of debris and the like [%]: the share of the values that colours leave out at either end if it
-# stretches their range by more than a factor; a larger share, as of torn particles, must stretch it
-# more than what is a few particles.
-_TAILS = ((1.0, 10.0), (0.1, 1.3))
-
-
-def _range(values: np.ndarray) -> tuple[float, float]:
-    """Range for the colours: all values, without a few that lie far outside the others."""
-    low, high = float(values.min()), float(values.max())
-    for tail, factor in _TAILS:
-        bottom, top = (float(x) for x in np.percentile(values, [tail, 100.0 - tail]))
-        reach = factor * (top - bottom)
-        if reach > 0.0 and (top - low > reach or high - bottom > reach):
-            return bottom if top - low > reach else low, top if high - bottom > reach else high
-    return low, high
+    legend_of_bodies(figure, names, grains=view.grains)
 
 
 def save_frame(
-    results: Results, frame: int, path: Path, colour: str = "von_mises", view: View | None = None
+    results: Results,
+    frame: int,
+    path: Path,
+    colour: str = "von_mises",
+    view: View | None = None,
+    look: Look = PLAIN,
 ) -> Path:
     """Draw one frame and write it as PNG; arguments of `draw_frame`."""
-    figure = draw_frame(results, frame, colour, view)
+    figure = draw_frame(results, frame, colour, view, look=look)
     with styled():
-        return save(figure, path)
+        return save(figure, path, whole=look.size is not None)
 
 
 def sizes_of(arrays: dict[str, np.ndarray], results: Any) -> np.ndarray:

@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from mpm3dpp.base.errors import CaseError, nearest
+from mpm3dpp.io.rows import field_of
 
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _PREFIXED = {"m", "s", "Pa", "J", "J/m", "N", "N/m", "N s", "N s/m", "J/kg", "W"}
@@ -20,8 +21,6 @@ NAMES = {
     "material": "material",
     "size": "particle size",
 }
-
-_TENSOR = ("xx", "yy", "zz", "yz", "xz", "xy")
 
 
 def prefix(largest: float, unit: str) -> tuple[float, str]:
@@ -95,10 +94,9 @@ def choose(
             return values, NAMES.get(colour, colour.replace("_", " ")), unit
         name = "speed" if colour == "velocity" else f"length of {colour.replace('_', ' ')}"
         return np.linalg.norm(values, axis=1), name, unit
-    name, _, component = colour.rpartition("_")
-    axes = _TENSOR if name in arrays and arrays[name].shape[1:] == (6,) else ("x", "y", "z")
-    if name in arrays and component in axes and arrays[name].ndim == 2:
-        values = arrays[name][:, axes.index(component)]
-        return values, f"{name.replace('_', ' ')} {component}", units.get(name, "")
+    component = field_of(arrays, colour)
+    if component is not None:
+        name, _, axis = colour.rpartition("_")
+        return component, f"{name.replace('_', ' ')} {axis}", units.get(name, "")
     known = [*arrays, "speed", "velocity_x", "stress_xx"]
     raise CaseError(f"'{colour}' is not an array of these results", nearest(colour, known))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .labels import choose, length_unit, prefix
-from .style import MOST_NAMES, PALETTE, new_figure
+from .style import MOST_NAMES, PALETTE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,7 +33,7 @@ def line_axis(lower: np.ndarray, upper: np.ndarray, cell_size: float, dimension:
 
 
 def draw_line(
-    results: Any, arrays: dict[str, np.ndarray], colour: str, view: Any, dpi: float
+    results: Any, arrays: dict[str, np.ndarray], colour: str, view: Any, figure: Figure
 ) -> Figure:
     """Draw each particle as a point at its place and value, in the colour of its body.
 
@@ -42,10 +42,9 @@ def draw_line(
         arrays: of a frame.
         colour: the array that is drawn, see `labels.choose`.
         view: region and range of values; `view.along` is the axis.
-        dpi: pixels per inch.
+        figure: empty.
     """
     along = view.along
-    figure = new_figure(7.0, 3.4, dpi)
     axes = figure.add_subplot()
     values, name, unit = choose(arrays, results.units, colour)
     low, high = (view.low, view.high) if np.isfinite(view.high - view.low) else (0.0, 1.0)

@@ -8,8 +8,11 @@ at a time, so that little memory is needed beside the image itself.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
+
+from .coarser import coarser
 
 FINER = 2
 """Pixels that are worked out for each one of an image, along each side, to smooth its edges."""
@@ -98,50 +101,82 @@ def balls(
         depths: distance towards the viewer (n,) [pixels]; larger is nearer.
         radii: (n,) [pixels].
     """
-    image = np.zeros((*shape, 4), dtype=np.uint8)
     # Far to near, so that where two balls cover a pixel the nearer is written last.
     order = np.flatnonzero(_not_buried(centres, depths, radii))
     order = order[np.argsort(depths[order], kind="stable")]
     centres, depths = finer * centres[order], finer * depths[order]
     radii, colours = finer * radii[order], colours[order]
+    reach, y = int(np.ceil(radii.max())), centres[:, 1]
+
+    def front(bottom: int, top: int) -> tuple[np.ndarray, np.ndarray]:
+        here = np.flatnonzero((y >= bottom - reach - 1) & (y <= top + reach + 1))
+        at = centres[here] - np.array([0.0, bottom])
+        whole = top - bottom, finer * shape[1]
+        owner, surface = _nearest(at, depths[here], radii[here], whole, reach)
+        owner[owner >= 0] = here[owner[owner >= 0]]
+        return owner, surface
+
+    return _lit(front, centres, radii, colours, shape, finer)
+
+
+def balls_of_owners(
+    owners: np.ndarray,
+    centres: np.ndarray,
+    depths: np.ndarray,
+    radii: np.ndarray,
+    colours: np.ndarray,
+    finer: int = 1,
+) -> np.ndarray:
+    """The image of `balls` where it is known which ball is in front at each finer pixel.
+
+    Args:
+        owners: its number, -1 for none, shape (finer height, finer width); row 0 is the lowest.
+    """
+    centres, depths, radii = finer * centres, finer * depths, finer * radii
+    shape = owners.shape[0] // finer, owners.shape[1] // finer
+
+    def front(bottom: int, top: int) -> tuple[np.ndarray, np.ndarray]:
+        owner = owners[bottom:top]
+        y, x = np.nonzero(owner >= 0)
+        who = owner[y, x]
+        flat = (x - centres[who, 0]) ** 2 + (y + bottom - centres[who, 1]) ** 2
+        surface = np.full(owner.shape, -np.inf)
+        surface[y, x] = depths[who] + np.sqrt(np.maximum(0.0, radii[who] ** 2 - flat))
+        return owner, surface
+
+    return _lit(front, centres, radii, colours, shape, finer)
+
+
+def _lit(
+    front: Callable[[int, int], tuple[np.ndarray, np.ndarray]],
+    centres: np.ndarray,
+    radii: np.ndarray,
+    colours: np.ndarray,
+    shape: tuple[int, int],
+    finer: int,
+) -> np.ndarray:
+    """Return the image of balls; `front` gives number and nearness of those of a band of rows."""
+    image = np.zeros((*shape, 4), dtype=np.uint8)
     height, width = finer * shape[0], finer * shape[1]
-    radius, reach = float(np.median(radii)), int(np.ceil(radii.max()))
+    radius = float(np.median(radii))
     near = max(1, round(0.5 * radius))  # As far as `_step` looks.
     for row in range(0, height, finer * _ROWS):
         end = min(row + finer * _ROWS, height)
         bottom, top = max(row - near, 0), min(end + near, height)
-        y = centres[:, 1]
-        here = np.flatnonzero((y >= bottom - reach - 1) & (y <= top + reach + 1))
-        at = centres[here] - np.array([0.0, bottom])
-        owner, surface = _nearest(at, depths[here], radii[here], (top - bottom, width), reach)
+        owner, surface = front(bottom, top)
         rows = slice(row - bottom, end - bottom)
         shade = 1.0 - 0.55 * _step(surface, radius, near)[rows]
         drawn = owner[rows] >= 0
         y, x = np.nonzero(drawn)
         who = owner[rows][drawn]
-        n = (np.column_stack([x, y + rows.start]) - at[who]) / radii[here][who, None]
+        n = (np.column_stack([x, y + row]) - centres[who]) / radii[who, None]
         towards = np.sqrt(np.maximum(0.0, 1.0 - (n**2).sum(axis=1)))
         light = 0.62 + 0.38 * np.clip(-0.35 * n[:, 0] + 0.55 * n[:, 1] + 0.76 * towards, 0.0, 1.0)
         band = np.zeros((end - row, width, 4), dtype=np.uint8)
-        band[drawn, :3] = _bytes(colours[here[who]] * (light * shade[drawn])[:, None])
+        band[drawn, :3] = _bytes(colours[who] * (light * shade[drawn])[:, None])
         band[drawn, 3] = 255
         image[row // finer : end // finer] = coarser(band, finer)
     return image
-
-
-def coarser(image: np.ndarray, finer: int) -> np.ndarray:
-    """Pixels that are the means of finer ones, as much of each as is covered."""
-    if finer == 1:
-        return image
-    height, width = image.shape[0] // finer, image.shape[1] // finer
-    parts = image.reshape(height, finer, width, finer, 4)
-    cover = parts[..., 3].sum(axis=(1, 3), dtype=np.float32)
-    found = np.empty((height, width, 4), dtype=np.float32)
-    for k in range(3):
-        found[..., k] = (parts[..., k] * (parts[..., 3] > 0)).sum(axis=(1, 3), dtype=np.float32)
-    found[..., :3] *= 255.0 / np.maximum(cover, 1.0)[..., None]
-    found[..., 3] = cover / finer**2
-    return np.round(found).astype(np.uint8)
 
 
 def _bytes(colours: np.ndarray) -> np.ndarray:

@@ -15,14 +15,25 @@ from mpm3dpp.io.probe_tables import probe_names, read_probe
 from mpm3dpp.io.results import Results, open_results
 
 from .contact import first_contact
+from .look import PLAIN, Look
 
 _A_HEAP = 10  # Grains of a name, from which their forces are drawn.
 
 
 def draw_all(
-    folder: Path, frame: int, animation: bool | None, colour: str | None, out: Path | None
+    folder: Path,
+    frame: int,
+    animation: bool | None,
+    colour: str | None,
+    out: Path | None,
+    look: Look = PLAIN,
+    movie: Path | None = None,
+    quiet: bool = True,
 ) -> Iterator[Path]:
-    """See `mpm3dpp.plots.plot_results`; gives each picture when it is there."""
+    """See `mpm3dpp.plots.plot_results`; gives each picture when it is there.
+
+    With a movie that alone is made, with progress on standard error unless `quiet`.
+    """
     from .frames import save_frame
 
     source = folder if folder.is_dir() else folder.parent
@@ -39,13 +50,18 @@ def draw_all(
                 f"frame {frame} does not exist in '{results.path}': "
                 f"give 0 to {count - 1}, or -1 for the last"
             )
+        if movie is not None:
+            from .movie import save_movie
+
+            yield save_movie(results, movie, colour, look, quiet)
+            return
         name = "frame.png" if frame == -1 else f"frame_{frame % count:04d}.png"
-        yield save_frame(results, frame, out / name, colour)
+        yield save_frame(results, frame, out / name, colour, look=look)
         others: list[Callable[[], Path | None]] = [lambda: _energies(results, source, out)]
         others.append(lambda: _probes(results, source, out))
         others.append(lambda: _forces(results, frame, out))
         if animation:
-            others.append(lambda: _animation(results, out, colour))
+            others.append(lambda: _animation(results, out, colour, look))
         others.append(lambda: first_contact(folder, out / "first_contact.png"))
         refused = []
         for make in others:
@@ -90,10 +106,10 @@ def _forces(results: Results, frame: int, out: Path) -> Path | None:
     return save_force_network(results, frame, out / "force_network.png")
 
 
-def _animation(results: Results, out: Path, colour: str) -> Path:
+def _animation(results: Results, out: Path, colour: str, look: Look) -> Path:
     from .animation import save_animation
 
-    return save_animation(results, out / "animation.gif", colour)
+    return save_animation(results, out / "animation.gif", colour, look)
 
 
 def _output(folder: Path) -> dict[str, Any]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Three-dimensional particles as a picture: PyVista on a graphics card, else our own balls."""
+"""Three-dimensional particles as a picture: balls, found by a graphics card where there is one."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ import functools
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .labels import length_unit
-from .raster import FINER, balls, coarser
+from .look import directions
+from .raster import FINER, balls, balls_of_owners
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 PIXELS = 1100  # longer side of the image, as many as it is shown with
 
 _BLOCK = 65536  # particles that are turned at a time
+_MOST_OWNERS = 2**24 - 1  # balls that have numbers in the colours of a card
 
 _PROBE = """
 import pyvista
@@ -33,7 +35,7 @@ raise SystemExit(0 if image.std() > 0 else 1)
 
 @dataclasses.dataclass
 class Camera:
-    """A parallel projection that looks at a box from its front, right and above; z is up.
+    """A parallel projection that looks at a box; z is never turned.
 
     Attributes:
         right, up, towards: unit vectors of the image and to the viewer.
@@ -49,13 +51,11 @@ class Camera:
     height: float
 
 
-def camera_for(lower: np.ndarray, upper: np.ndarray) -> Camera:
-    """The camera that just holds a box given by two corners [m]."""
-    towards = np.array([0.55, -1.0, 0.55])
-    towards /= np.linalg.norm(towards)
-    right = np.cross([0.0, 0.0, 1.0], towards)
-    right /= np.linalg.norm(right)
-    up = np.cross(towards, right)
+def camera_for(
+    lower: np.ndarray, upper: np.ndarray, view: tuple[float, float] | None = None
+) -> Camera:
+    """The camera that just holds a box given by two corners [m]; `view`: see `look.directions`."""
+    right, up, towards = directions(view)
     half = 0.5 * (upper - lower)
     width = 2.0 * float(np.abs(right) @ half)
     height = 2.0 * float(np.abs(up) @ half)
@@ -69,6 +69,7 @@ def render(
     lower: np.ndarray,
     upper: np.ndarray,
     pixels: int | None = None,
+    view: tuple[float, float] | None = None,
 ) -> tuple[np.ndarray, Camera]:
     """Balls of the particles' sizes, seen from `camera_for` the box.
 
@@ -78,19 +79,18 @@ def render(
         colours: (n, 3), 0 to 1.
         lower, upper: corners of the box in view [m].
         pixels: of the image's longer side; default `PIXELS`.
+        view: azimuth and elevation, see `look.directions`.
 
     Returns:
         image (height, width, 4), 0 to 255, transparent background, row 0 the highest; camera.
     """
-    camera, pixels = camera_for(lower, upper), pixels or PIXELS
+    camera, pixels = camera_for(lower, upper, view), pixels or PIXELS
     seen = np.isfinite(points).all(axis=1)
     if not seen.all():
         points, sizes, colours = points[seen], sizes[seen], colours[seen]
     if len(points) == 0:
         empty = (100, round(100 * camera.width / camera.height), 4)
         return np.zeros(empty, dtype=np.uint8), camera
-    if _pyvista_works():
-        return _with_pyvista(points, sizes, colours, camera, pixels), camera
     scale = pixels / max(camera.width, camera.height)
     shape = (round(camera.height * scale), round(camera.width * scale))
     axes = scale * np.column_stack([camera.right, camera.up, camera.towards])
@@ -101,7 +101,11 @@ def render(
         places[block] = (points[block] - camera.centre) @ axes + corner
     # a ball of the cube's volume leaves no slits between neighbours
     radii = np.maximum(0.62 * scale * sizes, 1.0 / FINER)
-    image = balls(places[:, :2], places[:, 2], radii, colours, shape, FINER)
+    if len(points) < _MOST_OWNERS and _pyvista_works():
+        owners = _owners_by_pyvista(points, radii / scale, camera, scale, shape)
+        image = balls_of_owners(owners, places[:, :2], places[:, 2], radii, colours, FINER)
+    else:
+        image = balls(places[:, :2], places[:, 2], radii, colours, shape, FINER)
     return image[::-1], camera
 
 
@@ -125,6 +129,8 @@ def draw_box_axes(
     origin = np.array([-half[0] + 0.5 * foot, -half[1] - 0.45 * foot])
     for name, direction in zip("xyz", np.eye(3), strict=True):
         arrow = 0.5 * foot * np.array([direction @ camera.right, direction @ camera.up])
+        if np.hypot(*arrow) < 0.05 * foot:  # It points to the viewer.
+            continue
         axes.annotate(
             "",
             tuple(origin + arrow),
@@ -175,42 +181,60 @@ def _pyvista_works() -> bool:
     return works
 
 
-def _with_pyvista(
-    points: np.ndarray, sizes: np.ndarray, colours: np.ndarray, camera: Camera, pixels: int
+def _owners_by_pyvista(
+    points: np.ndarray, radii: np.ndarray, camera: Camera, scale: float, shape: tuple[int, int]
 ) -> np.ndarray:
+    """Return which ball is in front at each finer pixel, as `balls_of_owners` wants it.
+
+    The card draws balls whose colours are their numbers; light is ours, so that pictures look
+    alike with and without a card.
+
+    Args:
+        points, radii: (n, 3) and (n,) [m].
+        scale: pixels per metre.
+        shape: height and width of the image [pixels].
+    """
     import pyvista
     from vtkmodules.vtkCommonCore import vtkLogger
+    from vtkmodules.vtkRenderingCore import vtkActor
+    from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLSphereMapper
 
     # without a display VTK warns of it, then draws all the same
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-    scale = FINER * pixels / max(camera.width, camera.height)
-    window = (round(camera.width * scale), round(camera.height * scale))
     unit = 1.0 / max(camera.width, camera.height)  # lengths near 1 suit the depth buffer
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(window))
-    cloud = pyvista.PolyData(((points - camera.centre) * unit).astype(np.float32))
-    cloud.point_data["rgb"] = np.round(255 * colours[:, :3]).astype(np.uint8)
-    cloud.point_data["radius"] = (0.62 * sizes * unit).astype(np.float32)
-    actor = plotter.add_mesh(
-        cloud,
-        scalars="rgb",
-        rgb=True,
-        style="points_gaussian",
-        render_points_as_spheres=True,
-        emissive=False,
+    number = np.arange(1, len(points) + 1)
+    # A card looks at the middle of a pixel, we at its lower left corner.
+    centre = camera.centre - 0.5 / (FINER * scale) * (camera.right + camera.up)
+    cloud = pyvista.PolyData(((points - centre) * unit).astype(np.float32))
+    digits = np.column_stack([number >> 16, number >> 8 & 255, number & 255])
+    cloud.point_data["number"] = digits.astype(np.uint8)
+    cloud.point_data["radius"] = (radii * unit).astype(np.float32)
+    mapper, actor = vtkOpenGLSphereMapper(), vtkActor()
+    mapper.SetInputData(cloud)
+    mapper.SetScaleArray("radius")
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray("number")
+    mapper.SetColorModeToDirectScalars()
+    actor.SetMapper(mapper)
+    actor.GetProperty().LightingOff()
+    plotter: Any = pyvista.Plotter(
+        off_screen=True, window_size=[FINER * shape[1], FINER * shape[0]]
     )
-    actor.mapper.scale_array = "radius"
-    actor.mapper.scale_factor = 1.0
+    plotter.disable_anti_aliasing()
+    plotter.set_background("black")
+    plotter.add_actor(actor, reset_camera=False)
     plotter.camera.focal_point = (0.0, 0.0, 0.0)
     plotter.camera.position = tuple(3.0 * camera.towards)
     plotter.camera.up = tuple(camera.up)
     plotter.camera.parallel_projection = True
-    plotter.camera.parallel_scale = 0.5 * camera.height * unit
+    plotter.camera.parallel_scale = 0.5 * shape[0] / scale * unit
     plotter.camera.clipping_range = (0.5, 6.0)
-    image = plotter.screenshot(transparent_background=True, return_img=True)
+    image = plotter.screenshot(return_img=True)
     plotter.close()
     assert image is not None  # for it was asked for
-    rows, columns = (FINER * (size // FINER) for size in image.shape[:2])
-    return coarser(np.asarray(image, dtype=np.uint8)[:rows, :columns], FINER)
+    red, green, blue = (np.asarray(image)[::-1, :, k].astype(np.int32) for k in range(3))
+    owners: np.ndarray = (red << 16 | green << 8 | blue) - 1
+    return np.where(owners < len(points), owners, -1)
 
 
 def _round_length(about: float) -> float:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,8 @@ from .labels import short
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from .inline import InlineFigure
 
 DPI = 200
 
@@ -71,12 +73,14 @@ def styled() -> Iterator[None]:
         yield
 
 
-def new_figure(width: float, height: float, dpi: float = DPI) -> Figure:
+def new_figure(width: float, height: float, dpi: float = DPI) -> InlineFigure:
     """A figure of a size in inches that draws to a file and never opens a window."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width, height), dpi=dpi, layout="constrained")
+    from .inline import InlineFigure
+
+    figure = InlineFigure(figsize=(width, height), dpi=dpi, layout="constrained")
+    figure.settings = _SETTINGS
     FigureCanvasAgg(figure)
     return figure
 
@@ -101,13 +105,18 @@ def picture_path(path: Path) -> Path:
     return path
 
 
-def save(figure: Figure, path: Path) -> Path:
-    """Write a picture, the white margin cut off. Raises `CaseError` when that fails."""
+def save(figure: Figure, path: Path, whole: bool = False) -> Path:
+    """Write a picture, the white margin cut off unless it is wanted whole.
+
+    Raises:
+        CaseError: that fails.
+    """
     picture_path(path)
     make_folder(path.parent)
     with replacing(path) as file:
         form = path.suffix.lstrip(".")
-        figure.savefig(file, format=form, bbox_inches="tight", pad_inches=0.06)
+        cut: dict[str, Any] = {} if whole else {"bbox_inches": "tight", "pad_inches": 0.06}
+        figure.savefig(file, format=form, dpi="figure", **cut)
     return path
 
 
@@ -119,11 +128,11 @@ def body_colours(bodies: np.ndarray) -> np.ndarray:
     return table[np.asarray(bodies, dtype=int) % len(PALETTE)]
 
 
-def colour_scale(name: str, low: float, high: float) -> tuple[Any, Any]:
+def colour_scale(name: str, low: float, high: float, exact: bool = False) -> tuple[Any, Any]:
     """Colour map and norm for an array and its range.
 
     Signed ranges are made symmetric about zero, with white there. A range from near zero
-    starts at zero.
+    starts at zero. An exact range stays as it is, with white at zero if it is signed.
     """
     import matplotlib
     from matplotlib.colors import Normalize
@@ -131,6 +140,8 @@ def colour_scale(name: str, low: float, high: float) -> tuple[Any, Any]:
     if not (np.isfinite(low) and np.isfinite(high)):
         low, high = 0.0, 1.0
     most = max(abs(low), abs(high))
+    if exact:
+        return _exact_scale(name, low, high)
     if low < -_NOISE * most and high > _NOISE * most:
         return matplotlib.colormaps["RdBu_r"], Normalize(-most, most)
     if -_NOISE * most <= low < 0.5 * high:
@@ -142,25 +153,58 @@ def colour_scale(name: str, low: float, high: float) -> tuple[Any, Any]:
     return matplotlib.colormaps[MAPS.get(name, "viridis")], Normalize(low, high)
 
 
-def legend_of_bodies(figure: Figure, names: list[str], notes: list[str] | None = None) -> None:
+def legend_of_bodies(
+    figure: Figure,
+    names: list[str],
+    notes: list[str] | None = None,
+    grains: Mapping[int, np.ndarray] | None = None,
+    others: Sequence[Any] = (),
+) -> None:
     """A legend with one coloured square per body, below all else, where it hides nothing.
 
     Args:
         figure: gets the legend, unless there are too many bodies, or one alone without a note.
         names: of the bodies; long ones are cut.
         notes: what to say behind the names.
+        grains: colours of the grains of a name, by its number, shape (grains, 3).
+        others: what else the legend explains, with labels.
     """
+    from matplotlib.legend_handler import HandlerTuple
     from matplotlib.patches import Patch
 
     if len(names) > MOST_NAMES or (len(names) == 1 and notes is None):
+        names = []
+    if not names and not others:
         return
-    names = [short(name) + note for name, note in zip(names, notes or cycle([""]), strict=False)]
-    wide = _LETTER * max(map(len, names)) + _SQUARE
-    columns = max(1, min(len(names), int(figure.get_figwidth() / wide)))
-    patches = [
-        Patch(facecolor=PALETTE[k % len(PALETTE)], label=name) for k, name in enumerate(names)
-    ]
+    labels = [short(name) + note for name, note in zip(names, notes or cycle([""]), strict=False)]
+    handles: list[Any] = []
+    for k in range(len(names)):
+        own = (grains or {}).get(k, [PALETTE[k % len(PALETTE)]])
+        handles.append(tuple(Patch(facecolor=colour) for colour in _first_colours(own)))
+    handles += others
+    labels += [other.get_label() for other in others]
+    wide = _LETTER * max(map(len, labels)) + _SQUARE
+    columns = max(1, min(len(labels), int(figure.get_figwidth() / wide)))
     figure.legend(
-        handles=patches, handlelength=1.0, handleheight=1.0, ncols=columns,
-        loc="outside lower center",
+        handles, labels, handlelength=2.2 if others else 1.0, handleheight=1.0, ncols=columns,
+        loc="outside lower center", handler_map={tuple: HandlerTuple(ndivide=None, pad=0.0)},
     )  # fmt: skip
+
+
+def _first_colours(colours: Any) -> list[Any]:
+    """Return the first three different ones of some colours."""
+    every = [one if isinstance(one, str) else tuple(map(float, one)) for one in colours]
+    return list(dict.fromkeys(every))[:3]
+
+
+def _exact_scale(name: str, low: float, high: float) -> tuple[Any, Any]:
+    """See `colour_scale`: the part of the signed colours that a range about zero needs."""
+    import matplotlib
+    from matplotlib.colors import ListedColormap, Normalize
+
+    if not low < 0.0 < high:
+        return matplotlib.colormaps[MAPS.get(name, "viridis")], Normalize(low, high)
+    most = max(-low, high)
+    places = np.linspace(0.5 + 0.5 * low / most, 0.5 + 0.5 * high / most, 256)
+    colours = matplotlib.colormaps["RdBu_r"](places)
+    return ListedColormap(colours, name="signed"), Normalize(low, high)

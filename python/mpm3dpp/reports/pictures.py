@@ -74,7 +74,7 @@ def link(path: Path, beside: Path) -> Html:
 def _files(folder: Path) -> list[Path]:
     """Return pictures and animations in the order of the page."""
     named = [folder / name for name in _FIRST]
-    found = [p for p in sorted(folder.iterdir()) if p.suffix in (*_KINDS, ".mp4")]
+    found = [p for p in sorted(folder.iterdir()) if p.suffix in (*_KINDS, ".mp4", ".webm")]
     found = [p for p in found if p.is_file() and p.name not in (*_DRAWN_ANEW, FORCES)]
     found = [p for p in found if not p.name.startswith(".")]  # Half a picture.
     return [p for p in named if p in found] + [p for p in found if p not in named]

@@ -11,9 +11,10 @@ from typing import Any
 
 from mpm3dpp.base.errors import CaseError, RunError, nearest
 from mpm3dpp.base.machine import processor_name, thread_count
+from mpm3dpp.base.shipped import shipped
 from mpm3dpp.io.folders import writable_folder
 
-from .examples import EXAMPLES, SIZES, chosen, folder_of_cases
+from .examples import EXAMPLES, SIZES, chosen
 
 STEPS = 100
 """Steps that are timed with contact, and as many without it and bonded."""
@@ -52,7 +53,7 @@ def reproduce(
         raise CaseError("is not a size", nearest(size, SIZES), key="--size", value=size)
     if steps < 1:
         raise CaseError("must be >= 1", "give a number such as 100", key="--steps", value=steps)
-    cases = Path(examples) if examples is not None else folder_of_cases()
+    cases = Path(examples) if examples is not None else shipped("examples")
     there, missing = chosen(only, cases)
     folder, workers = writable_folder(Path(out)), thread_count(threads)
 

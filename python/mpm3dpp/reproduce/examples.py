@@ -128,12 +128,6 @@ EXAMPLES = {
 }
 
 
-def folder_of_cases() -> Path:
-    """Return the folder of the example cases: installed beside this package, else the source's."""
-    installed = Path(__file__).parents[1] / "examples"
-    return installed if installed.is_dir() else Path(__file__).resolve().parents[3] / "examples"
-
-
 def chosen(only: Iterable[str], folder: Path) -> tuple[list[Example], list[Example]]:
     """Return the examples to run, in the paper's order, and those whose files are missing.
 

@@ -3,17 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from mpm3dpp.base.errors import CaseError
-from mpm3dpp.base.expression import program_of
 from mpm3dpp.base.settings import functions
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import lighting_times
+from mpm3dpp.case.forces import force_programs
 from mpm3dpp.case.loads import add_load, pieces
 from mpm3dpp.case.motion import Motion
 from mpm3dpp.fill.initial import Overburden, start_columns
@@ -101,7 +101,11 @@ def _set_motion(core: Any, number: int, motion: Motion, centre: np.ndarray) -> N
 
 
 def add_actions(
-    core: Any, case: Case, numbers_of: Callable[[str], list[int]], forced: Sequence[str]
+    core: Any,
+    case: Case,
+    numbers_of: Callable[[str], list[int]],
+    masses: Mapping[str, float],
+    forced: Sequence[str],
 ) -> None:
     """Give the core the forces, dampings and frictions of a case, and what its fields need.
 
@@ -109,6 +113,7 @@ def add_actions(
         core: of the simulation.
         case: of it.
         numbers_of: the bodies that a name stands for.
+        masses: of each body, and of all the grains of an entry, at the start [kg].
         forced: names of those that the program gives forces.
     """
     asked = [case.output.fields, *(probe.fields for probe in case.probe.values())]
@@ -120,8 +125,8 @@ def add_actions(
         except ValueError as error:
             raise CaseError(str(error), "leave it out of forced", key="forced") from None
     for name, part in case.parts().items():
-        if part.body_force is not None:
-            core.add_body_force(numbers_of(name), list(map(program_of, part.body_force)))
+        if programs := force_programs(part, masses[name]):
+            core.add_body_force(numbers_of(name), programs)
     for damping, names in case.dampings():
         numbers = [number for name in names for number in numbers_of(name)]
         mass, local, _ = functions((damping.mass, damping.local))

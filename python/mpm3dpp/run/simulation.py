@@ -100,13 +100,14 @@ class Simulation:
         used = dict.fromkeys(part.material for part in entries)
         numbers = {name: self._add_material(name) for name in used}
         above = overburden(case, filled, world)
+        masses = {name: float(part.masses.sum()) for name, part in filled.parts.items()}
         del filled
         entries.reverse()
         while entries:  # What the core has taken is dropped, so that memory holds it once.
             add_part(self.core, case, entries.pop(), numbers, above, world)
         self.is_recorded = False
         self._forced = set(arguments.texts("forced", forced))
-        add_actions(self.core, case, self._numbers, forced)
+        add_actions(self.core, case, self._numbers, masses, forced)
         try:
             self.core.prepare()
         except ValueError as error:

@@ -117,6 +117,9 @@ def condition_lines(case: Case) -> list[str]:
         if part.body_force is not None:
             force = vector_in_words(part.body_force, "m/s^2")
             lines.append(f"body force on {name}: {force}")
+        if part.force is not None:
+            per_metre = "/m" if case.grid.dimension == 2 else ""
+            lines.append(f"force on {name}: {vector_in_words(part.force, 'N' + per_metre)}")
     for name, body in case.body.items():
         if begins := _initial_in_words(body.initial):
             lines.append(f"at the start of {name}: {begins}")

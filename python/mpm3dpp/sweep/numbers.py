@@ -13,6 +13,7 @@ from mpm3dpp.io.history import ENERGIES
 from mpm3dpp.io.part_cells import PART_COLUMNS
 
 _OF_THE_RUN = ("end_time", "steps", "wall_time")
+_OF_DEPTH = ("J", "N", "kg")  # what a unit has that grows with the depth of a plane body
 
 
 def numbers_of(manifest: Mapping[str, Any]) -> dict[str, float]:
@@ -40,13 +41,16 @@ def numbers_of(manifest: Mapping[str, Any]) -> dict[str, float]:
     return found
 
 
-def unit_of(name: str) -> str:
-    """Return the unit of a number, as the history has it."""
+def unit_of(name: str, dimension: int) -> str:
+    """Return the unit of a number, as the history has it; in 2D that of a metre of depth."""
     column = name.rpartition(".")[2]
-    if column in PART_COLUMNS and column != name:
-        return PART_COLUMNS[column][0]
     units = {"speed": "m/s", "end_time": "s", "wall_time": "s", "steps": ""}
-    return units.get(column, "N" if name.startswith("wall.") else "J")
+    unit = units.get(column, "N" if name.startswith("wall.") else "J")
+    if column in PART_COLUMNS and column != name:
+        unit = PART_COLUMNS[column][0]
+    if dimension == 3 or not any(word in _OF_DEPTH for word in unit.split()):
+        return unit
+    return f"{unit}/m" if " " not in unit else f"({unit})/m"
 
 
 def chosen(case: Case, names: Sequence[str]) -> list[str]:

@@ -45,7 +45,7 @@ def save_sweep(
     if not curves:
         return None
     with styled():
-        figure, panels = panels_of(names)
+        figure, panels = panels_of(names, plan[0].case.grid.dimension)
         for name, axes in panels.items():
             for (label, points), colour in zip(curves.items(), cycle(PALETTE), strict=False):
                 there = sorted((x, numbers[name]) for x, numbers in points if name in numbers)
@@ -59,7 +59,7 @@ def save_sweep(
         return save(figure, path)
 
 
-def panels_of(names: Sequence[str]) -> tuple[Figure, dict[str, Axes]]:
+def panels_of(names: Sequence[str], dimension: int) -> tuple[Figure, dict[str, Axes]]:
     """Return a figure with a panel for each of the first numbers, their axes named."""
     shown = list(names)[:_MOST]
     columns = 1 if len(shown) == 1 else 2
@@ -67,7 +67,7 @@ def panels_of(names: Sequence[str]) -> tuple[Figure, dict[str, Axes]]:
     figure = new_figure(4.5 * columns, 2.7 * rows + 0.3)
     grid = list(figure.subplots(rows, columns, squeeze=False).flat)
     for axes, name in zip(grid, shown, strict=False):
-        axes.set_ylabel(f"{name} [{of}]" if (of := unit_of(name)) else name)
+        axes.set_ylabel(f"{name} [{of}]" if (of := unit_of(name, dimension)) else name)
         axes.grid(True)
     for axes in grid[len(shown) :]:
         axes.set_visible(False)

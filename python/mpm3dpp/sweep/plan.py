@@ -40,7 +40,7 @@ def plan_of(case: Case, sweeps: Sequence[str], out: Path) -> list[Planned]:
 
     Args:
         case: of a file.
-        sweeps: `KEY=VALUE,VALUE,...`, each key once.
+        sweeps: `KEY=VALUE,VALUE,...`, each key once; `KEY=` takes it out.
         out: the folder, of which each run gets a folder.
 
     Raises:
@@ -52,7 +52,7 @@ def plan_of(case: Case, sweeps: Sequence[str], out: Path) -> list[Planned]:
         if key in lists:
             raise CaseError("is given twice", "give all values in one list", key=key)
         lists[key] = values_of(values)
-        if len(set(lists[key])) < len(lists[key]) or "" in lists[key]:
+        if len(set(lists[key])) < len(lists[key]) or "" in lists[key][1:]:
             rule = "must have different values"
             raise CaseError(rule, "write KEY=VALUE,VALUE", key=key, value=values)
     if not lists:
@@ -63,7 +63,7 @@ def plan_of(case: Case, sweeps: Sequence[str], out: Path) -> list[Planned]:
     plan, names = [], set[str]()
     for combination in found:
         given = dict(zip(lists, combination, strict=True))
-        changes = {path_of(key): value_of(value) for key, value in given.items()}
+        changes = {path_of(key): value_of(value) if value else None for key, value in given.items()}
         name = _folder(given)
         if name in names:  # Where letters were left out.
             name = f"{name}_{len(names)}"

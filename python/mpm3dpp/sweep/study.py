@@ -3,16 +3,14 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 from pathlib import Path
 
-from mpm3dpp.base.disk import make_folder, replacing
+from mpm3dpp.base.disk import make_folder
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.units import to_si
 from mpm3dpp.case.case import Case
-from mpm3dpp.case.changes import value_of
+from mpm3dpp.case.changes import changes_of, path_of, value_of, with_changes
 
 from .numbers import chosen, unit_of
 from .plan import Planned, plan_of
@@ -20,6 +18,7 @@ from .richardson import Converged, convergence
 from .runs import Outcome, Say, run_all
 from .study_picture import save_study
 from .sweep import Swept
+from .table import replace_table
 
 KEY = "grid.cell_size"
 _LEAST = 3  # grids, of which an order is told
@@ -32,6 +31,7 @@ def run_study(
     cells: int,
     ratio: float,
     finest: str | None,
+    changes: Sequence[str],
     out: Path,
     jobs: int,
     threads: int | None,
@@ -47,6 +47,7 @@ def run_study(
         cells: how many sizes of cells, three at least.
         ratio: of a size to the next, more than 1.
         finest: the smallest size, as a case file has it; by default that of the case.
+        changes: `KEY=VALUE` of other keys, the same for all runs.
         out: the folder: of each run one, `study.csv` and `study.png`.
         jobs: runs at a time.
         threads: of each run.
@@ -61,6 +62,10 @@ def run_study(
         raise CaseError("is too few to tell an order", "give 3 or more", key="--cells", value=cells)
     if not 1.0 < ratio < 100.0:
         raise CaseError("must be between 1 and 100", "give 2", key="--ratio", value=ratio)
+    given = changes_of(changes)
+    if path_of(KEY) in given:
+        raise CaseError("is what a study changes", "give --finest", key=KEY)
+    case = with_changes(case, given) if given else case
     smallest = case.grid.cell_size if finest is None else _length(finest)
     sizes = [smallest * ratio**k for k in reversed(range(cells))]
     names = chosen(case, numbers)
@@ -68,7 +73,7 @@ def run_study(
         if name in _NOT_COMPARED:
             remedy = "give another, such as kinetic"
             raise CaseError("converges to nothing", remedy, key="--number", value=name)
-    plan = _plan(case, sizes, out)
+    plan = _plan(case, changes, sizes, out)
     make_folder(out)
     outcomes = run_all(plan, file, jobs, threads, pictures, say)
     failures = [
@@ -84,10 +89,11 @@ def run_study(
     sizes, outcomes = sizes[-good:], outcomes[-good:]
     told = {name: convergence(_values(outcomes, name), ratio) for name in _all_names(outcomes)}
     table = out / "study.csv"
-    _write_table(sizes, outcomes, told, table)
+    D = case.grid.dimension
+    _write_table(sizes, outcomes, told, D, table)
     shown = {name: told[name] for name in names if name in told}
-    picture = save_study(sizes, outcomes, shown, out / "study.png")
-    return Swept([*failures, *_lines(sizes, outcomes, shown)], [table, picture], failed)
+    picture = save_study(sizes, outcomes, shown, D, out / "study.png")
+    return Swept([*failures, *_lines(sizes, outcomes, shown, D)], [table, picture], failed)
 
 
 def _length(text: str) -> float:
@@ -101,9 +107,9 @@ def _length(text: str) -> float:
     return found
 
 
-def _plan(case: Case, sizes: Sequence[float], out: Path) -> list[Planned]:
+def _plan(case: Case, changes: Sequence[str], sizes: Sequence[float], out: Path) -> list[Planned]:
     try:
-        return plan_of(case, [f"{KEY}={','.join(map(repr, sizes))}"], out)
+        return plan_of(case, [*changes, f"{KEY}={','.join(map(repr, sizes))}"], out)
     except CaseError as error:
         given = " and ".join(f"{size:.6g} m" for size in sizes)
         rule = f"does not go with cells of {given} ({error})"
@@ -121,29 +127,33 @@ def _values(outcomes: Sequence[Outcome], name: str) -> list[float]:
 
 
 def _write_table(
-    sizes: Sequence[float], outcomes: Sequence[Outcome], told: dict[str, Converged], path: Path
+    sizes: Sequence[float],
+    outcomes: Sequence[Outcome],
+    told: dict[str, Converged],
+    dimension: int,
+    path: Path,
 ) -> None:
-    text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
     of_sizes = [f"cell_size={size!r}" for size in sizes]
-    rows.writerow(["number", "unit", *of_sizes, "order", "extrapolated", "uncertainty", "said"])
+    rows = [["number", "unit", *of_sizes, "order", "extrapolated", "uncertainty", "said"]]
     for name, found in told.items():
         told_of = (found.order, found.extrapolated, found.uncertainty)
         cells = ["" if x is None else repr(x) for x in told_of]
         values = map(repr, _values(outcomes, name))
-        rows.writerow([name, unit_of(name), *values, *cells, found.said])
-    with replacing(path) as file:
-        file.write(text.getvalue().encode())
+        rows.append([name, unit_of(name, dimension), *values, *cells, found.said])
+    replace_table(path, rows)
 
 
 def _lines(
-    sizes: Sequence[float], outcomes: Sequence[Outcome], told: dict[str, Converged]
+    sizes: Sequence[float],
+    outcomes: Sequence[Outcome],
+    told: dict[str, Converged],
+    dimension: int,
 ) -> list[str]:
     """Return the lines of the table for the terminal, a number each."""
     head = ["cells [mm]", *(f"{1e3 * size:.5g}" for size in sizes)]
     rows = [[*head, "order", "extrapolated", "uncertainty"]]
     for name, found in told.items():
-        unit = unit_of(name)
+        unit = unit_of(name, dimension)
         cells = [f"{value:.6g}" for value in _values(outcomes, name)]
         order = found.said or f"{found.order:.2f}"
         cells.append(order)

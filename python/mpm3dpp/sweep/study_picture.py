@@ -16,7 +16,11 @@ from .runs import Outcome
 
 
 def save_study(
-    sizes: Sequence[float], outcomes: Sequence[Outcome], told: dict[str, Converged], path: Path
+    sizes: Sequence[float],
+    outcomes: Sequence[Outcome],
+    told: dict[str, Converged],
+    dimension: int,
+    path: Path,
 ) -> Path:
     """Draw each number on each grid, and at cells of no size the extrapolated one; write a PNG.
 
@@ -24,7 +28,7 @@ def save_study(
     """
     h = 1e3 * np.array(sizes)
     with styled():
-        figure, panels = panels_of(list(told))
+        figure, panels = panels_of(list(told), dimension)
         for name, axes in panels.items():
             found = told[name]
             y = [outcome.numbers[name] for outcome in outcomes]

@@ -5,13 +5,34 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 from collections.abc import Sequence
 from pathlib import Path
 
-from mpm3dpp.base.disk import replacing
+from mpm3dpp.base.disk import replacing, writing
 
 from .plan import Planned
 from .runs import Outcome
+
+
+def replace_table(path: Path, rows: Sequence[Sequence[str]]) -> None:
+    """Write a table as CSV; one of other runs stays, with its picture, as `sweep_1.csv` and so on.
+
+    Raises:
+        CaseError: the file cannot be written.
+    """
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    keep, picture = None, path.with_suffix(".png")
+    if path.exists() and path.read_text(errors="replace") != text.getvalue():
+        free = (f"{path.stem}_{k}" for k in itertools.count(1))
+        stem = next(stem for stem in free if not path.with_stem(stem).exists())
+        keep = path.with_stem(stem)
+        if picture.exists():
+            with writing(picture):
+                picture.replace(picture.with_stem(stem))
+    with replacing(path, keep) as file:
+        file.write(text.getvalue().encode())
 
 
 def write_table(plan: Sequence[Planned], outcomes: Sequence[Outcome], path: Path) -> None:
@@ -21,15 +42,12 @@ def write_table(plan: Sequence[Planned], outcomes: Sequence[Outcome], path: Path
         CaseError: the file cannot be written.
     """
     names = list(dict.fromkeys(name for outcome in outcomes for name in outcome.numbers))
-    text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
-    rows.writerow(["folder", *plan[0].values, "status", *names])
+    rows = [["folder", *plan[0].values, "status", *names]]
     for planned, outcome in zip(plan, outcomes, strict=True):
         numbers, status = outcome.numbers, "completed" if outcome.numbers else outcome.said
         cells = [repr(numbers[name]) if name in numbers else "" for name in names]
-        rows.writerow([planned.folder.name, *planned.values.values(), status, *cells])
-    with replacing(path) as file:
-        file.write(text.getvalue().encode())
+        rows.append([planned.folder.name, *planned.values.values(), status, *cells])
+    replace_table(path, rows)
 
 
 def table_lines(
