@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from mpm3dpp import Case
+from mpm3dpp import Case, Simulation
 from mpm3dpp.fill.build import build
 from mpm3dpp.run import estimate
 from mpm3dpp.run.summary import time_step
@@ -34,7 +34,7 @@ shape = { box = { lower = ["0 mm", "10 mm"], upper = ["30 mm", "20 mm"] } }
 
 
 def test_the_time_is_steps_times_particles(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(estimate, "_seconds_per_particle_step", lambda *_: 1e-6)
+    monkeypatch.setattr(estimate, "_seconds", lambda *_: 1e-6)
     monkeypatch.setenv("OMP_NUM_THREADS", "2")
     case = Case.from_text(CASE)
     bodies = build(case)
@@ -50,17 +50,24 @@ def test_the_time_is_steps_times_particles(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_a_block_is_stepped_with_the_material_of_most(dimension: int) -> None:
-    """Of those that deform: the tool has more particles."""
+def test_a_block_and_a_heap_of_grains_are_stepped(dimension: int) -> None:
+    """Of what deforms; the grains touch, as they will."""
     text = CASE.replace("dimension = 2", f"dimension = {dimension}")
     if dimension == 3:
-        text = re.sub(
-            r'\], upper = \[("\S+ mm"), ("\S+ mm")\]', r', 0], upper = [\1, \2, "3 mm"]', text
-        )
+        corners = r'\], upper = \[("\S+ mm"), ("\S+ mm")\]'
+        text = re.sub(corners, r', 0], upper = [\1, \2, "3 mm"]', text)
+    lattice = f"lower = {[0.1] * dimension}, count = {[3] * dimension}, radius = 0.002"
+    text += f'[grains.balls]\nmaterial = "steel"\nlattice = {{ {lattice} }}\n'
     case = Case.from_text(text)
     bodies = build(case)
-    assert estimate._material_of_most(case, bodies) == "steel"
-    assert 1e-10 < estimate._seconds_per_particle_step(case, bodies, 1) < 1e-2
+    line = estimate.estimate_line(case, bodies, threads=1)
+    assert re.search(r"with 1 thread on this machine \(\S+ ns for a particle and step", line)
+    heap = Simulation(estimate._heap(case, case.grains["balls"], bodies.parts["balls"]), threads=1)
+    heap.advance(3)
+    assert heap.core.body_count == 3**dimension
+    assert heap.core.contact_summary()["overlapped_nodes"] > 0
+    block = estimate._block(case, "steel", bodies.parts["sheet"].count)
+    assert build(block).particle_count == pytest.approx(bodies.parts["sheet"].count, rel=0.3)
 
 
 @pytest.mark.parametrize(

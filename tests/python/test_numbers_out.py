@@ -140,7 +140,8 @@ def test_a_frame_for_vtk(results: Results, tmp_path: Path, kind: str, where: str
     pyvista = pytest.importorskip("pyvista")
     out = tmp_path / f"frame.{kind}"
     words = ("export", results.path.parent, "--format", kind, "--frame", 1, "--out", out)
-    assert mpm3dpp(*words, "--where", where, cwd=tmp_path).returncode == 0
+    done = mpm3dpp(*words, "--where", where, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
     found, arrays = pyvista.read(out), results.arrays(1)
     keep = arrays["body"] == 1 if where else np.ones(len(arrays["body"]), dtype=bool)
     np.testing.assert_array_equal(found.points, arrays["position"][keep])

@@ -55,6 +55,7 @@ def test_a_changed_case_is_the_case_with_that_value(
         ({"contact.friction": -0.1}, "contact.friction = -0.1 must be >= 0"),
         ({"contact.friction.more": 1}, "cannot be changed: friction is no table"),
         ({"contact.pair.3.friction": 1}, "cannot be changed: 3 is no number of a list of 1"),
+        ({"contact.pair.friction": 1}, "from 0: contact.pair.0; or take all out with"),
         ({"contact..friction": 1}, 'is no key; write one such as "contact.friction"'),
         ({("contact", "friction"): 1}, 'is no key; write one such as "contact.friction"'),
         ({"run.settle.ratio": None}, "cannot be changed: settle is no table of the case"),

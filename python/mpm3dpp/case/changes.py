@@ -166,5 +166,7 @@ def _inner(table: Any, key: str, path: tuple[str, ...], make: bool) -> Any:
 def _number(table: list[Any], key: str, path: tuple[str, ...]) -> int:
     if not key.isdecimal() or int(key) >= len(table):
         rule = f"cannot be changed: {key} is no number of a list of {len(table)}"
-        raise CaseError(rule, "count from 0", key=".".join(path))
+        before = ".".join(path[: path.index(key)])
+        remedy = f"write its number, from 0: {before}.0; or take all out with {before}="
+        raise CaseError(rule, remedy, key=".".join(path))
     return int(key)

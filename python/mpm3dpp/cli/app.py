@@ -145,6 +145,7 @@ def check(
     units: Units = None,
     changes: Changes = None,
     ranks: Annotated[int, typer.Option(min=1, help="Memory and time of so many processes.")] = 1,
+    threads: Threads = None,
 ) -> None:
     """Check a case and say what it amounts to.
 
@@ -159,7 +160,7 @@ def check(
     bodies = build(loaded)
     typer.echo(echo(loaded, bodies, ranks))
     refuse_time_step(loaded, bodies)
-    typer.echo(estimate_line(loaded, bodies, ranks))
+    typer.echo(estimate_line(loaded, bodies, ranks, threads))
 
 
 app.command()(preview)

@@ -47,10 +47,22 @@ def export(results: Results, frame: int, out: Path, kind: str = "csv", where: st
     cloud: Any = results[frame]
     if where:
         cloud = cloud.extract_points(np.flatnonzero(keep), adjacent_cells=False)
-    whole = cloud.cast_to_unstructured_grid() if kind == "vtu" else cloud.extract_geometry()
+    whole = cloud.cast_to_unstructured_grid() if kind == "vtu" else _as_poly_data(cloud)
     with writing(out):
         whole.save(out)
     return out
+
+
+def _as_poly_data(cloud: Any) -> Any:
+    """Return points with what they and the whole have; of all points they are that already."""
+    import pyvista
+
+    if isinstance(cloud, pyvista.PolyData):
+        return cloud
+    points = pyvista.PolyData(np.asarray(cloud.points))
+    points.point_data.update(cloud.point_data)
+    points.field_data.update(cloud.field_data)
+    return points
 
 
 def _array_of(column: str, results: Results) -> str:

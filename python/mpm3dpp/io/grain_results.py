@@ -207,11 +207,16 @@ class GrainResults(abc.ABC):
 
         Raises:
             IndexError: there is no such frame.
-            CaseError: there are not three strips with particles; or see `surface`.
+            CaseError: there are not three strips with particles, or start or end lie farther from
+                the surface than it is long; or see `surface`.
         """
         profile = self.surface(frame, along, up, width, body)
         x, heights = profile.values()
         low, high = (arguments.quantity(k, v, "m") for k, v in (("start", start), ("end", end)))
+        if len(x) and (low < x[0] - (x[-1] - x[0]) or high > x[-1] + (x[-1] - x[0])):
+            rule = f"lie far beyond the surface, from {x[0]:.4g} m to {x[-1]:.4g} m"
+            remedy = "give places on it, with a unit: a plain number is in metres"
+            raise CaseError(rule, remedy, key="start, end", value=[start, end])
         chosen = (x >= low) & (x <= high)
         if chosen.sum() < 3:
             rule = f"only {chosen.sum()} strips between them have particles"

@@ -192,7 +192,8 @@ def _close_up(axes: Axes, results: Results, arrays: dict[str, np.ndarray], conta
         plane = [k for k in range(3) if k != across]
         depth = arrays["position"][:, across].astype(float)
         nearest = depth[np.abs(depth - contact.place[across]).argmin()]  # Not between two layers.
-        layer = np.abs(depth - nearest) <= 0.5 * sizes_of(arrays, results)
+        # Half a particle and some more: bodies whose layers stand beside the plane are seen too.
+        layer = np.abs(depth - nearest) <= 0.6 * sizes_of(arrays, results)
         arrays = {name: values[layer] for name, values in arrays.items()}
     half = 0.5 * _WINDOW * cell
     factor, unit = length_unit(2 * half)

@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How long a run will take: a guess, by a few steps of a block of its material, made here."""
+"""How long a run will take: a guess, by a few steps of its materials that are made here."""
 
 from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterable
 
 from mpm3dpp.base.machine import thread_count
 from mpm3dpp.case.body import Body
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.grid import Grid
 from mpm3dpp.case.parts import Run
-from mpm3dpp.fill.parts import Filled
+from mpm3dpp.fill.parts import Filled, FilledPart
+from mpm3dpp.grains import GrainLattice, Grains
 from mpm3dpp.shapes import Box
 
 from .simulation import Simulation
@@ -20,50 +22,51 @@ from .summary import time_step
 _MOST = 20_000  # particles that are stepped: a step takes some milliseconds
 _STEPS = 10
 _ALONG = 2  # particles of a cell along each axis
+_GRAINS = {2: 10, 3: 4}  # along each axis
 _UNITS = ((172_800.0, 86_400.0, "days"), (7200.0, 3600.0, "h"), (120.0, 60.0, "min"))
 
 
-def estimate_line(case: Case, bodies: Filled, ranks: int = 1) -> str:
+def estimate_line(case: Case, bodies: Filled, ranks: int = 1, threads: int | None = None) -> str:
     """Return the line about the time of a run here.
 
-    A block at rest is stepped, with the material that most particles have and the case's grid and
-    numerics. Contact, debris, frames and pictures come on top, and other runs on this machine.
+    Bodies cost what a block at rest does of the material that most of them have, and grains what a
+    heap of theirs does that touch, with the case's grid and numerics. Contact of bodies, debris,
+    frames and pictures come on top, and other runs on this machine.
 
     Args:
         case: of the run.
         bodies: those of the case.
         ranks: processes that share the particles, each with its threads.
+        threads: see `thread_count`.
     """
-    threads = thread_count(None)
-    each = _seconds_per_particle_step(case, bodies, threads)
+    threads = thread_count(threads)
+    moving = [part for name, part in bodies.parts.items() if not case.is_rigid(name)]
+    others = [part for part in moving if part.name not in case.grains]
+    models = [
+        (_heap(case, case.grains[part.name], part), part.count)
+        for part in moving
+        if part.name in case.grains
+    ]
+    if others:
+        count = sum(part.count for part in others)
+        models.append((_block(case, _material_of_most(others), count), count))
+    stepped = sum(count for _, count in models)
+    each = sum(_seconds(model, threads) * count for model, count in models) / stepped
     steps = math.ceil(case.run.end_time / time_step(case, bodies))
     seconds = each * bodies.particle_count * steps / ranks
     workers = f"{threads} thread{'s' if threads > 1 else ''}"
     if ranks > 1:
         workers = f"{ranks} ranks of {workers}"
-    on_top = "contact and frames come" if case.contact_enabled else "frames come"
+    on_top = "contact and frames come" if case.contact_enabled and others else "frames come"
     return (
         f"estimate: {_in_words(seconds)} with {workers} on this machine "
         f"({1e9 * each:.3g} ns for a particle and step; {on_top} on top)"
     )
 
 
-def _seconds_per_particle_step(case: Case, bodies: Filled, threads: int) -> float:
-    D, cell = case.grid.dimension, case.grid.cell_size
-    edge = max(1, round((min(bodies.particle_count, _MOST) / _ALONG**D) ** (1 / D)))  # [cells]
-    name = _material_of_most(case, bodies)
-    block = Body(
-        material=name,
-        shape=Box(lower=(0.0,) * D, upper=(edge * cell,) * D),
-        particles_per_cell=_ALONG,
-    )
-    model = Case(
-        grid=Grid(dimension=D, cell_size=cell, basis=case.grid.basis),
-        run=Run(end_time=case.run.end_time, transfer=case.run.transfer, scheme=case.run.scheme),
-        material={name: case.material[name]},
-        body={"block": block},
-    )
-    simulation = Simulation(model, threads=threads)
+def _seconds(case: Case, threads: int) -> float:
+    """Return the time of a step and particle of a case, the least of some steps [s]."""
+    simulation = Simulation(case, threads=threads)
     simulation.advance(2)
     return min(_seconds_of_step(simulation) for _ in range(_STEPS)) / simulation.core.particle_count
 
@@ -74,13 +77,46 @@ def _seconds_of_step(simulation: Simulation) -> float:
     return time.perf_counter() - begin
 
 
-def _material_of_most(case: Case, bodies: Filled) -> str:
-    """Return the material of most particles, one that deforms if there is one."""
-    counts: dict[tuple[bool, str], int] = {}
-    for name, part in bodies.parts.items():
-        kind = not case.is_rigid(name), part.material
-        counts[kind] = counts.get(kind, 0) + part.count
-    return max(counts, key=lambda kind: (kind[0], counts[kind]))[1]
+def _block(case: Case, material: str, particles: int) -> Case:
+    """Return a case of one body, at rest."""
+    D, cell = case.grid.dimension, case.grid.cell_size
+    edge = max(1, round((min(particles, _MOST) / _ALONG**D) ** (1 / D)))  # [cells]
+    body = Body(
+        material=material,
+        shape=Box(lower=(0.0,) * D, upper=(edge * cell,) * D),
+        particles_per_cell=_ALONG,
+    )
+    return _with(case, material, body={"block": body})
+
+
+def _heap(case: Case, grains: Grains, part: FilledPart) -> Case:
+    """Return a case of some grains of an entry that touch, of their mean size."""
+    D = case.grid.dimension
+    along = min(_GRAINS[D], max(1, round(len(part.names) ** (1 / D))))
+    lattice = GrainLattice(lower=(0.0,) * D, count=[along] * D, radius=float(grains.radii().mean()))
+    heap = Grains(material=grains.material, lattice=lattice, spacing=part.spacing, fill=grains.fill)
+    return _with(case, grains.material, grains={"heap": heap})
+
+
+def _with(case: Case, material: str, **parts: dict[str, Body] | dict[str, Grains]) -> Case:
+    """Return a case with the numerics of another one, and one of its materials."""
+    run, contact = case.run, case.contact.model_copy(update={"pair": []})
+    return Case(
+        grid=Grid(
+            dimension=case.grid.dimension, cell_size=case.grid.cell_size, basis=case.grid.basis
+        ),
+        run=Run(end_time=run.end_time, transfer=run.transfer, scheme=run.scheme),
+        material={material: case.material[material]},
+        contact=contact,
+        **parts,
+    )
+
+
+def _material_of_most(parts: Iterable[FilledPart]) -> str:
+    counts: dict[str, int] = {}
+    for part in parts:
+        counts[part.material] = counts.get(part.material, 0) + part.count
+    return max(counts, key=lambda name: counts[name])
 
 
 def _in_words(seconds: float) -> str:

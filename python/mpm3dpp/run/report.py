@@ -172,7 +172,8 @@ def wall_lines(manifest: Manifest) -> list[str]:
     per, numbers = ("/m", slice(0, 2)) if flat else ("", slice(0, 3))
     return [
         f"wall {name}: at the end force [{_listed(wall.force[numbers])}] N{per}, pressure "
-        f"{wall.pressure:.4g} Pa on all of it; impulse [{_listed(wall.impulse[numbers])}] N s{per}"
+        f"{wall.pressure:.4g} Pa over the whole face; impulse "
+        f"[{_listed(wall.impulse[numbers])}] N s{per}"
         for name, wall in manifest.walls.items()
         if any(wall.impulse)
     ]
