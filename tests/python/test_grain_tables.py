@@ -196,7 +196,7 @@ def test_the_slope_of_a_heap(tmp_path: Path) -> None:
         assert results.tables() == []
         with pytest.raises(CaseError, match="only 2 strips between them have particles"):
             results.angle_of_repose(0, "8 mm")
-        with pytest.raises(CaseError, match="lie far beyond the surface, .* is in metres"):
+        with pytest.raises(CaseError, match=r"lie far beyond the surface, .* is in metres"):
             results.angle_of_repose(-90, 90)
         with pytest.raises(CaseError, match="must be two of x, y"):
             results.surface(along="z")
