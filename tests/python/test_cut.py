@@ -44,6 +44,7 @@ def test_what_is_left_of_a_body(text: str, whole: float) -> None:
     case = Case.from_text(text)
     parts = 2**case.grid.dimension
     [body] = build(case)
+    # A lattice of 20 particles along the radius has 0.6 % (2D) and 0.1 % (3D) too much.
     assert body.mass == pytest.approx(1000 * whole / parts, rel=0.02)
     assert body.positions.min() > 0.0
     assert np.linalg.norm(body.positions, axis=1).max() < 0.021

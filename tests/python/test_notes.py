@@ -71,6 +71,7 @@ def test_a_gas_may_be_light() -> None:
     eos = "eos = { ideal_gas = { gamma = 1.4, E0 = 1e5 } }"
     gas = f"density = 1.2\nstrength = {{ fluid = {{}} }}\n{eos}"
     text = CASE.replace('density = 7800\nstrength = { elastic = { E = "200 GPa", nu = 0.3 } }', gas)
+    assert "ideal_gas" in text
     assert notes_of(text + LIT) == []
 
 

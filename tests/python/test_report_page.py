@@ -20,11 +20,11 @@ import mpm3dpp
 from commands import CASE, interrupted, one_sentence, write
 from commands import mpm3dpp as run_command
 from mpm3dpp import Case, CaseError, RunError, open_results, run_case
+from mpm3dpp.base.markup import Html
 from mpm3dpp.io import read_history, read_manifest
 from mpm3dpp.io.folders import only_run_in
 from mpm3dpp.reports import figures
 from mpm3dpp.reports.case_text import toml_of
-from mpm3dpp.reports.markup import Html
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}
 HOSTILE = "<b>&\"'</b> \N{GREEK SMALL LETTER MU}"

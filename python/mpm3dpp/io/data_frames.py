@@ -11,17 +11,12 @@ import numpy as np
 
 from mpm3dpp.base.errors import CaseError
 
-_COMPONENTS = {2: ("x", "y"), 3: ("x", "y", "z"), 6: ("xx", "yy", "zz", "yz", "xz", "xy")}
+from .rows import component_words
 
 
 def has_pandas() -> bool:
     """Return whether pandas is installed."""
     return importlib.util.find_spec("pandas") is not None
-
-
-def component_words(count: int) -> tuple[str, ...]:
-    """Return what stands behind the name of an array for each of its components."""
-    return _COMPONENTS.get(count, tuple(map(str, range(count))))
 
 
 def columns_of(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -18,9 +18,14 @@ def is_tensor(values: np.ndarray) -> bool:
     return values.ndim == 2 and values.shape[1] == 6
 
 
-_AXES, _TENSOR = ("x", "y", "z"), ("xx", "yy", "zz", "yz", "xz", "xy")
+_COMPONENTS = {2: ("x", "y"), 3: ("x", "y", "z"), 6: ("xx", "yy", "zz", "yz", "xz", "xy")}
 GONE = 3
 """In the column `failed`: from here on a particle takes no part any more (3: eroded, 4: left)."""
+
+
+def component_words(count: int) -> tuple[str, ...]:
+    """Return what stands behind the name of an array for each of its components."""
+    return _COMPONENTS.get(count, tuple(map(str, range(count))))
 
 
 def field_of(arrays: Mapping[str, np.ndarray], name: str) -> np.ndarray | None:
@@ -35,8 +40,8 @@ def field_of(arrays: Mapping[str, np.ndarray], name: str) -> np.ndarray | None:
     whole, _, component = name.rpartition("_")
     if whole not in arrays or arrays[whole].ndim != 2:
         return None
-    axes = _TENSOR if is_tensor(arrays[whole]) else _AXES
-    return arrays[whole][:, axes.index(component)] if component in axes else None
+    words = component_words(arrays[whole].shape[1])
+    return arrays[whole][:, words.index(component)] if component in words else None
 
 
 def takes_part(arrays: Mapping[str, np.ndarray]) -> np.ndarray:

@@ -84,27 +84,21 @@ def draw_results(
     results: Results,
     frame: int = -1,
     colour: str = "von_mises",
-    *,
-    section: Any = None,
-    view: Any = None,
-    crop: Any = None,
-    range: Any = None,
-    size: Any = None,
-    arrows: bool = False,
+    **look: Any,
 ) -> Figure:
     """Return a picture of a frame as a matplotlib figure; see `Results.plot`.
 
     Args:
         results: of `open_results`.
         frame: its number; negative numbers count from the end.
-        colour, section, view, crop, range, size, arrows: see `plot_results`.
+        colour: see `plot_results`.
+        look: section, view, crop, range, size and arrows, see `plot_results`.
     """
     from .frames import draw_frame
     from .look import look_of
 
     colour = arguments.text("colour", colour)
-    look = look_of(section, view, crop, range, size, arrows)
-    return draw_frame(results, frame, colour, dpi=_DPI_INLINE, look=look)
+    return draw_frame(results, frame, colour, dpi=_DPI_INLINE, look=look_of(**look))
 
 
 def first_contact(folder: str | Path, out: str | Path | None = None) -> Path | None:

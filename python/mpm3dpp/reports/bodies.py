@@ -7,10 +7,11 @@ import math
 from typing import Any
 
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.markup import Html, joined, paragraph, table
 from mpm3dpp.io.part_cells import of_body
 
+from .document import Section
 from .found import Found
-from .markup import Html, Section, joined, paragraph, table
 from .numbers import NONE, counted, number, vector
 
 _MOST = 100  # rows

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from mpm3dpp.base.markup import Html, details, element, joined, paragraph
 from mpm3dpp.importers.write import key_text, value_text
 
+from .document import Section
 from .found import Found
-from .markup import Html, Section, details, element, joined, paragraph
 from .numbers import counted
 
 _NAMED = ("material", "body", "grains", "load", "probe")

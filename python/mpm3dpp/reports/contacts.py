@@ -8,13 +8,14 @@ from collections import Counter
 import numpy as np
 
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.markup import Html, joined, paragraph, table
 from mpm3dpp.io.results import Results
 from mpm3dpp.plots.energies import draw_panel
 from mpm3dpp.run.report import contact_table
 
+from .document import Section
 from .figures import curves
 from .found import Found
-from .markup import Html, Section, joined, paragraph, table
 from .numbers import counted, number, vector
 from .pictures import FORCES, embedded
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from mpm3dpp.base.markup import Html, element, escaped, joined, paragraph, table
 from mpm3dpp.io.history import ENERGIES, TERMS
 from mpm3dpp.plots.energies import draw_panel
 from mpm3dpp.run.report import energy_line
 
+from .document import Section
 from .figures import curves
 from .found import Found
-from .markup import Html, Section, element, escaped, joined, paragraph, table
 from .numbers import number
 
 _ROUNDING = 1e-9

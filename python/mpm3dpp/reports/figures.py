@@ -8,10 +8,9 @@ import io
 import re
 from typing import TYPE_CHECKING, Any
 
+from mpm3dpp.base.markup import Html, element
+from mpm3dpp.base.markup import figure as framed
 from mpm3dpp.plots.style import styled
-
-from .markup import Html, element
-from .markup import figure as framed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from mpm3dpp.base.markup import Html, element, joined
+
 from .bodies import actions, bodies
 from .case_text import case
 from .contacts import contacts
+from .document import Section, document
 from .energies import energies
 from .found import Found
-from .markup import Html, Section, document, element, joined
 from .pictures import pictures
 from .probes import probes
 from .record import record

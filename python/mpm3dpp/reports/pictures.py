@@ -10,10 +10,11 @@ import re
 from pathlib import Path
 from urllib.parse import quote
 
+from mpm3dpp.base.markup import Html, element, figure, joined, paragraph
 from mpm3dpp.plots.labels import scaled
 
+from .document import Section
 from .found import Found
-from .markup import Html, Section, element, figure, joined, paragraph
 
 FORCES = "force_network.png"  # stands with the contacts
 _DRAWN_ANEW = ("energies.png", "probes.png")  # as curves, in sections of their own

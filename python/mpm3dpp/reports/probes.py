@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from mpm3dpp.base.markup import joined, paragraph
 from mpm3dpp.io.probe_tables import probe_names, read_probe
 from mpm3dpp.plots.probes import draw_probes
 
+from .document import Section
 from .figures import curves
 from .found import Found
-from .markup import Section, joined, paragraph
 from .numbers import counted
 
 

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+from mpm3dpp.base.markup import Html, element, paragraph, table
 from mpm3dpp.io.manifest import Manifest
 
+from .document import Section
 from .found import Found
-from .markup import Html, Section, element, paragraph, table
 from .numbers import counted, duration, number
 
 

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from mpm3dpp.base.markup import joined, paragraph, table
+
+from .document import Section
 from .figures import bar_cell
 from .found import Found
-from .markup import Section, joined, paragraph, table
 from .numbers import counted, duration, number
 
 

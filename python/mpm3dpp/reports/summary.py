@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+from mpm3dpp.base.markup import Html, bullets, details, element, escaped, joined, paragraph
 from mpm3dpp.io.manifest import Manifest
 from mpm3dpp.plots.labels import scaled
 from mpm3dpp.run.report import summary_lines
 
+from .document import Section
 from .found import Found
-from .markup import Html, Section, bullets, details, element, escaped, joined, paragraph
 from .numbers import duration
 
 

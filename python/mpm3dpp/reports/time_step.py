@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from mpm3dpp.base.markup import joined, paragraph
 from mpm3dpp.plots.energies import draw_panel
 from mpm3dpp.plots.labels import scaled
 
+from .document import Section
 from .figures import curves
 from .found import Found
-from .markup import Section, joined, paragraph
 from .numbers import number
 
 _FITTED = 2  # last steps of a run that has come to its end time

@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from mpm3dpp.reports.markup import document
+from mpm3dpp.reports.document import document
 
 from . import paper
 from .examples import Example, change_lines

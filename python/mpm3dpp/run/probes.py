@@ -11,9 +11,9 @@ from typing import Any
 from mpm3dpp.base.disk import make_folder
 from mpm3dpp.base.outputs import DERIVED
 from mpm3dpp.case.probe import SAMPLES, Probe
-from mpm3dpp.io.data_frames import component_words
 from mpm3dpp.io.fields import column_components
 from mpm3dpp.io.probe_tables import FIRST_COLUMNS, PROBES, probe_path
+from mpm3dpp.io.rows import component_words
 from mpm3dpp.io.table import Table
 
 from .simulation import Simulation

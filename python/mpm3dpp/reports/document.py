@@ -1,38 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pages of HTML, of the pieces that `base.markup` makes."""
+"""A page of HTML and its sections, of the pieces that `base.markup` makes."""
 
 from __future__ import annotations
 
 import html
 from dataclasses import dataclass
 
-from mpm3dpp.base.markup import (
-    Html,
-    bullets,
-    details,
-    element,
-    escaped,
-    figure,
-    joined,
-    paragraph,
-    table,
-)
+from mpm3dpp.base.markup import Html
 
 from .style import STYLE
-
-__all__ = [
-    "Html",
-    "Section",
-    "bullets",
-    "details",
-    "document",
-    "element",
-    "escaped",
-    "figure",
-    "joined",
-    "paragraph",
-    "table",
-]
 
 
 @dataclass(frozen=True)
