@@ -84,6 +84,8 @@ nb::dict all_load_kinds() {
     nb::dict row;
     row["meaning"] = text(Kind::doc);
     row["vector"] = Kind::is_vector;
+    row["at_point"] = acts_at_point<Kind>;
+    row["unit"] = acts_at_point<Kind> ? "N" : "Pa";
     kinds[text(Kind::name)] = row;
   });
   return kinds;

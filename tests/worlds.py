@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from mpm3dpp import Body, Case, GridBox, Particles, Simulation, Walls
 from mpm3dpp.base.expression import Expression
+from mpm3dpp.case.loads import Load
 
 Array = NDArray[np.float64]
 PLACES = {
@@ -80,7 +81,13 @@ class World:
             contact=here.contact,
             material=here.material,
             body=bodies,
+            load={name: self._load(load) for name, load in here.load.items()},
         )
+
+    def _load(self, load: Load) -> Load:
+        """A load there: those at points, of forces that are numbers."""
+        point, force = (self.matrix() @ np.array(v, dtype=float) for v in (load.point, load.force))
+        return Load(body=load.body, point=tuple(point), force=tuple(force))
 
     def _force(self, force: Any) -> Any:
         """A body force there: its components, as formulas of the places there."""

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from mpm3dpp import Body, Case, CaseError, Grid, Material, Particles, Run, shapes
-from mpm3dpp.case.loads import Load, Pieces, pieces
+from mpm3dpp.case.load_pieces import Pieces, pieces
+from mpm3dpp.case.loads import Load
 from mpm3dpp.fill.build import build
 from mpm3dpp.shapes import Box, Cylinder, Disc, Ring
 from mpm3dpp.shapes.particle_faces import faces

@@ -28,6 +28,8 @@ from mpm3dpp.io.history import read_history
 from mpm3dpp.plots import preview
 from mpm3dpp.run.summary import echo
 
+PAGE = Path(__file__).parents[2] / "docs/how-to/many-grains.md"
+
 CASE = """\
 [grid]
 dimension = DIM
@@ -79,6 +81,43 @@ def test_a_thousand_touching_spheres_hold_552000_particles() -> None:
     centres = np.array([body.positions.mean(axis=0) for body in bodies])
     gaps = np.linalg.norm(centres[1:] - centres[:-1], axis=1)
     assert gaps.min() == pytest.approx(0.005, rel=1e-12)  # They touch: two radii apart.
+
+
+def test_grains_that_are_poured_come_at_the_speed_of_the_feed() -> None:
+    """The recipe of docs/how-to/many-grains.md: above the outlet they move evenly, below they fall.
+
+    y = y0 - v s - g s^2 / 2 a time s after a grain's middle has passed the outlet. Its parts feel
+    gravity one by one on a way of its diameter: its acceleration grows linearly there, so that it
+    is as if it had begun when its middle passed, to second order.
+    """
+    section = PAGE.read_text().split("## Pour over time", 1)[1]
+    text = section.split("```toml", 1)[1].split("```", 1)[0]
+    outlet = 0.1005  # the middle of the way over which the force ends
+    head = """
+[grid]
+dimension = 2
+cell_size = "1 mm"
+[material.glass]
+density = 2500
+strength = { elastic = { E = "10 MPa", nu = 0.2 } }
+"""
+    case = Case.from_text(text + head).with_({"grains.feed.packing.upper": [0.02, 0.2]})
+    sim = Simulation(case, threads=1)
+    names = sim.bodies
+
+    def middles() -> np.ndarray:
+        return np.array([sim.column(name, "position")[:, 1].mean() for name in names])
+
+    before = middles()
+    sim.advance(10**6, end_time=0.03)
+    after = middles()
+    above = after > outlet + 0.0035
+    assert 5 < above.sum() < len(names) - 5
+    np.testing.assert_allclose(after[above], before[above] - 0.03, atol=1e-6)
+    fallen = after < outlet - 0.009
+    s = 0.03 - (before[fallen] - outlet)
+    expected = outlet - s - 0.5 * 9.81 * s**2
+    np.testing.assert_allclose(after[fallen], expected, atol=2e-5)
 
 
 def test_eight_thousand_grains_start_and_are_told_as_one() -> None:
@@ -415,7 +454,7 @@ def test_a_wrong_line_of_a_file_is_named(tmp_path: Path) -> None:
 
 def test_the_example_of_the_how_to_page_is_what_check_says() -> None:
     page = (Path(__file__).parents[2] / "docs/how-to/many-grains.md").read_text()
-    [text] = re.findall(r"```toml\n(.*?)```", page, re.S)
+    text = re.findall(r"```toml\n(.*?)```", page, re.S)[0]
     [line] = re.findall(r"```text\n(.*?)\n```", page, re.S)
     case = Case.from_text(text)
     assert line in echo(case, build(case)).splitlines()

@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 
 from mpm3dpp import Body, Case, CaseError, GrainCentres, Grains, Grid, Simulation
 from mpm3dpp.base.neighbours import near_pairs
-from mpm3dpp.case.loads import pieces
+from mpm3dpp.case.load_pieces import pieces
 from mpm3dpp.fill.build import build
 from mpm3dpp.fill.parts import FilledBody
 from mpm3dpp.grains import GrainPacking

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from mpm3dpp import Body, Case, CaseError, Grid, Material, Run, shapes
-from mpm3dpp.case.loads import Load, nearest_particles, pieces
+from mpm3dpp.case.load_pieces import nearest_particles, pieces
+from mpm3dpp.case.loads import Load
 from mpm3dpp.fill.build import build
 from mpm3dpp.shapes.surfaces import sides, surface
 

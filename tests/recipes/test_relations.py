@@ -11,9 +11,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from mpm3dpp import Case, Simulation
+from mpm3dpp.case.loads import Load
 from worlds import World, largest_differences
 
 TOLERANCE = 1e-10
@@ -234,6 +236,24 @@ def test_damping_is_the_same_in_another_world(dimension: int) -> None:
     text = RINGS if dimension == 2 else IMPACT
     text = text.replace("shape = ", "damping = { mass = 30, local = 0.1 }\nshape = ")
     check_worlds(Case.from_text(text), 900 if dimension == 2 else 150, "")
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_forces_at_points_are_the_same_in_another_world(dimension: int) -> None:
+    """On a particle, and on two or four that are as near."""
+    case = Case.from_text(RINGS if dimension == 2 else IMPACT)
+    body = next(iter(case.body))
+    position = Simulation(case).column(body, "position")
+    spacing = case.grid.cell_size / 2
+    size = 2e4 if dimension == 2 else 2e3
+    on, between = position[0] + 0.2 * spacing, position[len(position) // 2]
+    force = np.array([size, -0.5 * size, 0.3 * size])[:dimension]
+    loads = {
+        "on": Load(body=body, point=tuple(on), force=tuple(force)),
+        "between": Load(body=body, point=tuple(between + 0.5 * spacing), force=tuple(-force)),
+    }
+    case = case.model_copy(update={"load": loads})
+    check_worlds(case, 900 if dimension == 2 else 150, "")
 
 
 def check_worlds(

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "mpm/catalogue/choice_list.hpp"
+#include "mpm/loads/kinds/point_force.hpp"
 #include "mpm/loads/kinds/pressure.hpp"
 #include "mpm/loads/kinds/traction.hpp"
 
@@ -19,10 +20,14 @@ concept LoadModel = requires(Vec<double, 3> vector, double area) {
   { T::force(vector, vector, area) } -> std::same_as<Vec<double, 3>>;
 };
 
+/// Does it act at a point, by a force [N]? A kind says so by a constant of this name.
+template <class T>
+inline constexpr bool acts_at_point = requires { requires T::is_at_point; };
+
 enum class LoadKind : std::uint8_t {};
 template <LoadModel... T>
 using LoadList = ChoiceList<LoadKind, T...>;
-using LoadKinds = LoadList<Pressure, Traction>;
+using LoadKinds = LoadList<Pressure, Traction, PointForce>;
 template <>
 inline constexpr auto words<LoadKind> = LoadKinds::words_of();
 

@@ -161,7 +161,10 @@ std::vector<LoadRecord> load_records(const Domain<D>& domain) {
     });
   });
   all_sum(*domain.grid.partition.comm, areas);
-  for (std::size_t l = 0; l < records.size(); ++l) records[l].area = areas[l].value();
+  for (std::size_t l = 0; l < records.size(); ++l)
+    LoadKinds::with(domain.loads[l].kind, [&]<class Kind>(const Kind&) {
+      records[l].area = acts_at_point<Kind> ? 0.0 : areas[l].value();
+    });
   return records;
 }
 

@@ -63,12 +63,28 @@ class Layout:
         moving = [[*names, *(f"v{axis}" for axis in axes)] for names in found]
         return found + moving if self.velocities else found
 
+    def dimension_of(self, names: list[str]) -> int | None:
+        """Return the dimension of a file with such columns; None if it may not have them."""
+        return next((d for d in (2, 3) if names in self.choices(d)), None)
+
+    def power_of(self, name: str, dimension: int) -> int:
+        """Return the power of a length that a column is; 0 for one in units of its own."""
+        if name in VELOCITIES:
+            return 0
+        return self.powers[dimension - 2] if name == self.extra else 1
+
     def unit_of(self, name: str, dimension: int, length: str) -> str:
         """Return the unit of a column, of a unit of length."""
         if name in VELOCITIES:
             return "m/s"
-        power = self.powers[dimension - 2] if name == self.extra else 1
+        power = self.power_of(name, dimension)
         return f"{length}^{power}" if power > 1 else length
+
+    def in_words(self) -> str:
+        """Return what columns a file may have."""
+        choices = f"x,y,z,{self.extra}" if self.needed else f"x,y,z or x,y,z,{self.extra}"
+        more = f", or with {','.join(VELOCITIES)} behind them" if self.velocities else ""
+        return f"{choices}{more}"
 
 
 @dataclass(frozen=True)
@@ -130,9 +146,9 @@ def read_points(path: Path, name: str, layout: Layout, unit: str = "m") -> Point
         raise CaseError(error.rule, error.remedy, value=name) from None
     columns = dict(zip(names, table.T, strict=True))
     if unit != "m":
-        for column in (name for name in names if name not in VELOCITIES):
-            power = layout.powers[dimension - 2] if column == layout.extra else 1
-            columns[column] = _scaled(columns[column], to_si(f"1 {unit}", "m"), power)
+        for column in names:
+            if power := layout.power_of(column, dimension):
+                columns[column] = _scaled(columns[column], to_si(f"1 {unit}", "m"), power)
 
     def line_of(row: int) -> tuple[int, str]:
         with _text(path) as again:
@@ -188,22 +204,19 @@ def _header(
     matches = [_COLUMN.fullmatch(word) for word in line.split(",")]
     names = [match.group(1) if match else "?" for match in matches]
     units = [match.group(2) if match else None for match in matches]
-    for dimension in (2, 3):
-        if names not in layout.choices(dimension):
-            continue
-        for unit, word in zip(units, names, strict=True):
-            own = layout.unit_of(word, dimension, length)
-            if unit not in (None, own):
-                rule = f"gives {word} in [{unit}] in line {number} but must be in {own}"
-                remedy = f'name the unit, {{ file = "{name}", unit = "{unit}" }}'
-                if word not in "xyz":
-                    remedy = "convert the column"
-                raise CaseError(rule, remedy, value=name)
-        return names, dimension
-    choices = f"x,y,z,{layout.extra}" if layout.needed else f"x,y,z or x,y,z,{layout.extra}"
-    more = f", or with {','.join(VELOCITIES)} behind them" if layout.velocities else ""
-    rule = f"must name its columns {choices}{more} (in 2D without z) in line {number}"
-    raise CaseError(f"{rule}, which is: {short(line)}", layout.give, value=name)
+    dimension = layout.dimension_of(names)
+    if dimension is None:
+        rule = f"must name its columns {layout.in_words()} (in 2D without z) in line {number}"
+        raise CaseError(f"{rule}, which is: {short(line)}", layout.give, value=name)
+    for unit, word in zip(units, names, strict=True):
+        own = layout.unit_of(word, dimension, length)
+        if unit not in (None, own):
+            rule = f"gives {word} in [{unit}] in line {number} but must be in {own}"
+            remedy = f'name the unit, {{ file = "{name}", unit = "{unit}" }}'
+            if word not in "xyz":
+                remedy = "convert the column"
+            raise CaseError(rule, remedy, value=name)
+    return names, dimension
 
 
 def _numbers(

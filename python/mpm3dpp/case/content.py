@@ -43,6 +43,8 @@ def content_of(case: Case) -> dict[str, Any]:
         _note_fill(table["body"][name], body, case.preset)
         if body.particles is not None:
             table["body"][name]["particles"] = body.particles.digest
+        if body.initial is not None and body.initial.fields is not None:
+            table["body"][name]["initial"]["fields"] = body.initial.fields.digest
     for name, grains in case.grains.items():
         _note_fill(table["grains"][name], grains, case.preset)
         if grains.file is not None:

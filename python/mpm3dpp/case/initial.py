@@ -19,6 +19,8 @@ from mpm3dpp.base.units import Quantity
 from mpm3dpp.materials import catalogue, state_columns
 from mpm3dpp.materials.catalogue import KINDS
 
+from .initial_fields import STRESS, InitialFields, any_fields
+
 if TYPE_CHECKING:
     from .body import Body
     from .case import Case
@@ -88,6 +90,7 @@ def _units() -> dict[str, str]:
 _TENSORS = ("left_cauchy_green", "strain")
 
 
+AnyFields: Any = any_fields(_units)
 StressField = Annotated[str | tuple[float | Expression, ...], _Stress("Pa", variables=AT_START)]
 
 
@@ -103,11 +106,15 @@ class Initial(CaseModel):
             in a layer that cannot widen.
         state: states of its material that are one number, by name, such as
             `{ temperature = "500 K" }`: numbers or formulas of x, y, z, r.
+        fields: a CSV file of stresses and states at places, `"fields.csv"` or `{ file =
+            "fields.csv", unit = "mm" }` with the unit of its lengths: linear between the places,
+            beyond them those of the nearest.
     """
 
     stress: StressField | None = None
     K0: Annotated[float, Quantity("", ">= 0")] | None = None
     state: Annotated[dict[str, float | Expression], _State("")] = Field(default_factory=dict)
+    fields: AnyFields = None
 
 
 def check_initial(case: Case, body: Body, path: Path) -> Iterator[PydanticCustomError]:
@@ -127,21 +134,27 @@ def check_initial(case: Case, body: Body, path: Path) -> Iterator[PydanticCustom
             rule = f'is no state of the material "{body.material}"'
             remedy = f"it has {', '.join(known) or 'none'}"
             yield violation(rule, remedy, path=(*path, "state", name))
+    if initial.fields is not None:
+        yield from _check_fields(initial, initial.fields, D, known, path)
     if initial.K0 is not None and initial.stress != GEOSTATIC:
         yield violation(
             "is for a geostatic stress", f'give stress = "{GEOSTATIC}"', path=(*path, "K0")
         )
-    if initial.stress is None:
-        if initial.K0 is None and not initial.state:
-            yield violation("is empty", "give stress or state, or remove it", path=path)
-        return
-    to_stress = (*path, "stress")
+    gives = initial.stress is not None
+    if not gives:
+        if initial.K0 is None and not initial.state and initial.fields is None:
+            yield violation("is empty", "give stress, state or fields, or remove it", path=path)
+        if initial.fields is None or not initial.fields.has_stress:
+            return
+    to_stress = (*path, "stress" if gives else "fields")
     if material.eos is not None:
         rule = f"has its pressure from the equation of state {material.eos.model}"
         yield violation(rule, "remove the stress, or the eos", path=to_stress)
     if "left_cauchy_green" in state_columns(material.models):
         rule = f"has its stress from its strain, as {material.strength.model} is"
         yield violation(rule, "give another strength, such as elastic", path=to_stress)
+    if initial.stress is None:
+        return
     if initial.stress != GEOSTATIC:
         if len(initial.stress) != len(PARTS[D]):
             rule = f"must have {len(PARTS[D])} numbers in {D}D"
@@ -151,6 +164,42 @@ def check_initial(case: Case, body: Body, path: Path) -> Iterator[PydanticCustom
         rule = "needs gravity along one axis at t = 0"
         example = ", ".join(["0"] * (D - 1) + ['"-9.81 m/s^2"'])
         yield violation(rule, f"give run.gravity = [{example}]", path=to_stress)
+
+
+def _check_fields(
+    initial: Initial, fields: InitialFields, D: int, known: list[str], path: Path
+) -> Iterator[PydanticCustomError]:
+    """Find columns of a file that the body cannot begin with."""
+    path, value = (*path, "fields"), fields.file or None
+    if fields.dimension != D:
+        rule = f"has {fields.dimension} coordinates, and grid.dimension = {D}"
+        yield violation(rule, "give a file of as many", value=value, path=path)
+    stresses = [f"{STRESS}{part}" for part in PARTS[D]]
+    for name in fields.columns:
+        if name.startswith(STRESS):
+            if initial.stress is not None:
+                rule = "gives the stress, and so does the key stress"
+                yield violation(rule, "keep one of the two", value=value, path=path)
+                return
+            continue
+        if name not in known:
+            rule = f"has the column {name}, which is no state of this body's material"
+            remedy = f"it has {', '.join(known) or 'none'}"
+            yield violation(rule, remedy, value=value, path=path)
+        if name in initial.state:
+            rule = f"gives {name}, and so does the key state"
+            yield violation(rule, "keep one of the two", value=value, path=path)
+        least, most = allowed(name)
+        values = fields.columns[name]
+        if not (least <= values.min() and values.max() <= most):
+            rule = f"gives {name} from {values.min():g} to {values.max():g}"
+            remedy = "it must be between 0 and 1" if most == 1.0 else "it must be >= 0"
+            yield violation(rule, remedy, value=value, path=path)
+    if fields.has_stress and sorted(n for n in fields.columns if n.startswith(STRESS)) != sorted(
+        stresses
+    ):
+        rule = f"must have all components of the stress in {D}D, or none"
+        yield violation(rule, f"they are {', '.join(stresses)}", value=value, path=path)
 
 
 def _formulas(initial: Initial, D: int, path: Path) -> Iterator[PydanticCustomError]:

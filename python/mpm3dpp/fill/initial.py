@@ -9,10 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mpm3dpp.base.errors import Path as KeyPath
 from mpm3dpp.base.expression import Expression
 from mpm3dpp.base.time_functions import at
 from mpm3dpp.case.case import Case, Material
 from mpm3dpp.case.initial import GEOSTATIC, PARTS, Initial, allowed
+from mpm3dpp.case.initial_fields import STRESS, InitialFields
 from mpm3dpp.ranks.world import World
 
 from .parts import Filled, FilledPart
@@ -139,7 +141,10 @@ def start_columns(
         return np.broadcast_to(np.asarray(found, dtype=float), len(positions)).copy()
 
     found = {name: column(value, "state", name) for name, value in initial.state.items()}
-    for name, values in found.items():
+    if initial.fields is not None:
+        found |= _of_fields(case, initial.fields, positions, path)
+    for name in initial.state:
+        values = found[name]
         least, most = allowed(name)
         if values.size and not (least <= values.min() and values.max() <= most):
             rule = f"gives values from {values.min():g} to {values.max():g}"
@@ -156,6 +161,21 @@ def start_columns(
         parts = [column(value, "stress", k) for k, value in enumerate(initial.stress)]  # type: ignore[arg-type]
         found["stress"] = np.column_stack(parts)
     return found
+
+
+def _of_fields(
+    case: Case, fields: InitialFields, positions: Array, path: KeyPath
+) -> dict[str, Array]:
+    """Return the columns of a body that a file gives."""
+    try:
+        given = {name: fields.at(name, positions) for name in fields.columns}
+    except ValueError as error:
+        remedy = "give places around the body, or on a grid of axes"
+        raise case.error((*path, "fields"), str(error), remedy, value=fields.file) from None
+    if fields.has_stress:
+        parts = PARTS[case.grid.dimension]
+        given["stress"] = np.column_stack([given.pop(f"{STRESS}{part}") for part in parts])
+    return given
 
 
 def at_rest(material: Material, initial: Initial) -> float:

@@ -14,7 +14,7 @@ from mpm3dpp.base.settings import functions
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import lighting_times
 from mpm3dpp.case.forces import force_programs
-from mpm3dpp.case.loads import add_load, pieces
+from mpm3dpp.case.load_pieces import add_load, pieces
 from mpm3dpp.case.motion import Motion
 from mpm3dpp.fill.initial import Overburden, start_columns
 from mpm3dpp.fill.parts import FilledPart, Particles

@@ -161,7 +161,8 @@ def load_lines(manifest: Manifest) -> list[str]:
     numbers = slice(0, 2 if flat else 3)
     return [
         f"load {name}: impulse [{_listed(load.impulse[numbers])}] N s{per}, at the end force "
-        f"[{_listed(load.force[numbers])}] N{per} on {load.area:.4g} {square}"
+        f"[{_listed(load.force[numbers])}] N{per}"
+        + (f" on {load.area:.4g} {square}" if load.area > 0.0 else "")
         for name, load in manifest.loads.items()
     ]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from mpm3dpp import _core
 from mpm3dpp.case.case import Case
-from mpm3dpp.case.loads import pieces
+from mpm3dpp.case.load_pieces import pieces
 from mpm3dpp.fill.advisories import fastest, notes
 from mpm3dpp.fill.build import warnings
 from mpm3dpp.fill.parts import Filled, FilledPart, Particles
@@ -20,7 +20,12 @@ from mpm3dpp.materials import Failure, catalogue, state_columns
 from mpm3dpp.plots.labels import scaled
 from mpm3dpp.shapes.shells import SHELLS
 
-from .summary_conditions import condition_lines, load_in_words, motion_in_words
+from .summary_conditions import (
+    condition_lines,
+    load_in_words,
+    motion_in_words,
+    vector_in_words,
+)
 
 _FRAME_BYTES = (
     4 * 14
@@ -206,9 +211,13 @@ def _body_lines(case: Case, bodies: Filled, per_metre: str) -> list[str]:
     for name, load in case.load.items():
         body = bodies.parts[load.body].body(0)
         found = pieces(case, name, body.positions, body.spacing)
+        where = f"on {load.side} of {load.body}, {found.area:.6g} m^2{per_metre}"
+        if load.at_point:
+            where = f"at {vector_in_words(load.point, 'm')} of {load.body}"
+        count = len(found.particles)
         lines.append(
-            f"load {name}: {load_in_words(case, name)} on {load.side} of {load.body}, "
-            f"{found.area:.6g} m^2{per_metre}, carried by {len(found.particles):,} particles"
+            f"load {name}: {load_in_words(case, name)} {where}, "
+            f"carried by {count:,} particle{'s' if count > 1 else ''}"
         )
     return lines
 

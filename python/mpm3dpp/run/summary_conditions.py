@@ -11,6 +11,7 @@ from mpm3dpp.base.time_functions import TimeFunction, highest
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.grid import FACES, GridCoarsening
 from mpm3dpp.case.initial import GEOSTATIC, Initial
+from mpm3dpp.case.initial_fields import STRESS
 from mpm3dpp.plots.labels import scaled
 
 Quantity = float | TimeFunction | Expression
@@ -66,10 +67,12 @@ def motion_in_words(case: Case, body: str) -> str:
 
 def load_in_words(case: Case, name: str) -> str:
     """Return the kind of a load and its value."""
-    kind, value = case.load[name].value()
+    load = case.load[name]
+    kind, value = load.value()
+    unit = "N" if load.at_point else "Pa"
     if len(value) == 1:
-        return f"{kind} {in_words(value[0], 'Pa')}"
-    return f"{kind} {vector_in_words(value, 'Pa')}"
+        return f"{kind} {in_words(value[0], unit)}"
+    return f"{kind} {vector_in_words(value, unit)}"
 
 
 def coarsenings(cells: Sequence[int] | None, coarsening: GridCoarsening) -> int:
@@ -147,4 +150,8 @@ def _initial_in_words(initial: Initial | None) -> str:
         words.insert(0, f"geostatic stress, K0 {K0}")
     elif initial.stress is not None:
         words.insert(0, "a stress by the case")
+    if initial.fields is not None:
+        fields = initial.fields
+        names = dict.fromkeys("stress" if n.startswith(STRESS) else n for n in fields.columns)
+        words.append(f"{' and '.join(names)} by {len(fields.positions):,} places of {fields.file}")
     return ", ".join(words)

@@ -13,5 +13,10 @@ void test_load_kinds(mpm::testing::Report& report) {
   CHECK(load.force_on(piece)[0] == -6.0 && load.force_on(piece)[1] == 8.0);
   load.kind = LoadKinds::id_of<Traction>();
   CHECK(load.force_on(piece)[0] == 12.0 && load.force_on(piece)[1] == 6.0);
+  piece.area = {0.0, 0.0};
+  piece.size = 0.5;  // carried by two particles
+  load.kind = LoadKinds::id_of<PointForce>();
+  CHECK(load.force_on(piece)[0] == 1.0 && load.force_on(piece)[1] == 0.5);
+  CHECK(acts_at_point<PointForce> && !acts_at_point<Traction>);
   CHECK_EQUAL(word_of(LoadKinds::id_of<Traction>()), std::string_view("traction"));
 }
