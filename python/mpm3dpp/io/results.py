@@ -152,31 +152,6 @@ class Results(Sampling, GrainResults, Shown):
         columns = {name: [frame[name][particle] for frame in frames] for name in frames[0]}
         return {"time": self.times} | {name: np.array(rows) for name, rows in columns.items()}
 
-    def strain(self, frame: int) -> np.ndarray:
-        """Return the logarithmic strain of each particle since the first frame (Hencky 1928).
-
-        It is that of the displacements around the particle, among those of its body, whatever the
-        material: plastic and elastic strain together. Frames hold numbers of seven digits: it is
-        uncertain by some 1e-7 times the distance from the origin over the particle's size.
-
-        Args:
-            frame: see `arrays`.
-
-        Returns:
-            Shape (n, 6), in the order xx yy zz yz xz xy; NaN where a particle has no neighbours on
-            all sides, as in a layer of one.
-
-        Raises:
-            IndexError: there is no such frame.
-            CaseError: see `arrays`.
-        """
-        from .strain import hencky_strain
-
-        start = self.arrays(0, ["size", "body"])
-        present = self.arrays(frame, [])["position"]
-        places = [p[:, : self.dimension].astype(float) for p in (start["position"], present)]
-        return hencky_strain(*places, start["size"].astype(float), start["body"])
-
     def history(self, body: str | None = None) -> Any:
         """Return the table of the run, `history.csv`, by the names of its columns.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fields of the particles of a frame along a line, on a grid and in a section."""
+"""Fields of the particles of a frame along a line, on a grid and in a section, and their strain."""
 
 from __future__ import annotations
 
@@ -65,6 +65,33 @@ class Sampling(abc.ABC):
         arrays = self.arrays(frame, names)
         inside = np.abs(arrays["position"][:, _AXES.index(axis)] - at) <= 0.5 * thick
         return {name: values[inside] for name, values in arrays.items()}
+
+    def strain(self, frame: int) -> np.ndarray:
+        """Return the logarithmic strain of each particle since the first frame (Hencky 1928).
+
+        It is that of the displacements around the particle, among those of its body, whatever the
+        material: plastic and elastic strain together. Frames hold numbers of seven digits: it is
+        uncertain by some 1e-7 times the distance from the origin over the particle's size.
+
+        Args:
+            frame: see `arrays`.
+
+        Returns:
+            Shape (n, 6), in the order xx yy zz yz xz xy; NaN where a particle has no neighbours on
+            all sides, as in a layer of one.
+
+        Raises:
+            IndexError: there is no such frame.
+            CaseError: see `arrays`.
+        """
+        from .strain import hencky_strain
+
+        start = self.arrays(0, ["size", "body"])
+        present = self.arrays(frame, [])["position"]
+        before, after = (
+            places[:, : self.dimension].astype(float) for places in (start["position"], present)
+        )
+        return hencky_strain(before, after, start["size"].astype(float), start["body"])
 
     def line(
         self,
