@@ -163,6 +163,8 @@ EDITS: list[tuple[str, ...]] = [
     ("missing parameter", ", nu = 0.3", "", f"{ELASTIC}.nu", "is missing", "Poisson", "elastic"),
     ("unknown parameter", "nu = 0.3", "mu = 0.3", f"{ELASTIC}.mu", "not a parameter", '"nu"',
      "mu = 0.3"),
+    ("another model's parameter", "nu = 0.3", 'cohesion = "1 kPa"', f"{ELASTIC}.cohesion",
+     "not a parameter", "it belongs to mohr_coulomb; valid here: E, nu"),
     ("unknown model", "{ elastic =", "{ elastc =", "material.rubber.strength.elastc",
      "known strength model", '"elastic"', "elastc"),
     ("two models", MODEL, MODEL[:-2] + ', neo_hookean = { K = "1 Pa", G = "1 Pa" } }',

@@ -31,8 +31,8 @@ def check_parameters(kind: str, model: str, given: Any) -> dict[str, float]:
     mistakes: list[Exception] = []
     for name in given:
         if name not in known:
-            rule, remedy = f"is not a parameter of {model}", nearest(str(name), known)
-            mistakes.append(violation(rule, remedy, path=(str(name),)))
+            rule = f"is not a parameter of {model}"
+            mistakes.append(violation(rule, _remedy(kind, str(name), known), path=(str(name),)))
     found: dict[str, float] = {}
     for name, parameter in known.items():
         if name in given:
@@ -49,3 +49,15 @@ def check_parameters(kind: str, model: str, given: Any) -> dict[str, float]:
             mistakes.append(violation(MISSING, f"add {name}, the {what}", path=(name,)))
     report(mistakes)
     return found
+
+
+def _remedy(kind: str, name: str, known: dict[str, Any]) -> str:
+    """Return what to do about a name that is no parameter: another model may have it."""
+    others = [
+        model
+        for model, entry in catalogue(kind).items()
+        if any(parameter.name == name for parameter in entry.parameters)
+    ]
+    if not others:
+        return nearest(name, known)
+    return f"it belongs to {', '.join(others)}; valid here: {', '.join(known)}"
