@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from commands import CASE
-from mpm3dpp import Case, CaseError, Simulation
+from mpm3dpp import Case, CaseError, Simulation, open_results, run_case
 from mpm3dpp.case.initial_fields import InitialFields
 from mpm3dpp.run.summary_conditions import condition_lines
 
@@ -19,9 +19,14 @@ METAL = (
 )
 
 
-def case_of(folder: Path, lines: str, initial: str = 'fields = "hot.csv"') -> Case:
+SOFT = 'elastic = { E = "1 MPa", nu = 0.3 }'
+
+
+def case_of(
+    folder: Path, lines: str, initial: str = 'fields = "hot.csv"', strength: str = METAL
+) -> Case:
     """Return the case of two blocks, the left one with an `initial`, beside a file of fields."""
-    text = CASE.replace('elastic = { E = "1 MPa", nu = 0.3 }', METAL)
+    text = CASE.replace(SOFT, strength)
     text = text.replace("[body.right]", f"initial = {{ {initial} }}\n[body.right]")
     (folder / "hot.csv").write_text(lines)
     (folder / "case.toml").write_text(text)
@@ -84,6 +89,31 @@ def test_the_hash_follows_the_numbers(tmp_path: Path) -> None:
         for degrees in ("300", "310", "300.0")
     ]
     assert hashes[0] == hashes[2] != hashes[1]
+
+
+def test_a_run_that_goes_on_does_not_begin_again(tmp_path: Path) -> None:
+    """A stress that lets the body ring, from its checkpoint; with another file it is another case.
+
+    To 3 %: a run that ended there has a shorter last step, and other steps after it.
+    """
+    lines = "x,y,stress_xx,stress_yy,stress_zz,stress_xy\n0,0,5e4,0,0,0\n0,0.05,-2e4,0,0,0\n"
+    short = {"run.end_time": "3 ms", "output.frames": 2}
+    case = case_of(tmp_path, lines, strength=SOFT).with_(short)
+    straight, halves = tmp_path / "straight", tmp_path / "halves"
+    run_case(case, straight, quiet=True, pictures=False)
+    half = case.with_({"run.end_time": "1.5 ms"})
+    run_case(half, halves, quiet=True, pictures=False)
+    run_case(case, halves, quiet=True, pictures=False, resume=True)
+    with open_results(straight) as a, open_results(halves) as b:
+        before, there, here = (
+            found["stress"] for found in (a.arrays(0), a.arrays(-1), b.arrays(-1))
+        )
+    largest = np.abs(there).max()
+    assert np.abs(there - before).max() > 0.5 * largest
+    assert np.abs(here - there).max() < 0.03 * largest
+    other = case_of(tmp_path, lines.replace("5e4", "4e4"), strength=SOFT).with_(short)
+    with pytest.raises(CaseError, match=r"body\.left\.initial\.fields"):
+        run_case(other, halves, quiet=True, pictures=False, resume=True)
 
 
 MISTAKES = [
