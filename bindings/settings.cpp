@@ -85,7 +85,7 @@ nb::dict all_load_kinds() {
     row["meaning"] = text(Kind::doc);
     row["vector"] = Kind::is_vector;
     row["at_point"] = acts_at_point<Kind>;
-    row["unit"] = acts_at_point<Kind> ? "N" : "Pa";
+    row["unit"] = text(Kind::unit);
     kinds[text(Kind::name)] = row;
   });
   return kinds;

@@ -67,9 +67,17 @@ def test_linear_fields_are_exact(D: int) -> None:
     places = random.uniform(low, high, (50, D))
     for points in (random.permutation(grid), random.permutation(anywhere)):
         fields = InitialFields(points, {"a": 7.0 + points @ slope})
-        np.testing.assert_allclose(fields.at("a", places), 7.0 + places @ slope, rtol=1e-12)
-    beyond = InitialFields(grid, {"a": grid @ slope}).at("a", places + 10.0)
+        np.testing.assert_allclose(fields.at(places)["a"], 7.0 + places @ slope, rtol=1e-12)
+    beyond = InitialFields(grid, {"a": grid @ slope}).at(places + 10.0)["a"]
     assert (beyond == (high @ slope)).all()
+
+
+def test_coordinates_of_single_precision_are_a_profile() -> None:
+    """Not slivers of triangles beyond which all is."""
+    points = np.array([[0.1, 0.0], [0.1 + 1e-9, 1.0], [0.1, 2.0]])
+    fields = InitialFields(points, {"a": np.array([0.0, 1.0, 4.0])})
+    found = fields.at(np.array([[0.0, 0.5], [3.0, 1.5]]))["a"]
+    assert found == pytest.approx([0.5, 2.5], rel=1e-12)
 
 
 def test_a_grid_has_no_diagonals() -> None:
@@ -77,9 +85,9 @@ def test_a_grid_has_no_diagonals() -> None:
     grid = np.stack(np.meshgrid(np.arange(4.0), np.arange(3.0)), axis=-1).reshape(-1, 2)
     values = np.random.default_rng(2).uniform(size=len(grid))
     places = np.random.default_rng(3).uniform(0, 2, (40, 2))
-    here = InitialFields(grid, {"a": values}).at("a", places)
+    here = InitialFields(grid, {"a": values}).at(places)["a"]
     for q in (np.diag([-1.0, 1.0]), np.array([[0.0, -1.0], [1.0, 0.0]])):
-        there = InitialFields(grid @ q.T, {"a": values}).at("a", places @ q.T)
+        there = InitialFields(grid @ q.T, {"a": values}).at(places @ q.T)["a"]
         np.testing.assert_allclose(there, here, rtol=0, atol=1e-14)
 
 
@@ -126,6 +134,8 @@ MISTAKES = [
     ("x,y,temperature\n0,0,nan\n", "must have finite numbers, in line 2"),
     ("x,y,temperature [C]\n0,0,20\n", r"gives temperature in \[C\] in line 1 but must be in K"),
     ("x,y,stress_xx\n0,0,1\n", "must have all components of the stress in 2D, or none; they are"),
+    ("x,y,temperature\n0,0,1\n0,1,2\n0,1,3\n", "has one place twice, in lines 3 and 4; leave one"),
+    ("x,y,temperature\n0,0,1\n0,1e-9,1\n0,1,3\n", "has one place twice, in lines 2 and 3"),
     ("x,y,temperature\n0,0,1\n1,1,2\n2,2,1\n", "on a line or in a plane that is along no axis"),
 ]
 

@@ -48,6 +48,50 @@ def test_each_body_has_its_own_and_few_particles_none() -> None:
     assert hencky_strain(start[:0], present[:0], np.ones(0), body[:0]).shape == (0, 6)
 
 
+GRAINS = """
+[grid]
+dimension = 2
+cell_size = "1 mm"
+[run]
+end_time = "10 ms"
+[material.glass]
+density = 2500
+strength = { elastic = { E = "1 MPa", nu = 0.2 } }
+[grains.sand]
+material = "glass"
+lattice = { lower = [0, 0], count = [2, 1], radius = "3 mm", spacing = "6.2 mm" }
+angular_velocity = "100 rad/s"
+[contact]
+enabled = false
+"""
+
+
+def test_grains_of_an_entry_are_bodies_of_their_own(tmp_path: Path) -> None:
+    """Two that turn by a radian beside each other, closer than the reach of a neighbour.
+
+    To 2 %: each is thrown outwards a little, E = 1 MPa, rho w^2 R^2 / E = 2e-4, and rings.
+    """
+    run_case(Case.from_text(GRAINS), tmp_path, quiet=True, pictures=False)
+    with open_results(tmp_path) as results:
+        assert np.abs(results.strain()).max() < 0.02
+
+
+def test_what_has_left_is_no_neighbour(tmp_path: Path) -> None:
+    """Grains that fly out of the outflow box rigidly: what stays is not strained."""
+    text = GRAINS.replace(
+        'cell_size = "1 mm"',
+        """cell_size = "1 mm"
+outflow_box = { lower = ["-20 mm", "-20 mm"], upper = ["13 mm", "20 mm"] }""",
+    )
+    text = text.replace('angular_velocity = "100 rad/s"', "velocity = [0.4, 0]")
+    run_case(Case.from_text(text), tmp_path, quiet=True, pictures=False)
+    with open_results(tmp_path) as results:
+        strain, gone = results.strain(), results.arrays(-1)["failed"] >= 3
+    assert 0 < gone.sum() < len(gone)
+    assert np.isnan(strain[gone]).all()
+    assert np.nanmax(np.abs(strain[~gone])) < 0.02
+
+
 def test_a_run(tmp_path: Path) -> None:
     """Particles that fly apart, v = k x: F = 1 + k t.
 

@@ -146,6 +146,18 @@ def test_particles_as_near_share_a_force(where: str) -> None:
     assert np.abs(found.arms).max() == pytest.approx(0.25 * CELL)
 
 
+def test_all_particles_as_near_share_a_force() -> None:
+    """More than a square has corners: a ring of particles about the point, as shells put them."""
+    case = loaded(block((4, 4), (2, 2), material="solid"), {}, 2, 1.0)
+    load = {"tip": Load(body="body", point=(0.0, 0.0), force=(1.0, 0.0))}
+    case = case.model_copy(update={"load": load})
+    angles = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    ring = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    found = pieces(case, "tip", np.concatenate([ring, 2 * ring]), 1.0)
+    assert found.particles.tolist() == list(range(12))
+    assert found.sizes == pytest.approx(np.full(12, 1 / 12), rel=1e-14)
+
+
 def test_a_cantilever_under_a_force_at_its_tip() -> None:
     """At rest P L^3 / (3 E' I) + P L / (k G A), Timoshenko's beam in plane strain, k = 5/6.
 
@@ -180,7 +192,10 @@ MISTAKES = [
         "load.tip.point does not go with pressure, which acts at a side; remove point",
     ),
     ({"point": (0.0, 0.0, 0.0), "force": (1.0, 0.0)}, r"load.tip.point = .* must have 2 numbers"),
-    ({"point": (9.0, 9.0), "force": (1.0, 0.0)}, "is farther than 2.5 spacings of particles from"),
+    (
+        {"point": (9.0, 9.0), "force": (1.0, 0.0)},
+        "is farther than 1.5 spacings from all",
+    ),
 ]
 
 

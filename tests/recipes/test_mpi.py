@@ -217,6 +217,29 @@ def check_kills(tmp_path: Path, way: str, kills: int) -> None:
     assert found[0]["resumed_step"] >= reached[-1]
 
 
+def test_a_program_goes_on_after_a_mistake(tmp_path: Path, way: str) -> None:
+    """All ranks meet it, as one process alone would."""
+    line = mpiexec(2, PROGRAMS / "mistake_and_run.py", write(tmp_path), tmp_path / "out")
+    done = job(way, tmp_path, line)
+    assert done.returncode == 0, done.stderr
+    assert sorted(done.stdout.split()) == sorted(
+        ["rank", "0:", "completed", "rank", "1:", "completed"]
+    )
+
+
+@pytest.mark.parametrize("words", [("sweep", "case.toml"), ("bench", "elastic3d")])
+def test_commands_that_start_processes_are_not_for_mpiexec(
+    tmp_path: Path, words: tuple[str, str]
+) -> None:
+    for rank, sentence in ((0, f"{words[0]} starts its runs itself, and mpiexec"), (1, "")):
+        about = {**os.environ, "PMI_SIZE": "2", "PMI_RANK": str(rank)}
+        done = subprocess.run(
+            command(*words), env=about, capture_output=True, text=True, timeout=60, check=False
+        )
+        assert done.returncode == 2
+        assert sentence in done.stderr and bool(done.stderr) == bool(sentence)
+
+
 def test_processes_that_are_each_alone(tmp_path: Path) -> None:
     """An mpiexec of another MPI than mpi4py's: a sentence by the first, no run of four."""
     pytest.importorskip("mpi4py")

@@ -69,7 +69,7 @@ void start_loads(Domain<D>& domain) {
   const double now = load_time(domain.time), next = load_time(domain.time + domain.time_step);
   for (SurfaceLoad<D>& load : domain.loads)
     for (int a = 0; a < D; ++a)
-      load.stress[a] = load.value[static_cast<std::size_t>(a)].mean(now, next);
+      load.mean[a] = load.value[static_cast<std::size_t>(a)].mean(now, next);
   domain.load_parts.assign(domain.grid.patches.size() * domain.loads.size(),
                            Vec<double, D>::zero());
 }

@@ -1,6 +1,6 @@
 #pragma once
 // A load on a part of a body's surface: pieces of the surface, carried by the particles next to
-// them.
+// them. A force at a point has pieces too: without an area vector, of which the size is the share.
 #include <array>
 #include <cstdint>
 #include <string>
@@ -70,7 +70,7 @@ struct SurfacePiece {
   std::uint32_t particle = 0;  // number in the body
   std::uint32_t next = 0;      // 1 + number of the particle's next piece, of another load; or 0
   std::uint32_t unused = 0;    // in place of bytes of no value: pieces are kept as bytes
-  double size = 0.0;           // area [m^2]: at an edge of the body more than |area|
+  double size = 0.0;           // area [m^2]: at an edge more than |area|; at a point a share
   Vec<double, D> area;         // outward area vector [m^2]
   Vec<double, D> arm;          // from the particle to the middle of the piece [m]
 
@@ -78,7 +78,7 @@ struct SurfacePiece {
   void carry(const Mat<double, D>& L) {
     const Mat<double, D> F = deformation(L);
     // The size follows the vector's length: at an edge, where vectors of two sides have been added,
-    // the size is larger than that, and no cofactor is its own.
+    // the size is larger than that, and no cofactor is its own. A share stays what it is.
     const double before = norm(area);
     area = product(cofactor(F), area);
     if (before > 0.0) size *= norm(area) / before;
@@ -91,17 +91,16 @@ struct SurfaceLoad {
   std::string name;
   int body = 0;
   LoadKind kind{};
-  std::array<TimeFunction, D> value;  // a number as the first [Pa]
+  std::array<TimeFunction, D> value;  // a number as the first [Pa], at a point [N]
 
-  Vec<double, D> stress = Vec<double, D>::zero();   // mean of the value over the step [Pa]
+  Vec<double, D> mean = Vec<double, D>::zero();     // of the value over the step
   Vec<double, D> force = Vec<double, D>::zero();    // of the last step [N]
   Vec<double, D> impulse = Vec<double, D>::zero();  // so far [N s]
 
   Vec<double, D> force_on(const SurfacePiece<D>& piece) const {
     Vec<double, D> force = Vec<double, D>::zero();
-    LoadKinds::with(kind, [&]<class Kind>(const Kind&) {
-      force = Kind::force(stress, piece.area, piece.size);
-    });
+    LoadKinds::with(
+        kind, [&]<class Kind>(const Kind&) { force = Kind::force(mean, piece.area, piece.size); });
     return force;
   }
 };

@@ -81,7 +81,7 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   std::vector<Patch<D>> bodies(stream.restores() ? domain.bodies.size() : 0);
   for (std::size_t m = 0; m < domain.pools.size(); ++m)
     exchange_particles(domain, m, stream, bodies);
-  for (SurfaceLoad<D>& load : domain.loads) stream(load.stress, load.force, load.impulse);
+  for (SurfaceLoad<D>& load : domain.loads) stream(load.mean, load.force, load.impulse);
   if (stream.restores()) rebuild(domain, std::move(bodies), stream);
   if (domain.has_contact())
     exchange_contact(domain.contact, stream, domain.bodies.size(), domain.grid.partition);

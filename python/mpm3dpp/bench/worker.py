@@ -125,10 +125,15 @@ def orders(ranks: World | None) -> Iterator[tuple[str, ...]]:
     """Yield the commands on standard input, which the first rank reads for all."""
     while True:
         if ranks is not None and ranks.rank > 0:
-            yield ranks.hear()
+            order = ranks.hear()
+            if order == ("quit",):
+                return
+            yield order
             continue
         line = sys.stdin.readline()
-        if not line:
+        if not line:  # Who asks is gone.
+            if ranks is not None:
+                ranks.tell("quit")
             return
         if ranks is not None:
             ranks.tell(*line.split())

@@ -8,6 +8,7 @@ in brackets, those of the reference. Every other line is a place.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -57,12 +58,13 @@ class InitialFields:
 
     Places that fill a grid of axes, in any order, are interpolated along these one by one, others
     over the triangles or tetrahedra of Delaunay. Along an axis on which all are equal, a field is
-    constant: a profile over the depth is a column of places.
+    constant: a profile over the depth is a column of places. Coordinates that differ by a millionth
+    of the extent are equal.
 
     Attributes:
         positions: [m], shape (n, D).
         columns: of numbers in SI units by the fields' names, shape (n,) each.
-        file: the name by which a case file knows them; empty if they come from no file.
+        file: the name by which a case file knows them.
         unit: of the lengths in that file.
     """
 
@@ -74,6 +76,7 @@ class InitialFields:
             name: np.asarray(values, dtype=np.float64) for name, values in columns.items()
         }
         self.file, self.unit = file, unit
+        self._axes, self._places = _numbered(self.positions)
 
     @property
     def dimension(self) -> int:
@@ -93,36 +96,55 @@ class InitialFields:
 
     def table(self) -> str | dict[str, str]:
         """Return the value of the key `fields` of a case file."""
-        if self.file:
-            return file_entry(self.file, self.unit)
-        return f"({len(self.positions)} places, SHA-256 {self.digest})"
+        return file_entry(self.file, self.unit)
 
-    def at(self, name: str, positions: Array) -> Array:
-        """Return a field at places (m, D) [m], shape (m,).
+    def repeated(self) -> tuple[int, int] | None:
+        """Return the numbers of the first two places that are one; None if there are none."""
+        _, first, number = np.unique(self._places, axis=0, return_index=True, return_inverse=True)
+        again = np.flatnonzero(first[number.ravel()] != np.arange(len(self._places)))
+        return (int(first[number.ravel()[again[0]]]), int(again[0])) if len(again) else None
+
+    def at(self, positions: Array) -> dict[str, Array]:
+        """Return all fields at places (m, D) [m], shape (m,) each.
 
         Raises:
             ValueError: places that fill no grid of axes lie on a line or in a plane.
         """
-        values = self.columns[name]
-        axes = [np.unique(x) for x in self.positions.T]
-        varies = [k for k, axis in enumerate(axes) if len(axis) > 1]
-        if not varies:
-            return np.full(len(positions), values[0])
-        here, there = self.positions[:, varies], positions[:, varies]
-        axes = [axes[k] for k in varies]
-        if int(np.prod([len(axis) for axis in axes])) == len(values):
-            order = np.lexsort(here.T[::-1])
-            grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
-            if np.array_equal(here[order], grid):
-                return _on_grid(axes, values[order], there)
-        return _scattered(here, values, there)
+        values = np.column_stack(list(self.columns.values()))
+        return dict(zip(self.columns, self._at(values, positions).T, strict=True))
+
+    def _at(self, values: Array, positions: Array) -> Array:
+        varies = [k for k, axis in enumerate(self._axes) if len(axis) > 1]
+        if not varies or not len(positions):
+            return np.broadcast_to(values[0], (len(positions), values.shape[1]))
+        axes, there = [self._axes[k] for k in varies], positions[:, varies]
+        shape = [len(axis) for axis in axes]
+        if math.prod(shape) == len(values):
+            flat = np.ravel_multi_index(tuple(self._places[:, varies].T), shape)
+            if len(np.unique(flat)) == len(values):
+                return _on_grid(axes, values[np.argsort(flat)], there)
+        return _scattered(self.positions[:, varies], values, there)
+
+
+_SAME = 1e-6  # of the extent along an axis
+
+
+def _numbered(positions: Array) -> tuple[list[Array], NDArray[np.int64]]:
+    """Return the coordinates along each axis [m], and which of them a place has, shape (n, D)."""
+    axes, places = [], np.zeros(positions.shape, dtype=np.int64)
+    for k, x in enumerate(positions.T):
+        order = np.argsort(x, kind="stable")
+        apart = np.diff(x[order]) > _SAME * np.ptp(positions, axis=0).max()
+        places[order, k] = np.concatenate([[0], np.cumsum(apart)])
+        axes.append(x[order][np.concatenate([[True], apart])])
+    return axes, places
 
 
 def _on_grid(axes: list[Array], values: Array, places: Array) -> Array:
     from scipy.interpolate import RegularGridInterpolator
 
     inside = np.clip(places, [axis[0] for axis in axes], [axis[-1] for axis in axes])
-    table = values.reshape([len(axis) for axis in axes])
+    table = values.reshape([*(len(axis) for axis in axes), values.shape[1]])
     return np.asarray(RegularGridInterpolator(axes, table)(inside), dtype=np.float64)
 
 
@@ -130,11 +152,14 @@ def _scattered(points: Array, values: Array, places: Array) -> Array:
     from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
     from scipy.spatial import QhullError
 
+    flat = "has places on a line or in a plane that is along no axis"
+    if points.shape[1] == 1 or len(points) <= points.shape[1]:
+        raise ValueError(flat)
     try:
         found = LinearNDInterpolator(points, values)(places)
     except QhullError:
-        raise ValueError("has places on a line or in a plane that is along no axis") from None
-    beyond = np.isnan(found)
+        raise ValueError(flat) from None
+    beyond = np.isnan(found).any(axis=1)
     if beyond.any():
         found[beyond] = NearestNDInterpolator(points, values)(places[beyond])
     return np.asarray(found, dtype=np.float64)
@@ -160,7 +185,13 @@ def read_fields(path: Path, name: str, unit: str, states: Mapping[str, str]) -> 
         number, line = points.line(int(np.argmin(good)))
         rule = f"must have finite numbers, in line {number} ({short(line)})"
         raise CaseError(rule, _GIVE, value=name)
-    return InitialFields(points.positions, columns, name, unit)
+    found = InitialFields(points.positions, columns, name, unit)
+    if (pair := found.repeated()) is not None:
+        numbers = [points.line(row)[0] for row in pair]
+        rule = f"has one place twice, in lines {numbers[0]} and {numbers[1]}"
+        remedy = "leave one out; for a jump move one of them by a thousandth of the extent"
+        raise CaseError(rule, remedy, value=name)
+    return found
 
 
 def any_fields(states: Callable[[], Mapping[str, str]]) -> Any:

@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 # Points of a surface for each spacing of the particles: on a circle the more the evener its load.
 _FINER = {(2, LATTICE): 8, (2, SHELLS): 64, (3, LATTICE): 4, (3, SHELLS): 4}
 _REACH = 2.5  # spacings, from a point of a surface to the particle that carries it at most
+_REACH_OF_POINT = 1.5  # the same of a point, whose arm should not leave the nodes around
 _SAME = 1e-9  # Distances that differ by less than this share of the spacing are equal.
 
 
@@ -46,7 +47,7 @@ class Pieces:
 
     @property
     def area(self) -> float:
-        """Sum of the areas [m^2; in 2D m times 1 m]."""
+        """Sum of the areas [m^2; in 2D m times 1 m]; of a point no area, but 1."""
         return float(self.sizes.sum())
 
 
@@ -71,7 +72,8 @@ def pieces(
         near: gives those that may carry the side, where nobody has all.
 
     Raises:
-        CaseError: a part of the side, or the point, has no particle within two and a half spacings.
+        CaseError: a part of the side has no particle within two and a half spacings, or the point
+            within one and a half.
     """
     load = case.load[name]
     if load.at_point:
@@ -116,12 +118,13 @@ def _at_point(case: Case, name: str, positions: Array, spacing: float, near: Nea
     load = case.load[name]
     point = np.array([load.point], dtype=float)
     numbers, positions = _candidates(point, positions, spacing, near)
-    _, owner = nearest_particles(positions, point, spacing)
-    if not len(owner):
-        rule = f"is farther than {_REACH:g} spacings of particles from all of body.{load.body}"
+    away = np.linalg.norm(positions - point, axis=1)
+    if not (away <= _REACH_OF_POINT * spacing).any():
+        rule = f"is farther than {_REACH_OF_POINT:g} spacings from all particles of {load.body}"
         remedy = f"give a point of the body; its particles are {spacing:.4g} m apart"
         raise case.error(("load", name, "point"), rule, remedy, value=plain(load.point))
-    owner = np.sort(owner)
+    owner = np.flatnonzero(away <= away.min() + _SAME * spacing)
+    owner = owner[np.argsort(numbers[owner])]
     carriers = positions[owner]
     sizes = np.full(len(owner), 1.0 / len(owner))
     return Pieces(

@@ -31,8 +31,10 @@ def _kind_field(row: dict[str, Any]) -> tuple[Any, Any]:
     return Annotated[float | TimeFunction | None, Timed(unit)], None
 
 
-_KINDS: dict[str, dict[str, Any]] = _core.load_kinds
-_LoadValues: Any = table_of_rows("load", _KINDS, _kind_field)
+KINDS: dict[str, dict[str, Any]] = _core.load_kinds
+"""Of each kind of load: `meaning`, `unit`, and whether it is a `vector` and acts `at_point`."""
+
+_LoadValues: Any = table_of_rows("load", KINDS, _kind_field)
 
 
 class Load(_LoadValues):
@@ -49,7 +51,7 @@ class Load(_LoadValues):
             `outer` of the shape with the number 1, from 0, of a union, difference or intersection,
             as far as it is on the surface of all; `all`.
         point: where a force acts [m], D numbers: carried by the particle nearest to it at the
-            start, two and a half spacings away at most, or shared by those that are as near.
+            start, one and a half spacings away at most, or shared by those that are as near.
     """
 
     body: Text
@@ -58,7 +60,7 @@ class Load(_LoadValues):
 
     @model_validator(mode="after")
     def _one_kind(self) -> Load:
-        first, *others = _KINDS
+        first, *others = KINDS
         given = self.given()
         if len(given) > 1:
             rule = f"must not be given together with {given[0]}"
@@ -77,18 +79,18 @@ class Load(_LoadValues):
 
     def given(self) -> list[str]:
         """Return the kinds of loads that have a value."""
-        return [kind for kind in _KINDS if getattr(self, kind) not in (None, ())]
+        return [kind for kind in KINDS if getattr(self, kind) not in (None, ())]
 
     @property
     def at_point(self) -> bool:
         """Whether it is a force at a point."""
-        return any(_KINDS[kind]["at_point"] for kind in self.given())
+        return any(KINDS[kind]["at_point"] for kind in self.given())
 
     def value(self) -> tuple[str, tuple[float | TimeFunction, ...]]:
         """Return the kind and its value, one number or D."""
         [kind] = self.given()
         found = getattr(self, kind)
-        return kind, found if _KINDS[kind]["vector"] else (found,)
+        return kind, found if KINDS[kind]["vector"] else (found,)
 
 
 def check_loads(case: Case) -> Iterator[PydanticCustomError]:
@@ -115,7 +117,7 @@ def check_loads(case: Case) -> Iterator[PydanticCustomError]:
             rule = f"is not a side of the {_kind(body)} body.{load.body}"
             yield violation(rule, nearest(load.side, known), value=load.side, path=(*path, "side"))
         kind, value = load.value()
-        if _KINDS[kind]["vector"] and len(value) != dimension:
+        if KINDS[kind]["vector"] and len(value) != dimension:
             rule = f"must have {dimension} numbers, as grid.dimension = {dimension}"
             remedy = f"it has {len(value)}, give {dimension}"
             yield violation(rule, remedy, path=(*path, kind))

@@ -30,10 +30,30 @@ def main() -> None:
     os.environ["MPLBACKEND"] = "agg"  # Pictures go into files, whatever the user's notebooks need.
     from mpm3dpp.ranks.launcher import started
 
-    if started() is None:
+    found = started()
+    if found is None:
         _command()
+    elif sys.argv[1:2] and sys.argv[1] in _STARTS_OTHERS:
+        _refuse(sys.argv[1], first=found[1] == 0)
     else:
         _one_of_many()
+
+
+_STARTS_OTHERS = ("bench", "reproduce", "study", "sweep")
+"""Commands that start processes of their own, which would take themselves for ranks."""
+
+
+def _refuse(command: str, first: bool) -> None:
+    """Say that a command is not for mpiexec, once, and exit."""
+    from mpm3dpp.base.errors import CaseError
+
+    if first:
+        has = "its --ranks" if command == "bench" else "its option --jobs"
+        remedy = f"leave mpiexec out; {has} has processes beside each other"
+        if command == "reproduce":
+            remedy = "leave mpiexec out"
+        _tell(CaseError(f"{command} starts its runs itself, and mpiexec has started it", remedy))
+    sys.exit(2)
 
 
 def _one_of_many() -> None:

@@ -168,7 +168,7 @@ def _of_fields(
 ) -> dict[str, Array]:
     """Return the columns of a body that a file gives."""
     try:
-        given = {name: fields.at(name, positions) for name in fields.columns}
+        given = fields.at(positions)
     except ValueError as error:
         remedy = "give places around the body, or on a grid of axes"
         raise case.error((*path, "fields"), str(error), remedy, value=fields.file) from None

@@ -66,19 +66,20 @@ class Sampling(abc.ABC):
         inside = np.abs(arrays["position"][:, _AXES.index(axis)] - at) <= 0.5 * thick
         return {name: values[inside] for name, values in arrays.items()}
 
-    def strain(self, frame: int) -> np.ndarray:
-        """Return the logarithmic strain of each particle since the first frame (Hencky 1928).
+    def strain(self, frame: int = -1) -> np.ndarray:
+        """Return the logarithmic strain [1] of each particle since the first frame (Hencky 1928).
 
-        It is that of the displacements around the particle, among those of its body, whatever the
-        material: plastic and elastic strain together. Frames hold numbers of seven digits: it is
-        uncertain by some 1e-7 times the distance from the origin over the particle's size.
+        It is that of the displacements of the particles of its body, or grain, that were within 1.8
+        particle sizes of it in the first frame, whatever the material: plastic and elastic strain
+        together. Frames hold numbers of seven digits: it is uncertain by some 1e-7 times the
+        distance from the origin over the particle's size.
 
         Args:
             frame: see `arrays`.
 
         Returns:
-            Shape (n, 6), in the order xx yy zz yz xz xy; NaN where a particle has no neighbours on
-            all sides, as in a layer of one.
+            Shape (n, 6), in the order xx yy zz yz xz xy; NaN for particles that are gone,
+            and where one has no neighbours on all sides, as in a layer of one.
 
         Raises:
             IndexError: there is no such frame.
@@ -86,12 +87,18 @@ class Sampling(abc.ABC):
         """
         from .strain import hencky_strain
 
-        start = self.arrays(0, ["size", "body"])
-        present = self.arrays(frame, [])["position"]
+        start = self.arrays(0, ["size", "body", "grain"])
+        present = self.arrays(frame, ["failed"])
         before, after = (
-            places[:, : self.dimension].astype(float) for places in (start["position"], present)
+            arrays["position"][:, : self.dimension].astype(float) for arrays in (start, present)
         )
-        return hencky_strain(before, after, start["size"].astype(float), start["body"])
+        body = start["body"].astype(np.int64)
+        if "grain" in start:
+            body = body * (1 + int(start["grain"].max(initial=0))) + start["grain"]
+        there, strain = takes_part(present), np.full((len(body), 6), np.nan)
+        size = start["size"].astype(float)
+        strain[there] = hencky_strain(before[there], after[there], size[there], body[there])
+        return strain
 
     def line(
         self,

@@ -61,7 +61,7 @@ def _of_body(start: Array, present: Array, size: Array) -> Array:
 def _hencky(gradient: Array) -> Array:
     """Return 1/2 ln(F F^T) of gradients (n, D, D), shape (n, 6)."""
     squares, axes = np.linalg.eigh(gradient @ np.swapaxes(gradient, 1, 2))
-    logs = 0.5 * np.log(np.maximum(squares, np.finfo(float).tiny))
+    logs = 0.5 * np.log(np.where(squares > 0.0, squares, np.nan))  # NaN where all is in a plane
     tensor = np.einsum("nik,nk,njk->nij", axes, logs, axes)
     found = np.zeros((len(tensor), 6))
     for k, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))):

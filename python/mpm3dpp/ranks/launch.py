@@ -128,6 +128,8 @@ class _Job:
         """Run it to its end; return its exit code."""
         # In a session of its own, so that Ctrl-C at the terminal comes to this process alone.
         with subprocess.Popen(command, env=environment, start_new_session=True) as self._job:
+            if self.stopped:  # before there was anybody to pass it on to
+                self._job.terminate()
             return self._job.wait()
 
     def _pass_on(self, kind: int, _: FrameType | None) -> None:

@@ -30,7 +30,7 @@ class Mpi4pyComm:
     def __init__(self, mpi: Any, users: Any, fail: Callable[[str], None], piece: int) -> None:
         self._mpi, self._piece = mpi, piece
         self._comm = users.Dup()
-        self._receiving: dict[int, list[Any]] = {}
+        self._receiving: dict[int, list[tuple[Any, int]]] = {}
         self._sending: dict[int, list[Any]] = {}
         self._round = 0
         self.rank: int = users.rank
@@ -56,7 +56,7 @@ class Mpi4pyComm:
         """Start to send and to receive letters of known lengths."""
         self.release(key)
         self._receiving[key] = [
-            self._comm.Irecv(self._bytes(view), rank, _EXPECTED) for rank, view in into
+            (self._comm.Irecv(self._bytes(view), rank, _EXPECTED), len(view)) for rank, view in into
         ]
         self._sending[key] = [
             self._comm.Isend(self._bytes(view), rank, _EXPECTED) for rank, view in out
@@ -64,7 +64,12 @@ class Mpi4pyComm:
 
     def finish(self, key: int) -> None:
         """Wait until all that was started has been received."""
-        self._mpi.Request.Waitall(self._receiving.pop(key))
+        expected = self._receiving.pop(key)
+        came = [self._mpi.Status() for _ in expected]
+        self._mpi.Request.Waitall([request for request, _ in expected], came)
+        for (_, length), status in zip(expected, came, strict=True):
+            if status.Get_count(self._mpi.BYTE) != length:
+                raise RuntimeError("a letter has another length than was agreed")
 
     def release(self, key: int) -> None:
         """Wait until all that was started has been sent."""

@@ -117,7 +117,12 @@ def actions(found: Found) -> Section | None:
     units = f"N{per}", f"N s{per}"
     if manifest.loads:
         rows = [
-            [name, vector(a.impulse, flat), vector(a.force, flat), number(a.area)]
+            [
+                name,
+                vector(a.impulse, flat),
+                vector(a.force, flat),
+                number(a.area) if a.area else NONE,
+            ]
             for name, a in manifest.loads.items()
         ]
         head = ["load", f"impulse [{units[1]}]", f"force, end [{units[0]}]", f"area [{area}]"]

@@ -61,7 +61,8 @@ class _Leading:
 
     def _call(self, name: str, values: tuple[Any, ...], named: dict[str, Any]) -> Any:
         own = [value._own if isinstance(value, _Leading) else value for value in values]
-        self._ranks.tell("call", self._name, name, [_told(value) for value in values], named)
+        told = [_told(value) for value in values], {k: _told(value) for k, value in named.items()}
+        self._ranks.tell("call", self._name, name, *told)
         return self._alike(lambda: getattr(self._own, name)(*own, **named))
 
     def _alike(self, act: Callable[[], Any]) -> Any:
@@ -107,10 +108,15 @@ def column_parts(simulation: Simulation) -> Parts | None:
 
     def parts(body: int, name: str) -> Iterator[np.ndarray]:
         ranks.tell("slice", body, name)
-        own: np.ndarray = core.column_slice(body, name)
-        yield own
-        for rank in range(1, ranks.size):
-            yield ranks.receive(rank)
+        left = iter(range(1, ranks.size))
+        try:
+            own: np.ndarray = core.column_slice(body, name)
+            yield own
+            for rank in left:
+                yield ranks.receive(rank)
+        finally:  # They wait until they are asked.
+            for rank in left:
+                ranks.receive(rank)
 
     return parts
 
@@ -119,8 +125,12 @@ def _told(value: Any) -> Any:
     """Return an argument as the others are told it."""
     if isinstance(value, _Leading):
         return _Own(value._name)
-    # What only the first process calls, as to read a file, the others need not have.
-    return len if callable(value) else value
+    return _not_here if callable(value) else value
+
+
+def _not_here(*_values: Any) -> Any:
+    """Stand for what only the first process calls, as to read a file."""
+    raise RuntimeError("this is called in the first rank only")
 
 
 def _make(case: Case, threads: int | None, device: str, ranks: World) -> Simulation:
@@ -131,8 +141,15 @@ def _make(case: Case, threads: int | None, device: str, ranks: World) -> Simulat
         raise
 
 
+class Mistake(NamedTuple):
+    """What has come of a run that had to stop: what the first process raises, and its sentence."""
+
+    kind: type[Exception]
+    sentence: str
+
+
 def release(what: Any = None) -> None:
-    """Tell the others that a run has ended, and what has come of it."""
+    """Tell the others that a run has ended, and what has come of it: a manifest or a `Mistake`."""
     ranks = world()
     if ranks is not None:
         ranks.tell("end", what)

@@ -20,7 +20,7 @@ from mpm3dpp.ranks.world import world
 
 from .checkpoints import Checkpoint, Checkpoints
 from .device import CPU
-from .lead import follow, make_simulation, release
+from .lead import Mistake, follow, make_simulation, release
 from .recording import Recording
 from .report import summary_lines
 from .resume import go_on, has_checkpoint
@@ -68,15 +68,20 @@ def run_case(
     ranks = world()
     if ranks is not None and ranks.rank > 0:
         followed = follow(ranks)
+        if isinstance(followed, Mistake):
+            raise followed.kind(followed.sentence)
         if followed is None:
             raise SystemExit(1)  # The first process has said why.
         return followed
-    manifest: Manifest | None = None
+    ended: Manifest | Mistake | None = None
     try:
-        manifest = _run_case(case, out, threads, quiet, json, pictures, resume, every, call, device)
+        ended = _run_case(case, out, threads, quiet, json, pictures, resume, every, call, device)
+    except (CaseError, RunError) as error:
+        ended = Mistake(type(error), str(error))
+        raise
     finally:
-        release(manifest)
-    return manifest
+        release(ended)
+    return ended
 
 
 def _run_case(

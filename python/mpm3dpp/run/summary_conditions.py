@@ -12,6 +12,7 @@ from mpm3dpp.case.case import Case
 from mpm3dpp.case.grid import FACES, GridCoarsening
 from mpm3dpp.case.initial import GEOSTATIC, Initial
 from mpm3dpp.case.initial_fields import STRESS
+from mpm3dpp.case.loads import KINDS
 from mpm3dpp.plots.labels import scaled
 
 Quantity = float | TimeFunction | Expression
@@ -69,7 +70,7 @@ def load_in_words(case: Case, name: str) -> str:
     """Return the kind of a load and its value."""
     load = case.load[name]
     kind, value = load.value()
-    unit = "N" if load.at_point else "Pa"
+    unit = KINDS[kind]["unit"]
     if len(value) == 1:
         return f"{kind} {in_words(value[0], unit)}"
     return f"{kind} {vector_in_words(value, unit)}"

@@ -8,7 +8,7 @@ void test_load_kinds(mpm::testing::Report& report) {
   SurfacePiece<2> piece;
   piece.area = {3.0, -4.0};
   piece.size = 6.0;  // of two faces at an edge: more than |area|
-  load.stress = {2.0, 1.0};
+  load.mean = {2.0, 1.0};
   load.kind = LoadKinds::id_of<Pressure>();
   CHECK(load.force_on(piece)[0] == -6.0 && load.force_on(piece)[1] == 8.0);
   load.kind = LoadKinds::id_of<Traction>();

@@ -81,7 +81,7 @@ void build(Simulation<D>& simulation, const RankedCase& choice) {
     set_motion(simulation, 1, {shaking, 0.0, 0.0}, {0.0, 0.0, turning}, {20.0, 7.0, 5.0});
   }
   if (choice.load)
-    for (const char* kind : {"pressure", "traction"}) {
+    for (const char* kind : {"pressure", "traction", "force"}) {
       std::vector<std::uint32_t> particles(60);
       for (std::uint32_t k = 0; k < 60; ++k) particles[k] = 8 * k;
       const std::vector<double> sizes(60, 0.5), vectors(60 * std::size_t{D}, 0.3);

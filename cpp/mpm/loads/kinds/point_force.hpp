@@ -11,6 +11,7 @@ struct PointForce {
   static constexpr std::string_view doc =
       "at a point, in a fixed direction, D numbers or functions of time [N; in 2D per metre of "
       "thickness]";
+  static constexpr std::string_view unit = "N";
   static constexpr bool is_vector = true;
   static constexpr bool is_at_point = true;  // sizes of pieces are shares, and it has no area
 

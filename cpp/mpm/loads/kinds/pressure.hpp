@@ -11,6 +11,7 @@ struct Pressure {
   static constexpr std::string_view doc =
       "against the surface, whose normals turn and whose area changes with the body [Pa]; a number "
       "or a function of time";
+  static constexpr std::string_view unit = "Pa";
   static constexpr bool is_vector = false;
 
   // By the vector, as pressures add as vectors: those on a closed surface cancel.
