@@ -151,7 +151,7 @@ def test_components_of_a_stress_by_formulas() -> None:
         ('{ stress = "geostatic" }', "needs gravity along one axis at t = 0; give run.gravity"),
         ("{ K0 = 0.5 }", 'is for a geostatic stress; give stress = "geostatic"'),
         ("{ stress = [0, 1, 0, 0], K0 = 1 }", "body.left.initial.K0 is for a geostatic stress"),
-        ("{}", "body.left.initial is empty; give stress or state"),
+        ("{}", "body.left.initial is empty; give stress, state or fields"),
         ("{ state = { temperatur = 3 } }", 'did you mean "temperature"'),
         ("{ state = { temperature = 3 } }", 'is no state of the material "soft"; it has none'),
         ("{ state = { damage = 2 } }", "state.damage = 2 must be between 0 and 1"),
