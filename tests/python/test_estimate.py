@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 
 import pytest
@@ -40,12 +41,17 @@ def test_the_time_is_steps_times_particles(monkeypatch: pytest.MonkeyPatch) -> N
     bodies = build(case)
     steps = 1.0 / time_step(case, bodies)
     minutes = steps * bodies.particle_count * 1e-6 / 60.0
-    for ranks, workers in ((1, "2 threads"), (4, "4 ranks of 2 threads")):
+    for cores, ranks, workers, at_once in (
+        (8, 1, "2 threads", 1),
+        (8, 4, "4 ranks of 2 threads", 4),
+        (4, 4, "4 ranks of 2 threads", 2),
+    ):
+        monkeypatch.setattr(os, "sched_getaffinity", lambda _, n=cores: set(range(n)))
         line = estimate.estimate_line(case, bodies, ranks)
         found = re.match(rf"estimate: about (\S+) (min|h) with {workers} on this machine", line)
         assert found
         told = float(found[1]) * (60.0 if found[2] == "h" else 1.0)
-        assert told == pytest.approx(minutes / ranks, rel=0.05)
+        assert told == pytest.approx(minutes / at_once, rel=0.05)
         assert "(1e+03 ns for a particle and step; contact and frames come on top)" in line
 
 

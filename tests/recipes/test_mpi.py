@@ -92,6 +92,8 @@ def test_a_run_writes_and_tells_once(tmp_path: Path, each_way: str) -> None:
     done = run(each_way, tmp_path, *plain, "--out", "three", "--ranks", 3)
     assert done.returncode == 0, done.stderr
     assert done.stdout.count("completed: ") == 1 and "of each of 3 ranks" in done.stdout
+    typed = json.loads((tmp_path / "three/manifest.json").read_text())["command"]
+    assert typed.endswith("--out three --ranks 3")
     one, three = (
         json.loads((tmp_path / name / "manifest.json").read_text()) for name in ("one", "three")
     )

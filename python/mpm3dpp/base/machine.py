@@ -106,8 +106,14 @@ def processor_name() -> str:
     return names[0] if names else platform.machine()
 
 
+TYPED = "MPM3DPP_TYPED"
+"""In the environment: the command of the process that has started the ranks."""
+
+
 def command_line() -> str:
-    """Return the command that started this process, as one would type it."""
+    """Return the command that started this process, or that of the ranks, as one would type it."""
+    if typed := os.environ.get(TYPED):
+        return typed
     program, *words = sys.argv or [""]
     path = Path(program)
     name = path.parent.name if path.name == "__main__.py" else path.name

@@ -15,8 +15,8 @@ from types import FrameType
 from typing import Any
 
 from mpm3dpp.base.errors import CaseError, RunError
-from mpm3dpp.base.machine import thread_count
-from mpm3dpp.base.signals import CODE
+from mpm3dpp.base.machine import TYPED, command_line, thread_count
+from mpm3dpp.base.signals import CODE, SENTENCE
 
 from .world import INSTALL
 
@@ -54,10 +54,11 @@ def launch(count: int, words: list[str], threads: int | None) -> int:
         print(f"note: {text}", file=sys.stderr, flush=True)
     with tempfile.TemporaryDirectory(prefix="mpm3dpp-") as told:
         with _Job(Path(told, "pid")) as job:
-            code = job.run(command, os.environ | {TOLD: told} | added)
+            code = job.run(command, os.environ | {TOLD: told, TYPED: command_line()} | added)
         with contextlib.suppress(OSError, ValueError):
             return int(Path(told, "code").read_text())
-    if job.stopped:
+    if job.stopped:  # before there was a first process that says so
+        print(f"mpm3dpp: error: {SENTENCE}", file=sys.stderr, flush=True)
         return CODE
     how = f"by signal {-code}" if code < 0 else f"with exit code {code}"
     raise RunError(

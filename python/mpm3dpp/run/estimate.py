@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import os
 import time
 from collections.abc import Iterable
 
@@ -39,7 +40,8 @@ def estimate_line(case: Case, bodies: Filled, ranks: int = 1, threads: int | Non
         ranks: processes that share the particles, each with its threads.
         threads: see `thread_count`.
     """
-    threads = thread_count(threads)
+    cores = len(os.sched_getaffinity(0))
+    threads = thread_count(threads, max(1, cores // ranks))
     moving = [part for name, part in bodies.parts.items() if not case.is_rigid(name)]
     others = [part for part in moving if part.name not in case.grains]
     models = [
@@ -53,7 +55,8 @@ def estimate_line(case: Case, bodies: Filled, ranks: int = 1, threads: int | Non
     stepped = sum(count for _, count in models)
     each = sum(_seconds(model, threads) * count for model, count in models) / stepped
     steps = math.ceil(case.run.end_time / time_step(case, bodies))
-    seconds = each * bodies.particle_count * steps / ranks
+    at_once = min(ranks, max(1, cores // threads))  # The others wait for a core.
+    seconds = each * bodies.particle_count * steps / at_once
     workers = f"{threads} thread{'s' if threads > 1 else ''}"
     if ranks > 1:
         workers = f"{ranks} ranks of {workers}"
