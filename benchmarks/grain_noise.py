@@ -4,8 +4,8 @@
     python benchmarks/grain_noise.py ["8 cells" "flip" ...]
 
 Some 40 soft discs of 16 to 24 mm fall in a box and come to rest. A line for each setting: the share
-of their kinetic energy that is motion of particles about the rigid motion of their grain while they
-fall and land (median, to 0.2 s), and at rest (0.48 to 0.6 s) the root mean squares, by mass, of that
+of their kinetic energy that is motion of particles about that of their rigid grain while they
+fall and land (median, to 0.2 s), and at rest (0.48 to 0.6 s) the root mean squares by mass of that
 motion and of the grains' velocities, over sqrt(g d). The table is in docs/how-to/many-grains.md.
 """
 
