@@ -24,8 +24,8 @@ dimension = 2
 cell_size = {cell}
 box = {{ lower = [0, 0], upper = [0.12, 0.64], walls = "slip" }}
 [run]
-end_time = 0.6
-gravity = [0, -9.81]
+end_time = {end}
+gravity = [0, -{gravity}]
 {run}
 [material.glass]
 density = 2500
@@ -78,7 +78,7 @@ class Grains:
 def main(names: list[str]) -> None:
     for name in names or SETTINGS:
         cells, run, grains = SETTINGS[name]
-        text = TEXT.format(cell=DIAMETER / cells, run=run, grains=grains)
+        text = TEXT.format(cell=DIAMETER / cells, end=END, gravity=GRAVITY, run=run, grains=grains)
         simulation = Simulation(Case.from_text(text), threads=1)
         seen, rows = Grains(simulation), []
         times = np.arange(0.02, END + 1e-9, 0.02)

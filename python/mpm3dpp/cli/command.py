@@ -39,8 +39,13 @@ def main() -> None:
         _one_of_many()
 
 
-_STARTS_OTHERS = ("bench", "reproduce", "study", "sweep")
-"""Commands that start processes of their own, which would take themselves for ranks."""
+_STARTS_OTHERS = {
+    "bench": "; for ranks give it --ranks",
+    "reproduce": "",
+    "study": "; for runs beside each other give it --jobs",
+    "sweep": "; for runs beside each other give it --jobs",
+}
+"""Commands that start processes of their own, which would take themselves for ranks; what to do."""
 
 
 def _refuse(command: str, first: bool) -> None:
@@ -48,10 +53,7 @@ def _refuse(command: str, first: bool) -> None:
     from mpm3dpp.base.errors import CaseError
 
     if first:
-        has = "its --ranks" if command == "bench" else "its option --jobs"
-        remedy = f"leave mpiexec out; {has} has processes beside each other"
-        if command == "reproduce":
-            remedy = "leave mpiexec out"
+        remedy = f"leave mpiexec out{_STARTS_OTHERS[command]}"
         _tell(CaseError(f"{command} starts its runs itself, and mpiexec has started it", remedy))
     sys.exit(2)
 
