@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <map>
 
 #include "mpm/run/advance.hpp"
 #include "mpm/run/use_device.hpp"
@@ -30,14 +31,25 @@ std::int64_t make_steps(Simulation<D>& simulation, std::int64_t steps) {
   return made;
 }
 
-/// Rows of the particles by their numbers.
+/// A particle that takes part, by its body and its number there.
+struct Particle {
+  std::size_t pool;
+  std::uint32_t row;
+};
+
+/// Those of all bodies, in the order of the bodies and of their numbers.
 template <int D>
-std::vector<std::uint32_t> rows_by_id(const Simulation<D>& simulation) {
-  const ParticlePool<D>& pool = simulation.domain.pools[0];
-  std::vector<std::uint32_t> rows(pool.count());
-  for (const Patch<D>& patch : simulation.domain.grid.patches)
-    for (const std::uint32_t row : pool.rows(patch)) rows[pool.id[row]] = row;
-  return rows;
+std::vector<Particle> particles_of(const Simulation<D>& simulation) {
+  const Domain<D>& domain = simulation.domain;
+  std::map<std::pair<int, std::uint32_t>, Particle> by_number;
+  for (const Patch<D>& patch : domain.grid.patches) {
+    const std::size_t pool = pool_number(domain.bodies, patch.body);
+    for (const std::uint32_t row : domain.pools[pool].rows(patch))
+      by_number[{patch.body, domain.pools[pool].id[row]}] = {pool, row};
+  }
+  std::vector<Particle> particles;
+  for (const auto& [number, particle] : by_number) particles.push_back(particle);
+  return particles;
 }
 
 struct Difference {
@@ -49,26 +61,33 @@ struct Difference {
 
 template <int D>
 Difference difference(const Simulation<D>& x, const Simulation<D>& y) {
-  const std::vector<std::uint32_t> of_x = rows_by_id(x), of_y = rows_by_id(y);
-  const Columns &first = x.domain.pools[0].columns, &second = y.domain.pools[0].columns;
   Difference found;
-  for (const ColumnInfo& info : first.infos())
-    for (int c = 0; c < info.components; ++c) {
-      double most = 0.0, scale = std::numeric_limits<double>::min();
-      for (std::size_t k = 0; k < of_x.size(); ++k) {
-        const double a = first.value(info.first + c, of_x[k]),
-                     b = second.value(info.first + c, of_y[k]);
-        ++found.numbers;
-        if (a != b) ++found.other;
-        scale = std::max(scale, std::abs(a));
-        most = std::max(most, a == b ? 0.0 : std::abs(a - b));
-        if (!std::isfinite(b)) most = std::numeric_limits<double>::infinity();
-      }
-      if (most / scale > found.largest) {
-        found.largest = most / scale;
-        found.column = info.name;
-      }
+  const std::vector<Particle> of_x = particles_of(x), of_y = particles_of(y);
+  if (of_x.size() != of_y.size()) throw std::runtime_error("there are other particles");
+  // By material, as each has its own columns.
+  std::map<std::pair<std::size_t, int>, std::pair<double, double>> columns;  // most, scale
+  for (std::size_t k = 0; k < of_x.size(); ++k) {
+    const Columns& first = x.domain.pools[of_x[k].pool].columns;
+    const Columns& second = y.domain.pools[of_y[k].pool].columns;
+    for (int c = 0; c < first.component_count(); ++c) {
+      const double p = first.value(c, of_x[k].row), q = second.value(c, of_y[k].row);
+      auto& [most, scale] = columns[{of_x[k].pool, c}];
+      ++found.numbers;
+      if (p != q) ++found.other;
+      scale = std::max(scale, std::abs(p));
+      most = std::max(most, p == q ? 0.0 : std::abs(p - q));
+      if (!std::isfinite(q)) most = std::numeric_limits<double>::infinity();
     }
+  }
+  for (const auto& [column, largest] : columns) {
+    const double relative =
+        largest.first / std::max(largest.second, std::numeric_limits<double>::min());
+    if (!(relative > found.largest)) continue;
+    found.largest = relative;
+    for (const ColumnInfo& info : x.domain.pools[column.first].columns.infos())
+      if (column.second >= info.first && column.second < info.first + info.components)
+        found.column = info.name;
+  }
   const Ledger &a = x.domain.ledger, &b = y.domain.ledger;
   const double scale = std::max({a.kinetic, std::abs(a.internal), a.start});
   for (const auto& [p, q] : {std::pair{a.kinetic, b.kinetic},
@@ -167,6 +186,13 @@ void compare_all(std::int64_t steps) {
       compare<3>(all[k].first, with(kinds[first ? 0 : 1], k % 2 == 0), all[k].second, steps);
       compare<2>(all[k].first, with(kinds[first ? 0 : 1], k % 2 == 1), all[k].second, steps);
     }
+  for (const Kind& kind : kinds)
+    for (const std::size_t k : {std::size_t{0}, std::size_t{4}}) {
+      Problem problem = with(kind, true);
+      problem.two = true;
+      compare<3>(all[k].first + ", two", problem, all[k].second, steps);
+      compare<2>(all[k].first + ", two", problem, all[k].second, steps);
+    }
 }
 
 /// Step by step: what differs first.
@@ -183,20 +209,21 @@ void trace(const Problem& problem, const MaterialChoice& choice, int steps) {
         host->domain.time, device->domain.time, host->domain.ledger.kinetic,
         device->domain.ledger.kinetic, host->domain.ledger.internal, device->domain.ledger.internal,
         host->domain.ledger.momentum[0], device->domain.ledger.momentum[0]);
-    const std::vector<std::uint32_t> of_x = rows_by_id(*host), of_y = rows_by_id(*device);
+    const std::vector<Particle> of_x = particles_of(*host), of_y = particles_of(*device);
     const Columns &first = host->domain.pools[0].columns, &second = device->domain.pools[0].columns;
     for (const ColumnInfo& info : first.infos())
       for (int c = 0; c < info.components; ++c) {
         std::size_t other = 0, at = 0;
         for (std::size_t i = of_x.size(); i-- > 0;)
-          if (first.value(info.first + c, of_x[i]) != second.value(info.first + c, of_y[i])) {
+          if (first.value(info.first + c, of_x[i].row) !=
+              second.value(info.first + c, of_y[i].row)) {
             ++other;
             at = i;
           }
         if (other > 0)
           std::printf("  %s[%d]: %zu differ, first particle %zu: %.17g %.17g\n", info.name.c_str(),
-                      c, other, at, first.value(info.first + c, of_x[at]),
-                      second.value(info.first + c, of_y[at]));
+                      c, other, at, first.value(info.first + c, of_x[at].row),
+                      second.value(info.first + c, of_y[at].row));
       }
     std::fflush(stdout);
     if (host->failure || device->failure) break;

@@ -75,6 +75,19 @@ inline std::vector<std::pair<std::string, MaterialChoice>> materials() {
   add("explosive", material(1630.0, "high_explosive", {{"D", 6930.0}})).eos = ModelChoice{
       "jwl",
       {{"A", 3.712e11}, {"B", 3.21e9}, {"R1", 4.15}, {"R2", 0.95}, {"omega", 0.3}, {"E0", 7e9}}};
+  const MaterialChoice j2 = all[1].second, copper_with_eos = all[4].second;
+  const auto failing = [](MaterialChoice choice, const std::string& model,
+                          const std::string& action, const std::map<std::string, double>& numbers) {
+    choice.failures.push_back({{model, numbers}, action});
+    return choice;
+  };
+  add("jc, damage",
+      failing(copper_with_eos, "johnson_cook_damage", "no_tension",
+              {{"D1", 0.001}, {"D2", 0.002}, {"D3", -3.0}, {"D4", 0.01}, {"D5", 1.1}}));
+  add("j2, two limits", failing(failing(j2, "plastic_strain", "no_shear", {{"limit", 0.004}}),
+                                "principal_stress", "no_tension", {{"limit", 4e8}}));
+  add("elastic, damped", all[0].second).damping = 1e-9;
+  add("j2, eroding", failing(j2, "plastic_strain", "erode", {{"limit", 0.004}}));
   return all;
 }
 
@@ -82,8 +95,10 @@ struct Problem {
   std::string basis = "quadratic_bspline", transfer = "aflip";
   Scheme scheme = Scheme::usf;
   int dimension = 3;
-  int cells = 8;                       // along an edge of the body
-  bool box = false;                    // in a corner of a box, with gravity
+  int cells = 8;     // along an edge of the body
+  bool box = false;  // in a corner of a box, with gravity
+  bool two = false;  // a second body, of an elastic material, meets it
+  bool contact = false;
   double speed = 0.03, strain = 0.01;  // of the translation and the straining over that of sound
   int threads = 1;
 };
@@ -99,7 +114,7 @@ std::unique_ptr<Simulation<D>> make(const Problem& problem, const MaterialChoice
   settings.run.transfer.word = choice_named<TransferId>("transfer", problem.transfer);
   settings.run.scheme = problem.scheme;
   settings.run.cfl = problem.scheme == Scheme::usf ? 0.5 : 0.25;
-  settings.contact.enabled = false;
+  settings.contact.enabled = problem.contact;
   settings.execution.threads = problem.threads;
   if (problem.box) {
     settings.grid.box_cells = {4 * problem.cells, 4 * problem.cells,
@@ -109,29 +124,36 @@ std::unique_ptr<Simulation<D>> make(const Problem& problem, const MaterialChoice
     settings.run.gravity[1] = TimeFunction(-1e6);
   }
   auto simulation = std::make_unique<Simulation<D>>(settings);
-  const int material = add_material(*simulation, choice);
-  const double c = sound_speed_at_start(simulation->domain.materials[0]);
-  const int n = 2 * problem.cells;
-  const std::size_t count = static_cast<std::size_t>(std::pow(n, D) + 0.5);
-  std::vector<double> positions(D * count), velocities(D * count);
-  const double direction[3] = {0.8, -0.5, 0.3};
-  std::size_t k = 0;
-  for (int z = 0; z < (D == 3 ? n : 1); ++z)
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x < n; ++x, ++k) {
-        const int i[3] = {x, y, z};
-        for (int a = 0; a < D; ++a) {
-          const double place = (i[a] + 0.5) / n;
-          positions[D * k + static_cast<std::size_t>(a)] = place * problem.cells * h;
-          // In a box it slides along the wall; elsewhere it flies; it breathes and shears.
-          const double other = (i[(a + 1) % D] + 0.5) / n;
-          velocities[D * k + static_cast<std::size_t>(a)] =
-              c * (problem.speed * std::abs(direction[a]) * (problem.box && a == 1 ? 0.0 : 1.0) +
-                   problem.strain * (std::cos(3.14159 * place) + 0.5 * std::sin(3.14159 * other)));
+  const auto add = [&](const std::string& name, const MaterialChoice& of, double from, double way) {
+    const int number = add_material(*simulation, of);
+    const double c = sound_speed_at_start(simulation->domain.materials.back());
+    const int n = 2 * problem.cells;
+    const std::size_t count = static_cast<std::size_t>(std::pow(n, D) + 0.5);
+    std::vector<double> positions(D * count), velocities(D * count);
+    const double direction[3] = {0.8, -0.5, 0.3};
+    std::size_t k = 0;
+    for (int z = 0; z < (D == 3 ? n : 1); ++z)
+      for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x, ++k) {
+          const int i[3] = {x, y, z};
+          for (int a = 0; a < D; ++a) {
+            const double place = (i[a] + 0.5) / n;
+            positions[D * k + static_cast<std::size_t>(a)] =
+                (place * problem.cells + (a == 0 ? from : 0.0)) * h;
+            // In a box it slides along the wall; elsewhere it flies; it breathes and shears.
+            const double other = (i[(a + 1) % D] + 0.5) / n;
+            velocities[D * k + static_cast<std::size_t>(a)] =
+                c *
+                (way * problem.speed * std::abs(direction[a]) *
+                     (problem.box && a == 1 ? 0.0 : 1.0) +
+                 problem.strain * (std::cos(3.14159 * place) + 0.5 * std::sin(3.14159 * other)));
+          }
         }
-      }
-  const double volume[1] = {std::pow(0.5 * h, D)};
-  add_body(*simulation, "body", material, positions, velocities, std::span<const double>(volume));
+    const double volume[1] = {std::pow(0.5 * h, D)};
+    add_body(*simulation, name, number, positions, velocities, std::span<const double>(volume));
+  };
+  add("body", choice, 0.0, 1.0);
+  if (problem.two) add("other", materials()[0].second, problem.cells, -1.0);
   prepare(*simulation);
   return simulation;
 }

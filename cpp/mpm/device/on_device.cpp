@@ -72,8 +72,7 @@ std::string not_on_device(const Domain<D>& domain, Scheme scheme) {
   if (scheme == Scheme::usl) return "run.scheme = \"usl\"";
   if (filters(domain.transfer)) return "run.transfer = \"xpic\"";
   if (domain.has_contact()) return "contact between bodies";
-  // Kernels take any number of bodies and materials, but no card has run them with more than one.
-  if (domain.bodies.size() > 1) return "several bodies";
+  if (domain.grid.bonded) return "bonded bodies";
   if (domain.has_rigid() || domain.has_prescribed()) return "rigid bodies";
   if (domain.has_loads()) return "loads on surfaces";
   if (domain.has_body_forces()) return "body forces";
@@ -82,10 +81,8 @@ std::string not_on_device(const Domain<D>& domain, Scheme scheme) {
   if (domain.grid.outflow_box.exist) return "a region that particles leave";
   if (domain.averages_volume()) return "volume averaging";
   if (domain.settles()) return "a run that settles";
-  for (const Material& material : domain.materials) {
-    if (!material.failures.empty()) return "failure models";
-    if (material.damping.active()) return "damping of materials";
-  }
+  for (const Material& material : domain.materials)
+    if (material.erodes()) return "particles that erode";
   return {};
 }
 

@@ -248,22 +248,22 @@ void DeviceLists<D>::make_tables(std::size_t given, std::size_t body_count) {
   patches_ = sort_unique(spare_keys_, given, patch_keys_);
   const std::size_t pairs = patches_ * around;
   spare_keys_.need(pairs);
-  list_node_tiles<D><<<blocks_for(pairs), threads>>>(patch_keys_.data(), patches_, reaches_before_,
-                                                     spare_keys_.data());
+  launch(list_node_tiles<D>, blocks_for(pairs), threads, patch_keys_.data(), patches_,
+         reaches_before_, spare_keys_.data());
   tiles_ = sort_unique(spare_keys_, pairs, tile_keys_);
   patch_body_.need(patches_);
   patch_tile_.need(patches_);
   tile_body_.need(tiles_);
   tile_tile_.need(tiles_);
-  read_keys<D><<<blocks_for(patches_), threads>>>(patch_keys_.data(), patches_, patch_body_.data(),
-                                                  patch_tile_.data());
-  read_keys<D><<<blocks_for(tiles_), threads>>>(tile_keys_.data(), tiles_, tile_body_.data(),
-                                                tile_tile_.data());
+  launch(read_keys<D>, blocks_for(patches_), threads, patch_keys_.data(), patches_,
+         patch_body_.data(), patch_tile_.data());
+  launch(read_keys<D>, blocks_for(tiles_), threads, tile_keys_.data(), tiles_, tile_body_.data(),
+         tile_tile_.data());
   const auto find_all = [&](DeviceArray<std::int32_t>& to, const auto& of, std::size_t count,
                             const auto& among, std::size_t among_count) {
     to.need(count * around);
-    find_around<D><<<blocks_for(count * around), threads>>>(of.data(), count, among.data(),
-                                                            among_count, to.data());
+    launch(find_around<D>, blocks_for(count * around), threads, of.data(), count, among.data(),
+           among_count, to.data());
   };
   find_all(patch_beside_, patch_keys_, patches_, patch_keys_, patches_);
   find_all(nodes_beside_, patch_keys_, patches_, tile_keys_, tiles_);
@@ -271,10 +271,10 @@ void DeviceLists<D>::make_tables(std::size_t given, std::size_t body_count) {
   find_all(tile_beside_, tile_keys_, tiles_, tile_keys_, tiles_);
   patch_of_body_.need(bodies_ + 1);
   tile_of_body_.need(bodies_ + 1);
-  find_bodies<D><<<blocks_for(bodies_ + 1), threads>>>(patch_keys_.data(), patches_, bodies_,
-                                                       patch_of_body_.data());
-  find_bodies<D><<<blocks_for(bodies_ + 1), threads>>>(tile_keys_.data(), tiles_, bodies_,
-                                                       tile_of_body_.data());
+  launch(find_bodies<D>, blocks_for(bodies_ + 1), threads, patch_keys_.data(), patches_, bodies_,
+         patch_of_body_.data());
+  launch(find_bodies<D>, blocks_for(bodies_ + 1), threads, tile_keys_.data(), tiles_, bodies_,
+         tile_of_body_.data());
   counts_.need(patches_ * cells + 1);
   check_cuda(cudaGetLastError(), "making lists");
 }
@@ -293,10 +293,10 @@ void DeviceLists<D>::place(const std::uint32_t* rows, const DeviceBody* bodies,
   check_cuda(
       cub::DeviceScan::ExclusiveSum(scratch_.data(), bytes, counts_.data(), cell_begin_.data(), n),
       "making lists");
-  place_entries<<<blocks_for(particles_), threads>>>(rows, particles_, target_, slot_,
-                                                     cell_begin_.data(), next_order_.data());
-  order_cells<D><<<static_cast<unsigned>(patches_), 128>>>(
-      next_order_.data(), cell_begin_.data(), patch_body_.data(), bodies, pools, order_.data());
+  launch(place_entries, blocks_for(particles_), threads, rows, particles_, target_, slot_,
+         cell_begin_.data(), next_order_.data());
+  launch(order_cells<D>, static_cast<unsigned>(patches_), 128, next_order_.data(),
+         cell_begin_.data(), patch_body_.data(), bodies, pools, order_.data());
   check_cuda(cudaGetLastError(), "making lists");
 }
 
@@ -321,9 +321,8 @@ void DeviceLists<D>::start(const GridGeometry<D>& grid, const DeviceBody* bodies
   sorted_keys_.release();
   scratch_.release();
   const MoveView moves = begin_moves(room);
-  find_first_targets<D><<<blocks_for(count), threads>>>(grid, grid.coordinates(),
-                                                        patch_keys_.data(), patches_, bodies, pools,
-                                                        keys.data(), rows.data(), count, moves);
+  launch(find_first_targets<D>, blocks_for(count), threads, grid, grid.coordinates(),
+         patch_keys_.data(), patches_, bodies, pools, keys.data(), rows.data(), count, moves);
   place(rows.data(), bodies, pools);
 }
 
@@ -345,9 +344,8 @@ void DeviceLists<D>::finish_moves(const GridGeometry<D>& grid, const DeviceBody*
     const std::size_t lost = std::min<std::size_t>(homeless, homeless_keys_.size());
     spare_keys_.need(patches_ + lost);
     check_cuda(cudaMemsetAsync(counters_.data() + 3, 0, sizeof(std::uint32_t)), "making lists");
-    keep_patches<<<blocks_for(patches_), threads>>>(patch_keys_.data(), patches_, counts_.data(),
-                                                    static_cast<int>(cells), spare_keys_.data(),
-                                                    counters_.data() + 3);
+    launch(keep_patches, blocks_for(patches_), threads, patch_keys_.data(), patches_,
+           counts_.data(), static_cast<int>(cells), spare_keys_.data(), counters_.data() + 3);
     std::uint32_t kept = 0;
     counters_.give(&kept, 1, 3);
     check_cuda(cudaMemcpy(spare_keys_.data() + kept, homeless_keys_.data(),
@@ -355,9 +353,9 @@ void DeviceLists<D>::finish_moves(const GridGeometry<D>& grid, const DeviceBody*
                "making lists");
     make_tables(kept + lost, bodies_);
     const MoveView moves = begin_moves(target_);
-    find_targets<D><<<static_cast<unsigned>(before), 128>>>(
-        grid, grid.coordinates(), patch_keys_.data(), patches_, bodies, pools, order_.data(),
-        cell_begin_.data(), body_before.data(), moves);
+    launch(find_targets<D>, static_cast<unsigned>(before), 128, grid, grid.coordinates(),
+           patch_keys_.data(), patches_, bodies, pools, order_.data(), cell_begin_.data(),
+           body_before.data(), moves);
     check_cuda(cudaGetLastError(), "making lists");
     counters_.give(&homeless, 1, 1);
     changed = true;

@@ -26,6 +26,17 @@ inline void check_cuda(cudaError_t code, const char* doing) {
                            cudaGetErrorString(code));
 }
 
+/// Start a kernel, a block of so many threads each; nothing where there is no block.
+template <class... P, class... A>
+void launch(void (*kernel)(P...), dim3 blocks, unsigned threads, A&&... with) {
+  if (blocks.x == 0) return;
+#if defined(MPM_EMULATED)
+  emulated::run(blocks, threads, [&] { kernel(static_cast<P>(with)...); });
+#else
+  kernel<<<blocks, threads>>>(static_cast<P>(with)...);
+#endif
+}
+
 /// An owning array on the device.
 template <class T>
 class DeviceArray {

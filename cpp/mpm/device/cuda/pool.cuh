@@ -65,7 +65,7 @@ PoolOnDevice<D> take_pool(const DevicePool& pool) {
   mine.id.allocate(mine.rows);
   mine.id.take(pool.id, mine.rows);
   mine.home.allocate(mine.rows);
-  count_up<<<blocks_of(mine.rows), 256>>>(mine.home.data(), mine.rows);
+  launch(count_up, blocks_of(mine.rows), 256, mine.home.data(), mine.rows);
   return mine;
 }
 
@@ -121,8 +121,8 @@ BlockColumns<D> block_columns(PoolOnDevice<D>& pool) {
 template <int D>
 void give_back(PoolOnDevice<D>& mine, Columns& columns, DeviceArray<double>& spare) {
   for (int c = 0; c < columns.component_count(); ++c) {
-    give_rows<<<blocks_of(mine.rows), 256>>>(mine.column(c), mine.home.data(), mine.rows,
-                                             spare.data());
+    launch(give_rows<double>, blocks_of(mine.rows), 256, mine.column(c), mine.home.data(),
+           mine.rows, spare.data());
     columns.with_component(c, [&]<class Number>(Number* to) { spare.give(to, mine.rows); });
   }
 }
@@ -146,7 +146,7 @@ void sort_pool(PoolOnDevice<D>& pool, const std::vector<EntryRange>& bodies, std
   }
   for (std::size_t c = 0; c < pool.columns.size(); ++c) {
     double* const column = pool.column(static_cast<int>(c));
-    take_rows<<<blocks_of(next), 256>>>(column, rows, next, spare.data());
+    launch(take_rows<double>, blocks_of(next), 256, column, rows, next, spare.data());
     if (pool.place[c] < 0 && spare.size() == pool.columns[c].size())
       pool.columns[c].swap(spare);
     else
@@ -156,12 +156,12 @@ void sort_pool(PoolOnDevice<D>& pool, const std::vector<EntryRange>& bodies, std
   }
   for (DeviceArray<std::uint32_t>* numbers : {&pool.id, &pool.home}) {
     auto* const to = reinterpret_cast<std::uint32_t*>(spare.data());
-    take_rows<<<blocks_of(next), 256>>>(numbers->data(), rows, next, to);
+    launch(take_rows<std::uint32_t>, blocks_of(next), 256, numbers->data(), rows, next, to);
     check_cuda(cudaMemcpyAsync(numbers->data(), to, next * sizeof(std::uint32_t),
                                cudaMemcpyDeviceToDevice),
                "sorting columns");
   }
-  count_up<<<blocks_of(next), 256>>>(rows, next);
+  launch(count_up, blocks_of(next), 256, rows, next);
   next = 0;
   for (const EntryRange& body : bodies) {
     check_cuda(cudaMemcpyAsync(order + body.first, rows + next, body.count * sizeof(std::uint32_t),

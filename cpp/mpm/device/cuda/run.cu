@@ -98,9 +98,9 @@ void RunOnDevice<D>::start(const DeviceProblem<D>& problem) {
   check_cuda(cudaMemset(count.data(), 0, sizeof(std::uint32_t)), "taking particles");
   for (std::size_t p = 0; p < pools_.size(); ++p) {
     body.take(problem.pools[p].body, pools_[p].rows);
-    first_keys<D><<<blocks_of(pools_[p].rows), 256>>>(
-        grid_, mpm::view_of(pools_[p], grid_.cell_size), body.data(), pools_[p].rows, keys.data(),
-        of_entry.data(), count.data());
+    launch(first_keys<D>, blocks_of(pools_[p].rows), 256, grid_,
+           mpm::view_of(pools_[p], grid_.cell_size), body.data(), pools_[p].rows, keys.data(),
+           of_entry.data(), count.data());
     for (std::size_t row = 0; row < pools_[p].rows; ++row)
       pools_[p].in_lists += problem.pools[p].body[row] != DevicePool::no_body;
   }
@@ -147,9 +147,8 @@ void RunOnDevice<D>::sort_columns() {
   timer_.time("sort columns", [&] {
     DeviceArray<std::uint32_t> entries;
     entries.allocate(body_count_ + 1);
-    first_entries<<<blocks_of(body_count_ + 1), 256>>>(lists_.view().cell_begin,
-                                                       lists_.patch_of_body(), Tile<D>::cell_count,
-                                                       body_count_ + 1, entries.data());
+    launch(first_entries, blocks_of(body_count_ + 1), 256, lists_.view().cell_begin,
+           lists_.patch_of_body(), Tile<D>::cell_count, body_count_ + 1, entries.data());
     std::vector<std::uint32_t> first(body_count_ + 1);
     entries.give(first.data(), first.size());
     for (std::size_t p = 0; p < pools_.size(); ++p) {
@@ -194,8 +193,8 @@ void RunOnDevice<D>::with_transfer(const DeviceStep<D>& step, F&& f) {
 template <int D>
 template <class B, class Gives, unsigned what>
 void RunOnDevice<D>::map(const ParticleStep<D>& particles) {
-  map_patches<Gives, what, B, D><<<static_cast<unsigned>(lists_.patches()), scatter_threads>>>(
-      lists_.view(), partial(), particles);
+  launch(map_patches<Gives, what, B, D>, static_cast<unsigned>(lists_.patches()), scatter_threads,
+         lists_.view(), partial(), particles);
 }
 
 template <int D>
@@ -256,19 +255,21 @@ void RunOnDevice<D>::make_step(const DeviceStep<D>& step) {
       with_gives([&]<class Gives>() { map<B, Gives, gives_mass | gives_momentum>(particles); });
     });
     timer_.time("nodes", [&] {
-      sum_nodes<B, D, true, false, false><<<tiles, threads>>>(nodes, partial, of_nodes);
-      if (ghosts) reflect_nodes<D, true, false, false, true><<<tiles, threads>>>(nodes, of_nodes);
+      launch(sum_nodes<B, D, true, false, false>, tiles, threads, nodes, partial, of_nodes);
+      if (ghosts)
+        launch(reflect_nodes<D, true, false, false, true>, tiles, threads, nodes, of_nodes);
     });
     timer_.time("stress", [&] { stress(step, particles); });
     timer_.time("map forces", [&] { map<B, Flip, gives_forces>(particles); });
     timer_.time("nodes", [&] {
-      sum_nodes<B, D, false, true, false><<<tiles, threads>>>(nodes, partial, of_nodes);
-      if (ghosts) reflect_nodes<D, true, true, true, false><<<tiles, threads>>>(nodes, of_nodes);
+      launch(sum_nodes<B, D, false, true, false>, tiles, threads, nodes, partial, of_nodes);
+      if (ghosts)
+        launch(reflect_nodes<D, true, true, true, false>, tiles, threads, nodes, of_nodes);
     });
     timer_.time("advance and move", [&] {
       with_transfer<B>(step, [&]<class Transfer>() {
-        advance_patches<Transfer, DeviceAlso::move, B, D>
-            <<<patches, move_threads>>>(lists_.view(), nodes, partial, particles);
+        launch(advance_patches<Transfer, DeviceAlso::move, B, D>, patches, move_threads,
+               lists_.view(), nodes, partial, particles);
       });
     });
   } else {
@@ -278,18 +279,19 @@ void RunOnDevice<D>::make_step(const DeviceStep<D>& step) {
       });
     });
     timer_.time("nodes", [&] {
-      sum_nodes<B, D, true, true, false><<<tiles, threads>>>(nodes, partial, of_nodes);
-      if (ghosts) reflect_nodes<D, true, true, true, true><<<tiles, threads>>>(nodes, of_nodes);
+      launch(sum_nodes<B, D, true, true, false>, tiles, threads, nodes, partial, of_nodes);
+      if (ghosts) launch(reflect_nodes<D, true, true, true, true>, tiles, threads, nodes, of_nodes);
     });
     timer_.time("advance and remap", [&] {
       with_transfer<B>(step, [&]<class Transfer>() {
-        advance_patches<Transfer, DeviceAlso::remap, B, D>
-            <<<patches, scatter_threads>>>(lists_.view(), nodes, partial, particles);
+        launch(advance_patches<Transfer, DeviceAlso::remap, B, D>, patches, scatter_threads,
+               lists_.view(), nodes, partial, particles);
       });
     });
     timer_.time("nodes", [&] {
-      sum_nodes<B, D, false, false, true><<<tiles, threads>>>(nodes, partial, of_nodes);
-      if (ghosts) reflect_nodes<D, false, true, false, false><<<tiles, threads>>>(nodes, of_nodes);
+      launch(sum_nodes<B, D, false, false, true>, tiles, threads, nodes, partial, of_nodes);
+      if (ghosts)
+        launch(reflect_nodes<D, false, true, false, false>, tiles, threads, nodes, of_nodes);
     });
     timer_.time("stress and move", [&] { stress(step, particles); });
   }
@@ -299,12 +301,11 @@ void RunOnDevice<D>::make_step(const DeviceStep<D>& step) {
 template <int D>
 void RunOnDevice<D>::read(DeviceReport& report) {
   const auto bodies = static_cast<unsigned>(body_count_);
-  sum_bodies<<<dim3(bodies, DeviceSum::of_nodes), 256>>>(node_sums_.data(), lists_.node_tiles(),
-                                                         lists_.tile_of_body(), sums_.data(), 0);
-  sum_bodies<<<dim3(bodies, of_particles), 256>>>(patch_sums_.data(), lists_.patches(),
-                                                  lists_.patch_of_body(), sums_.data(),
-                                                  DeviceSum::of_nodes);
-  find_fastest<<<bodies, 256>>>(patch_fastest_.data(), lists_.patch_of_body(), fastest_.data());
+  launch(sum_bodies, dim3(bodies, DeviceSum::of_nodes), 256, node_sums_.data(), lists_.node_tiles(),
+         lists_.tile_of_body(), sums_.data(), 0);
+  launch(sum_bodies, dim3(bodies, of_particles), 256, patch_sums_.data(), lists_.patches(),
+         lists_.patch_of_body(), sums_.data(), DeviceSum::of_nodes);
+  launch(find_fastest, bodies, 256, patch_fastest_.data(), lists_.patch_of_body(), fastest_.data());
   const auto get = [](auto* to, const auto* from, std::size_t count) {
     check_cuda(cudaMemcpyAsync(to, from, count * sizeof(*from), cudaMemcpyDeviceToHost),
                "reading sums");
@@ -348,9 +349,8 @@ void RunOnDevice<D>::step(const DeviceStep<D>& step, DeviceReport& report) {
   ++steps_;
   if (step.look)
     for (PoolOnDevice<D>& pool : pools_)
-      count_odd<D><<<blocks_of(pool.rows), 256>>>(grid_, mpm::view_of(pool, grid_.cell_size),
-                                                  pool.rows, pool.material->density,
-                                                  flags_.data() + 1);
+      launch(count_odd<D>, blocks_of(pool.rows), 256, grid_, mpm::view_of(pool, grid_.cell_size),
+             pool.rows, pool.material->density, flags_.data() + 1);
   read(report);
   report.patches = lists_.patches();
   report.node_tiles = lists_.node_tiles();
@@ -361,8 +361,8 @@ void RunOnDevice<D>::step(const DeviceStep<D>& step, DeviceReport& report) {
   make_room();
   if (steps_ % look_at_order != 0) return;
   check_cuda(cudaMemsetAsync(lists_.jumps(), 0, sizeof(std::uint32_t)), "sorting columns");
-  count_jumps<<<blocks_of(lists_.particles()), 256>>>(lists_.order(), lists_.particles(),
-                                                      lists_.jumps());
+  launch(count_jumps, blocks_of(lists_.particles()), 256, lists_.order(), lists_.particles(),
+         lists_.jumps());
   std::uint32_t jumps = 0;
   check_cuda(cudaMemcpy(&jumps, lists_.jumps(), sizeof(jumps), cudaMemcpyDeviceToHost),
              "sorting columns");

@@ -10,20 +10,24 @@ namespace {
 using Strength = std::variant_alternative_t<MPM_STRENGTH, StrengthModels::Any>;
 
 template <class Eos, int D>
-void launch_with(const StressLaunch<D>& launch, const Eos& eos) {
-  const Strength& strength = std::get<Strength>(launch.material->strength);
-  stress_patches<Strength, Eos, NoFailures, D>
-      <<<static_cast<unsigned>(launch.patches), stress_threads>>>(
-          strength, eos, NoFailures{}, launch.lists, launch.nodes, launch.step);
+void launch_with(const StressLaunch<D>& of, const Eos& eos) {
+  const Strength& strength = std::get<Strength>(of.material->strength);
+  const auto blocks = static_cast<unsigned>(of.patches);
+  if (of.material->failures.empty())
+    launch(stress_patches<Strength, Eos, NoFailures, D>, blocks, stress_threads, strength, eos,
+           NoFailures{}, of.lists, of.nodes, of.step);
+  else
+    launch(stress_patches<Strength, Eos, FailureList, D>, blocks, stress_threads, strength, eos,
+           list_of(of.material->failures), of.lists, of.nodes, of.step);
 }
 
 }  // namespace
 
 template <int D, int strength>
-void launch_stress(const StressLaunch<D>& launch) {
-  const Material& material = *launch.material;
+void launch_stress(const StressLaunch<D>& of) {
+  const Material& material = *of.material;
   if constexpr (Strength::eos != EosUse::must)
-    if (!material.eos) launch_with(launch, NoEos{});
+    if (!material.eos) launch_with(of, NoEos{});
   if constexpr (Strength::eos != EosUse::never)
     if (material.eos)
       std::visit(
@@ -32,9 +36,9 @@ void launch_stress(const StressLaunch<D>& launch) {
               AnyLinearEos any;
               any.index = static_cast<int>(material.eos->index());
               std::memcpy(any.bytes, &eos, sizeof(eos));
-              launch_with(launch, any);
+              launch_with(of, any);
             } else {
-              launch_with(launch, eos);
+              launch_with(of, eos);
             }
           },
           *material.eos);
