@@ -31,7 +31,7 @@ add_library(mpm_device SHARED)
 set_target_properties(mpm_device PROPERTIES CUDA_RUNTIME_LIBRARY Static LINKER_LANGUAGE CUDA)
 target_link_options(mpm_device PRIVATE LINKER:--exclude-libs,ALL LINKER:-Bsymbolic)
 set(device cpp/mpm/device/cuda)
-mpm_device_objects(mpm_device_run ${device}/run.cu ${device}/lists.cu ${device}/interface.cu)
+mpm_device_objects(mpm_device_run ${device}/run.cu ${device}/make_step.cu ${device}/lists.cu ${device}/interface.cu)
 # A strength model each: its place in StrengthModels, but for the last, which does not deform.
 foreach(strength RANGE 10)
   mpm_device_objects(mpm_device_strength_${strength} ${device}/stress.cu)

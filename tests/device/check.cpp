@@ -1,6 +1,7 @@
 // Steps on a device against those of the processor, and how long they take: builds, compares and
 // times in one call, without Python.
-//   mpm_device_check compare [STEPS]         every material, basis, transfer and scheme
+//   mpm_device_check compare [STEPS [NAME]]  every material, basis, transfer and scheme, or those
+//                                            with a name that begins so
 //   mpm_device_check time [MILLIONS ...]     nanoseconds per particle and step, by kernel
 //   mpm_device_check one NAME                a short run, for compute-sanitizer
 //   mpm_device_check trace BASIS TRANSFER SCHEME STEPS [SPEED]   what differs first
@@ -95,6 +96,9 @@ Difference difference(const Simulation<D>& x, const Simulation<D>& y) {
                              {a.plastic, b.plastic},
                              {a.viscous, b.viscous},
                              {a.external, b.external},
+                             {a.friction, b.friction},
+                             {a.contact, b.contact},
+                             {a.eroded, b.eroded},
                              {a.numerical(), b.numerical()},
                              {a.residual(), b.residual()}})
     found.ledger = std::max(found.ledger, std::abs(p - q) / scale);
@@ -116,10 +120,12 @@ Difference difference(const Simulation<D>& x, const Simulation<D>& y) {
 }
 
 int failures = 0;
+std::string wanted;  // the beginning of names
 
 template <int D>
 void compare(const std::string& name, const Problem& problem, const MaterialChoice& choice,
              std::int64_t steps) {
+  if (!name.starts_with(wanted)) return;
   std::string text;
   try {
     auto host = make<D>(problem, choice), device = make<D>(problem, choice),
@@ -187,11 +193,13 @@ void compare_all(std::int64_t steps) {
       compare<2>(all[k].first, with(kinds[first ? 0 : 1], k % 2 == 1), all[k].second, steps);
     }
   for (const Kind& kind : kinds)
-    for (const std::size_t k : {std::size_t{0}, std::size_t{4}}) {
+    for (const bool contact : {false, true}) {
       Problem problem = with(kind, true);
       problem.two = true;
-      compare<3>(all[k].first + ", two", problem, all[k].second, steps);
-      compare<2>(all[k].first + ", two", problem, all[k].second, steps);
+      problem.contact = contact;
+      const std::string name = contact ? "jc, contact" : "jc, two";
+      compare<3>(name, problem, all[4].second, steps);
+      compare<2>(name, problem, all[4].second, steps);
     }
 }
 
@@ -318,6 +326,7 @@ int main(int count, char** words) {
                 static_cast<double>(info.bytes) * 1e-9, info.bandwidth * 1e-12,
                 info.fma_per_second * 1e-12);
     if (what == "compare") {
+      if (count > 3) wanted = words[3];
       compare_all(count > 2 ? std::atoll(words[2]) : 1000);
     } else if (what == "time") {
       std::vector<double> millions;
@@ -331,11 +340,14 @@ int main(int count, char** words) {
       if (count > 6) problem.speed = std::atof(words[6]);
       trace<3>(problem, materials()[0].second, std::atoi(words[5]));
     } else if (what == "one" && count > 2) {
+      Problem problem{.cells = 4};
+      problem.two = problem.contact = count > 3;
+      if (count > 3 && std::string(words[3]) == "musl") problem.scheme = mpm::Scheme::musl;
       for (const auto& [name, choice] : materials())
-        if (name == words[2]) compare<3>(name, Problem{.cells = 4}, choice, 20);
+        if (name == words[2]) compare<3>(name, problem, choice, count > 4 ? std::atoll(words[4]) : 20);
     } else {
       std::fprintf(stderr,
-                   "usage: mpm_device_check compare [STEPS] | time [MILLIONS ...] | one NAME | "
+                   "usage: mpm_device_check compare [STEPS [NAME]] | time [MILLIONS ...] | one NAME | "
                    "trace BASIS TRANSFER SCHEME STEPS [SPEED]\n");
       return 2;
     }

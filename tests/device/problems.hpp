@@ -87,7 +87,7 @@ inline std::vector<std::pair<std::string, MaterialChoice>> materials() {
   add("j2, two limits", failing(failing(j2, "plastic_strain", "no_shear", {{"limit", 0.004}}),
                                 "principal_stress", "no_tension", {{"limit", 4e8}}));
   add("elastic, damped", all[0].second).damping = 1e-9;
-  add("j2, eroding", failing(j2, "plastic_strain", "erode", {{"limit", 0.004}}));
+  add("j2, eroding", failing(j2, "plastic_strain", "erode", {{"limit", 0.03}}));
   return all;
 }
 

@@ -15,7 +15,7 @@
 namespace mpm {
 
 /// Raised whenever what follows changes.
-inline constexpr int device_version = 2;
+inline constexpr int device_version = 3;
 
 /// The transfer of a step (step/transfer/transfer.hpp).
 enum class DeviceTransfer { flip, flip_pic, aflip };
@@ -94,6 +94,7 @@ struct DeviceReport {
   std::vector<double> fastest;  // of each body, largest c + |v| [m/s]
   bool negative_volume = false;
   std::int64_t odd = 0;  // particles that somebody should look at: volume, place
+  bool eroded = false;   // some particles take no part from the next step on
   std::size_t patches = 0, node_tiles = 0;
 };
 
@@ -103,15 +104,52 @@ struct DeviceTime {
   double milliseconds = 0.0;
 };
 
+/// When the host is called in the midst of a step, and what has been found of the nodes by then.
+enum class NodeMoment {
+  velocities,             // before the stress is updated (USF)
+  forces,                 // before nodes are advanced (USF)
+  velocities_and_forces,  // likewise (MUSL)
+  released,  // they have been advanced: particles shall be with the velocities without contact's
+             // correction (DeviceStep::takes_of_grid) ...
+  restored,  // ... and move with the others
+  remapped   // MUSL's velocities
+};
+
+/// The stages of a step that the host makes.
+class HostStages {
+ public:
+  virtual ~HostStages() = default;
+  virtual void with_nodes(NodeMoment moment) = 0;
+};
+
+/// A block of nodes of a patch, which the host wants: as many as `nodes` says along each axis, from
+/// the `low`-th on, counted from the tile's first.
+template <int D>
+struct NodeBlockPlace {
+  std::int32_t body;
+  Index<D> tile, low, nodes;
+  std::uint32_t first;  // of its nodes among those of all blocks
+};
+
 /// A run on a device. Errors are std::runtime_error in one sentence.
 template <int D>
 class DeviceRun {
  public:
   virtual ~DeviceRun() = default;
-  /// Make a step.
-  virtual void step(const DeviceStep<D>& step, DeviceReport& report) = 0;
+  /// Make a step, with stages of the host unless `host` is null.
+  virtual void step(const DeviceStep<D>& step, HostStages* host, DeviceReport& report) = 0;
   /// Give the particles' columns back to the host, rows as they were there.
   virtual void give_back(std::vector<DevicePool>& pools) = 0;
+  /// Columns of a pool's particles one behind another, rows as the host has them; until called
+  /// again.
+  virtual const double* read_columns(std::size_t pool, const std::vector<int>& components) = 0;
+  /// The nodes that are read and written from now on.
+  virtual void choose_nodes(const std::vector<NodeBlockPlace<D>>& blocks) = 0;
+  /// The first or second half of their records (layout/node_records.hpp), one behind another, as
+  /// they are on the device, and memory for what is written back; null without nodes.
+  virtual const double* read_nodes(int half) = 0;
+  virtual double* nodes_of_host(int half) = 0;
+  virtual void write_nodes(int half) = 0;
   virtual std::size_t bytes() const = 0;        // of the device's memory
   virtual std::vector<DeviceTime> times() = 0;  // by kernel; makes steps slower once asked
 };

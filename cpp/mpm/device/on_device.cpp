@@ -1,6 +1,7 @@
 #include "mpm/device/on_device.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -71,7 +72,6 @@ std::string not_on_device(const Domain<D>& domain, Scheme scheme) {
   if (!domain.grid.partition.alone()) return "several ranks";
   if (scheme == Scheme::usl) return "run.scheme = \"usl\"";
   if (filters(domain.transfer)) return "run.transfer = \"xpic\"";
-  if (domain.has_contact()) return "contact between bodies";
   if (domain.grid.bonded) return "bonded bodies";
   if (domain.has_rigid() || domain.has_prescribed()) return "rigid bodies";
   if (domain.has_loads()) return "loads on surfaces";
@@ -81,10 +81,43 @@ std::string not_on_device(const Domain<D>& domain, Scheme scheme) {
   if (domain.grid.outflow_box.exist) return "a region that particles leave";
   if (domain.averages_volume()) return "volume averaging";
   if (domain.settles()) return "a run that settles";
-  for (const Material& material : domain.materials)
-    if (material.erodes()) return "particles that erode";
   return {};
 }
+
+namespace {
+
+/// The lists of the host, made for the particles as they are: contact looks at them, and particles
+/// are taken out by them. Their columns stay in the order that they have on the device.
+template <int D>
+void update_host(Domain<D>& domain) {
+  for (Patch<D>& patch : domain.grid.patches) patch.left_cell = true;
+  const double disorder = std::exchange(domain.disorder, std::numeric_limits<double>::infinity());
+  Stages<D>::activate.run(domain);
+  domain.disorder = disorder;
+}
+
+/// What contact looks at: positions and volumes.
+template <int D>
+void read_places(OnDevice<D>& device, Domain<D>& domain) {
+  for (std::size_t m = 0; m < domain.pools.size(); ++m) {
+    ParticlePool<D>& pool = domain.pools[m];
+    std::vector<int> components;
+    for (int a = 0; a < D; ++a) components.push_back(pool.position + a);
+    components.push_back(pool.at.volume);
+    const std::size_t rows = pool.count();
+    const double* const from = device.run->read_columns(m, components);
+    constexpr std::size_t chunk = 4096;
+    domain.threads.for_each((rows + chunk - 1) / chunk, [&](std::size_t part) {
+      const std::size_t first = part * chunk, count = std::min(chunk, rows - first);
+      for (std::size_t k = 0; k < components.size(); ++k)
+        pool.columns.with_component(components[k], [&]<class Number>(Number* to) {
+          std::copy_n(from + k * rows + first, count, to + first);
+        });
+    });
+  }
+}
+
+}  // namespace
 
 template <int D>
 std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
@@ -95,6 +128,8 @@ std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
   device_info();
   auto device = std::make_unique<OnDevice<D>>();
   device->stress_first = scheme == Scheme::usf;
+  // What has eroded in the last step is taken out before the device is given the rest.
+  update_host(domain);
   DeviceProblem<D> problem;
   problem.grid = domain.grid;
   problem.stress_first = device->stress_first;
@@ -117,6 +152,8 @@ std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
   // Only the columns are asked for later.
   for (DevicePool& pool : device->pools) pool.id = pool.body = nullptr;
   domain.sums_of_bodies = true;
+  if (domain.has_contact())
+    device->contact = std::make_unique<HostContact<D>>(*device->run, domain);
   return device;
 }
 
@@ -137,12 +174,19 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
     step.share.push_back(share);
     step.grid_share.push_back(grid_share(domain, own));
   }
-  device.run->step(step, device.report);
+  if (device.erodes)
+    fetch_from_device(device, domain);
+  else if (device.contact && device.ahead)
+    read_places(device, domain);
+  if (device.erodes || device.contact) update_host(domain);
+  if (device.contact) device.contact->begin_step();
+  device.run->step(step, device.contact.get(), device.report);
   device.ahead = true;
+  device.erodes = device.report.eroded;
   const std::size_t bodies = domain.bodies.size();
   domain.sums.resize(bodies);
   domain.face_parts.assign(bodies, {});
-  domain.contact_sums = {};
+  Stages<D>::record_contacts.run(domain);
   domain.rigid_at_walls = Vector3::zero();
   domain.rigid_at_faces = {};
   for (std::size_t b = 0; b < bodies; ++b)

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "mpm/device/device_run.hpp"
+#include "mpm/device/host_contact.hpp"
 #include "mpm/domain.hpp"
 #include "mpm/step/scheme.hpp"
 
@@ -14,9 +14,11 @@ template <int D>
 struct OnDevice {
   std::unique_ptr<DeviceRun<D>> run;
   std::vector<DevicePool> pools;
+  std::unique_ptr<HostContact<D>> contact;  // null without
   DeviceReport report;
   bool stress_first = false;
-  bool ahead = false;  // of the host: steps have been made since it was given the particles
+  bool ahead = false;   // of the host: steps have been made since it was given the particles
+  bool erodes = false;  // the host has to take out particles before the next step
 };
 
 /// The device of this machine. Throws std::runtime_error, in one sentence, if there is none.

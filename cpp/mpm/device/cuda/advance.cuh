@@ -24,7 +24,7 @@ struct ParticleStep {
 };
 
 /// What is done beside eq. (17) while the particles are at hand.
-enum class DeviceAlso { remap, move };
+enum class DeviceAlso { nothing, remap, move };
 
 /// The transfer of a step, with the share of a material.
 template <class Transfer>
@@ -41,9 +41,9 @@ template <DeviceAlso also>
 inline constexpr int advance_threads = also == DeviceAlso::remap ? scatter_threads : move_threads;
 
 template <class Transfer, DeviceAlso also, class B, int D>
-__global__ void __launch_bounds__(advance_threads<also>, also == DeviceAlso::move ? 4
-                                                         : B::nodes == 2          ? 3
-                                                                                  : 2)
+__global__ void __launch_bounds__(advance_threads<also>, also != DeviceAlso::remap ? 4
+                                                         : B::nodes == 2           ? 3
+                                                                                   : 2)
     advance_patches(ListView<D> lists, NodeTileView<D> nodes, PartialView partial,
                     ParticleStep<D> step) {
   using Remap = Scatter<typename Transfer::Gives, gives_momentum, B, D>;
@@ -144,6 +144,33 @@ __global__ void __launch_bounds__(advance_threads<also>, also == DeviceAlso::mov
   if constexpr (also == DeviceAlso::remap)
     Remap::run(shared.remap, basis, step.coordinates, first_cell, lists, of,
                step.minus_per_cell_size, patch, partial);
+}
+
+/// Eq. (16) by itself, where particles move with another velocity than they are advanced with.
+template <class B, int D>
+__global__ void __launch_bounds__(move_threads)
+    move_patches(ListView<D> lists, NodeTileView<D> nodes, ParticleStep<D> step) {
+  __shared__ BlockNodes<B, D> shared;
+  const std::size_t patch = blockIdx.x;
+  const DeviceBody body = step.bodies[lists.body[patch]];
+  const ParticleView<D>& of = step.pools[body.pool];
+  const Index<D> first_cell = step.grid.first_cell(lists.tile[patch]);
+  shared.load(nodes, lists.nodes_beside + patch * Tile<D>::neighbours, true, false);
+  const NodeStrides<D> stride(Block<B, D>::edge,
+                              D == 3 ? Block<B, D>::edge * Block<B, D>::edge : 0);
+  const B basis(body.edge);
+  bool changed = false;
+  const std::uint32_t end = lists.cell_begin[(patch + 1) * Tile<D>::cell_count];
+  for (std::uint32_t g = lists.cell_begin[patch * Tile<D>::cell_count] + threadIdx.x; g < end;
+       g += move_threads) {
+    const std::uint32_t row = lists.order[g];
+    const InCell<D> at(step.coordinates, first_cell, of, row);
+    const DeviceField<B, D> field(shared.from(at.in_tile), stride);
+    const Vec<double, D> v = field.template vector<velocity_at>(weights_at(basis, at.xi));
+    changed |= move_particle(step.grid, step.coordinates, lists, of, patch, g, row, at, v,
+                             step.time_step, step.moves);
+  }
+  if (__syncthreads_or(changed) && threadIdx.x == 0) *step.moves.changed = 1;
 }
 
 /// Eqs. (2), (3), (9): what a patch's particles give to its nodes.

@@ -47,6 +47,18 @@ __global__ void find_around(const std::uint64_t* tiles, std::size_t count,
   to[k] = find(keys, key_count, TileKey<D>::of(TileKey<D>::body(key), tile));
 }
 
+/// The same around blocks of nodes.
+template <int D>
+__global__ void find_around_blocks(const NodeBlockPlace<D>* blocks, std::size_t count,
+                                   const std::uint64_t* keys, std::size_t key_count,
+                                   std::int32_t* to) {
+  const std::size_t k = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
+  if (k >= count * Tile<D>::neighbours) return;
+  const NodeBlockPlace<D>& block = blocks[k / Tile<D>::neighbours];
+  const Index<D> tile = Tile<D>::beside(block.tile, static_cast<int>(k % Tile<D>::neighbours));
+  to[k] = find(keys, key_count, TileKey<D>::of(block.body, tile));
+}
+
 /// The keys of the tiles in which patches have nodes: those around each, or only those behind.
 template <int D>
 __global__ void list_node_tiles(const std::uint64_t* patches, std::size_t count, bool before,
@@ -120,9 +132,13 @@ __global__ void find_targets(GridGeometry<D> grid, CellCoordinates<D> coordinate
   const ParticleView<D>& of = pools[bodies[body].pool];
   const std::size_t cells = Tile<D>::cell_count;
   for (std::uint32_t g = cell_begin[blockIdx.x * cells] + threadIdx.x;
-       g < cell_begin[(blockIdx.x + 1) * cells]; g += blockDim.x)
-    find_target_by_key(grid, coordinates, keys, patches, body, place_of_row(of, order[g]), g,
-                       moves);
+       g < cell_begin[(blockIdx.x + 1) * cells]; g += blockDim.x) {
+    if (of.failed != nullptr && of.failed[order[g]] >= static_cast<double>(FailureAction::erode))
+      moves.target[g] = MoveView::homeless;  // it takes no part any more
+    else
+      find_target_by_key(grid, coordinates, keys, patches, body, place_of_row(of, order[g]), g,
+                         moves);
+  }
 }
 
 /// Of particles that are in no list yet, by the keys of their patches.
@@ -154,7 +170,7 @@ __global__ void place_entries(const std::uint32_t* rows, std::size_t count,
                               const std::uint32_t* target, const std::uint32_t* slot,
                               const std::uint32_t* cell_begin, std::uint32_t* to) {
   const std::size_t g = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
-  if (g < count) to[cell_begin[target[g]] + slot[g]] = rows[g];
+  if (g < count && target[g] != MoveView::homeless) to[cell_begin[target[g]] + slot[g]] = rows[g];
 }
 
 /// The particles of each cell in the order of their numbers: a thread counts those before its own.
@@ -180,6 +196,13 @@ __global__ void order_cells(const std::uint32_t* rows, const std::uint32_t* cell
 }
 
 }  // namespace
+
+template <int D>
+void DeviceLists<D>::find_node_tiles(const NodeBlockPlace<D>* blocks, std::size_t count,
+                                     std::int32_t* to) const {
+  launch(find_around_blocks<D>, blocks_for(count * around), threads, blocks, count,
+         tile_keys_.data(), tiles_, to);
+}
 
 template <int D>
 ListView<D> DeviceLists<D>::view() const {
@@ -329,29 +352,19 @@ void DeviceLists<D>::start(const GridGeometry<D>& grid, const DeviceBody* bodies
 template <int D>
 void DeviceLists<D>::finish_moves(const GridGeometry<D>& grid, const DeviceBody* bodies,
                                   const ParticleView<D>* pools, bool changed,
-                                  std::uint32_t homeless) {
+                                  std::uint32_t homeless, bool eroded) {
   // Entries are those of the patches before until they are placed.
   const std::size_t before = patches_;
   DeviceArray<std::int32_t> body_before;
-  if (homeless > 0) {
+  if (homeless > 0 || eroded) {
     body_before.need(before);
     check_cuda(cudaMemcpy(body_before.data(), patch_body_.data(), before * sizeof(std::int32_t),
                           cudaMemcpyDeviceToDevice),
                "making lists");
   }
   // Once, unless more are homeless than there is room to note.
-  while (homeless > 0) {
-    const std::size_t lost = std::min<std::size_t>(homeless, homeless_keys_.size());
-    spare_keys_.need(patches_ + lost);
-    check_cuda(cudaMemsetAsync(counters_.data() + 3, 0, sizeof(std::uint32_t)), "making lists");
-    launch(keep_patches, blocks_for(patches_), threads, patch_keys_.data(), patches_,
-           counts_.data(), static_cast<int>(cells), spare_keys_.data(), counters_.data() + 3);
-    std::uint32_t kept = 0;
-    counters_.give(&kept, 1, 3);
-    check_cuda(cudaMemcpy(spare_keys_.data() + kept, homeless_keys_.data(),
-                          lost * sizeof(std::uint64_t), cudaMemcpyDeviceToDevice),
-               "making lists");
-    make_tables(kept + lost, bodies_);
+  for (bool drop = eroded; homeless > 0 || drop; drop = false) {
+    if (homeless > 0) add_patches(std::min<std::size_t>(homeless, homeless_keys_.size()));
     const MoveView moves = begin_moves(target_);
     launch(find_targets<D>, static_cast<unsigned>(before), 128, grid, grid.coordinates(),
            patch_keys_.data(), patches_, bodies, pools, order_.data(), cell_begin_.data(),
@@ -361,6 +374,25 @@ void DeviceLists<D>::finish_moves(const GridGeometry<D>& grid, const DeviceBody*
     changed = true;
   }
   if (changed) place(order_.data(), bodies, pools);
+  if (!eroded) return;
+  std::uint32_t left = 0;
+  cell_begin_.give(&left, 1, patches_ * cells);
+  particles_ = left;
+}
+
+/// Patches for particles that have found none, and none any more for those that have none left.
+template <int D>
+void DeviceLists<D>::add_patches(std::size_t lost) {
+  spare_keys_.need(patches_ + lost);
+  check_cuda(cudaMemsetAsync(counters_.data() + 3, 0, sizeof(std::uint32_t)), "making lists");
+  launch(keep_patches, blocks_for(patches_), threads, patch_keys_.data(), patches_, counts_.data(),
+         static_cast<int>(cells), spare_keys_.data(), counters_.data() + 3);
+  std::uint32_t kept = 0;
+  counters_.give(&kept, 1, 3);
+  check_cuda(cudaMemcpy(spare_keys_.data() + kept, homeless_keys_.data(),
+                        lost * sizeof(std::uint64_t), cudaMemcpyDeviceToDevice),
+             "making lists");
+  make_tables(kept + lost, bodies_);
 }
 
 template class DeviceLists<2>;

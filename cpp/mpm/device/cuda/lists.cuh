@@ -23,11 +23,15 @@ class DeviceLists {
   /// Get ready for a step's moves. `room`: eight bytes for each particle, until they are finished.
   MoveView begin_moves(void* room);
   /// After they have been made; the lists anew if that is needed. `changed`, `homeless`: what the
-  /// moves have counted.
+  /// moves have counted; `eroded`: some particles take no part any more.
   void finish_moves(const GridGeometry<D>& grid, const DeviceBody* bodies,
-                    const ParticleView<D>* pools, bool changed, std::uint32_t homeless);
+                    const ParticleView<D>* pools, bool changed, std::uint32_t homeless,
+                    bool eroded);
   /// What the moves have counted: changed, homeless, to be read by the host when they are done.
   const std::uint32_t* counters() const { return counters_.data(); }
+
+  /// The numbers of the tiles of nodes around each block, -1 where there is none.
+  void find_node_tiles(const NodeBlockPlace<D>* blocks, std::size_t count, std::int32_t* to) const;
 
   ListView<D> view() const;
   NodeTileView<D> nodes(double* records) const;
@@ -44,6 +48,7 @@ class DeviceLists {
 
  private:
   void make_tables(std::size_t given, std::size_t body_count);
+  void add_patches(std::size_t lost);
   /// How many keys are different, and these in their order; `keys` are lost.
   std::size_t sort_unique(DeviceArray<std::uint64_t>& keys, std::size_t count,
                           DeviceArray<std::uint64_t>& unique);

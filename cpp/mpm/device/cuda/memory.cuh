@@ -101,13 +101,17 @@ class PinnedArray {
   void allocate(std::size_t n) {
     if (data_ != nullptr) cudaFreeHost(data_);
     data_ = nullptr;
+    size_ = 0;
     check_cuda(cudaMallocHost(&data_, n * sizeof(T)), "allocating memory of the host");
+    size_ = n;
   }
+  std::size_t size() const { return size_; }
   T* data() { return data_; }
   T& operator[](std::size_t k) { return data_[k]; }
 
  private:
   T* data_ = nullptr;
+  std::size_t size_ = 0;
 };
 
 }  // namespace mpm

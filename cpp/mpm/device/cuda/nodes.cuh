@@ -1,106 +1,9 @@
 #pragma once
 // The stages of the nodes: a block of threads a tile of nodes, a thread a node. Sums over the
 // patches in the order of the tiles, eq. (3), walls, eq. (8).
-#include "mpm/device/cuda/views.cuh"
-#include "mpm/walls/face_impulses.hpp"
+#include "mpm/device/cuda/node_sums.cuh"
 
 namespace mpm {
-
-/// What a step is for nodes.
-template <int D>
-struct NodeStep {
-  GridGeometry<D> grid;
-  double time_step;
-  Vec<double, D> gravity;
-  bool has_gravity, ghosts;
-  bool takes_of_grid;        // do particles take the velocity of the grid?
-  bool other_at_fixed;       // all of it at fixed walls? (step/fixed_walls.hpp)
-  const double* grid_share;  // of each body
-  double* sums;              // [DeviceSum][node tile]
-  std::size_t tiles;
-};
-
-/// A node beyond a wall whose image its own patches hold: one cell before the wall.
-template <int D>
-struct Image {
-  bool exists = false;
-  WallImage<D> image{};
-
-  __device__ Image(const GridGeometry<D>& grid, bool ghosts, const Index<D>& node) {
-    if (!ghosts) return;
-    const auto found = grid.walls.image(node);
-    if (!found) return;
-    exists = true;
-    for (int a = 0; a < D; ++a) {
-      const int way = found->node[a] - node[a];
-      exists = exists && way <= 2 && way >= -2;
-    }
-    image = *found;
-  }
-};
-
-/// By number, as nvcc makes wrong code of comparisons of arrays.
-template <int D>
-__device__ bool same_place(const Index<D>& x, const Index<D>& y) {
-  bool same = true;
-  for (int a = 0; a < D; ++a) same = same && x[a] == y[a];
-  return same;
-}
-
-template <int D>
-__device__ Vec<double, 3> in_three(const Vec<double, D>& v) {
-  return {v[0], v[1], D == 3 ? v[D - 1] : 0.0};
-}
-__device__ inline Vec<double, 3> cross_of(const Vec<double, 3>& x, const Vec<double, 3>& y) {
-  return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
-}
-
-/// What a thread adds to the sums of its node tile.
-struct NodeSums {
-  double of[DeviceSum::of_nodes];
-
-  __device__ NodeSums() {
-    for (double& x : of) x = 0.0;
-  }
-  __device__ void add_vector(int at, const Vec<double, 3>& v) {
-    for (int a = 0; a < 3; ++a) of[at + a] += v[a];
-  }
-  /// An impulse at a place, by the faces of_component(axis).
-  template <int D, class F>
-  __device__ void add_reaction(int at, const Vec<double, D>& place, const Vec<double, D>& impulse,
-                               F&& of_component) {
-    add_vector(at, cross_of(in_three(place), in_three(impulse)));
-    for (int a = 0; a < D; ++a)
-      if (impulse[a] != 0.0) add_to_faces(of_component(a), a, impulse[a]);
-  }
-  /// As FaceImpulses::add.
-  __device__ void add_to_faces(unsigned faces, int component, double impulse) {
-    const int count = __popc(faces);
-    for (int face = 0; face < 6; ++face)
-      if (faces >> face & 1u) of[DeviceSum::faces + 3 * face + component] += impulse / count;
-  }
-  /// x_i x R s - x_g x s and R s - s of a node beyond walls (walls/reactions.hpp).
-  template <int D>
-  __device__ void add_folding(int at, const GridGeometry<D>& grid, const AnIndex<D>& node,
-                              const WallImage<D>& image, const Vec<double, D>& s) {
-    Vec<double, D> of_image;
-    for (int a = 0; a < D; ++a) of_image[a] = image.component(s[a], a);
-    add_vector(at, cross_of(in_three(grid.position_of(image.node)), in_three(of_image)) -
-                       cross_of(in_three(grid.position_of(node)), in_three(s)));
-    for (int a = 0; a < D; ++a)
-      if (of_image[a] != s[a])
-        add_to_faces(grid.walls.faces_turning(node, a), a, of_image[a] - s[a]);
-  }
-  /// By all threads of the block; the first `count` of them.
-  __device__ void write(double* sums, std::size_t tiles, std::size_t tile, int count) {
-    __shared__ double scratch[2];
-    for (int k = 0; k < DeviceSum::of_nodes; ++k)
-      if (k < count) {
-        const double all = block_sum<64>(of[k], scratch);
-        if (threadIdx.x == 0) sums[k * tiles + tile] += all;
-      }
-  }
-};
 
 template <int D>
 __device__ double grid_share_at(const NodeStep<D>& step, std::int32_t body,
@@ -109,9 +12,49 @@ __device__ double grid_share_at(const NodeStep<D>& step, std::int32_t body,
   return step.grid_share[body];
 }
 
+/// Eq. (8) of a node, of which the force has been summed: v and f become those after it. What walls
+/// and gravity do goes into the sums.
+template <int D>
+__device__ void advance_node(const NodeStep<D>& step, const AnIndex<D>& node, const Image<D>& ghost,
+                             unsigned held_axes, double m, Vec<double, D>& f, Vec<double, D>& v,
+                             double (&dv)[3], NodeSums& sums) {
+  const Vec<double, D> place = step.grid.position_of(node);
+  if (step.has_gravity) {
+    if (ghost.exists)
+      sums.add_vector(DeviceSum::mass_moment,
+                      m * in_three<D>(place - step.grid.position_of(ghost.image.node)));
+    else
+      sums.add_vector(DeviceSum::mass_moment, m * in_three(place));
+  }
+  if (held_axes != 0) {
+    if (!ghost.exists) {
+      Vec<double, D> s = Vec<double, D>::zero();
+      for (int a = 0; a < D; ++a)
+        if (held_axes >> a & 1u) s[a] = -step.time_step * (f[a] + m * step.gravity[a]);
+      sums.add_reaction(DeviceSum::walls, place, s,
+                        [&](int a) { return step.grid.walls.faces_holding(node, a); });
+    }
+    for (int a = 0; a < D; ++a)
+      if (held_axes >> a & 1u) f[a] = -m * step.gravity[a];
+  }
+  const double own = ghost.exists ? 0.0 : 1.0, impulse = m > 0.0 ? step.time_step / m : 0.0;
+  for (int a = 0; a < D; ++a) {
+    const double weight = m * step.gravity[a];
+    dv[a] = impulse * (f[a] + weight);
+    sums.of[DeviceSum::work] += own * f[a] * v[a];
+    sums.of[DeviceSum::gravity_first] += own * weight * v[a];
+    sums.of[DeviceSum::gravity_second] += own * weight * dv[a];
+    v[a] += dv[a];
+  }
+}
+
+/// What is done with the forces of nodes when they have been summed: contact may change them before
+/// nodes are advanced.
+enum class Forces { none, summed, advanced };
+
 /// What is done with the nodes of a tile at once: mass and momentum to velocities; forces to
 /// increments, advanced; MUSL's momenta to velocities.
-template <class B, int D, bool momentum, bool forces, bool remapped>
+template <class B, int D, bool momentum, Forces with_forces, bool remapped>
 __global__ void __launch_bounds__(64)
     sum_nodes(NodeTileView<D> nodes, PartialView partial, NodeStep<D> step) {
   const std::size_t tile = blockIdx.x;
@@ -122,6 +65,7 @@ __global__ void __launch_bounds__(64)
   const bool near_wall = step.grid.walls.exist;
   const Image<D> ghost(step.grid, step.ghosts, node);
   constexpr int half = half_record;
+  constexpr bool forces = with_forces != Forces::none;
 
   // m, p; f: sums over the patches that hold the node.
   double m = 0.0;
@@ -236,39 +180,20 @@ __global__ void __launch_bounds__(64)
     v[1] = q.z;
     if constexpr (D == 3) v[D - 1] = q.w;
   }
-  if constexpr (forces) {
+  if constexpr (forces)
     if (ghost.exists) {
       sums.add_folding(DeviceSum::walls, step.grid, node, ghost.image, step.time_step * given);
       f = Vec<double, D>::zero();
-      const Vec<double, D> to_image = place - step.grid.position_of(ghost.image.node);
-      if (step.has_gravity) sums.add_vector(DeviceSum::mass_moment, m * in_three(to_image));
-    } else if (step.has_gravity) {
-      sums.add_vector(DeviceSum::mass_moment, m * in_three(place));
     }
-    if (held_axes != 0) {
-      if (!ghost.exists) {
-        Vec<double, D> s = Vec<double, D>::zero();
-        for (int a = 0; a < D; ++a)
-          if (held_axes >> a & 1u) s[a] = -step.time_step * (f[a] + m * step.gravity[a]);
-        sums.add_reaction(DeviceSum::walls, place, s,
-                          [&](int a) { return step.grid.walls.faces_holding(node, a); });
-      }
-      for (int a = 0; a < D; ++a)
-        if (held_axes >> a & 1u) f[a] = -m * step.gravity[a];
-    }
-    const double own = ghost.exists ? 0.0 : 1.0, impulse = m > 0.0 ? step.time_step / m : 0.0;
+  if constexpr (with_forces == Forces::advanced) {
     double dv[3] = {0.0, 0.0, 0.0};
-    for (int a = 0; a < D; ++a) {
-      const double weight = m * step.gravity[a];
-      dv[a] = impulse * (f[a] + weight);
-      sums.of[DeviceSum::work] += own * f[a] * v[a];
-      sums.of[DeviceSum::gravity_first] += own * weight * v[a];
-      sums.of[DeviceSum::gravity_second] += own * weight * dv[a];
-      v[a] += dv[a];
-    }
+    advance_node(step, node, ghost, held_axes, m, f, v, dv, sums);
     of_node[1] = {dv[0], dv[1], dv[2], 0.0};
   }
-  if constexpr (momentum || forces) of_node[0] = {m, v[0], v[1], D == 3 ? v[D - 1] : 0.0};
+  if constexpr (with_forces == Forces::summed)
+    of_node[1] = {f[0], f[1], D == 3 ? f[D - 1] : 0.0, 0.0};
+  if constexpr (momentum || with_forces == Forces::advanced)
+    of_node[0] = {m, v[0], v[1], D == 3 ? v[D - 1] : 0.0};
   if constexpr (remapped) {
     const double inverse = m > 0.0 ? 1.0 / m : 0.0;
     for (int a = 0; a < D; ++a) p[a] = held_axes >> a & 1u ? 0.0 : p[a] * inverse;
@@ -277,6 +202,34 @@ __global__ void __launch_bounds__(64)
   if constexpr (momentum || forces)
     sums.write(step.sums, step.tiles, tile,
                near_wall ? int{DeviceSum::of_nodes} : int{DeviceSum::walls});
+}
+
+/// Eq. (8) by itself, where contact has changed velocities and forces.
+template <int D>
+__global__ void __launch_bounds__(64) advance_nodes(NodeTileView<D> nodes, NodeStep<D> step) {
+  const std::size_t tile = blockIdx.x;
+  const int i = threadIdx.x;
+  Index<D> node = Tile<D>::cell_index(i);
+  const Index<D> corner = step.grid.first_cell(nodes.tile[tile]);
+  for (int a = 0; a < D; ++a) node[a] += corner[a];
+  const bool near_wall = step.grid.walls.exist;
+  const Image<D> ghost(step.grid, step.ghosts, node);
+  double* const numbers = nodes.records + record * (tile * NodeTileView<D>::nodes + i);
+  Vec<double, D> v, f;
+  for (int a = 0; a < D; ++a) {
+    v[a] = numbers[velocity_at + a];
+    f[a] = numbers[force_at + a];
+  }
+  double dv[3] = {0.0, 0.0, 0.0};
+  NodeSums sums;
+  advance_node(step, node, ghost, near_wall ? step.grid.walls.constrained_axes(node) : 0u,
+               numbers[mass_at], f, v, dv, sums);
+  for (int a = 0; a < D; ++a) {
+    numbers[velocity_at + a] = v[a];
+    numbers[increment_at + a] = dv[a];
+  }
+  sums.write(step.sums, step.tiles, tile,
+             near_wall ? int{DeviceSum::of_nodes} : int{DeviceSum::walls});
 }
 
 /// Nodes beyond walls take what their images have, and what that gives to the ledger: after the

@@ -88,6 +88,7 @@ ParticleView<D> view_of(PoolOnDevice<D>& pool, double cell_size) {
     view.affine[k] = pool.affine < 0 ? nullptr : pool.column(pool.affine + k);
   view.q = pool.column(pool.at.force_pressure >= 0 ? pool.at.force_pressure
                                                    : pool.at.viscosity_pressure);
+  view.failed = pool.column(pool.at.failed);
   view.id = pool.id.data();
   view.cell_size = cell_size;
   view.share = pool.share;

@@ -1,90 +1,8 @@
-// A run on a device: its memory, and a step as a list of kernels (make_step).
-#include <limits>
-
-#include "mpm/device/cuda/advance.cuh"
-#include "mpm/device/cuda/lists.cuh"
-#include "mpm/device/cuda/nodes.cuh"
-#include "mpm/device/cuda/pool.cuh"
-#include "mpm/device/cuda/stress_launch.cuh"
-#include "mpm/device/cuda/timing.cuh"
+#include "mpm/device/cuda/run.cuh"
 
 namespace mpm {
-namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr int deforming_models = 11;       // of StrengthModels, before the rigid one
 constexpr std::int64_t look_at_order = 4;  // steps from one count of jumps to the next
-constexpr std::size_t of_particles = DeviceSum::count - DeviceSum::of_nodes;
-
-template <int D>
-class RunOnDevice : public DeviceRun<D> {
- public:
-  explicit RunOnDevice(const DeviceProblem<D>& problem)
-      : grid_(problem.grid),
-        first_(problem.stress_first),
-        disorder_(problem.disorder),
-        lists_(problem.grid.reach().before > 0) {
-    for (const DevicePool& pool : problem.pools) pools_.push_back(take_pool<D>(pool));
-    body_count_ = problem.bodies.size();
-    bodies_.take(problem.bodies.data(), body_count_);
-    host_bodies_ = problem.bodies;
-    views_.allocate(pools_.size());
-    for (PoolOnDevice<D>& pool : pools_)
-      pool.share = pool.grid_share = none;  // until the first step
-    send_views();
-    start(problem);
-    report_sums_.allocate(body_count_ * DeviceSum::count);
-    report_fastest_.allocate(body_count_);
-    sums_.allocate(body_count_ * DeviceSum::count);
-    fastest_.allocate(body_count_);
-    grid_shares_.allocate(body_count_);
-    flags_.allocate(2);
-    host_counters_.allocate(8);
-    make_room();
-  }
-
-  void step(const DeviceStep<D>& step, DeviceReport& report) override;
-  void give_back(std::vector<DevicePool>& pools) override;
-  std::size_t bytes() const override { return device_bytes(); }
-  std::vector<DeviceTime> times() override { return timer_.take(); }
-
- private:
-  void start(const DeviceProblem<D>& problem);
-  void send_views();
-  PartialView partial() {
-    return {partial_first_.data(),
-            partial_second_.size() > 0 ? partial_second_.data() : partial_first_.data()};
-  }
-  void make_room();
-  void sort_columns();
-  ParticleStep<D> particle_step(const DeviceStep<D>& step, const MoveView& moves);
-  template <class B>
-  void make_step(const DeviceStep<D>& step);
-  template <class B, class F>
-  void with_transfer(const DeviceStep<D>& step, F&& f);
-  template <class B, class Gives, unsigned what>
-  void map(const ParticleStep<D>& particles);
-  void stress(const DeviceStep<D>& step, const ParticleStep<D>& particles);
-  void read(DeviceReport& report);
-
-  GridGeometry<D> grid_;
-  bool first_;
-  double disorder_;
-  DeviceLists<D> lists_;
-  std::vector<PoolOnDevice<D>> pools_;
-  std::vector<DeviceBody> host_bodies_;
-  std::size_t body_count_ = 0;
-  std::int64_t steps_ = 0;
-  DeviceArray<DeviceBody> bodies_;
-  DeviceArray<ParticleView<D>> views_;
-  DeviceArray<HalfRecord> partial_first_, partial_second_;
-  DeviceArray<double> records_, node_sums_, patch_sums_, patch_fastest_, sums_, fastest_,
-      grid_shares_, spare_column_;
-  DeviceArray<std::uint32_t> flags_;  // negative volume; odd
-  PinnedArray<double> report_sums_, report_fastest_;
-  PinnedArray<std::uint32_t> host_counters_;
-  KernelTimer timer_;
-};
 
 template <int D>
 void RunOnDevice<D>::start(const DeviceProblem<D>& problem) {
@@ -152,150 +70,19 @@ void RunOnDevice<D>::sort_columns() {
     std::vector<std::uint32_t> first(body_count_ + 1);
     entries.give(first.data(), first.size());
     for (std::size_t p = 0; p < pools_.size(); ++p) {
-      // Rows of particles that have been taken out would be lost.
-      if (pools_[p].in_lists < pools_[p].rows) continue;
       std::vector<EntryRange> bodies;
+      std::size_t listed = 0;
       for (std::size_t b = 0; b < body_count_; ++b)
-        if (host_bodies_[b].pool == static_cast<int>(p))
+        if (host_bodies_[b].pool == static_cast<int>(p)) {
           bodies.push_back({first[b], first[b + 1] - first[b]});
+          listed += bodies.back().count;
+        }
+      // Rows of particles that have been taken out would be lost.
+      if (listed < pools_[p].rows) continue;
       sort_pool(pools_[p], bodies, lists_.order(), lists_.spare(), spare_column_);
     }
   });
   send_views();
-}
-
-template <int D>
-ParticleStep<D> RunOnDevice<D>::particle_step(const DeviceStep<D>& step, const MoveView& moves) {
-  const double moment = grid_.affine_moment();
-  return {grid_,           grid_.coordinates(),
-          bodies_.data(),  views_.data(),
-          step.time_step,  -1.0 / grid_.cell_size,
-          moment,          moment > 0.0 ? grid_.cell_size / moment : 0.0,
-          moves,           patch_sums_.data(),
-          lists_.patches()};
-}
-
-template <int D>
-template <class B, class F>
-void RunOnDevice<D>::with_transfer(const DeviceStep<D>& step, F&& f) {
-  switch (step.transfer) {
-    case DeviceTransfer::flip:
-      return f.template operator()<Flip>();
-    case DeviceTransfer::flip_pic:
-      return f.template operator()<FlipPic>();
-    case DeviceTransfer::aflip:
-      if constexpr (B::second_moment > 0.0) return f.template operator()<Aflip>();
-      break;
-  }
-  throw std::runtime_error("an affine transfer needs the quadratic B-spline");
-}
-
-template <int D>
-template <class B, class Gives, unsigned what>
-void RunOnDevice<D>::map(const ParticleStep<D>& particles) {
-  launch(map_patches<Gives, what, B, D>, static_cast<unsigned>(lists_.patches()), scatter_threads,
-         lists_.view(), partial(), particles);
-}
-
-template <int D>
-void RunOnDevice<D>::stress(const DeviceStep<D>& step, const ParticleStep<D>& particles) {
-  for (std::size_t p = 0; p < pools_.size(); ++p) {
-    PoolOnDevice<D>& pool = pools_[p];
-    if (pool.in_lists == 0) continue;
-    const double duration = first_ ? step.strain_time : step.time_step;
-    const Material& material = *pool.material;
-    StressStep<D> of{particles,
-                     first_,
-                     static_cast<int>(p),
-                     mpm::view_of(material),
-                     block_columns(pool),
-                     {duration > 0.0 ? duration : step.time_step, step.time_after, grid_.cell_size,
-                      material.viscosity, first_},
-                     duration / grid_.cell_size,
-                     first_ && duration > 0.0 ? step.time_step / duration : 1.0,
-                     patch_fastest_.data(),
-                     flags_.data()};
-    const StressLaunch<D> launch{&material, lists_.view(), lists_.nodes(records_.data()), of,
-                                 lists_.patches()};
-    [&]<int... k>(std::integer_sequence<int, k...>) {
-      ((material.strength.index() == k ? launch_stress<D, k>(launch) : void()), ...);
-    }(std::make_integer_sequence<int, deforming_models>{});
-  }
-}
-
-template <int D>
-template <class B>
-void RunOnDevice<D>::make_step(const DeviceStep<D>& step) {
-  const auto patches = static_cast<unsigned>(lists_.patches());
-  const auto tiles = static_cast<unsigned>(lists_.node_tiles());
-  const NodeTileView<D> nodes = lists_.nodes(records_.data());
-  const PartialView partial = this->partial();
-  const MoveView moves = lists_.begin_moves(spare_column_.data());
-  const ParticleStep<D> particles = particle_step(step, moves);
-  const bool affine = step.transfer == DeviceTransfer::aflip;
-  const NodeStep<D> of_nodes{grid_,
-                             step.time_step,
-                             step.gravity,
-                             dot(step.gravity, step.gravity) > 0.0,
-                             grid_.has_ghosts(),
-                             step.takes_of_grid,
-                             affine,
-                             grid_shares_.data(),
-                             node_sums_.data(),
-                             lists_.node_tiles()};
-  const auto with_gives = [&](auto&& f) {
-    if constexpr (B::second_moment > 0.0)
-      if (affine) return f.template operator()<Apic>();
-    f.template operator()<Flip>();
-  };
-  const bool ghosts = grid_.has_ghosts();
-  constexpr unsigned threads = NodeTileView<D>::nodes;
-  if (first_) {
-    timer_.time("map momentum", [&] {
-      with_gives([&]<class Gives>() { map<B, Gives, gives_mass | gives_momentum>(particles); });
-    });
-    timer_.time("nodes", [&] {
-      launch(sum_nodes<B, D, true, false, false>, tiles, threads, nodes, partial, of_nodes);
-      if (ghosts)
-        launch(reflect_nodes<D, true, false, false, true>, tiles, threads, nodes, of_nodes);
-    });
-    timer_.time("stress", [&] { stress(step, particles); });
-    timer_.time("map forces", [&] { map<B, Flip, gives_forces>(particles); });
-    timer_.time("nodes", [&] {
-      launch(sum_nodes<B, D, false, true, false>, tiles, threads, nodes, partial, of_nodes);
-      if (ghosts)
-        launch(reflect_nodes<D, true, true, true, false>, tiles, threads, nodes, of_nodes);
-    });
-    timer_.time("advance and move", [&] {
-      with_transfer<B>(step, [&]<class Transfer>() {
-        launch(advance_patches<Transfer, DeviceAlso::move, B, D>, patches, move_threads,
-               lists_.view(), nodes, partial, particles);
-      });
-    });
-  } else {
-    timer_.time("map momentum and forces", [&] {
-      with_gives([&]<class Gives>() {
-        map<B, Gives, gives_mass | gives_momentum | gives_forces>(particles);
-      });
-    });
-    timer_.time("nodes", [&] {
-      launch(sum_nodes<B, D, true, true, false>, tiles, threads, nodes, partial, of_nodes);
-      if (ghosts) launch(reflect_nodes<D, true, true, true, true>, tiles, threads, nodes, of_nodes);
-    });
-    timer_.time("advance and remap", [&] {
-      with_transfer<B>(step, [&]<class Transfer>() {
-        launch(advance_patches<Transfer, DeviceAlso::remap, B, D>, patches, scatter_threads,
-               lists_.view(), nodes, partial, particles);
-      });
-    });
-    timer_.time("nodes", [&] {
-      launch(sum_nodes<B, D, false, false, true>, tiles, threads, nodes, partial, of_nodes);
-      if (ghosts)
-        launch(reflect_nodes<D, false, true, false, false>, tiles, threads, nodes, of_nodes);
-    });
-    timer_.time("stress and move", [&] { stress(step, particles); });
-  }
-  check_cuda(cudaGetLastError(), "starting kernels");
 }
 
 template <int D>
@@ -313,16 +100,17 @@ void RunOnDevice<D>::read(DeviceReport& report) {
   get(report_sums_.data(), sums_.data(), body_count_ * DeviceSum::count);
   get(report_fastest_.data(), fastest_.data(), body_count_);
   get(host_counters_.data(), lists_.counters(), 3);
-  get(host_counters_.data() + 4, flags_.data(), 2);
+  get(host_counters_.data() + 4, flags_.data(), flag_count);
   check_cuda(cudaDeviceSynchronize(), "making a step");
   report.sums.assign(report_sums_.data(), report_sums_.data() + body_count_ * DeviceSum::count);
   report.fastest.assign(report_fastest_.data(), report_fastest_.data() + body_count_);
   report.negative_volume = host_counters_[4] != 0;
   report.odd = host_counters_[5];
+  report.eroded = host_counters_[6] != 0;
 }
 
 template <int D>
-void RunOnDevice<D>::step(const DeviceStep<D>& step, DeviceReport& report) {
+void RunOnDevice<D>::step(const DeviceStep<D>& step, HostStages* host, DeviceReport& report) {
   bool other_shares = false;
   for (std::size_t p = 0; p < pools_.size(); ++p) {
     PoolOnDevice<D>& pool = pools_[p];
@@ -344,8 +132,9 @@ void RunOnDevice<D>::step(const DeviceStep<D>& step, DeviceReport& report) {
   check_cuda(
       cudaMemsetAsync(patch_sums_.data(), 0, lists_.patches() * of_particles * sizeof(double)),
       "making a step");
-  check_cuda(cudaMemsetAsync(flags_.data(), 0, 2 * sizeof(std::uint32_t)), "making a step");
-  Bases::with(grid_.basis, 0.5, [&]<class B>(const B&) { make_step<B>(step); });
+  check_cuda(cudaMemsetAsync(flags_.data(), 0, flag_count * sizeof(std::uint32_t)),
+             "making a step");
+  make_step(step, host);
   ++steps_;
   if (step.look)
     for (PoolOnDevice<D>& pool : pools_)
@@ -356,7 +145,7 @@ void RunOnDevice<D>::step(const DeviceStep<D>& step, DeviceReport& report) {
   report.node_tiles = lists_.node_tiles();
   timer_.time("lists", [&] {
     lists_.finish_moves(grid_, bodies_.data(), views_.data(), host_counters_[0] != 0,
-                        host_counters_[1]);
+                        host_counters_[1], report.eroded);
   });
   make_room();
   if (steps_ % look_at_order != 0) return;
@@ -375,7 +164,23 @@ void RunOnDevice<D>::give_back(std::vector<DevicePool>& pools) {
     mpm::give_back(pools_[p], *pools[p].columns, spare_column_);
 }
 
-}  // namespace
+template <int D>
+const double* RunOnDevice<D>::read_columns(std::size_t pool, const std::vector<int>& components) {
+  PoolOnDevice<D>& of = pools_[pool];
+  if (host_columns_.size() < of.rows * components.size())
+    host_columns_.allocate(of.rows * components.size());
+  double* to = host_columns_.data();
+  for (const int c : components) {
+    launch(give_rows<double>, blocks_of(of.rows), 256, of.column(c), of.home.data(), of.rows,
+           spare_column_.data());
+    check_cuda(
+        cudaMemcpyAsync(to, spare_column_.data(), of.rows * sizeof(double), cudaMemcpyDeviceToHost),
+        "giving particles to the host");
+    to += of.rows;
+  }
+  check_cuda(cudaDeviceSynchronize(), "giving particles to the host");
+  return host_columns_.data();
+}
 
 DeviceRun<2>* make_run(const DeviceProblem<2>& problem) { return new RunOnDevice<2>(problem); }
 DeviceRun<3>* make_run(const DeviceProblem<3>& problem) { return new RunOnDevice<3>(problem); }

@@ -15,10 +15,10 @@ struct StressStep {
   MaterialView material;
   BlockColumns<D> columns;
   StressSettings settings;
-  double gradient_scale;  // time over which velocities strain / cell size
-  double power_scale;     // time step / that time
-  double* fastest;        // of each patch
-  std::uint32_t* negative;
+  double gradient_scale;             // time over which velocities strain / cell size
+  double power_scale;                // time step / that time
+  double* fastest;                   // of each patch
+  std::uint32_t *negative, *eroded;  // flags
 };
 
 inline constexpr int stress_threads = 128;
@@ -125,6 +125,8 @@ __global__ void __launch_bounds__(stress_threads, MPM_STRESS_BLOCKS)
   const double fastest = block_max<stress_threads>(sums.fastest, scratch);
   if (threadIdx.x == 0) step.fastest[patch] = fastest;
   if (__syncthreads_or(sums.negative_volume) && threadIdx.x == 0) *step.negative = 1;
+  if constexpr (!std::is_same_v<Failures, NoFailures>)
+    if (__syncthreads_or(sums.eroded) && threadIdx.x == 0) *step.eroded = 1;
   if (__syncthreads_or(changed) && threadIdx.x == 0) *step.all.moves.changed = 1;
 }
 

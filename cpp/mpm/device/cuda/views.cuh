@@ -20,6 +20,7 @@ struct ParticleView {
   double* affine[D * D];         // null without an affine transfer
   const double* q;               // pressure that nodal forces add to the stress, or null
   const double* damping[parts];  // stress of the material's damping, or null
+  const double* failed;          // FailureAction of each, or null
   const std::uint32_t* id;
   double share, grid_share;  // of the step (DeviceStep)
   double cell_size;          // [m]
