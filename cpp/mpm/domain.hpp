@@ -57,8 +57,8 @@ struct Domain {
   double step_before = 0.0;  // the one before [s]; 0 in the first
   std::int64_t step = 0;     // steps made
 
-  std::vector<PatchSums<D>> sums;  // one per patch; per body, where a device makes the steps
-  bool sums_of_bodies = false;
+  std::vector<PatchSums<D>> sums;  // one per patch
+  bool sums_of_bodies = false;     // a device's: those of a body with its first patch
   // What walls have done to rigid bodies as a whole in the step, alike on all ranks [N m s; N s].
   Vector3 rigid_at_walls = Vector3::zero();
   FaceImpulses<D> rigid_at_faces;
@@ -123,12 +123,6 @@ struct Domain {
     }
   }
 };
-
-/// The body that the sums with a number are of.
-template <int D>
-std::size_t body_of_sums(const Domain<D>& domain, std::size_t k) {
-  return domain.sums_of_bodies ? k : static_cast<std::size_t>(domain.grid.patches[k].body);
-}
 
 /// List the bodies that do not deform, and number the groups in the order of their first bodies;
 /// kinds and groups stay as they are from here on.

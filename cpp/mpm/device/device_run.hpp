@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mpm/device/device_sums.hpp"
 #include "mpm/fields/columns.hpp"
 #include "mpm/grid/geometry.hpp"
 #include "mpm/materials/material.hpp"
@@ -29,11 +30,6 @@ struct DevicePool {
   const std::uint32_t* id = nullptr;    // of each row, its number in its body
   const std::uint32_t* body = nullptr;  // of each row, the number of its body; `no_body`: of none
   static constexpr std::uint32_t no_body = ~std::uint32_t{0};
-};
-
-struct DeviceBody {
-  int pool = 0;
-  double edge = 0.0;  // of its particles at the start [cells]
 };
 
 /// A run, as it begins on a device.
@@ -60,34 +56,6 @@ struct DeviceStep {
   std::vector<double> share, grid_share;
 };
 
-/// Sums over the particles or nodes of a body in a step, by place in DeviceReport::sums.
-struct DeviceSum {
-  enum Place {
-    // Of nodes.
-    work,
-    gravity_first,
-    gravity_second,
-    mass_moment,              // 3
-    walls = mass_moment + 3,  // 3
-    mapped = walls + 3,       // 3
-    faces = mapped + 3,       // 2 x 3 x 3: [axis][side][component]
-    of_nodes = faces + 18,
-    // Of particles.
-    kinetic = of_nodes,
-    second_order,
-    transferred,
-    momentum,  // 3
-    internal = momentum + 3,
-    plastic,
-    viscous,
-    damped,
-    bounded,
-    energy_floor,
-    force_power,
-    count
-  };
-};
-
 /// What a step has done.
 struct DeviceReport {
   std::vector<double> sums;     // [body][DeviceSum]
@@ -107,8 +75,10 @@ struct DeviceTime {
 /// When the host is called in the midst of a step, and what has been found of the nodes by then.
 enum class NodeMoment {
   velocities,             // before the stress is updated (USF)
+  mapped,                 // forces of each patch's particles, before they are summed
   forces,                 // before nodes are advanced (USF)
   velocities_and_forces,  // likewise (MUSL)
+  advanced,               // velocities and increments
   released,  // they have been advanced: particles shall be with the velocities without contact's
              // correction (DeviceStep::takes_of_grid) ...
   restored,  // ... and move with the others
@@ -119,6 +89,7 @@ enum class NodeMoment {
 class HostStages {
  public:
   virtual ~HostStages() = default;
+  virtual bool wants(NodeMoment moment) const = 0;
   virtual void with_nodes(NodeMoment moment) = 0;
 };
 
@@ -138,11 +109,8 @@ class DeviceRun {
   virtual ~DeviceRun() = default;
   /// Make a step, with stages of the host unless `host` is null.
   virtual void step(const DeviceStep<D>& step, HostStages* host, DeviceReport& report) = 0;
-  /// Give the particles' columns back to the host, rows as they were there.
-  virtual void give_back(std::vector<DevicePool>& pools) = 0;
-  /// Columns of a pool's particles one behind another, rows as the host has them; until called
-  /// again.
-  virtual const double* read_columns(std::size_t pool, const std::vector<int>& components) = 0;
+  /// A column of a pool's particles, rows as the host has them; until called again.
+  virtual const double* read_column(std::size_t pool, int component) = 0;
   /// The nodes that are read and written from now on.
   virtual void choose_nodes(const std::vector<NodeBlockPlace<D>>& blocks) = 0;
   /// The first or second half of their records (layout/node_records.hpp), one behind another, as
@@ -150,6 +118,12 @@ class DeviceRun {
   virtual const double* read_nodes(int half) = 0;
   virtual double* nodes_of_host(int half) = 0;
   virtual void write_nodes(int half) = 0;
+  /// Likewise the forces that the particles of some patches have given to the nodes of their own
+  /// blocks.
+  virtual void choose_mapped(const std::vector<NodeBlockPlace<D>>& blocks) = 0;
+  virtual const double* read_mapped() = 0;
+  virtual double* mapped_of_host() = 0;
+  virtual void write_mapped() = 0;
   virtual std::size_t bytes() const = 0;        // of the device's memory
   virtual std::vector<DeviceTime> times() = 0;  // by kernel; makes steps slower once asked
 };

@@ -31,8 +31,7 @@ void take_sums(const double* sums, double fastest, const Vec<double, D>& gravity
                PatchSums<D>& to, FaceImpulses<D>& faces) {
   using S = DeviceSum;
   const auto vector = [&](int at) { return Vector3{sums[at], sums[at + 1], sums[at + 2]}; };
-  to = {};
-  to.force_work = dt * sums[S::work];
+  to.force_work += dt * sums[S::work];  // beside that of loads
   to.gravity_first = dt * sums[S::gravity_first];
   to.gravity_second = 0.5 * dt * sums[S::gravity_second];
   to.angular.gravity = dt * cross(vector(S::mass_moment), in_space<D>(gravity));
@@ -73,8 +72,6 @@ std::string not_on_device(const Domain<D>& domain, Scheme scheme) {
   if (scheme == Scheme::usl) return "run.scheme = \"usl\"";
   if (filters(domain.transfer)) return "run.transfer = \"xpic\"";
   if (domain.grid.bonded) return "bonded bodies";
-  if (domain.has_rigid() || domain.has_prescribed()) return "rigid bodies";
-  if (domain.has_loads()) return "loads on surfaces";
   if (domain.has_body_forces()) return "body forces";
   if (!domain.dampings.empty()) return "damping of bodies";
   if (domain.grid.walls.absorb()) return "absorbing walls";
@@ -96,24 +93,43 @@ void update_host(Domain<D>& domain) {
   domain.disorder = disorder;
 }
 
-/// What contact looks at: positions and volumes.
+/// Let the host have columns of a pool's particles, of those that the device has.
+template <int D>
+void read_columns(OnDevice<D>& device, Domain<D>& domain, std::size_t m, int first, int count) {
+  ParticlePool<D>& pool = domain.pools[m];
+  const auto here = [&](const Body<D>& body) {
+    return static_cast<std::size_t>(body.material) == m && !is_on_device(body);
+  };
+  const bool all = std::ranges::none_of(domain.bodies, here);
+  for (int c = first; c < first + count; ++c) {
+    const double* const from = device.run->read_column(m, c);
+    pool.columns.with_component(c, [&]<class Number>(Number* to) {
+      const auto copy = [&](std::size_t row) { to[row] = static_cast<Number>(from[row]); };
+      if (all) {
+        constexpr std::size_t chunk = 4096;
+        const std::size_t rows = pool.count();
+        domain.threads.for_each((rows + chunk - 1) / chunk, [&](std::size_t k) {
+          for (std::size_t row = k * chunk; row < std::min(rows, (k + 1) * chunk); ++row) copy(row);
+        });
+        return;
+      }
+      domain.threads.for_each(domain.grid.patches.size(), [&](std::size_t p) {
+        const Patch<D>& patch = domain.grid.patches[p];
+        const Body<D>& body = domain.body_of(patch);
+        if (static_cast<std::size_t>(body.material) != m || !is_on_device(body)) return;
+        for (const std::uint32_t row : pool.rows(patch)) copy(row);
+      });
+    });
+  }
+}
+
+/// What the host's part looks at: positions and volumes.
 template <int D>
 void read_places(OnDevice<D>& device, Domain<D>& domain) {
   for (std::size_t m = 0; m < domain.pools.size(); ++m) {
-    ParticlePool<D>& pool = domain.pools[m];
-    std::vector<int> components;
-    for (int a = 0; a < D; ++a) components.push_back(pool.position + a);
-    components.push_back(pool.at.volume);
-    const std::size_t rows = pool.count();
-    const double* const from = device.run->read_columns(m, components);
-    constexpr std::size_t chunk = 4096;
-    domain.threads.for_each((rows + chunk - 1) / chunk, [&](std::size_t part) {
-      const std::size_t first = part * chunk, count = std::min(chunk, rows - first);
-      for (std::size_t k = 0; k < components.size(); ++k)
-        pool.columns.with_component(components[k], [&]<class Number>(Number* to) {
-          std::copy_n(from + k * rows + first, count, to + first);
-        });
-    });
+    if (!device.has_pool[m]) continue;
+    read_columns(device, domain, m, domain.pools[m].position, D);
+    read_columns(device, domain, m, domain.pools[m].at.volume, 1);
   }
 }
 
@@ -138,22 +154,25 @@ std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
   for (std::size_t m = 0; m < domain.pools.size(); ++m)
     body_of[m].assign(domain.pools[m].count(), DevicePool::no_body);
   for (const Patch<D>& patch : domain.grid.patches)
-    for (const std::uint32_t row : domain.pool_of(patch).rows(patch))
-      body_of[pool_number(domain.bodies, patch.body)][row] = static_cast<std::uint32_t>(patch.body);
+    if (is_on_device(domain.body_of(patch)))
+      for (const std::uint32_t row : domain.pool_of(patch).rows(patch))
+        body_of[pool_number(domain.bodies, patch.body)][row] =
+            static_cast<std::uint32_t>(patch.body);
   for (std::size_t m = 0; m < domain.pools.size(); ++m) {
     ParticlePool<D>& pool = domain.pools[m];
-    device->pools.push_back({&domain.materials[m], &pool.columns, pool.at, pool.position,
+    problem.pools.push_back({&domain.materials[m], &pool.columns, pool.at, pool.position,
                              pool.affine, pool.id.data(), body_of[m].data()});
   }
-  problem.pools = device->pools;
+  device->has_pool.assign(domain.pools.size(), false);
+  for (const Body<D>& body : domain.bodies)
+    if (is_on_device(body)) device->has_pool[static_cast<std::size_t>(body.material)] = true;
   for (const Body<D>& body : domain.bodies)
     problem.bodies.push_back({body.material, body.mean_edge / domain.grid.cell_size});
   device->run = make_device_run(problem);
-  // Only the columns are asked for later.
-  for (DevicePool& pool : device->pools) pool.id = pool.body = nullptr;
   domain.sums_of_bodies = true;
-  if (domain.has_contact())
-    device->contact = std::make_unique<HostContact<D>>(*device->run, domain);
+  if (HostPart<D>::needed(domain))
+    device->host = std::make_unique<HostPart<D>>(*device->run, domain,
+                                                 domain.has_contact() && takes_of_grid(domain));
   return device;
 }
 
@@ -176,22 +195,30 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
   }
   if (device.erodes)
     fetch_from_device(device, domain);
-  else if (device.contact && device.ahead)
+  else if (device.host && device.ahead)
     read_places(device, domain);
-  if (device.erodes || device.contact) update_host(domain);
-  if (device.contact) device.contact->begin_step();
-  device.run->step(step, device.contact.get(), device.report);
-  device.ahead = true;
-  device.erodes = device.report.eroded;
-  const std::size_t bodies = domain.bodies.size();
-  domain.sums.resize(bodies);
-  domain.face_parts.assign(bodies, {});
-  Stages<D>::record_contacts.run(domain);
+  if (device.erodes || device.host) update_host(domain);
+  const std::size_t patches = domain.grid.patches.size();
+  domain.sums.assign(patches, {});
+  domain.face_parts.assign(domain.grid.walls.exist ? patches : 0, {});
+  domain.contact_sums = {};
   domain.rigid_at_walls = Vector3::zero();
   domain.rigid_at_faces = {};
-  for (std::size_t b = 0; b < bodies; ++b)
+  if (device.host) device.host->begin_step();
+  device.run->step(step, device.host.get(), device.report);
+  device.ahead = true;
+  device.erodes = device.report.eroded;
+  if (device.host) device.host->end_step();
+  // Those of a body stand with its first patch.
+  for (std::size_t p = patches; p-- > 0;) {
+    const auto b = static_cast<std::size_t>(domain.grid.patches[p].body);
+    if (!is_on_device(domain.bodies[b]) ||
+        (p > 0 && domain.grid.patches[p - 1].body == domain.grid.patches[p].body))
+      continue;
+    FaceImpulses<D> none, &faces = domain.grid.walls.exist ? domain.face_parts[p] : none;
     take_sums(device.report.sums.data() + b * DeviceSum::count, device.report.fastest[b],
-              domain.gravity, domain.time_step, domain.sums[b], domain.face_parts[b]);
+              domain.gravity, domain.time_step, domain.sums[p], faces);
+  }
   if (device.report.negative_volume) domain.sums[0].stress.negative_volume = true;
   if (device.stress_first)
     Stages<D>::template sum_energies<true>.run(domain);
@@ -202,7 +229,9 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
 template <int D>
 void fetch_from_device(OnDevice<D>& device, Domain<D>& domain) {
   if (!device.ahead) return;
-  device.run->give_back(device.pools);
+  for (std::size_t m = 0; m < domain.pools.size(); ++m)
+    if (device.has_pool[m])
+      read_columns(device, domain, m, 0, domain.pools[m].columns.component_count());
   // The lists are made again from where the particles are, if the host makes a step.
   for (Patch<D>& patch : domain.grid.patches) patch.left_cell = true;
   device.ahead = false;

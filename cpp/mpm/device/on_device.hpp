@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "mpm/device/host_contact.hpp"
+#include "mpm/device/host_part.hpp"
 #include "mpm/domain.hpp"
 #include "mpm/step/scheme.hpp"
 
@@ -13,8 +13,8 @@ namespace mpm {
 template <int D>
 struct OnDevice {
   std::unique_ptr<DeviceRun<D>> run;
-  std::vector<DevicePool> pools;
-  std::unique_ptr<HostContact<D>> contact;  // null without
+  std::vector<bool> has_pool;         // some of its particles are on the device
+  std::unique_ptr<HostPart<D>> host;  // null if the device makes all of a step
   DeviceReport report;
   bool stress_first = false;
   bool ahead = false;   // of the host: steps have been made since it was given the particles

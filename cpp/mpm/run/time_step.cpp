@@ -31,8 +31,8 @@ double wave_speed(const Domain<D>& domain, const Patch<D>& patch, std::size_t ro
 
 template <int D>
 void probe_speeds(Domain<D>& domain) {
-  domain.sums.resize(domain.grid.patches.size());
   domain.sums_of_bodies = false;
+  domain.sums.resize(domain.grid.patches.size());
   for (std::size_t p = 0; p < domain.sums.size(); ++p) {
     const Patch<D>& patch = domain.grid.patches[p];
     const ParticlePool<D>& pool = domain.pool_of(patch);
@@ -67,7 +67,7 @@ void note_fastest(Domain<D>& domain) {
   for (ParticlePool<D>& pool : domain.pools) pool.fastest = 0.0;
   double of_all = 0.0;
   for (std::size_t p = 0; p < domain.sums.size(); ++p) {
-    double& fastest = domain.pool_of(domain.bodies[body_of_sums(domain, p)]).fastest;
+    double& fastest = domain.pool_of(domain.grid.patches[p]).fastest;
     fastest = std::max(fastest, domain.sums[p].stress.fastest);
     of_all = std::max(of_all, fastest);
   }

@@ -2,6 +2,7 @@
 // Small kernels of a run's bookkeeping: sums of bodies, rows in another order, particles to look
 // at.
 #include "mpm/device/cuda/views.cuh"
+#include "mpm/device/device_run.hpp"
 
 namespace mpm {
 

@@ -205,6 +205,13 @@ void DeviceLists<D>::find_node_tiles(const NodeBlockPlace<D>* blocks, std::size_
 }
 
 template <int D>
+void DeviceLists<D>::find_patches(const NodeBlockPlace<D>* blocks, std::size_t count,
+                                  std::int32_t* to) const {
+  launch(find_around_blocks<D>, blocks_for(count * around), threads, blocks, count,
+         patch_keys_.data(), patches_, to);
+}
+
+template <int D>
 ListView<D> DeviceLists<D>::view() const {
   return {order_.data(),      cell_begin_.data(),   patch_body_.data(),
           patch_tile_.data(), patch_beside_.data(), nodes_beside_.data()};

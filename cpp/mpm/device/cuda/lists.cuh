@@ -4,6 +4,7 @@
 // numbers all lists are those of the host.
 #include "mpm/device/cuda/gather.cuh"
 #include "mpm/device/cuda/memory.cuh"
+#include "mpm/device/device_run.hpp"
 
 namespace mpm {
 
@@ -30,8 +31,10 @@ class DeviceLists {
   /// What the moves have counted: changed, homeless, to be read by the host when they are done.
   const std::uint32_t* counters() const { return counters_.data(); }
 
-  /// The numbers of the tiles of nodes around each block, -1 where there is none.
+  /// The numbers of the tiles of nodes, or of the patches, around each block, -1 where there is
+  /// none.
   void find_node_tiles(const NodeBlockPlace<D>* blocks, std::size_t count, std::int32_t* to) const;
+  void find_patches(const NodeBlockPlace<D>* blocks, std::size_t count, std::int32_t* to) const;
 
   ListView<D> view() const;
   NodeTileView<D> nodes(double* records) const;

@@ -9,7 +9,8 @@ constexpr int deforming_models = 11;  // of StrengthModels, before the rigid one
 
 /// What the host does with the nodes in the midst of a step, if anything.
 void host_does(HostStages* host, KernelTimer& timer, NodeMoment moment) {
-  if (host != nullptr) timer.time("stages of the host", [&] { host->with_nodes(moment); });
+  if (host != nullptr && host->wants(moment))
+    timer.time("stages of the host", [&] { host->with_nodes(moment); });
 }
 
 }  // namespace
@@ -137,6 +138,7 @@ void RunOnDevice<D>::make_usf_step(const DeviceStep<D>& step, HostStages* host,
   host_does(host, timer_, NodeMoment::velocities);
   timer_.time("stress", [&] { stress(step, particles); });
   timer_.time("map forces", [&] { map<B, Flip, gives_forces>(particles); });
+  host_does(host, timer_, NodeMoment::mapped);
   if (host == nullptr) {
     timer_.time("nodes", [&] {
       sum_all<B, false, Forces::advanced, false>(of_nodes);
@@ -147,7 +149,9 @@ void RunOnDevice<D>::make_usf_step(const DeviceStep<D>& step, HostStages* host,
     host_does(host, timer_, NodeMoment::forces);
     timer_.time("nodes", [&] { advance_all(of_nodes); });
   }
-  if (host == nullptr || !step.takes_of_grid) {
+  host_does(host, timer_, NodeMoment::advanced);
+  const bool released = host != nullptr && host->wants(NodeMoment::released);
+  if (!released) {
     timer_.time("advance and move", [&] { advance<B, DeviceAlso::move>(step, particles); });
     return;
   }
@@ -169,6 +173,7 @@ void RunOnDevice<D>::make_musl_step(const DeviceStep<D>& step, HostStages* host,
       map<B, Gives, gives_mass | gives_momentum | gives_forces>(particles);
     });
   });
+  host_does(host, timer_, NodeMoment::mapped);
   if (host == nullptr) {
     timer_.time("nodes", [&] {
       sum_all<B, true, Forces::advanced, false>(of_nodes);
@@ -182,10 +187,10 @@ void RunOnDevice<D>::make_musl_step(const DeviceStep<D>& step, HostStages* host,
     host_does(host, timer_, NodeMoment::velocities_and_forces);
     timer_.time("nodes", [&] { advance_all(of_nodes); });
   }
-  const bool released = host != nullptr && step.takes_of_grid;
-  if (released) host_does(host, timer_, NodeMoment::released);
+  host_does(host, timer_, NodeMoment::advanced);
+  host_does(host, timer_, NodeMoment::released);
   timer_.time("advance and remap", [&] { advance<B, DeviceAlso::remap>(step, particles); });
-  if (released) host_does(host, timer_, NodeMoment::restored);
+  host_does(host, timer_, NodeMoment::restored);
   timer_.time("nodes", [&] {
     sum_all<B, false, Forces::none, true>(of_nodes);
     reflect<false, true, false, false>(of_nodes);

@@ -118,16 +118,6 @@ BlockColumns<D> block_columns(PoolOnDevice<D>& pool) {
   return columns;
 }
 
-/// Its columns to the host, rows as they were there. `spare`: a column.
-template <int D>
-void give_back(PoolOnDevice<D>& mine, Columns& columns, DeviceArray<double>& spare) {
-  for (int c = 0; c < columns.component_count(); ++c) {
-    launch(give_rows<double>, blocks_of(mine.rows), 256, mine.column(c), mine.home.data(),
-           mine.rows, spare.data());
-    columns.with_component(c, [&]<class Number>(Number* to) { spare.give(to, mine.rows); });
-  }
-}
-
 /// Entries of a body that follow one another in the lists.
 struct EntryRange {
   std::size_t first, count;

@@ -159,27 +159,15 @@ void RunOnDevice<D>::step(const DeviceStep<D>& step, HostStages* host, DeviceRep
 }
 
 template <int D>
-void RunOnDevice<D>::give_back(std::vector<DevicePool>& pools) {
-  for (std::size_t p = 0; p < pools_.size(); ++p)
-    mpm::give_back(pools_[p], *pools[p].columns, spare_column_);
-}
-
-template <int D>
-const double* RunOnDevice<D>::read_columns(std::size_t pool, const std::vector<int>& components) {
+const double* RunOnDevice<D>::read_column(std::size_t pool, int component) {
   PoolOnDevice<D>& of = pools_[pool];
-  if (host_columns_.size() < of.rows * components.size())
-    host_columns_.allocate(of.rows * components.size());
-  double* to = host_columns_.data();
-  for (const int c : components) {
-    launch(give_rows<double>, blocks_of(of.rows), 256, of.column(c), of.home.data(), of.rows,
-           spare_column_.data());
-    check_cuda(
-        cudaMemcpyAsync(to, spare_column_.data(), of.rows * sizeof(double), cudaMemcpyDeviceToHost),
-        "giving particles to the host");
-    to += of.rows;
-  }
-  check_cuda(cudaDeviceSynchronize(), "giving particles to the host");
-  return host_columns_.data();
+  if (host_column_.size() < of.rows) host_column_.allocate(of.rows);
+  launch(give_rows<double>, blocks_of(of.rows), 256, of.column(component), of.home.data(), of.rows,
+         spare_column_.data());
+  check_cuda(cudaMemcpy(host_column_.data(), spare_column_.data(), of.rows * sizeof(double),
+                        cudaMemcpyDeviceToHost),
+             "giving particles to the host");
+  return host_column_.data();
 }
 
 DeviceRun<2>* make_run(const DeviceProblem<2>& problem) { return new RunOnDevice<2>(problem); }

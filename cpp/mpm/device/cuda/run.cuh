@@ -42,14 +42,19 @@ class RunOnDevice : public DeviceRun<D> {
   }
 
   void step(const DeviceStep<D>& step, HostStages* host, DeviceReport& report) override;
-  void give_back(std::vector<DevicePool>& pools) override;
-  const double* read_columns(std::size_t pool, const std::vector<int>& components) override;
+  const double* read_column(std::size_t pool, int component) override;
   void choose_nodes(const std::vector<NodeBlockPlace<D>>& blocks) override {
-    exchange_.choose(blocks, lists_);
+    summed_.choose(blocks, [&](auto... of) { lists_.find_node_tiles(of...); });
   }
-  const double* read_nodes(int half) override { return exchange_.read(records_.data(), half); }
-  double* nodes_of_host(int half) override { return exchange_.of_host(half); }
-  void write_nodes(int half) override { exchange_.write(records_.data(), half); }
+  const double* read_nodes(int half) override { return summed_.read(summed(half), half); }
+  double* nodes_of_host(int half) override { return summed_.of_host(half); }
+  void write_nodes(int half) override { summed_.write(summed(half), half); }
+  void choose_mapped(const std::vector<NodeBlockPlace<D>>& blocks) override {
+    mapped_.choose(blocks, [&](auto... of) { lists_.find_patches(of...); });
+  }
+  const double* read_mapped() override { return mapped_.read(mapped(), 0); }
+  double* mapped_of_host() override { return mapped_.of_host(0); }
+  void write_mapped() override { mapped_.write(mapped(), 0); }
   std::size_t bytes() const override { return device_bytes(); }
   std::vector<DeviceTime> times() override { return timer_.take(); }
 
@@ -59,6 +64,17 @@ class RunOnDevice : public DeviceRun<D> {
   PartialView partial() {
     return {partial_first_.data(),
             partial_second_.size() > 0 ? partial_second_.data() : partial_first_.data()};
+  }
+  SummedNodes<D> summed(int half) {
+    return {summed_.tiles(), reinterpret_cast<HalfRecord*>(records_.data()), half};
+  }
+  MappedNodes<D> mapped() {
+    MappedNodes<D> nodes{mapped_.tiles(), partial().second, 0, 0};
+    Bases::with(grid_.basis, 0.5, [&]<class B>(const B&) {
+      nodes.edge = Block<B, D>::edge;
+      nodes.low = Block<B, D>::low;
+    });
+    return nodes;
   }
   void make_room();
   void sort_columns();
@@ -104,10 +120,11 @@ class RunOnDevice : public DeviceRun<D> {
   DeviceArray<HalfRecord> partial_first_, partial_second_;
   DeviceArray<double> records_, node_sums_, patch_sums_, patch_fastest_, sums_, fastest_,
       grid_shares_, spare_column_;
-  NodeExchange<D> exchange_;
+  NodeExchange<D, 2> summed_;
+  NodeExchange<D, 1> mapped_;
   DeviceArray<std::uint32_t> flags_;  // negative volume, odd, eroded
   static constexpr int flag_count = 3;
-  PinnedArray<double> host_columns_;
+  PinnedArray<double> host_column_;
   PinnedArray<double> report_sums_, report_fastest_;
   PinnedArray<std::uint32_t> host_counters_;
   KernelTimer timer_;

@@ -2,7 +2,8 @@
 // What kernels see of the particles, the lists and the nodes.
 #include <type_traits>
 
-#include "mpm/device/device_run.hpp"
+#include "mpm/device/device_sums.hpp"
+#include "mpm/grid/geometry.hpp"
 #include "mpm/layout/node_records.hpp"
 #include "mpm/math/tensor.hpp"
 

@@ -1,0 +1,66 @@
+#pragma once
+// What the host makes of a step on a device, by its own stages: contact, bodies that do not deform,
+// of which the device knows nothing, and loads on surfaces. It has the places and volumes of the
+// particles, and the nodes where any of that happens.
+#include "mpm/device/device_run.hpp"
+#include "mpm/domain.hpp"
+
+namespace mpm {
+
+template <int D>
+class HostPart : public HostStages {
+ public:
+  HostPart(DeviceRun<D>& run, Domain<D>& domain, bool releases)
+      : run_(run), domain_(domain), releases_(releases) {}
+
+  /// Does a domain have anything for the host?
+  static bool needed(const Domain<D>& domain) {
+    return domain.has_contact() || domain.has_loads() || domain.has_rigid() ||
+           domain.has_prescribed();
+  }
+
+  /// Once the lists are those of the step.
+  void begin_step();
+  bool wants(NodeMoment moment) const override;
+  void with_nodes(NodeMoment moment) override;
+  void end_step();
+
+ private:
+  /// The nodes of some patches, as those of the device.
+  struct Nodes {
+    std::vector<std::uint32_t> patches;
+    std::vector<NodeBlockPlace<D>> places;
+    std::uint32_t count = 0;
+
+    void clear();
+    void add(std::uint32_t number, const Patch<D>& patch);
+  };
+  /// Copy a half of the records of such nodes from, or to, what the device exchanges.
+  void take(const Nodes& nodes, const double* from, int half);
+  void give(const Nodes& nodes, double* to, int half);
+  void read(int half);
+  void write(int half);
+  /// stage(domain), of the patches of bodies that do not deform alone.
+  void of_rigid(void (*stage)(Domain<D>&));
+  void make_velocities();
+  void make_forces();
+  void advance_rigid();
+  /// The pieces of loads go along with the surface, by the vector at number `at` of the records.
+  template <int at>
+  void carry(double duration);
+  void add_work_of_loads();
+
+  DeviceRun<D>& run_;
+  Domain<D>& domain_;
+  bool releases_;  // particles take the velocity of the grid, without contact's correction
+  Nodes wanted_;   // where bodies may meet, and of those that are loaded
+  Nodes loaded_;
+};
+
+/// How bodies share a step: the device has those that deform.
+template <int D>
+bool is_on_device(const Body<D>& body) {
+  return body.deforms();
+}
+
+}  // namespace mpm
