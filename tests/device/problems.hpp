@@ -95,10 +95,10 @@ struct Problem {
   std::string basis = "quadratic_bspline", transfer = "aflip";
   Scheme scheme = Scheme::usf;
   int dimension = 3;
-  int cells = 8;     // along an edge of the body
-  bool box = false;  // in a corner of a box, with gravity
-  bool two = false;  // a second body, of an elastic material, meets it
-  bool contact = false;
+  int cells = 8;                           // along an edge of the body
+  bool box = false;                        // in a corner of a box, with gravity
+  bool two = false;                        // a second body, of an elastic material, meets it
+  bool contact = false, impulses = false;  // in place of springs
   double speed = 0.03, strain = 0.01;  // of the translation and the straining over that of sound
   int threads = 1;
 };
@@ -115,6 +115,8 @@ std::unique_ptr<Simulation<D>> make(const Problem& problem, const MaterialChoice
   settings.run.scheme = problem.scheme;
   settings.run.cfl = problem.scheme == Scheme::usf ? 0.5 : 0.25;
   settings.contact.enabled = problem.contact;
+  settings.contact.friction = 0.2;
+  settings.contact.response = problem.impulses ? Response::impulses : Response::springs;
   settings.execution.threads = problem.threads;
   if (problem.box) {
     settings.grid.box_cells = {4 * problem.cells, 4 * problem.cells,

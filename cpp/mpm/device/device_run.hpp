@@ -10,6 +10,8 @@
 #include "mpm/device/device_sums.hpp"
 #include "mpm/fields/columns.hpp"
 #include "mpm/grid/geometry.hpp"
+#include "mpm/grid/outflow_box.hpp"
+#include "mpm/loads/damped_node.hpp"
 #include "mpm/materials/material.hpp"
 #include "mpm/materials/material_block.hpp"
 
@@ -36,6 +38,7 @@ struct DevicePool {
 template <int D>
 struct DeviceProblem {
   GridGeometry<D> grid;
+  OutflowBox<D> outflow_box;
   bool stress_first = false;  // USF, else MUSL
   double disorder = 0.0;      // share of jumps in the order of rows at which columns are sorted
   std::vector<DevicePool> pools;
@@ -48,6 +51,7 @@ struct DeviceStep {
   double time_step = 0.0, strain_time = 0.0;  // over which the velocities strain (USF) [s]
   double time_after = 0.0;                    // [s]
   Vec<double, D> gravity = Vec<double, D>::zero();
+  std::vector<StepDamping> damping;  // of each body's motion; empty: of none
   DeviceTransfer transfer = DeviceTransfer::flip;
   bool takes_of_grid = false;  // do particles take the velocity of the grid anywhere?
   bool look = false;           // count particles that somebody should look at
@@ -62,7 +66,7 @@ struct DeviceReport {
   std::vector<double> fastest;  // of each body, largest c + |v| [m/s]
   bool negative_volume = false;
   std::int64_t odd = 0;  // particles that somebody should look at: volume, place
-  bool eroded = false;   // some particles take no part from the next step on
+  bool gone = false;     // some particles take no part from the next step on
   std::size_t patches = 0, node_tiles = 0;
 };
 

@@ -19,7 +19,10 @@ struct DeviceSum {
     walls = mass_moment + 3,  // 3
     mapped = walls + 3,       // 3
     faces = mapped + 3,       // 2 x 3 x 3: [axis][side][component]
-    of_nodes = faces + 18,
+    damping_first = faces + 18,
+    damping_second,
+    damping_moment,  // 3
+    of_nodes = damping_moment + 3,
     // Of particles.
     kinetic = of_nodes,
     second_order,

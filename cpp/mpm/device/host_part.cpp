@@ -2,8 +2,12 @@
 
 #include <cstring>
 
+#include "mpm/loads/body_forces.hpp"
 #include "mpm/loads/carry_loads.hpp"
 #include "mpm/step/stages.hpp"
+#include "mpm/walls/absorb.hpp"
+#include "mpm/walls/mirror.hpp"
+#include "mpm/walls/reactions.hpp"
 
 namespace mpm {
 
@@ -12,9 +16,10 @@ namespace {
 constexpr int first = 0,
               second = 1;  // halves: mass and velocity; force, increment, remapped velocity
 
-/// Does a patch carry any piece of a load?
+/// Do loads or a body force act on a patch's body?
 template <int D>
 bool is_loaded(const Domain<D>& domain, const Patch<D>& patch) {
+  if (domain.body_of(patch).force >= 0) return true;
   for (const SurfaceLoad<D>& load : domain.loads)
     if (load.body == patch.body) return true;
   return false;
@@ -61,7 +66,8 @@ void HostPart<D>::begin_step() {
     if (patch.shape.node_count == 0) continue;
     const bool loaded = is_loaded(domain_, patch);
     if (loaded) loaded_.add(p, patch);
-    if (loaded || patch.in_contact) wanted_.add(p, patch);
+    const bool absorbs = patch.at_wall && domain_.grid.walls.absorb();
+    if (loaded || absorbs || patch.in_contact) wanted_.add(p, patch);
   }
   run_.choose_nodes(wanted_.places);
   run_.choose_mapped(loaded_.places);
@@ -102,6 +108,17 @@ void HostPart<D>::write(int half) {
   run_.write_nodes(half);
 }
 
+/// The factors of the dashpots, which of_rigid(exchange_forces) sums.
+template <int D>
+void HostPart<D>::start_dashpots() {
+  if (!domain_.grid.walls.absorb()) return;
+  domain_.threads.for_each(domain_.grid.patches.size(), [&](std::size_t p) {
+    const NodeBlock<D> block = domain_.grid.block(p);
+    clear(block.dashpots(), block.count, half_record);
+  });
+  place_dashpots(domain_);
+}
+
 template <int D>
 void HostPart<D>::make_velocities() {
   read(first);
@@ -111,10 +128,14 @@ void HostPart<D>::make_velocities() {
 
 template <int D>
 void HostPart<D>::make_forces() {
-  if (!domain_.has_loads()) of_rigid(map_forces);
+  if (!wants(NodeMoment::mapped)) of_rigid(map_forces);
   of_rigid(fold_forces);
-  of_rigid(exchange_forces);
+  if (domain_.grid.walls.absorb())
+    exchange_forces(domain_);  // for the dashpots
+  else
+    of_rigid(exchange_forces);
   read(second);
+  absorb_at_walls(domain_);
   contact_forces(domain_);
   write(second);
   of_rigid(advance_nodes);
@@ -136,13 +157,35 @@ void HostPart<D>::carry(double duration) {
 }
 
 template <int D>
-void HostPart<D>::add_work_of_loads() {
-  domain_.threads.for_each(loaded_.patches.size(), [&](std::size_t k) {
-    const Work work = work_of_loads(domain_, loaded_.patches[k]);
-    PatchSums<D>& sums = domain_.sums[loaded_.patches[k]];
+void HostPart<D>::add_work_of_dashpots(std::uint32_t p) {
+  const Patch<D>& patch = domain_.grid.patches[p];
+  const NodeBlock<D> block = domain_.grid.block(p);
+  double own[BlockShape<D>::nodes_max];
+  own_nodes(domain_.grid, patch, own);
+  const Work work = work_of_dashpots(block, own, domain_.time_step);
+  PatchSums<D>& sums = domain_.sums[p];
+  sums.dashpot_first = work.first;
+  sums.dashpot_second = work.second;
+  sums.force_work -= work.first;
+  add_dashpots(domain_.grid, patch, block, own, domain_.time_step,
+               reaction_of(domain_, p, &AngularImpulses::walls));
+}
+
+/// As in advance_nodes.
+template <int D>
+void HostPart<D>::add_works() {
+  const bool absorb = domain_.grid.walls.absorb();
+  domain_.threads.for_each(wanted_.patches.size(), [&](std::size_t k) {
+    const std::uint32_t p = wanted_.patches[k];
+    if (absorb && domain_.grid.patches[p].at_wall) add_work_of_dashpots(p);
+    if (!is_loaded(domain_, domain_.grid.patches[p])) return;
+    Work work;
+    if (domain_.has_loads()) work = work_of_loads(domain_, p);
+    if (domain_.has_body_forces()) work += work_of_body_force(domain_, p);
+    PatchSums<D>& sums = domain_.sums[p];
     sums.load_first = work.first;
     sums.load_second = work.second;
-    sums.force_work -= work.first;  // as in advance_nodes
+    sums.force_work -= work.first;
   });
 }
 
@@ -151,7 +194,7 @@ bool HostPart<D>::wants(NodeMoment moment) const {
   switch (moment) {
     case NodeMoment::mapped:
     case NodeMoment::advanced:
-      return domain_.has_loads();
+      return has_loads(domain_) || domain_.grid.walls.absorb();
     case NodeMoment::released:
     case NodeMoment::restored:
       return releases_;
@@ -171,6 +214,8 @@ void HostPart<D>::with_nodes(NodeMoment moment) {
       of_rigid(map_forces);
       take(loaded_, run_.read_mapped(), second);
       load_surfaces(domain_);
+      add_body_forces(domain_);
+      start_dashpots();
       give(loaded_, run_.mapped_of_host(), second);
       run_.write_mapped();
       return;
@@ -184,7 +229,7 @@ void HostPart<D>::with_nodes(NodeMoment moment) {
     case NodeMoment::advanced:
       read(first);
       read(second);
-      add_work_of_loads();
+      add_works();
       return;
     case NodeMoment::released:
       read(first);

@@ -15,8 +15,11 @@ class HostPart : public HostStages {
 
   /// Does a domain have anything for the host?
   static bool needed(const Domain<D>& domain) {
-    return domain.has_contact() || domain.has_loads() || domain.has_rigid() ||
-           domain.has_prescribed();
+    return domain.has_contact() || has_loads(domain) || domain.has_rigid() ||
+           domain.has_prescribed() || domain.grid.walls.absorb();
+  }
+  static bool has_loads(const Domain<D>& domain) {
+    return domain.has_loads() || domain.has_body_forces();
   }
 
   /// Once the lists are those of the step.
@@ -42,13 +45,15 @@ class HostPart : public HostStages {
   void write(int half);
   /// stage(domain), of the patches of bodies that do not deform alone.
   void of_rigid(void (*stage)(Domain<D>&));
+  void start_dashpots();
   void make_velocities();
   void make_forces();
   void advance_rigid();
   /// The pieces of loads go along with the surface, by the vector at number `at` of the records.
   template <int at>
   void carry(double duration);
-  void add_work_of_loads();
+  void add_works();
+  void add_work_of_dashpots(std::uint32_t patch);
 
   DeviceRun<D>& run_;
   Domain<D>& domain_;

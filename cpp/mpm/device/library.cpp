@@ -1,6 +1,8 @@
 #include "mpm/device/library.hpp"
 
+#include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <stdexcept>
 
 #include <dlfcn.h>
@@ -8,15 +10,16 @@
 namespace mpm {
 namespace {
 
-/// Beside the module or program that this is part of.
+/// Beside the module or program that this is part of; tests have another (tests/device/emulated).
 std::filesystem::path path_of_library() {
   Dl_info about{};
   dladdr(reinterpret_cast<void*>(&path_of_library), &about);
-  return std::filesystem::path(about.dli_fname).parent_path() / "libmpm_device.so";
+  const char* const other = std::getenv("MPM3DPP_DEVICE_LIBRARY");
+  return std::filesystem::path(about.dli_fname).parent_path() /
+         (other != nullptr ? other : "libmpm_device.so");
 }
 
-DeviceLibrary load() {
-  const std::filesystem::path path = path_of_library();
+DeviceLibrary load(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path))
     throw std::runtime_error(
         "this build has no code for a device: install it where there is CUDA's nvcc, with pip "
@@ -43,8 +46,11 @@ DeviceLibrary load() {
 }  // namespace
 
 const DeviceLibrary& device_library() {
-  static const DeviceLibrary library = load();
-  return library;
+  static std::map<std::filesystem::path, DeviceLibrary> loaded;
+  const std::filesystem::path path = path_of_library();
+  auto found = loaded.find(path);
+  if (found == loaded.end()) found = loaded.emplace(path, load(path)).first;
+  return found->second;
 }
 
 }  // namespace mpm

@@ -35,7 +35,10 @@ void take_sums(const double* sums, double fastest, const Vec<double, D>& gravity
   to.gravity_first = dt * sums[S::gravity_first];
   to.gravity_second = 0.5 * dt * sums[S::gravity_second];
   to.angular.gravity = dt * cross(vector(S::mass_moment), in_space<D>(gravity));
-  to.angular.walls = vector(S::walls);
+  to.damping_first = sums[S::damping_first];
+  to.damping_second = sums[S::damping_second];
+  to.angular.damping = dt * vector(S::damping_moment);
+  to.angular.walls += vector(S::walls);  // beside that of dashpots
   to.angular.mapped = vector(S::mapped);
   to.kinetic = sums[S::kinetic];
   to.second_order = sums[S::second_order];
@@ -52,7 +55,7 @@ void take_sums(const double* sums, double fastest, const Vec<double, D>& gravity
   for (int axis = 0; axis < D; ++axis)
     for (int side = 0; side < 2; ++side)
       for (int a = 0; a < D; ++a)
-        faces.of[axis][side][a] = sums[S::faces + 3 * (2 * axis + side) + a];
+        faces.of[axis][side][a] += sums[S::faces + 3 * (2 * axis + side) + a];
 }
 
 }  // namespace
@@ -72,10 +75,6 @@ std::string not_on_device(const Domain<D>& domain, Scheme scheme) {
   if (scheme == Scheme::usl) return "run.scheme = \"usl\"";
   if (filters(domain.transfer)) return "run.transfer = \"xpic\"";
   if (domain.grid.bonded) return "bonded bodies";
-  if (domain.has_body_forces()) return "body forces";
-  if (!domain.dampings.empty()) return "damping of bodies";
-  if (domain.grid.walls.absorb()) return "absorbing walls";
-  if (domain.grid.outflow_box.exist) return "a region that particles leave";
   if (domain.averages_volume()) return "volume averaging";
   if (domain.settles()) return "a run that settles";
   return {};
@@ -100,7 +99,8 @@ void read_columns(OnDevice<D>& device, Domain<D>& domain, std::size_t m, int fir
   const auto here = [&](const Body<D>& body) {
     return static_cast<std::size_t>(body.material) == m && !is_on_device(body);
   };
-  const bool all = std::ranges::none_of(domain.bodies, here);
+  // Those that have been taken out stay as the host has noted them.
+  const bool all = pool.removed.empty() && std::ranges::none_of(domain.bodies, here);
   for (int c = first; c < first + count; ++c) {
     const double* const from = device.run->read_column(m, c);
     pool.columns.with_component(c, [&]<class Number>(Number* to) {
@@ -148,6 +148,7 @@ std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
   update_host(domain);
   DeviceProblem<D> problem;
   problem.grid = domain.grid;
+  problem.outflow_box = domain.grid.outflow_box;
   problem.stress_first = device->stress_first;
   problem.disorder = domain.disorder;
   std::vector<std::vector<std::uint32_t>> body_of(domain.pools.size());
@@ -186,6 +187,9 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
   step.gravity = domain.gravity;
   step.takes_of_grid = takes_of_grid(domain);
   step.look = look;
+  if (!domain.dampings.empty())
+    for (const Body<D>& body : domain.bodies)
+      step.damping.push_back(damping_in(domain.dampings, body.damping));
   for (const ParticlePool<D>& pool : domain.pools) {
     const double own = own_step(domain, pool);
     const auto [transfer, share] = transfer_of(domain, own);
@@ -193,11 +197,11 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
     step.share.push_back(share);
     step.grid_share.push_back(grid_share(domain, own));
   }
-  if (device.erodes)
+  if (device.gone)
     fetch_from_device(device, domain);
   else if (device.host && device.ahead)
     read_places(device, domain);
-  if (device.erodes || device.host) update_host(domain);
+  if (device.gone || device.host) update_host(domain);
   const std::size_t patches = domain.grid.patches.size();
   domain.sums.assign(patches, {});
   domain.face_parts.assign(domain.grid.walls.exist ? patches : 0, {});
@@ -207,7 +211,7 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
   if (device.host) device.host->begin_step();
   device.run->step(step, device.host.get(), device.report);
   device.ahead = true;
-  device.erodes = device.report.eroded;
+  device.gone = device.report.gone;
   if (device.host) device.host->end_step();
   // Those of a body stand with its first patch.
   for (std::size_t p = patches; p-- > 0;) {

@@ -17,8 +17,8 @@ struct OnDevice {
   std::unique_ptr<HostPart<D>> host;  // null if the device makes all of a step
   DeviceReport report;
   bool stress_first = false;
-  bool ahead = false;   // of the host: steps have been made since it was given the particles
-  bool erodes = false;  // the host has to take out particles before the next step
+  bool ahead = false;  // of the host: steps have been made since it was given the particles
+  bool gone = false;   // the host has to take out particles before the next step
 };
 
 /// The device of this machine. Throws std::runtime_error, in one sentence, if there is none.

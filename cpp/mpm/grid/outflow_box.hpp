@@ -11,9 +11,9 @@ struct OutflowBox {
   bool exist = false;
   Vec<double, D> lower, upper;  // corners [m]; infinite where there is no limit
 
-  bool holds(const Vec<double, D>& x) const { return holds(x, x); }
+  MPM_HD bool holds(const Vec<double, D>& x) const { return holds(x, x); }
   /// Whether a box lies in the region as a whole.
-  bool holds(const Vec<double, D>& low, const Vec<double, D>& high) const {
+  MPM_HD bool holds(const Vec<double, D>& low, const Vec<double, D>& high) const {
     bool inside = true;
     for (int a = 0; a < D; ++a) inside = inside && low[a] >= lower[a] && high[a] <= upper[a];
     return inside;

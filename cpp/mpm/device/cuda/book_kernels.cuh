@@ -1,7 +1,7 @@
 #pragma once
 // Small kernels of a run's bookkeeping: sums of bodies, rows in another order, particles to look
 // at.
-#include "mpm/device/cuda/views.cuh"
+#include "mpm/device/cuda/gather.cuh"
 #include "mpm/device/device_run.hpp"
 
 namespace mpm {
@@ -78,6 +78,19 @@ static __global__ void count_jumps(const std::uint32_t* order, std::size_t count
   const int all = __syncthreads_count(jump);
   if (threadIdx.x == 0 && all > 0) atomicAdd(jumps, static_cast<std::uint32_t>(all));
 }
+/// Is any particle out of the region that is kept? A block of threads a patch.
+template <int D>
+__global__ void find_left(OutflowBox<D> box, ListView<D> lists, const DeviceBody* bodies,
+                          const ParticleView<D>* pools, std::uint32_t* gone) {
+  const ParticleView<D>& of = pools[bodies[lists.body[blockIdx.x]].pool];
+  const std::uint32_t end = lists.cell_begin[(blockIdx.x + 1) * Tile<D>::cell_count];
+  bool left = false;
+  for (std::uint32_t g = lists.cell_begin[blockIdx.x * Tile<D>::cell_count] + threadIdx.x; g < end;
+       g += blockDim.x)
+    left = left || !box.holds(place_of_row(of, lists.order[g]));
+  if (__syncthreads_or(left) && threadIdx.x == 0) *gone = 1;
+}
+
 /// Particles that somebody should look at: far too large or small, or beyond the box
 /// (run/watch.cpp).
 template <int D>

@@ -116,6 +116,13 @@ struct InCell {
   }
 };
 
+template <int D>
+__device__ Vec<double, D> place_of_row(const ParticleView<D>& of, std::uint32_t row) {
+  Vec<double, D> x;
+  for (int a = 0; a < D; ++a) x[a] = of.x[a][row];
+  return x;
+}
+
 /// Note where a particle at x belongs, and take a turn there.
 template <int D>
 __device__ bool find_target(const GridGeometry<D>& grid, const CellCoordinates<D>& coordinates,

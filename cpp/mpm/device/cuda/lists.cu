@@ -114,30 +114,26 @@ __device__ void find_target_by_key(const GridGeometry<D>& grid,
   moves.slot[entry] = atomicAdd(moves.counts + target, 1u);
 }
 
-template <int D>
-__device__ Vec<double, D> place_of_row(const ParticleView<D>& of, std::uint32_t row) {
-  Vec<double, D> x;
-  for (int a = 0; a < D; ++a) x[a] = of.x[a][row];
-  return x;
-}
-
 /// Of entries in lists that there were.
 template <int D>
-__global__ void find_targets(GridGeometry<D> grid, CellCoordinates<D> coordinates,
-                             const std::uint64_t* keys, std::size_t patches,
-                             const DeviceBody* bodies, const ParticleView<D>* pools,
-                             const std::uint32_t* order, const std::uint32_t* cell_begin,
-                             const std::int32_t* patch_body, MoveView moves) {
+__global__ void find_targets(GridGeometry<D> grid, OutflowBox<D> box,
+                             CellCoordinates<D> coordinates, const std::uint64_t* keys,
+                             std::size_t patches, const DeviceBody* bodies,
+                             const ParticleView<D>* pools, const std::uint32_t* order,
+                             const std::uint32_t* cell_begin, const std::int32_t* patch_body,
+                             MoveView moves) {
   const int body = patch_body[blockIdx.x];
   const ParticleView<D>& of = pools[bodies[body].pool];
   const std::size_t cells = Tile<D>::cell_count;
   for (std::uint32_t g = cell_begin[blockIdx.x * cells] + threadIdx.x;
        g < cell_begin[(blockIdx.x + 1) * cells]; g += blockDim.x) {
-    if (of.failed != nullptr && of.failed[order[g]] >= static_cast<double>(FailureAction::erode))
+    const Vec<double, D> x = place_of_row(of, order[g]);
+    const bool eroded =
+        of.failed != nullptr && of.failed[order[g]] >= static_cast<double>(FailureAction::erode);
+    if (eroded || (box.exist && !box.holds(x)))
       moves.target[g] = MoveView::homeless;  // it takes no part any more
     else
-      find_target_by_key(grid, coordinates, keys, patches, body, place_of_row(of, order[g]), g,
-                         moves);
+      find_target_by_key(grid, coordinates, keys, patches, body, x, g, moves);
   }
 }
 
@@ -357,23 +353,23 @@ void DeviceLists<D>::start(const GridGeometry<D>& grid, const DeviceBody* bodies
 }
 
 template <int D>
-void DeviceLists<D>::finish_moves(const GridGeometry<D>& grid, const DeviceBody* bodies,
-                                  const ParticleView<D>* pools, bool changed,
-                                  std::uint32_t homeless, bool eroded) {
+void DeviceLists<D>::finish_moves(const GridGeometry<D>& grid, const OutflowBox<D>& box,
+                                  const DeviceBody* bodies, const ParticleView<D>* pools,
+                                  bool changed, std::uint32_t homeless, bool gone) {
   // Entries are those of the patches before until they are placed.
   const std::size_t before = patches_;
   DeviceArray<std::int32_t> body_before;
-  if (homeless > 0 || eroded) {
+  if (homeless > 0 || gone) {
     body_before.need(before);
     check_cuda(cudaMemcpy(body_before.data(), patch_body_.data(), before * sizeof(std::int32_t),
                           cudaMemcpyDeviceToDevice),
                "making lists");
   }
   // Once, unless more are homeless than there is room to note.
-  for (bool drop = eroded; homeless > 0 || drop; drop = false) {
+  for (bool drop = gone; homeless > 0 || drop; drop = false) {
     if (homeless > 0) add_patches(std::min<std::size_t>(homeless, homeless_keys_.size()));
     const MoveView moves = begin_moves(target_);
-    launch(find_targets<D>, static_cast<unsigned>(before), 128, grid, grid.coordinates(),
+    launch(find_targets<D>, static_cast<unsigned>(before), 128, grid, box, grid.coordinates(),
            patch_keys_.data(), patches_, bodies, pools, order_.data(), cell_begin_.data(),
            body_before.data(), moves);
     check_cuda(cudaGetLastError(), "making lists");
@@ -381,7 +377,7 @@ void DeviceLists<D>::finish_moves(const GridGeometry<D>& grid, const DeviceBody*
     changed = true;
   }
   if (changed) place(order_.data(), bodies, pools);
-  if (!eroded) return;
+  if (!gone) return;
   std::uint32_t left = 0;
   cell_begin_.give(&left, 1, patches_ * cells);
   particles_ = left;

@@ -24,10 +24,9 @@ class DeviceLists {
   /// Get ready for a step's moves. `room`: eight bytes for each particle, until they are finished.
   MoveView begin_moves(void* room);
   /// After they have been made; the lists anew if that is needed. `changed`, `homeless`: what the
-  /// moves have counted; `eroded`: some particles take no part any more.
-  void finish_moves(const GridGeometry<D>& grid, const DeviceBody* bodies,
-                    const ParticleView<D>* pools, bool changed, std::uint32_t homeless,
-                    bool eroded);
+  /// moves have counted; `gone`: some particles take no part any more.
+  void finish_moves(const GridGeometry<D>& grid, const OutflowBox<D>& box, const DeviceBody* bodies,
+                    const ParticleView<D>* pools, bool changed, std::uint32_t homeless, bool gone);
   /// What the moves have counted: changed, homeless, to be read by the host when they are done.
   const std::uint32_t* counters() const { return counters_.data(); }
 

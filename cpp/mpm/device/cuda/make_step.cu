@@ -85,6 +85,7 @@ NodeStep<D> RunOnDevice<D>::node_step(const DeviceStep<D>& step) {
           step.takes_of_grid,
           step.transfer == DeviceTransfer::aflip,
           grid_shares_.data(),
+          step.damping.empty() ? nullptr : damping_.data(),
           node_sums_.data(),
           lists_.node_tiles()};
 }

@@ -1,6 +1,7 @@
 #pragma once
 // What a step is for nodes, where one is beyond a wall, and what its thread gives to the ledger.
 #include "mpm/device/cuda/views.cuh"
+#include "mpm/loads/damped_node.hpp"
 #include "mpm/walls/face_impulses.hpp"
 
 namespace mpm {
@@ -12,10 +13,11 @@ struct NodeStep {
   double time_step;
   Vec<double, D> gravity;
   bool has_gravity, ghosts;
-  bool takes_of_grid;        // do particles take the velocity of the grid?
-  bool other_at_fixed;       // all of it at fixed walls? (step/fixed_walls.hpp)
-  const double* grid_share;  // of each body
-  double* sums;              // [DeviceSum][node tile]
+  bool takes_of_grid;          // do particles take the velocity of the grid?
+  bool other_at_fixed;         // all of it at fixed walls? (step/fixed_walls.hpp)
+  const double* grid_share;    // of each body
+  const StepDamping* damping;  // of each body's motion, or null
+  double* sums;                // [DeviceSum][node tile]
   std::size_t tiles;
 };
 

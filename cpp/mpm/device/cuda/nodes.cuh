@@ -15,9 +15,9 @@ __device__ double grid_share_at(const NodeStep<D>& step, std::int32_t body,
 /// Eq. (8) of a node, of which the force has been summed: v and f become those after it. What walls
 /// and gravity do goes into the sums.
 template <int D>
-__device__ void advance_node(const NodeStep<D>& step, const AnIndex<D>& node, const Image<D>& ghost,
-                             unsigned held_axes, double m, Vec<double, D>& f, Vec<double, D>& v,
-                             double (&dv)[3], NodeSums& sums) {
+__device__ void advance_node(const NodeStep<D>& step, std::int32_t body, const AnIndex<D>& node,
+                             const Image<D>& ghost, unsigned held_axes, double m, Vec<double, D>& f,
+                             Vec<double, D>& v, double (&dv)[3], NodeSums& sums) {
   const Vec<double, D> place = step.grid.position_of(node);
   if (step.has_gravity) {
     if (ghost.exists)
@@ -38,14 +38,27 @@ __device__ void advance_node(const NodeStep<D>& step, const AnIndex<D>& node, co
       if (held_axes >> a & 1u) f[a] = -m * step.gravity[a];
   }
   const double own = ghost.exists ? 0.0 : 1.0, impulse = m > 0.0 ? step.time_step / m : 0.0;
+  StepDamping damping;
+  if (step.damping != nullptr) damping = step.damping[body];
+  Vec<double, D> drag = Vec<double, D>::zero();
   for (int a = 0; a < D; ++a) {
     const double weight = m * step.gravity[a];
     dv[a] = impulse * (f[a] + weight);
+    if (damping.acts()) {
+      DampedNode damped{0.0, 0.0};  // at rest without mass
+      if (m > 0.0) damped = advance_damped(damping, m, v[a], f[a] + weight, step.time_step);
+      dv[a] = damped.increment;
+      drag[a] = own * damped.damping;
+      sums.of[DeviceSum::damping_first] += step.time_step * drag[a] * v[a];
+      sums.of[DeviceSum::damping_second] += 0.5 * step.time_step * drag[a] * dv[a];
+    }
     sums.of[DeviceSum::work] += own * f[a] * v[a];
     sums.of[DeviceSum::gravity_first] += own * weight * v[a];
     sums.of[DeviceSum::gravity_second] += own * weight * dv[a];
     v[a] += dv[a];
   }
+  if (damping.acts())
+    sums.add_vector(DeviceSum::damping_moment, cross_of(in_three(place), in_three(drag)));
 }
 
 /// What is done with the forces of nodes when they have been summed: contact may change them before
@@ -187,7 +200,7 @@ __global__ void __launch_bounds__(64)
     }
   if constexpr (with_forces == Forces::advanced) {
     double dv[3] = {0.0, 0.0, 0.0};
-    advance_node(step, node, ghost, held_axes, m, f, v, dv, sums);
+    advance_node(step, nodes.body[tile], node, ghost, held_axes, m, f, v, dv, sums);
     of_node[1] = {dv[0], dv[1], dv[2], 0.0};
   }
   if constexpr (with_forces == Forces::summed)
@@ -200,8 +213,9 @@ __global__ void __launch_bounds__(64)
     of_node[1] = {p[0], p[1], D == 3 ? p[D - 1] : 0.0, 0.0};
   }
   if constexpr (momentum || forces)
-    sums.write(step.sums, step.tiles, tile,
-               near_wall ? int{DeviceSum::of_nodes} : int{DeviceSum::walls});
+    sums.write(
+        step.sums, step.tiles, tile,
+        near_wall || step.damping != nullptr ? int{DeviceSum::of_nodes} : int{DeviceSum::walls});
 }
 
 /// Eq. (8) by itself, where contact has changed velocities and forces.
@@ -222,14 +236,16 @@ __global__ void __launch_bounds__(64) advance_nodes(NodeTileView<D> nodes, NodeS
   }
   double dv[3] = {0.0, 0.0, 0.0};
   NodeSums sums;
-  advance_node(step, node, ghost, near_wall ? step.grid.walls.constrained_axes(node) : 0u,
-               numbers[mass_at], f, v, dv, sums);
+  advance_node(step, nodes.body[tile], node, ghost,
+               near_wall ? step.grid.walls.constrained_axes(node) : 0u, numbers[mass_at], f, v, dv,
+               sums);
   for (int a = 0; a < D; ++a) {
     numbers[velocity_at + a] = v[a];
     numbers[increment_at + a] = dv[a];
   }
-  sums.write(step.sums, step.tiles, tile,
-             near_wall ? int{DeviceSum::of_nodes} : int{DeviceSum::walls});
+  sums.write(
+      step.sums, step.tiles, tile,
+      near_wall || step.damping != nullptr ? int{DeviceSum::of_nodes} : int{DeviceSum::walls});
 }
 
 /// Nodes beyond walls take what their images have, and what that gives to the ledger: after the

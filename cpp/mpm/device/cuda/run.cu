@@ -106,7 +106,7 @@ void RunOnDevice<D>::read(DeviceReport& report) {
   report.fastest.assign(report_fastest_.data(), report_fastest_.data() + body_count_);
   report.negative_volume = host_counters_[4] != 0;
   report.odd = host_counters_[5];
-  report.eroded = host_counters_[6] != 0;
+  report.gone = host_counters_[6] != 0;
 }
 
 template <int D>
@@ -134,8 +134,12 @@ void RunOnDevice<D>::step(const DeviceStep<D>& step, HostStages* host, DeviceRep
       "making a step");
   check_cuda(cudaMemsetAsync(flags_.data(), 0, flag_count * sizeof(std::uint32_t)),
              "making a step");
+  if (!step.damping.empty()) damping_.take(step.damping.data(), step.damping.size());
   make_step(step, host);
   ++steps_;
+  if (outflow_box_.exist)
+    launch(find_left<D>, static_cast<unsigned>(lists_.patches()), 128, outflow_box_, lists_.view(),
+           bodies_.data(), views_.data(), flags_.data() + 2);
   if (step.look)
     for (PoolOnDevice<D>& pool : pools_)
       launch(count_odd<D>, blocks_of(pool.rows), 256, grid_, mpm::view_of(pool, grid_.cell_size),
@@ -144,8 +148,8 @@ void RunOnDevice<D>::step(const DeviceStep<D>& step, HostStages* host, DeviceRep
   report.patches = lists_.patches();
   report.node_tiles = lists_.node_tiles();
   timer_.time("lists", [&] {
-    lists_.finish_moves(grid_, bodies_.data(), views_.data(), host_counters_[0] != 0,
-                        host_counters_[1], report.eroded);
+    lists_.finish_moves(grid_, outflow_box_, bodies_.data(), views_.data(), host_counters_[0] != 0,
+                        host_counters_[1], report.gone);
   });
   make_room();
   if (steps_ % look_at_order != 0) return;

@@ -20,6 +20,7 @@ class RunOnDevice : public DeviceRun<D> {
       : grid_(problem.grid),
         first_(problem.stress_first),
         disorder_(problem.disorder),
+        outflow_box_(problem.outflow_box),
         lists_(problem.grid.reach().before > 0) {
     for (const DevicePool& pool : problem.pools) pools_.push_back(take_pool<D>(pool));
     body_count_ = problem.bodies.size();
@@ -110,6 +111,7 @@ class RunOnDevice : public DeviceRun<D> {
   GridGeometry<D> grid_;
   bool first_;
   double disorder_;
+  OutflowBox<D> outflow_box_;
   DeviceLists<D> lists_;
   std::vector<PoolOnDevice<D>> pools_;
   std::vector<DeviceBody> host_bodies_;
@@ -120,9 +122,10 @@ class RunOnDevice : public DeviceRun<D> {
   DeviceArray<HalfRecord> partial_first_, partial_second_;
   DeviceArray<double> records_, node_sums_, patch_sums_, patch_fastest_, sums_, fastest_,
       grid_shares_, spare_column_;
+  DeviceArray<StepDamping> damping_;
   NodeExchange<D, 2> summed_;
   NodeExchange<D, 1> mapped_;
-  DeviceArray<std::uint32_t> flags_;  // negative volume, odd, eroded
+  DeviceArray<std::uint32_t> flags_;  // negative volume, odd, gone
   static constexpr int flag_count = 3;
   PinnedArray<double> host_column_;
   PinnedArray<double> report_sums_, report_fastest_;

@@ -1,0 +1,1 @@
+#include "mpm/device/cuda/stress.cu"
