@@ -20,6 +20,15 @@ void def_device(SimulationClass& simulation) {
       .def_prop_ro("device_bytes", of_any_as_is([](auto& s) {
                      return s.device ? s.device->run->bytes() : std::size_t{0};
                    }))
+      .def_prop_ro("device_host_seconds",
+                   as_is_to([](auto& s) { return s.device ? s.device->seconds : HostSeconds{}; },
+                            [](const HostSeconds& seconds) {
+                              nb::dict d;
+                              d["particles to the host"] = seconds.particles;
+                              d["lists of the host"] = seconds.lists;
+                              d["stages of the host"] = seconds.stages;
+                              return d;
+                            }))
       .def(
           "device_times",
           as_is_to(

@@ -82,7 +82,7 @@ def main() -> int:
     for k in STRENGTHS if everything else [0]:
         blocks = ["MPM_STRESS_BLOCKS=3"] if k == JOHNSON_COOK else []
         jobs.append((CODE / "stress.cu", [f"MPM_STRENGTH={k}", *blocks]))
-    jobs += [(CODE / name, []) for name in ("run.cu", "lists.cu", "interface.cu")]
+    jobs += [(CODE / name, []) for name in ("run.cu", "make_step.cu", "lists.cu", "interface.cu")]
     problems = 0
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         for name, wrong in pool.map(lambda job: compile_one(nvcc, *job), jobs):

@@ -2,7 +2,7 @@
 // times in one call, without Python.
 //   mpm_device_check compare [STEPS [NAME]]  every material, basis, transfer and scheme, or those
 //                                            with a name that begins so
-//   mpm_device_check time [MILLIONS ...]     nanoseconds per particle and step, by kernel
+//   mpm_device_check time [MILLIONS ...] [NAME [BASIS]]   nanoseconds per particle and step
 //   mpm_device_check one NAME                a short run, for compute-sanitizer
 //   mpm_device_check trace BASIS TRANSFER SCHEME STEPS [SPEED]   what differs first
 #include <chrono>
@@ -202,7 +202,7 @@ void time_one(const std::string& name, const Problem& problem, const MaterialCho
   }
 }
 
-void time_all(const std::vector<double>& millions) {
+void time_all(const std::vector<double>& millions, const std::string& basis) {
   const auto all = materials();
   for (const double size : millions)
     for (const bool linear : {true, false})
@@ -217,6 +217,7 @@ void time_all(const std::vector<double>& millions) {
           problem.transfer = "flip";
           problem.scheme = Scheme::musl;
         }
+        if (!all[k].first.starts_with(wanted) || !problem.basis.starts_with(basis)) continue;
         time_one(all[k].first, problem, all[k].second, false);
         if (size == 1.0)
           for (const int threads : {2, 16}) {
@@ -242,9 +243,11 @@ int main(int count, char** words) {
       compare_all(count > 2 ? std::atoll(words[2]) : 1000);
     } else if (what == "time") {
       std::vector<double> millions;
-      for (int k = 2; k < count; ++k) millions.push_back(std::atof(words[k]));
+      int k = 2;
+      for (; k < count && std::atof(words[k]) > 0.0; ++k) millions.push_back(std::atof(words[k]));
       if (millions.empty()) millions = {0.1, 1.0, 8.0};
-      time_all(millions);
+      if (k < count) wanted = words[k];
+      time_all(millions, k + 1 < count ? words[k + 1] : "");
     } else if (what == "trace" && count > 5) {
       Problem problem{.basis = words[2], .transfer = words[3]};
       problem.scheme = std::string(words[4]) == "usf" ? mpm::Scheme::usf : mpm::Scheme::musl;
@@ -259,10 +262,10 @@ int main(int count, char** words) {
         if (name == words[2])
           compare<3>(name, problem, choice, count > 4 ? std::atoll(words[4]) : 20);
     } else {
-      std::fprintf(
-          stderr,
-          "usage: mpm_device_check compare [STEPS [NAME]] | time [MILLIONS ...] | one NAME | "
-          "trace BASIS TRANSFER SCHEME STEPS [SPEED]\n");
+      std::fprintf(stderr,
+                   "usage: mpm_device_check compare [STEPS [NAME]] | time [MILLIONS ...] [NAME "
+                   "[BASIS]] | one NAME | "
+                   "trace BASIS TRANSFER SCHEME STEPS [SPEED]\n");
       return 2;
     }
   } catch (const std::exception& error) {

@@ -8,6 +8,7 @@ shares with the host. All strength models, bases and transfers are compared by
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -25,9 +26,18 @@ strength = { elastic = { E = "200 GPa", nu = 0.3 } }
 COPPER = """
 [material.copper]
 density = "8960 kg/m^3"
-strength = { johnson_cook = { E = "124 GPa", nu = 0.34, A = "90 MPa", B = "292 MPa", n = 0.31, C = 0.025, m = 1.09, T_melt = "1356 K", cp = "383 J/kg/K" } }
 eos = { mie_gruneisen = { c0 = "3940 m/s", s = 1.49, gamma0 = 1.96 } }
-failure = { plastic_strain = { limit = 0.01 }, action = "erode" }
+failure = { plastic_strain = { limit = 0.01, action = "erode" } }
+[material.copper.strength.johnson_cook]
+E = "124 GPa"
+nu = 0.34
+A = "90 MPa"
+B = "292 MPa"
+n = 0.31
+C = 0.025
+m = 1.09
+T_melt = "1356 K"
+cp = "383 J/kg/K"
 """
 PLATE = """
 [body.plate]
@@ -37,7 +47,7 @@ shape = { box = { lower = [0, 0, 0], upper = ["8 mm", "2 mm", "4 mm"] } }
 BALL = """
 [body.ball]
 material = "steel"
-shape = { sphere = { center = ["5 mm", "4.2 mm", "2 mm"], radius = "2 mm" } }
+shape = { sphere = { centre = ["5 mm", "4.2 mm", "2 mm"], radius = "2 mm" } }
 velocity = ["30 m/s", "-400 m/s", 0]
 """
 IMPACT = STEEL + COPPER + PLATE.replace("PLATE", "copper") + BALL
@@ -64,11 +74,24 @@ pressure = "10 MPa"
 """
 )
 """A rigid body that moves freely, one that is led, of a material that others have, and a load."""
+PUSHED = (
+    STEEL
+    + PLATE.replace("PLATE", "steel")
+    + """
+body_force = [{ expression = "1e7 + 1e10 * x" }, 0, 0]
+damping = { mass = "1e4 /s", local = 0.2 }
+"""
+)
+"""A body force, damping, a wall that absorbs."""
+LEAVING = STEEL + BALL.replace('"-400 m/s"', '"2000 m/s"')
+"""A body that leaves the region that is kept."""
 
 
-def text(bodies: str, dimension: int, end: str = "1.5 us", **run: str) -> str:
+def text(bodies: str, dimension: int, **run: str) -> str:
     """Return a case in a box with a fixed wall, a plane of symmetry and gravity."""
-    walls = 'x_min = "fixed"' + (', z_min = "symmetry"' if dimension == 3 else "")
+    walls = 'x_min = "fixed", x_max = "absorbing"' + (
+        ', z_min = "symmetry"' if dimension == 3 else ""
+    )
     settings = "\n".join(f'{key} = "{value}"' for key, value in run.items() if key != "basis")
     whole = f"""
 title = "Steps on a device"
@@ -76,9 +99,10 @@ title = "Steps on a device"
 dimension = {dimension}
 cell_size = "1 mm"
 basis = "{run.get("basis", "quadratic_bspline")}"
-box = {{ lower = [0, "-4 mm", 0], upper = ["12 mm", "12 mm", "6 mm"], walls = {{ {walls} }} }}
+box = {{ lower = [0, "-4 mm", 0], upper = ["8 mm", "12 mm", "6 mm"], walls = {{ {walls} }} }}
+outflow_box = {{ upper = ["20 mm", "7 mm", "20 mm"] }}
 [run]
-end_time = "{end}"
+end_time = "{1.5 if dimension == 2 else 0.6} us"
 gravity = [0, "-1e6 m/s^2", 0]
 viscosity = {{}}
 {settings}
@@ -87,9 +111,9 @@ friction = 0.2
 [output]
 frames = 2
 {bodies}"""
-    if dimension == 2:
-        for last in (', "4 mm"]', ', "2 mm"]', ', "6 mm"]', ", 0]"):
-            whole = whole.replace(last, "]")
+    if dimension == 2:  # the first two of three
+        whole = whole.replace("sphere", "disc")
+        whole = re.sub(r"\[([^][,]+), ([^][,]+), [^][,]+\]", r"[\1, \2]", whole)
     return whole
 
 
@@ -98,10 +122,15 @@ def emulated(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MPM3DPP_DEVICE_LIBRARY", "libmpm_device_emulated.so")
 
 
-def same_on_both(folder: Path, case: str) -> None:
-    """Compare all numbers of a run's frames, and its history to rounding.
+ENERGIES = (
+    "kinetic internal plastic viscous friction contact springs external absorbed damped eroded left"
+).split()
 
-    The sums of the ledger are made in another order: 1e-9 of the largest value of a column.
+
+def same_on_both(folder: Path, case: str) -> None:
+    """Compare all numbers of a run's frames, and the energies of its history to rounding.
+
+    The sums of the ledger are made in another order: 1e-12 of the largest energy.
     """
     path = write(folder, case)
     runs = [folder / device for device in ("cpu", "cuda")]
@@ -112,10 +141,10 @@ def same_on_both(folder: Path, case: str) -> None:
     assert manifests[0]["steps"] == manifests[1]["steps"] > 10
     assert manifests[0]["result_hash"] == manifests[1]["result_hash"]
     cpu, cuda = (read_history(out) for out in runs)
-    for name in cuda:
-        k = np.searchsorted(cpu["time"], cuda["time"])
-        scale = np.abs(cpu[name]).max()
-        assert np.abs(cpu[name][k] - cuda[name]).max() <= 1e-9 * scale, name
+    rows = np.searchsorted(cpu["time"], cuda["time"])
+    scale = max(np.abs(cpu[name]).max() for name in ENERGIES)
+    for name in ENERGIES:
+        assert np.abs(cpu[name][rows] - cuda[name]).max() <= 1e-12 * scale, name
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -135,6 +164,17 @@ def test_rigid_and_loaded_bodies(tmp_path: Path, scheme: str, basis: str, transf
     same_on_both(tmp_path, case)
     manifest = read_manifest(tmp_path / "cpu")
     assert manifest["status"] == "completed"
+
+
+def test_pushed_damped_and_absorbed(tmp_path: Path) -> None:
+    same_on_both(tmp_path, text(PUSHED, 2))
+    history = read_history(tmp_path / "cpu")
+    assert history["damped"][-1] > 0.0 and history["absorbed"][-1] > 0.0
+
+
+def test_a_body_that_leaves(tmp_path: Path) -> None:
+    same_on_both(tmp_path, text(LEAVING, 2))
+    assert read_history(tmp_path / "cpu")["left"][-1] > 0.0
 
 
 def test_a_run_goes_on_with_or_without_a_device(tmp_path: Path) -> None:

@@ -204,7 +204,7 @@ bool HostPart<D>::wants(NodeMoment moment) const {
 }
 
 template <int D>
-void HostPart<D>::with_nodes(NodeMoment moment) {
+void HostPart<D>::make_stages(NodeMoment moment) {
   switch (moment) {
     case NodeMoment::velocities:
       make_velocities();

@@ -2,16 +2,33 @@
 // What the host makes of a step on a device, by its own stages: contact, bodies that do not deform,
 // of which the device knows nothing, and loads on surfaces. It has the places and volumes of the
 // particles, and the nodes where any of that happens.
+#include <chrono>
+
 #include "mpm/device/device_run.hpp"
 #include "mpm/domain.hpp"
 
 namespace mpm {
 
+/// What the host has taken within a device's steps so far [s].
+struct HostSeconds {
+  double particles = 0.0;  // to be given their places
+  double lists = 0.0;      // to update its lists by them
+  double stages = 0.0;
+};
+
+/// work(), and add the seconds that it takes.
+template <class F>
+void add_seconds(double& to, F&& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  to += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
 template <int D>
 class HostPart : public HostStages {
  public:
-  HostPart(DeviceRun<D>& run, Domain<D>& domain, bool releases)
-      : run_(run), domain_(domain), releases_(releases) {}
+  HostPart(DeviceRun<D>& run, Domain<D>& domain, HostSeconds& seconds, bool releases)
+      : run_(run), domain_(domain), seconds_(seconds), releases_(releases) {}
 
   /// Does a domain have anything for the host?
   static bool needed(const Domain<D>& domain) {
@@ -25,10 +42,13 @@ class HostPart : public HostStages {
   /// Once the lists are those of the step.
   void begin_step();
   bool wants(NodeMoment moment) const override;
-  void with_nodes(NodeMoment moment) override;
+  void with_nodes(NodeMoment moment) override {
+    add_seconds(seconds_.stages, [&] { make_stages(moment); });
+  }
   void end_step();
 
  private:
+  void make_stages(NodeMoment moment);
   /// The nodes of some patches, as those of the device.
   struct Nodes {
     std::vector<std::uint32_t> patches;
@@ -57,6 +77,7 @@ class HostPart : public HostStages {
 
   DeviceRun<D>& run_;
   Domain<D>& domain_;
+  HostSeconds& seconds_;
   bool releases_;  // particles take the velocity of the grid, without contact's correction
   Nodes wanted_;   // where bodies may meet, and of those that are loaded
   Nodes loaded_;

@@ -172,7 +172,7 @@ std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
   device->run = make_device_run(problem);
   domain.sums_of_bodies = true;
   if (HostPart<D>::needed(domain))
-    device->host = std::make_unique<HostPart<D>>(*device->run, domain,
+    device->host = std::make_unique<HostPart<D>>(*device->run, domain, device->seconds,
                                                  domain.has_contact() && takes_of_grid(domain));
   return device;
 }
@@ -197,22 +197,25 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
     step.share.push_back(share);
     step.grid_share.push_back(grid_share(domain, own));
   }
-  if (device.gone)
-    fetch_from_device(device, domain);
-  else if (device.host && device.ahead)
-    read_places(device, domain);
-  if (device.gone || device.host) update_host(domain);
+  HostSeconds& seconds = device.seconds;
+  add_seconds(seconds.particles, [&] {
+    if (device.gone)
+      fetch_from_device(device, domain);
+    else if (device.host && device.ahead)
+      read_places(device, domain);
+  });
+  if (device.gone || device.host) add_seconds(seconds.lists, [&] { update_host(domain); });
   const std::size_t patches = domain.grid.patches.size();
   domain.sums.assign(patches, {});
   domain.face_parts.assign(domain.grid.walls.exist ? patches : 0, {});
   domain.contact_sums = {};
   domain.rigid_at_walls = Vector3::zero();
   domain.rigid_at_faces = {};
-  if (device.host) device.host->begin_step();
+  if (device.host) add_seconds(seconds.stages, [&] { device.host->begin_step(); });
   device.run->step(step, device.host.get(), device.report);
   device.ahead = true;
   device.gone = device.report.gone;
-  if (device.host) device.host->end_step();
+  if (device.host) add_seconds(seconds.stages, [&] { device.host->end_step(); });
   // Those of a body stand with its first patch.
   for (std::size_t p = patches; p-- > 0;) {
     const auto b = static_cast<std::size_t>(domain.grid.patches[p].body);

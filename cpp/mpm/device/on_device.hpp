@@ -15,6 +15,7 @@ struct OnDevice {
   std::unique_ptr<DeviceRun<D>> run;
   std::vector<bool> has_pool;         // some of its particles are on the device
   std::unique_ptr<HostPart<D>> host;  // null if the device makes all of a step
+  HostSeconds seconds;
   DeviceReport report;
   bool stress_first = false;
   bool ahead = false;  // of the host: steps have been made since it was given the particles

@@ -161,7 +161,7 @@ def build_manifest(
         cell_size: [m].
         threads: used, by each process.
         device: name of the one that made the steps.
-        device_seconds: that it took for them [s].
+        device_seconds: that it and the host took for them [s].
         mpi: name of the MPI, if there are several.
         wall_time: of the whole run [s].
         status: how the run ended.
@@ -178,7 +178,9 @@ def build_manifest(
     stages = {name: 1e9 * t / work for name, t in simulation.timers().items()}
     if device != "cpu":
         made = int(simulation.particle_count) * (int(simulation.step) - resumed_step)
-        stages = {"steps on the device": 1e9 * device_seconds / max(1, made)}
+        host = dict(simulation.device_host_seconds)
+        times = {"steps on the device": device_seconds - sum(host.values())} | host
+        stages = {name: 1e9 * t / max(1, made) for name, t in times.items() if t > 0.0}
     return Manifest(
         version=version,
         case_hash=case_hash or hash_case(case),
