@@ -102,7 +102,7 @@ basis = "{run.get("basis", "quadratic_bspline")}"
 box = {{ lower = [0, "-4 mm", 0], upper = ["8 mm", "12 mm", "6 mm"], walls = {{ {walls} }} }}
 outflow_box = {{ upper = ["20 mm", "7 mm", "20 mm"] }}
 [run]
-end_time = "{1.5 if dimension == 2 else 0.6} us"
+end_time = "{1.5 if dimension == 2 else 1.0} us"
 gravity = [0, "-1e6 m/s^2", 0]
 viscosity = {{}}
 {settings}
@@ -122,9 +122,20 @@ def emulated(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MPM3DPP_DEVICE_LIBRARY", "libmpm_device_emulated.so")
 
 
-ENERGIES = (
-    "kinetic internal plastic viscous friction contact springs external absorbed damped eroded left"
-).split()
+ENERGIES = [
+    "kinetic",
+    "internal",
+    "plastic",
+    "viscous",
+    "friction",
+    "contact",
+    "springs",
+    "external",
+    "absorbed",
+    "damped",
+    "eroded",
+    "left",
+]
 
 
 def same_on_both(folder: Path, case: str) -> None:

@@ -1,6 +1,8 @@
 #include "mpm/device/host_part.hpp"
 
 #include <cstring>
+#include <limits>
+#include <utility>
 
 #include "mpm/loads/body_forces.hpp"
 #include "mpm/loads/carry_loads.hpp"
@@ -28,6 +30,14 @@ bool is_loaded(const Domain<D>& domain, const Patch<D>& patch) {
 }  // namespace
 
 template <int D>
+void update_lists(Domain<D>& domain) {
+  for (Patch<D>& patch : domain.grid.patches) patch.left_cell = true;
+  const double disorder = std::exchange(domain.disorder, std::numeric_limits<double>::infinity());
+  Stages<D>::activate.run(domain);
+  domain.disorder = disorder;
+}
+
+template <int D>
 void HostPart<D>::of_rigid(void (*stage)(Domain<D>&)) {
   if (!domain_.has_rigid() && !domain_.has_prescribed()) return;
   // As ranks make stages of their edges first; loops that know no parts go over all patches, and
@@ -53,6 +63,7 @@ void HostPart<D>::Nodes::add(std::uint32_t number, const Patch<D>& patch) {
 
 template <int D>
 void HostPart<D>::begin_step() {
+  update_lists(domain_);
   wanted_.clear();
   loaded_.clear();
   std::vector<std::uint32_t>& rigid = domain_.grid.partition.edge;
@@ -256,10 +267,14 @@ void HostPart<D>::make_stages(NodeMoment moment) {
 
 template <int D>
 void HostPart<D>::end_step() {
-  of_rigid(move_rigid_bodies);
-  record_contacts(domain_);
+  add_seconds(seconds_.stages, [&] {
+    of_rigid(move_rigid_bodies);
+    record_contacts(domain_);
+  });
 }
 
+template void update_lists<2>(Domain<2>&);
+template void update_lists<3>(Domain<3>&);
 template class HostPart<2>;
 template class HostPart<3>;
 

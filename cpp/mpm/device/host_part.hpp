@@ -12,9 +12,14 @@ namespace mpm {
 /// What the host has taken within a device's steps so far [s].
 struct HostSeconds {
   double particles = 0.0;  // to be given their places
-  double lists = 0.0;      // to update its lists by them
+  double lists = 0.0;      // to update its lists by them, while the device maps particles
   double stages = 0.0;
 };
+
+/// Make the host's lists for the particles as they are: contact looks at them, and particles are
+/// taken out by them. Their columns keep the order in which the device was given them.
+template <int D>
+void update_lists(Domain<D>& domain);
 
 /// work(), and add the seconds that it takes.
 template <class F>
@@ -39,15 +44,19 @@ class HostPart : public HostStages {
     return domain.has_loads() || domain.has_body_forces();
   }
 
-  /// Once the lists are those of the step.
-  void begin_step();
+  /// Its lists and what follows from them alone are made when the device first comes to a stage of
+  /// the host, so that it maps particles meanwhile.
+  void expect_step() { begun_ = false; }
   bool wants(NodeMoment moment) const override;
   void with_nodes(NodeMoment moment) override {
+    if (!begun_) add_seconds(seconds_.lists, [&] { begin_step(); });
+    begun_ = true;
     add_seconds(seconds_.stages, [&] { make_stages(moment); });
   }
   void end_step();
 
  private:
+  void begin_step();
   void make_stages(NodeMoment moment);
   /// The nodes of some patches, as those of the device.
   struct Nodes {
@@ -78,8 +87,9 @@ class HostPart : public HostStages {
   DeviceRun<D>& run_;
   Domain<D>& domain_;
   HostSeconds& seconds_;
-  bool releases_;  // particles take the velocity of the grid, without contact's correction
-  Nodes wanted_;   // where bodies may meet, and of those that are loaded
+  bool begun_ = false;  // the lists are those of the step
+  bool releases_;       // particles take the velocity of the grid, without contact's correction
+  Nodes wanted_;        // where bodies may meet, and of those that are loaded
   Nodes loaded_;
 };
 

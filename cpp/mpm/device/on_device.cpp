@@ -82,16 +82,6 @@ std::string not_on_device(const Domain<D>& domain, Scheme scheme) {
 
 namespace {
 
-/// The lists of the host, made for the particles as they are: contact looks at them, and particles
-/// are taken out by them. Their columns stay in the order that they have on the device.
-template <int D>
-void update_host(Domain<D>& domain) {
-  for (Patch<D>& patch : domain.grid.patches) patch.left_cell = true;
-  const double disorder = std::exchange(domain.disorder, std::numeric_limits<double>::infinity());
-  Stages<D>::activate.run(domain);
-  domain.disorder = disorder;
-}
-
 /// Let the host have columns of a pool's particles, of those that the device has.
 template <int D>
 void read_columns(OnDevice<D>& device, Domain<D>& domain, std::size_t m, int first, int count) {
@@ -145,7 +135,7 @@ std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
   auto device = std::make_unique<OnDevice<D>>();
   device->stress_first = scheme == Scheme::usf;
   // What has eroded in the last step is taken out before the device is given the rest.
-  update_host(domain);
+  update_lists(domain);
   DeviceProblem<D> problem;
   problem.grid = domain.grid;
   problem.outflow_box = domain.grid.outflow_box;
@@ -204,20 +194,19 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
     else if (device.host && device.ahead)
       read_places(device, domain);
   });
-  if (device.gone || device.host) add_seconds(seconds.lists, [&] { update_host(domain); });
-  const std::size_t patches = domain.grid.patches.size();
-  domain.sums.assign(patches, {});
-  domain.face_parts.assign(domain.grid.walls.exist ? patches : 0, {});
-  domain.contact_sums = {};
-  domain.rigid_at_walls = Vector3::zero();
-  domain.rigid_at_faces = {};
-  if (device.host) add_seconds(seconds.stages, [&] { device.host->begin_step(); });
+  if (device.host) {
+    device.host->expect_step();
+  } else {
+    if (device.gone) add_seconds(seconds.lists, [&] { update_lists(domain); });
+    domain.sums.assign(domain.grid.patches.size(), {});
+    domain.face_parts.assign(domain.grid.walls.exist ? domain.grid.patches.size() : 0, {});
+  }
   device.run->step(step, device.host.get(), device.report);
   device.ahead = true;
   device.gone = device.report.gone;
-  if (device.host) add_seconds(seconds.stages, [&] { device.host->end_step(); });
+  if (device.host) device.host->end_step();
   // Those of a body stand with its first patch.
-  for (std::size_t p = patches; p-- > 0;) {
+  for (std::size_t p = domain.grid.patches.size(); p-- > 0;) {
     const auto b = static_cast<std::size_t>(domain.grid.patches[p].body);
     if (!is_on_device(domain.bodies[b]) ||
         (p > 0 && domain.grid.patches[p - 1].body == domain.grid.patches[p].body))
@@ -236,9 +225,14 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
 template <int D>
 void fetch_from_device(OnDevice<D>& device, Domain<D>& domain) {
   if (!device.ahead) return;
-  for (std::size_t m = 0; m < domain.pools.size(); ++m)
-    if (device.has_pool[m])
-      read_columns(device, domain, m, 0, domain.pools[m].columns.component_count());
+  for (std::size_t m = 0; m < domain.pools.size(); ++m) {
+    if (!device.has_pool[m]) continue;
+    const ParticlePool<D>& pool = domain.pools[m];
+    const int all = pool.columns.component_count(), of_host = pool.body_force;
+    // A body force is evaluated by the host.
+    read_columns(device, domain, m, 0, of_host < 0 ? all : of_host);
+    if (of_host >= 0) read_columns(device, domain, m, of_host + D, all - of_host - D);
+  }
   // The lists are made again from where the particles are, if the host makes a step.
   for (Patch<D>& patch : domain.grid.patches) patch.left_cell = true;
   device.ahead = false;
