@@ -57,8 +57,8 @@ struct Domain {
   double step_before = 0.0;  // the one before [s]; 0 in the first
   std::int64_t step = 0;     // steps made
 
-  std::vector<PatchSums<D>> sums;  // one per patch
-  bool sums_of_bodies = false;     // a device's: those of a body with its first patch
+  std::vector<PatchSums<D>> sums;  // one per patch; with a device those of its bodies, and others
+  std::vector<int> sums_of;        // with a device, of which body each is; else empty
   // What walls have done to rigid bodies as a whole in the step, alike on all ranks [N m s; N s].
   Vector3 rigid_at_walls = Vector3::zero();
   FaceImpulses<D> rigid_at_faces;
@@ -123,6 +123,13 @@ struct Domain {
     }
   }
 };
+
+/// The body that the sums with a number are of.
+template <int D>
+std::size_t body_of_sums(const Domain<D>& domain, std::size_t k) {
+  return static_cast<std::size_t>(domain.sums_of.empty() ? domain.grid.patches[k].body
+                                                         : domain.sums_of[k]);
+}
 
 /// List the bodies that do not deform, and number the groups in the order of their first bodies;
 /// kinds and groups stay as they are from here on.

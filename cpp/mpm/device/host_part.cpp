@@ -1,6 +1,5 @@
 #include "mpm/device/host_part.hpp"
 
-#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -12,22 +11,6 @@
 #include "mpm/walls/reactions.hpp"
 
 namespace mpm {
-
-namespace {
-
-constexpr int first = 0,
-              second = 1;  // halves: mass and velocity; force, increment, remapped velocity
-
-/// Do loads or a body force act on a patch's body?
-template <int D>
-bool is_loaded(const Domain<D>& domain, const Patch<D>& patch) {
-  if (domain.body_of(patch).force >= 0) return true;
-  for (const SurfaceLoad<D>& load : domain.loads)
-    if (load.body == patch.body) return true;
-  return false;
-}
-
-}  // namespace
 
 template <int D>
 void update_lists(Domain<D>& domain) {
@@ -48,75 +31,17 @@ void HostPart<D>::of_rigid(void (*stage)(Domain<D>&)) {
 }
 
 template <int D>
-void HostPart<D>::Nodes::clear() {
-  patches.clear();
-  places.clear();
-  count = 0;
-}
-
-template <int D>
-void HostPart<D>::Nodes::add(std::uint32_t number, const Patch<D>& patch) {
-  patches.push_back(number);
-  places.push_back({patch.body, patch.tile, patch.shape.low, patch.shape.nodes, count});
-  count += static_cast<std::uint32_t>(patch.shape.node_count);
-}
-
-template <int D>
 void HostPart<D>::begin_step() {
   update_lists(domain_);
-  wanted_.clear();
-  loaded_.clear();
   std::vector<std::uint32_t>& rigid = domain_.grid.partition.edge;
   rigid.clear();
-  for (std::uint32_t p = 0; p < domain_.grid.patches.size(); ++p) {
-    const Patch<D>& patch = domain_.grid.patches[p];
-    if (!is_on_device(domain_.body_of(patch))) {
-      rigid.push_back(p);
-      continue;
-    }
-    if (patch.shape.node_count == 0) continue;
-    const bool loaded = is_loaded(domain_, patch);
-    if (loaded) loaded_.add(p, patch);
-    const bool absorbs = patch.at_wall && domain_.grid.walls.absorb();
-    if (loaded || absorbs || patch.in_contact) wanted_.add(p, patch);
-  }
-  run_.choose_nodes(wanted_.places);
-  run_.choose_mapped(loaded_.places);
+  for (std::uint32_t p = 0; p < domain_.grid.patches.size(); ++p)
+    if (!is_on_device(domain_.body_of(domain_.grid.patches[p]))) rigid.push_back(p);
+  nodes_.choose();
   of_rigid(map_momentum);
   of_rigid(fold_momentum);
   of_rigid(exchange_momentum);
   of_rigid(find_velocities);
-}
-
-template <int D>
-void HostPart<D>::take(const Nodes& nodes, const double* from, int half) {
-  domain_.threads.for_each(nodes.patches.size(), [&](std::size_t k) {
-    const NodeBlock<D> block = domain_.grid.block(nodes.patches[k]);
-    const double* of_block = from + std::size_t{half_record} * nodes.places[k].first;
-    for (int n = 0; n < block.count; ++n, of_block += half_record)
-      std::memcpy(block.records[n] + half * half_record, of_block, half_record * sizeof(double));
-  });
-}
-
-template <int D>
-void HostPart<D>::give(const Nodes& nodes, double* to, int half) {
-  domain_.threads.for_each(nodes.patches.size(), [&](std::size_t k) {
-    const NodeBlock<D> block = domain_.grid.block(nodes.patches[k]);
-    double* of_block = to + std::size_t{half_record} * nodes.places[k].first;
-    for (int n = 0; n < block.count; ++n, of_block += half_record)
-      std::memcpy(of_block, block.records[n] + half * half_record, half_record * sizeof(double));
-  });
-}
-
-template <int D>
-void HostPart<D>::read(int half) {
-  take(wanted_, run_.read_nodes(half), half);
-}
-
-template <int D>
-void HostPart<D>::write(int half) {
-  give(wanted_, run_.nodes_of_host(half), half);
-  run_.write_nodes(half);
 }
 
 /// The factors of the dashpots, which of_rigid(exchange_forces) sums.
@@ -132,9 +57,9 @@ void HostPart<D>::start_dashpots() {
 
 template <int D>
 void HostPart<D>::make_velocities() {
-  read(first);
+  nodes_.read(first_half);
   contact_momentum(domain_);
-  write(first);
+  nodes_.write(first_half);
 }
 
 template <int D>
@@ -145,10 +70,10 @@ void HostPart<D>::make_forces() {
     exchange_forces(domain_);  // for the dashpots
   else
     of_rigid(exchange_forces);
-  read(second);
+  nodes_.read(second_half);
   absorb_at_walls(domain_);
   contact_forces(domain_);
-  write(second);
+  nodes_.write(second_half);
   of_rigid(advance_nodes);
   if (!releases_) advance_rigid();
 }
@@ -162,8 +87,8 @@ void HostPart<D>::advance_rigid() {
 template <int D>
 template <int at>
 void HostPart<D>::carry(double duration) {
-  domain_.threads.for_each(loaded_.patches.size(), [&](std::size_t k) {
-    carry_loads<at>(domain_, loaded_.patches[k], duration);
+  domain_.threads.for_each(nodes_.loaded().size(), [&](std::size_t k) {
+    carry_loads<at>(domain_, nodes_.loaded()[k], duration);
   });
 }
 
@@ -186,8 +111,8 @@ void HostPart<D>::add_work_of_dashpots(std::uint32_t p) {
 template <int D>
 void HostPart<D>::add_works() {
   const bool absorb = domain_.grid.walls.absorb();
-  domain_.threads.for_each(wanted_.patches.size(), [&](std::size_t k) {
-    const std::uint32_t p = wanted_.patches[k];
+  domain_.threads.for_each(nodes_.wanted().size(), [&](std::size_t k) {
+    const std::uint32_t p = nodes_.wanted()[k];
     if (absorb && domain_.grid.patches[p].at_wall) add_work_of_dashpots(p);
     if (!is_loaded(domain_, domain_.grid.patches[p])) return;
     Work work;
@@ -223,12 +148,11 @@ void HostPart<D>::make_stages(NodeMoment moment) {
       return;
     case NodeMoment::mapped:
       of_rigid(map_forces);
-      take(loaded_, run_.read_mapped(), second);
+      nodes_.read_mapped();
       load_surfaces(domain_);
       add_body_forces(domain_);
       start_dashpots();
-      give(loaded_, run_.mapped_of_host(), second);
-      run_.write_mapped();
+      nodes_.write_mapped();
       return;
     case NodeMoment::velocities_and_forces:
       make_velocities();
@@ -238,31 +162,45 @@ void HostPart<D>::make_stages(NodeMoment moment) {
       make_forces();
       return;
     case NodeMoment::advanced:
-      read(first);
-      read(second);
+      nodes_.read(first_half);
+      nodes_.read(second_half);
       add_works();
       return;
     case NodeMoment::released:
-      read(first);
-      read(second);
+      nodes_.read(first_half);
+      nodes_.read(second_half);
       release_from_contact(domain_);
-      write(first);
+      nodes_.write(first_half);
       advance_rigid();
       return;
     case NodeMoment::restored:
       restore_contact(domain_);
-      write(first);
+      nodes_.write(first_half);
       return;
     case NodeMoment::remapped:
       of_rigid(remap_rigid_bodies);
       of_rigid(fold_remapped);
       of_rigid(exchange_remapped);
       of_rigid(find_remapped);
-      read(second);
+      nodes_.read(second_half);
       contact_remapped(domain_);
-      write(second);
+      nodes_.write(second_half);
       carry<remapped_at>(domain_.time_step);
   }
+}
+
+template <int D>
+void leave_sums(Domain<D>& domain, const std::vector<std::uint32_t>& patches) {
+  std::vector<PatchSums<D>> sums;
+  std::vector<FaceImpulses<D>> faces;
+  domain.sums_of.clear();
+  for (const std::uint32_t p : patches) {
+    sums.push_back(domain.sums[p]);
+    domain.sums_of.push_back(domain.grid.patches[p].body);
+    if (domain.grid.walls.exist) faces.push_back(domain.face_parts[p]);
+  }
+  domain.sums = std::move(sums);
+  domain.face_parts = std::move(faces);
 }
 
 template <int D>
@@ -271,8 +209,14 @@ void HostPart<D>::end_step() {
     of_rigid(move_rigid_bodies);
     record_contacts(domain_);
   });
+  std::vector<std::uint32_t> own = domain_.grid.partition.edge;  // of bodies that do not deform
+  if (wants(NodeMoment::advanced))
+    own.insert(own.end(), nodes_.wanted().begin(), nodes_.wanted().end());
+  leave_sums(domain_, own);
 }
 
+template void leave_sums<2>(Domain<2>&, const std::vector<std::uint32_t>&);
+template void leave_sums<3>(Domain<3>&, const std::vector<std::uint32_t>&);
 template void update_lists<2>(Domain<2>&);
 template void update_lists<3>(Domain<3>&);
 template class HostPart<2>;

@@ -4,8 +4,7 @@
 // particles, and the nodes where any of that happens.
 #include <chrono>
 
-#include "mpm/device/device_run.hpp"
-#include "mpm/domain.hpp"
+#include "mpm/device/node_traffic.hpp"
 
 namespace mpm {
 
@@ -21,6 +20,10 @@ struct HostSeconds {
 template <int D>
 void update_lists(Domain<D>& domain);
 
+/// Of the sums of a step leave those of some patches, which are told of.
+template <int D>
+void leave_sums(Domain<D>& domain, const std::vector<std::uint32_t>& patches);
+
 /// work(), and add the seconds that it takes.
 template <class F>
 void add_seconds(double& to, F&& work) {
@@ -33,7 +36,7 @@ template <int D>
 class HostPart : public HostStages {
  public:
   HostPart(DeviceRun<D>& run, Domain<D>& domain, HostSeconds& seconds, bool releases)
-      : run_(run), domain_(domain), seconds_(seconds), releases_(releases) {}
+      : domain_(domain), seconds_(seconds), nodes_(run, domain), releases_(releases) {}
 
   /// Does a domain have anything for the host?
   static bool needed(const Domain<D>& domain) {
@@ -58,20 +61,6 @@ class HostPart : public HostStages {
  private:
   void begin_step();
   void make_stages(NodeMoment moment);
-  /// The nodes of some patches, as those of the device.
-  struct Nodes {
-    std::vector<std::uint32_t> patches;
-    std::vector<NodeBlockPlace<D>> places;
-    std::uint32_t count = 0;
-
-    void clear();
-    void add(std::uint32_t number, const Patch<D>& patch);
-  };
-  /// Copy a half of the records of such nodes from, or to, what the device exchanges.
-  void take(const Nodes& nodes, const double* from, int half);
-  void give(const Nodes& nodes, double* to, int half);
-  void read(int half);
-  void write(int half);
   /// stage(domain), of the patches of bodies that do not deform alone.
   void of_rigid(void (*stage)(Domain<D>&));
   void start_dashpots();
@@ -84,19 +73,11 @@ class HostPart : public HostStages {
   void add_works();
   void add_work_of_dashpots(std::uint32_t patch);
 
-  DeviceRun<D>& run_;
   Domain<D>& domain_;
   HostSeconds& seconds_;
+  NodeTraffic<D> nodes_;
   bool begun_ = false;  // the lists are those of the step
   bool releases_;       // particles take the velocity of the grid, without contact's correction
-  Nodes wanted_;        // where bodies may meet, and of those that are loaded
-  Nodes loaded_;
 };
-
-/// How bodies share a step: the device has those that deform.
-template <int D>
-bool is_on_device(const Body<D>& body) {
-  return body.deforms();
-}
 
 }  // namespace mpm

@@ -160,7 +160,6 @@ std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
   for (const Body<D>& body : domain.bodies)
     problem.bodies.push_back({body.material, body.mean_edge / domain.grid.cell_size});
   device->run = make_device_run(problem);
-  domain.sums_of_bodies = true;
   if (HostPart<D>::needed(domain))
     device->host = std::make_unique<HostPart<D>>(*device->run, domain, device->seconds,
                                                  domain.has_contact() && takes_of_grid(domain));
@@ -198,22 +197,21 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
     device.host->expect_step();
   } else {
     if (device.gone) add_seconds(seconds.lists, [&] { update_lists(domain); });
-    domain.sums.assign(domain.grid.patches.size(), {});
-    domain.face_parts.assign(domain.grid.walls.exist ? domain.grid.patches.size() : 0, {});
   }
   device.run->step(step, device.host.get(), device.report);
   device.ahead = true;
   device.gone = device.report.gone;
-  if (device.host) device.host->end_step();
-  // Those of a body stand with its first patch.
-  for (std::size_t p = domain.grid.patches.size(); p-- > 0;) {
-    const auto b = static_cast<std::size_t>(domain.grid.patches[p].body);
-    if (!is_on_device(domain.bodies[b]) ||
-        (p > 0 && domain.grid.patches[p - 1].body == domain.grid.patches[p].body))
-      continue;
-    FaceImpulses<D> none, &faces = domain.grid.walls.exist ? domain.face_parts[p] : none;
+  if (device.host)
+    device.host->end_step();
+  else
+    leave_sums(domain, {});
+  for (std::size_t b = 0; b < domain.bodies.size(); ++b) {
+    if (!is_on_device(domain.bodies[b])) continue;
+    domain.sums_of.push_back(static_cast<int>(b));
+    FaceImpulses<D> none,
+        &faces = domain.grid.walls.exist ? domain.face_parts.emplace_back() : none;
     take_sums(device.report.sums.data() + b * DeviceSum::count, device.report.fastest[b],
-              domain.gravity, domain.time_step, domain.sums[p], faces);
+              domain.gravity, domain.time_step, domain.sums.emplace_back(), faces);
   }
   if (device.report.negative_volume) domain.sums[0].stress.negative_volume = true;
   if (device.stress_first)

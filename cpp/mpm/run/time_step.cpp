@@ -31,7 +31,7 @@ double wave_speed(const Domain<D>& domain, const Patch<D>& patch, std::size_t ro
 
 template <int D>
 void probe_speeds(Domain<D>& domain) {
-  domain.sums_of_bodies = false;
+  domain.sums_of.clear();
   domain.sums.resize(domain.grid.patches.size());
   for (std::size_t p = 0; p < domain.sums.size(); ++p) {
     const Patch<D>& patch = domain.grid.patches[p];
@@ -67,7 +67,7 @@ void note_fastest(Domain<D>& domain) {
   for (ParticlePool<D>& pool : domain.pools) pool.fastest = 0.0;
   double of_all = 0.0;
   for (std::size_t p = 0; p < domain.sums.size(); ++p) {
-    double& fastest = domain.pool_of(domain.grid.patches[p]).fastest;
+    double& fastest = domain.pool_of(domain.bodies[body_of_sums(domain, p)]).fastest;
     fastest = std::max(fastest, domain.sums[p].stress.fastest);
     of_all = std::max(of_all, fastest);
   }
@@ -123,7 +123,7 @@ Limiter find_limiter(const Domain<D>& domain) {
         result = {particle_at(pool, patch.body, row), c, v};
     }
   };
-  if (domain.sums_of_bodies)  // a device's, which is alone
+  if (!domain.sums_of.empty())  // a device's, which is alone
     for (const Patch<D>& patch : domain.grid.patches) look_in(patch);
   else if (domain.sums.size() == domain.grid.patches.size())
     for (std::size_t p = 0; p < domain.sums.size(); ++p)

@@ -100,6 +100,7 @@ void activate_tiles(Domain<D>& domain) {
   sort_disordered(domain.grid, domain.bodies, domain.pools, domain.threads, domain.disorder,
                   domain.list_scratch);
   domain.sums.assign(domain.grid.patches.size(), {});
+  domain.sums_of.clear();
   domain.rigid_at_walls = Vector3::zero();
   domain.rigid_at_faces = {};
   if (domain.grid.walls.exist) domain.face_parts.assign(domain.grid.patches.size(), {});

@@ -21,8 +21,7 @@ template <int D>
 void add_part_energies(Domain<D>& domain) {
   for (std::size_t p = 0; p < domain.sums.size(); ++p) {
     const StressSums& stress = domain.sums[p].stress;
-    const auto body = static_cast<std::size_t>(domain.grid.patches[p].body);
-    domain.part_energies[domain.group_of[body]].add(
+    domain.part_energies[domain.group_of[body_of_sums(domain, p)]].add(
         {stress.internal, stress.plastic, stress.viscous});
   }
 }
