@@ -35,6 +35,9 @@ endif()
 
 # The code for a device, compiled for the processor, so that tests of it need no card
 # (tests/device/emulated). The core loads it where MPM3DPP_DEVICE_LIBRARY names it.
+if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")   # its fibers are switched by hand
+  return()
+endif()
 set(MPM_EMULATED "0;4" CACHE STRING "Strength models that the emulated device knows, by their places in StrengthModels, or ALL")
 set(strengths ${MPM_EMULATED})
 if(strengths STREQUAL "ALL")

@@ -8,6 +8,7 @@ shares with the host. All strength models, bases and transfers are compared by
 
 from __future__ import annotations
 
+import platform
 import re
 from pathlib import Path
 
@@ -17,6 +18,10 @@ import pytest
 from commands import write
 from mpm3dpp import Simulation, load_case, run_case
 from mpm3dpp.io import read_history, read_manifest
+
+pytestmark = pytest.mark.skipif(
+    platform.machine() not in ("x86_64", "AMD64"), reason="the emulation is for x86-64 alone"
+)
 
 STEEL = """
 [material.steel]
@@ -206,3 +211,22 @@ def test_a_run_goes_on_with_or_without_a_device(tmp_path: Path) -> None:
             expected = whole.column(body, quantity)
             assert np.array_equal(rest.column(body, quantity), expected)
             assert np.array_equal(back.column(body, quantity), expected)
+
+
+def test_auto_falls_back_to_the_processor(tmp_path: Path) -> None:
+    path = write(tmp_path, text(PUSHED, 2, scheme="usl"))
+    manifest = run_case(path, tmp_path / "out", threads=1, pictures=False, device="auto")
+    assert manifest.device == "cpu"
+
+
+def test_a_rigid_body_is_given_a_velocity(tmp_path: Path) -> None:
+    case = load_case(write(tmp_path, text(PRESSED, 2, basis="gimp", transfer="flip")))
+    both = [Simulation(case, threads=1, device=device) for device in ("cpu", "cuda")]
+    for simulation in both:
+        simulation.advance(4)
+        for body in ("stone", "plate"):
+            simulation.set_velocity(body, 2.0 * simulation.column(body, "velocity"))
+        simulation.advance(4)
+    for body in ("stone", "plate", "floor"):
+        cpu, cuda = (simulation.column(body, "velocity") for simulation in both)
+        assert np.array_equal(cpu, cuda)

@@ -31,6 +31,7 @@ struct DevicePool {
   int position = 0, affine = -1;        // first components
   const std::uint32_t* id = nullptr;    // of each row, its number in its body
   const std::uint32_t* body = nullptr;  // of each row, the number of its body; `no_body`: of none
+  bool is_there = true;                 // else the device needs none of its particles
   static constexpr std::uint32_t no_body = ~std::uint32_t{0};
 };
 
@@ -128,6 +129,7 @@ class DeviceRun {
   virtual const double* read_mapped() = 0;
   virtual double* mapped_of_host() = 0;
   virtual void write_mapped() = 0;
+  virtual void wait() = 0;                      // for all that has been started
   virtual std::size_t bytes() const = 0;        // of the device's memory
   virtual std::vector<DeviceTime> times() = 0;  // by kernel; makes steps slower once asked
 };

@@ -32,7 +32,6 @@ void HostPart<D>::of_rigid(void (*stage)(Domain<D>&)) {
 
 template <int D>
 void HostPart<D>::begin_step() {
-  update_lists(domain_);
   std::vector<std::uint32_t>& rigid = domain_.grid.partition.edge;
   rigid.clear();
   for (std::uint32_t p = 0; p < domain_.grid.patches.size(); ++p)
@@ -44,7 +43,7 @@ void HostPart<D>::begin_step() {
   of_rigid(find_velocities);
 }
 
-/// The factors of the dashpots, which of_rigid(exchange_forces) sums.
+/// The factors of the dashpots, before exchange_forces sums them.
 template <int D>
 void HostPart<D>::start_dashpots() {
   if (!domain_.grid.walls.absorb()) return;
@@ -66,10 +65,8 @@ template <int D>
 void HostPart<D>::make_forces() {
   if (!wants(NodeMoment::mapped)) of_rigid(map_forces);
   of_rigid(fold_forces);
-  if (domain_.grid.walls.absorb())
-    exchange_forces(domain_);  // for the dashpots
-  else
-    of_rigid(exchange_forces);
+  if (domain_.has_rigid() || domain_.has_prescribed() || domain_.grid.walls.absorb())
+    exchange_forces(domain_);
   nodes_.read(second_half);
   absorb_at_walls(domain_);
   contact_forces(domain_);
@@ -122,6 +119,17 @@ void HostPart<D>::add_works() {
     sums.load_first = work.first;
     sums.load_second = work.second;
     sums.force_work -= work.first;
+  });
+}
+
+template <int D>
+void HostPart<D>::with_nodes(NodeMoment moment) {
+  if (!begun_) add_seconds(seconds_.lists, [&] { update_lists(domain_); });
+  nodes_.wait();  // for the device, which is not the host's time
+  add_seconds(seconds_.stages, [&] {
+    if (!begun_) begin_step();
+    begun_ = true;
+    make_stages(moment);
   });
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // What the host makes of a step on a device, by its own stages: contact, bodies that do not deform,
-// of which the device knows nothing, and loads on surfaces. It has the places and volumes of the
-// particles, and the nodes where any of that happens.
+// of which the device knows nothing, loads, body forces and absorbing walls. It has the places and
+// volumes of the particles, and the nodes where any of that happens.
 #include <chrono>
 
 #include "mpm/device/node_traffic.hpp"
@@ -51,11 +51,7 @@ class HostPart : public HostStages {
   /// the host, so that it maps particles meanwhile.
   void expect_step() { begun_ = false; }
   bool wants(NodeMoment moment) const override;
-  void with_nodes(NodeMoment moment) override {
-    if (!begun_) add_seconds(seconds_.lists, [&] { begin_step(); });
-    begun_ = true;
-    add_seconds(seconds_.stages, [&] { make_stages(moment); });
-  }
+  void with_nodes(NodeMoment moment) override;
   void end_step();
 
  private:

@@ -14,8 +14,11 @@ bool is_loaded(const Domain<D>& domain, const Patch<D>& patch) {
 
 template <int D>
 void NodeTraffic<D>::choose() {
-  wanted_ = {};
-  loaded_ = {};
+  for (Nodes* const nodes : {&wanted_, &loaded_}) {
+    nodes->patches.clear();
+    nodes->places.clear();
+    nodes->count = 0;
+  }
   const bool absorbs = domain_.grid.walls.absorb();
   for (std::uint32_t p = 0; p < domain_.grid.patches.size(); ++p) {
     const Patch<D>& patch = domain_.grid.patches[p];
@@ -37,22 +40,27 @@ void NodeTraffic<D>::add(Nodes& nodes, std::uint32_t p) {
 }
 
 template <int D>
-void NodeTraffic<D>::take(const Nodes& nodes, const double* from, int half) {
+template <class F>
+void NodeTraffic<D>::for_each(const Nodes& nodes, int half, F&& f) {
   domain_.threads.for_each(nodes.patches.size(), [&](std::size_t k) {
     const NodeBlock<D> block = domain_.grid.block(nodes.patches[k]);
-    const double* of_block = from + std::size_t{half_record} * nodes.places[k].first;
-    for (int n = 0; n < block.count; ++n, of_block += half_record)
-      std::memcpy(block.records[n] + half * half_record, of_block, half_record * sizeof(double));
+    std::size_t place = std::size_t{half_record} * nodes.places[k].first;
+    for (int n = 0; n < block.count; ++n, place += half_record)
+      f(block.records[n] + half * half_record, place);
+  });
+}
+
+template <int D>
+void NodeTraffic<D>::take(const Nodes& nodes, const double* from, int half) {
+  for_each(nodes, half, [&](double* of_node, std::size_t place) {
+    std::memcpy(of_node, from + place, half_record * sizeof(double));
   });
 }
 
 template <int D>
 void NodeTraffic<D>::give(const Nodes& nodes, double* to, int half) {
-  domain_.threads.for_each(nodes.patches.size(), [&](std::size_t k) {
-    const NodeBlock<D> block = domain_.grid.block(nodes.patches[k]);
-    double* of_block = to + std::size_t{half_record} * nodes.places[k].first;
-    for (int n = 0; n < block.count; ++n, of_block += half_record)
-      std::memcpy(of_block, block.records[n] + half * half_record, half_record * sizeof(double));
+  for_each(nodes, half, [&](const double* of_node, std::size_t place) {
+    std::memcpy(to + place, of_node, half_record * sizeof(double));
   });
 }
 

@@ -34,6 +34,7 @@ class NodeTraffic {
   /// A half of the records of all wanted nodes, from the device to the blocks of their patches, and
   /// back.
   void read(int half) { take(wanted_, run_.read_nodes(half), half); }
+  void wait() { run_.wait(); }
   void write(int half) {
     give(wanted_, run_.nodes_of_host(half), half);
     run_.write_nodes(half);
@@ -52,6 +53,9 @@ class NodeTraffic {
     std::uint32_t count = 0;
   };
   void add(Nodes& nodes, std::uint32_t patch);
+  /// f(a half of a node's record, its place among those that are exchanged).
+  template <class F>
+  void for_each(const Nodes& nodes, int half, F&& f);
   void take(const Nodes& nodes, const double* from, int half);
   void give(const Nodes& nodes, double* to, int half);
 

@@ -77,6 +77,10 @@ std::string not_on_device(const Domain<D>& domain, Scheme scheme) {
   if (domain.grid.bonded) return "bonded bodies";
   if (domain.averages_volume()) return "volume averaging";
   if (domain.settles()) return "a run that settles";
+  if (std::ranges::none_of(domain.grid.patches, [&](const Patch<D>& patch) {
+        return patch.count > 0 && is_on_device(domain.body_of(patch));
+      }))
+    return "runs in which nothing deforms";
   return {};
 }
 
@@ -149,14 +153,14 @@ std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
       for (const std::uint32_t row : domain.pool_of(patch).rows(patch))
         body_of[pool_number(domain.bodies, patch.body)][row] =
             static_cast<std::uint32_t>(patch.body);
-  for (std::size_t m = 0; m < domain.pools.size(); ++m) {
-    ParticlePool<D>& pool = domain.pools[m];
-    problem.pools.push_back({&domain.materials[m], &pool.columns, pool.at, pool.position,
-                             pool.affine, pool.id.data(), body_of[m].data()});
-  }
   device->has_pool.assign(domain.pools.size(), false);
   for (const Body<D>& body : domain.bodies)
     if (is_on_device(body)) device->has_pool[static_cast<std::size_t>(body.material)] = true;
+  for (std::size_t m = 0; m < domain.pools.size(); ++m) {
+    ParticlePool<D>& pool = domain.pools[m];
+    problem.pools.push_back({&domain.materials[m], &pool.columns, pool.at, pool.position,
+                             pool.affine, pool.id.data(), body_of[m].data(), device->has_pool[m]});
+  }
   for (const Body<D>& body : domain.bodies)
     problem.bodies.push_back({body.material, body.mean_edge / domain.grid.cell_size});
   device->run = make_device_run(problem);

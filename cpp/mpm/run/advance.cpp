@@ -29,10 +29,10 @@ void begin_step(Domain<D>& domain, double time_after) {
   domain.time_after = time_after;
 }
 
-/// Look at all particles; those on a device only if it has seen something.
+/// Look at all particles; those on a device only if it has seen something. It has no rigid bodies.
 template <int D>
 void look_or_trust(Simulation<D>& simulation) {
-  if (simulation.device && simulation.device->report.odd == 0) {
+  if (simulation.device && simulation.device->report.odd == 0 && !simulation.domain.has_rigid()) {
     simulation.watch.looked = simulation.domain.step;
     return;
   }
@@ -46,12 +46,15 @@ void make_step(Simulation<D>& simulation, double time_after) {
   begin_step(domain, time_after);
   if (domain.settles()) begin_settling_step(simulation);
   const bool looks = (domain.step + 1) % look_every == 0;
-  if (simulation.device)
+  if (simulation.device) {
+    simulation.phase = Phase::broken;  // what a device has made half must not step
     step_on_device(*simulation.device, domain, looks);
-  else
+    simulation.phase = Phase::ready;
+  } else {
     run_stages(domain, simulation.stages, [&](std::size_t k) {
       simulation.timers.time(k, [&] { simulation.stages[k].run(domain); });
     });
+  }
   const bool settling = domain.settles();
   domain.time = time_after;
   ++domain.step;

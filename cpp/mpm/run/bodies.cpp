@@ -217,6 +217,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
     return;
   }
   require(simulation, Phase::ready, "");
+  sum_by_patch(domain);
   // The affine part is found on the nodes around the particles, which the last step has moved.
   if (is_affine(domain.transfer)) activate_tiles(domain);
   const double before = kinetic_energy(domain);

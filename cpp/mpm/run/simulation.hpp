@@ -53,7 +53,7 @@ template <int D>
 void require(const Simulation<D>& simulation, Phase phase, const char* sentence) {
   if (simulation.phase == Phase::broken)
     throw std::invalid_argument(
-        "preparing or restoring this simulation has failed: make a new one");
+        "preparing or restoring this simulation, or a step of it, has failed: make a new one");
   if (simulation.phase != phase) throw std::invalid_argument(sentence);
 }
 

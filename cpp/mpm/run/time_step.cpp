@@ -31,7 +31,7 @@ double wave_speed(const Domain<D>& domain, const Patch<D>& patch, std::size_t ro
 
 template <int D>
 void probe_speeds(Domain<D>& domain) {
-  domain.sums_of.clear();
+  sum_by_patch(domain);
   domain.sums.resize(domain.grid.patches.size());
   for (std::size_t p = 0; p < domain.sums.size(); ++p) {
     const Patch<D>& patch = domain.grid.patches[p];

@@ -6,6 +6,14 @@
 
 namespace mpm {
 
+/// Sums per patch again, of zero, where a device has made the last step.
+template <int D>
+void sum_by_patch(Domain<D>& domain) {
+  if (domain.sums_of.empty()) return;
+  domain.sums.assign(domain.grid.patches.size(), {});
+  domain.sums_of.clear();
+}
+
 /// Find the speeds that limit the time step from the present state; a step finds them by itself.
 template <int D>
 void probe_speeds(Domain<D>& domain);

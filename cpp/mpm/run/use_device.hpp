@@ -2,6 +2,7 @@
 // A run whose steps a device makes. The host keeps its bodies, its ledger and the time; it is given
 // the particles when somebody wants to read them.
 #include "mpm/run/simulation.hpp"
+#include "mpm/run/time_step.hpp"
 
 namespace mpm {
 
@@ -14,9 +15,11 @@ void use_device(Simulation<D>& simulation) {
   if (simulation.settings.grid.coarsening)
     throw std::invalid_argument(
         "steps on a device do not know grid.coarsening yet: run without one");
-  simulation.wants_device = true;
-  if (!simulation.device)
+  if (!simulation.device) {
     simulation.device = start_on_device(simulation.domain, simulation.settings.run.scheme);
+    probe_speeds(simulation.domain);  // which its lists have taken away
+  }
+  simulation.wants_device = true;
 }
 
 /// Give the host the particles as they are now, if a device has them.

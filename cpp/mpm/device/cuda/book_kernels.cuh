@@ -92,16 +92,22 @@ __global__ void find_left(OutflowBox<D> box, ListView<D> lists, const DeviceBody
 }
 
 /// Particles that somebody should look at: far too large or small, or beyond the box
-/// (run/watch.cpp).
+/// (run/watch.cpp). A block of threads a patch.
 template <int D>
-__global__ void count_odd(GridGeometry<D> grid, ParticleView<D> of, std::size_t rows,
-                          double per_mass, std::uint32_t* odd) {
+__global__ void count_odd(GridGeometry<D> grid, ListView<D> lists, const DeviceBody* bodies,
+                          const ParticleView<D>* pools, const double* densities,
+                          std::uint32_t* odd) {
   constexpr double beyond = 0.1;  // of a cell
-  const std::size_t row = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
+  const int pool = bodies[lists.body[blockIdx.x]].pool;
+  const ParticleView<D>& of = pools[pool];
+  const std::uint32_t end = lists.cell_begin[(blockIdx.x + 1) * Tile<D>::cell_count];
   bool found = false;
-  if (row < rows) {
-    const double J = of.volume[row] * per_mass / of.mass[row];
-    found = !(J > 0.01 && J < 100.0);
+  for (std::uint32_t g = lists.cell_begin[blockIdx.x * Tile<D>::cell_count] + threadIdx.x; g < end;
+       g += blockDim.x) {
+    const std::uint32_t row = lists.order[g];
+    const double J = of.volume[row] * densities[pool] / of.mass[row];
+    const bool failed = of.failed != nullptr && of.failed[row] > 0.0;
+    found = found || !(failed || (J > 0.01 && J < 100.0));
     for (int a = 0; grid.walls.exist && a < D; ++a) {
       const double x = (of.x[a][row] - grid.origin[a]) / grid.cell_size;
       found = found || !(x > -beyond && x < grid.walls.cells[a] + beyond);

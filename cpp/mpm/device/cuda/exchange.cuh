@@ -1,6 +1,6 @@
 #pragma once
-// Nodes between the device and the host, which makes the stages of contact: halves of the records
-// of the blocks that it has asked for, packed one behind another.
+// Nodes between the device and the host, which makes some stages: halves of the records of the
+// blocks that it has asked for, packed one behind another.
 #include <vector>
 
 #include "mpm/device/cuda/lists.cuh"
@@ -105,8 +105,9 @@ class NodeExchange {
   template <class Places>
   void write(const Places& places, int buffer) {
     if (nodes_ == 0) return;
-    check_cuda(cudaMemcpyAsync(on_device_.data(), packed_[buffer].data(),
-                               nodes_ * sizeof(HalfRecord), cudaMemcpyHostToDevice),
+    // It waits: the host may fill the buffer anew at once.
+    check_cuda(cudaMemcpy(on_device_.data(), packed_[buffer].data(), nodes_ * sizeof(HalfRecord),
+                          cudaMemcpyHostToDevice),
                "taking nodes of the host");
     launch(exchange_nodes<D, false, Places>, static_cast<unsigned>(count_), 128, blocks_.data(),
            places, on_device_.data());

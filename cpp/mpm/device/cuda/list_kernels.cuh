@@ -29,7 +29,7 @@ __global__ void read_keys(const std::uint64_t* keys, std::size_t count, std::int
   tile[k] = TileKey<D>::tile(keys[k]);
 }
 
-/// Where the tiles around each one are among keys; `mirrored` counts the offsets the other way.
+/// Where the tiles around each one are among keys.
 template <int D>
 __global__ void find_around(const std::uint64_t* tiles, std::size_t count,
                             const std::uint64_t* keys, std::size_t key_count, std::int32_t* to) {

@@ -152,12 +152,12 @@ template <int D>
 void DeviceLists<D>::start(const GridGeometry<D>& grid, const DeviceBody* bodies,
                            const ParticleView<D>* pools, DeviceArray<std::uint64_t>& keys,
                            DeviceArray<std::uint32_t>& rows, std::size_t count,
-                           std::size_t body_count, void* room) {
+                           std::size_t row_count, std::size_t body_count, void* room) {
   particles_ = count;
   counters_.allocate(4);
   check_cuda(cudaMemset(counters_.data(), 0, 4 * sizeof(std::uint32_t)), "making lists");
   order_.allocate(count);
-  next_order_.allocate(count);
+  next_order_.allocate(row_count);
   homeless_keys_.allocate(65536 + count / 64);
   spare_keys_.need(count);
   check_cuda(cudaMemcpy(spare_keys_.data(), keys.data(), count * sizeof(std::uint64_t),

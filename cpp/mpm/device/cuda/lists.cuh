@@ -17,10 +17,10 @@ class DeviceLists {
   explicit DeviceLists(bool reaches_before) : reaches_before_(reaches_before) {}
 
   /// Lists of particles that have been in none: `keys` and `rows` of their patches and their rows,
-  /// in any order. `bodies`, `pools` are those of ParticleStep.
+  /// in any order; of `row_count` rows in all pools. `bodies`, `pools` are those of ParticleStep.
   void start(const GridGeometry<D>& grid, const DeviceBody* bodies, const ParticleView<D>* pools,
              DeviceArray<std::uint64_t>& keys, DeviceArray<std::uint32_t>& rows, std::size_t count,
-             std::size_t body_count, void* room);
+             std::size_t row_count, std::size_t body_count, void* room);
   /// Get ready for a step's moves. `room`: eight bytes for each particle, until they are finished.
   MoveView begin_moves(void* room);
   /// After they have been made; the lists anew if that is needed. `changed`, `homeless`: what the
@@ -41,7 +41,7 @@ class DeviceLists {
   std::size_t node_tiles() const { return tiles_; }
   std::size_t particles() const { return particles_; }
   std::uint32_t* order() { return order_.data(); }
-  /// Room for a number of each entry, between steps.
+  /// Room for a number of each row, between steps.
   std::uint32_t* spare() { return next_order_.data(); }
   const std::uint32_t* patch_of_body() const { return patch_of_body_.data(); }
   const std::uint32_t* tile_of_body() const { return tile_of_body_.data(); }

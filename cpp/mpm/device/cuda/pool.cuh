@@ -47,7 +47,7 @@ PoolOnDevice<D> take_pool(const DevicePool& pool) {
   mine.at = pool.at;
   mine.position = pool.position;
   mine.affine = pool.affine;
-  mine.rows = pool.columns->rows();
+  mine.rows = pool.is_there ? pool.columns->rows() : 0;
   const int count = pool.columns->component_count();
   std::ptrdiff_t others = 0;
   for (int c = 0; c < count; ++c) mine.place.push_back(mine.is_own(c) ? -1 : others++);
@@ -123,8 +123,27 @@ struct EntryRange {
   std::size_t first, count;
 };
 
-/// The rows of all its columns in the order of its bodies' entries, which are numbered anew.
-/// `spare`: a column; `rows`: room for a number of each.
+/// Rows that are not among the first `listed` behind them; seldom, so by the host. Returns how many
+/// there are then.
+inline std::size_t add_unlisted(std::size_t count, std::size_t listed, std::uint32_t* rows) {
+  std::vector<std::uint32_t> of_host(count);
+  check_cuda(
+      cudaMemcpy(of_host.data(), rows, listed * sizeof(std::uint32_t), cudaMemcpyDeviceToHost),
+      "sorting columns");
+  std::vector<bool> is_listed(count, false);
+  for (std::size_t k = 0; k < listed; ++k) is_listed[of_host[k]] = true;
+  std::size_t next = listed;
+  for (std::size_t row = 0; row < count; ++row)
+    if (!is_listed[row]) of_host[next++] = static_cast<std::uint32_t>(row);
+  check_cuda(cudaMemcpy(rows + listed, of_host.data() + listed,
+                        (count - listed) * sizeof(std::uint32_t), cudaMemcpyHostToDevice),
+             "sorting columns");
+  return next;
+}
+
+/// The rows of all its columns in the order of its bodies' entries, which are numbered anew; behind
+/// them those of particles that are in no list. `spare`: a column; `rows`: room for a number of
+/// each.
 template <int D>
 void sort_pool(PoolOnDevice<D>& pool, const std::vector<EntryRange>& bodies, std::uint32_t* order,
                std::uint32_t* rows, DeviceArray<double>& spare) {
@@ -135,6 +154,8 @@ void sort_pool(PoolOnDevice<D>& pool, const std::vector<EntryRange>& bodies, std
                "sorting columns");
     next += body.count;
   }
+  const std::size_t listed = next;
+  if (listed < pool.rows) next = add_unlisted(pool.rows, listed, rows);
   for (std::size_t c = 0; c < pool.columns.size(); ++c) {
     double* const column = pool.column(static_cast<int>(c));
     launch(take_rows<double>, blocks_of(next), 256, column, rows, next, spare.data());

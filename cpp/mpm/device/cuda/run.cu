@@ -26,7 +26,7 @@ void RunOnDevice<D>::start(const DeviceProblem<D>& problem) {
   count.give(&found, 1);
   spare_column_.allocate(rows);
   if (found == 0) throw std::runtime_error("there is no particle for the device");
-  lists_.start(grid_, bodies_.data(), views_.data(), keys, of_entry, found, body_count_,
+  lists_.start(grid_, bodies_.data(), views_.data(), keys, of_entry, found, rows, body_count_,
                spare_column_.data());
   keys.release();
   of_entry.release();
@@ -70,15 +70,11 @@ void RunOnDevice<D>::sort_columns() {
     std::vector<std::uint32_t> first(body_count_ + 1);
     entries.give(first.data(), first.size());
     for (std::size_t p = 0; p < pools_.size(); ++p) {
+      if (pools_[p].rows == 0) continue;
       std::vector<EntryRange> bodies;
-      std::size_t listed = 0;
       for (std::size_t b = 0; b < body_count_; ++b)
-        if (host_bodies_[b].pool == static_cast<int>(p)) {
+        if (host_bodies_[b].pool == static_cast<int>(p))
           bodies.push_back({first[b], first[b + 1] - first[b]});
-          listed += bodies.back().count;
-        }
-      // Rows of particles that have been taken out would be lost.
-      if (listed < pools_[p].rows) continue;
       sort_pool(pools_[p], bodies, lists_.order(), lists_.spare(), spare_column_);
     }
   });
@@ -141,9 +137,8 @@ void RunOnDevice<D>::step(const DeviceStep<D>& step, HostStages* host, DeviceRep
     launch(find_left<D>, static_cast<unsigned>(lists_.patches()), 128, outflow_box_, lists_.view(),
            bodies_.data(), views_.data(), flags_.data() + 2);
   if (step.look)
-    for (PoolOnDevice<D>& pool : pools_)
-      launch(count_odd<D>, blocks_of(pool.rows), 256, grid_, mpm::view_of(pool, grid_.cell_size),
-             pool.rows, pool.material->density, flags_.data() + 1);
+    launch(count_odd<D>, static_cast<unsigned>(lists_.patches()), 128, grid_, lists_.view(),
+           bodies_.data(), views_.data(), densities_.data(), flags_.data() + 1);
   read(report);
   report.patches = lists_.patches();
   report.node_tiles = lists_.node_tiles();

@@ -26,6 +26,9 @@ class RunOnDevice : public DeviceRun<D> {
     body_count_ = problem.bodies.size();
     bodies_.take(problem.bodies.data(), body_count_);
     host_bodies_ = problem.bodies;
+    std::vector<double> densities;
+    for (const DevicePool& pool : problem.pools) densities.push_back(pool.material->density);
+    densities_.take(densities.data(), densities.size());
     views_.allocate(pools_.size());
     for (PoolOnDevice<D>& pool : pools_)
       pool.share = pool.grid_share =
@@ -56,6 +59,7 @@ class RunOnDevice : public DeviceRun<D> {
   const double* read_mapped() override { return mapped_.read(mapped(), 0); }
   double* mapped_of_host() override { return mapped_.of_host(0); }
   void write_mapped() override { mapped_.write(mapped(), 0); }
+  void wait() override { check_cuda(cudaDeviceSynchronize(), "making a step"); }
   std::size_t bytes() const override { return device_bytes(); }
   std::vector<DeviceTime> times() override { return timer_.take(); }
 
@@ -121,7 +125,7 @@ class RunOnDevice : public DeviceRun<D> {
   DeviceArray<ParticleView<D>> views_;
   DeviceArray<HalfRecord> partial_first_, partial_second_;
   DeviceArray<double> records_, node_sums_, patch_sums_, patch_fastest_, sums_, fastest_,
-      grid_shares_, spare_column_;
+      grid_shares_, densities_, spare_column_;
   DeviceArray<StepDamping> damping_;
   NodeExchange<D, 2> summed_;
   NodeExchange<D, 1> mapped_;
