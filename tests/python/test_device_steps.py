@@ -32,7 +32,7 @@ COPPER = """
 [material.copper]
 density = "8960 kg/m^3"
 eos = { mie_gruneisen = { c0 = "3940 m/s", s = 1.49, gamma0 = 1.96 } }
-failure = { plastic_strain = { limit = 0.01, action = "erode" } }
+failure = { plastic_strain = { limit = 0.004, action = "erode" } }
 [material.copper.strength.johnson_cook]
 E = "124 GPa"
 nu = 0.34
@@ -52,7 +52,7 @@ shape = { box = { lower = [0, 0, 0], upper = ["8 mm", "2 mm", "4 mm"] } }
 BALL = """
 [body.ball]
 material = "steel"
-shape = { sphere = { centre = ["5 mm", "4.2 mm", "2 mm"], radius = "2 mm" } }
+shape = { sphere = { centre = ["5 mm", "4 mm", "2 mm"], radius = "2 mm" } }
 velocity = ["30 m/s", "-400 m/s", 0]
 """
 IMPACT = STEEL + COPPER + PLATE.replace("PLATE", "copper") + BALL
@@ -107,7 +107,7 @@ basis = "{run.get("basis", "quadratic_bspline")}"
 box = {{ lower = [0, "-4 mm", 0], upper = ["8 mm", "12 mm", "6 mm"], walls = {{ {walls} }} }}
 outflow_box = {{ upper = ["20 mm", "7 mm", "20 mm"] }}
 [run]
-end_time = "{1.5 if dimension == 2 else 1.0} us"
+end_time = "{1.5 if dimension == 2 else 0.7} us"
 gravity = [0, "-1e6 m/s^2", 0]
 viscosity = {{}}
 {settings}
@@ -154,7 +154,7 @@ def same_on_both(folder: Path, case: str) -> None:
         run_case(path, out, threads=2, pictures=False, device=out.name)
     manifests = [read_manifest(out) for out in runs]
     assert [m["device"] for m in manifests] == ["cpu", "an emulated card"]
-    assert manifests[0]["steps"] == manifests[1]["steps"] > 10
+    assert manifests[0]["steps"] == manifests[1]["steps"] >= 8
     assert manifests[0]["result_hash"] == manifests[1]["result_hash"]
     cpu, cuda = (read_history(out) for out in runs)
     rows = np.searchsorted(cpu["time"], cuda["time"])
