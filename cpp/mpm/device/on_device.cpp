@@ -197,11 +197,10 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
     else if (device.host && device.ahead)
       read_places(device, domain);
   });
-  if (device.host) {
+  if (device.host)
     device.host->expect_step();
-  } else {
-    if (device.gone) add_seconds(seconds.lists, [&] { update_lists(domain); });
-  }
+  else if (device.gone)
+    add_seconds(seconds.lists, [&] { update_lists(domain); });
   device.run->step(step, device.host.get(), device.report);
   device.ahead = true;
   device.gone = device.report.gone;
