@@ -90,6 +90,7 @@ class NodeExchange {
     on_device_.need(nodes_);
   }
   const std::int32_t* tiles() const { return tiles_.data(); }
+  std::size_t blocks() const { return count_; }
   double* of_host(int buffer) { return reinterpret_cast<double*>(packed_[buffer].data()); }
 
   template <class Places>

@@ -86,6 +86,7 @@ NodeStep<D> RunOnDevice<D>::node_step(const DeviceStep<D>& step) {
           step.transfer == DeviceTransfer::aflip,
           grid_shares_.data(),
           step.damping.empty() ? nullptr : damping_.data(),
+          weighed_.data(),
           node_sums_.data(),
           lists_.node_tiles()};
 }
@@ -218,6 +219,30 @@ void RunOnDevice<D>::make_step(const DeviceStep<D>& step, HostStages* host) {
   Bases::with(grid_.basis, 0.5, [&]<class B>(const B&) { make_step<B>(step, host); });
 }
 
+template <int D>
+void RunOnDevice<D>::choose_mapped(const std::vector<NodeBlockPlace<D>>& blocks) {
+  mapped_.choose(blocks, [&](auto... of) { lists_.find_patches(of...); });
+  bool changed = false;
+  for (const NodeBlockPlace<D>& block : blocks)
+    changed = std::exchange(of_weighed_[static_cast<std::size_t>(block.body)], 1) == 0 || changed;
+  if (changed) weighed_.take(of_weighed_.data(), body_count_);
+}
+
+template <int D>
+const double* RunOnDevice<D>::read_mapped() {
+  // As on the host the weights come before what is added there: sums are rounded.
+  if (grid_.has_ghosts() && mapped_.blocks() > 0)
+    Bases::with(grid_.basis, 0.5, [&]<class B>(const B&) {
+      launch(weigh_mapped<B, D>, static_cast<unsigned>(mapped_.blocks()), 128, lists_.view(),
+             mapped_.tiles(), partial(), grid_, gravity_);
+    });
+  return mapped_.read(mapped(), 0);
+}
+
+template void RunOnDevice<2>::choose_mapped(const std::vector<NodeBlockPlace<2>>&);
+template void RunOnDevice<3>::choose_mapped(const std::vector<NodeBlockPlace<3>>&);
+template const double* RunOnDevice<2>::read_mapped();
+template const double* RunOnDevice<3>::read_mapped();
 template void RunOnDevice<2>::make_step(const DeviceStep<2>&, HostStages*);
 template void RunOnDevice<3>::make_step(const DeviceStep<3>&, HostStages*);
 

@@ -13,11 +13,12 @@ struct NodeStep {
   double time_step;
   Vec<double, D> gravity;
   bool has_gravity, ghosts;
-  bool takes_of_grid;          // do particles take the velocity of the grid?
-  bool other_at_fixed;         // all of it at fixed walls? (step/fixed_walls.hpp)
-  const double* grid_share;    // of each body
-  const StepDamping* damping;  // of each body's motion, or null
-  double* sums;                // [DeviceSum][node tile]
+  bool takes_of_grid;           // do particles take the velocity of the grid?
+  bool other_at_fixed;          // all of it at fixed walls? (step/fixed_walls.hpp)
+  const double* grid_share;     // of each body
+  const StepDamping* damping;   // of each body's motion, or null
+  const std::uint8_t* weighed;  // of each body: have its forces been weighed (`weigh_mapped`)?
+  double* sums;                 // [DeviceSum][node tile]
   std::size_t tiles;
 };
 
@@ -46,6 +47,49 @@ __device__ bool same_place(const Index<D>& x, const Index<D>& y) {
   bool same = true;
   for (int a = 0; a < D; ++a) same = same && x[a] == y[a];
   return same;
+}
+
+/// f(place in the block, image) for the nodes of a patch's block of which a node is the image, in
+/// the order of the block.
+template <class B, int D, class F>
+__device__ void for_each_imaged(const GridGeometry<D>& grid, const AnIndex<D>& node,
+                                const AnIndex<D>& in_block, F&& f) {
+  Index<D> way{};
+  const auto visit = [&] {
+    Index<D> other, at;
+    bool inside = true, same = true;
+    for (int a = 0; a < D; ++a) {
+      other[a] = node[a] + way[a];
+      at[a] = in_block[a] + way[a];
+      inside = inside && at[a] >= 0 && at[a] < Block<B, D>::edge;
+      same = same && way[a] == 0;
+    }
+    if (same || !inside) return;
+    const Image<D> image(grid, true, other);
+    if (image.exists && same_place<D>(image.image.node, node)) f(at, image.image);
+  };
+  if constexpr (D == 3)
+    for (way[2] = -2; way[2] <= 2; way[2] += 2)
+      for (way[1] = -2; way[1] <= 2; way[1] += 2)
+        for (way[0] = -2; way[0] <= 2; way[0] += 2) visit();
+  else
+    for (way[1] = -2; way[1] <= 2; way[1] += 2)
+      for (way[0] = -2; way[0] <= 2; way[0] += 2) visit();
+}
+
+/// Forces of a patch's block, of the node at a place in it: those that its particles have given
+/// with what gravity is to lack there (walls/mirror.hpp).
+template <class B, int D>
+__device__ void weigh(const GridGeometry<D>& grid, const Vec<double, D>& gravity,
+                      const HalfRecord* given, const AnIndex<D>& node, const AnIndex<D>& in_block,
+                      double* force) {
+  double weight[D] = {};
+  for_each_imaged<B, D>(grid, node, in_block, [&](const Index<D>& at, const WallImage<D>& image) {
+    const double mass = given[Block<B, D>::node(at)].x;
+    for (int a = 0; a < D; ++a)
+      if (image.turned >> a & 1u) weight[a] -= 2.0 * mass * gravity[a];
+  });
+  for (int a = 0; a < D; ++a) force[a] += weight[a];
 }
 
 template <int D>

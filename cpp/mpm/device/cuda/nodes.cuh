@@ -61,6 +61,26 @@ __device__ void advance_node(const NodeStep<D>& step, std::int32_t body, const A
     sums.add_vector(DeviceSum::damping_moment, cross_of(in_three(place), in_three(drag)));
 }
 
+/// Weigh the forces of some patches' blocks, a block of threads each, before the host adds to them.
+template <class B, int D>
+__global__ void weigh_mapped(ListView<D> lists, const std::int32_t* around, PartialView partial,
+                             GridGeometry<D> grid, Vec<double, D> gravity) {
+  const std::int32_t patch = around[blockIdx.x * Tile<D>::neighbours + Tile<D>::self];
+  if (patch < 0) return;
+  const std::size_t block = std::size_t(patch) * Block<B, D>::nodes;
+  const Index<D> first = grid.first_cell(lists.tile[patch]);
+  for (int n = threadIdx.x; n < Block<B, D>::nodes; n += blockDim.x) {
+    const Index<D> in_block = Block<B, D>::index(n);
+    Index<D> node;
+    for (int a = 0; a < D; ++a) node[a] = first[a] + Block<B, D>::low + in_block[a];
+    if (Image<D>(grid, true, node).exists) continue;
+    HalfRecord& record = partial.second[block + n];
+    double force[half_record] = {record.x, record.y, record.z, record.w};
+    weigh<B, D>(grid, gravity, partial.first + block, node, in_block, force);
+    record = {force[0], force[1], force[2], force[3]};
+  }
+}
+
 /// What is done with the forces of nodes when they have been summed: contact may change them before
 /// nodes are advanced.
 enum class Forces { none, summed, advanced };
@@ -111,38 +131,13 @@ __global__ void __launch_bounds__(64)
       // What the patch has given beyond walls to nodes of which this is the image; first what
       // gravity is to lack there, then what is folded, in the order of the block
       // (walls/mirror.hpp).
-      double weight[D] = {};
       const auto for_each_ghost = [&](auto&& use) {
-        Index<D> way{};
-        const auto visit = [&] {
-          Index<D> other, at;
-          bool inside = true, same = true;
-          for (int a = 0; a < D; ++a) {
-            other[a] = node[a] + way[a];
-            at[a] = in_block[a] + way[a];
-            inside = inside && at[a] >= 0 && at[a] < Block<B, D>::edge;
-            same = same && way[a] == 0;
-          }
-          if (same || !inside) return;
-          const Image<D> image(step.grid, true, other);
-          if (image.exists && same_place<D>(image.image.node, node)) use(at, image.image);
-        };
-        if constexpr (D == 3)
-          for (way[2] = -2; way[2] <= 2; way[2] += 2)
-            for (way[1] = -2; way[1] <= 2; way[1] += 2)
-              for (way[0] = -2; way[0] <= 2; way[0] += 2) visit();
-        else
-          for (way[1] = -2; way[1] <= 2; way[1] += 2)
-            for (way[0] = -2; way[0] <= 2; way[0] += 2) visit();
+        for_each_imaged<B, D>(step.grid, node, in_block, use);
       };
       double of_ghost[half];
       if constexpr (forces) {
-        for_each_ghost([&](const Index<D>& at, const WallImage<D>& image) {
-          read(partial.first, at, of_ghost);
-          for (int a = 0; a < D; ++a)
-            if (image.turned >> a & 1u) weight[a] -= 2.0 * of_ghost[0] * step.gravity[a];
-        });
-        for (int a = 0; a < D; ++a) r[a] += weight[a];
+        if (step.weighed[nodes.body[tile]] == 0)
+          weigh<B, D>(step.grid, step.gravity, partial.first + block, node, in_block, r);
         for_each_ghost([&](const Index<D>& at, const WallImage<D>& image) {
           read(partial.second, at, of_ghost);
           for (int a = 0; a < D; ++a) r[a] += image.component(of_ghost[a], a);

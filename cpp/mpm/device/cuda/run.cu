@@ -130,6 +130,7 @@ void RunOnDevice<D>::step(const DeviceStep<D>& step, HostStages* host, DeviceRep
       "making a step");
   check_cuda(cudaMemsetAsync(flags_.data(), 0, flag_count * sizeof(std::uint32_t)),
              "making a step");
+  gravity_ = step.gravity;
   if (!step.damping.empty()) damping_.take(step.damping.data(), step.damping.size());
   make_step(step, host);
   ++steps_;

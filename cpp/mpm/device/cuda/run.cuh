@@ -40,6 +40,8 @@ class RunOnDevice : public DeviceRun<D> {
     sums_.allocate(body_count_ * DeviceSum::count);
     fastest_.allocate(body_count_);
     grid_shares_.allocate(body_count_);
+    of_weighed_.assign(body_count_, 0);
+    weighed_.take(of_weighed_.data(), body_count_);
     flags_.allocate(flag_count);
     host_counters_.allocate(8);
     make_room();
@@ -53,10 +55,8 @@ class RunOnDevice : public DeviceRun<D> {
   const double* read_nodes(int half) override { return summed_.read(summed(half), half); }
   double* nodes_of_host(int half) override { return summed_.of_host(half); }
   void write_nodes(int half) override { summed_.write(summed(half), half); }
-  void choose_mapped(const std::vector<NodeBlockPlace<D>>& blocks) override {
-    mapped_.choose(blocks, [&](auto... of) { lists_.find_patches(of...); });
-  }
-  const double* read_mapped() override { return mapped_.read(mapped(), 0); }
+  void choose_mapped(const std::vector<NodeBlockPlace<D>>& blocks) override;
+  const double* read_mapped() override;
   double* mapped_of_host() override { return mapped_.of_host(0); }
   void write_mapped() override { mapped_.write(mapped(), 0); }
   void wait() override { check_cuda(cudaDeviceSynchronize(), "making a step"); }
@@ -127,6 +127,9 @@ class RunOnDevice : public DeviceRun<D> {
   DeviceArray<double> records_, node_sums_, patch_sums_, patch_fastest_, sums_, fastest_,
       grid_shares_, densities_, spare_column_;
   DeviceArray<StepDamping> damping_;
+  DeviceArray<std::uint8_t> weighed_;  // of each body, as of_weighed_
+  std::vector<std::uint8_t> of_weighed_;
+  Vec<double, D> gravity_ = Vec<double, D>::zero();  // of the step
   NodeExchange<D, 2> summed_;
   NodeExchange<D, 1> mapped_;
   DeviceArray<std::uint32_t> flags_;  // negative volume, odd, gone
