@@ -107,9 +107,14 @@ void def_acting(SimulationClass& simulation) {
            of_any([](auto& s, const std::vector<int>& bodies, const TimeFunction& mass,
                      const TimeFunction& local) { add_damping(s, bodies, mass, local); }),
            nb::arg("bodies"), nb::arg("mass"), nb::arg("local"))
-      .def("set_friction",
-           of_any([](auto& s, int a, int b, double mu) { set_pair_friction(s.domain, a, b, mu); }),
+      .def("set_friction", of_any([](auto& s, int a, int b, double mu) {
+             set_pair_law(s.domain, a, b, {mu, false});
+           }),
            nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"))
+      .def("bond", of_any([](auto& s, int a, int b) {
+             set_pair_law(s.domain, a, b, {0.0, true});
+           }),
+           nb::arg("body_a"), nb::arg("body_b"))
       .def("set_velocity", changing_any([](auto& s, int body, const Input& velocities) {
              set_velocity(s, body, span_of(velocities));
            }),

@@ -76,9 +76,12 @@ velocity = [0, "50 m/s", 0]
 body = "plate"
 side = "y_max"
 pressure = "10 MPa"
+[[contact.pair]]
+bodies = ["plate", "stone"]
+bonded = true
 """
 )
-"""A rigid body that moves freely, one that is led, of a material that others have, and a load."""
+"""A rigid body that sticks to another, one that is led, of a material that others have, a load."""
 PUSHED = (
     STEEL
     + PLATE.replace("PLATE", "steel")

@@ -41,12 +41,13 @@ struct ContactPair {
   bool gap_closed;        // the gap test, eq. (5), has passed
   bool active;            // closed, and approaching or at rest: forces may act
   bool loaded;            // an impulse of eqs. (6)-(7) or (11)-(15) has acted in this step
+  bool bonded;            // the two have one velocity at the node, in whatever direction
   double friction;        // coefficient of friction
   double gap;             // distance of the two surfaces along the normal [m]
   Vec<double, D> normal;  // from r to s
   ContactSpring spring;   // where Response::springs
   double normal_impulse;  // over this step [N s]
-  Vec<double, D> friction_impulse;  // on s, over this step [N s]
+  Vec<double, D> friction_impulse;  // on s, over this step [N s]; of a bond all of its impulse
   double friction_work;             // over this step, with the mean slip [J]
   double friction_first;            // the same with the slip at its start [J]
 

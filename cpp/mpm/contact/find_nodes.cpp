@@ -206,7 +206,7 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
   // The bits hold for this step only: masses have just been mapped.
   contact.masses.find(grid, threads);
   if (contact.cache.on) add_displacements(contact.cache, bodies.size());
-  const bool springs = settings.response == Response::springs;
+  const bool springs = settings.response == Response::springs, bonded = bonds(settings);
   const double widest = springs ? widest_support(grid, bodies) : 0.0;
   if (springs) {
     find_touches(contact, grid, bodies, pools, settings.gap_distance / grid.cell_size, threads);
@@ -224,8 +224,9 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
       count_overlapped(around, part);
       if (springs) {
         around.touches.gather(contact, t, widest);
-        // A rigid body's mass is spread over all nodes where it meets others.
-        if (!contact.has_free_rigid) around.overlapped &= around.touches.nodes();
+        // A rigid body's mass is spread over all nodes where it meets others, and bonds need no
+        // touch.
+        if (!contact.has_free_rigid && !bonded) around.overlapped &= around.touches.nodes();
       }
       contact.tiles[t].node_count = static_cast<std::uint8_t>(std::popcount(around.overlapped));
       if (around.overlapped == 0) {

@@ -86,8 +86,16 @@ ContactPair<D> new_pair(const std::vector<Body<D>>& bodies, const ContactSetting
   ContactPair<D> pair{};
   pair.r = r;
   pair.s = s;
-  pair.friction = friction(settings, bodies[static_cast<std::size_t>(sides[r].body)].group,
-                           bodies[static_cast<std::size_t>(sides[s].body)].group);
+  const Body<D>& body_r = bodies[static_cast<std::size_t>(sides[r].body)];
+  const Body<D>& body_s = bodies[static_cast<std::size_t>(sides[s].body)];
+  const PairLaw law = law_of(settings, body_r.group, body_s.group);
+  pair.friction = law.friction;
+  pair.gap = std::numeric_limits<double>::infinity();
+  // Two rigid bodies have no stress that could part them, nor hold them.
+  if (law.bonded && (body_r.deforms() || body_s.deforms())) {
+    pair.gap = 0.0;
+    pair.bonded = pair.gap_closed = pair.active = pair.loaded = true;
+  }
   return pair;
 }
 
@@ -119,8 +127,7 @@ void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
       ContactPair<D>& pair = *next++;
       pair = new_pair<D>(bodies, settings, sides, r, s);
-      pair.gap = std::numeric_limits<double>::infinity();
-      if (rigid(r) && rigid(s)) continue;  // they have no stress that could part them
+      if (pair.bonded || (rigid(r) && rigid(s))) continue;
       // Bodies that are well apart along the line between their centres need no better normal.
       // Only where the gap decides and the normal costs a fit. Where the centres coincide the gap
       // is infinite, and the pair is left here too.

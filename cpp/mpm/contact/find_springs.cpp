@@ -1,8 +1,6 @@
 // The pairs of bodies at a node, by the springs of those that overlap (decision 0054).
 #include "mpm/contact/find_springs.hpp"
 
-#include <limits>
-
 #include "mpm/contact/find_pairs.hpp"
 #include "mpm/contact/springs.hpp"
 
@@ -32,7 +30,7 @@ void find_springs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
       ContactPair<D>& pair = *next++;
       pair = new_pair<D>(bodies, settings, sides, r, s);
-      pair.gap = std::numeric_limits<double>::infinity();  // none touch
+      if (pair.bonded) continue;
       const std::int32_t body_r = sides[r].body, body_s = sides[s].body;
       const auto between = touches.between(body_r, body_s);
       if (between.empty()) continue;

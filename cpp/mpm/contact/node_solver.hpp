@@ -53,11 +53,12 @@ template <int D>
 struct SolvedPair {
   std::uint16_t r, s;                                        // sides, by number
   bool takes_part;                                           // else nothing acts between the two
+  bool bonded;                                               // it holds in whatever direction
   double friction;                                           // coefficient of friction
-  Vec<double, D> normal;                                     // from r to s
+  Vec<double, D> normal;                                     // from r to s; of a bond none
   SolvedSpring spring = {};                                  // else the approach is stopped
   double normal_impulse = 0.0;                               // [N s]
-  Vec<double, D> friction_impulse = Vec<double, D>::zero();  // on s [N s]
+  Vec<double, D> friction_impulse = Vec<double, D>::zero();  // on s [N s]; of a bond all of it
 };
 
 /// The bodies at a node and the pairs of them.
@@ -87,10 +88,11 @@ double normal_impulse_of(const SolvedPair<D>& pair, double m_rs, const Vec<doubl
 }
 
 /// Remove the approach of every pair that takes part, eqs. (6)-(7), working on
-/// SolvedSide::momentum; with friction, hold the tangential motion as far as Coulomb's law allows,
-/// eqs. (14)-(15). For two bodies this is the paper's formula; more are solved together by
-/// projected Gauss-Seidel in a fixed order, to 1e-12 of the largest impulse or to the rounding of
-/// their momenta. Pairs come in without impulses. Gives false if it stopped short of the tolerance.
+/// SolvedSide::momentum, and all relative motion of one that is bonded; with friction, hold the
+/// tangential motion as far as Coulomb's law allows, eqs. (14)-(15). For two bodies this is the
+/// paper's formula; more are solved together by projected Gauss-Seidel in a fixed order, to 1e-12
+/// of the largest impulse or to the rounding of their momenta. Pairs come in without impulses.
+/// Gives false if it stopped short of the tolerance.
 template <bool with_friction, int D>
 bool solve_node(NodeSolution<D>& node) {
   auto& [sides, pairs] = node;
@@ -121,6 +123,16 @@ bool solve_node(NodeSolution<D>& node) {
       SolvedSide<D>& s = sides[pair.s];
       const double m_rs = reduced_mass(r.mass, s.mass);
       const Vec<double, D> relative = r.working_velocity() - s.working_velocity();
+      if (pair.bonded) {
+        // Both then have the velocity that one field of their masses and momenta would have.
+        const Vec<double, D> hold = m_rs * relative;
+        change = std::max(change, norm(hold));
+        pair.friction_impulse += hold;
+        scale = std::max(scale, norm(pair.friction_impulse));
+        r.momentum -= hold;
+        s.momentum += hold;
+        continue;
+      }
       const double normal = normal_impulse_of(pair, m_rs, relative);
       Vec<double, D> impulse = (normal - pair.normal_impulse) * pair.normal;
       change = std::max(change, std::abs(normal - pair.normal_impulse));

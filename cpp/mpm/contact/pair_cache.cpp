@@ -109,6 +109,7 @@ bool reuse_pairs(Contact<D>& contact, const std::vector<Body<D>>& bodies,
   bool holds = true;
   for_each_cached(part, node, &part.cached[node.first_pair],
                   [&](ContactPair<D>& pair, CachedPair<D>& cached, double sign) {
+                    if (pair.bonded) return;
                     pair.normal = sign * cached.normal;
                     // Without contact the velocities of now are those with which the last step
                     // ended.

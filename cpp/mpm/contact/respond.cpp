@@ -22,7 +22,8 @@ NodeSolution<D>& solution_of(std::span<const BodyAtNode<D>> sides,
   }
   solution.pairs.clear();
   for (const ContactPair<D>& pair : pairs)
-    solution.pairs.push_back({pair.r, pair.s, takes_part(pair), pair.friction, pair.normal});
+    solution.pairs.push_back(
+        {pair.r, pair.s, takes_part(pair), pair.bonded, pair.friction, pair.normal});
   return solution;
 }
 
@@ -73,6 +74,41 @@ void write(TileGrid<D>& grid, const ContactPart<D>& part, const BodyAtNode<D>& s
   });
 }
 
+/// Solve for the velocities at number `at` of the records where a pair is stopped, from what
+/// `from(side)` gives; then f(sides, pairs, solution).
+template <int D, class From, class F>
+void for_each_stopped(Contact<D>& contact, TileGrid<D>& grid, Stopped stopped, int at, From&& from,
+                      Threads& threads, F&& f) {
+  const auto acts = [&](const ContactPair<D>& pair) {
+    return stopped == Stopped::all ? pair.gap_closed : pair.bonded;
+  };
+  for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, const ContactNode& node) {
+    const auto sides = part.sides_of(node);
+    const auto pairs = part.pairs_of(node);
+    if (std::ranges::none_of(pairs, acts)) return;
+    auto& solution = solution_of<D>(sides, pairs, acts);
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      solution.sides[k].start(from(sides[k]), Vec<double, D>::zero());
+    solve<false>(contact, solution);
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      write(grid, part, sides[k], solution.sides[k].end_velocity(), at);
+    f(sides, pairs, solution);
+  });
+}
+
+/// f(part, side) for the bodies at these nodes that are bonded to none there.
+template <int D, class F>
+void for_each_free_side(Contact<D>& contact, TileGrid<D>& grid, Threads& threads, F&& f) {
+  for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, const ContactNode& node) {
+    const auto sides = part.sides_of(node);
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      if (std::ranges::none_of(part.pairs_of(node), [&](const ContactPair<D>& pair) {
+            return pair.bonded && (pair.r == k || pair.s == k);
+          }))
+        f(part, sides[k]);
+  });
+}
+
 /// What the velocity of a prescribed body at a node changes by in this step [m/s].
 template <int D>
 Vec<double, D> prescribed_increment(const Contact<D>& contact, const TileGrid<D>& grid,
@@ -92,6 +128,10 @@ double take_impulses(TileGrid<D>& grid, std::span<const BodyAtNode<D>> sides,
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     ContactPair<D>& pair = pairs[k];
     const SolvedPair<D>& solved = solution.pairs[k];
+    pair.normal_impulse = solved.normal_impulse;
+    pair.friction_impulse = solved.friction_impulse;
+    pair.friction_first = pair.friction_work = 0.0;
+    if (pair.bonded) continue;  // they do not slip
     // A constant force over the step meets a slip that changes linearly: the mean of both ends
     // gives its work exactly. The impulse is that on s and the slip is of r against s: what
     // friction takes is positive.
@@ -103,8 +143,6 @@ double take_impulses(TileGrid<D>& grid, std::span<const BodyAtNode<D>> sides,
     // By either of the two solutions: a pair that (6)-(7) have pushed is recorded even if no force
     // follows.
     pair.loaded = pair.loaded || solved.normal_impulse > 0.0;
-    pair.normal_impulse = solved.normal_impulse;
-    pair.friction_impulse = solved.friction_impulse;
     pair.friction_work = 0.5 * (pair.friction_first + dot(solved.friction_impulse, end));
     friction_first += pair.friction_first;
   }
@@ -133,31 +171,27 @@ void start_forces(const Contact<D>& contact, TileGrid<D>& grid, const ContactSte
 }  // namespace
 
 template <int D>
-void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
-  for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, const ContactNode& node) {
-    const auto sides = part.sides_of(node);
-    const auto pairs = part.pairs_of(node);
-    auto& solution =
-        solution_of<D>(sides, pairs, [](const ContactPair<D>& pair) { return pair.gap_closed; });
-    // Without forces: eqs. (6)-(7) act on what was mapped.
-    for (std::size_t k = 0; k < sides.size(); ++k)
-      solution.sides[k].start(sides[k].mapped, Vec<double, D>::zero());
-    solve<false>(contact, solution);
-    for (std::size_t k = 0; k < sides.size(); ++k)
-      write(grid, part, sides[k], solution.sides[k].end_velocity(), velocity_at);
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      ContactPair<D>& pair = pairs[k];
-      // Of pairs that take no part the impulse is zero, so that they end up neither active nor
-      // loaded.
-      const bool pushed = solution.pairs[k].normal_impulse > 0.0;
-      const Vec<double, D> relative =
-          solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
-      // Bodies at rest against each other touch too, whatever the rounding of their velocities.
-      const double rounding = 1e-13 * (norm(sides[pair.r].mapped) + norm(sides[pair.s].mapped));
-      pair.active = pair.gap_closed && (pushed || dot(relative, pair.normal) >= -rounding);
-      pair.loaded = pushed;
-    }
-  });
+void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Stopped stopped, Threads& threads) {
+  // Without forces: eqs. (6)-(7) act on what was mapped.
+  const auto mapped = [](const BodyAtNode<D>& side) { return side.mapped; };
+  for_each_stopped(
+      contact, grid, stopped, velocity_at, mapped, threads,
+      [&](std::span<const BodyAtNode<D>> sides, std::span<ContactPair<D>> pairs,
+          const NodeSolution<D>& solution) {
+        for (std::size_t k = 0; k < pairs.size(); ++k) {
+          ContactPair<D>& pair = pairs[k];
+          if (pair.bonded || stopped == Stopped::bonded) continue;
+          // Of pairs that take no part the impulse is zero, so that they end up neither active nor
+          // loaded.
+          const bool pushed = solution.pairs[k].normal_impulse > 0.0;
+          const Vec<double, D> relative =
+              solution.sides[pair.r].end_velocity() - solution.sides[pair.s].end_velocity();
+          // Bodies at rest against each other touch too, whatever the rounding of their velocities.
+          const double rounding = 1e-13 * (norm(sides[pair.r].mapped) + norm(sides[pair.s].mapped));
+          pair.active = pair.gap_closed && (pushed || dot(relative, pair.normal) >= -rounding);
+          pair.loaded = pushed;
+        }
+      });
 }
 
 template <int D>
@@ -208,55 +242,53 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const ContactSte
 }
 
 template <int D>
-void respond_to_remapped(Contact<D>& contact, TileGrid<D>& grid, bool stop_approach,
-                         Threads& threads) {
+void find_slip(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
   for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, const ContactNode& node) {
     const auto sides = part.sides_of(node);
     // The slip at the end of the step is that of the particles. The nodes' own increments, forces
     // over masses that may be next to nothing, reach the particles only in part.
     for (ContactPair<D>& pair : part.pairs_of(node)) {
+      if (pair.bonded) continue;
       const Vec<double, D> slip =
           read(grid, sides[pair.r], remapped_at) - read(grid, sides[pair.s], remapped_at);
       pair.friction_work = 0.5 * (pair.friction_first + dot(pair.friction_impulse, slip));
     }
-    if (!stop_approach) return;
-    // The impulses of this solution act on the velocities that strain the material only; they are
-    // not contact forces.
-    auto& solution = solution_of<D>(sides, part.pairs_of(node),
-                                    [](const ContactPair<D>& pair) { return pair.gap_closed; });
-    for (std::size_t k = 0; k < sides.size(); ++k)
-      solution.sides[k].start(read(grid, sides[k], remapped_at), Vec<double, D>::zero());
-    solve<false>(contact, solution);
-    for (std::size_t k = 0; k < sides.size(); ++k)
-      write(grid, part, sides[k], solution.sides[k].end_velocity(), remapped_at);
   });
 }
 
 template <int D>
+void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Stopped stopped,
+                              Threads& threads) {
+  // The impulses of this solution act on the velocities that strain the material only; they are not
+  // contact forces.
+  const auto remapped = [&](const BodyAtNode<D>& side) { return read(grid, side, remapped_at); };
+  for_each_stopped(contact, grid, stopped, remapped_at, remapped, threads, [](auto&&...) {});
+}
+
+template <int D>
 void release_particles(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
-  for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, const ContactNode& node) {
-    for (BodyAtNode<D>& side : part.sides_of(node)) {
-      const Vec<double, D> free = side.mapped + read(grid, side, increment_at);
-      side.mapped = read(grid, side, velocity_at);  // kept there until `restore_nodes`
-      write(grid, part, side, free, velocity_at);
-    }
+  for_each_free_side(contact, grid, threads, [&](ContactPart<D>& part, BodyAtNode<D>& side) {
+    const Vec<double, D> free = side.mapped + read(grid, side, increment_at);
+    side.mapped = read(grid, side, velocity_at);  // kept there until `restore_nodes`
+    write(grid, part, side, free, velocity_at);
   });
 }
 
 template <int D>
 void restore_nodes(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
-  for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, const ContactNode& node) {
-    for (const BodyAtNode<D>& side : part.sides_of(node))
-      write(grid, part, side, side.mapped, velocity_at);
+  for_each_free_side(contact, grid, threads, [&](ContactPart<D>& part, BodyAtNode<D>& side) {
+    write(grid, part, side, side.mapped, velocity_at);
   });
 }
 
-template void remove_approach<2>(Contact<2>&, TileGrid<2>&, Threads&);
-template void remove_approach<3>(Contact<3>&, TileGrid<3>&, Threads&);
+template void remove_approach<2>(Contact<2>&, TileGrid<2>&, Stopped, Threads&);
+template void remove_approach<3>(Contact<3>&, TileGrid<3>&, Stopped, Threads&);
 template void add_contact_forces<2>(Contact<2>&, TileGrid<2>&, const ContactStep<2>&, Threads&);
 template void add_contact_forces<3>(Contact<3>&, TileGrid<3>&, const ContactStep<3>&, Threads&);
-template void respond_to_remapped<2>(Contact<2>&, TileGrid<2>&, bool, Threads&);
-template void respond_to_remapped<3>(Contact<3>&, TileGrid<3>&, bool, Threads&);
+template void find_slip<2>(Contact<2>&, TileGrid<2>&, Threads&);
+template void remove_remapped_approach<2>(Contact<2>&, TileGrid<2>&, Stopped, Threads&);
+template void find_slip<3>(Contact<3>&, TileGrid<3>&, Threads&);
+template void remove_remapped_approach<3>(Contact<3>&, TileGrid<3>&, Stopped, Threads&);
 template void release_particles<2>(Contact<2>&, TileGrid<2>&, Threads&);
 template void release_particles<3>(Contact<3>&, TileGrid<3>&, Threads&);
 template void restore_nodes<2>(Contact<2>&, TileGrid<2>&, Threads&);

@@ -3,9 +3,22 @@
 
 namespace mpm {
 
+/// Whose velocities contact changes before forces do.
+enum class Stopped {
+  all,    // pairs that approach, eqs. (6)-(7), and bonded ones
+  bonded  // those alone: springs push with forces
+};
+inline Stopped stopped_by(const ContactSettings& settings) {
+  return settings.response == Response::impulses ? Stopped::all : Stopped::bonded;
+}
+/// Any at all?
+inline bool changes_velocities(const ContactSettings& settings) {
+  return stopped_by(settings) == Stopped::all || bonds(settings);
+}
+
 /// Remove approaching momentum, eqs. (6)-(7), from the nodal velocities.
 template <int D>
-void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
+void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Stopped stopped, Threads& threads);
 
 /// Add the contact forces, eqs. (11)-(15), to the nodal forces.
 template <int D>
@@ -13,16 +26,19 @@ void add_contact_forces(Contact<D>& contact, TileGrid<D>& grid, const ContactSte
                         Threads& threads);
 
 /// Between these two the nodes have the velocity without what (6)-(7) have changed: particles that
-/// take the velocity of the grid are to take no part in it (decision 0046).
+/// take the velocity of the grid are to take no part in it (decision 0046). Bonded bodies keep
+/// theirs, which is that of one field. Not needed with springs.
 template <int D>
 void release_particles(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
 template <int D>
 void restore_nodes(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
 
-/// The slip of the remapped velocities, for the work of friction; remove the approach from them
-/// (3.6, step 10) if it is to be stopped.
+/// The slip of the remapped velocities, for the work of friction.
 template <int D>
-void respond_to_remapped(Contact<D>& contact, TileGrid<D>& grid, bool stop_approach,
-                         Threads& threads);
+void find_slip(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
+/// Remove the approach from the remapped velocities (3.6, step 10).
+template <int D>
+void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Stopped stopped,
+                              Threads& threads);
 
 }  // namespace mpm

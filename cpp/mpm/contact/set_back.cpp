@@ -7,12 +7,15 @@ namespace mpm {
 
 template <int D>
 void set_back_surfaces(Contact<D>& contact, const std::vector<Body<D>>& bodies,
-                       std::vector<ParticlePool<D>>& pools, double cell_size) {
+                       std::vector<ParticlePool<D>>& pools, const ContactSettings& settings,
+                       double cell_size) {
   // [cells]; positions are good to 1e-10 at 2^19 cells: rounding must not choose what pushes at
   // once.
   constexpr double beyond = 1e-9;
   for (const auto& touches : contact.touches)
     for (const Touch<D>& touch : touches) {
+      const auto group = [&](std::int32_t b) { return bodies[static_cast<std::size_t>(b)].group; };
+      if (law_of(settings, group(touch.body), group(touch.other)).bonded) continue;
       ParticlePool<D>& pool = pools[pool_number(bodies, touch.body)];
       double& share = pool.columns.component(pool.set_back)[pool.order[touch.entry]];
       if (share == 0.0) ++contact.set_back.particles;
@@ -23,8 +26,8 @@ void set_back_surfaces(Contact<D>& contact, const std::vector<Body<D>>& bodies,
 }
 
 template void set_back_surfaces<2>(Contact<2>&, const std::vector<Body<2>>&,
-                                   std::vector<ParticlePool<2>>&, double);
+                                   std::vector<ParticlePool<2>>&, const ContactSettings&, double);
 template void set_back_surfaces<3>(Contact<3>&, const std::vector<Body<3>>&,
-                                   std::vector<ParticlePool<3>>&, double);
+                                   std::vector<ParticlePool<3>>&, const ContactSettings&, double);
 
 }  // namespace mpm

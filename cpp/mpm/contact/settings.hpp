@@ -12,6 +12,12 @@
 
 namespace mpm {
 
+/// What is chosen for the bodies of two groups.
+struct PairLaw {
+  double friction = 0.0;  // coefficient of friction
+  bool bonded = false;    // they stick together wherever they meet
+};
+
 struct ContactSettings {
   bool enabled = true;
   bool bonded = false;
@@ -22,7 +28,7 @@ struct ContactSettings {
   double gap_distance = 0.0;  // D of eq. (5)
   double normal_refresh_distance =
       0.0;  // beyond a quarter a pair found apart could meet along another normal
-  std::vector<std::pair<std::uint64_t, double>> pair_friction;  // by pair_key of groups, sorted
+  std::vector<std::pair<std::uint64_t, PairLaw>> pair_laws;  // by pair_key of groups, sorted
 
   static constexpr std::string_view table = "contact";
   using Self = ContactSettings;
@@ -61,25 +67,29 @@ inline std::uint64_t pair_key(int a, int b) {
   return low << 32 | high;
 }
 
-inline void set_friction(ContactSettings& settings, int a, int b, double mu) {
+inline void set_law(ContactSettings& settings, int a, int b, const PairLaw& law) {
   const std::uint64_t key = pair_key(a, b);
-  auto& list = settings.pair_friction;
-  const auto at = std::lower_bound(list.begin(), list.end(), key,
-                                   [](const auto& x, std::uint64_t k) { return x.first < k; });
-  if (at != list.end() && at->first == key) {
-    at->second = mu;
-  } else {
-    list.insert(at, {key, mu});
-  }
+  auto& list = settings.pair_laws;
+  const auto at =
+      std::ranges::lower_bound(list, key, {}, &std::pair<std::uint64_t, PairLaw>::first);
+  if (at != list.end() && at->first == key)
+    at->second = law;
+  else
+    list.insert(at, {key, law});
 }
 
-/// Coefficient between bodies of two groups, or between bodies of one.
-inline double friction(const ContactSettings& settings, int a, int b) {
+/// Between bodies of two groups, or between bodies of one.
+inline PairLaw law_of(const ContactSettings& settings, int a, int b) {
   const std::uint64_t key = pair_key(a, b);
-  const auto& list = settings.pair_friction;
-  const auto at = std::lower_bound(list.begin(), list.end(), key,
-                                   [](const auto& x, std::uint64_t k) { return x.first < k; });
-  return at != list.end() && at->first == key ? at->second : settings.friction;
+  const auto& list = settings.pair_laws;
+  const auto at =
+      std::ranges::lower_bound(list, key, {}, &std::pair<std::uint64_t, PairLaw>::first);
+  return at != list.end() && at->first == key ? at->second : PairLaw{settings.friction, false};
+}
+
+/// Are any pairs bonded?
+inline bool bonds(const ContactSettings& settings) {
+  return std::ranges::any_of(settings.pair_laws, [](const auto& x) { return x.second.bonded; });
 }
 
 }  // namespace mpm

@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "mpm/contact/respond.hpp"
 #include "mpm/loads/body_forces.hpp"
 #include "mpm/loads/carry_loads.hpp"
 #include "mpm/step/stages.hpp"
@@ -58,7 +59,7 @@ template <int D>
 void HostPart<D>::make_velocities() {
   nodes_.read(first_half);
   contact_momentum(domain_);
-  nodes_.write(first_half);
+  if (changes_velocities(domain_.contact_settings)) nodes_.write(first_half);
 }
 
 template <int D>
@@ -192,7 +193,7 @@ void HostPart<D>::make_stages(NodeMoment moment) {
       of_rigid(find_remapped);
       nodes_.read(second_half);
       contact_remapped(domain_);
-      nodes_.write(second_half);
+      if (changes_velocities(domain_.contact_settings)) nodes_.write(second_half);
       carry<remapped_at>(domain_.time_step);
   }
 }

@@ -165,8 +165,10 @@ std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
     problem.bodies.push_back({body.material, body.mean_edge / domain.grid.cell_size});
   device->run = make_device_run(problem);
   if (HostPart<D>::needed(domain))
-    device->host = std::make_unique<HostPart<D>>(*device->run, domain, device->seconds,
-                                                 domain.has_contact() && takes_of_grid(domain));
+    // Springs leave the velocities as they are, and so do not keep them from particles.
+    device->host = std::make_unique<HostPart<D>>(
+        *device->run, domain, device->seconds,
+        domain.has_contact() && !domain.has_springs() && takes_of_grid(domain));
   return device;
 }
 

@@ -197,12 +197,12 @@ void set_group(Simulation<D>& simulation, int number, int first) {
 }
 
 template <int D>
-void set_pair_friction(Domain<D>& domain, int a, int b, double mu) {
-  if (!(mu >= 0.0 && std::isfinite(mu)))
+void set_pair_law(Domain<D>& domain, int a, int b, const PairLaw& law) {
+  if (!(law.friction >= 0.0 && std::isfinite(law.friction)))
     throw std::invalid_argument("friction must be a finite number >= 0");
   if (!leads_group(domain, a) || !leads_group(domain, b))
-    throw std::invalid_argument("friction needs two groups, each given by its first body");
-  set_friction(domain.contact_settings, a, b, mu);
+    throw std::invalid_argument("a pair needs two groups, each given by its first body");
+  set_law(domain.contact_settings, a, b, law);
 }
 
 template <int D>
@@ -272,8 +272,8 @@ template void set_motion<3>(Simulation<3>&, int, const std::array<TimeFunction, 
                             const std::array<TimeFunction, 3>&, const std::array<double, 3>&);
 template void set_group<2>(Simulation<2>&, int, int);
 template void set_group<3>(Simulation<3>&, int, int);
-template void set_pair_friction<2>(Domain<2>&, int, int, double);
-template void set_pair_friction<3>(Domain<3>&, int, int, double);
+template void set_pair_law<2>(Domain<2>&, int, int, const PairLaw&);
+template void set_pair_law<3>(Domain<3>&, int, int, const PairLaw&);
 template void set_velocity<2>(Simulation<2>&, int, std::span<const double>);
 template void set_velocity<3>(Simulation<3>&, int, std::span<const double>);
 template void set_gravity<2>(Domain<2>&, const std::array<TimeFunction, 3>&);

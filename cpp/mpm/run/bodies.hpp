@@ -52,9 +52,9 @@ void set_motion(Simulation<D>& simulation, int body, const std::array<TimeFuncti
 /// and group_pairs() sums over them. Every other body is a group by itself.
 template <int D>
 void set_group(Simulation<D>& simulation, int body, int first);
-/// Friction between the bodies of two groups, each given by its first body; of one, if a == b.
+/// What holds between the bodies of two groups, each given by its first body; of one, if a == b.
 template <int D>
-void set_pair_friction(Domain<D>& domain, int a, int b, double mu);
+void set_pair_law(Domain<D>& domain, int a, int b, const PairLaw& law);
 /// Of the particles of a body, (n, D) row by row; between two steps the ledger takes the work.
 template <int D>
 void set_velocity(Simulation<D>& simulation, int body, std::span<const double> velocities);

@@ -20,7 +20,8 @@ void start_contact(Domain<D>& domain) {
   if (!domain.has_springs()) return;
   find_touches(domain.contact, domain.grid, domain.bodies, domain.pools,
                domain.contact_settings.gap_distance / domain.grid.cell_size, domain.threads);
-  set_back_surfaces(domain.contact, domain.bodies, domain.pools, domain.grid.cell_size);
+  set_back_surfaces(domain.contact, domain.bodies, domain.pools, domain.contact_settings,
+                    domain.grid.cell_size);
 }
 
 template void add_contact_columns<2>(Domain<2>&);

@@ -20,12 +20,6 @@ void reflect(Domain<D>& domain, int at) {
   });
 }
 
-/// Springs push with forces alone, and leave the velocities as they are.
-template <int D>
-bool stops_approach(const Domain<D>& domain) {
-  return domain.contact_settings.response == Response::impulses;
-}
-
 }  // namespace
 
 template <int D>
@@ -35,8 +29,8 @@ void contact_momentum(Domain<D>& domain) {
   // once a step, and hold for forces and remapped velocities too, as particles move last.
   find_nodes(domain.contact, domain.grid, domain.bodies, domain.pools, domain.contact_settings,
              domain.time_step, domain.threads);
-  if (!stops_approach(domain)) return;
-  remove_approach(domain.contact, domain.grid, domain.threads);
+  if (!changes_velocities(domain.contact_settings)) return;
+  remove_approach(domain.contact, domain.grid, stopped_by(domain.contact_settings), domain.threads);
   exchange_responses(domain.contact, domain.grid, velocity_at);
   reflect(domain, velocity_at);
 }
@@ -70,10 +64,12 @@ void restore_contact(Domain<D>& domain) {
 template <int D>
 void contact_remapped(Domain<D>& domain) {
   if (!domain.has_contact()) return;
+  find_slip(domain.contact, domain.grid, domain.threads);
+  if (!changes_velocities(domain.contact_settings)) return;
   // The particles have kept v_i when they were advanced by increments, so what approach (6)-(7)
   // took from the nodes is in the remapped velocities again (3.6, step 10: "readjust").
-  respond_to_remapped(domain.contact, domain.grid, stops_approach(domain), domain.threads);
-  if (!stops_approach(domain)) return;
+  remove_remapped_approach(domain.contact, domain.grid, stopped_by(domain.contact_settings),
+                           domain.threads);
   exchange_responses(domain.contact, domain.grid, remapped_at);
   reflect(domain, remapped_at);
 }

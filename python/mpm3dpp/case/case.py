@@ -9,7 +9,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import accumulate, combinations_with_replacement
+from itertools import accumulate
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -32,6 +32,7 @@ from .detonation import Detonation
 from .grid import Grid
 from .loads import Load
 from .material import Material as Material  # also for those who import it from here
+from .pairs import listed_pairs
 from .parts import Contact, Output, Run
 from .probe import Probe
 from .schema import schema_of
@@ -232,20 +233,17 @@ class Case(CaseModel):
         return (0.0, 0.0) if found is None else (found.quadratic, found.linear)
 
     def frictions(self) -> list[tuple[int, int, float]]:
-        """Return (body, body, coefficient) of the pairs listed in `contact.pair`, a <= b.
+        """Return (body, body, coefficient) of the pairs with a friction in `contact.pair`, a <= b.
 
         Bodies are numbered; an entry of `grains` is given by its first. a == b is for the pairs
         among its own.
         """
-        parts, firsts = self.parts(), self.first_bodies()
-        found = {}
-        for pair in sorted(self.contact.pair, key=lambda p: p.bodies is not None):
-            for (a, first), (b, second) in combinations_with_replacement(firsts.items(), 2):
-                ends = [a, b] if pair.bodies else [parts[a].material, parts[b].material]
-                among_itself = a != b or a in self.grains
-                if among_itself and sorted(ends) == sorted(pair.bodies or pair.materials or []):
-                    found[first, second] = pair.friction
-        return [(a, b, friction) for (a, b), friction in sorted(found.items())]
+        pairs = listed_pairs(self)
+        return [(a, b, p.friction) for (a, b), p in pairs.items() if p.friction is not None]
+
+    def bonds(self) -> list[tuple[int, int]]:
+        """Return (body, body) of the bonded pairs in `contact.pair`, numbered as in `frictions`."""
+        return [ends for ends, pair in listed_pairs(self).items() if pair.bonded]
 
     def dampings(self) -> list[tuple[Damping, list[str]]]:
         """Return each damping of motions with the entries of `body` and `grains` that have it."""

@@ -22,6 +22,7 @@ from .initial import check_initial
 from .loads import check_loads
 from .material_checks import check_material
 from .motion import check_motion
+from .pairs import check_bonds, check_pairs
 from .probe import check_probes
 from .stop import check_stops
 
@@ -42,8 +43,8 @@ def check_case(case: Case) -> None:
         PydanticCustomError, ValidationError: one violation or several, with their paths.
     """
     first = list(_entries(case))
-    report([*first, *_pairs(case), *_interval(case)] if first else [])
-    report([*_bodies_together(case), *_pairs(case), *_output(case), *_interval(case)])
+    report([*first, *check_pairs(case), *_interval(case)] if first else [])
+    report([*_bodies_together(case), *check_pairs(case), *_output(case), *_interval(case)])
 
 
 def _entries(case: Case) -> Found:
@@ -79,6 +80,7 @@ def _bodies_together(case: Case) -> Found:
     yield from check_stops(case)
     yield from check_probes(case, lambda material: _columns(case, material))
     yield from check_forces(case)
+    yield from check_bonds(case)
     yield from _dampings(case)
     if case.run.settle is not None and not _acts_at_first(case):
         rule = (
@@ -124,25 +126,6 @@ def _springs(case: Case) -> Found:
         rule, remedy = f"{with_it}, which are found in every step", "leave it out"
         path: Path = ("contact", "normal_refresh_distance")
         yield violation(rule, remedy, value=contact.normal_refresh_distance, path=path)
-
-
-def _pairs(case: Case) -> Found:
-    if not case.parts() or not case.material:
-        return  # Then no name is known, which is told already.
-    path: Path
-    for index, pair in enumerate(case.contact.pair):
-        key = "bodies" if pair.bodies is not None else "materials"
-        known = case.parts() if pair.bodies is not None else case.material
-        first, second = pair.bodies or ("", " ")
-        if first == second and first in case.body:
-            rule, remedy = "must be two different bodies", "a body has no contact with itself"
-            path = ("contact", "pair", index, key)
-            yield violation(rule, remedy, value=pair.bodies, path=path)
-        for position, word in enumerate(pair.bodies or pair.materials or []):
-            if word not in known:
-                rule = f"is not a {'body' if key == 'bodies' else 'material'} of this case"
-                path = ("contact", "pair", index, key, position)
-                yield violation(rule, nearest(word, known), value=word, path=path)
 
 
 def _check_vector(owner: object, name: str, dimension: int, path: Path) -> Found:

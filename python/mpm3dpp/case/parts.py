@@ -124,14 +124,20 @@ class Output(CaseModel):
 
 
 class ContactPair(CaseModel):
-    """A friction coefficient for two bodies, or for all bodies of two materials.
+    """What holds between two bodies, or between all bodies of two materials.
 
     The name of a `grains` entry stands for all its bodies; twice, for the pairs among them.
+
+    Attributes:
+        friction: Coulomb coefficient.
+        bonded: they stick together wherever they meet, as one body of two materials; then without
+            friction.
     """
 
     bodies: list[Text] | None = None
     materials: list[Text] | None = None
-    friction: NonNegative
+    friction: NonNegative | None = None
+    bonded: bool = False
 
     @model_validator(mode="after")
     def _one_kind_of_two(self) -> ContactPair:
@@ -142,6 +148,9 @@ class ContactPair(CaseModel):
         names = getattr(self, name)
         if len(names) != 2:
             raise violation("must have two names", "give two", value=names, path=(name,))
+        if (self.friction is None) != self.bonded:
+            remedy = "give one of them, for example friction = 0.3"
+            raise violation("must have either friction or bonded = true", remedy)
         return self
 
 
@@ -152,8 +161,8 @@ class Contact(_Contact):
     "plane" and with normal_refresh_distance the default response is "impulses".
 
     Attributes:
-        pair: coefficients of single pairs; a pair of bodies wins over a pair of materials, and
-            a later entry over an earlier one.
+        pair: friction of single pairs, or that they are bonded; a pair of bodies wins over a pair
+            of materials, and a later entry over an earlier one.
     """
 
     pair: list[ContactPair] = Field(default_factory=list)

@@ -133,3 +133,5 @@ def add_actions(
         core.add_damping(numbers, mass, local)
     for a, b, friction in case.frictions():
         core.set_friction(a, b, friction)
+    for a, b in case.bonds():
+        core.bond(a, b)

@@ -137,7 +137,8 @@ def condition_lines(case: Case) -> list[str]:
             lines.append(f"damping of {', '.join(parts)}: {' and '.join(words)}")
     for pair in case.contact.pair if case.contact_enabled else ():
         names = pair.bodies or [f"all {name}" for name in pair.materials or ()]
-        lines.append(f"friction: {pair.friction:g} between {' and '.join(names)}")
+        kind = "bonded:" if pair.bonded else f"friction: {pair.friction:g} between"
+        lines.append(f"{kind} {' and '.join(names)}")
     return lines
 
 

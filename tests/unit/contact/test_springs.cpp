@@ -203,7 +203,7 @@ void check_impulse(mpm::testing::Report& report, std::mt19937_64& random) {
     }
     const Vec<double, 2> before = node.sides[0].momentum + node.sides[1].momentum;
     SolvedPair<2>& pair = node.pairs[0];
-    pair = {0, 1, true, 0.3, normalised(Vec<double, 2>{{any(random), any(random)}})};
+    pair = {0, 1, true, false, 0.3, normalised(Vec<double, 2>{{any(random), any(random)}})};
     pair.spring = {0.2 * (1.0 + any(random)), 1.0 + any(random), true};
     CHECK(solve_node<true>(node));
     const auto v = [&](int s) { return node.sides[static_cast<std::size_t>(s)].end_velocity(); };

@@ -319,6 +319,17 @@ std::vector<RankedCase> choices() {
       {.name = "impulses and a tool", .set = impulses, .prescribed = true, .contact = true});
   all.push_back(
       {.name = "impulses and a rigid body", .set = impulses, .rigid = true, .contact = true});
+  all.push_back({.name = "bonded pair beside springs",
+                 .set = [](Settings& s) { set_law(s.contact, 0, 1, {0.0, true}); },
+                 .contact = true});
+  all.push_back({.name = "rigid body bonded, beside impulses",
+                 .set =
+                     [=](Settings& s) {
+                       impulses(s);
+                       set_law(s.contact, 0, 1, {0.0, true});
+                     },
+                 .rigid = true,
+                 .contact = true});
   all.push_back({.name = "impulses and erosion", .set = impulses, .erodes = true, .contact = true});
   all.push_back({.name = "impulses that are released",
                  .set =

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Single pairs of bodies: which of them `contact.pair` lists, and what it has wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations_with_replacement
+from typing import TYPE_CHECKING
+
+from pydantic_core import PydanticCustomError
+
+from mpm3dpp.base.errors import Path, nearest, violation
+
+if TYPE_CHECKING:
+    from .case import Case
+    from .parts import ContactPair
+
+
+def listed_pairs(case: Case) -> dict[tuple[int, int], ContactPair]:
+    """Return what holds for pairs of bodies, by their numbers, a <= b; see `Case.frictions`."""
+    parts, firsts = case.parts(), case.first_bodies()
+    found = {}
+    for pair in sorted(case.contact.pair, key=lambda p: p.bodies is not None):
+        for (a, first), (b, second) in combinations_with_replacement(firsts.items(), 2):
+            ends = [a, b] if pair.bodies else [parts[a].material, parts[b].material]
+            among_itself = a != b or a in case.grains
+            if among_itself and sorted(ends) == sorted(pair.bodies or pair.materials or []):
+                found[first, second] = pair
+    return dict(sorted(found.items()))
+
+
+def check_pairs(case: Case) -> Iterator[PydanticCustomError]:
+    """Check the names in `contact.pair`.
+
+    Yields:
+        The violations, with their paths in the case.
+    """
+    if not case.parts() or not case.material:
+        return  # Then no name is known, which is told already.
+    for index, pair in enumerate(case.contact.pair):
+        key = "bodies" if pair.bodies is not None else "materials"
+        path: Path = ("contact", "pair", index, key)
+        known = case.parts() if pair.bodies is not None else case.material
+        names = pair.bodies or pair.materials or []
+        first, second = pair.bodies or ("", " ")
+        if first == second and first in case.body:
+            rule, remedy = "must be two different bodies", "a body has no contact with itself"
+            yield violation(rule, remedy, value=pair.bodies, path=path)
+        for position, word in enumerate(names):
+            if word not in known:
+                rule = f"is not a {'body' if key == 'bodies' else 'material'} of this case"
+                yield violation(rule, nearest(word, known), value=word, path=(*path, position))
+
+
+def check_bonds(case: Case) -> Iterator[PydanticCustomError]:
+    """Refuse bonds between bodies that do not deform.
+
+    Yields:
+        The violations, with their paths in the case.
+    """
+    parts = case.parts()
+    for index, pair in enumerate(case.contact.pair):
+        names = pair.bodies or [n for n, p in parts.items() if p.material in (pair.materials or [])]
+        if pair.bonded and names and all(case.is_rigid(name) for name in names):
+            rule = "are bonded, and neither deforms: nothing could hold them together"
+            key = "bodies" if pair.bodies is not None else "materials"
+            path: Path = ("contact", "pair", index, key)
+            yield violation(rule, "give one another material, and no motion", path=path)
