@@ -8,6 +8,7 @@ shares with the host. All strength models, bases and transfers are compared by
 
 from __future__ import annotations
 
+import importlib
 import platform
 import re
 from pathlib import Path
@@ -233,3 +234,28 @@ def test_a_rigid_body_is_given_a_velocity(tmp_path: Path) -> None:
     for body in ("stone", "plate", "floor"):
         cpu, cuda = (simulation.column(body, "velocity") for simulation in both)
         assert np.array_equal(cpu, cuda)
+
+
+def test_the_first_step_that_differs_is_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """tools/lockstep.py: nothing to tell, then with a device whose sixth step is another one."""
+    monkeypatch.syspath_prepend(Path(__file__).parents[2] / "tools")
+    tool = importlib.import_module("lockstep")
+    words = ["lockstep.py", str(write(tmp_path, text(LEAVING, 2))), "--every", "4", "--steps", "8"]
+    monkeypatch.setattr("sys.argv", words)
+    assert tool.main() == 0
+    assert "step 8" in capsys.readouterr().out
+
+    def advance(simulation: Simulation, steps: int, end_time: float | None = None) -> int:
+        made = Simulation.advance(simulation, steps, end_time)
+        if simulation.device.name != "cpu" and simulation.step >= 6:
+            simulation.set_velocity("ball", 1.5 * simulation.column("ball", "velocity"))
+        return made
+
+    other = type("Other", (Simulation,), {"advance": advance})
+    monkeypatch.setattr(tool, "Simulation", other)
+    assert tool.main() == 1
+    told = capsys.readouterr().out
+    assert "step 4, t " in told and "step 6 is the first that differs:" in told
+    assert "ball, velocity: " in told and "position" not in told.split("first that differs")[1]

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mpm/device/cuda/lists.cuh"
+#include "mpm/device/cuda/node_sums.cuh"
 #include "mpm/device/device_run.hpp"
 
 namespace mpm {
@@ -63,6 +64,26 @@ __global__ void exchange_nodes(const NodeBlockPlace<D>* blocks, Places places, H
       packed[block.first + n] = there != nullptr ? *there : HalfRecord{0.0, 0.0, 0.0, 0.0};
     else if (there != nullptr)
       *there = packed[block.first + n];
+  }
+}
+
+/// Weigh the forces of some patches' blocks, a block of threads each, before the host adds to them.
+template <class B, int D>
+__global__ void weigh_mapped(ListView<D> lists, const std::int32_t* around, PartialView partial,
+                             GridGeometry<D> grid, Vec<double, D> gravity) {
+  const std::int32_t patch = around[blockIdx.x * Tile<D>::neighbours + Tile<D>::self];
+  if (patch < 0) return;
+  const std::size_t block = std::size_t(patch) * Block<B, D>::nodes;
+  const Index<D> first = grid.first_cell(lists.tile[patch]);
+  for (int n = threadIdx.x; n < Block<B, D>::nodes; n += blockDim.x) {
+    const Index<D> in_block = Block<B, D>::index(n);
+    Index<D> node;
+    for (int a = 0; a < D; ++a) node[a] = first[a] + Block<B, D>::low + in_block[a];
+    if (Image<D>(grid, true, node).exists) continue;
+    HalfRecord& record = partial.second[block + n];
+    double force[half_record] = {record.x, record.y, record.z, record.w};
+    weigh<B, D>(grid, gravity, partial.first + block, node, in_block, force);
+    record = {force[0], force[1], force[2], force[3]};
   }
 }
 

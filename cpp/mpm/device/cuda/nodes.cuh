@@ -61,26 +61,6 @@ __device__ void advance_node(const NodeStep<D>& step, std::int32_t body, const A
     sums.add_vector(DeviceSum::damping_moment, cross_of(in_three(place), in_three(drag)));
 }
 
-/// Weigh the forces of some patches' blocks, a block of threads each, before the host adds to them.
-template <class B, int D>
-__global__ void weigh_mapped(ListView<D> lists, const std::int32_t* around, PartialView partial,
-                             GridGeometry<D> grid, Vec<double, D> gravity) {
-  const std::int32_t patch = around[blockIdx.x * Tile<D>::neighbours + Tile<D>::self];
-  if (patch < 0) return;
-  const std::size_t block = std::size_t(patch) * Block<B, D>::nodes;
-  const Index<D> first = grid.first_cell(lists.tile[patch]);
-  for (int n = threadIdx.x; n < Block<B, D>::nodes; n += blockDim.x) {
-    const Index<D> in_block = Block<B, D>::index(n);
-    Index<D> node;
-    for (int a = 0; a < D; ++a) node[a] = first[a] + Block<B, D>::low + in_block[a];
-    if (Image<D>(grid, true, node).exists) continue;
-    HalfRecord& record = partial.second[block + n];
-    double force[half_record] = {record.x, record.y, record.z, record.w};
-    weigh<B, D>(grid, gravity, partial.first + block, node, in_block, force);
-    record = {force[0], force[1], force[2], force[3]};
-  }
-}
-
 /// What is done with the forces of nodes when they have been summed: contact may change them before
 /// nodes are advanced.
 enum class Forces { none, summed, advanced };
