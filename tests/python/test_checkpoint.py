@@ -55,7 +55,9 @@ def end_after(folder: Path) -> str:
     return LONG.replace('"1000 s"', repr(simulation.time + 0.05))
 
 
-@pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
+@pytest.mark.parametrize(
+    "kind", [signal.SIGKILL, pytest.param(signal.SIGINT, marks=pytest.mark.slow)]
+)
 def test_a_run_that_goes_on_ends_as_one_that_did_not_stop(
     tmp_path: Path, kind: signal.Signals
 ) -> None:

@@ -83,6 +83,7 @@ def test_a_thousand_touching_spheres_hold_552000_particles() -> None:
     assert gaps.min() == pytest.approx(0.005, rel=1e-12)  # They touch: two radii apart.
 
 
+@pytest.mark.slow
 def test_grains_that_are_poured_come_at_the_speed_of_the_feed() -> None:
     """The recipe of docs/how-to/many-grains.md: above the outlet they move evenly, below they fall.
 

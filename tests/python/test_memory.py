@@ -94,6 +94,7 @@ def test_frames_and_checkpoints_take_a_fourth_of_stepping_at_most(
     assert process_bytes(memory_bytes(case, build(case))) == pytest.approx(running, rel=0.25)
 
 
+@pytest.mark.slow
 def test_pictures_do_not_raise_the_peak(tmp_path: Path) -> None:
     case_file(tmp_path, 20, "0.1 ms", 2)
     running, drawing = peak(tmp_path, "run"), peak(tmp_path, "draw")

@@ -299,6 +299,7 @@ def test_a_particle_that_erodes_is_seen_no_more(tmp_path: Path) -> None:
     assert picture is not None and picture.exists()
 
 
+@pytest.mark.slow
 def test_processes_see_what_one_does(run: Path, tmp_path: Path) -> None:
     pytest.importorskip("mpi4py")
     write(tmp_path, CASE + PROBES)

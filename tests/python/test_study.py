@@ -87,6 +87,7 @@ def test_a_study(tmp_path: Path) -> None:
     assert again.stdout == done.stdout and again.stderr.count("was there") == 3
 
 
+@pytest.mark.slow
 def test_other_keys_of_a_study(tmp_path: Path) -> None:
     """The same for all its runs, and one may be taken out."""
     words = ("--set", "run.end_time=50 us", "--set", "title=", "--number", "left.speed")
@@ -137,6 +138,7 @@ def test_a_box_that_is_no_whole_cells_of_each_size(tmp_path: Path) -> None:
     assert "choose another --ratio" in said
 
 
+@pytest.mark.slow
 def test_a_coarse_grid_that_fails_is_left_out(tmp_path: Path) -> None:
     """The finer ones tell the order all the same; the command ends as one that has failed."""
     words = ("study", write(tmp_path), "--out", "out", "--cells", 4, "--finest", "25 mm")

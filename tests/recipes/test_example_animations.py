@@ -56,7 +56,7 @@ def test_the_case_wants_an_animation_of_some_frames(name: str) -> None:
         pytest.param(lambda: penetration(3), 2e-6, marks=pytest.mark.slow),
         pytest.param(lambda: spheres(1), 1e-6, marks=pytest.mark.slow),
         pytest.param(short, 2e-4, marks=pytest.mark.slow),
-        (few_grains, 2e-3),
+        pytest.param(few_grains, 2e-3, marks=pytest.mark.slow),
     ],
     ids=["02", "03", "04", "05"],
 )

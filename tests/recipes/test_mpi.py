@@ -64,6 +64,7 @@ def test_examples_by_four_ranks(tmp_path: Path, each_way: str, alone: dict[str, 
     check_examples(tmp_path, each_way, alone, "all", 4, 1000)
 
 
+@pytest.mark.slow
 def test_a_hopper_by_four_ranks(tmp_path: Path, way: str, alone: dict[str, str]) -> None:
     check_examples(tmp_path, way, alone, "few", 4, 1000)
 
@@ -111,7 +112,7 @@ def test_a_run_writes_and_tells_once(tmp_path: Path, each_way: str) -> None:
         (CASE.replace("8 ms", "8 parsec"), (), 'run.end_time = "8 parsec" has the unit'),
         (CASE.replace("cfl = 0.3", "time_step = 1.0"), (), "larger than the largest stable step"),
         pytest.param(GRAINS, (), "which is no finite number", marks=pytest.mark.slow),
-        (TINY, (), "holds no particle: it measures"),
+        pytest.param(TINY, (), "holds no particle: it measures", marks=pytest.mark.slow),
         pytest.param(CASE, ("--out", "case.toml"), "case.toml", marks=pytest.mark.slow),
         pytest.param(CASE, ("--resume",), "there is no checkpoint", marks=pytest.mark.slow),
     ],

@@ -15,7 +15,7 @@ CASES = [(d, scheme, basis) for d in (2, 3) for scheme in SCHEMES for basis in B
 
 
 @each_numerics
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [pytest.param(2, marks=pytest.mark.slow), 3])
 def test_any_number_of_threads(dimension: int, scheme: str, basis: str) -> None:
     case = three_blocks(dimension, scheme, grid={"basis": basis})
     steps = steps_of(dimension, scheme, basis)

@@ -46,9 +46,21 @@ def wrong(title: str, figures: list[Figure], stopped: str, misses: dict) -> list
     return said
 
 
+BY_DEFAULT = {(run.problem, run.make) for run in RUNS if run.basis.startswith("default")}
+
+
+def is_slow(run):
+    """What users get by default is run in each test run; of it other bases and schemes are slow."""
+    other = not run.basis.startswith("default") and (run.problem, run.make) in BY_DEFAULT
+    return run.slow or other
+
+
 @pytest.mark.parametrize(
     "run",
-    [pytest.param(run, id=run.title, marks=[pytest.mark.slow] if run.slow else []) for run in RUNS],
+    [
+        pytest.param(run, id=run.title, marks=[pytest.mark.slow] if is_slow(run) else [])
+        for run in RUNS
+    ],
 )
 def test_run(run):
     figures, stopped, _ = run.figures()
