@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from cases import CELL, block, each_numerics, materials, three_blocks
-from mpm3dpp import Case, CaseError, Contact, ContactPair, Grid, Run, Simulation
+from mpm3dpp import Case, CaseError, Contact, ContactPair, Grid, Run, Simulation, run_case
 from worlds import World, largest_differences
 
 RESPONSES = ("springs", "impulses")
@@ -121,6 +121,13 @@ def test_what_hangs_pulls_with_its_weight(response: str) -> None:
     assert pair.force == pytest.approx((0.0, -32.0, 0.0), abs=0.32)  # on the roof
     sunk = -hung.column("lamp", "position")[:, 1].max()
     assert 0.0 < sunk < 0.0026  # half a particle and next to nothing: it has not let go
+
+
+def test_a_bond_is_no_first_contact(tmp_path: Path) -> None:
+    """None of the pictures is that of a plane between the two."""
+    run_case(Case.from_text(HUNG.replace("0.4 s", "1 ms")), tmp_path, threads=1)
+    names = [path.name for path in tmp_path.glob("*.png")]
+    assert "frame.png" in names and "first_contact.png" not in names
 
 
 def bonded_blocks(dimension: int, response: str) -> Case:

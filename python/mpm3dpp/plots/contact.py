@@ -126,6 +126,8 @@ def _first(folder: Path, bodies: list[str]) -> Touch | None:
             if pair["first_time"] is not None and a != b:
                 known = pair.get("first_normal") is not None  # Earlier versions recorded none.
                 plane = [np.array(pair[f"first_{k}"]) for k in ("normal", "node") if known]
+                if known and not plane[0].any():
+                    continue  # They are bonded, and touch along no plane.
                 gap = pair["first_gap"] if known else None
                 found.append(Touch(float(pair["first_time"]), a, b, gap, *plane))
     except CaseError:  # a killed run has no manifest
