@@ -208,6 +208,8 @@ class Simulation:
     def ranks_of(self, body: str) -> np.ndarray:
         """Return the number of the rank that has each particle of a body, shape (n,).
 
+        Of several ranks the first has the rows, others none.
+
         Raises:
             CaseError: there is no such body.
         """
