@@ -111,9 +111,7 @@ void def_acting(SimulationClass& simulation) {
              set_pair_law(s.domain, a, b, {mu, false});
            }),
            nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"))
-      .def("bond", of_any([](auto& s, int a, int b) {
-             set_pair_law(s.domain, a, b, {0.0, true});
-           }),
+      .def("bond", of_any([](auto& s, int a, int b) { set_pair_law(s.domain, a, b, {0.0, true}); }),
            nb::arg("body_a"), nb::arg("body_b"))
       .def("set_velocity", changing_any([](auto& s, int body, const Input& velocities) {
              set_velocity(s, body, span_of(velocities));
