@@ -93,6 +93,40 @@ def three_blocks(
     )
 
 
+def in_free_fall(
+    dimension: int, scheme: str, basis: str, contact: Contact, bodies: dict[str, Body], **run: Any
+) -> Case:
+    """Return a case of bodies under gravity, without a box."""
+    return Case(
+        grid=Grid(dimension=dimension, cell_size=CELL, basis=basis),
+        run=Run(
+            end_time=1.0,
+            scheme=scheme,
+            cfl=0.2,
+            gravity=(0.0, 0.0, -2.0)[3 - dimension :],
+            energy_growth_limit=1e9,
+            **run,
+        ),
+        contact=contact,
+        material=materials(),
+        body=bodies,
+    )
+
+
+def cut_block(dimension: int) -> tuple[dict[str, Body], dict[str, Body]]:
+    """Return a block that is pulled apart and bent, and the same cut into three."""
+    d = dimension
+    # By formulas: the gradient of velocities that are set one by one is that of a part alone.
+    field = [{"expression": e} for e in ("0.1 * x", f"0.1 * y^2 / {CELL}", "0.1 * z")][:d]
+    common: dict[str, Any] = {"material": "solid", "velocity": field}
+    cuts = {"a": (3, 2), "b": (5, 1), "c": (6, 3)}
+    parts = {
+        name: block((at, *(3,) * (d - 1)), (wide, 4, 4)[:d], **common)
+        for name, (at, wide) in cuts.items()
+    }
+    return {"all": block((3,) * d, (6, 4, 4)[:d], **common)}, parts
+
+
 def one_block(dimension: int, grid: dict[str, Any], run: dict[str, Any], **body: Any) -> Case:
     """Return a case of one elastic block, 4 cells wide, from cell 3 on."""
     cells = (4,) * dimension

@@ -3,30 +3,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 
-from cases import BASES, CELL, SCHEMES, block, materials
-from mpm3dpp import Case, Contact, Grid, Run, Simulation
-
-
-def simulation(dimension: int, scheme: str, basis: str, **bodies: Any) -> Simulation:
-    case = Case(
-        grid=Grid(dimension=dimension, cell_size=CELL, basis=basis),
-        run=Run(
-            end_time=1.0,
-            scheme=scheme,
-            cfl=0.2,
-            gravity=(0.0, 0.0, -2.0)[3 - dimension :],
-            energy_growth_limit=1e9,
-        ),
-        contact=Contact(bonded=True),
-        material=materials(),
-        body=bodies,
-    )
-    return Simulation(case, threads=1)
+from cases import BASES, CELL, SCHEMES, cut_block, in_free_fall
+from mpm3dpp import Contact, Simulation
 
 
 @pytest.mark.parametrize("basis", BASES)
@@ -34,22 +15,12 @@ def simulation(dimension: int, scheme: str, basis: str, **bodies: Any) -> Simula
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_parts_move_like_the_whole(dimension: int, scheme: str, basis: str) -> None:
     """A block cut into three bonded parts is the uncut block, to rounding (a pull opens no cut)."""
-    d = dimension
-    # By formulas: the gradient of velocities that are set one by one is that of a part alone.
-    field = [{"expression": e} for e in ("0.1 * x", f"0.1 * y^2 / {CELL}", "0.1 * z")][:d]
-    common: dict[str, Any] = {"material": "solid", "velocity": field}
-    whole = simulation(d, scheme, basis, all=block((3,) * d, (6, 4, 4)[:d], **common))
-    x = whole.core.column(0, "position")
-    cuts = {"a": (3, 2), "b": (5, 1), "c": (6, 3)}
-    parts = simulation(
-        d,
-        scheme,
-        basis,
-        **{
-            name: block((at, *(3,) * (d - 1)), (wide, 4, 4)[:d], **common)
-            for name, (at, wide) in cuts.items()
-        },
+    whole, parts = (
+        Simulation(in_free_fall(dimension, scheme, basis, Contact(bonded=True), bodies), threads=1)
+        for bodies in cut_block(dimension)
     )
+    x = whole.core.column(0, "position")
+    cuts = parts.bodies
     ends = np.cumsum([0, *(len(parts.column(name, "position")) for name in cuts)])
     for k, name in enumerate(cuts):  # Filled along x first: the parts one after another.
         assert np.array_equal(parts.column(name, "position"), x[ends[k] : ends[k + 1]])

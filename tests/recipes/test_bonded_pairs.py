@@ -3,58 +3,32 @@
 
 from __future__ import annotations
 
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from cases import CELL, block, each_numerics, materials, three_blocks
-from mpm3dpp import Case, CaseError, Contact, ContactPair, Grid, Run, Simulation, run_case
+from cases import CELL, cut_block, each_numerics, in_free_fall, three_blocks
+from mpm3dpp import Case, CaseError, Contact, ContactPair, Simulation, run_case
 from worlds import World, largest_differences
 
 RESPONSES = ("springs", "impulses")
 
 
-def simulation(
-    dimension: int, scheme: str, basis: str, response: str, transfer: Any = None, **bodies: Any
-) -> Simulation:
-    names = sorted(bodies)
-    case = Case(
-        grid=Grid(dimension=dimension, cell_size=CELL, basis=basis),
-        run=Run(
-            end_time=1.0,
-            scheme=scheme,
-            cfl=0.2,
-            gravity=(0.0, 0.0, -2.0)[3 - dimension :],
-            energy_growth_limit=1e9,
-            **({} if transfer is None else {"transfer": transfer}),
-        ),
-        contact=Contact(
-            response=response,
-            pair=[ContactPair(bodies=[a, b], bonded=True) for a in names for b in names if a < b],
-        ),
-        material=materials(),
-        body=bodies,
-    )
-    return Simulation(case, threads=1)
-
-
-def parts_and_whole(dimension: int, *how: Any, **more: Any) -> tuple[Simulation, Simulation]:
+def parts_and_whole(
+    dimension: int, scheme: str, basis: str, response: str, **run: Any
+) -> tuple[Simulation, Simulation]:
     """Return a block cut into three bonded parts, and the uncut one, after a hundred steps."""
-    d = dimension
-    field = [{"expression": e} for e in ("0.1 * x", f"0.1 * y^2 / {CELL}", "0.1 * z")][:d]
-    common: dict[str, Any] = {"material": "solid", "velocity": field}
-    whole = simulation(d, *how, **more, all=block((3,) * d, (6, 4, 4)[:d], **common))
-    cuts = {"a": (3, 2), "b": (5, 1), "c": (6, 3)}
-    bodies = {
-        name: block((at, *(3,) * (d - 1)), (wide, 4, 4)[:d], **common)
-        for name, (at, wide) in cuts.items()
-    }
-    parts = simulation(d, *how, **more, **bodies)
-    for one in (whole, parts):
-        one.advance(100)
-    return parts, whole
+    made = []
+    for bodies in cut_block(dimension):
+        pairs = [ContactPair(bodies=[a, b], bonded=True) for a, b in combinations(bodies, 2)]
+        contact = Contact(response=response, pair=pairs)
+        case = in_free_fall(dimension, scheme, basis, contact, bodies, **run)
+        made.append(Simulation(case, threads=1))
+        made[-1].advance(100)
+    return made[1], made[0]
 
 
 def check_alike(parts: Simulation, whole: Simulation) -> None:
