@@ -87,6 +87,34 @@ double normal_impulse_of(const SolvedPair<D>& pair, double m_rs, const Vec<doubl
   return std::max(pair.normal_impulse + m_rs * approach, 0.0);
 }
 
+/// Give a bonded pair the velocity that one field of their masses and momenta would have; returns
+/// the size of the impulse [N s].
+template <int D>
+double hold_together(SolvedPair<D>& pair, const Vec<double, D>& hold, SolvedSide<D>& r,
+                     SolvedSide<D>& s) {
+  pair.friction_impulse += hold;
+  r.momentum -= hold;
+  s.momentum += hold;
+  return norm(hold);
+}
+
+/// How well the impulses at a node can be known [N s].
+// Bodies that move together exert impulses on each other that are rounding: no sweeps settle them.
+template <int D>
+double rounding_of(const NodeSolution<D>& node) {
+  constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+  double unresolved = 0.0;
+  // A single pair needs no tolerance: its first sweep is exact.
+  if (node.pairs.size() > 1)
+    for (const SolvedPair<D>& pair : node.pairs) {
+      // What one pair can settle is limited by the rounding of the lighter momentum; a prescribed
+      // body has no such limit.
+      const double lighter = std::min(node.sides[pair.r].size(), node.sides[pair.s].size());
+      unresolved = std::max(unresolved, rounding * lighter);
+    }
+  return unresolved;
+}
+
 /// Remove the approach of every pair that takes part, eqs. (6)-(7), working on
 /// SolvedSide::momentum, and all relative motion of one that is bonded; with friction, hold the
 /// tangential motion as far as Coulomb's law allows, eqs. (14)-(15). For two bodies this is the
@@ -102,18 +130,7 @@ bool solve_node(NodeSolution<D>& node) {
   const std::size_t sweeps = std::clamp(most_solved_pairs / std::max<std::size_t>(pairs.size(), 1),
                                         fewest_sweeps, most_sweeps);
   constexpr double tolerance = 1e-12;
-  // Bodies that move together exert impulses on each other that are rounding: no sweeps settle
-  // them.
-  constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
-  double unresolved = 0.0;
-  // A single pair needs no tolerance: its first sweep is exact.
-  if (pairs.size() > 1)
-    for (const SolvedPair<D>& pair : pairs) {
-      // What one pair can settle is limited by the rounding of the lighter momentum; a prescribed
-      // body has no such limit.
-      const double lighter = std::min(sides[pair.r].size(), sides[pair.s].size());
-      unresolved = std::max(unresolved, rounding * lighter);
-    }
+  const double unresolved = rounding_of(node);
   for (std::size_t sweep = 0; sweep < sweeps; ++sweep) {
     double change = 0.0, scale = 0.0;
     for (SolvedPair<D>& pair : pairs) {
@@ -124,13 +141,8 @@ bool solve_node(NodeSolution<D>& node) {
       const double m_rs = reduced_mass(r.mass, s.mass);
       const Vec<double, D> relative = r.working_velocity() - s.working_velocity();
       if (pair.bonded) {
-        // Both then have the velocity that one field of their masses and momenta would have.
-        const Vec<double, D> hold = m_rs * relative;
-        change = std::max(change, norm(hold));
-        pair.friction_impulse += hold;
+        change = std::max(change, hold_together(pair, m_rs * relative, r, s));
         scale = std::max(scale, norm(pair.friction_impulse));
-        r.momentum -= hold;
-        s.momentum += hold;
         continue;
       }
       const double normal = normal_impulse_of(pair, m_rs, relative);
