@@ -115,7 +115,10 @@ def bonded_blocks(dimension: int, response: str) -> Case:
 @pytest.mark.parametrize("response", RESPONSES)
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_another_world_is_the_same_to_rounding(dimension: int, response: str) -> None:
-    """Bonds beside contacts: mirrored, turned and numbered anew at once."""
+    """Bonds beside contacts: mirrored, turned and numbered anew at once.
+
+    To the rounding of sums, 1e-16, and what 150 steps of contacts with friction make of it.
+    """
     here = Simulation(bonded_blocks(dimension, response), threads=2)
     axes = {2: ((1, 1), (0, -1)), 3: ((1, 1), (2, -1), (0, 1))}[dimension]
     world = World(axes, reversed_bodies=True, shuffled=True)
