@@ -181,6 +181,7 @@ void add_settings(nb::module_& m) {
       .def_rw("origin", &GridSettings::origin)
       .def_rw("box_cells", &GridSettings::box_cells)
       .def_prop_rw("walls", &wall_words, &set_walls)
+      .def_rw("wall_friction", &GridSettings::wall_friction)
       .def_rw("outflow", &GridSettings::outflow)
       .def_rw("outflow_lower", &GridSettings::outflow_lower)
       .def_rw("outflow_upper", &GridSettings::outflow_upper)

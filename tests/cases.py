@@ -151,7 +151,7 @@ EVERYTHING = """
 dimension = {dimension}
 cell_size = "10 mm"
 basis = "{basis}"
-box = {{ lower = {zero}, upper = {box}, walls = {{ y_min = "slip", x_min = "{left}" }} }}
+box = {{ lower = {zero}, upper = {box}, walls = {{ y_min = "{floor}", x_min = "{left}" }} }}
 [run]
 scheme = "{scheme}"
 end_time = "1 s"
@@ -212,6 +212,7 @@ def everything(tmp_path: Path, dimension: int, scheme: str, basis: str, left: st
         scheme=scheme,
         basis=basis,
         left=left,
+        floor="contact" if left == "slip" else "slip",
         per_axis=7 - dimension if left == "slip" else 2,  # More than are laid out at once.
         zero=vector(0.0, 0.0, 0.0),
         box=vector(0.4, 0.3, 0.08),

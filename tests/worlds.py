@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from mpm3dpp import Body, Case, GridBox, Particles, Simulation, Walls
 from mpm3dpp.base.expression import Expression
+from mpm3dpp.case.grid import WallFriction
 from mpm3dpp.case.loads import Load
 
 Array = NDArray[np.float64]
@@ -106,15 +107,19 @@ class World:
         box = here.grid.box
         if box is None:
             return None
-        sides = {}
+        sides, friction = {}, {}
         lower, upper = [], []
         for k, (axis, sign) in enumerate(self.axes):
             faces = [getattr(box.walls, f"{'xyz'[axis]}_{end}") for end in ("min", "max")]
+            rubs = [getattr(box.friction, f"{'xyz'[axis]}_{end}") for end in ("min", "max")]
             sides[f"{'xyz'[k]}_min"], sides[f"{'xyz'[k]}_max"] = faces[::sign]
+            friction[f"{'xyz'[k]}_min"], friction[f"{'xyz'[k]}_max"] = rubs[::sign]
             low, high = sorted((sign * box.lower[axis], sign * box.upper[axis]))
             lower.append(low)
             upper.append(high)
-        return GridBox(lower=lower, upper=upper, walls=Walls(**sides))
+        return GridBox(
+            lower=lower, upper=upper, walls=Walls(**sides), friction=WallFriction(**friction)
+        )
 
     def seen_from_here(self, column: Array, name: str = "") -> Array:
         """A column of a body there, as it would be here."""

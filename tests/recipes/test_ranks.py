@@ -31,7 +31,7 @@ GRAINS = """
 [grid]
 dimension = {dimension}
 cell_size = "1 mm"
-box = {{ lower = [{zeros}], upper = [{upper}], walls = {{ y_min = "fixed", x_min = "slip" }} }}
+box = {{ lower = [{zeros}], upper = [{upper}], walls = {{ {walls} }} }}
 [run]
 end_time = "20 ms"
 gravity = [{gravity}]
@@ -47,12 +47,13 @@ velocity = [{velocity}]
 """
 
 
-def grains(dimension: int) -> Case:
+def grains(dimension: int, walls: str = 'y_min = "fixed", x_min = "slip"') -> Case:
     """Return grains that fall on each other and on a floor, filled and stepped by default."""
     two = dimension == 2
     return Case.from_text(
         GRAINS.format(
             dimension=dimension,
+            walls=walls,
             zeros=", ".join(["0"] * dimension),
             upper=", ".join(['"40 mm"'] * dimension),
             gravity=", ".join(["0", "-50", "0"][:dimension]),
@@ -62,9 +63,12 @@ def grains(dimension: int) -> Case:
     )
 
 
+@pytest.mark.parametrize(
+    "walls", ['y_min = "fixed", x_min = "slip"', 'y_min = "contact", x_min = "contact"']
+)
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_grains(dimension: int) -> None:
-    case, found = grains(dimension), []
+def test_grains(dimension: int, walls: str) -> None:
+    case, found = grains(dimension, walls), []
     for ranks in (1, 2, 4):
         simulation = Simulation(case, threads=1, ranks=ranks)
         simulation.advance(400 if dimension == 2 else 60)

@@ -46,7 +46,7 @@ GRAINS = """
 [grid]
 dimension = 2
 cell_size = "2 mm"
-box = { lower = ["-64 mm", "-64 mm"], upper = ["64 mm", "64 mm"], walls = "slip" }
+box = { lower = ["-64 mm", "-64 mm"], upper = ["64 mm", "64 mm"], walls = "contact" }
 [run]
 end_time = "1 s"
 gravity = [0, "-9.81 m/s^2"]

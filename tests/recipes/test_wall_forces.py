@@ -156,6 +156,19 @@ def test_also_with_affine_transfers(
     check_momentum(in_a_box(dimension, "quadratic_bspline", walls, more), g, tolerance)
 
 
+@pytest.mark.parametrize("basis", BASES)
+@pytest.mark.parametrize("transfer", ["flip", "apic"])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_also_where_they_touch(dimension: int, transfer: str, basis: str) -> None:
+    """Thrown into a corner of faces with friction, beside one that mirrors."""
+    if transfer == "apic" and basis != "quadratic_bspline":
+        return
+    g = GRAVITY[:dimension]
+    walls = 'x_min = "contact", y_min = "contact"' + (', z_min = "slip"' if dimension == 3 else "")
+    more = f'gravity = {list(g)}\ntransfer = "{transfer}"'
+    check_momentum(in_a_box(dimension, basis, walls, more), g)
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_also_of_rigid_bodies(dimension: int) -> None:
     g = GRAVITY[:dimension]

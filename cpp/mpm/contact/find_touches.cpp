@@ -140,8 +140,9 @@ template <int D>
 bool near_walls(const Walls<D>& walls, const Index<D>& first, int range) {
   bool near = false;
   for (std::size_t a = 0; a < D; ++a)
-    near = near || (walls.face[a][0] != Wall::free && first[a] <= range) ||
-           (walls.face[a][1] != Wall::free && first[a] + Tile<D>::cells + range >= walls.cells[a]);
+    near = near || (Walls<D>::goes_on(walls.face[a][0]) && first[a] <= range) ||
+           (Walls<D>::goes_on(walls.face[a][1]) &&
+            first[a] + Tile<D>::cells + range >= walls.cells[a]);
   return walls.exist && near;
 }
 

@@ -98,7 +98,7 @@ void for_each_image(const Walls<D>& walls, const Vec<double, D>& x, double range
     along[a][0] = x[a];
     for (const int side : {0, 1}) {
       const double face = side == 0 ? 0.0 : walls.cells[k];
-      if (walls.exist && walls.face[a][side] != Wall::free && std::abs(x[a] - face) < range)
+      if (walls.exist && Walls<D>::goes_on(walls.face[a][side]) && std::abs(x[a] - face) < range)
         along[a][++last[k]] = 2.0 * face - x[a];
     }
   }

@@ -77,6 +77,7 @@ std::string not_on_device(const Domain<D>& domain, Scheme scheme) {
   if (domain.grid.bonded) return "bonded bodies";
   if (domain.averages_volume()) return "volume averaging";
   if (domain.settles()) return "a run that settles";
+  if (domain.grid.has_wall_springs) return "walls of the box that touch (\"contact\")";
   if (std::ranges::none_of(domain.grid.patches, [&](const Patch<D>& patch) {
         return patch.count > 0 && is_on_device(domain.body_of(patch));
       }))

@@ -14,10 +14,13 @@ bool box_touches_wall(const TileGrid<D>& grid, const Patch<D>& patch) {
   const Index<D> first = grid.first_cell(patch.tile), last = patch.shape.last();
   for (std::size_t a = 0; a < D; ++a) {
     // Walls lie at the nodes 0 and `cells` of the box, by index, and not at a tile's edge.
-    const bool lower = first[a] + patch.shape.low[a] <= 0 && grid.walls.face[a][0] != Wall::free;
-    const bool upper =
-        first[a] + last[a] >= grid.walls.cells[a] && grid.walls.face[a][1] != Wall::free;
-    if (lower || upper) return true;
+    // One that touches pushes the nodes before it, too.
+    for (const int side : {0, 1}) {
+      const Wall wall = grid.walls.face[a][side];
+      const int before =
+          side == 0 ? first[a] + patch.shape.low[a] : grid.walls.cells[a] - (first[a] + last[a]);
+      if (wall != Wall::free && before <= (wall == Wall::contact ? 1 : 0)) return true;
+    }
   }
   return false;
 }
@@ -58,15 +61,13 @@ void cut_blocks(TileGrid<D>& grid, Threads& threads) {
     // One behind another in the order of the patches. Nothing in a block outlives a step, so they
     // may move freely (decision 0013).
     patch.memory = needed;
-    const auto nodes = static_cast<std::size_t>(patch.shape.node_count);
     if (patch.occupied != 0) {
       ++grid.patches_with_particles;
       // Of its own cells: which patch has the nodes of bonded ones is no matter of the case.
-      const auto own =
-          static_cast<std::size_t>(BlockShape<D>::around(patch.occupied, grid.reach()).node_count);
-      grid.records_with_particles += own + (grid.has_dashpots ? (own + 1) / 2 : 0);
+      const int own = BlockShape<D>::around(patch.occupied, grid.reach()).node_count;
+      grid.records_with_particles += grid.numbers_of_block(own) / record;
     }
-    needed += record * (nodes + (grid.has_dashpots ? (nodes + 1) / 2 : 0));  // whole cache lines
+    needed += grid.numbers_of_block(patch.shape.node_count);
   }
   grid.nodes.needed = needed;
   make_room(grid.nodes.numbers, needed, needed + needed / 16);

@@ -98,6 +98,11 @@ auto dashpots_of(TileGrid<D>& grid) {
   const auto begin_of = [&grid](const Patch<D>& p) { return grid.block(p).dashpots().data; };
   return Numbers<decltype(begin_of)>{half_record, half_record, begin_of};
 }
+template <int D>
+auto springs_of(TileGrid<D>& grid) {
+  const auto begin_of = [&grid](const Patch<D>& p) { return grid.block(p).springs.data; };
+  return Numbers<decltype(begin_of)>{wall_record, wall_record, begin_of};
+}
 
 /// f(first number) of the nodes of runs.
 template <int D, class Begin, class F>
@@ -212,6 +217,15 @@ void finish_dashpots(TileGrid<D>& grid) {
   finish(grid, grid.partition.mail.dashpots, dashpots_of(grid));
 }
 
+template <int D>
+void start_springs(TileGrid<D>& grid) {
+  start(grid, grid.partition.mail.springs, springs_of(grid));
+}
+template <int D>
+void finish_springs(TileGrid<D>& grid) {
+  finish(grid, grid.partition.mail.springs, springs_of(grid));
+}
+
 template void plan_halo<2>(TileGrid<2>&);
 template void plan_halo<3>(TileGrid<3>&);
 template void start_nodes<2>(TileGrid<2>&, int, int);
@@ -222,5 +236,9 @@ template void start_dashpots<2>(TileGrid<2>&);
 template void start_dashpots<3>(TileGrid<3>&);
 template void finish_dashpots<2>(TileGrid<2>&);
 template void finish_dashpots<3>(TileGrid<3>&);
+template void start_springs<2>(TileGrid<2>&);
+template void start_springs<3>(TileGrid<3>&);
+template void finish_springs<2>(TileGrid<2>&);
+template void finish_springs<3>(TileGrid<3>&);
 
 }  // namespace mpm

@@ -20,5 +20,10 @@ template <int D>
 void start_dashpots(TileGrid<D>& grid);
 template <int D>
 void finish_dashpots(TileGrid<D>& grid);
+/// And for the springs of walls.
+template <int D>
+void start_springs(TileGrid<D>& grid);
+template <int D>
+void finish_springs(TileGrid<D>& grid);
 
 }  // namespace mpm

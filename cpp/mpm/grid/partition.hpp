@@ -35,7 +35,7 @@ struct ForeignPatch {
 
 /// Kinds of letters, each with its own mail.
 struct PartitionMail {
-  Mail migrants, patches, nodes, dashpots;
+  Mail migrants, patches, nodes, dashpots, springs;
 };
 
 /// Which patches a stage goes through: those first of which others read nodes, and foreign ones;

@@ -12,11 +12,13 @@
 namespace mpm {
 
 /// The nodes of a patch, their fields by name; which of them share a place, and until when one is
-/// there, stands beside `momentum_at`. Dashpots exist where walls absorb: factors, then forces.
+/// there, stands beside `momentum_at`. Dashpots exist where walls absorb: factors, then forces;
+/// springs where walls touch: then what they push with, and their friction.
 template <int D>
 struct NodeBlock {
   NodeRecords records;
   int count;
+  WallRecords springs{nullptr};  // behind records and dashpots, where walls touch
   NodeField<record> mass() const { return {records.data + mass_at}; }                   // [kg]
   NodeField<record> momentum(int a) const { return {records.data + momentum_at + a}; }  // [kg m/s]
   NodeField<record> velocity(int a) const { return {records.data + velocity_at + a}; }  // [m/s]
@@ -28,6 +30,13 @@ struct NodeBlock {
   NodeField<record> remapped(int a) const { return {records.data + remapped_at + a}; }    // [m/s]
   NodeField<half_record> dashpot_factor(int a) const { return {dashpots().data + a}; }    // [kg/s]
   NodeField<half_record> dashpot_force(int a) const { return {dashpots().data + a}; }     // [N]
+  NodeField<wall_record> spring_force(int a) const { return {springs.data + a}; }         // [N]
+  NodeField<wall_record> spring_stiffness(int a) const {                                  // [N/m]
+    return {springs.data + half_record + a};
+  }
+  NodeField<wall_record> spring_energy(int a) const { return {springs.data + record + a}; }  // [J]
+  NodeField<wall_record> push(int a) const { return spring_force(a); }                       // [N]
+  NodeField<wall_record> friction(int a) const { return spring_stiffness(a); }               // [N]
   /// The vector at number `at` of a node's record.
   Vec<double, D> vector(int node, int at) const {
     Vec<double, D> v;

@@ -18,6 +18,9 @@ void sum_shared_nodes(TileGrid<D>& grid, Threads& threads, int first, int last);
 /// The same for the dashpots.
 template <int D>
 void sum_shared_dashpots(TileGrid<D>& grid, Threads& threads);
+/// And for the springs of walls.
+template <int D>
+void sum_shared_springs(TileGrid<D>& grid, Threads& threads);
 
 /// f(node in p's block, node in q's block, count) for the rows of nodes that both hold.
 template <int D, class F>

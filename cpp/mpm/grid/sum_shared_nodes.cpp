@@ -97,9 +97,17 @@ void sum_shared_dashpots(TileGrid<D>& grid, Threads& threads) {
                              [&](const Patch<D>& p) { return grid.block(p).dashpots().data; });
 }
 
+template <int D>
+void sum_shared_springs(TileGrid<D>& grid, Threads& threads) {
+  sum_shared<3, wall_record>(grid, threads,
+                             [&](const Patch<D>& p) { return grid.block(p).springs.data; });
+}
+
 template void sum_shared_nodes<2>(TileGrid<2>&, Threads&, int, int);
 template void sum_shared_nodes<3>(TileGrid<3>&, Threads&, int, int);
 template void sum_shared_dashpots<2>(TileGrid<2>&, Threads&);
 template void sum_shared_dashpots<3>(TileGrid<3>&, Threads&);
+template void sum_shared_springs<2>(TileGrid<2>&, Threads&);
+template void sum_shared_springs<3>(TileGrid<3>&, Threads&);
 
 }  // namespace mpm

@@ -16,6 +16,7 @@ template <int D>
 struct TileGrid : GridGeometry<D> {
   OutflowBox<D> outflow_box;
   bool has_dashpots = false;      // the blocks have room for those of absorbing walls
+  bool has_wall_springs = false;  // and for those of walls that touch
   bool bonded = false;            // all bodies have one velocity field: they share their nodes
   std::vector<Patch<D>> patches;  // by body, then by tile
   Partition<D> partition;
@@ -32,9 +33,20 @@ struct TileGrid : GridGeometry<D> {
   bool blocks_known = false;  // the blocks are those of the patches there are
 
   NodeBlock<D> block(const Patch<D>& patch) {
-    return {{nodes.numbers.data() + patch.memory}, patch.shape.node_count};
+    double* const begin = nodes.numbers.data() + patch.memory;
+    const int count = patch.shape.node_count;
+    return {{begin}, count, {has_wall_springs ? begin + numbers_before_springs(count) : nullptr}};
   }
   NodeBlock<D> block(std::size_t patch) { return block(patches[patch]); }
+  /// Of a block of so many nodes, in whole cache lines: all, and those before the springs of walls.
+  std::size_t numbers_of_block(int count) const {
+    const auto nodes = static_cast<std::size_t>(count);
+    return numbers_before_springs(count) + (has_wall_springs ? record * ((3 * nodes + 1) / 2) : 0);
+  }
+  std::size_t numbers_before_springs(int count) const {
+    const auto nodes = static_cast<std::size_t>(count);
+    return record * (nodes + (has_dashpots ? (nodes + 1) / 2 : 0));
+  }
 };
 
 /// What the patches with particles and their nodes need, of all ranks.

@@ -28,8 +28,13 @@ struct Nodes {
   MPM_HD Nodes from(int node) const { return {(*this)[node]}; }
   MPM_HD Nodes at(int number) const { return {data + number}; }
 };
+/// What springs of walls that touch are at a node stands behind these: along each axis the force,
+/// the stiffness and the energy, a half each.
+inline constexpr int wall_record = 3 * half_record;
+
 using NodeRecords = Nodes<record>;
 using HalfRecords = Nodes<half_record>;
+using WallRecords = Nodes<wall_record>;
 
 /// One number of each node.
 template <int width>

@@ -16,7 +16,8 @@
 // - time: first-order integration, 1/2 m dv^2, and the mean stress against that which gave the
 // forces; and what rigid bodies' increments have beyond a rigid motion.
 // - contact: normal contact that does not exactly conserve energy, with dv from eqs. (11)-(15)
-//   alone; what springs hold after the step is no loss (springs).
+//   alone; what springs hold after the step is no loss (springs). Walls that touch count in
+//   friction, contact and springs, with the work of their forces in the middle of the step.
 //
 // A body whose motion is prescribed gets the work that this takes: the change of its kinetic energy
 // and what contact takes from it, at the mean velocity of the step. Gravity does not act on it.
@@ -130,15 +131,16 @@ struct Ledger {
     damped_stiffness += s.stress.damped;
     bounded += s.stress.bounded;
     energy_floor += s.stress.energy_floor;
-    friction += contacts.friction;
-    contact += contacts.energy - (contacts.stored - springs);
-    springs = contacts.stored;
+    friction += contacts.friction - (s.wall_friction.first + s.wall_friction.second);
+    const double stored = contacts.stored + s.wall_stored;
+    contact += contacts.energy - (s.wall_push.first + s.wall_push.second) - (stored - springs);
+    springs = stored;
     load_work += s.load_first + s.load_second;
     external += s.gravity_first + s.gravity_second + s.load_first + s.load_second + motion;
     absorbed -= s.dashpot_first + s.dashpot_second;
     damped += s.stress.damped - (s.damping_first + s.damping_second);
-    const double second =
-        s.second_order - s.gravity_second - s.load_second - s.dashpot_second - s.damping_second;
+    const double second = s.second_order - s.gravity_second - s.load_second - s.dashpot_second -
+                          s.wall_push.second - s.wall_friction.second - s.damping_second;
     const double at_end = forces_follow ? 0.0 : 2.0 * second;
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
     averaging -= s.stress.averaging;
@@ -147,7 +149,8 @@ struct Ledger {
     // (6)-(7), and the second order: what the energies of free particles should have changed by.
     if (affine)
       transferred += s.force_work + s.gravity_first + s.load_first + s.dashpot_first +
-                     s.damping_first + s.second_order - s.prescribed.work -
+                     s.wall_push.first + s.wall_friction.first + s.damping_first + s.second_order -
+                     s.prescribed.work -
                      (contacts.energy + contacts.friction_first + contacts.force_work);
     time_integration += s.made_rigid;
     time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous + s.stress.damped +

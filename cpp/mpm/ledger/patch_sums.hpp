@@ -5,6 +5,7 @@
 
 #include "mpm/comm/all_sums.hpp"
 #include "mpm/ledger/angular_ledger.hpp"
+#include "mpm/ledger/work.hpp"
 #include "mpm/materials/material_block.hpp"
 #include "mpm/math/exact_sum.hpp"
 
@@ -38,6 +39,8 @@ struct PatchSums {
   PrescribedSums<D> prescribed;
   double load_first = 0.0, load_second = 0.0;        // the same of loads, body forces too [J]
   double dashpot_first = 0.0, dashpot_second = 0.0;  // the same of walls that absorb [J]
+  Work wall_push, wall_friction;  // the same of walls that touch: normal forces, friction [J]
+  double wall_stored = 0.0;       // in their springs, after the step [J]
   double damping_first = 0.0, damping_second = 0.0;  // the same of damping of motions [J]
   // Sizes of the forces out of balance at the nodes and of those applied, while a run settles [N].
   double unbalanced = 0.0, applied = 0.0;
@@ -46,14 +49,36 @@ struct PatchSums {
   /// f(number) for all that are summed over the patches, in one order.
   template <class F>
   void for_each(F&& f) {
-    for (double* const x :
-         {&stress.internal, &stress.plastic,      &stress.viscous,     &stress.damped,
-          &stress.bounded,  &stress.energy_floor, &stress.force_power, &stress.averaging,
-          &kinetic,         &second_order,        &transferred,        &force_work,
-          &made_rigid,      &gravity_first,       &gravity_second,     &prescribed.kinetic,
-          &prescribed.work, &load_first,          &load_second,        &dashpot_first,
-          &dashpot_second,  &damping_first,       &damping_second,     &unbalanced,
-          &applied})
+    for (double* const x : {&stress.internal,
+                            &stress.plastic,
+                            &stress.viscous,
+                            &stress.damped,
+                            &stress.bounded,
+                            &stress.energy_floor,
+                            &stress.force_power,
+                            &stress.averaging,
+                            &kinetic,
+                            &second_order,
+                            &transferred,
+                            &force_work,
+                            &made_rigid,
+                            &gravity_first,
+                            &gravity_second,
+                            &prescribed.kinetic,
+                            &prescribed.work,
+                            &load_first,
+                            &load_second,
+                            &dashpot_first,
+                            &dashpot_second,
+                            &damping_first,
+                            &damping_second,
+                            &unbalanced,
+                            &applied,
+                            &wall_push.first,
+                            &wall_push.second,
+                            &wall_friction.first,
+                            &wall_friction.second,
+                            &wall_stored})
       f(*x);
     for (int a = 0; a < D; ++a) {
       f(momentum[a]);
@@ -61,7 +86,7 @@ struct PatchSums {
       f(prescribed.impulse[a]);
     }
   }
-  static constexpr std::size_t numbers = 25 + 3 * D;  // of for_each
+  static constexpr std::size_t numbers = 30 + 3 * D;  // of for_each
 };
 
 /// The sums over all patches of all ranks, which depend on no order.

@@ -1,7 +1,7 @@
 #pragma once
 // What body forces do in a step, beside the stage that adds them.
 #include "mpm/domain.hpp"
-#include "mpm/step/work.hpp"
+#include "mpm/ledger/work.hpp"
 
 namespace mpm {
 

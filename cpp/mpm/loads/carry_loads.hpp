@@ -2,9 +2,9 @@
 // Loads on surfaces: from the pieces that particles carry to the nodes, and the pieces along with
 // the particles.
 #include "mpm/domain.hpp"
+#include "mpm/ledger/work.hpp"
 #include "mpm/schedule/cell_loop.hpp"
 #include "mpm/schedule/choose.hpp"
-#include "mpm/step/work.hpp"
 
 namespace mpm {
 

@@ -62,7 +62,7 @@ Surface<D> surface_at(const Step<D>& step, const Body<D>& body, const Vec<double
   for_each_index<D>(low, high, [&](const Index<D>& side) {
     for (int a = 0; a < D; ++a) {
       const auto k = static_cast<std::size_t>(a);
-      if (side[k] != 0 && step.walls.face[k][side[k] < 0 ? 0 : 1] == Wall::free) return;
+      if (side[k] != 0 && !Walls<D>::goes_on(step.walls.face[k][side[k] < 0 ? 0 : 1])) return;
     }
     for (const Particle<D>& q : body.particles) {
       Vec<double, D> d = q.x - x;

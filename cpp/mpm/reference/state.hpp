@@ -30,6 +30,7 @@ struct Node {
   Vec<double, D> f_load = Vec<double, D>::zero();  // the part of it of loads on surfaces [N]
   Vec<double, D> f_body = Vec<double, D>::zero();  // and of the body force, a part of f_load [N]
   Vec<double, D> f_absorb = Vec<double, D>::zero();  // and that of absorbing walls [N]
+  Vec<double, D> f_touch = Vec<double, D>::zero();   // and that of walls that touch [N]
   Vec<double, D> f_damp = Vec<double, D>::zero();    // that damping of the body's motion adds [N]
   Vec<double, D> dv = Vec<double, D>::zero();        // change of the velocity in this step [m/s]
   Vec<double, D> v_corrected = Vec<double, D>::zero();  // by how much eqs. (6)-(7) have changed v
@@ -86,10 +87,11 @@ struct Load {
   Vec<double, D> force = Vec<double, D>::zero();  // of this step [N]
 };
 
-/// What forces do in a step [J]. Of loads and absorbing walls the part of the step's energy balance
+/// What forces do in a step [J]. Of loads and walls the part of the step's energy balance
 /// that the nodes exchange with the outside; of contact what it does on prescribed bodies.
 struct Works {
-  double gravity = 0.0, loads = 0.0, absorbed = 0.0, damped = 0.0, on_prescribed = 0.0;
+  double gravity = 0.0, loads = 0.0, absorbed = 0.0, damped = 0.0, touched = 0.0,
+         on_prescribed = 0.0;
 };
 
 }  // namespace mpm::reference

@@ -15,6 +15,7 @@ Works works(const Step<D>& step) {
       if (step.walls.image(i)) continue;  // what it was given is its image's
       sum.loads += step.dt * dot(node.f_load, middle(node));
       sum.absorbed -= step.dt * dot(node.f_absorb, middle(node));
+      sum.touched -= step.dt * dot(node.f_touch, middle(node));
       sum.damped -= step.dt * dot(node.f_damp, middle(node));
       if (b.prescribed()) sum.on_prescribed += step.dt * dot(node.f, middle(node));
     }

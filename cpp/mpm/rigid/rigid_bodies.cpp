@@ -61,7 +61,7 @@ void gather(Domain<D>& domain) {
 /// is not stressed is not stopped by that alone: so its motion is held as a whole.
 template <int D>
 std::array<unsigned, 3> holding_faces(const Domain<D>& domain, const Body<D>& body,
-                                      const Extent& extent) {
+                                      const Extent& extent, const Vector3& velocity) {
   const auto& grid = domain.grid;
   std::array<unsigned, 3> holding{};
   if (!grid.walls.exist) return holding;
@@ -71,6 +71,8 @@ std::array<unsigned, 3> holding_faces(const Domain<D>& domain, const Body<D>& bo
       const Wall wall = grid.walls.face[a][side];
       // Nodes on an absorbing face are not held, and rigid bodies have no dashpots.
       if (wall == Wall::free || wall == Wall::absorbing) continue;
+      // One that touches lets it part.
+      if (wall == Wall::contact && !((side == 0 ? -velocity[a] : velocity[a]) > 0.0)) continue;
       const double nearest = side == 0
                                  ? extent.lower[a]
                                  : grid.walls.cells[static_cast<std::size_t>(a)] - extent.upper[a];
@@ -127,7 +129,8 @@ void find_rigid_motion(Domain<D>& domain) {
     // never gives any.
     motion.velocity = (1.0 / sums.mass) * sums.momentum;
     motion.inertia = sums.inertia;
-    const std::array<unsigned, 3> holding = holding_faces(domain, body, sums.extent);
+    const std::array<unsigned, 3> holding =
+        holding_faces(domain, body, sums.extent, motion.velocity);
     unsigned constrained = 0;
     for (unsigned a = 0; a < 3; ++a) constrained |= holding[a] != 0 ? 1u << a : 0u;
     const Vector3 before = cross(motion.centre, sums.momentum) + sums.angular;

@@ -49,9 +49,10 @@ struct GridSettings {
               "particles cross cells; \"linear\" is the paper's, the fastest"}};
 
   // What the case's corners come to. SI units.
-  std::array<double, 3> origin{};  // position of a node, and of the box's lower corner [m]
-  std::array<int, 3> box_cells{};  // cells of the box; 0, 0, 0 for no box
-  std::array<Wall, 6> walls{};     // of the box's faces: x-, x+, y-, y+, z-, z+
+  std::array<double, 3> origin{};         // position of a node, and of the box's lower corner [m]
+  std::array<int, 3> box_cells{};         // cells of the box; 0, 0, 0 for no box
+  std::array<Wall, 6> walls{};            // of the box's faces: x-, x+, y-, y+, z-, z+
+  std::array<double, 6> wall_friction{};  // and Coulomb's coefficient of those that touch
   std::array<double, 3> outflow_lower{},
       outflow_upper{};   // corners of the region that is kept [m] ...
   bool outflow = false;  // ... if particles that leave it are taken out

@@ -75,8 +75,11 @@ void set_grid(TileGrid<D>& grid, const GridSettings& given) {
     grid.walls.cells[a] = given.box_cells[a];
     grid.walls.face[a][0] = given.walls[2 * a];
     grid.walls.face[a][1] = given.walls[2 * a + 1];
+    for (std::size_t side = 0; side < 2; ++side)
+      grid.walls.friction[a][side] = given.wall_friction[2 * a + side];
   }
   grid.has_dashpots = grid.walls.absorb();
+  grid.has_wall_springs = grid.walls.touch();
 }
 
 }  // namespace

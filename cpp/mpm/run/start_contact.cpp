@@ -4,12 +4,13 @@
 #include "mpm/contact/guests.hpp"
 #include "mpm/contact/set_back.hpp"
 #include "mpm/particles/make_body.hpp"
+#include "mpm/walls/set_back.hpp"
 
 namespace mpm {
 
 template <int D>
 void add_contact_columns(Domain<D>& domain) {
-  if (!domain.has_springs()) return;
+  if (!domain.has_springs() && !domain.grid.has_wall_springs) return;
   for (ParticlePool<D>& pool : domain.pools) add_set_back(pool);
 }
 
@@ -17,11 +18,13 @@ template <int D>
 void start_contact(Domain<D>& domain) {
   if (domain.has_contact())
     exchange_guests(domain.contact, domain.grid, domain.bodies, domain.pools);
-  if (!domain.has_springs()) return;
-  find_touches(domain.contact, domain.grid, domain.bodies, domain.pools,
-               domain.contact_settings.gap_distance / domain.grid.cell_size, domain.threads);
-  set_back_surfaces(domain.contact, domain.bodies, domain.pools, domain.contact_settings,
-                    domain.grid.cell_size);
+  if (domain.has_springs()) {
+    find_touches(domain.contact, domain.grid, domain.bodies, domain.pools,
+                 domain.contact_settings.gap_distance / domain.grid.cell_size, domain.threads);
+    set_back_surfaces(domain.contact, domain.bodies, domain.pools, domain.contact_settings,
+                      domain.grid.cell_size);
+  }
+  set_back_at_walls(domain);
 }
 
 template void add_contact_columns<2>(Domain<2>&);

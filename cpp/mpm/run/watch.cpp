@@ -187,7 +187,7 @@ void look(Simulation<D>& simulation) {
         if (!(depth > 0.0)) continue;
         const int side = x > upper[a] ? 1 : 0;
         const Wall wall = grid.walls.face[a][side];
-        if (wall == Wall::fixed || wall == Wall::slip) {
+        if (wall == Wall::fixed || wall == Wall::slip || wall == Wall::contact) {
           if (!outside)
             sight.outside.add(of, patch.body, i, depth, depth / grid.cell_size + beyond);
           outside = true;

@@ -142,6 +142,7 @@ void add_impulses(Domain<D>& domain, std::size_t p, const NodeBlock<D>& block, c
       return m * (dt * domain.gravity - block.vector(node, increment_at));
     });
     if (grid.walls.absorb()) add_dashpots(grid, patch, block, own, dt, walls);
+    if (grid.has_wall_springs) add_touching(grid, patch, block, own, dt, walls);
     // The mass of a node beyond a wall is with that of its image too.
     for_each_ghost_node(grid, patch, [&](int node, int image, const WallImage<D>&) {
       const double m = patch.counts(node) ? block.mass()[node] : 0.0;
@@ -172,8 +173,8 @@ NodeWork advance(const Domain<D>& domain, const Patch<D>& patch, const NodeBlock
 }  // namespace
 
 /// Eq. (8), m_i dv_i = (f_i + m_i g) dt, with eq. (10) in the form m_i g: exact as gravity is
-/// uniform, and no work for the particles. f_i holds the internal, contact, load and dashpot
-/// forces.
+/// uniform, and no work for the particles. f_i holds the internal, contact and load
+/// forces, and those of walls.
 template <int D>
 void advance_nodes(Domain<D>& domain) {
   auto& grid = domain.grid;
@@ -191,8 +192,12 @@ void advance_nodes(Domain<D>& domain) {
                               reaction_of(domain, p, &AngularImpulses::walls));
     hold_at_walls(domain, patch, block);
     const NodeWork done = advance(domain, patch, block, own, sums);
-    Work loads, dashpots;
+    Work loads, dashpots, push, friction;
     if (absorb && patch.at_wall) dashpots = work_of_dashpots(block, own, dt);
+    if (grid.has_wall_springs && patch.at_wall) {
+      push = work_of(block, own, dt, [&](int a) { return block.push(a); });
+      friction = work_of(block, own, dt, [&](int a) { return block.friction(a); });
+    }
     // The mirrored weight went into the force (ghost_weight, subtracted); it is work of gravity, so
     // it is taken from there and put here. By the velocity of the image before the step.
     double weight_first = 0.0, weight_second = 0.0;
@@ -210,13 +215,16 @@ void advance_nodes(Domain<D>& domain) {
     if (loaded) loads = work_of_loads(domain, p);
     if (domain.has_body_forces()) loads += work_of_body_force(domain, p);
     add_impulses(domain, p, block, own);
-    // What is left is work of internal and contact forces; loads, dashpots and gravity have terms
+    // What is left is work of internal and contact forces; loads, walls and gravity have terms
     // of their own in the ledger, with the velocity in the middle of the step.
-    sums.force_work = dt * (done.work + weight_first) - loads.first - dashpots.first;
+    sums.force_work = dt * (done.work + weight_first) - loads.first - dashpots.first - push.first -
+                      friction.first;
     sums.load_first = loads.first;
     sums.load_second = loads.second;
     sums.dashpot_first = dashpots.first;
     sums.dashpot_second = dashpots.second;
+    sums.wall_push = push;
+    sums.wall_friction = friction;
     sums.gravity_first = dt * (done.gravity_first - weight_first);
     sums.gravity_second = 0.5 * dt * (done.gravity_second - weight_second);
   });

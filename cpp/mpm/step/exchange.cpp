@@ -9,7 +9,7 @@ namespace mpm {
 namespace {
 
 /// Numbers [first, last) of the records, whole halves, which is how they are moved; with the forces
-/// the dashpots, which stand behind the records.
+/// what walls have, which stands behind the records.
 struct Exchanged {
   int first, last;
   bool forces;
@@ -26,6 +26,7 @@ void start(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
   start_nodes(grid, what.first, what.last);
   if (what.forces && grid.has_dashpots) start_dashpots(grid);
+  if (what.forces && grid.has_wall_springs) start_springs(grid);
   grid.partition.on_its_way = true;
 }
 
@@ -33,14 +34,17 @@ template <Exchanged what, int D>
 void exchange_nodes(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
   const bool absorbs = what.forces && grid.has_dashpots;
+  const bool touches = what.forces && grid.has_wall_springs;
   if (!grid.partition.alone()) {
     if (!grid.partition.on_its_way) start<what>(domain);
     finish_nodes(grid, what.first, what.last);
     if (absorbs) finish_dashpots(grid);
+    if (touches) finish_springs(grid);
     grid.partition.on_its_way = false;
   }
   sum_shared_nodes(grid, domain.threads, what.first, what.last);
   if (absorbs) sum_shared_dashpots(grid, domain.threads);
+  if (touches) sum_shared_springs(grid, domain.threads);
 }
 
 }  // namespace

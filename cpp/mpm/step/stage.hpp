@@ -42,6 +42,7 @@ struct Data {
     impulses = 1u << 24,
     mapped_impulses = 1u << 25,
     force_pressure = 1u << 26,  // of particles with averaged volumes, for one mapping of forces
+    node_springs = 1u << 27,    // of walls that touch, then what they push with
   };
 };
 /// Their names, in the order of the bits.
@@ -51,7 +52,7 @@ inline constexpr auto data_names = std::to_array<std::string_view>(
      "node momentum",   "node velocity",  "ghost weights", "node force",      "node increments",
      "node remapped",   "node dashpots",  "contacts",      "patch sums",      "records",
      "energies",        "left cells",     "body force",    "unseen velocity", "impulses",
-     "mapped impulses", "force pressure"});
+     "mapped impulses", "force pressure", "node springs"});
 
 /// The data and what shares its place (layout/node_records.hpp): who writes one takes the others.
 constexpr std::uint32_t places_of(std::uint32_t data) {
@@ -83,9 +84,11 @@ constexpr bool independent(const Stage<D>& a, const Stage<D>& b) {
   return !(taken_by_a & b.reads) && !(a.reads & taken_by_b) && !(taken_by_a & b.writes);
 }
 
+inline constexpr std::size_t most_stages = 40;  // of a list
+
 template <int D>
 struct StageList {
-  std::array<Stage<D>, 32> stages{};
+  std::array<Stage<D>, most_stages> stages{};
   std::size_t count = 0;
 
   constexpr StageList() = default;
@@ -128,7 +131,7 @@ constexpr StageList<D> fuse(const StageList<D>& list, const Fusion<D>& fusion) {
   const std::size_t i = list.find(fusion.first), j = list.find(fusion.second);
   if (!(i < j && j < list.count))
     throw std::logic_error("the two stages are not in this order in the list");
-  std::array<bool, 32> ahead{};
+  std::array<bool, most_stages> ahead{};
   ahead[j] = true;
   // Backwards: what a stage that goes ahead needs has to go ahead as well. Those that do keep their
   // order among each other, and so do those that do not.

@@ -72,9 +72,15 @@ template <int D>
 void add_body_forces(Domain<D>& domain);
 template <int D>
 void place_dashpots(Domain<D>& domain);
+/// Springs of walls that push back what touches them.
+template <int D>
+void place_wall_springs(Domain<D>& domain);
 /// Forces of walls that absorb.
 template <int D>
 void absorb_at_walls(Domain<D>& domain);
+/// Forces of those springs, with their friction.
+template <int D>
+void touch_walls(Domain<D>& domain);
 
 /// Contact forces with friction, eqs. (11)-(15).
 template <int D>
@@ -173,12 +179,13 @@ struct Stages : Data {
   // correction; velocities stay until they are advanced, as the energies are those of FLIP's step.
   static constexpr Row filter{"filter velocities", mpm::filter_velocities<D>, lists | of_particles,
                               unseen | node_mass | node_velocity, true};
-  static constexpr Row map_momentum{"map momentum",
-                                    mpm::map_momentum<D>,
-                                    lists | of_particles | of_rigid,
-                                    node_mass | node_momentum | ghost_weights | node_dashpots,
-                                    true,
-                                    true};
+  static constexpr Row map_momentum{
+      "map momentum",
+      mpm::map_momentum<D>,
+      lists | of_particles | of_rigid,
+      node_mass | node_momentum | ghost_weights | node_dashpots | node_springs,
+      true,
+      true};
   static constexpr Row fold_momentum{"fold momentum",
                                      mpm::fold_momentum<D>,
                                      node_mass | node_momentum | mapped_impulses,
@@ -232,13 +239,19 @@ struct Stages : Data {
                                       node_dashpots,
                                       false,
                                       true};
+  static constexpr Row place_springs{"place springs of walls",
+                                     mpm::place_wall_springs<D>,
+                                     lists | position | volume | node_springs,
+                                     node_springs,
+                                     false,
+                                     true};
   static constexpr Row fold_forces{
       "fold forces", mpm::fold_forces<D>, node_force | impulses, node_force | impulses, false,
       true};
   static constexpr Row exchange_forces{"exchange forces",
                                        mpm::exchange_forces<D>,
-                                       node_force | node_dashpots,
-                                       node_force | node_dashpots,
+                                       node_force | node_dashpots | node_springs,
+                                       node_force | node_dashpots | node_springs,
                                        false,
                                        false,
                                        mpm::start_forces<D>};
@@ -247,6 +260,11 @@ struct Stages : Data {
   static constexpr Row absorb{"absorb at walls", mpm::absorb_at_walls<D>,
                               node_mass | node_velocity | node_force | node_dashpots,
                               node_force | node_dashpots};
+  // Before contact as well, which knows all other forces so; after absorbing walls, as friction
+  // holds against all of them.
+  static constexpr Row touch{"touch walls", mpm::touch_walls<D>,
+                             node_mass | node_velocity | node_force | node_springs | patch_sums,
+                             node_force | node_springs | patch_sums};
   static constexpr Row contact_forces{"contact forces", mpm::contact_forces<D>,
                                       node_mass | node_velocity | node_force | contacts,
                                       node_force | contacts};
@@ -254,7 +272,7 @@ struct Stages : Data {
   static constexpr Row advance_nodes{"advance nodes", mpm::advance_nodes<D>,
                                      lists | position | mass | load_pieces | body_force |
                                          node_mass | node_velocity | node_force | node_dashpots |
-                                         patch_sums | impulses,
+                                         node_springs | patch_sums | impulses,
                                      node_velocity | node_increments | patch_sums | impulses};
   static constexpr Row release{"release from contact", mpm::release_from_contact<D>,
                                node_velocity | node_increments | contacts,

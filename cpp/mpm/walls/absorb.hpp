@@ -4,7 +4,6 @@
 // eqs. 1-2 with a = b = 1).
 #include "mpm/step/node_loops.hpp"
 #include "mpm/step/nodes_around.hpp"
-#include "mpm/step/work.hpp"
 
 namespace mpm {
 
@@ -92,19 +91,11 @@ void add_dashpot_forces(const Patch<D>& patch, const NodeBlock<D>& block,
     }
 }
 
-/// The work of the dashpots on a patch's own nodes, once these are advanced.
+/// The work of the dashpots on a patch's own nodes, once these are advanced: -C_i |v + dv / 2|^2 dt
+/// but for contact, so never a gain.
 template <int D>
 Work work_of_dashpots(const NodeBlock<D>& block, const double* own, double time_step) {
-  Work work;
-  for (int a = 0; a < D; ++a)
-    for (int n = 0; n < block.count; ++n) {
-      // v - dv is the velocity before the step; with half of f dv it is the work at the middle,
-      // -C_i |v + dv / 2|^2 dt but for contact, so never a gain.
-      const double f = own[n] * block.dashpot_force(a)[n], dv = block.increment(a)[n];
-      work.first += f * (block.velocity(a)[n] - dv);
-      work.second += f * dv;
-    }
-  return {time_step * work.first, 0.5 * time_step * work.second};
+  return work_of(block, own, time_step, [&](int a) { return block.dashpot_force(a); });
 }
 
 }  // namespace mpm

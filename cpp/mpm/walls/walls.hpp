@@ -9,13 +9,14 @@
 namespace mpm {
 
 /// What a face of the box does.
-enum class Wall { free, slip, fixed, absorbing };
+enum class Wall { free, slip, fixed, absorbing, contact };
 template <>
-inline constexpr auto words<Wall> =
-    std::to_array<Word<Wall>>({{"free", Wall::free, "nothing"},
-                               {"slip", Wall::slip, "no motion across the face", "symmetry"},
-                               {"fixed", Wall::fixed, "no motion"},
-                               {"absorbing", Wall::absorbing, "dashpots that let waves pass"}});
+inline constexpr auto words<Wall> = std::to_array<Word<Wall>>(
+    {{"free", Wall::free, "nothing"},
+     {"slip", Wall::slip, "no motion across the face", "symmetry"},
+     {"fixed", Wall::fixed, "no motion"},
+     {"absorbing", Wall::absorbing, "dashpots that let waves pass"},
+     {"contact", Wall::contact, "pushes back what touches it, with friction, and lets it part"}});
 
 /// The node before the walls whose image a node beyond them is: what is given to one is the
 /// other's, and they move together, vectors with the components `turned`, a bit each.
@@ -32,17 +33,17 @@ struct WallImage {
 
 template <int D>
 struct Walls {
-  bool exist = false;         // is there a box at all
-  Index<D> cells{};           // cells of the box along each axis
-  Wall face[D][2] = {};       // [axis][lower, upper]
-  bool odd_at_fixed = false;  // (BasisModel)
+  bool exist = false;          // is there a box at all
+  Index<D> cells{};            // cells of the box along each axis
+  Wall face[D][2] = {};        // [axis][lower, upper]
+  double friction[D][2] = {};  // of faces that touch, Coulomb's coefficient
+  bool odd_at_fixed = false;   // (BasisModel)
 
-  MPM_HD bool absorb() const {
-    bool any = false;
-    for (const auto& faces : face)
-      any = any || faces[0] == Wall::absorbing || faces[1] == Wall::absorbing;
-    return exist && any;
-  }
+  MPM_HD bool absorb() const { return any(Wall::absorbing); }
+  MPM_HD bool touch() const { return any(Wall::contact); }
+
+  /// Does a body go on behind it, as its image?
+  MPM_HD static bool goes_on(Wall wall) { return wall != Wall::free && wall != Wall::contact; }
 
   /// Bit a is set if a node may not move along axis a. Nodes beyond a fixed face are held like
   /// those on it, or have images. On a slip face the normal velocity is 0 by symmetry, as for a
@@ -77,6 +78,11 @@ struct Walls {
         node, [](Wall wall, int, int depth) { return wall == Wall::absorbing && depth == 0; });
   }
 
+  /// Those that push a body before them in a direction along an axis.
+  MPM_HD unsigned face_pushing(int axis, double force) const {
+    return 1u << (2 * axis + (force > 0.0 ? 0 : 1));
+  }
+
   /// Lies a node from `before` this one to `after` it, along any axis, on a fixed face or beyond?
   MPM_HD bool fixes_near(const Index<D>& node, int before, int after) const {
     if (!exist) return false;
@@ -107,6 +113,11 @@ struct Walls {
   }
 
  private:
+  MPM_HD bool any(Wall kind) const {
+    bool found = false;
+    for (const auto& faces : face) found = found || faces[0] == kind || faces[1] == kind;
+    return exist && found;
+  }
   /// The axes along which a wall holds or turns what nodes have: a slip wall its normal.
   MPM_HD static unsigned axes_of(Wall wall, int axis) {
     return wall == Wall::slip ? 1u << axis : (1u << D) - 1u;

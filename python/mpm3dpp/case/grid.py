@@ -7,14 +7,14 @@ import math
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from mpm3dpp import _core
 from mpm3dpp.base.errors import Path, report, violation
 from mpm3dpp.base.model import CaseModel
 from mpm3dpp.base.settings import choice, core_table
-from mpm3dpp.base.units import Point
+from mpm3dpp.base.units import Point, Quantity
 
 from . import choices
 
@@ -27,12 +27,16 @@ particles by keys in which tiles have so many bits."""
 _WHOLE = 1e-6  # A box that misses a whole number of cells by less, per cell, is taken as whole.
 
 _WALL = choice(_core.walls)
+_CONTACT = "contact"
 Wall = Annotated[str, _WALL]
 
 
 class Walls(CaseModel):
-    """What the faces of the box do: `free` (nothing), `slip` (or `symmetry`), `fixed`, `absorbing`.
+    """What the faces of the box do.
 
+    `free` (nothing), `slip` (or `symmetry`), `fixed`, `absorbing`, `contact`. Nothing parts from a
+    `slip` or `fixed` face. A `contact` face pushes back what touches it, with friction
+    (`grid.box.friction`), and lets it part: a floor. A rigid body it stops without friction.
     An `absorbing` face lets waves pass, as if the body went on behind it (dashpots, Lysmer &
     Kuhlemeyer 1969); it holds no weight. One word in place of the table holds for all faces. In
     2D there are no z faces.
@@ -54,17 +58,52 @@ class Walls(CaseModel):
         return data
 
 
+_Friction = Annotated[float, Quantity("", ">= 0")] | None
+
+
+class WallFriction(CaseModel):
+    """Coulomb's coefficients of faces that are `contact`, where it is not `contact.friction`.
+
+    One number in place of the table holds for all these.
+    """
+
+    x_min: _Friction = None
+    x_max: _Friction = None
+    y_min: _Friction = None
+    y_max: _Friction = None
+    z_min: _Friction = None
+    z_max: _Friction = None
+
+
 class GridBox(CaseModel):
     """The region of the computation; without it the grid has no bounds.
 
     Attributes:
         lower, upper: opposite corners [m], D numbers, a whole number of cells apart.
-        walls: what the faces do, without friction: for that give a body with motion = "fixed".
+        walls: what the faces do.
+        friction: of faces that are `contact`; by default `contact.friction`.
     """
 
     lower: Point
     upper: Point
     walls: Walls = Field(default_factory=Walls)
+    friction: WallFriction = Field(default_factory=WallFriction)
+
+    @classmethod
+    def complete(cls, data: Any) -> Any:
+        """Return the table with one number for the friction as that of each face that touches."""
+        one = data.get("friction") if isinstance(data, dict) else None
+        if isinstance(one, bool) or not isinstance(one, int | float | str):
+            return data
+        try:
+            walls = Walls.model_validate(data.get("walls", {}))
+        except ValidationError:  # which is told of where the walls are
+            return {key: value for key, value in data.items() if key != "friction"}
+        faces = [face for face in FACES if getattr(walls, face) == _CONTACT]
+        if not faces:
+            rule = "needs a face of grid.box.walls that is contact: it has none"
+            raise violation(rule, 'give walls = { y_min = "contact" }', path=("friction",))
+        return data | {"friction": dict.fromkeys(faces, one)}
 
 
 _Coarsening: Any = core_table("grid.coarsening")
@@ -127,7 +166,7 @@ class Grid(_Grid):
         report(self._numbers_per_vector())
         lower = self.box.lower if self.box is not None else (0.0,) * self.dimension
         self.__dict__["origin"] = self.origin or lower
-        report([*self._box_mistakes(), *self._outflow_mistakes()])
+        report([*self._box_mistakes(), *self._friction_mistakes(), *self._outflow_mistakes()])
         return self
 
     def _numbers_per_vector(self) -> Iterator[PydanticCustomError]:
@@ -149,6 +188,16 @@ class Grid(_Grid):
             if low >= high:
                 rule, remedy = f"must be > lower = {low:g} m", "swap the two corners"
                 yield violation(rule, remedy, value=high, path=("outflow_box", "upper", d))
+
+    def _friction_mistakes(self) -> Iterator[PydanticCustomError]:
+        if self.box is None:
+            return
+        for face in FACES:
+            word = getattr(self.box.walls, face)
+            if getattr(self.box.friction, face) is not None and word != _CONTACT:
+                rule = f"is of a face that is {word}"
+                remedy = f'give walls.{face} = "contact", or leave it out'
+                yield violation(rule, remedy, path=("box", "friction", face))
 
     def _box_mistakes(self) -> Iterator[PydanticCustomError]:
         box = self.box
@@ -221,3 +270,11 @@ class Grid(_Grid):
             return ("free",) * 6
         used = FACES[: 2 * self.dimension]
         return tuple(getattr(self.box.walls, f) if f in used else "free" for f in FACES)
+
+    def wall_friction(self, default: float) -> tuple[float, ...]:
+        """Coefficients of friction of the six faces, in the order of `walls`; 0 without contact."""
+        given = [getattr(self.box.friction, face) if self.box else None for face in FACES]
+        return tuple(
+            0.0 if word != _CONTACT else default if mu is None else mu
+            for word, mu in zip(self.walls, given, strict=True)
+        )

@@ -166,6 +166,12 @@ def _walls(case: Case) -> list[str]:
                 f"grid.box.walls.{FACES[face]} absorbs waves but holds no weight, and run.gravity "
                 "presses on it: what stands there sinks; give slip or fixed unless that is meant"
             )
+    moves = [n for n, part in case.parts().items() if case.is_rigid(n) and part.motion is None]
+    if moves and any(case.grid.wall_friction(case.contact.friction)):
+        found.append(
+            f"body.{moves[0]} is rigid and slides on walls of the box without friction: for that "
+            'give a body with motion = "fixed" in place of the wall, or a strength that deforms'
+        )
     return found
 
 

@@ -27,6 +27,7 @@ def core_settings(case: Case, threads: int) -> _core.Settings:
     grid.origin = three(given.lower, 0.0)
     grid.box_cells = three(given.box_cells, 0) if given.box_cells else [0, 0, 0]
     grid.walls = given.walls
+    grid.wall_friction = given.wall_friction(case.contact.friction)
     grid.outflow = given.outflow_box is not None
     grid.outflow_lower = three(given.kept[0], -math.inf)
     grid.outflow_upper = three(given.kept[1], math.inf)

@@ -90,6 +90,9 @@ def condition_lines(case: Case) -> list[str]:
     if grid.box is not None:
         faces = FACES[: 2 * grid.dimension]
         kinds = {face: getattr(grid.box.walls, face) for face in faces}
+        for face, mu in zip(faces, grid.wall_friction(case.contact.friction), strict=False):
+            if mu > 0.0:
+                kinds[face] += f" with friction {mu:g}"
         same = set(kinds.values())
         each = ", ".join(f"{face} {kind}" for face, kind in kinds.items())
         lines.append(f"walls: {f'all {same.pop()}' if len(same) == 1 else each}")

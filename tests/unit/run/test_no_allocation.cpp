@@ -83,6 +83,8 @@ std::unique_ptr<Simulation<D>> stack(Scheme scheme, const Motion3& motion, int t
     settings.grid.box_cells = {40, 40, D == 3 ? 40 : 0};
     settings.grid.walls[2] = Wall::fixed;
     settings.grid.walls[1] = Wall::absorbing;
+    settings.grid.walls[0] = Wall::contact;
+    settings.grid.wall_friction[0] = 0.3;
     settings.grid.outflow = true;
     settings.grid.outflow_lower = {-100.0, -100.0, -100.0};
     settings.grid.outflow_upper = {100.0, 100.0, 100.0};

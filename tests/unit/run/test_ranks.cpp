@@ -276,7 +276,8 @@ void check(mpm::testing::Report& report, const RankedCase& choice, RankCounts co
 
 void put_walls(Settings& settings) {
   settings.grid.box_cells = {60, 60, settings.grid.dimension == 3 ? 60 : 0};
-  settings.grid.walls = {Wall::free, Wall::slip, Wall::fixed, Wall::absorbing, Wall::slip};
+  settings.grid.walls = {Wall::free, Wall::slip, Wall::fixed, Wall::absorbing, Wall::contact};
+  settings.grid.wall_friction[4] = 0.3;
 }
 
 std::vector<RankedCase> choices() {

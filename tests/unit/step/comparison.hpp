@@ -51,6 +51,8 @@ class Comparison {
         {"place dashpots", later(dashpots)},
         {"fold forces", later(forces)},
         {"exchange forces", [&] { map_forces(), forced_ = true; }},
+        {"place springs of walls", later(springs)},
+        {"touch walls", [&] { touch_walls(step), pending_ &= ~springs; }},
         {"absorb at walls", [&] { absorb_at_walls(step), pending_ &= ~dashpots; }},
         {"contact forces",
          [&] {
@@ -90,12 +92,12 @@ class Comparison {
 
  private:
   /// What stages may leave for later.
-  enum Data : unsigned { momentum = 1, forces = 2, dashpots = 4, remapped = 8 };
+  enum Data : unsigned { momentum = 1, forces = 2, dashpots = 4, remapped = 8, springs = 16 };
 
   void nodes(std::string_view stage) {
     const bool mapped = stage == "find velocities" || stage == "contact momentum" ||
                         stage == "exchange forces" || stage == "absorb at walls" ||
-                        stage == "contact forces";
+                        stage == "contact forces" || stage == "touch walls";
     const bool mapped_anew = stage == "find remapped velocities" || stage == "contact remapped";
     const bool advanced = stage == "advance nodes";
     if (!mapped && !mapped_anew && !advanced) return;
@@ -217,6 +219,7 @@ class Comparison {
     load_work_ += works.loads;
     absorbed_ += works.absorbed;
     damped_ += works.damped;
+    touched_ += works.touched;
     CHECK(works.damped >= 0.0);
     motion_work_ -= works.on_prescribed;
     for (const reference::Body<D>& body : twin_.reference.bodies)
@@ -245,6 +248,9 @@ class Comparison {
     CHECK_CLOSE(ledger.motion_work, work, 1e-11 * kinetic);
     CHECK_CLOSE(ledger.external, external_ + work, 1e-11 * kinetic);
     CHECK_CLOSE(ledger.absorbed, absorbed_, 1e-11 * kinetic);
+    if (!twin_.domain.has_contact())
+      CHECK_CLOSE(ledger.friction + ledger.contact + ledger.springs, touched_, 1e-11 * kinetic);
+    if (twin_.domain.grid.has_wall_springs) CHECK(ledger.friction > 0.0 && touched_ != 0.0);
     CHECK_CLOSE(ledger.damped - ledger.damped_stiffness, damped_, 1e-11 * kinetic);
     CHECK_CLOSE(ledger.residual(), 0.0, 1e-11 * kinetic);
     for (std::size_t a = 0; a < D; ++a) {
@@ -277,7 +283,8 @@ class Comparison {
   unsigned pending_ = 0;    // data that has been written and not yet compared
   bool forced_ = false;     // the nodes have all forces, and not yet increments
   // Of all steps so far.
-  double external_ = 0.0, load_work_ = 0.0, absorbed_ = 0.0, damped_ = 0.0, motion_work_ = 0.0;
+  double external_ = 0.0, load_work_ = 0.0, absorbed_ = 0.0, damped_ = 0.0, touched_ = 0.0,
+         motion_work_ = 0.0;
   Vec<double, D> pushed_ = Vec<double, D>::zero();
   Vec<double, D> impulse_[2] = {Vec<double, D>::zero(), Vec<double, D>::zero()};
   double prescribed_at_start_ = 0.0;

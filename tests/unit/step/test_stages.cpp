@@ -105,11 +105,35 @@ void check_widths(Report& report) {
   }
 }
 
+/// Walls that touch, which meet in a corner beside others, of bodies alone and in contact.
+template <int D>
+void check_touching_walls(Report& report, BasisId basis) {
+  Choice<D> choice;
+  choice.basis = basis;
+  choice.walls.fill(Wall::contact);
+  choice.walls[1] = Wall::fixed;
+  choice.walls[3] = Wall::slip;
+  choice.load = choice.body_force = true;
+  for (const TransferId transfer :
+       {Transfers::id_of<Flip>(), Transfers::id_of<Pic>(), Transfers::id_of<Apic>()}) {
+    if (is_affine(transfer) && second_moment(basis) == 0.0) continue;
+    choice.transfer = transfer;
+    for (const bool contact : {false, true}) {
+      choice.contact = contact;
+      check_schemes(report, choice);
+    }
+  }
+  choice.transfer = Transfers::id_of<Flip>();
+  choice.springs = choice.damping = true;
+  check_schemes(report, choice);
+}
+
 template <int D>
 void check_stages(Report& report) {
   check_widths<D>(report);
   Bases::for_each([&](BasisId basis, const auto&) {
     check_transfers<D>(report, basis);
+    check_touching_walls<D>(report, basis);
     Choice<D> choice;
     choice.basis = basis;
     choice.load = choice.body_force = true;
@@ -141,6 +165,7 @@ void test_stages(Report& report) {
   check_stages<2>(report);
   check_widths<3>(report);
   check_transfers<3>(report, basis_id<Gimp>);
+  check_touching_walls<3>(report, basis_id<QuadraticBSpline>);
 }
 
 void test_stages_in_space(Report& report) { check_stages<3>(report); }

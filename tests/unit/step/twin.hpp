@@ -12,6 +12,7 @@
 #include "mpm/reference/filter.hpp"
 #include "mpm/reference/loads.hpp"
 #include "mpm/reference/prescribed.hpp"
+#include "mpm/reference/touch.hpp"
 #include "mpm/reference/works.hpp"
 #include "mpm/schedule/cell_loop.hpp"
 #include "mpm/step/scheme.hpp"
@@ -58,10 +59,13 @@ struct Twin {
       grid.walls.cells[a] = box_cells;
       for (std::size_t side = 0; side < 2; ++side)
         grid.walls.face[a][side] = choice.walls[2 * a + side];
+      grid.walls.friction[a][0] = 0.2 + 0.1 * static_cast<double>(a);
+      grid.walls.friction[a][1] = 0.4;
     }
     grid.walls.odd_at_fixed = odd_at_fixed_walls(choice.basis);
     reference.walls = grid.walls;
     grid.has_dashpots = grid.walls.absorb();
+    grid.has_wall_springs = grid.walls.touch();
     reference.S = shape(choice.basis, edge);
     reference.half_width = half_width(choice.basis, edge);
     domain.time_step = reference.dt = 1e-5;
