@@ -1,6 +1,7 @@
 #pragma once
 // Sums and choices over all ranks that depend on no number of them.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "mpm/comm/letters.hpp"
@@ -31,11 +32,15 @@ inline std::int64_t all_sum(Comm& comm, std::int64_t number) {
 inline bool any_of_all(Comm& comm, bool here) { return all_sum(comm, std::int64_t{here}) > 0; }
 
 /// The rank with the largest key, the numbers compared one after another; of equal ones the lowest.
+/// What is no number is larger than all that are: it is what has gone wrong.
 inline int rank_of_largest(Comm& comm, std::vector<double> key) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (double& number : key)
+    if (std::isnan(number)) number = infinity;
   bool in = true;
   key.push_back(-comm.rank());
   for (double& number : key) {
-    const double largest = all_max(comm, in ? number : -std::numeric_limits<double>::infinity());
+    const double largest = all_max(comm, in ? number : -infinity);
     in = in && number == largest;
     number = largest;
   }

@@ -166,7 +166,8 @@ def _walls(case: Case) -> list[str]:
                 f"grid.box.walls.{FACES[face]} absorbs waves but holds no weight, and run.gravity "
                 "presses on it: what stands there sinks; give slip or fixed unless that is meant"
             )
-    moves = [n for n, part in case.parts().items() if case.is_rigid(n) and part.motion is None]
+    rigid = [name for name in case.parts() if case.is_rigid(name)]
+    moves = [name for name in rigid if name not in case.body or case.body[name].motion is None]
     if moves and any(case.grid.wall_friction(case.contact.friction)):
         found.append(
             f"body.{moves[0]} is rigid and slides on walls of the box without friction: for that "

@@ -78,6 +78,9 @@ void check_letters(mpm::testing::Report& report, int size) {
     double none[1] = {comm.rank() == size / 2 ? std::nan("") : 1.0};
     comm.all_max(none);
     mine += !std::isnan(none[0]);
+    // What is no number is found, and is the same rank's to all.
+    const double key = comm.rank() == size / 2 ? std::nan("") : 5.0;
+    mine += rank_of_largest(comm, {1.0, key}) != size / 2;
   });
   for (const int count : errors) CHECK_EQUAL(count, 0);
 }
