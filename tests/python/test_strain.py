@@ -7,9 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import pyvista
 from scipy.linalg import expm
 
 from mpm3dpp import Case, open_results, run_case
+from mpm3dpp.io.export import export
 from mpm3dpp.io.strain import hencky_strain
 
 PLACES = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
@@ -118,5 +120,15 @@ velocity = [{ expression = "x" }, 0]
         strain = results.strain(-1)
         within = (np.abs(results.arrays(0)["position"][:, :2]) < 0.35).all(axis=1)
         time = results.times[-1]
+        for kind in ("csv", "vtu"):
+            export(results, -1, tmp_path / f"last.{kind}", kind, strain=True)
+        some = export(results, -1, tmp_path / "some.csv", "csv", "strain_xx > 0.1", strain=True)
     assert np.abs(strain[within, 0] - np.log(1 + time)).max() < 2e-3
     assert np.abs(strain[within, 1:]).max() < 2e-3
+    table = np.genfromtxt(tmp_path / "last.csv", delimiter=",", names=True)
+    for k, place in enumerate(("xx", "yy", "zz", "yz", "xz", "xy")):
+        np.testing.assert_allclose(table[f"strain_{place}"], strain[:, k], rtol=1e-8, atol=1e-12)
+    cloud = pyvista.read(tmp_path / "last.vtu").point_data["strain"]
+    np.testing.assert_array_equal(cloud[:, 3], strain[:, 5])  # VTK has xy there
+    kept = np.genfromtxt(some, delimiter=",", names=True)
+    assert len(kept) == (strain[:, 0] > 0.1).sum() > within.sum() / 2

@@ -33,6 +33,9 @@ def export(
             help='Particles, such as "body=plate, pressure > 1 MPa": commas between, all must hold.'
         ),
     ] = "",
+    strain: Annotated[
+        bool, typer.Option("--strain", help="Add the strain since the first frame.")
+    ] = False,
     out: Annotated[
         Path | None, typer.Option(help="The file; with --all the folder. Default: DIR/export.")
     ] = None,
@@ -54,4 +57,4 @@ def export(
             target = folder / file_name(k, kind.value)
             if out is not None and not every:
                 target = out
-            typer.echo(write(results, k, target, kind.value, where))
+            typer.echo(write(results, k, target, kind.value, where, strain))

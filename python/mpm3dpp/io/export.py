@@ -13,10 +13,18 @@ from mpm3dpp.base.errors import CaseError
 
 from .data_frames import columns_of
 from .results import Results
+from .rows import TO_VTK
 from .where import chosen
 
 
-def export(results: Results, frame: int, out: Path, kind: str = "csv", where: str = "") -> Path:
+def export(
+    results: Results,
+    frame: int,
+    out: Path,
+    kind: str = "csv",
+    where: str = "",
+    strain: bool = False,
+) -> Path:
     """Write a frame to a file, and return it.
 
     Args:
@@ -26,12 +34,15 @@ def export(results: Results, frame: int, out: Path, kind: str = "csv", where: st
         kind: "csv", a row for each particle and a column for each component of what it has; "vtu"
             or "vtp", points with these arrays, which need PyVista.
         where: conditions on the particles (`io/where.py`); all if empty.
+        strain: whether to add the strain since the first frame (`Results.strain`).
 
     Raises:
         IndexError: there is no such frame.
         CaseError: the file cannot be written, PyVista is not installed, or see `chosen`.
     """
     arrays = results.arrays(frame)
+    if strain:
+        arrays["strain"] = results.strain(frame)
     columns = columns_of(arrays)
     keep = np.ones(len(arrays["position"]), dtype=bool)
     if where:
@@ -45,6 +56,8 @@ def export(results: Results, frame: int, out: Path, kind: str = "csv", where: st
         _write_csv(out, {name: values[keep] for name, values in columns.items()})
         return out
     cloud: Any = results[frame]
+    if strain:
+        cloud.point_data["strain"] = arrays["strain"][:, TO_VTK]
     if where:
         cloud = cloud.extract_points(np.flatnonzero(keep), adjacent_cells=False)
     whole = cloud.cast_to_unstructured_grid() if kind == "vtu" else _as_poly_data(cloud)

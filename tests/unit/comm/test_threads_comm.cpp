@@ -6,6 +6,7 @@
 #include <random>
 
 #include "check.hpp"
+#include "mpm/comm/all_sums.hpp"
 #include "on_ranks.hpp"
 
 namespace {
