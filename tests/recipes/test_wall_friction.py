@@ -133,6 +133,34 @@ def test_the_force_is_mu_times_the_pressure(tmp_path: Path, run: str) -> None:
     assert rubbing[told] == pytest.approx(-0.3 * pressing[told], abs=1e-6 * 60.0)
 
 
+def test_a_block_in_a_corner(tmp_path: Path) -> None:
+    """It is pushed against the wall by its weight's part there, without friction but on the floor.
+
+    Each face has its own force: the wall that of the slope, the floor the weight's other part, and
+    friction, which is none once all is at rest. 1 % of the weight.
+    """
+    text = block(
+        slope=math.radians(-30.0),
+        speed=0.0,
+        friction="{ y_min = 0.3, x_min = 0 }",
+        end="0.02 s",
+        run='settle = { longest = "2 s" }',
+    ).replace('{ y_min = "contact" }', '{ y_min = "contact", x_min = "contact" }')
+    text = text.replace("[0.1, 0.0]", "[0.0, 0.0]")
+    text = text.replace("upper = [0.2, 0.06]", "upper = [0.1, 0.06]")
+    rows = history(tmp_path, text)
+    told = ~np.isnan(rows["wall_y_min_force_y"])
+    last = {name: rows[f"wall_{name}"][told][-1] for name in ("x_min_force_x", "y_min_force_y")}
+    weight = 6.0 * G
+    assert last["y_min_force_y"] == pytest.approx(-weight * math.cos(math.radians(30)), rel=0.01)
+    # What friction of the floor takes is not the wall's: together they hold the slope's part.
+    rubbed = rows["wall_y_min_force_x"][told][-1]
+    assert abs(rubbed) < 0.31 * -last["y_min_force_y"]
+    both = last["x_min_force_x"] + rubbed
+    assert both == pytest.approx(-weight * math.sin(math.radians(30)), rel=0.01)
+    assert abs(rows["wall_x_min_force_y"][told][-1]) < 1e-6 * weight  # no friction there
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize(("slope", "slides"), [(15.0, False), (20.0, True)])
 def test_a_slope_holds_what_is_less_steep_than_the_friction_angle(
@@ -203,6 +231,25 @@ def test_mistakes_are_told(given: str, said: str) -> None:
     text = block().replace("friction = 0.3\n", given + "\n")
     if "walls" in given:
         text = text.replace('walls = { y_min = "contact" }\n', "")
+    with pytest.raises(CaseError, match=said):
+        Case.from_text(text)
+
+
+@pytest.mark.parametrize(
+    ("height", "more", "said"),
+    [
+        ("20 mm", "", "both y faces, 2 cells apart"),
+        ("80 mm", "coarsening = { tiles = 9 }", "1 cells apart, once they have doubled"),
+        ("40 mm", "", None),
+        ("120 mm", "coarsening = { tiles = 9, times = 2 }", None),
+    ],
+)
+def test_faces_close_to_each_other(height: str, more: str, said: str | None) -> None:
+    text = block().replace('"200 mm"', f'"{height}"').replace("[grid]\n", f"[grid]\n{more}\n")
+    text = text.replace('y_min = "contact"', 'y_min = "contact", y_max = "contact"')
+    if said is None:
+        Case.from_text(text)
+        return
     with pytest.raises(CaseError, match=said):
         Case.from_text(text)
 

@@ -9,9 +9,6 @@ template <int D>
 void set_back_surfaces(Contact<D>& contact, const std::vector<Body<D>>& bodies,
                        std::vector<ParticlePool<D>>& pools, const ContactSettings& settings,
                        double cell_size) {
-  // [cells]; positions are good to 1e-10 at 2^19 cells: rounding must not choose what pushes at
-  // once.
-  constexpr double beyond = 1e-9;
   for (const auto& touches : contact.touches)
     for (const Touch<D>& touch : touches) {
       const auto group = [&](std::int32_t b) { return bodies[static_cast<std::size_t>(b)].group; };
@@ -21,7 +18,7 @@ void set_back_surfaces(Contact<D>& contact, const std::vector<Body<D>>& bodies,
       if (share == 0.0) ++contact.set_back.particles;
       contact.set_back.most = std::max(contact.set_back.most, touch.overlap * cell_size);
       // Of those that touch several bodies the most, in whatever order they come.
-      share = std::max(share, (touch.overlap + beyond) / touch.half);
+      share = std::max(share, (touch.overlap + beyond_overlap) / touch.half);
     }
 }
 

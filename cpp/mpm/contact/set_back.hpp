@@ -3,6 +3,10 @@
 
 namespace mpm {
 
+/// What surfaces are set back beyond their overlap [cells]: positions are good to 1e-10 at 2^19
+/// cells, and rounding must not choose what pushes at once.
+inline constexpr double beyond_overlap = 1e-9;
+
 /// Bodies that overlap at the start do not push each other: the surface of each particle that
 /// overlaps another body is set back by that (decision 0053), unless the two are bonded. Needs
 /// find_touches().

@@ -61,19 +61,19 @@ void cut_blocks(TileGrid<D>& grid, Threads& threads) {
     // One behind another in the order of the patches. Nothing in a block outlives a step, so they
     // may move freely (decision 0013).
     patch.memory = needed;
+    patch.at_wall = box_touches_wall(grid, patch);
     if (patch.occupied != 0) {
       ++grid.patches_with_particles;
       // Of its own cells: which patch has the nodes of bonded ones is no matter of the case.
       const int own = BlockShape<D>::around(patch.occupied, grid.reach()).node_count;
-      grid.records_with_particles += grid.numbers_of_block(own) / record;
+      grid.records_with_particles += grid.numbers_of_block(own, patch.at_wall) / record;
     }
-    needed += grid.numbers_of_block(patch.shape.node_count);
+    needed += grid.numbers_of_block(patch.shape.node_count, patch.at_wall);
   }
   grid.nodes.needed = needed;
   make_room(grid.nodes.numbers, needed, needed + needed / 16);
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
-    patch.at_wall = box_touches_wall(grid, patch);
     if (patch.primary != p) patch.owned.fill(0);
   });
   list_shared_nodes(grid, threads);

@@ -73,12 +73,6 @@ void add_runs(const TileGrid<D>& grid, std::uint32_t p, int rank, std::vector<No
   }
 }
 
-std::size_t nodes_in(const std::vector<NodeRun>& runs) {
-  std::size_t nodes = 0;
-  for (const NodeRun& run : runs) nodes += run.count;
-  return nodes;
-}
-
 /// What is exchanged: of each node the first `numbers` from begin_of(patch) on, `stride` apart.
 template <class Begin>
 struct Numbers {
@@ -109,9 +103,20 @@ template <int D, class Begin, class F>
 void for_each_node(TileGrid<D>& grid, const std::vector<NodeRun>& runs, const Numbers<Begin>& what,
                    F&& f) {
   for (const NodeRun& run : runs) {
-    double* node = what.begin_of(grid.patches[run.patch]) + run.first * what.stride;
+    double* node = what.begin_of(grid.patches[run.patch]);
+    if (node == nullptr) continue;  // without springs of walls, to both ranks
+    node += run.first * what.stride;
     for (int n = 0; n < run.count; ++n, node += what.stride) f(node);
   }
+}
+
+template <int D, class Begin>
+std::size_t bytes_of(TileGrid<D>& grid, const std::vector<NodeRun>& runs,
+                     const Numbers<Begin>& what) {
+  std::size_t nodes = 0;
+  for (const NodeRun& run : runs)
+    if (what.begin_of(grid.patches[run.patch]) != nullptr) nodes += run.count;
+  return nodes * what.bytes();
 }
 
 template <int D, class Begin>
@@ -123,8 +128,8 @@ void start(TileGrid<D>& grid, Mail& mail, const Numbers<Begin>& what) {
   for (std::size_t k = 0; k < partition.partners.size(); ++k) {
     const Partner& partner = partition.partners[k];
     mail.out[k].rank = mail.in[k].rank = partner.rank;
-    mail.out[k].bytes.resize(nodes_in(partner.give) * what.bytes());
-    mail.in[k].bytes.resize(nodes_in(partner.take) * what.bytes());
+    mail.out[k].bytes.resize(bytes_of(grid, partner.give, what));
+    mail.in[k].bytes.resize(bytes_of(grid, partner.take, what));
     std::byte* to = mail.out[k].bytes.data();
     for_each_node(grid, partner.give, what, [&](const double* node) {
       std::memcpy(to, node, what.bytes());

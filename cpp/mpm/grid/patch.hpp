@@ -13,12 +13,12 @@ namespace mpm {
 
 /// The nodes of a patch, their fields by name; which of them share a place, and until when one is
 /// there, stands beside `momentum_at`. Dashpots exist where walls absorb: factors, then forces;
-/// springs where walls touch: then what they push with, and their friction.
+/// springs in patches at walls that touch, then the forces of these.
 template <int D>
 struct NodeBlock {
   NodeRecords records;
   int count;
-  WallRecords springs{nullptr};  // behind records and dashpots, where walls touch
+  WallRecords springs{nullptr};  // behind records and dashpots, if it is at a wall that touches
   NodeField<record> mass() const { return {records.data + mass_at}; }                   // [kg]
   NodeField<record> momentum(int a) const { return {records.data + momentum_at + a}; }  // [kg m/s]
   NodeField<record> velocity(int a) const { return {records.data + velocity_at + a}; }  // [m/s]
@@ -30,13 +30,11 @@ struct NodeBlock {
   NodeField<record> remapped(int a) const { return {records.data + remapped_at + a}; }    // [m/s]
   NodeField<half_record> dashpot_factor(int a) const { return {dashpots().data + a}; }    // [kg/s]
   NodeField<half_record> dashpot_force(int a) const { return {dashpots().data + a}; }     // [N]
-  NodeField<wall_record> spring_force(int a) const { return {springs.data + a}; }         // [N]
-  NodeField<wall_record> spring_stiffness(int a) const {                                  // [N/m]
-    return {springs.data + half_record + a};
+  /// Of the springs along an axis, and a component of the force of the face across it [N].
+  NodeField<wall_record> spring(int at, int a) const { return {springs.data + at + a}; }
+  NodeField<wall_record> face_force(int normal, int a) const {
+    return {springs.data + normal * half_record + a};
   }
-  NodeField<wall_record> spring_energy(int a) const { return {springs.data + record + a}; }  // [J]
-  NodeField<wall_record> push(int a) const { return spring_force(a); }                       // [N]
-  NodeField<wall_record> friction(int a) const { return spring_stiffness(a); }               // [N]
   /// The vector at number `at` of a node's record.
   Vec<double, D> vector(int node, int at) const {
     Vec<double, D> v;
@@ -65,7 +63,7 @@ struct Patch {
   NodeBits<D> owned;      // nodes that no earlier patch of the body holds; of a primary, no earlier
                           // primary; none of a secondary one
   SharedNodes<D> shared;  // of a primary; of others it means nothing
-  bool at_wall = false;   // its block has nodes on a wall
+  bool at_wall = false;   // its block has nodes on a wall, or next to one that touches
   bool left_cell = false;   // a particle has left its cell since the lists were made
   bool in_contact = false;  // its block may have nodes where bodies meet
   bool foreign = false;     // of another rank (partition.hpp): it has nodes here, but no particles

@@ -38,6 +38,12 @@ void sum_nodes_of(TileGrid<D>& grid, const Patch<D>& patch, F&& begin_of) {
     for (int left = patch.shared.groups[holders]; left > 0; --left, entry += holders) {
       double* numbers[holders];
       for (int h = 0; h < holders; ++h) numbers[h] = block[entry[h].neighbour][entry[h].node];
+      // All patches that hold a node near a wall are at it.
+      if constexpr (width == wall_record)
+        if (std::ranges::any_of(entry, entry + holders, [&](const SharedEntry<D>& one) {
+              return block[one.neighbour].data == nullptr;
+            }))
+          continue;
       unrolled<halves>([&](auto q) {
         // The owner's first, then the others' in the order of the tiles: bits that no thread count
         // changes. Four numbers of a record at once, the unused one with them.
@@ -57,6 +63,7 @@ void sum_shared(TileGrid<D>& grid, Threads& threads, F&& begin_of) {
   /// f(p's half record, q's) for the nodes that both hold.
   const auto each_quad = [&](const Patch<D>& p, const Patch<D>& q, auto&& f) {
     const Nodes<width> of_p{begin_of(p)}, of_q{begin_of(q)};
+    if (of_p.data == nullptr || of_q.data == nullptr) return;
     for_each_shared_row(p, q, [&](int here, int there, int count) {
       for (int i = 0; i < count; ++i)
         for (int k = 0; k < halves * half_record; k += half_record)

@@ -35,13 +35,15 @@ struct TileGrid : GridGeometry<D> {
   NodeBlock<D> block(const Patch<D>& patch) {
     double* const begin = nodes.numbers.data() + patch.memory;
     const int count = patch.shape.node_count;
-    return {{begin}, count, {has_wall_springs ? begin + numbers_before_springs(count) : nullptr}};
+    const bool touches = has_wall_springs && patch.at_wall;
+    return {{begin}, count, {touches ? begin + numbers_before_springs(count) : nullptr}};
   }
   NodeBlock<D> block(std::size_t patch) { return block(patches[patch]); }
   /// Of a block of so many nodes, in whole cache lines: all, and those before the springs of walls.
-  std::size_t numbers_of_block(int count) const {
+  std::size_t numbers_of_block(int count, bool at_wall) const {
     const auto nodes = static_cast<std::size_t>(count);
-    return numbers_before_springs(count) + (has_wall_springs ? record * ((3 * nodes + 1) / 2) : 0);
+    const bool touches = has_wall_springs && at_wall;
+    return numbers_before_springs(count) + (touches ? record * ((3 * nodes + 1) / 2) : 0);
   }
   std::size_t numbers_before_springs(int count) const {
     const auto nodes = static_cast<std::size_t>(count);

@@ -28,9 +28,12 @@ struct Nodes {
   MPM_HD Nodes from(int node) const { return {(*this)[node]}; }
   MPM_HD Nodes at(int number) const { return {data + number}; }
 };
-/// What springs of walls that touch are at a node stands behind these: along each axis the force,
-/// the stiffness and the energy, a half each.
+/// Behind all records of a patch at a wall that touches, so many numbers of each node: a half each
+/// of the springs' forces, stiffnesses and energies, a number for each normal; then, a half for
+/// each normal, the force of that face with its friction.
 inline constexpr int wall_record = 3 * half_record;
+inline constexpr int spring_force_at = 0, spring_stiffness_at = half_record,
+                     spring_energy_at = 2 * half_record;
 
 using NodeRecords = Nodes<record>;
 using HalfRecords = Nodes<half_record>;

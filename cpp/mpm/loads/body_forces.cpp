@@ -4,7 +4,7 @@
 
 #include "mpm/schedule/cell_loop.hpp"
 #include "mpm/step/patch_loops.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 
 namespace mpm {
 namespace {

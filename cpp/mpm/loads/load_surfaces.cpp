@@ -3,7 +3,7 @@
 #include "mpm/comm/all_sums.hpp"
 #include "mpm/loads/carry_loads.hpp"
 #include "mpm/step/nodes_around.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 
 namespace mpm {
 namespace {

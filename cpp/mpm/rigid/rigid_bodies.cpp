@@ -2,7 +2,7 @@
 // same momentum and angular momentum, and they take the place of eq. (16) that this motion gives.
 #include "mpm/rigid/prescribed_bodies.hpp"
 #include "mpm/step/patch_loops.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 
 namespace mpm {
 namespace {
@@ -71,8 +71,8 @@ std::array<unsigned, 3> holding_faces(const Domain<D>& domain, const Body<D>& bo
       const Wall wall = grid.walls.face[a][side];
       // Nodes on an absorbing face are not held, and rigid bodies have no dashpots.
       if (wall == Wall::free || wall == Wall::absorbing) continue;
-      // One that touches lets it part.
-      if (wall == Wall::contact && !((side == 0 ? -velocity[a] : velocity[a]) > 0.0)) continue;
+      // From one that touches it may part.
+      if (wall == Wall::contact && (side == 0 ? velocity[a] : -velocity[a]) > 0.0) continue;
       const double nearest = side == 0
                                  ? extent.lower[a]
                                  : grid.walls.cells[static_cast<std::size_t>(a)] - extent.upper[a];

@@ -11,7 +11,7 @@
 #include "mpm/run/part_sums.hpp"
 #include "mpm/run/start_affine.hpp"
 #include "mpm/run/time_step.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm {

@@ -2,7 +2,7 @@
 
 #include "mpm/run/measures.hpp"
 #include "mpm/run/part_sums.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 
 namespace mpm {
 namespace {

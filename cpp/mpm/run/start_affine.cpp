@@ -7,7 +7,7 @@
 #include "mpm/schedule/cell_loop.hpp"
 #include "mpm/step/affine_velocity.hpp"
 #include "mpm/step/patch_loops.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm {

@@ -1,7 +1,7 @@
 #include "mpm/contact/candidates.hpp"
 #include "mpm/contact/guests.hpp"
 #include "mpm/contact/kept_planes.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 
 namespace mpm {
 

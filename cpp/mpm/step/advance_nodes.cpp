@@ -2,9 +2,10 @@
 #include "mpm/loads/carry_loads.hpp"
 #include "mpm/rigid/prescribed_bodies.hpp"
 #include "mpm/step/patch_loops.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/walls/absorb.hpp"
 #include "mpm/walls/reactions.hpp"
+#include "mpm/walls/touch.hpp"
 
 namespace mpm {
 namespace {
@@ -195,8 +196,8 @@ void advance_nodes(Domain<D>& domain) {
     Work loads, dashpots, push, friction;
     if (absorb && patch.at_wall) dashpots = work_of_dashpots(block, own, dt);
     if (grid.has_wall_springs && patch.at_wall) {
-      push = work_of(block, own, dt, [&](int a) { return block.push(a); });
-      friction = work_of(block, own, dt, [&](int a) { return block.friction(a); });
+      push = work_of_faces(block, own, dt, true);
+      friction = work_of_faces(block, own, dt, false);
     }
     // The mirrored weight went into the force (ghost_weight, subtracted); it is work of gravity, so
     // it is taken from there and put here. By the velocity of the image before the step.

@@ -4,7 +4,7 @@
 #include "mpm/step/move.hpp"
 #include "mpm/step/node_loops.hpp"
 #include "mpm/step/patch_loops.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm {

@@ -1,6 +1,6 @@
 #include "mpm/schedule/cell_loop.hpp"
 #include "mpm/step/patch_loops.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/step/volume_averaging.hpp"
 
 namespace mpm {

@@ -1,7 +1,7 @@
 #include "mpm/contact/exchange_contact.hpp"
 #include "mpm/contact/find_nodes.hpp"
 #include "mpm/contact/respond.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/walls/mirror.hpp"
 
 namespace mpm {

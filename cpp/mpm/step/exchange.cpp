@@ -3,7 +3,7 @@
 // other before what they have put there (decision 0056).
 #include "mpm/grid/halo.hpp"
 #include "mpm/grid/shared_nodes.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 
 namespace mpm {
 namespace {

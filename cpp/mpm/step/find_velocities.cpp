@@ -2,7 +2,7 @@
 #include "mpm/rigid/prescribed_bodies.hpp"
 #include "mpm/step/fixed_walls.hpp"
 #include "mpm/step/patch_loops.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/walls/reactions.hpp"
 
 namespace mpm {

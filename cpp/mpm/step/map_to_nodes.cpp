@@ -1,6 +1,6 @@
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/scatter_momentum.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/walls/mirror.hpp"
 
 namespace mpm {
@@ -20,7 +20,7 @@ void map_patch(Domain<D>& domain, std::size_t p) {
     // bodies that map nothing, for the exchange reads every block.
     clear(block.records, block.count, record);
     if (grid.has_dashpots) clear(block.dashpots(), block.count, half_record);
-    if (grid.has_wall_springs) clear(block.springs, block.count, wall_record);
+    if (block.springs.data != nullptr) clear(block.springs, block.count, wall_record);
   }
   const Body<D>& body = domain.body_of(patch);
   if (body.is_prescribed() && !patch.in_contact) return;  // Nobody asks for its nodes.

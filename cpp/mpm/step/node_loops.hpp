@@ -1,7 +1,6 @@
 #pragma once
 // Loops over the nodes of a patch.
 #include "mpm/domain.hpp"
-#include "mpm/ledger/work.hpp"
 
 namespace mpm {
 
@@ -15,20 +14,6 @@ void clear(const Nodes<width>& nodes, int count, int numbers) {
 /// Copy half the records of `count` nodes.
 inline void copy_halves(const NodeRecords& to, const HalfRecords& from, int count) {
   for (int n = 0; n < count; ++n) Batch<half_record>::load(from[n]).store(to[n]);
-}
-
-/// The work of `force(axis)[node]` on the nodes that a patch owns, once these are advanced.
-template <int D, class Force>
-Work work_of(const NodeBlock<D>& block, const double* own, double time_step, Force&& force) {
-  Work work;
-  for (int a = 0; a < D; ++a)
-    for (int n = 0; n < block.count; ++n) {
-      // v - dv is the velocity before the step; with half of f dv it is the work at the middle.
-      const double f = own[n] * force(a)[n], dv = block.increment(a)[n];
-      work.first += f * (block.velocity(a)[n] - dv);
-      work.second += f * dv;
-    }
-  return {time_step * work.first, 0.5 * time_step * work.second};
 }
 
 /// f(node, constrained axes) for the nodes of a patch that walls hold.

@@ -1,7 +1,7 @@
 #include "mpm/step/node_loops.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/scatter_momentum.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 
 namespace mpm {
 namespace {

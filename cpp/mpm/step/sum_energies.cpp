@@ -1,5 +1,5 @@
 #include "mpm/contact/record.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/step/transfer/transfer.hpp"
 
 namespace mpm {

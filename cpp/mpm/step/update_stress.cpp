@@ -1,7 +1,7 @@
 #include "mpm/loads/carry_loads.hpp"
 #include "mpm/step/move.hpp"
 #include "mpm/step/patch_loops.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/step/volume_averaging.hpp"
 
 namespace mpm {

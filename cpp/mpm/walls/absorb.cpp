@@ -1,7 +1,7 @@
 #include "mpm/walls/absorb.hpp"
 
 #include "mpm/step/patch_loops.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 
 namespace mpm {
 

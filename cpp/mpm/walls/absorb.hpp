@@ -2,6 +2,7 @@
 // Absorbing walls: dashpots on the nodes of a face let the waves of the bodies before it pass, with
 // the traction -rho c_p v along the normal and -rho c_s v along the face (Lysmer & Kuhlemeyer 1969,
 // eqs. 1-2 with a = b = 1).
+#include "mpm/ledger/work.hpp"
 #include "mpm/step/node_loops.hpp"
 #include "mpm/step/nodes_around.hpp"
 
@@ -91,11 +92,19 @@ void add_dashpot_forces(const Patch<D>& patch, const NodeBlock<D>& block,
     }
 }
 
-/// The work of the dashpots on a patch's own nodes, once these are advanced: -C_i |v + dv / 2|^2 dt
-/// but for contact, so never a gain.
+/// The work of the dashpots on a patch's own nodes, once these are advanced.
 template <int D>
 Work work_of_dashpots(const NodeBlock<D>& block, const double* own, double time_step) {
-  return work_of(block, own, time_step, [&](int a) { return block.dashpot_force(a); });
+  Work work;
+  for (int a = 0; a < D; ++a)
+    for (int n = 0; n < block.count; ++n) {
+      // v - dv is the velocity before the step; with half of f dv it is the work at the middle,
+      // -C_i |v + dv / 2|^2 dt but for contact, so never a gain.
+      const double f = own[n] * block.dashpot_force(a)[n], dv = block.increment(a)[n];
+      work.first += f * (block.velocity(a)[n] - dv);
+      work.second += f * dv;
+    }
+  return {time_step * work.first, 0.5 * time_step * work.second};
 }
 
 }  // namespace mpm

@@ -3,7 +3,7 @@
 // come in this order.
 #include "mpm/step/fixed_walls.hpp"
 #include "mpm/step/patch_loops.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/walls/reactions.hpp"
 
 namespace mpm {

@@ -88,43 +88,33 @@ void add_holding(const TileGrid<D>& grid, const Patch<D>& patch, const double* o
   });
 }
 
-/// The same of forces at the nodes that a patch owns, `force(axis)[node]`, of the faces that
-/// `faces(node, its index)` says.
-template <int D, class Force, class Faces>
-void add_forces(const TileGrid<D>& grid, const Patch<D>& patch, const double* own, double time_step,
-                const Reaction<D>& to, Force&& force, Faces&& faces) {
-  for (int n = 0; n < patch.shape.node_count; ++n) {
-    Vec<double, D> impulse;
-    for (int a = 0; a < D; ++a) impulse[a] = time_step * own[n] * force(a)[n];
-    if (dot(impulse, impulse) == 0.0) continue;
-    const Index<D> place = index_of(grid, patch, n);
-    to.add(in_space<D>(grid.position_of(place)), impulse, [&](int) { return faces(n, place); });
-  }
-}
+/// The same of the dashpots on the nodes that a patch owns.
 template <int D>
 void add_dashpots(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block,
                   const double* own, double time_step, const Reaction<D>& to) {
-  add_forces(
-      grid, patch, own, time_step, to, [&](int a) { return block.dashpot_force(a); },
-      [&](int, const Index<D>& node) { return grid.walls.faces_absorbing(node); });
+  for (int n = 0; n < block.count; ++n) {
+    Vec<double, D> impulse;
+    for (int a = 0; a < D; ++a) impulse[a] = time_step * own[n] * block.dashpot_force(a)[n];
+    if (dot(impulse, impulse) == 0.0) continue;
+    const Index<D> place = index_of(grid, patch, n);
+    to.add(in_space<D>(grid.position_of(place)), impulse,
+           [&](int) { return grid.walls.faces_absorbing(place); });
+  }
 }
-/// And of walls that touch: an axis at a time, as each is the normal of one face.
+
+/// And of the faces that touch, each with its own force.
 template <int D>
 void add_touching(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block,
                   const double* own, double time_step, const Reaction<D>& to) {
-  for (int n = 0; n < block.count; ++n) {
-    unsigned faces = 0;
-    Vec<double, D> push, friction;
-    for (int a = 0; a < D; ++a) {
-      push[a] = time_step * own[n] * block.push(a)[n];
-      friction[a] = time_step * own[n] * block.friction(a)[n];
-      if (push[a] != 0.0) faces |= grid.walls.face_pushing(a, push[a]);
+  if (block.springs.data == nullptr) return;
+  for (int n = 0; n < block.count; ++n)
+    for (int normal = 0; normal < D; ++normal) {
+      Vec<double, D> impulse;
+      for (int a = 0; a < D; ++a) impulse[a] = time_step * own[n] * block.face_force(normal, a)[n];
+      if (impulse[normal] == 0.0) continue;  // no friction without it
+      to.add(place_of(grid, patch, n), impulse,
+             [&](int) { return 1u << (2 * normal + (impulse[normal] > 0.0 ? 0 : 1)); });
     }
-    if (faces == 0) continue;
-    const Vector3 place = place_of(grid, patch, n);
-    to.add(place, push, [&](int a) { return grid.walls.face_pushing(a, push[a]); });
-    to.add(place, friction, [&](int) { return faces; });
-  }
 }
 
 }  // namespace mpm

@@ -1,7 +1,8 @@
 #include "mpm/walls/touch.hpp"
 
+#include "mpm/contact/set_back.hpp"
 #include "mpm/step/patch_loops.hpp"
-#include "mpm/step/stages.hpp"
+#include "mpm/step/stage_functions.hpp"
 #include "mpm/walls/set_back.hpp"
 
 namespace mpm {
@@ -14,6 +15,7 @@ void place_wall_springs(Domain<D>& domain) {
   for_each_patch(domain, deformable, [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
+    if (!patch.at_wall) return;
     scatter_wall_springs(grid, domain.body_of(patch), domain.pool_of(patch), patch, block);
     fold_wall_springs(grid, patch, block);
   });
@@ -35,15 +37,20 @@ template <int D>
 void set_back_at_walls(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
   if (!grid.has_wall_springs) return;
-  constexpr double beyond = 1e-9;  // as where bodies overlap (set_back.cpp)
-  for_each_patch(domain, deformable, [&](std::size_t p) {
-    const Patch<D>& patch = grid.patches[p];
+  SetBack& told = domain.contact.set_back;
+  for (const Patch<D>& patch : grid.patches) {
+    if (!domain.body_of(patch).deforms()) continue;
     ParticlePool<D>& pool = domain.pool_of(patch);
-    for (const std::uint32_t row : pool.rows(patch))
+    for (const std::uint32_t row : pool.rows(patch)) {
+      double& share = pool.columns.component(pool.set_back)[row];
+      const double before = share;
       for_each_wall_touch(grid, domain.body_of(patch), pool, row, [&](const WallTouch& touch) {
-        pool.columns.component(pool.set_back)[row] += (touch.overlap + beyond) / touch.half;
+        share += (touch.overlap + beyond_overlap) / touch.half;
+        told.most = std::max(told.most, touch.overlap * grid.cell_size);
       });
-  });
+      if (before == 0.0 && share > 0.0) ++told.particles;
+    }
+  }
 }
 
 template void place_wall_springs<2>(Domain<2>&);

@@ -29,89 +29,98 @@ struct WallTouch {
 template <int D, class F>
 void for_each_wall_touch(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
                          std::uint32_t row, F&& f) {
-  using T = Batch<contact_lanes>;
+  constexpr double widest = 1.0;  // an edge of two cells, as bodies see it (SurfaceSum::cut)
   for (int axis = 0; axis < D; ++axis)
     for (const int side : {0, 1}) {
       if (grid.walls.face[axis][side] != Wall::contact) continue;
       const double x = grid.among_nodes(pool.x(axis)[row], axis);
       const double height = side == 0 ? x : grid.walls.cells[static_cast<std::size_t>(axis)] - x;
-      if (height > 1.0) continue;  // beyond all edges that go with the grid
-      const double half =
-          0.5 / grid.cell_size * particle_edge<D>(T(double{pool.volume()[row]}), body.mean_edge)[0];
+      if (height >= widest) continue;
+      const Batch<contact_lanes> volume(double{pool.volume()[row]});
+      const double edge = particle_edge<D>(volume, body.mean_edge)[0] / grid.cell_size;
+      const double half = std::min(0.5 * edge, widest);
+      // Read here, as who sets it back does so face by face.
       const double back = pool.set_back < 0 ? 0.0 : pool.columns.component(pool.set_back)[row];
       const double overlap = half * (1.0 - back) - height;
       if (overlap > 0.0) f(WallTouch{axis, side, overlap, half});
     }
 }
 
-/// Shares of a point's force for the nodes along an axis that a particle's cell reaches.
+/// The shares of a force that the nodes along an axis have which a particle's cell reaches.
 template <BasisModel B>
-struct SharesAlong {
-  double of[B::nodes];
+using SharesAlong = std::array<double, B::nodes>;
 
-  /// Those of the particle's own functions at x from the cell's own node [cells].
-  SharesAlong(const B& basis, double x) {
-    for (int k = 0; k < B::nodes; ++k) of[k] = shape_along(basis, x - (k - B::before));
+/// Those of the particle's own functions at x from its cell's own node [cells].
+template <BasisModel B>
+SharesAlong<B> shares_of(const B& basis, double x) {
+  SharesAlong<B> shares;
+  for (int k = 0; k < B::nodes; ++k)
+    shares[static_cast<std::size_t>(k)] = shape_along(basis, x - (k - B::before));
+  return shares;
+}
+/// Those of a point at `place`, for nodes that the particle at x reaches: what others would have
+/// has the one of these nearest to the face, which is `face` from the cell's own node.
+template <BasisModel B>
+SharesAlong<B> shares_across(const B& basis, double x, double place, int face) {
+  SharesAlong<B> shares = shares_of(basis, x);
+  int nearest = -1;
+  double rest = 1.0;
+  for (int k = 0; k < B::nodes; ++k) {
+    double& share = shares[static_cast<std::size_t>(k)];
+    if (!(share > 0.0)) continue;
+    const auto off = [&](int node) { return std::abs(node - B::before - face); };
+    if (nearest < 0 || off(k) < off(nearest)) nearest = k;
+    share = shape_along(basis, place - (k - B::before));
+    rest -= share;
   }
-  /// Those of a point at `place`, of nodes that the particle at x reaches; what others would have
-  /// is given to the node of the face, `face` from the cell's own.
-  SharesAlong(const B& basis, double x, double place, int face) : SharesAlong(basis, x) {
-    int nearest = 0;
-    double rest = 1.0;
-    for (int k = 0; k < B::nodes; ++k) {
-      const bool reached = of[k] > 0.0;
-      if (std::abs(k - B::before - face) < std::abs(nearest - B::before - face) && reached)
-        nearest = k;
-      of[k] = reached ? shape_along(basis, place - (k - B::before)) : 0.0;
-      rest -= of[k];
+  shares[static_cast<std::size_t>(nearest)] += rest;
+  return shares;
+}
+
+/// Add the spring of a particle to the nodes of its patch.
+template <BasisModel B, int D>
+void add_wall_spring(const B& basis, const TileGrid<D>& grid, const Body<D>& body,
+                     const ParticlePool<D>& pool, const Patch<D>& patch, const NodeBlock<D>& block,
+                     const CellRange<D>& cell, std::uint32_t row, const WallTouch& touch) {
+  const auto normal = static_cast<std::size_t>(touch.axis);
+  std::array<SharesAlong<B>, D> along;
+  for (std::size_t a = 0; a < D; ++a) {
+    const double x =
+        grid.among_nodes(pool.x(static_cast<int>(a))[row], static_cast<int>(a)) - cell.cell[a];
+    const int face = (touch.side == 0 ? 0 : grid.walls.cells[a]) - cell.cell[a];
+    along[a] = a == normal
+                   ? shares_across(basis, x, face - touch.inward() * 0.5 * touch.overlap, face)
+                   : shares_of(basis, x);
+  }
+  const double edge = 2.0 * touch.half * grid.cell_size, overlap = touch.overlap * grid.cell_size;
+  const double all = body.stiffness * std::pow(edge, D - 2);  // a modulus, an area over a length
+  Index<D> low{}, high;
+  high.fill(B::nodes - 1);
+  for_each_index<D>(low, high, [&](Index<D> k) {
+    double stiffness = all;
+    for (std::size_t a = 0; a < D; ++a) {
+      stiffness *= along[a][static_cast<std::size_t>(k[a])];
+      k[a] -= B::before;
     }
-    of[nearest] += rest;
-  }
-};
+    if (stiffness == 0.0) return;
+    const int node = cell.first_node + patch.shape.distance(k);
+    block.spring(spring_force_at, touch.axis)[node] += touch.inward() * stiffness * overlap;
+    block.spring(spring_stiffness_at, touch.axis)[node] += stiffness;
+    block.spring(spring_energy_at, touch.axis)[node] += 0.5 * stiffness * overlap * overlap;
+  });
+}
 
 /// Add the springs of a patch's particles to its nodes.
 template <int D>
 void scatter_wall_springs(const TileGrid<D>& grid, const Body<D>& body, const ParticlePool<D>& pool,
                           const Patch<D>& patch, const NodeBlock<D>& block) {
   if (!patch.at_wall) return;
-  const double h = grid.cell_size;
-  Bases::with(grid.basis, body.mean_edge / h, [&]<BasisModel B>(const B& basis) {
-    const auto of_row = [&](const CellRange<D>& cell, std::uint32_t row, const WallTouch& touch) {
-      const auto axis = static_cast<std::size_t>(touch.axis);
-      const auto from_cell = [&](int a) {
-        return grid.among_nodes(pool.x(a)[row], a) - cell.cell[static_cast<std::size_t>(a)];
-      };
-      const int face = (touch.side == 0 ? 0 : grid.walls.cells[axis]) - cell.cell[axis];
-      const double place = face - touch.inward() * 0.5 * touch.overlap;
-      const double edge = 2.0 * touch.half * h, overlap = touch.overlap * h;
-      const double stiffness = body.stiffness * std::pow(edge, D - 2);
-      std::array<std::optional<SharesAlong<B>>, D> along;
-      for (std::size_t a = 0; a < D; ++a) {
-        const double x = from_cell(static_cast<int>(a));
-        if (a == axis)
-          along[a].emplace(basis, x, place, face);
-        else
-          along[a].emplace(basis, x);
-      }
-      Index<D> low{}, high;
-      high.fill(B::nodes - 1);
-      for_each_index<D>(low, high, [&](Index<D> k) {
-        double share = stiffness;
-        for (std::size_t a = 0; a < D; ++a) {
-          share *= along[a]->of[k[a]];
-          k[a] -= B::before;
-        }
-        if (share == 0.0) return;
-        const int node = cell.first_node + patch.shape.distance(k);
-        block.spring_force(touch.axis)[node] += touch.inward() * share * overlap;
-        block.spring_stiffness(touch.axis)[node] += share;
-        block.spring_energy(touch.axis)[node] += 0.5 * share * overlap * overlap;
-      });
-    };
+  Bases::with(grid.basis, body.mean_edge / grid.cell_size, [&]<BasisModel B>(const B& basis) {
     for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
       for (std::uint32_t k = 0; k < cell.count; ++k)
-        for_each_wall_touch(grid, body, pool, cell.rows[k],
-                            [&](const WallTouch& touch) { of_row(cell, cell.rows[k], touch); });
+        for_each_wall_touch(grid, body, pool, cell.rows[k], [&](const WallTouch& touch) {
+          add_wall_spring(basis, grid, body, pool, patch, block, cell, cell.rows[k], touch);
+        });
     });
   });
 }
@@ -128,67 +137,117 @@ void fold_wall_springs(const TileGrid<D>& grid, const Patch<D>& patch, const Nod
   });
 }
 
+/// A node of which a wall's springs push.
+template <int D>
+struct TouchedNode {
+  Vec<double, D> F, K, E;  // of the springs along each axis [N], [N/m], [J]
+  unsigned held;           // axes along which other walls hold it
+  bool any = false;
+
+  ContactSpring spring(int a) const { return {std::abs(F[a]), K[a], E[a]}; }
+};
+
+/// Take a node's springs from it.
+template <int D>
+TouchedNode<D> take_springs(const TileGrid<D>& grid, const Patch<D>& patch,
+                            const NodeBlock<D>& block, int node) {
+  TouchedNode<D> touched;
+  for (int a = 0; a < D; ++a) {
+    touched.F[a] = block.spring(spring_force_at, a)[node];
+    touched.K[a] = block.spring(spring_stiffness_at, a)[node];
+    touched.E[a] = block.spring(spring_energy_at, a)[node];
+    touched.any = touched.any || touched.K[a] > 0.0;
+  }
+  clear(block.springs.from(node), 1, wall_record);
+  touched.held = touched.any ? grid.walls.constrained_axes(index_of(grid, patch, node)) : 0u;
+  return touched;
+}
+
+/// The body at a node against the walls, as it goes without them: a wall is a body that stands.
+template <int D>
+void start_solution(const Domain<D>& domain, const Patch<D>& patch, const NodeBlock<D>& block,
+                    int node, const TouchedNode<D>& touched, NodeSolution<D>& solution) {
+  const double dt = domain.time_step, drag = domain.damping_of(patch).half_drag(dt);
+  const double m = block.mass()[node];
+  const Vec<double, D> v = block.vector(node, velocity_at);
+  Vec<double, D> alone =
+      dt * (block.vector(node, force_at) + m * domain.gravity) - (2.0 * drag * m) * v;
+  for (int a = 0; a < D; ++a)
+    if (touched.held >> a & 1u) alone[a] = 0.0;
+  solution.sides.resize(2);
+  solution.sides[0] = {(1.0 + drag) * m, false, {}, {}};
+  solution.sides[0].start(v, alone);
+  solution.sides[1] = {std::numeric_limits<double>::infinity(), true, {}, {}};
+  solution.sides[1].start(Vec<double, D>::zero(), Vec<double, D>::zero());
+  solution.pairs.clear();
+  for (int a = 0; a < D; ++a) {
+    if (!(touched.K[a] > 0.0)) continue;
+    Vec<double, D> normal = Vec<double, D>::zero();  // from the body to the wall
+    normal[a] = touched.F[a] > 0.0 ? -1.0 : 1.0;
+    const double friction = domain.grid.walls.friction[a][touched.F[a] > 0.0 ? 0 : 1];
+    // What is held along the normal does not come nearer.
+    const bool stands = (touched.held >> a & 1u) != 0;
+    solution.pairs.push_back(
+        {0,
+         1,
+         true,
+         false,
+         friction,
+         normal,
+         {dt * std::abs(touched.F[a]), stands ? 0.0 : 0.5 * dt * dt * touched.K[a], true}});
+  }
+}
+
 /// The springs' forces over a step on the nodes of a patch, with their friction, which are added to
 /// the others; returns the energy that is stored in them after it, of the nodes it owns [J].
 template <int D>
-double push_from_walls(const Domain<D>& domain, const Patch<D>& patch, const NodeBlock<D>& block) {
-  const TileGrid<D>& grid = domain.grid;
-  const double dt = domain.time_step, drag = domain.damping_of(patch).half_drag(dt);
+double push_from_walls(Domain<D>& domain, const Patch<D>& patch, const NodeBlock<D>& block) {
+  // Grows to two bodies and D pairs once.
   thread_local NodeSolution<D> solution;
-  solution.sides.resize(2);
+  const double dt = domain.time_step;
   double stored = 0.0;
   for (int n = 0; n < block.count; ++n) {
-    double& m = block.mass()[n];
-    Vec<double, D> F, K, E;
-    bool any = false;
-    for (int a = 0; a < D; ++a) {
-      F[a] = std::exchange(block.spring_force(a)[n], 0.0);
-      K[a] = std::exchange(block.spring_stiffness(a)[n], 0.0);
-      E[a] = block.spring_energy(a)[n];
-      any = any || K[a] > 0.0;
-    }
-    if (!any || !(m > 0.0)) continue;
-    const Index<D> index = index_of(grid, patch, n);
-    const unsigned held = grid.walls.constrained_axes(index);
-    const Vec<double, D> v = block.vector(n, velocity_at);
-    Vec<double, D> alone =
-        dt * (block.vector(n, force_at) + m * domain.gravity) - 2.0 * drag * m * v;
-    for (int a = 0; a < D; ++a)
-      if (held >> a & 1u) alone[a] = 0.0;
-    solution.sides[0] = {(1.0 + drag) * m, false, {}, {}};
-    solution.sides[0].start(v, alone);
-    solution.sides[1] = {std::numeric_limits<double>::infinity(), true, {}, {}};
-    solution.sides[1].start(Vec<double, D>::zero(), Vec<double, D>::zero());
-    solution.pairs.clear();
-    for (int a = 0; a < D; ++a) {
-      if (!(K[a] > 0.0)) continue;
-      Vec<double, D> normal = Vec<double, D>::zero();  // from the body to the wall
-      normal[a] = F[a] > 0.0 ? -1.0 : 1.0;
-      solution.pairs.push_back({0,
-                                1,
-                                true,
-                                false,
-                                grid.walls.friction[a][F[a] > 0.0 ? 0 : 1],
-                                normal,
-                                {dt * std::abs(F[a]), 0.5 * dt * dt * K[a], true}});
-    }
-    solve_node<true>(solution);
+    const TouchedNode<D> touched = take_springs(domain.grid, patch, block, n);
+    if (!touched.any || !(block.mass()[n] > 0.0)) continue;
+    start_solution(domain, patch, block, n, touched, solution);
+    if (!solve_node<true>(solution))
+      domain.contact.unconverged.fetch_add(1, std::memory_order_relaxed);
     const Vec<double, D> end = solution.sides[0].end_velocity();
-    for (const SolvedPair<D>& pair : solution.pairs) {
-      const double own = patch.counts(n) ? 1.0 : 0.0;
-      for (int a = 0; a < D; ++a) {
-        const double push = -pair.normal_impulse * pair.normal[a] / dt,
-                     friction = -pair.friction_impulse[a] / dt;
-        block.push(a)[n] += push;
-        block.friction(a)[n] += friction;
-        block.force(a)[n] += push + friction;
-        if (pair.normal[a] != 0.0)
-          stored += own * ContactSpring{std::abs(F[a]), K[a], E[a]}.energy_after(dt * end[a] *
-                                                                                 pair.normal[a]);
+    for (const SolvedPair<D>& pair : solution.pairs)
+      for (int normal = 0; normal < D; ++normal) {
+        if (pair.normal[normal] == 0.0) continue;
+        for (int a = 0; a < D; ++a) {
+          const double force =
+              -(pair.normal_impulse * pair.normal[a] + pair.friction_impulse[a]) / dt;
+          block.face_force(normal, a)[n] = force;
+          block.force(a)[n] += force;
+        }
+        const bool stands = (touched.held >> normal & 1u) != 0;
+        const double way = stands ? 0.0 : dt * end[normal] * pair.normal[normal];
+        if (patch.counts(n)) stored += touched.spring(normal).energy_after(way);
       }
-    }
   }
   return stored;
+}
+
+/// The work of faces on the nodes that a patch owns, once these are advanced: that of the forces
+/// along their normals, or of friction.
+template <int D>
+Work work_of_faces(const NodeBlock<D>& block, const double* own, double time_step,
+                   bool along_normals) {
+  Work work;
+  if (block.springs.data == nullptr) return work;
+  for (int normal = 0; normal < D; ++normal)
+    for (int a = 0; a < D; ++a) {
+      if ((a == normal) != along_normals) continue;
+      for (int n = 0; n < block.count; ++n) {
+        // As that of dashpots (absorb.hpp).
+        const double f = own[n] * block.face_force(normal, a)[n], dv = block.increment(a)[n];
+        work.first += f * (block.velocity(a)[n] - dv);
+        work.second += f * dv;
+      }
+    }
+  return {time_step * work.first, 0.5 * time_step * work.second};
 }
 
 }  // namespace mpm

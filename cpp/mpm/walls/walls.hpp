@@ -42,7 +42,7 @@ struct Walls {
   MPM_HD bool absorb() const { return any(Wall::absorbing); }
   MPM_HD bool touch() const { return any(Wall::contact); }
 
-  /// Does a body go on behind it, as its image?
+  /// Is a body's surface looked at as if it went on behind it, mirrored?
   MPM_HD static bool goes_on(Wall wall) { return wall != Wall::free && wall != Wall::contact; }
 
   /// Bit a is set if a node may not move along axis a. Nodes beyond a fixed face are held like
@@ -76,11 +76,6 @@ struct Walls {
   MPM_HD unsigned faces_absorbing(const Index<D>& node) const {
     return faces_where(
         node, [](Wall wall, int, int depth) { return wall == Wall::absorbing && depth == 0; });
-  }
-
-  /// Those that push a body before them in a direction along an axis.
-  MPM_HD unsigned face_pushing(int axis, double force) const {
-    return 1u << (2 * axis + (force > 0.0 ? 0 : 1));
   }
 
   /// Lies a node from `before` this one to `after` it, along any axis, on a fixed face or beyond?

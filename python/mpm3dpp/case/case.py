@@ -29,7 +29,7 @@ from .checks import check_case
 from .choices import with_choices
 from .content import PRESETS, content_of, hash_of, with_preset
 from .detonation import Detonation
-from .grid import Grid
+from .grid import CONTACT, Grid
 from .loads import Load
 from .material import Material as Material  # also for those who import it from here
 from .pairs import listed_pairs
@@ -215,6 +215,11 @@ class Case(CaseModel):
     def has_springs(self) -> bool:
         """Whether bodies in contact push each other by springs."""
         return self.contact_enabled and self.contact.response == "springs"
+
+    @property
+    def has_set_back(self) -> bool:
+        """Whether surfaces of particles may be set back: springs push bodies or at walls."""
+        return self.has_springs or CONTACT in self.grid.walls
 
     def is_rigid(self, part: str) -> bool:
         """Return whether a body does not deform: by its material, or by a prescribed motion.

@@ -238,7 +238,7 @@ def _columns(case: Case, material: str) -> list[str]:
         forced=bool(given),
         of_start=any(isinstance(value, Expression) and value.is_of_start for value in given),
         transfer=case.run.transfer.word,
-        springs=case.has_springs,
+        springs=case.has_set_back,
         viscosity=case.viscosity_of(material),
         damping=case.material[material].beta,
         **case.material[material].for_core(),

@@ -27,7 +27,10 @@ particles by keys in which tiles have so many bits."""
 _WHOLE = 1e-6  # A box that misses a whole number of cells by less, per cell, is taken as whole.
 
 _WALL = choice(_core.walls)
-_CONTACT = "contact"
+CONTACT = "contact"
+"""Walls that touch: what they do besides is the core's."""
+_FEWEST = 3
+"""Cells between two walls that touch: at a node there is one spring along an axis."""
 Wall = Annotated[str, _WALL]
 
 
@@ -99,7 +102,7 @@ class GridBox(CaseModel):
             walls = Walls.model_validate(data.get("walls", {}))
         except ValidationError:  # which is told of where the walls are
             return {key: value for key, value in data.items() if key != "friction"}
-        faces = [face for face in FACES if getattr(walls, face) == _CONTACT]
+        faces = [face for face in FACES if getattr(walls, face) == CONTACT]
         if not faces:
             rule = "needs a face of grid.box.walls that is contact: it has none"
             raise violation(rule, 'give walls = { y_min = "contact" }', path=("friction",))
@@ -194,10 +197,27 @@ class Grid(_Grid):
             return
         for face in FACES:
             word = getattr(self.box.walls, face)
-            if getattr(self.box.friction, face) is not None and word != _CONTACT:
+            if getattr(self.box.friction, face) is not None and word != CONTACT:
                 rule = f"is of a face that is {word}"
                 remedy = f'give walls.{face} = "contact", or leave it out'
                 yield violation(rule, remedy, path=("box", "friction", face))
+        yield from self._narrow_mistakes()
+
+    def _narrow_mistakes(self) -> Iterator[PydanticCustomError]:
+        if self.box is None:
+            return
+        for axis, cells in zip("xyz", self.box_cells or (), strict=False):
+            faces = (f"{axis}_min", f"{axis}_max")
+            if cells < 1 or any(getattr(self.box.walls, face) != CONTACT for face in faces):
+                continue
+            least, times = cells, 0 if self.coarsening is None else self.coarsening.times
+            while times > 0 and least % 2 == 0:
+                least, times = least // 2, times - 1
+            if least < _FEWEST:
+                doubled = ", once they have doubled" if least < cells else ""
+                rule = f"has contact on both {axis} faces, {least} cells apart{doubled}"
+                remedy = f"give at least {_FEWEST} cells, or make one of the two slip"
+                yield violation(rule, remedy, path=("box", "walls"))
 
     def _box_mistakes(self) -> Iterator[PydanticCustomError]:
         box = self.box
@@ -275,6 +295,6 @@ class Grid(_Grid):
         """Coefficients of friction of the six faces, in the order of `walls`; 0 without contact."""
         given = [getattr(self.box.friction, face) if self.box else None for face in FACES]
         return tuple(
-            0.0 if word != _CONTACT else default if mu is None else mu
+            0.0 if word != CONTACT else default if mu is None else mu
             for word, mu in zip(self.walls, given, strict=True)
         )

@@ -57,4 +57,4 @@ def export(
             target = folder / file_name(k, kind.value)
             if out is not None and not every:
                 target = out
-            typer.echo(write(results, k, target, kind.value, where, strain))
+            typer.echo(write(results, k, target, kind.value, where, strain=strain))

@@ -14,7 +14,7 @@ from mpm3dpp.base.model import CaseModel
 from mpm3dpp.base.time_functions import TimeFunction
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import EXPLOSIVE
-from mpm3dpp.case.grid import FACES
+from mpm3dpp.case.grid import CONTACT, FACES
 from mpm3dpp.case.initial import GEOSTATIC
 from mpm3dpp.ranks.world import World, together
 
@@ -166,12 +166,21 @@ def _walls(case: Case) -> list[str]:
                 f"grid.box.walls.{FACES[face]} absorbs waves but holds no weight, and run.gravity "
                 "presses on it: what stands there sinks; give slip or fixed unless that is meant"
             )
+    if CONTACT not in case.grid.walls:
+        return found
+    frictions = case.grid.wall_friction(case.contact.friction)
     rigid = [name for name in case.parts() if case.is_rigid(name)]
     moves = [name for name in rigid if name not in case.body or case.body[name].motion is None]
-    if moves and any(case.grid.wall_friction(case.contact.friction)):
+    if moves and any(frictions):
         found.append(
-            f"body.{moves[0]} is rigid and slides on walls of the box without friction: for that "
-            'give a body with motion = "fixed" in place of the wall, or a strength that deforms'
+            f"{key_text(case.part_path(moves[0]))} is rigid and slides on walls of the box without "
+            'friction: for that give a body with motion = "fixed" in place of the wall, or a '
+            "strength that deforms"
+        )
+    if not any(frictions) and any(pair.friction for pair in case.contact.pair):
+        found.append(
+            "grid.box.walls touch without friction, though pairs of bodies have some: contact.pair "
+            "is of bodies; give grid.box.friction = 0.3, or 0 if that is meant"
         )
     return found
 
@@ -195,7 +204,7 @@ def _locking(case: Case) -> list[str]:
 
 def _springs(case: Case, bodies: Filled) -> list[str]:
     """Sizes of particles with which springs of contact are coarse, or see bodies too late."""
-    if not case.has_springs:
+    if not case.has_set_back:
         return []
     sizes = {name: part.spacing for name, part in bodies.parts.items()}
     found = [
@@ -253,7 +262,7 @@ def _width(case: Case, part: FilledPart) -> float:
     """Return the least extent of a body [cells], but along axes where walls hold both ends."""
     least = math.inf
     for axis in range(case.grid.dimension):
-        if "free" in case.grid.walls[2 * axis : 2 * axis + 2]:
+        if {"free", CONTACT} & set(case.grid.walls[2 * axis : 2 * axis + 2]):
             extents = part.survey.upper[:, axis] - part.survey.lower[:, axis]
             least = min(least, (float(extents.min()) + part.spacing) / case.grid.cell_size)
     return least

@@ -23,6 +23,7 @@ def export(
     out: Path,
     kind: str = "csv",
     where: str = "",
+    *,
     strain: bool = False,
 ) -> Path:
     """Write a frame to a file, and return it.

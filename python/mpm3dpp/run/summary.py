@@ -111,7 +111,7 @@ def memory_bytes(case: Case, bodies: Filled) -> int:
     the history that wait."""
     basis, total = _core.bases[case.grid.basis], _HISTORY_BYTES
     transfer, D = _core.transfers[case.run.transfer.word], case.grid.dimension
-    taken = 8 * (D * D * transfer["affine"] + D * transfer["filters"] + case.has_springs)
+    taken = 8 * (D * D * transfer["affine"] + D * transfer["filters"] + case.has_set_back)
     reached = np.arange(basis["nodes"]) - basis["before"]  # From a cell's own node, along an axis.
     for part in bodies.parts.values():
         state = state_columns(case.material[part.material].models)
