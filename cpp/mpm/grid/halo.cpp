@@ -214,21 +214,14 @@ void finish_nodes(TileGrid<D>& grid, int first, int last) {
 }
 
 template <int D>
-void start_dashpots(TileGrid<D>& grid) {
-  start(grid, grid.partition.mail.dashpots, dashpots_of(grid));
+void start_at_walls(TileGrid<D>& grid) {
+  if (grid.has_dashpots) start(grid, grid.partition.mail.dashpots, dashpots_of(grid));
+  if (grid.has_wall_springs) start(grid, grid.partition.mail.springs, springs_of(grid));
 }
 template <int D>
-void finish_dashpots(TileGrid<D>& grid) {
-  finish(grid, grid.partition.mail.dashpots, dashpots_of(grid));
-}
-
-template <int D>
-void start_springs(TileGrid<D>& grid) {
-  start(grid, grid.partition.mail.springs, springs_of(grid));
-}
-template <int D>
-void finish_springs(TileGrid<D>& grid) {
-  finish(grid, grid.partition.mail.springs, springs_of(grid));
+void finish_at_walls(TileGrid<D>& grid) {
+  if (grid.has_dashpots) finish(grid, grid.partition.mail.dashpots, dashpots_of(grid));
+  if (grid.has_wall_springs) finish(grid, grid.partition.mail.springs, springs_of(grid));
 }
 
 template void plan_halo<2>(TileGrid<2>&);
@@ -237,13 +230,9 @@ template void start_nodes<2>(TileGrid<2>&, int, int);
 template void start_nodes<3>(TileGrid<3>&, int, int);
 template void finish_nodes<2>(TileGrid<2>&, int, int);
 template void finish_nodes<3>(TileGrid<3>&, int, int);
-template void start_dashpots<2>(TileGrid<2>&);
-template void start_dashpots<3>(TileGrid<3>&);
-template void finish_dashpots<2>(TileGrid<2>&);
-template void finish_dashpots<3>(TileGrid<3>&);
-template void start_springs<2>(TileGrid<2>&);
-template void start_springs<3>(TileGrid<3>&);
-template void finish_springs<2>(TileGrid<2>&);
-template void finish_springs<3>(TileGrid<3>&);
+template void start_at_walls<2>(TileGrid<2>&);
+template void start_at_walls<3>(TileGrid<3>&);
+template void finish_at_walls<2>(TileGrid<2>&);
+template void finish_at_walls<3>(TileGrid<3>&);
 
 }  // namespace mpm

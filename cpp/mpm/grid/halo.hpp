@@ -15,15 +15,10 @@ void start_nodes(TileGrid<D>& grid, int first, int last);
 /// Put what they tell into the blocks of their patches.
 template <int D>
 void finish_nodes(TileGrid<D>& grid, int first, int last);
-/// The same for the dashpots.
+/// The same for what walls need of the nodes, if they do: dashpots, springs.
 template <int D>
-void start_dashpots(TileGrid<D>& grid);
+void start_at_walls(TileGrid<D>& grid);
 template <int D>
-void finish_dashpots(TileGrid<D>& grid);
-/// And for the springs of walls.
-template <int D>
-void start_springs(TileGrid<D>& grid);
-template <int D>
-void finish_springs(TileGrid<D>& grid);
+void finish_at_walls(TileGrid<D>& grid);
 
 }  // namespace mpm

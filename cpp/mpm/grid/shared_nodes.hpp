@@ -15,12 +15,9 @@ void list_shared_nodes(TileGrid<D>& grid, Threads& threads);
 /// bodies); then every patch holds the sum.
 template <int D>
 void sum_shared_nodes(TileGrid<D>& grid, Threads& threads, int first, int last);
-/// The same for the dashpots.
+/// The same for what walls need of the nodes, if they do: dashpots, springs.
 template <int D>
-void sum_shared_dashpots(TileGrid<D>& grid, Threads& threads);
-/// And for the springs of walls.
-template <int D>
-void sum_shared_springs(TileGrid<D>& grid, Threads& threads);
+void sum_shared_at_walls(TileGrid<D>& grid, Threads& threads);
 
 /// f(node in p's block, node in q's block, count) for the rows of nodes that both hold.
 template <int D, class F>

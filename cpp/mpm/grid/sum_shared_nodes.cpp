@@ -99,22 +99,18 @@ void sum_shared_nodes(TileGrid<D>& grid, Threads& threads, int first, int last) 
 }
 
 template <int D>
-void sum_shared_dashpots(TileGrid<D>& grid, Threads& threads) {
-  sum_shared<1, half_record>(grid, threads,
-                             [&](const Patch<D>& p) { return grid.block(p).dashpots().data; });
-}
-
-template <int D>
-void sum_shared_springs(TileGrid<D>& grid, Threads& threads) {
-  sum_shared<3, wall_record>(grid, threads,
-                             [&](const Patch<D>& p) { return grid.block(p).springs.data; });
+void sum_shared_at_walls(TileGrid<D>& grid, Threads& threads) {
+  if (grid.has_dashpots)
+    sum_shared<1, half_record>(grid, threads,
+                               [&](const Patch<D>& p) { return grid.block(p).dashpots().data; });
+  if (grid.has_wall_springs)
+    sum_shared<3, wall_record>(grid, threads,
+                               [&](const Patch<D>& p) { return grid.block(p).springs.data; });
 }
 
 template void sum_shared_nodes<2>(TileGrid<2>&, Threads&, int, int);
 template void sum_shared_nodes<3>(TileGrid<3>&, Threads&, int, int);
-template void sum_shared_dashpots<2>(TileGrid<2>&, Threads&);
-template void sum_shared_dashpots<3>(TileGrid<3>&, Threads&);
-template void sum_shared_springs<2>(TileGrid<2>&, Threads&);
-template void sum_shared_springs<3>(TileGrid<3>&, Threads&);
+template void sum_shared_at_walls<2>(TileGrid<2>&, Threads&);
+template void sum_shared_at_walls<3>(TileGrid<3>&, Threads&);
 
 }  // namespace mpm

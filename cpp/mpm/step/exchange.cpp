@@ -25,26 +25,21 @@ template <Exchanged what, int D>
 void start(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
   start_nodes(grid, what.first, what.last);
-  if (what.forces && grid.has_dashpots) start_dashpots(grid);
-  if (what.forces && grid.has_wall_springs) start_springs(grid);
+  if (what.forces) start_at_walls(grid);
   grid.partition.on_its_way = true;
 }
 
 template <Exchanged what, int D>
 void exchange_nodes(Domain<D>& domain) {
   TileGrid<D>& grid = domain.grid;
-  const bool absorbs = what.forces && grid.has_dashpots;
-  const bool touches = what.forces && grid.has_wall_springs;
   if (!grid.partition.alone()) {
     if (!grid.partition.on_its_way) start<what>(domain);
     finish_nodes(grid, what.first, what.last);
-    if (absorbs) finish_dashpots(grid);
-    if (touches) finish_springs(grid);
+    if (what.forces) finish_at_walls(grid);
     grid.partition.on_its_way = false;
   }
   sum_shared_nodes(grid, domain.threads, what.first, what.last);
-  if (absorbs) sum_shared_dashpots(grid, domain.threads);
-  if (touches) sum_shared_springs(grid, domain.threads);
+  if (what.forces) sum_shared_at_walls(grid, domain.threads);
 }
 
 }  // namespace

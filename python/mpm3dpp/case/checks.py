@@ -59,6 +59,7 @@ def _entries(case: Case) -> Found:
             if not word.isprintable():
                 rule = "has a character in its name that cannot be shown"
                 yield violation(rule, "leave it out", path=(table, word))
+    yield from _columns_of_their_own(case)
     for name, material in case.material.items():
         yield from check_material(material, ("material", name))
     dimension = case.grid.dimension
@@ -226,6 +227,18 @@ def _check_body(case: Case, body: Body, path: Path) -> Found:
         for name in [*given, *(["motion"] if body.motion is not None else [])]:
             rule = "must not be given together with particles that have velocities"
             yield violation(rule, "keep one of the two", path=(*path, name))
+
+
+def _columns_of_their_own(case: Case) -> Found:
+    """Bodies whose columns of the history would have one name: `a` eroded, and `a_eroded`."""
+    owners: dict[str, str] = {}
+    for name in case.parts():
+        for column in (f"{name}_{number}" for number in _core.part_columns):
+            other = owners.setdefault(column, name)
+            if other != name:
+                rule = f"has the column body_{column} of history.csv, as {other} has"
+                yield violation(rule, "give it another name", path=case.part_path(name))
+                break
 
 
 def _columns(case: Case, material: str) -> list[str]:

@@ -77,7 +77,7 @@ void sum(Tiles<D>& tiles, int first, int last) {
 }
 template <int D>
 void sum_dashpots(Tiles<D>& tiles) {
-  sum_shared_dashpots(tiles.grid, tiles.threads);
+  sum_shared_at_walls(tiles.grid, tiles.threads);
 }
 
 /// Half by half, so that no other may change with one, or `at_once`.
