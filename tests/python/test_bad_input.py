@@ -173,9 +173,9 @@ EDITS: list[tuple[str, ...]] = [
      "strength"),
     ("unknown material", 'material = "rubber"', 'material = "ruber"', "body.left.material",
      "not a material", '"rubber"'),
-    ("columns of one name", "[output]", "[body.left_eroded]\nmaterial = \"rubber\"\nshape = "
-     + RING + "\n[output]", "body.left", "has the column body_left_eroded_mass of history.csv, as "
-     "left_eroded has", "another name"),
+    ("columns of one name", "[body.right]", '[body.left_eroded]\nmaterial = "rubber"\nshape = '
+     + RING + "\n[body.right]", "body.left_eroded", "has the column body_left_eroded_mass of "
+     "history.csv, as left has", "another name"),
     ("no body", BODIES, "[body]", "body", "must not be empty", "[body.NAME]"),
     ("unknown body of a pair", '["left", "right"]', '["left", "rigth"]',
      "contact.pair[0].bodies[1]", "not a body", '"right"', "rigth"),

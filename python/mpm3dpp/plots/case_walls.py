@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _STYLES: dict[str, tuple[str, Any, str, str]] = {
     "slip": ("#A0307A", (0, (9, 2, 2, 2)), "", "slip wall (symmetry)"),
     "fixed": ("#1a1a1a", "-", "////", "fixed wall"),
-    "contact": ("#0072B2", "-", "\\\\\\\\", "contact wall"),
+    "contact": ("#7A4B1E", "-", "\\\\\\\\", "contact wall"),
     "absorbing": ("#009E73", (0, (1.5, 1.5)), "....", "absorbing wall"),
 }
 _THICK = 0.02  # Share of the box's longer side that a hatched wall is thick.
