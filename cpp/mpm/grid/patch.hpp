@@ -33,7 +33,7 @@ struct NodeBlock {
   /// Of the springs along an axis, and a component of the force of the face across it [N].
   NodeField<wall_record> spring(int at, int a) const { return {springs.data + at + a}; }
   NodeField<wall_record> face_force(int normal, int a) const {
-    return {springs.data + normal * half_record + a};
+    return {springs.data + std::ptrdiff_t{normal} * half_record + a};
   }
   /// The vector at number `at` of a node's record.
   Vec<double, D> vector(int node, int at) const {
