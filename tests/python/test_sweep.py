@@ -101,6 +101,15 @@ def test_values_of_the_command_line() -> None:
     assert value_of("[1, 2]") == [1, 2] and value_of('"usf"') == "usf" and value_of("usf") == "usf"
 
 
+def test_a_key_is_out_of_a_table_that_is_not_there() -> None:
+    changed = Case.from_text(CASE.replace("[output]\nframes = 4\n", "")).with_(
+        {"output.frames": None}
+    )
+    assert changed.output.frames == 50
+    with pytest.raises(CaseError, match="outptu is no table of the case"):
+        Case.from_text(CASE).with_({"outptu.frames": None})
+
+
 def test_run_and_check_take_changes(tmp_path: Path) -> None:
     write(tmp_path)
     words = ("--set", "run.end_time=2 ms", "--set", "title=Short")

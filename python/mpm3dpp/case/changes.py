@@ -19,6 +19,7 @@ Changes = Mapping[tuple[str, ...], Any]
 """A value for each key, given as its path: a number in SI units, text with a unit, a list or a
 table; None takes the key out, if it is there."""
 _NAMED = ("body", "grains", "material", "load", "probe")  # tables of tables that users name
+_MAY_LACK = ("output", "contact")  # tables with a default for every key
 
 
 def with_changes(case: Case, changes: Changes) -> Case:
@@ -78,6 +79,8 @@ def changed_tables(text: str, name: str, changes: Changes) -> dict[str, Any]:
     tables = case_file.parse(text, name)
     for path, value in changes.items():
         _check_name(tables, path)
+        if value is None and path[0] in _MAY_LACK and path[0] not in tables:
+            continue  # The key is out already.
         table: Any = tables
         for key in path[:-1]:
             table = _inner(table, key, path, value is not None)

@@ -11,16 +11,16 @@ import numpy as np
 
 from mpm3dpp.base.errors import key_text
 from mpm3dpp.base.model import CaseModel
-from mpm3dpp.base.time_functions import TimeFunction
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.detonation import EXPLOSIVE
-from mpm3dpp.case.grid import CONTACT, FACES
+from mpm3dpp.case.grid import CONTACT
 from mpm3dpp.case.initial import GEOSTATIC
 from mpm3dpp.ranks.world import World, together
 
 from .initial import at_rest
 from .parts import Filled, FilledPart
 from .unit_notes import unit_notes
+from .wall_notes import wall_notes
 
 _INCOMPRESSIBLE = 0.45
 _NARROW = 2.4  # Cells.
@@ -44,7 +44,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *_materials(case),
         *_rigid(case),
         *_detonations(case, bodies, world),
-        *_walls(case),
+        *wall_notes(case),
         *_beyond_strength(case),
         *_locking(case),
         *_springs(case, bodies),
@@ -152,37 +152,6 @@ def _rigid(case: Case) -> list[str]:
         f"({', '.join(name for name in rigid if name != free[0])}): bodies that do not deform do "
         "not act on each other; give one of the two a strength that deforms if they meet"
     ]
-
-
-def _walls(case: Case) -> list[str]:
-    """Walls that absorb waves where gravity presses on them."""
-    found = []
-    for d, g in enumerate(case.run.gravity):
-        if isinstance(g, TimeFunction):
-            continue
-        face = 2 * d + (g > 0.0)
-        if g != 0.0 and case.grid.walls[face] == "absorbing":
-            found.append(
-                f"grid.box.walls.{FACES[face]} absorbs waves but holds no weight, and run.gravity "
-                "presses on it: what stands there sinks; give slip or fixed unless that is meant"
-            )
-    if CONTACT not in case.grid.walls:
-        return found
-    frictions = case.grid.wall_friction(case.contact.friction)
-    rigid = [name for name in case.parts() if case.is_rigid(name)]
-    moves = [name for name in rigid if name not in case.body or case.body[name].motion is None]
-    if moves and any(frictions):
-        found.append(
-            f"{key_text(case.part_path(moves[0]))} is rigid and slides on walls of the box without "
-            'friction: for that give a body with motion = "fixed" in place of the wall, or a '
-            "strength that deforms"
-        )
-    if not any(frictions) and any(pair.friction for pair in case.contact.pair):
-        found.append(
-            "grid.box.walls touch without friction, though pairs of bodies have some: contact.pair "
-            "is of bodies; give grid.box.friction = 0.3, or 0 if that is meant"
-        )
-    return found
 
 
 def _locking(case: Case) -> list[str]:

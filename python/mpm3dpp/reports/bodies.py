@@ -138,7 +138,7 @@ def actions(found: Found) -> Section | None:
         counted(len(manifest.loads), "load") if manifest.loads else "",
         counted(len(manifest.walls), "face") + " of the box" if manifest.walls else "",
     ]
-    sentence = (
-        f"{' and '.join(filter(None, about))}; what bodies do to a wall is positive outwards."
-    )
+    sentence = f"{' and '.join(filter(None, about))}."
+    if manifest.walls:
+        sentence += " A wall has the force of the bodies on it; a pressure is positive outwards."
     return Section("actions", "Loads and walls", joined([paragraph(sentence), *parts]))

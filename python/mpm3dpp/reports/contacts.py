@@ -32,7 +32,7 @@ def contacts(found: Found) -> Section:
     parts += [_grains(found), embedded(found, found.folder / FORCES)]
     whole = [part for part in parts if part]
     if not whole:
-        whole = [paragraph("No bodies have touched, as far as is recorded.")]
+        whole = [paragraph("No bodies have touched each other, as far as is recorded.")]
     return Section("contacts", "Contacts", joined(whole))
 
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from mpm3dpp.base.expression import Expression
 from mpm3dpp.base.time_functions import TimeFunction, highest
 from mpm3dpp.case.case import Case
-from mpm3dpp.case.grid import FACES, GridCoarsening
+from mpm3dpp.case.grid import CONTACT, FACES, GridCoarsening
 from mpm3dpp.case.initial import GEOSTATIC, Initial
 from mpm3dpp.case.initial_fields import STRESS
 from mpm3dpp.case.loads import KINDS
@@ -91,8 +91,8 @@ def condition_lines(case: Case) -> list[str]:
         faces = FACES[: 2 * grid.dimension]
         kinds = {face: getattr(grid.box.walls, face) for face in faces}
         for face, mu in zip(faces, grid.wall_friction(case.contact.friction), strict=False):
-            if mu > 0.0:
-                kinds[face] += f" with friction {mu:g}"
+            if kinds[face] == CONTACT:
+                kinds[face] += f" with friction {mu:g}" if mu > 0.0 else " without friction"
         same = set(kinds.values())
         each = ", ".join(f"{face} {kind}" for face, kind in kinds.items())
         lines.append(f"walls: {f'all {same.pop()}' if len(same) == 1 else each}")

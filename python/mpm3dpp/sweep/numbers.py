@@ -9,6 +9,7 @@ from typing import Any
 
 from mpm3dpp.base.errors import CaseError, guessed
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.grid import CONTACT
 from mpm3dpp.io.history import ENERGIES
 from mpm3dpp.io.part_cells import PART_COLUMNS
 
@@ -20,8 +21,9 @@ def numbers_of(manifest: Mapping[str, Any]) -> dict[str, float]:
     """Return the numbers of a manifest by the names that `--number` takes.
 
     Of each body `ball.speed`, of its mass centre at the end, `ball.velocity_x` and all others of
-    `bodies`; `kinetic` and the other energies at the end; `wall.x_min.force_x`; `friction_work` of
-    all contacts; `end_time`, `steps` and `wall_time`.
+    `bodies`; `kinetic` and the other energies at the end; `wall.x_min.force_x`, its `impulse_x`
+    and `pressure`; `friction_work` of all contacts, of bodies and at walls; `end_time`, `steps`
+    and `wall_time`.
     """
     found: dict[str, float] = {}
     for body, told in manifest["bodies"].items():
@@ -35,8 +37,12 @@ def numbers_of(manifest: Mapping[str, Any]) -> dict[str, float]:
     for face, wall in (manifest.get("walls") or {}).items():
         for axis, force in zip("xyz", wall["force"], strict=False):
             found[f"wall.{face}.force_{axis}"] = float(force)
+        for axis, impulse in zip("xyz", wall["impulse"], strict=False):
+            found[f"wall.{face}.impulse_{axis}"] = float(impulse)
+        found[f"wall.{face}.pressure"] = float(wall["pressure"])
     pairs = manifest["contact"]["pairs"]
-    found["friction_work"] = math.fsum(float(pair["friction_work"]) for pair in pairs)
+    of_pairs = math.fsum(float(pair["friction_work"]) for pair in pairs)
+    found["friction_work"] = found.get("friction", of_pairs)  # at walls, too
     found |= {name: float(manifest[name]) for name in _OF_THE_RUN}
     return found
 
@@ -45,7 +51,9 @@ def unit_of(name: str, dimension: int) -> str:
     """Return the unit of a number, as the history has it; in 2D that of a metre of depth."""
     column = name.rpartition(".")[2]
     units = {"speed": "m/s", "end_time": "s", "wall_time": "s", "steps": ""}
-    unit = units.get(column, "N" if name.startswith("wall.") else "J")
+    unit = units.get(column, "J")
+    if name.startswith("wall."):
+        unit = {"force": "N", "impulse": "N s", "pressure": "Pa"}[column.partition("_")[0]]
     if column in PART_COLUMNS and column != name:
         unit = PART_COLUMNS[column][0]
     if dimension == 3 or not any(word in _OF_DEPTH for word in unit.split()):
@@ -70,7 +78,8 @@ def chosen(case: Case, names: Sequence[str]) -> list[str]:
     faces = [f"{axis}_{end}" for axis in axes for end in ("min", "max")]
     walls = case.grid.box.walls if case.grid.box else None
     faces = [face for face in faces if walls and getattr(walls, face) != "free"]
-    known += [f"wall.{face}.force_{axis}" for face in faces for axis in axes]
+    of_wall = [f"{what}_{axis}" for what in ("force", "impulse") for axis in axes]
+    known += [f"wall.{face}.{number}" for face in faces for number in (*of_wall, "pressure")]
     for name in names:
         if name not in known:
             remedy = guessed(name, known) or "write one such as ball.speed or kinetic"
@@ -80,4 +89,4 @@ def chosen(case: Case, names: Sequence[str]) -> list[str]:
     free = [name for name in bodies if getattr(case.parts()[name], "motion", None) is None]
     shown = [*(f"{name}.speed" for name in free[:6]), "kinetic", "internal"]
     touching = case.contact_enabled and (len(case.body) > 1 or case.grains)
-    return [*shown, "friction_work"] if touching else shown
+    return [*shown, "friction_work"] if touching or CONTACT in case.grid.walls else shown
