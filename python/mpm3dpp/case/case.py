@@ -218,7 +218,7 @@ class Case(CaseModel):
 
     @property
     def has_set_back(self) -> bool:
-        """Whether surfaces of particles may be set back: springs push bodies or at walls."""
+        """Whether springs push particles, of bodies or at walls, which may be set back for them."""
         return self.has_springs or CONTACT in self.grid.walls
 
     def is_rigid(self, part: str) -> bool:
@@ -286,9 +286,7 @@ class Case(CaseModel):
             remedy: what the user can do.
             value: `value=...`, the value at fault.
         """
-        place = ""
-        if self._lines:
-            place = case_file.locator(self._lines, str(self._source))(path)
+        place = case_file.locator(self._lines, str(self._source))(path) if self._lines else ""
         return CaseError(rule, remedy, key=key_text(path), place=place, **value)
 
     @classmethod

@@ -28,7 +28,7 @@ _WHOLE = 1e-6  # A box that misses a whole number of cells by less, per cell, is
 
 _WALL = choice(_core.walls)
 CONTACT = "contact"
-"""Walls that touch: what they do besides is the core's."""
+"""The word of walls that push back what touches them, with friction."""
 _FEWEST = 3
 """Cells between two walls that touch: at a node there is one spring along an axis."""
 Wall = Annotated[str, _WALL]
@@ -169,7 +169,8 @@ class Grid(_Grid):
         report(self._numbers_per_vector())
         lower = self.box.lower if self.box is not None else (0.0,) * self.dimension
         self.__dict__["origin"] = self.origin or lower
-        report([*self._box_mistakes(), *self._friction_mistakes(), *self._outflow_mistakes()])
+        of_walls = [*self._friction_mistakes(), *self._narrow_mistakes()]
+        report([*self._box_mistakes(), *of_walls, *self._outflow_mistakes()])
         return self
 
     def _numbers_per_vector(self) -> Iterator[PydanticCustomError]:
@@ -201,7 +202,6 @@ class Grid(_Grid):
                 rule = f"is of a face that is {word}"
                 remedy = f'give walls.{face} = "contact", or leave it out'
                 yield violation(rule, remedy, path=("box", "friction", face))
-        yield from self._narrow_mistakes()
 
     def _narrow_mistakes(self) -> Iterator[PydanticCustomError]:
         if self.box is None:

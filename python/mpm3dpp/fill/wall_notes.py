@@ -10,7 +10,7 @@ from mpm3dpp.case.grid import CONTACT, FACES
 
 
 def wall_notes(case: Case) -> list[str]:
-    """Return a sentence each: walls that absorb under weight; that touch without friction."""
+    """Return a sentence for each thing: walls that hold no weight, and what `contact` lacks."""
     found = []
     for d, g in enumerate(case.run.gravity):
         if isinstance(g, TimeFunction):
