@@ -39,31 +39,44 @@ emulated_switch:
 #error "the emulation switches fibers by hand, on x86-64 only"
 #endif
 
-constexpr std::size_t stack_bytes = std::size_t{256} << 10;
+// Not a multiple of a page: the tops of all stacks would share few lines of the cache.
+constexpr std::size_t stack_bytes = (std::size_t{256} << 10) + 448, warp_size = 32;
 
 enum class State { ready, at_block, at_warp, ended };
 
 struct Fiber {
   void* context = nullptr;  // its stack's top while it does not run
-  std::unique_ptr<char[]> stack{new char[stack_bytes]};
   State state = State::ended;
   bool vote = false;
-  unsigned mask = 0;  // of the warp, that it waits for
+  unsigned mask = 0;       // of the warp, that it waits for
+  unsigned exchanges = 0;  // of values, so far
   union {
     double number;
     std::uint32_t integer;
-  } given;
+  } given[2];  // by turns: who is ahead by one must not write what others have not read yet
 };
 
 std::vector<Fiber> fibers;
-std::size_t now = 0, count = 0;  // the one that runs; of the block
+std::unique_ptr<char[]> stacks;
+std::size_t now = 0, count = 0, warp_end = 0;  // the one that runs; of the block; of its warp
 int votes = 0;
 void* scheduler = nullptr;
 const std::function<void()>* body = nullptr;
 
+/// Go on with the next of the warp that can, from `first`, or leave it to the scheduler.
+void go_on(void** from, std::size_t first) {
+  for (now = first; now < warp_end; ++now)
+    if (fibers[now].state == State::ready) {
+      thread.x = static_cast<unsigned>(now);
+      return emulated_switch(from, fibers[now].context);
+    }
+  emulated_switch(from, scheduler);
+}
+
 void give_way(State state) {
-  fibers[now].state = state;
-  emulated_switch(&fibers[now].context, scheduler);
+  Fiber& fiber = fibers[now];
+  fiber.state = state;
+  go_on(&fiber.context, now + 1);
 }
 
 void enter() {
@@ -72,77 +85,79 @@ void enter() {
 }
 
 /// A fiber that begins with enter().
-void prepare(Fiber& fiber) {
+void prepare(std::size_t k) {
   // The top as a call leaves it: 8 bytes beside a multiple of 16.
-  auto top =
-      reinterpret_cast<std::uintptr_t>(fiber.stack.get() + stack_bytes) & ~std::uintptr_t{15};
+  auto top = reinterpret_cast<std::uintptr_t>(&stacks[(k + 1) * stack_bytes]) & ~std::uintptr_t{15};
   auto* to = reinterpret_cast<void**>(top) - 2;
   *to = reinterpret_cast<void*>(&enter);
   constexpr int kept = 6;  // registers
   std::fill(to - kept, to, nullptr);
-  fiber.context = to - kept;
-  fiber.state = State::ready;
+  fibers[k].context = to - kept;
+  fibers[k].state = State::ready;
+  fibers[k].exchanges = 0;
 }
 
-/// Let those go on for whom all have come; has any?
-bool release() {
-  bool any = false, block_waits = true;
-  for (std::size_t k = 0; k < count; ++k)
-    block_waits =
-        block_waits && (fibers[k].state == State::at_block || fibers[k].state == State::ended);
-  if (block_waits) {
-    votes = 0;
-    for (std::size_t k = 0; k < count; ++k)
-      if (fibers[k].state == State::at_block) {
-        votes += fibers[k].vote;
-        fibers[k].state = State::ready;
-        any = true;
-      }
-    return any;
+/// Let those of a warp go on for whom all have come; has any?
+bool release_warp(std::size_t begin, std::size_t end) {
+  bool any = false;
+  for (std::size_t k = begin; k < end; ++k) {
+    if (fibers[k].state != State::at_warp) continue;
+    const unsigned mask = fibers[k].mask;
+    bool all = true;
+    for (std::size_t j = begin; j < end; ++j)
+      if (mask >> (j - begin) & 1u)
+        all = all && (fibers[j].state == State::ended ||
+                      (fibers[j].state == State::at_warp && fibers[j].mask == mask));
+    if (!all) continue;
+    for (std::size_t j = begin; j < end; ++j)
+      if ((mask >> (j - begin) & 1u) && fibers[j].state == State::at_warp)
+        fibers[j].state = State::ready;
+    any = true;
   }
-  for (std::size_t warp = 0; warp < count; warp += 32) {
-    const std::size_t end = std::min(warp + 32, count);
-    for (std::size_t k = warp; k < end; ++k) {
-      if (fibers[k].state != State::at_warp) continue;
-      const unsigned mask = fibers[k].mask;
-      bool all = true;
-      for (std::size_t j = warp; j < end; ++j)
-        if (mask >> (j - warp) & 1u)
-          all = all && (fibers[j].state == State::ended ||
-                        (fibers[j].state == State::at_warp && fibers[j].mask == mask));
-      if (!all) continue;
-      for (std::size_t j = warp; j < end; ++j)
-        if ((mask >> (j - warp) & 1u) && fibers[j].state == State::at_warp)
-          fibers[j].state = State::ready;
-      any = true;
+  return any;
+}
+
+/// Let a warp run until all of it have ended or wait for the block.
+void run_warp(std::size_t begin) {
+  const std::size_t end = std::min(begin + warp_size, count);
+  do {
+    warp_end = end;
+    go_on(&scheduler, begin);
+  } while (release_warp(begin, end));
+}
+
+/// Let all go on that wait for the block, if all have come; has any?
+bool release_block() {
+  votes = 0;
+  bool any = false;
+  for (std::size_t k = 0; k < count; ++k) {
+    Fiber& fiber = fibers[k];
+    if (fiber.state == State::at_warp) {
+      std::fprintf(stderr, "threads of a block wait for each other at different barriers\n");
+      std::abort();
     }
+    if (fiber.state != State::at_block) continue;
+    votes += fiber.vote;
+    fiber.state = State::ready;
+    any = true;
   }
   return any;
 }
 
 void run_block() {
-  for (std::size_t k = 0; k < count; ++k) prepare(fibers[k]);
-  while (true) {
-    bool all_ended = true;
-    for (now = 0; now < count; ++now) {
-      if (fibers[now].state == State::ready) {
-        thread = dim3(static_cast<unsigned>(now), 0, 0);
-        emulated_switch(&scheduler, fibers[now].context);
-      }
-      all_ended = all_ended && fibers[now].state == State::ended;
-    }
-    if (all_ended) return;
-    if (!release()) {
-      std::fprintf(stderr, "threads of a block wait for each other at different barriers\n");
-      std::abort();
-    }
-  }
+  for (std::size_t k = 0; k < count; ++k) prepare(k);
+  do {
+    for (std::size_t begin = 0; begin < count; begin += warp_size) run_warp(begin);
+  } while (release_block());
 }
 
 }  // namespace
 
 void run(dim3 blocks, unsigned threads, const std::function<void()>& kernel) {
-  if (fibers.size() < threads) fibers.resize(threads);
+  if (fibers.size() < threads) {
+    fibers.resize(threads);
+    stacks.reset(new char[threads * stack_bytes]);
+  }
   count = threads;
   body = &kernel;
   block_size = dim3(threads);
@@ -163,19 +178,17 @@ void wait_for_warp(unsigned mask) {
 }
 
 double exchange(double value, int lane) {
-  fibers[now].given.number = value;
+  const unsigned turn = fibers[now].exchanges++ % 2u;
+  fibers[now].given[turn].number = value;
   wait_for_warp(~0u);
-  const double found = fibers[now / 32 * 32 + static_cast<std::size_t>(lane)].given.number;
-  wait_for_warp(~0u);
-  return found;
+  return fibers[now / warp_size * warp_size + static_cast<std::size_t>(lane)].given[turn].number;
 }
 
 std::uint32_t exchange(std::uint32_t value, int lane) {
-  fibers[now].given.integer = value;
+  const unsigned turn = fibers[now].exchanges++ % 2u;
+  fibers[now].given[turn].integer = value;
   wait_for_warp(~0u);
-  const std::uint32_t found = fibers[now / 32 * 32 + static_cast<std::size_t>(lane)].given.integer;
-  wait_for_warp(~0u);
-  return found;
+  return fibers[now / warp_size * warp_size + static_cast<std::size_t>(lane)].given[turn].integer;
 }
 
 }  // namespace emulated
