@@ -148,18 +148,23 @@ def test_a_program_has_it_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
         Simulation(simulation.case, device="cude")
 
 
+@pytest.mark.parametrize("doing", ["advance", "column"], ids=["in a step", "when it is read"])
 def test_a_device_that_fails_ends_the_run_in_a_sentence(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    doing: str,
 ) -> None:
     fake(monkeypatch)
 
-    def advance(simulation: Simulation, *about: Any) -> int:
-        if simulation.step > 50:
+    def failing(core: Any, *about: Any, **named: Any) -> Any:
+        if core.step > 50:
             raise RuntimeError("the device has no more memory")
-        return made_by_core(simulation, *about)
+        return made_by_core(core, *about, **named)
 
-    made_by_core = Simulation.advance
-    monkeypatch.setattr(Simulation, "advance", advance)
+    owner = Simulation if doing == "advance" else _core.Simulation
+    made_by_core = getattr(owner, doing)
+    monkeypatch.setattr(owner, doing, failing)
     words = ("run", write(tmp_path), "--out", tmp_path / "out", "--device", "cuda", "--quiet")
     assert run(monkeypatch, *words) == 1
     told = one_sentence(capsys.readouterr().err)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -75,3 +77,14 @@ def take_device(core: Any, wanted: str, alone: bool = True) -> Device:
     taken, all_of_it = core.device_bytes / 2**30, about["bytes"] / 2**30
     told = f"device: {about['name']}, {taken:.2f} GiB of its {all_of_it:.1f} GiB of memory taken"
     return Device(about["name"], told)
+
+
+@contextmanager
+def failures_of(device: Device) -> Iterator[None]:
+    """Make a `CaseError` of a device's failure, in a step or when its particles are read."""
+    try:
+        yield
+    except RuntimeError as error:
+        if device.name == CPU:
+            raise
+        raise CaseError(str(error)) from error

@@ -18,6 +18,7 @@ from mpm3dpp.io.vtkhdf import RESULTS, ResultsWriter
 from mpm3dpp.ranks.world import world
 
 from .checkpoints import Checkpoint, Checkpoints
+from .device import failures_of
 from .lead import background_writer, column_parts
 from .progress import Progress
 from .simulation import Simulation
@@ -68,7 +69,8 @@ class Recording:
     def advance(self, last_step: float = math.inf) -> bool:
         """Step to the end time, or to a step; return whether the run goes on."""
         if self.outcome is None:
-            self.outcome = self._stepping.advance(last_step)
+            with failures_of(self._simulation.device):
+                self.outcome = self._stepping.advance(last_step)
         return self.outcome is None
 
     def end(self, status: Status, reason: str) -> None:
@@ -80,14 +82,15 @@ class Recording:
         assert self.outcome is not None
         status, reason = self.outcome
         wall_time = self._checkpoints.wall_time
-        manifest = _manifest(self._simulation, status, reason, wall_time, begin)
+        with failures_of(self._simulation.device):
+            manifest = _manifest(self._simulation, status, reason, wall_time, begin)
         manifest.energies, manifest.bodies = self._history.summary(), self._history.bodies()
         manifest.notes = self._told
         manifest.write(self._folder)
         return manifest
 
     def __enter__(self) -> Recording:
-        with self._stack as stack:
+        with failures_of(self._simulation.device), self._stack as stack:
             self._open(stack)
             self._simulation.is_recorded = True
             self._stack = stack.pop_all()
@@ -95,7 +98,7 @@ class Recording:
 
     def __exit__(self, *about: Any) -> None:
         self._simulation.is_recorded = False
-        with self._stack:
+        with failures_of(self._simulation.device), self._stack:
             if about[1] is not None:
                 raise about[1]
             if self.outcome is None or self.outcome[0] != "failed":

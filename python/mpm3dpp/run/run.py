@@ -154,12 +154,12 @@ def _run(
         try:
             with recording:
                 recording.advance()
+            manifest = recording.write_manifest(begin)
         except CaseError as error:  # Disk or device: it was no mistake when the run began.
             if simulation.step == begin:
                 raise
             can_go_on = ", and --resume goes on" if has_checkpoint(folder) else ""
             raise RunError(f"{error}; what was written before is in {folder}{can_go_on}") from error
-        manifest = recording.write_manifest(begin)
         return manifest, manifest.status == "completed" and notice.taken
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mpm3dpp.base.errors import CaseError, RunError
+from mpm3dpp.base.errors import RunError
 from mpm3dpp.base.signals import Notice
 from mpm3dpp.io.background import BackgroundWriter
 from mpm3dpp.io.history import HistoryWriter
@@ -195,8 +195,7 @@ def _steps(most: int, frames: list[float], core: Any) -> int:
 def _advance(simulation: Simulation, steps: int, end: float | None, watch: Watch) -> str | None:
     """Make steps, with looks of `watch` between them; return why the run is to end, if it is.
 
-    So these looks move neither rows of the history nor frames. Raises `CaseError` if a device
-    fails.
+    So these looks move neither rows of the history nor frames.
     """
     core = simulation.core
     last = core.step + steps
@@ -206,12 +205,7 @@ def _advance(simulation: Simulation, steps: int, end: float | None, watch: Watch
             left = math.ceil((watch.next - core.time) / core.dt)
             # Half of the way, and in the end one by one: steps may grow.
             wanted = max(1, min(wanted, left // 2))
-        try:
-            made = simulation.advance(wanted, end)
-        except RuntimeError as error:
-            if simulation.device.name == CPU:
-                raise
-            raise CaseError(str(error)) from error
+        made = simulation.advance(wanted, end)
         ends = watch.look()
         if ends or made < wanted:
             return ends
