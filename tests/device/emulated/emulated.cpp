@@ -1,6 +1,7 @@
 // The threads of a block as fibers of one thread of the processor.
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -50,10 +51,8 @@ struct Fiber {
   bool vote = false;
   unsigned mask = 0;       // of the warp, that it waits for
   unsigned exchanges = 0;  // of values, so far
-  union {
-    double number;
-    std::uint32_t integer;
-  } given[2];  // by turns: who is ahead by one must not write what others have not read yet
+  // By turns: who is ahead by one must not write over what others have not read yet.
+  std::uint64_t given[2];
 };
 
 std::vector<Fiber> fibers;
@@ -151,6 +150,17 @@ void run_block() {
   } while (release_block());
 }
 
+/// The value that the thread at a lane of the warp has given, of up to eight bytes.
+template <class T>
+T exchange_any(T value, int lane) {
+  const unsigned turn = fibers[now].exchanges++ % 2u;
+  std::memcpy(&fibers[now].given[turn], &value, sizeof(T));
+  wait_for_warp(~0u);
+  const std::size_t from = now / warp_size * warp_size + static_cast<std::size_t>(lane);
+  std::memcpy(&value, &fibers[from].given[turn], sizeof(T));
+  return value;
+}
+
 }  // namespace
 
 void run(dim3 blocks, unsigned threads, const std::function<void()>& kernel) {
@@ -162,6 +172,7 @@ void run(dim3 blocks, unsigned threads, const std::function<void()>& kernel) {
   body = &kernel;
   block_size = dim3(threads);
   grid_size = blocks;
+  thread = dim3(0, 0, 0);
   for (block.y = 0; block.y < blocks.y; ++block.y)
     for (block.x = 0; block.x < blocks.x; ++block.x) run_block();
 }
@@ -177,18 +188,7 @@ void wait_for_warp(unsigned mask) {
   give_way(State::at_warp);
 }
 
-double exchange(double value, int lane) {
-  const unsigned turn = fibers[now].exchanges++ % 2u;
-  fibers[now].given[turn].number = value;
-  wait_for_warp(~0u);
-  return fibers[now / warp_size * warp_size + static_cast<std::size_t>(lane)].given[turn].number;
-}
-
-std::uint32_t exchange(std::uint32_t value, int lane) {
-  const unsigned turn = fibers[now].exchanges++ % 2u;
-  fibers[now].given[turn].integer = value;
-  wait_for_warp(~0u);
-  return fibers[now / warp_size * warp_size + static_cast<std::size_t>(lane)].given[turn].integer;
-}
+double exchange(double value, int lane) { return exchange_any(value, lane); }
+std::uint32_t exchange(std::uint32_t value, int lane) { return exchange_any(value, lane); }
 
 }  // namespace emulated
