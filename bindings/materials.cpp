@@ -19,7 +19,8 @@ struct CatalogueModel {
   std::string kind, name, doc, source;
   std::vector<CatalogueParameter> parameters;
   std::vector<CatalogueColumn> state;
-  std::string eos;  // of a strength model: "never", "may", "must"
+  std::string eos;     // of a strength model: "never", "may", "must"
+  bool flows = false;  // of a strength model: has it no shape of its own?
 };
 
 /// The names of the columns of particles of a material; `may_leave`: there is an outflow box,
@@ -53,6 +54,7 @@ CatalogueModel described(const char* kind, const M& model) {
       m.state.push_back({std::string(s.name), std::string(s.unit)});
   if constexpr (requires { M::eos; })
     m.eos = M::eos == EosUse::never ? "never" : M::eos == EosUse::may ? "may" : "must";
+  m.flows = requires { M::flows; };
   return m;
 }
 
@@ -87,7 +89,8 @@ void add_materials(nb::module_& m) {
       .def_ro("source", &CatalogueModel::source)
       .def_ro("parameters", &CatalogueModel::parameters)
       .def_ro("state", &CatalogueModel::state)
-      .def_ro("eos", &CatalogueModel::eos);
+      .def_ro("eos", &CatalogueModel::eos)
+      .def_ro("flows", &CatalogueModel::flows);
   m.def("catalogue", &catalogue);
   m.def(
       "column_names",

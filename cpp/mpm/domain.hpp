@@ -111,9 +111,7 @@ struct Domain {
   bool has_contact() const {
     return contact_settings.enabled && !contact_settings.bonded && bodies.size() > 1;
   }
-  bool has_springs() const {
-    return has_contact() && contact_settings.response == Response::springs;
-  }
+  bool has_springs() const { return has_contact() && may_spring(contact_settings.response); }
   /// f(pool, row) for the particles that take part, in the order of the lists.
   template <class F>
   void for_each_particle(F&& f) const {

@@ -85,7 +85,7 @@ void find_others(Contact<D>& contact, const TileGrid<D>& grid, Response response
   contact.wanted.clear();
   if (grid.partition.alone()) return;
   const int range = TileParticles<D>::range_max;
-  const Reach reach = response == Response::springs ? Reach{range, range, 0.0} : grid.reach();
+  const Reach reach = may_spring(response) ? Reach{range, range, 0.0} : grid.reach();
   std::vector<std::uint64_t> cells(grid.patches.size(), 0);
   for (ContactTile<D>& tile : contact.tiles) {
     tile.beside_others = tile.held_by_others = false;
@@ -109,7 +109,7 @@ template <int D>
 void list_holders(const TileGrid<D>& grid, Response response, std::vector<TileHolder>& holders) {
   holders.clear();
   // Particles are nearer than they reach: with springs all tiles around see a patch.
-  const Reach reach = response == Response::springs ? Reach{1, 1, 0.0} : grid.reach();
+  const Reach reach = may_spring(response) ? Reach{1, 1, 0.0} : grid.reach();
   for (std::size_t p = 0; p < grid.patches.size(); ++p)
     for (int k = 0; k < Tile<D>::neighbours; ++k)
       // By tiles, not by the boxes of blocks: those change too often to sort this list each time
@@ -178,7 +178,7 @@ void connect_tiles(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Bod
     return px != py ? px < py : x.first_holder < y.first_holder;
   });
   find_others(contact, grid, response);
-  if (response == Response::springs) find_around(contact);
+  if (may_spring(response)) find_around(contact);
 }
 
 template void connect_tiles<2>(Contact<2>&, TileGrid<2>&, const std::vector<Body<2>>&, Response);

@@ -22,6 +22,12 @@ struct BodyAtNode {
   Vec<double, D> mapped;  // velocity mapped from the particles [m/s]
 };
 
+/// Of the way by which bodies approach in a step the share that a spring's force of the step has. A
+/// half is the force in the middle, which damps like a dashpot of k dt / 2 and loses an impact's
+/// energy; none grows, as a force that goes to nodes by other weights than the overlap follows them
+/// is no gradient. A quarter still decays (decision 0061).
+inline constexpr double share_of_approach = 0.25;
+
 /// The springs between two bodies, as a node has them; none without stiffness.
 struct ContactSpring {
   double force = 0.0;      // at the start of the step [N]
@@ -42,6 +48,7 @@ struct ContactPair {
   bool active;            // closed, and approaching or at rest: forces may act
   bool loaded;            // an impulse of eqs. (6)-(7) or (11)-(15) has acted in this step
   bool bonded;            // the two have one velocity at the node, in whatever direction
+  bool stopped;           // approach is stopped, eqs. (6)-(7); else springs part them
   double friction;        // coefficient of friction
   double gap;             // distance of the two surfaces along the normal [m]
   Vec<double, D> normal;  // from r to s

@@ -170,14 +170,26 @@ double widest_support(const TileGrid<D>& grid, const std::vector<Body<D>>& bodie
   return widest;
 }
 
-/// The pairs at the nodes of a tile, those of a part from the first-th on, by their springs.
+/// The pairs at the nodes of a tile, those of a part from the first-th on, by their springs; if
+/// they are `made` only of those that springs part.
 template <int D>
 void fill_springs(const Contact<D>& contact, const TileGrid<D>& grid,
                   const std::vector<Body<D>>& bodies, const ContactSettings& settings,
-                  const TileTouches<D>& touches, ContactPart<D>& part, std::size_t first) {
+                  const TileTouches<D>& touches, ContactPart<D>& part, std::size_t first,
+                  bool made) {
   for (std::size_t n = first; n < part.nodes.size(); ++n)
     find_springs<D>(grid, bodies, settings, touches, part, part.nodes[n],
-                    place_of(contact, grid, part.nodes[n]));
+                    place_of(contact, grid, part.nodes[n]), made);
+}
+
+/// Is the approach of any two bodies around a tile stopped, where springs part others?
+template <int D>
+bool stops_any(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
+               const TileBodies<D>& around) {
+  return settings.response == Response::by_matter &&
+         std::ranges::any_of(around.all(), [&](const TileBody<D>& at) {
+           return bodies[static_cast<std::size_t>(at.body)].flows;
+         });
 }
 
 /// How many nodes are overlapped, and by how many bodies at most, on all ranks.
@@ -206,10 +218,10 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
   // The bits hold for this step only: masses have just been mapped.
   contact.masses.find(grid, threads);
   if (contact.cache.on) add_displacements(contact.cache, bodies.size());
-  const bool springs = settings.response == Response::springs, bonded = bonds(settings);
+  const bool springs = may_spring(settings.response), bonded = bonds(settings);
   const double widest = springs ? widest_support(grid, bodies) : 0.0;
   if (springs) {
-    find_touches(contact, grid, bodies, pools, settings.gap_distance / grid.cell_size, threads);
+    find_touches(contact, grid, bodies, pools, settings, threads);
     exchange_touches(contact, grid, widest);
   }
   const TileShares shares(contact.tiles.size(), threads.count());
@@ -222,11 +234,13 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
       TileBodies<D>& around = bodies_around<D>();
       look_around(contact, grid, contact.tiles[t], around);
       count_overlapped(around, part);
+      const bool stops = !springs || stops_any(bodies, settings, around);
       if (springs) {
         around.touches.gather(contact, t, widest);
         // A rigid body's mass is spread over all nodes where it meets others, and bonds need no
         // touch.
-        if (!contact.has_free_rigid && !bonded) around.overlapped &= around.touches.nodes();
+        if (!contact.has_free_rigid && !bonded && !stops)
+          around.overlapped &= around.touches.nodes();
       }
       contact.tiles[t].node_count = static_cast<std::uint8_t>(std::popcount(around.overlapped));
       if (around.overlapped == 0) {
@@ -234,13 +248,12 @@ void find_nodes(Contact<D>& contact, TileGrid<D>& grid, const std::vector<Body<D
         continue;
       }
       const std::size_t first = part.nodes.size();
-      if (!contact.cache.on && !springs)
+      if (!contact.cache.on && stops)
         fetch_particles(contact, grid, bodies, pools, around, around.overlapped);
       add_nodes(contact, grid, bodies, t, around, part);
+      if (stops) fill_pairs(contact, grid, bodies, pools, settings, t, around, p, first);
       if (springs)
-        fill_springs(contact, grid, bodies, settings, around.touches, part, first);
-      else
-        fill_pairs(contact, grid, bodies, pools, settings, t, around, p, first);
+        fill_springs(contact, grid, bodies, settings, around.touches, part, first, stops);
       // A rigid body's mass is spread over all its nodes, so they stay.
       if (!contact.cache.on)
         part.leave_out(first, [&](const ContactNode& node) {

@@ -91,6 +91,7 @@ ContactPair<D> new_pair(const std::vector<Body<D>>& bodies, const ContactSetting
   const PairLaw law = law_of(settings, body_r.group, body_s.group);
   pair.friction = law.friction;
   pair.gap = std::numeric_limits<double>::infinity();
+  pair.stopped = stops_approach(settings.response, body_r.flows || body_s.flows);
   // Two rigid bodies have no stress that could part them, nor hold them.
   if (law.bonded && (body_r.deforms() || body_s.deforms())) {
     pair.gap = 0.0;
@@ -121,31 +122,27 @@ void find_pairs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
   const bool by_gradients = uses_gradients(settings.normal);
   const std::span<const NormalSource<D>> sources =
       sources_at<D>(grid, bodies, around, node, sides, by_gradients);
-  ContactPair<D>* next = &part.pairs[node.first_pair];
-  for (std::uint16_t r = 0; r < node.sides; ++r)
-    // This order of pairs is the order of the solver's sweeps; the sides were sorted for it.
-    for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
-      ContactPair<D>& pair = *next++;
-      pair = new_pair<D>(bodies, settings, sides, r, s);
-      if (pair.bonded || (rigid(r) && rigid(s))) continue;
-      // Bodies that are well apart along the line between their centres need no better normal.
-      // Only where the gap decides and the normal costs a fit. Where the centres coincide the gap
-      // is infinite, and the pair is left here too.
-      if (uses_gap(settings.detection) && !by_gradients) {
-        pair.normal =
-            between_centres(sources[r].particles, sources[s].particles, node.constrained_axes);
-        // One pass over the particles where a plane takes two to five (decision 0032): of the pairs
-        // of a bed of spheres 44 % end here (decision 0027).
-        pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
-        if (pair.gap > settings.gap_distance + surely_open * grid.cell_size) continue;
-      }
-      NormalRules::with(settings.normal, [&]<class Rule>(const Rule&) {
-        pair.normal = Rule::normal(sources[r], sources[s], node.constrained_axes);
-      });
-      // Also where the rule does not use it: the gap at the first contact is recorded.
+  for_each_new_pair<D>(bodies, settings, part, node, [&](ContactPair<D>& pair) {
+    const std::uint16_t r = pair.r, s = pair.s;
+    if (!pair.stopped || (rigid(r) && rigid(s))) return;
+    // Bodies that are well apart along the line between their centres need no better normal. Only
+    // where the gap decides and the normal costs a fit. Where the centres coincide the gap is
+    // infinite, and the pair is left here too.
+    if (uses_gap(settings.detection) && !by_gradients) {
+      pair.normal =
+          between_centres(sources[r].particles, sources[s].particles, node.constrained_axes);
+      // One pass over the particles where a plane takes two to five (decision 0032): of the pairs
+      // of a bed of spheres 44 % end here (decision 0027).
       pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
-      pair.gap_closed = passes_gap_test(pair, settings, grid.cell_size);
+      if (pair.gap > settings.gap_distance + surely_open * grid.cell_size) return;
     }
+    NormalRules::with(settings.normal, [&]<class Rule>(const Rule&) {
+      pair.normal = Rule::normal(sources[r], sources[s], node.constrained_axes);
+    });
+    // Also where the rule does not use it: the gap at the first contact is recorded.
+    pair.gap = gap_along(pair.normal, sources[r], sources[s], grid.cell_size);
+    pair.gap_closed = passes_gap_test(pair, settings, grid.cell_size);
+  });
 }
 
 template ContactPair<2> new_pair<2>(const std::vector<Body<2>>&, const ContactSettings&,

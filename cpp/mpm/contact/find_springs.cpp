@@ -19,41 +19,41 @@ SpringSide<D> side_of(const TileGrid<D>& grid, const Body<D>& body, std::int32_t
 template <int D>
 void find_springs(const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const ContactSettings& settings, const TileTouches<D>& touches,
-                  ContactPart<D>& part, const ContactNode& node, const Index<D>& place) {
+                  ContactPart<D>& part, const ContactNode& node, const Index<D>& place, bool made) {
   const auto sides = part.sides_of(node);
-  ContactPair<D>* next = &part.pairs[node.first_pair];
   Vec<double, D> at;  // from the tile's first node
   for (int a = 0; a < D; ++a) at[a] = Tile<D>::cell_index(node.cell)[static_cast<std::size_t>(a)];
   const double distance = settings.gap_distance / grid.cell_size;
-  for (std::uint16_t r = 0; r < node.sides; ++r)
-    // This order of pairs is the order of the solver's sweeps; the sides were sorted for it.
-    for (std::uint16_t s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
-      ContactPair<D>& pair = *next++;
-      pair = new_pair<D>(bodies, settings, sides, r, s);
-      if (pair.bonded) continue;
-      const std::int32_t body_r = sides[r].body, body_s = sides[s].body;
-      const auto between = touches.between(body_r, body_s);
-      if (between.empty()) continue;
-      const auto body = [&](std::int32_t b) -> const Body<D>& {
-        return bodies[static_cast<std::size_t>(b)];
-      };
-      const SpringSide<D> of_r = side_of<D>(grid, body(body_r), body_r, place),
-                          of_s = side_of<D>(grid, body(body_s), body_s, place);
-      Springs<D> springs;
-      for (const NearTouch<D>& touch : between)
-        if (touch.nodes >> node.cell & 1u) springs.add(touch, at, of_r, of_s);
-      pair.normal = springs.normal(node.constrained_axes);
-      pair.spring = springs.along(pair.normal, grid.cell_size);
-      pair.gap = springs.gap(distance, grid.cell_size);
-      pair.gap_closed = pair.active = pair.loaded = pair.spring.force > 0.0;
-    }
+  const auto body = [&](std::int32_t b) -> const Body<D>& {
+    return bodies[static_cast<std::size_t>(b)];
+  };
+  const auto spring = [&](ContactPair<D>& pair) {
+    const std::int32_t body_r = sides[pair.r].body, body_s = sides[pair.s].body;
+    const auto between = touches.between(body_r, body_s);
+    if (between.empty()) return;
+    const SpringSide<D> of_r = side_of<D>(grid, body(body_r), body_r, place),
+                        of_s = side_of<D>(grid, body(body_s), body_s, place);
+    Springs<D> springs;
+    for (const NearTouch<D>& touch : between)
+      if (touch.nodes >> node.cell & 1u) springs.add(touch, at, of_r, of_s);
+    pair.normal = springs.normal(node.constrained_axes);
+    pair.spring = springs.along(pair.normal, grid.cell_size);
+    pair.gap = springs.gap(distance, grid.cell_size);
+    pair.gap_closed = pair.active = pair.loaded = pair.spring.force > 0.0;
+  };
+  if (made) {
+    for (ContactPair<D>& pair : part.pairs_of(node))
+      if (!pair.bonded && !pair.stopped) spring(pair);
+    return;
+  }
+  for_each_new_pair<D>(bodies, settings, part, node, spring);
 }
 
 template void find_springs<2>(const TileGrid<2>&, const std::vector<Body<2>>&,
                               const ContactSettings&, const TileTouches<2>&, ContactPart<2>&,
-                              const ContactNode&, const Index<2>&);
+                              const ContactNode&, const Index<2>&, bool);
 template void find_springs<3>(const TileGrid<3>&, const std::vector<Body<3>>&,
                               const ContactSettings&, const TileTouches<3>&, ContactPart<3>&,
-                              const ContactNode&, const Index<3>&);
+                              const ContactNode&, const Index<3>&, bool);
 
 }  // namespace mpm

@@ -15,7 +15,7 @@ namespace {
 template <int D>
 struct BodyNear {
   std::int32_t body;
-  bool deforms;
+  bool deforms, flows;
   int range;  // of its widest particle here, SurfaceSum::range()
   std::span<const TileHolder> holders;
   const Patch<D>* own;   // its patch of the tile itself, if any
@@ -34,9 +34,17 @@ struct BodiesNear {
 
 Reach reach_to(int range) { return {range, range, 0.0}; }
 
+/// May particles of r in the tile be pushed by s? Bodies that do not deform have no stress that
+/// could part them.
+template <int D>
+bool may_push(const BodyNear<D>& r, const BodyNear<D>& s, Response response) {
+  return r.own != nullptr && r.body != s.body && (r.deforms || s.deforms) &&
+         !stops_approach(response, r.flows || s.flows);
+}
+
 template <int D>
 void find_bodies(const Contact<D>& contact, const TileGrid<D>& grid,
-                 const std::vector<Body<D>>& bodies, const ContactTile<D>& tile,
+                 const std::vector<Body<D>>& bodies, Response response, const ContactTile<D>& tile,
                  BodiesNear<D>& found) {
   found.count = 0;
   const std::uint32_t end = tile.first_holder + tile.holders;
@@ -46,6 +54,7 @@ void find_bodies(const Contact<D>& contact, const TileGrid<D>& grid,
     at.body = contact.holders[h].body;
     const Body<D>& body = bodies[static_cast<std::size_t>(at.body)];
     at.deforms = body.deforms();
+    at.flows = body.flows;
     at.range = 1;
     const std::uint32_t first = h;
     for (std::uint32_t k = h; k < end && contact.holders[k].body == at.body; ++k)
@@ -63,9 +72,7 @@ void find_bodies(const Contact<D>& contact, const TileGrid<D>& grid,
   }
   for (const BodyNear<D>& r : found.all())
     for (BodyNear<D>& s : found.all())
-      // Bodies that do not deform have no stress that could part them.
-      if (r.own != nullptr && r.body != s.body && (r.deforms || s.deforms))
-        s.wanted |= r.own->occupied & s.near;
+      if (may_push(r, s, response)) s.wanted |= r.own->occupied & s.near;
 }
 
 /// The surface of a body around a tile, as seen from a point x from the tile's first node.
@@ -223,7 +230,9 @@ std::uint8_t surface_range(const TileGrid<D>& grid, const ParticlePool<D>& pool,
 
 template <int D>
 void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                  const std::vector<ParticlePool<D>>& pools, double distance, Threads& threads) {
+                  const std::vector<ParticlePool<D>>& pools, const ContactSettings& settings,
+                  Threads& threads) {
+  const double distance = settings.gap_distance / grid.cell_size;
   find_ranges(contact, grid, bodies, pools, threads);
   const TileShares shares(contact.tiles.size(), threads.count());
   // None goes: their memory is used again.
@@ -236,7 +245,7 @@ void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vecto
       ContactTile<D>& tile = contact.tiles[t];
       tile.touches = {static_cast<std::uint32_t>(share), static_cast<std::uint32_t>(touches.size()),
                       0};
-      find_bodies(contact, grid, bodies, tile, around);
+      find_bodies(contact, grid, bodies, settings.response, tile, around);
       for (BodyNear<D>& s : around.all())
         if (s.wanted != 0)
           s.particles.gather(grid, bodies[static_cast<std::size_t>(s.body)],
@@ -244,7 +253,7 @@ void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vecto
                              reach_to(s.range));
       for (const BodyNear<D>& r : around.all())
         for (const BodyNear<D>& s : around.all())
-          if (r.own != nullptr && r.body != s.body && (r.deforms || s.deforms))
+          if (may_push(r, s, settings.response))
             add_touches(grid, bodies, pools[pool_number(bodies, r.body)], r, s, distance, touches);
       tile.touches.count = static_cast<std::uint32_t>(touches.size()) - tile.touches.first;
     }
@@ -254,8 +263,10 @@ void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vecto
 template std::uint8_t surface_range<2>(const TileGrid<2>&, const ParticlePool<2>&, const Patch<2>&);
 template std::uint8_t surface_range<3>(const TileGrid<3>&, const ParticlePool<3>&, const Patch<3>&);
 template void find_touches<2>(Contact<2>&, const TileGrid<2>&, const std::vector<Body<2>>&,
-                              const std::vector<ParticlePool<2>>&, double, Threads&);
+                              const std::vector<ParticlePool<2>>&, const ContactSettings&,
+                              Threads&);
 template void find_touches<3>(Contact<3>&, const TileGrid<3>&, const std::vector<Body<3>>&,
-                              const std::vector<ParticlePool<3>>&, double, Threads&);
+                              const std::vector<ParticlePool<3>>&, const ContactSettings&,
+                              Threads&);
 
 }  // namespace mpm

@@ -3,11 +3,12 @@
 
 namespace mpm {
 
-/// The particles that overlap another body, tile by tile; those nearer than `distance` [cells] to
-/// it do.
+/// The particles that overlap another body, tile by tile, of pairs that springs part; those nearer
+/// to it than the settings' gap_distance do.
 template <int D>
 void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
-                  const std::vector<ParticlePool<D>>& pools, double distance, Threads& threads);
+                  const std::vector<ParticlePool<D>>& pools, const ContactSettings& settings,
+                  Threads& threads);
 
 /// How many cells away the surface of a patch's particles is felt, SurfaceSum::range().
 template <int D>

@@ -27,10 +27,9 @@ NodeSolution<D>& solution_of(std::span<const BodyAtNode<D>> sides,
   return solution;
 }
 
-/// The force in the middle of a step with the approach at its end: F + k (u dt / 2). The middle
-/// neither takes energy nor makes any, and needs no smaller step (decision 0051).
+/// The force over a step with the approach at its end: F + k (u dt / 4) (share_of_approach).
 SolvedSpring spring_over(const ContactSpring& spring, double time_step) {
-  return {time_step * spring.force, 0.5 * time_step * time_step * spring.stiffness,
+  return {time_step * spring.force, share_of_approach * time_step * time_step * spring.stiffness,
           spring.stiffness > 0.0};
 }
 
@@ -77,10 +76,10 @@ void write(TileGrid<D>& grid, const ContactPart<D>& part, const BodyAtNode<D>& s
 /// Solve for the velocities at number `at` of the records where a pair is stopped, from what
 /// `from(side)` gives; then f(sides, pairs, solution).
 template <int D, class From, class F>
-void for_each_stopped(Contact<D>& contact, TileGrid<D>& grid, Stopped stopped, int at, From&& from,
-                      Threads& threads, F&& f) {
-  const auto acts = [&](const ContactPair<D>& pair) {
-    return stopped == Stopped::all ? pair.gap_closed : pair.bonded;
+void for_each_stopped(Contact<D>& contact, TileGrid<D>& grid, int at, From&& from, Threads& threads,
+                      F&& f) {
+  const auto acts = [](const ContactPair<D>& pair) {
+    return pair.bonded || (pair.stopped && pair.gap_closed);
   };
   for_each_gap_closed(contact, grid, threads, [&](ContactPart<D>& part, const ContactNode& node) {
     const auto sides = part.sides_of(node);
@@ -171,16 +170,16 @@ void start_forces(const Contact<D>& contact, TileGrid<D>& grid, const ContactSte
 }  // namespace
 
 template <int D>
-void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Stopped stopped, Threads& threads) {
+void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
   // Without forces: eqs. (6)-(7) act on what was mapped.
   const auto mapped = [](const BodyAtNode<D>& side) { return side.mapped; };
   for_each_stopped(
-      contact, grid, stopped, velocity_at, mapped, threads,
+      contact, grid, velocity_at, mapped, threads,
       [&](std::span<const BodyAtNode<D>> sides, std::span<ContactPair<D>> pairs,
           const NodeSolution<D>& solution) {
         for (std::size_t k = 0; k < pairs.size(); ++k) {
           ContactPair<D>& pair = pairs[k];
-          if (pair.bonded || stopped == Stopped::bonded) continue;
+          if (pair.bonded || !pair.stopped) continue;
           // Of pairs that take no part the impulse is zero, so that they end up neither active nor
           // loaded.
           const bool pushed = solution.pairs[k].normal_impulse > 0.0;
@@ -257,12 +256,11 @@ void find_slip(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
 }
 
 template <int D>
-void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Stopped stopped,
-                              Threads& threads) {
+void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
   // The impulses of this solution act on the velocities that strain the material only; they are not
   // contact forces.
   const auto remapped = [&](const BodyAtNode<D>& side) { return read(grid, side, remapped_at); };
-  for_each_stopped(contact, grid, stopped, remapped_at, remapped, threads, [](auto&&...) {});
+  for_each_stopped(contact, grid, remapped_at, remapped, threads, [](auto&&...) {});
 }
 
 template <int D>
@@ -281,14 +279,14 @@ void restore_nodes(Contact<D>& contact, TileGrid<D>& grid, Threads& threads) {
   });
 }
 
-template void remove_approach<2>(Contact<2>&, TileGrid<2>&, Stopped, Threads&);
-template void remove_approach<3>(Contact<3>&, TileGrid<3>&, Stopped, Threads&);
+template void remove_approach<2>(Contact<2>&, TileGrid<2>&, Threads&);
+template void remove_approach<3>(Contact<3>&, TileGrid<3>&, Threads&);
 template void add_contact_forces<2>(Contact<2>&, TileGrid<2>&, const ContactStep<2>&, Threads&);
 template void add_contact_forces<3>(Contact<3>&, TileGrid<3>&, const ContactStep<3>&, Threads&);
 template void find_slip<2>(Contact<2>&, TileGrid<2>&, Threads&);
-template void remove_remapped_approach<2>(Contact<2>&, TileGrid<2>&, Stopped, Threads&);
+template void remove_remapped_approach<2>(Contact<2>&, TileGrid<2>&, Threads&);
 template void find_slip<3>(Contact<3>&, TileGrid<3>&, Threads&);
-template void remove_remapped_approach<3>(Contact<3>&, TileGrid<3>&, Stopped, Threads&);
+template void remove_remapped_approach<3>(Contact<3>&, TileGrid<3>&, Threads&);
 template void release_particles<2>(Contact<2>&, TileGrid<2>&, Threads&);
 template void release_particles<3>(Contact<3>&, TileGrid<3>&, Threads&);
 template void restore_nodes<2>(Contact<2>&, TileGrid<2>&, Threads&);

@@ -3,22 +3,15 @@
 
 namespace mpm {
 
-/// Whose velocities contact changes before forces do.
-enum class Stopped {
-  all,    // pairs that approach, eqs. (6)-(7), and bonded ones
-  bonded  // those alone: springs push with forces
-};
-inline Stopped stopped_by(const ContactSettings& settings) {
-  return settings.response == Response::impulses ? Stopped::all : Stopped::bonded;
-}
-/// Any at all?
+/// May contact change any velocities before forces do: of pairs whose approach is stopped, eqs.
+/// (6)-(7), and of bonded ones?
 inline bool changes_velocities(const ContactSettings& settings) {
-  return stopped_by(settings) == Stopped::all || bonds(settings);
+  return settings.response != Response::springs || bonds(settings);
 }
 
 /// Remove approaching momentum, eqs. (6)-(7), from the nodal velocities.
 template <int D>
-void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Stopped stopped, Threads& threads);
+void remove_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
 
 /// Add the contact forces, eqs. (11)-(15), to the nodal forces.
 template <int D>
@@ -38,7 +31,6 @@ template <int D>
 void find_slip(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
 /// Remove the approach from the remapped velocities (3.6, step 10).
 template <int D>
-void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Stopped stopped,
-                              Threads& threads);
+void remove_remapped_approach(Contact<D>& contact, TileGrid<D>& grid, Threads& threads);
 
 }  // namespace mpm

@@ -27,6 +27,7 @@ struct DeviceSum {
     kinetic = of_nodes,
     second_order,
     transferred,
+    carried,
     momentum,  // 3
     internal = momentum + 3,
     plastic,

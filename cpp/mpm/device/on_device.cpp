@@ -43,6 +43,7 @@ void take_sums(const double* sums, double fastest, const Vec<double, D>& gravity
   to.kinetic = sums[S::kinetic];
   to.second_order = sums[S::second_order];
   to.transferred = sums[S::transferred];
+  to.carried = sums[S::carried];
   for (int a = 0; a < D; ++a) to.momentum[a] = sums[S::momentum + a];
   to.stress.internal = sums[S::internal];
   to.stress.plastic = sums[S::plastic];
@@ -76,6 +77,9 @@ std::string not_on_device(const Domain<D>& domain, Scheme scheme) {
   if (filters(domain.transfer)) return "run.transfer = \"xpic\"";
   if (domain.grid.bonded) return "bonded bodies";
   if (domain.averages_volume()) return "volume averaging";
+  if (std::ranges::any_of(domain.pools,
+                          [](const ParticlePool<D>& pool) { return pool.at.growth_limit >= 0; }))
+    return "gases and liquids with an affine transfer (take run.transfer = \"flip\")";
   if (domain.settles()) return "a run that settles";
   if (domain.grid.has_wall_springs) return "walls of the box that touch (\"contact\")";
   if (std::ranges::none_of(domain.grid.patches, [&](const Patch<D>& patch) {
@@ -167,9 +171,10 @@ std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
   device->run = make_device_run(problem);
   if (HostPart<D>::needed(domain))
     // Springs leave the velocities as they are, and so do not keep them from particles.
-    device->host = std::make_unique<HostPart<D>>(
-        *device->run, domain, device->seconds,
-        domain.has_contact() && !domain.has_springs() && takes_of_grid(domain));
+    device->host =
+        std::make_unique<HostPart<D>>(*device->run, domain, device->seconds,
+                                      domain.has_contact() && domain.contact_settings.response != Response::springs &&
+            takes_of_grid(domain));
   return device;
 }
 

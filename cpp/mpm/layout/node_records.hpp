@@ -7,11 +7,11 @@
 
 namespace mpm {
 
-/// A record is two halves of four numbers: mass and velocity, then the force and a number that is
-/// not used. In 2D the last of a vector's three places stays empty.
+/// A record is two halves of four numbers: mass and velocity, then the force and, of matter that
+/// flows, the volume. In 2D the last of a vector's three places stays empty.
 inline constexpr int half_record = 4;
 inline constexpr int record = 2 * half_record;
-inline constexpr int mass_at = 0, velocity_at = 1, force_at = half_record;
+inline constexpr int mass_at = 0, velocity_at = 1, force_at = half_record, volume_at = record - 1;
 /// Fields whose time is over before another's begins share its place: momentum is there until
 /// velocities are found; what slip walls mirror of the weight until forces are mapped, the forces
 /// until nodes are advanced, the increments of velocity until MUSL remaps, then the remapped

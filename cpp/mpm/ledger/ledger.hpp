@@ -123,9 +123,9 @@ struct Ledger {
     eroded = by_erosion.kinetic + by_erosion.recoverable;
     left = out_of_region.kinetic + out_of_region.recoverable;
     unbalanced = s.applied > 0.0 ? s.unbalanced / s.applied : 0.0;
-    kinetic = s.kinetic;
+    kinetic = s.kinetic - s.carried;
     for (std::size_t a = 0; a < D; ++a) momentum[a] = s.momentum[a];
-    internal += s.stress.internal;
+    internal += s.stress.internal + s.returned;
     plastic += s.stress.plastic;
     viscous += s.stress.viscous;
     damped_stiffness += s.stress.damped;
@@ -144,7 +144,7 @@ struct Ledger {
     const double at_end = forces_follow ? 0.0 : 2.0 * second;
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
     averaging -= s.stress.averaging;
-    transferred += s.transferred;
+    transferred += s.transferred + s.carried + s.unseen - s.returned;
     // Of affine transfers, the work of all forces at the velocities that were mapped, before
     // (6)-(7), and the second order: what the energies of free particles should have changed by.
     if (affine)
@@ -154,8 +154,8 @@ struct Ledger {
                      (contacts.energy + contacts.friction_first + contacts.force_work);
     time_integration += s.made_rigid;
     time_integration -= s.stress.internal + s.stress.plastic + s.stress.viscous + s.stress.damped +
-                        s.stress.bounded - s.stress.force_power + second + contacts.friction -
-                        contacts.friction_first - at_end;
+                        s.stress.bounded - s.stress.force_power + second + s.unseen +
+                        contacts.friction - contacts.friction_first - at_end;
     largest = std::max({largest, std::abs(start), std::abs(external)});
     angular.add(patches, comm);
     angular.removed = by_erosion.angular_momentum + out_of_region.angular_momentum;

@@ -29,6 +29,9 @@ struct PatchSums {
   double second_order = 0.0;  // half sum of m_p (sum of dv_i N_ip)^2 [J]
   double transferred = 0.0;   // kinetic energy that the transfer has taken against FLIP; of affine
                               // transfers all that particles lack against the start of the step [J]
+  double carried = 0.0;       // kinetic energy that affine parts lose as they are carried along [J]
+  double returned = 0.0;      // of what the transfer took, what a gas has got back as heat [J]
+  double unseen = 0.0;        // of gases, what the nodes' increments hold beyond second_order [J]
   double momentum[D] = {};    // of the particles after the step [kg m/s]
   double force_work =
       0.0;  // time step x sum over nodes of internal and contact force . velocity [J]
@@ -60,6 +63,9 @@ struct PatchSums {
                             &kinetic,
                             &second_order,
                             &transferred,
+                            &carried,
+                            &returned,
+                            &unseen,
                             &force_work,
                             &made_rigid,
                             &gravity_first,
@@ -86,7 +92,7 @@ struct PatchSums {
       f(prescribed.impulse[a]);
     }
   }
-  static constexpr std::size_t numbers = 30 + 3 * D;  // of for_each
+  static constexpr std::size_t numbers = 33 + 3 * D;  // of for_each
 };
 
 /// The sums over all patches of all ranks, which depend on no order.

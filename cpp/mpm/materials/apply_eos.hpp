@@ -37,6 +37,9 @@ MPM_FLATTEN MPM_HD void apply_eos(const Model model, const MaterialView& materia
   const bool burns = material.burns, damped = material.damps;
   const bool viscosity = settings.viscosity.active(), last = !material.judged;
   const EosBounds bounds = material.bounds;
+  // A gas that is heated where its particles are advanced has the heat of the middle of the step:
+  // -p dV / 2 is all that it lacks.
+  const bool heated_elsewhere = columns.heat_owed != nullptr;
   for_each_group<T>(block, [&](const Group<T, D>& group) {
     const VolumeChange<T> volume_change(group.read(columns.mass), group.read(columns.volume),
                                         group.get(block.volume), group.get(block.dilation),
@@ -53,9 +56,10 @@ MPM_FLATTEN MPM_HD void apply_eos(const Model model, const MaterialView& materia
     };
     // E of the end but for -p dV / 2 of the new pressure: the old mean stress, tension
     // positive, works on half of the change.
-    T energy =
-        group.read(columns.energy) + work.deviatoric * per_volume + T(0.5) * mean_before * change;
-    if (bounds.active && any(bounds.limits(mean_before)))
+    T energy = group.read(columns.energy);
+    if (!heated_elsewhere)
+      energy = energy + work.deviatoric * per_volume + T(0.5) * mean_before * change;
+    if (!heated_elsewhere && bounds.active && any(bounds.limits(mean_before)))
       energy = bounds.without_voids(energy, mean_before, change);
     // The speed of sound is that at the energy before the pressure's own work: it only bounds the
     // next step and scales the viscosity.
@@ -65,7 +69,7 @@ MPM_FLATTEN MPM_HD void apply_eos(const Model model, const MaterialView& materia
     if (viscosity) {
       const T artificial = volume_change.viscous_speed(settings, speed);
       q = volume_change.viscous_pressure(settings, artificial);
-      energy += volume_change.viscous_work(q) * per_volume;
+      if (!heated_elsewhere) energy += volume_change.viscous_work(q) * per_volume;
       damping += artificial;
     }
     if (viscosity || damped) speed = damped_speed(speed, damping);

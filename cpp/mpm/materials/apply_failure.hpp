@@ -54,10 +54,12 @@ MPM_FLATTEN MPM_HD void apply_failures(const MaterialView& material, const Failu
     const auto separated =
         (failed >= T(static_cast<double>(FailureAction::no_tension))) & (kept >= T(0.0));
     const StepKinematics<T, D> kinematics(group, block, columns, material.density, settings);
-    writer.template add<true>(
-        group, kinematics, group.read_stress(columns),
-        {left, group.get(block.dissipated), select(separated, T(0.0), group.get(block.speed)),
-         select(separated, T(0.0), group.get(block.viscous_pressure))});
+    // What has failed has no deviator to flow with: the model, which begins at none in every step,
+    // would let it yield again and again.
+    writer.template add<true>(group, kinematics, group.read_stress(columns),
+                              {left, deviator * group.get(block.dissipated),
+                               select(separated, T(0.0), group.get(block.speed)),
+                               select(separated, T(0.0), group.get(block.viscous_pressure))});
   });
   sums.eroded = sums.eroded || any(eroded);
 }

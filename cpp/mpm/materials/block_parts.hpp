@@ -17,6 +17,7 @@ struct BlockColumns {
   Storage* stress[parts] = {};
   double *state = nullptr, *energy = nullptr, *recoverable = nullptr, *viscosity_pressure = nullptr,
          *failed = nullptr, *failure_state = nullptr;
+  const double *growth_limit = nullptr, *heat_owed = nullptr;
   double* damping_stress[parts] = {};
 
   BlockColumns() = default;
@@ -32,6 +33,8 @@ struct BlockColumns {
     viscosity_pressure = optional(at.viscosity_pressure);
     failed = optional(at.failed);
     failure_state = optional(at.failure_state);
+    growth_limit = optional(at.growth_limit);
+    heat_owed = optional(at.heat_owed);
     if (at.damping_stress >= 0)
       for (int c = 0; c < parts; ++c) damping_stress[c] = columns.component(at.damping_stress + c);
   }
@@ -215,6 +218,12 @@ struct StepKinematics {
         strain(symmetric_part(mid_step(motion.gradient))),
         volume_change(volume_change_of(motion.gradient, group.read(columns.mass),
                                        group.read(columns.volume), density)) {
+    // A volume that the grid has no room for does not grow, and is never cut.
+    if (columns.growth_limit)
+      volume_change = {
+          volume_change.mass, volume_change.before,
+          min(volume_change.after, max(volume_change.before, group.read(columns.growth_limit))),
+          volume_change.dilation, density};
     volume_change.dilation = trace(given);
     motion.J = volume_change.J;
   }

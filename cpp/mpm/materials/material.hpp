@@ -84,7 +84,10 @@ struct EosBounds {
   template <class T>
   MPM_COLD MPM_HD T held(T pressure, T energy, T change, LinearInEnergy<T> lowest) const {
     const auto below = energy - T(0.5) * pressure * change < T(lowest_energy);
-    return max(select(below, lowest.pressure(T(lowest_energy)), pressure), T(-tension));
+    // What has no heat left bears no tension: it would be given energy in every step in which it is
+    // torn, again and again.
+    const T coldest = max(lowest.pressure(T(lowest_energy)), T(0.0));
+    return max(select(below, coldest, pressure), T(-tension));
   }
 };
 
@@ -99,13 +102,34 @@ struct Material {
   bool averages_volume = false;  // over a cell's particles (step/volume_averaging.hpp)
 
   bool moves_as_one() const {
-    return std::visit([]<class M>(const M&) { return requires { M::moves_as_one; }; }, strength);
+    return std::visit(
+        []<class M>(const M&) {
+          return requires { M::moves_as_one; };
+        },
+        strength);
   }
   bool burns() const {
     return std::visit([]<class M>(const M&) { return Burns<M>; }, strength);
   }
   bool damps() const {
     return std::visit([]<class M>(const M&) { return Damps<M>; }, strength);
+  }
+  /// Has it no shape of its own?
+  bool flows() const {
+    return std::visit(
+        []<class M>(const M&) {
+          return requires { M::flows; };
+        },
+        strength);
+  }
+  /// May its particles part: as it flows, is loose, or has failed?
+  bool breaks_up() const {
+    return flows() || !failures.empty() ||
+           std::visit(
+               []<class M>(const M&) {
+                 return requires { M::breaks_up; };
+               },
+               strength);
   }
   /// Does it fill any volume? Products of detonation do.
   bool is_gas() const {

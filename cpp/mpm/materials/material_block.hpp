@@ -49,6 +49,10 @@ struct MaterialColumns {
   int recoverable = -1;         // energy per initial volume; where particles may be taken out
   int failed = -1;              // FailureAction; with failure models, or where particles may leave
   int failure_state = -1;       // of the failure models, one after another
+  // Of matter that flows, with an affine transfer (step/flowing_matter.hpp): the volume beyond
+  // which it does not grow [m^3]; of a gas what the transfer has taken and not yet given back as
+  // heat [J].
+  int growth_limit = -1, heat_owed = -1;
 };
 
 struct StressSettings {

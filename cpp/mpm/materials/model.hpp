@@ -128,6 +128,8 @@ concept StrengthModel =
 /// A strength model that burns: the EOS's pressure counts by its burn fraction.
 template <class M>
 concept Burns = requires(typename M::template State<double, 3> state) { state.burn_fraction; };
+/// A strength model of matter without a shape of its own, gases and liquids, has `flows`; one of
+/// loose matter, soils, `breaks_up`.
 /// A strength model with a viscosity: `damping_speed(J, h)` is 4/3 of it over density and cell size
 /// [m/s].
 template <class M>

@@ -29,7 +29,8 @@ class StressWriter {
     // Written so that no number counts as negative too.
     negative_ = negative_ | (valid & !(volume_change.after > T(0.0)));
 
-    T done = work.deviatoric + volume_change.work(mean_stress);
+    const bool heated_elsewhere = with_eos && columns_.heat_owed != nullptr;
+    T done = heated_elsewhere ? T(0.0) : work.deviatoric + volume_change.work(mean_stress);
     // Dissipation is per present volume, the ledger wants joules: the mean volume of the step.
     const T lost = T(0.5) * (volume_change.before + volume_change.after) * after.dissipated;
     T used = work.force, heat = done;
@@ -37,7 +38,7 @@ class StressWriter {
       const T q = after.viscous_pressure, viscous_work = volume_change.viscous_work(q);
       const T q_before = group.read(columns_.viscosity_pressure);
       group.write(columns_.viscosity_pressure, q);
-      viscous_ += select(valid, viscous_work, T(0.0));
+      if (!heated_elsewhere) viscous_ += select(valid, viscous_work, T(0.0));
       // The viscous pressure that the nodal forces use, eq. (9): of this step where they follow
       // the stress (USF), else that of the step before.
       used -=
@@ -45,7 +46,7 @@ class StressWriter {
           volume_change.dilation;
       heat += viscous_work;
     }
-    if (with_eos && columns_.energy) {
+    if (with_eos && columns_.energy && !heated_elsewhere) {
       // The energy keeps what plastic flow and viscosity heat; the ledger's `internal` has neither,
       // for both have columns of their own (materials.md).
       T energy = group.read(columns_.energy) + heat * volume_change.per_volume;
@@ -79,8 +80,13 @@ class StressWriter {
     if (columns_.damping_stress[0])
       speed = speed_with_damping(material_, speed, volume_change.after / volume_change.mass,
                                  settings_.cell_size);
+    speed += sqrt(dot(v, v));
+    // What flows must not change its volume by more than a wave's way in a step allows.
+    if (with_eos && columns_.growth_limit)
+      speed = max(speed,
+                  absolute(volume_change.dilation) * T(settings_.cell_size / settings_.time_step));
     // An empty lane holds a particle that is taken elsewhere, without its motion.
-    fastest_ = max(fastest_, select(valid, speed + sqrt(dot(v, v)), T(0.0)));
+    fastest_ = max(fastest_, select(valid, speed, T(0.0)));
   }
   template <bool with_eos>
   MPM_HD void add(const Group<T, D>& group, const StepKinematics<T, D>& kinematics,

@@ -55,6 +55,7 @@ struct Body {
   double mean_edge = 0.0;        // edge of a square or cube of the mean initial particle volume [m]
   double total_mass = 0.0;       // [kg]
   BodyKind kind = BodyKind::deformable;
+  bool flows = false;                        // a gas, a liquid: it has no shape of its own
   int rigid = -1;                            // place among Domain::rigid, if it is rigid and free
   int force = -1;                            // place among Domain::body_forces, if it has one
   int damping = -1;                          // and among Domain::dampings

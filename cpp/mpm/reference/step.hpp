@@ -221,7 +221,7 @@ struct Step {
     }
   }
 
-  /// x_p += dt sum v_i N_ip, eq. (16).
+  /// x_p += dt sum v_i N_ip, eq. (16); C_p goes with the velocities that it describes.
   void move_particles() {
     for (Body<D>& b : bodies) {
       if (!b.deforms()) continue;
@@ -231,6 +231,9 @@ struct Step {
           v += N * b.nodes[i].v;
         });
         p.x += dt * v;
+        const Mat<double, D> square = p.C * p.C;
+        for (int a = 0; a < D; ++a)
+          for (int c = 0; c < D; ++c) p.C[a][c] -= 0.5 * dt * (square[a][c] + square[c][a]);
       }
     }
   }

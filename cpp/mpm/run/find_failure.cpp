@@ -19,8 +19,8 @@ std::pair<std::string, std::string> kind_and_sentence(const Domain<D>& domain,
     const double force = of.columns.component(of.body_force + a)[row];
     if (moves_within_cell(force, domain.time_step, domain.grid.cell_size)) continue;
     std::ostringstream text;
-    text << "its body_force is " << force << " m/s^2 along " << "xyz"[a]
-         << ", no finite number or one that moves it past a cell in a step";
+    text << "its body_force is " << force << " m/s^2 along "
+         << "xyz"[a] << ", no finite number or one that moves it past a cell in a step";
     return {"body force", text.str()};
   }
   for (int c = 0; c < of.columns.component_count(); ++c)

@@ -20,11 +20,13 @@ enum class NoteKind {
   volume,
   left_box,
   crowd,
-  unsettled
+  unsettled,
+  gas_volume,
+  sparse
 };
-inline constexpr std::array note_names = {"time step",     "energy of a step", "load",
-                                          "outside walls", "volume",           "left box",
-                                          "crowded node",  "unsettled"};
+inline constexpr std::array note_names = {
+    "time step", "energy of a step", "load",      "outside walls", "volume",
+    "left box",  "crowded node",     "unsettled", "gas volume",    "sparse particles"};
 
 /// Told once for each kind and body (the first of its group), then counted. Trivially copyable, so
 /// that a checkpoint holds it.
@@ -79,7 +81,15 @@ struct Seen {
 template <int D>
 struct Sight {
   std::int64_t particles = 0;
-  Seen outside, odd, left[2 * D];
+  Seen outside, odd, swollen, left[2 * D];  // swollen: of gases
+  // Of bodies that keep together: cells that hold some, and those beside an empty cell behind which
+  // there are some again.
+  std::int64_t cells = 0;
+  Seen gaps;
+
+  double gap_share() const {
+    return cells > 0 ? static_cast<double>(gaps.count) / static_cast<double>(cells) : 0.0;
+  }
 };
 
 template <int D>
@@ -87,7 +97,8 @@ struct Watch {
   StepWatch steps;
   std::int64_t looked = -1;  // step of the last look
   std::vector<Note> notes;
-  std::vector<Sight<D>> sights;  // scratch, one per body
+  std::vector<Sight<D>> sights;       // scratch, one per body
+  std::vector<double> gaps_at_start;  // gap_share() of each, as it is given
 };
 
 }  // namespace mpm

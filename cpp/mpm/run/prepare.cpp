@@ -13,6 +13,7 @@
 #include "mpm/run/start_affine.hpp"
 #include "mpm/run/start_contact.hpp"
 #include "mpm/run/time_step.hpp"
+#include "mpm/run/watch.hpp"
 
 namespace mpm {
 namespace {
@@ -116,7 +117,7 @@ void prepare(Simulation<D>& simulation) {
   const double fastest = cfl * domain.grid.cell_size / stable_time_step(domain, cfl);
   domain.contact.records.set_scale(total_mass(domain), fastest);
   start_ledger(domain);
-  simulation.watch.sights.resize(domain.bodies.size());
+  look_at_start(simulation);
   simulation.watch.notes.reserve(2 * note_names.size());
   domain.time_step = 0.0;
   simulation.history.add(step_state(domain));  // the state at the start

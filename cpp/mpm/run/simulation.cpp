@@ -17,7 +17,7 @@ void check_transfer(const Settings& s) {
 
 /// Springs are found in every step, where particles overlap.
 void check_contact(const ContactSettings& s) {
-  if (s.response != Response::springs) return;
+  if (!may_spring(s.response)) return;
   if (s.detection != Detections::id_of<GapDetection>())
     throw std::invalid_argument(
         "contact.detection: \"velocity\" does not go with springs, which act where particles "
@@ -52,11 +52,11 @@ const Settings& checked(const Settings& s) {
 Extra extra_stages(const Settings& s) {
   const TransferSettings& transfer = s.run.transfer;
   if (filters(transfer.word)) return Extra::filter;
-  // Do particles take velocities of nodes that eqs. (6)-(7) correct? Springs correct none.
+  // Do particles take velocities of nodes that eqs. (6)-(7) correct? Springs alone correct none.
   const bool takes =
       takes_grid_velocity(transfer.word) || transfer.pic_rate > 0.0 || transfer.flip_share() < 1.0;
   const bool corrects =
-      s.contact.enabled && !s.contact.bonded && s.contact.response == Response::impulses;
+      s.contact.enabled && !s.contact.bonded && s.contact.response != Response::springs;
   return takes && corrects ? Extra::release : Extra::none;
 }
 

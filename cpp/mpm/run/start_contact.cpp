@@ -19,8 +19,8 @@ void start_contact(Domain<D>& domain) {
   if (domain.has_contact())
     exchange_guests(domain.contact, domain.grid, domain.bodies, domain.pools);
   if (domain.has_springs()) {
-    find_touches(domain.contact, domain.grid, domain.bodies, domain.pools,
-                 domain.contact_settings.gap_distance / domain.grid.cell_size, domain.threads);
+    find_touches(domain.contact, domain.grid, domain.bodies, domain.pools, domain.contact_settings,
+                 domain.threads);
     set_back_surfaces(domain.contact, domain.bodies, domain.pools, domain.contact_settings,
                       domain.grid.cell_size);
   }

@@ -49,6 +49,20 @@ std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded
            << " have less than 0.01 or more than 100 times their initial volume, this one "
            << n.value << "; " << (n.value < 1.0 ? crushed : torn);
       break;
+    case NoteKind::gas_volume:
+      text
+          << per_cent << " % of the particles of " << whose
+          << " have less than 0.001 of their initial volume or stand for more than 100 cells, this "
+             "one has "
+          << n.value
+          << " of that at the start: the grid has no room for it; give run.transfer = \"aflip\" on "
+             "the default basis, or smaller steps";
+      break;
+    case NoteKind::sparse:
+      text << "particles of " << whose << " are more than a cell apart along an axis (" << per_cent
+           << " % of its cells have an empty one beside them and particles behind it): it comes "
+              "apart there by the numerics; give it a smaller spacing, or larger cells";
+      break;
     case NoteKind::crowd:
       text << n.value << " bodies meet at one node, and the time of a step grows with the square "
            << "of their number; give smaller cells, larger grains, or one body in place of many";

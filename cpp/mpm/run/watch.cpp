@@ -1,5 +1,7 @@
 #include "mpm/run/watch.hpp"
 
+#include <bit>
+#include <cmath>
 #include <sstream>
 
 #include "mpm/contact/find_nodes.hpp"
@@ -12,6 +14,10 @@ namespace mpm {
 namespace {
 
 constexpr double small_volume = 0.01, large_volume = 100.0;  // over that at the start
+// Of a gas, that fills any volume: over that at the start; and in cells. One that is alone stands
+// for ten at most (step/flowing_matter.hpp).
+constexpr double small_of_gas = 1e-3, large_of_gas = 100.0;
+constexpr double many_gaps = 0.05;  // of a body's cells, more than at the start
 constexpr double beyond = 0.1;  // of a cell, behind a wall: GIMP may push a centre a little past it
 // At a node: each meets each, 435 pairs. Equal spheres have twelve neighbours, grains of two cells
 // ten.
@@ -63,6 +69,13 @@ void watch_crowd(Simulation<D>& simulation) {
   note(simulation, found);
 }
 
+/// What is wrong with the volumes that a kind of note is about.
+const char* volumes_of(NoteKind kind) {
+  return kind == NoteKind::volume
+             ? " have less than 0.01 or more than 100 times their initial volume"
+             : " have less than 0.001 of their initial volume, or stand for more than 100 cells";
+}
+
 /// Tell what was seen, and stop if it is too much.
 template <int D>
 void judge(Simulation<D>& simulation) {
@@ -80,10 +93,8 @@ void judge(Simulation<D>& simulation) {
       std::ostringstream text;
       text.precision(4);
       text << 100.0 * share << " % of the particles of " << group_name(domain, static_cast<int>(g))
-           << (kind == NoteKind::volume
-                   ? " have less than 0.01 or more than 100 times their initial volume"
-                   : " lie beyond closed walls of the box")
-           << ", and run." << (kind == NoteKind::volume ? "volume_limit" : "outside_limit")
+           << (kind == NoteKind::outside ? " lie beyond closed walls of the box" : volumes_of(kind))
+           << ", and run." << (kind == NoteKind::outside ? "outside_limit" : "volume_limit")
            << " allows " << 100.0 * limit
            << " %; give smaller steps or cells, or a stiffer material";
       simulation.failure =
@@ -91,8 +102,33 @@ void judge(Simulation<D>& simulation) {
     };
     tell(NoteKind::outside, sight.outside, -1, simulation.settings.run.outside_limit);
     tell(NoteKind::volume, sight.odd, -1, simulation.settings.run.volume_limit);
+    tell(NoteKind::gas_volume, sight.swollen, -1, simulation.settings.run.volume_limit);
+    const double gaps = sight.gap_share();
+    if (gaps > simulation.watch.gaps_at_start[g] + many_gaps)
+      note_at(simulation, {.kind = NoteKind::sparse, .share = gaps}, sight.gaps.at);
     for (int face = 0; face < 2 * D; ++face)
       tell(NoteKind::left_box, sight.left[number(face)], face, 1.0);
+  }
+}
+
+/// Count the cells of a patch, and those beside an empty one behind which there are particles
+/// again, each axis by itself, within the tile.
+template <int D>
+void look_for_gaps(const ParticlePool<D>& pool, const Patch<D>& patch, Sight<D>& sight) {
+  sight.cells += std::popcount(patch.occupied);
+  for (std::size_t a = 0; a < D; ++a) {
+    Index<D> one{};
+    one[a] = 1;
+    const int step = Tile<D>::cell(one);
+    for (std::uint64_t left = patch.occupied; left != 0; left &= left - 1) {
+      const int cell = std::countr_zero(left);
+      if (Tile<D>::cell_index(cell)[a] + 2 >= Tile<D>::cells) continue;
+      if ((patch.occupied >> (cell + step) & 1u) != 0) continue;
+      if ((patch.occupied >> (cell + 2 * step) & 1u) == 0) continue;
+      const std::uint32_t row =
+          pool.order[patch.begin + patch.cell_begin[static_cast<std::size_t>(cell)]];
+      sight.gaps.add(pool, patch.body, row, 1.0, 0.0);
+    }
   }
 }
 
@@ -102,19 +138,22 @@ void add_others(Simulation<D>& simulation) {
   Comm& comm = *simulation.domain.grid.partition.comm;
   if (comm.alone()) return;
   // Most have seen nothing: all counts at once, and the rest where there is any.
-  constexpr std::size_t kinds = 2 + 2 * D;
+  constexpr std::size_t kinds = 4 + 2 * D;
   std::vector<Sight<D>>& sights = simulation.watch.sights;
   const auto seen = [](Sight<D>& sight, std::size_t kind) -> Seen& {
-    return kind == 0 ? sight.outside : kind == 1 ? sight.odd : sight.left[kind - 2];
+    Seen* const others[] = {&sight.outside, &sight.odd, &sight.swollen, &sight.gaps};
+    return kind < 4 ? *others[kind] : sight.left[kind - 4];
   };
   std::vector<std::int64_t> counts;
   for (Sight<D>& sight : sights) {
     counts.push_back(sight.particles);
+    counts.push_back(sight.cells);
     for (std::size_t kind = 0; kind < kinds; ++kind) counts.push_back(seen(sight, kind).count);
   }
   comm.all_sum(counts);
   for (std::size_t g = 0, k = 0; g < sights.size(); ++g) {
     sights[g].particles = counts[k++];
+    sights[g].cells = counts[k++];
     for (std::size_t kind = 0; kind < kinds; ++kind)
       if (counts[k++] > 0) seen(sights[g], kind).add_others(comm);
   }
@@ -151,16 +190,19 @@ void watch_step(Simulation<D>& simulation) {
             fastest);
 }
 
+namespace {
+
+/// What there is to see, of all ranks.
 template <int D>
-void look(Simulation<D>& simulation) {
+void see(Simulation<D>& simulation) {
   const Domain<D>& domain = simulation.domain;
-  simulation.watch.looked = domain.step;
   const TileGrid<D>& grid = domain.grid;
   Vec<double, D> lower, upper;
   for (int a = 0; a < D; ++a) {
     lower[a] = grid.origin[a] - beyond * grid.cell_size;
     upper[a] = grid.origin[a] + (grid.walls.cells[a] + beyond) * grid.cell_size;
   }
+  const double cell_volume = std::pow(grid.cell_size, D);
   std::vector<Sight<D>>& seen = simulation.watch.sights;
   seen.assign(domain.bodies.size(), {});
   for (const Patch<D>& patch : grid.patches) {
@@ -169,15 +211,24 @@ void look(Simulation<D>& simulation) {
     const ParticlePool<D>& of = domain.pool_of(b);
     Sight<D>& sight = seen[number(b.group)];
     sight.particles += patch.count;
-    const bool solid = b.deforms() && !domain.material_of(patch).is_gas();
+    const Material& material = domain.material_of(patch);
+    const bool solid = b.deforms() && !material.is_gas();
+    if (solid && !material.breaks_up()) look_for_gaps(of, patch, sight);
     const double* failed = of.at.failed >= 0 ? of.columns.component(of.at.failed) : nullptr;
     const bool placed = grid.walls.exist && !b.is_prescribed();
-    if (!solid && !placed) continue;
+    const bool gas = b.deforms() && !solid;
+    if (!solid && !gas && !placed) continue;
     for (const std::uint32_t i : of.rows(patch)) {
       if (solid && !(failed && failed[i] > 0.0)) {
         const double J = of.volume()[i] * b.initial_density / of.mass()[i];
         if (J < small_volume || J > large_volume)
           sight.odd.add(of, patch.body, i, std::abs(std::log(J)), J);
+      }
+      if (gas) {
+        const double J = of.volume()[i] * b.initial_density / of.mass()[i];
+        const double cells = of.volume()[i] / cell_volume;
+        if (J < small_of_gas || (J > large_volume && cells > large_of_gas))
+          sight.swollen.add(of, patch.body, i, std::abs(std::log(J)), J);
       }
       if (!placed) continue;
       bool outside = false;
@@ -198,11 +249,28 @@ void look(Simulation<D>& simulation) {
     }
   }
   add_others(simulation);
+}
+
+}  // namespace
+
+template <int D>
+void look(Simulation<D>& simulation) {
+  simulation.watch.looked = simulation.domain.step;
+  see(simulation);
   judge(simulation);
+}
+
+template <int D>
+void look_at_start(Simulation<D>& simulation) {
+  see(simulation);
+  std::vector<double>& gaps = simulation.watch.gaps_at_start;
+  for (const Sight<D>& sight : simulation.watch.sights) gaps.push_back(sight.gap_share());
 }
 
 template void watch_step<2>(Simulation<2>&);
 template void watch_step<3>(Simulation<3>&);
+template void look_at_start<2>(Simulation<2>&);
+template void look_at_start<3>(Simulation<3>&);
 template void look<2>(Simulation<2>&);
 template void look<3>(Simulation<3>&);
 

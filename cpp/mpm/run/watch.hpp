@@ -15,4 +15,8 @@ void watch_step(Simulation<D>& simulation);
 template <int D>
 void look(Simulation<D>& simulation);
 
+/// See how things are at the start, by which later looks judge.
+template <int D>
+void look_at_start(Simulation<D>& simulation);
+
 }  // namespace mpm

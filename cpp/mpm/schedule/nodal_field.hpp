@@ -35,6 +35,32 @@ class NodalField {
     return total;
   }
 
+  /// The number at place `at` of the records.
+  template <int at, class T>
+  MPM_HD T value(const Weights<T, D, count>& w) const {
+    return sum_of<T>(w, [](const double* record) { return record[at]; });
+  }
+  /// Half the square of the vector at `after` less that of itself without its change, the vector at
+  /// `change`: what a node's kinetic energy over its mass has gained.
+  template <int after, int change, class T>
+  MPM_HD T gain(const Weights<T, D, count>& w) const {
+    return sum_of<T>(w, [](const double* record) {
+      double gained = 0.0;
+      for (int a = 0; a < D; ++a)
+        gained = fma(record[change + a], fma(-0.5, record[change + a], record[after + a]), gained);
+      return gained;
+    });
+  }
+  /// The square of the vector at number `at`.
+  template <int at, class T>
+  MPM_HD T square(const Weights<T, D, count>& w) const {
+    return sum_of<T>(w, [](const double* record) {
+      double square = 0.0;
+      for (int a = 0; a < D; ++a) square = fma(record[at + a], record[at + a], square);
+      return square;
+    });
+  }
+
   /// Derivatives of that vector with respect to xi: [i][j] of component i along axis j.
   template <int at, class T>
   MPM_HD std::array<Vec<T, D>, D> gradients(const Weights<T, D, count>& w) const {
@@ -87,6 +113,20 @@ class NodalField {
   }
 
  private:
+  /// sum N_i f(record of the node).
+  template <class T, class F>
+  MPM_HD T sum_of(const Weights<T, D, count>& w, F&& f) const {
+    T total(0.0);
+    for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
+      T share = w.axis[1].N[y];
+      if constexpr (D == 3) share *= w.axis[D - 1].N[z];
+      T along_x = w.axis[0].N[0] * T(f(row[0]));
+      unrolled<count - 1>(
+          [&](auto k) MPM_INLINE { along_x = fma(w.axis[0].N[k + 1], T(f(row[k + 1])), along_x); });
+      total = fma(share, along_x, total);
+    });
+    return total;
+  }
   /// f(y, z, records) for the rows of nodes along x; one layer in 2D.
   template <class F>
   MPM_HD MPM_INLINE void for_each_row(F&& f) const {

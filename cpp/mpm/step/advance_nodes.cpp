@@ -211,6 +211,7 @@ void advance_nodes(Domain<D>& domain) {
     // by the increment, eq. (17).
     reflect_at_walls(grid, patch, block, velocity_at);
     reflect_at_walls(grid, patch, block, increment_at);
+    if (domain.pool_of(patch).at.growth_limit >= 0) reflect_volumes(grid, patch, block);
     // After the reflection, as a piece may load a node beyond a wall: a force and a velocity that
     // are both turned do the same work as those of the image, which has the force.
     if (loaded) loads = work_of_loads(domain, p);

@@ -1,6 +1,7 @@
 #include "mpm/schedule/scatter.hpp"
 #include "mpm/step/affine_velocity.hpp"
 #include "mpm/step/fixed_walls.hpp"
+#include "mpm/step/flowing_matter.hpp"
 #include "mpm/step/move.hpp"
 #include "mpm/step/node_loops.hpp"
 #include "mpm/step/patch_loops.hpp"
@@ -13,6 +14,9 @@ namespace {
 /// What is done beside eq. (17) while the particles, their weights and their nodes are at hand:
 /// stages fused (decisions 0015, 0034), from the source that makes the single ones too.
 enum class Also { nothing, remap, move };
+
+/// Whether matter keeps a shape of its own or flows.
+enum class Matter { solid, flowing };
 
 /// Of the particles in the lanes, for the ledger: every lane has its own sums over the patch, which
 /// are brought together once at the end, in one order (decision 0038).
@@ -39,6 +43,12 @@ struct LaneSums {
     sums.transferred = 0.5 * sum(transferred);
     for (int a = 0; a < D; ++a) sums.momentum[a] = sum(momentum[a]);
   }
+};
+
+/// In the place of what solids have not.
+struct Nothing {
+  template <class... Any>
+  explicit Nothing(const Any&...) {}
 };
 
 /// The columns of a pool that hold the particles' velocities; for a transfer that filters also what
@@ -94,7 +104,7 @@ struct VelocityColumns {
 /// Lanes behind the last particle repeat its row. With no mass they count for nothing in the
 /// ledger; the nodes are told how many there are (`place`). With MPM_FLOAT32 velocities are rounded
 /// when stored; the ledger and the remap take v as computed (decision 0021).
-template <int W, Also also, class Transfer, int D, BasisModel B>
+template <int W, Also also, Matter matter = Matter::solid, class Transfer, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p, const B& basis,
                                                    const Transfer transfer) {
   using T = Batch<W>;
@@ -104,7 +114,7 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   const NodeBlock<D> block = grid.block(p);
   LaneSums<T, D> sums;
   const LocalPosition<D> local_position(grid, pool);
-  Moving<D> moving(grid, pool, domain.time_step);
+  Moving<T, D> moving(grid, pool, domain.time_step);
   const double* mass = pool.mass();
   const VelocityColumns<Transfer, D> velocities(pool);
   alignas(
@@ -115,6 +125,9 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
   DoubleBuffer<Mapping<typename Transfer::Gives>, what, D, B, half_record> cells(stride,
                                                                                  {remapped});
   [[maybe_unused]] TakingAffine<T, D> affine(grid, pool);
+  constexpr bool flows = matter == Matter::flowing;
+  [[maybe_unused]] std::conditional_t<flows, FlowingMatter<T, D>, Nothing> flow(
+      grid, pool, domain.material_of(patch), domain.time_step);
 
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
@@ -127,6 +140,8 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       const Vec<T, D> dv = nodes.template vector<increment_at>(w);
       Vec<T, D> beside = Vec<T, D>::zero();
       Moments<T, D, B::nodes> moments;
+      [[maybe_unused]] T motion(0.0);
+      if constexpr (flows) motion = flow.motion(rows);
       if constexpr (Transfer::affine) {
         moments = moments_at<B>(xi, w);
         affine.take(nodes, rows, w, moments, m, beside, sums);
@@ -134,6 +149,10 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
       if constexpr (Transfer::takes_grid_velocity && !Transfer::affine)
         beside = nodes.template vector<velocity_at>(w);
       const Vec<T, D> v = velocities.take(here, rows, m, dv, beside, sums);
+      if constexpr (flows) {
+        flow.limit_growth(rows, nodes, w);
+        flow.give_back(rows, nodes, w, motion, dv);
+      }
       // USF: eq. (16) with the same weights, which are those of the positions before.
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {
@@ -151,8 +170,9 @@ template <int W, Also also, class Transfer, int D, BasisModel B>
     cells.finish();
     copy_halves(block.records.at(remapped_at), {remapped}, block.count);
   }
-  if constexpr (also == Also::move) patch.left_cell = moving.left_cell();
   sums.write(domain.sums[p]);
+  if constexpr (flows) flow.write(domain.sums[p]);
+  if constexpr (also == Also::move) moving.write(patch, domain.sums[p]);
 }
 
 /// Kinetic energy of a patch's particles [J].
@@ -176,6 +196,15 @@ void advance_rigid_patch(Domain<D>& domain, std::size_t p, const B& basis) {
   if (affine) domain.sums[p].transferred = before - domain.sums[p].kinetic;
 }
 
+template <int W, Also also, class Transfer, int D, BasisModel B>
+void advance_deformable(Domain<D>& domain, std::size_t p, const B& basis,
+                        const Transfer& transfer) {
+  if constexpr (Transfer::affine)
+    if (domain.pool_of(domain.grid.patches[p]).at.growth_limit >= 0)
+      return advance_patch<W, also, Matter::flowing>(domain, p, basis, transfer);
+  advance_patch<W, also>(domain, p, basis, transfer);
+}
+
 template <Also also, int D>
 void advance(Domain<D>& domain) {
   for_each_patch(domain, deformable | free_rigid, [&](std::size_t p) {
@@ -185,10 +214,10 @@ void advance(Domain<D>& domain) {
       if (!body.deforms())
         advance_rigid_patch<lanes>(domain, p, basis);
       else
-        with_transfer_for<B>(domain, own_step(domain, domain.pool_of(patch)),
-                             [&](const auto& transfer) {
-                               advance_patch<lanes, also>(domain, p, basis, taken_by(transfer));
-                             });
+        with_transfer_for<B>(
+            domain, own_step(domain, domain.pool_of(patch)), [&](const auto& transfer) {
+              advance_deformable<lanes, also>(domain, p, basis, taken_by(transfer));
+            });
     });
   });
 }

@@ -30,7 +30,7 @@ void contact_momentum(Domain<D>& domain) {
   find_nodes(domain.contact, domain.grid, domain.bodies, domain.pools, domain.contact_settings,
              domain.time_step, domain.threads);
   if (!changes_velocities(domain.contact_settings)) return;
-  remove_approach(domain.contact, domain.grid, stopped_by(domain.contact_settings), domain.threads);
+  remove_approach(domain.contact, domain.grid, domain.threads);
   exchange_responses(domain.contact, domain.grid, velocity_at);
   reflect(domain, velocity_at);
 }
@@ -68,8 +68,7 @@ void contact_remapped(Domain<D>& domain) {
   if (!changes_velocities(domain.contact_settings)) return;
   // The particles have kept v_i when they were advanced by increments, so what approach (6)-(7)
   // took from the nodes is in the remapped velocities again (3.6, step 10: "readjust").
-  remove_remapped_approach(domain.contact, domain.grid, stopped_by(domain.contact_settings),
-                           domain.threads);
+  remove_remapped_approach(domain.contact, domain.grid, domain.threads);
   exchange_responses(domain.contact, domain.grid, remapped_at);
   reflect(domain, remapped_at);
 }

@@ -2,23 +2,28 @@
 #include "mpm/domain.hpp"
 #include "mpm/schedule/cell_loop.hpp"
 #include "mpm/schedule/choose.hpp"
+#include "mpm/step/transfer/apic.hpp"
 
 namespace mpm {
 
 /// Moves particles of a patch, eq. (16), and notes whether any leaves its cell: only patches that
 /// one has left are looked at when lists are mended (decision 0002).
-template <int D>
+/// Their affine part is carried along, after all that maps it at the places before: MUSL's remap.
+template <class T, int D>
 class Moving {
  public:
   Moving(const TileGrid<D>& grid, ParticlePool<D>& pool, double time_step)
       : cells_(grid.coordinates()), time_step_(time_step) {
     for (int a = 0; a < D; ++a) x_[a] = pool.x(a);
+    if (pool.affine < 0) return;
+    mass_ = pool.mass();
+    half_moment_ = 0.5 * grid.affine_moment();
+    for (int k = 0; k < D * D; ++k) affine_[k] = pool.affine_part(k);
   }
 
   /// `nodes` are the nodal fields of the cell, `w` what they want to know of the positions before.
   template <class Rows, class Field, class Weights>
   void move(const CellRange<D>& cell, const Rows& rows, const Field& nodes, const Weights& w) {
-    using T = Batch<Rows::lanes>;
     // v_i at the end of the step, p_i / m_i of eq. (16) with the p_i of eq. (8). A field has one
     // value at a place, so that particles which follow it do not pass through each other; with
     // their own v_p they might.
@@ -32,13 +37,30 @@ class Moving {
       const T local = cells_.in_cells(x, a) - T(cell.cell[a]);
       left_ |= lane_bits((local < T(0.0)) | (local >= T(1.0)));
     });
+    if (mass_ != nullptr) carry_affine(rows);
   }
-  bool left_cell() const { return left_ != 0; }
+  /// Of all of them, when they have moved.
+  void write(Patch<D>& patch, PatchSums<D>& sums) const {
+    patch.left_cell = left_ != 0;
+    sums.carried = half_moment_ * sum(lost_);
+  }
 
  private:
+  template <class Rows>
+  MPM_INLINE void carry_affine(const Rows& rows) {
+    Mat<T, D> C;
+    unrolled<D * D>([&](auto k) MPM_INLINE { C[k / D][k % D] = load(affine_[k], rows); });
+    const Mat<T, D> now = carried_along(C, T(time_step_));
+    unrolled<D * D>([&](auto k) MPM_INLINE { store(affine_[k], rows, now[k / D][k % D]); });
+    lost_ = fma(of_valid(rows, load(mass_, rows)), square_difference(C, now), lost_);
+  }
+
   CellCoordinates<D> cells_;
   double* x_[D];
-  double time_step_;
+  double time_step_, half_moment_ = 0.0;
+  const double* mass_ = nullptr;  // null without an affine part
+  Storage* affine_[D * D] = {};
+  T lost_{0.0};
   std::uint64_t left_ = 0;  // lanes of which one has
 };
 

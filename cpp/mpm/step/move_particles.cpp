@@ -13,8 +13,8 @@ void move_particles(Domain<D>& domain) {
     ParticlePool<D>& pool = domain.pool_of(patch);
     const NodeBlock<D> block = grid.block(p);
     const LocalPosition<D> local_position(grid, pool);
-    Moving<D> moving(grid, pool, domain.time_step);
     with_basis_and_lanes(grid, body, patch, [&]<BasisModel B>(const B& basis, auto lanes) {
+      Moving<Batch<lanes>, D> moving(grid, pool, domain.time_step);
       const NodeStrides<D> stride(patch.shape);
       for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
         // Fields are made again only in the schemes that are not fused; elsewhere `Moving` uses
@@ -24,8 +24,8 @@ void move_particles(Domain<D>& domain) {
           moving.move(cell, rows, nodes, weights_at(basis, local_position(cell, rows)));
         });
       });
+      moving.write(patch, domain.sums[p]);
     });
-    patch.left_cell = moving.left_cell();
   });
 }
 

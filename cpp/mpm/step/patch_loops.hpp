@@ -31,4 +31,13 @@ void for_each_patch(Domain<D>& domain, Kinds kinds, F&& f) {
   });
 }
 
+/// f(patch, block) for those of matter that flows and has a limit to its growth.
+template <int D, class F>
+void for_each_flowing_patch(Domain<D>& domain, F&& f) {
+  for_each_patch(domain, deformable, [&](std::size_t p) {
+    const Patch<D>& patch = domain.grid.patches[p];
+    if (domain.pool_of(patch).at.growth_limit >= 0) f(patch, domain.grid.block(p));
+  });
+}
+
 }  // namespace mpm

@@ -43,6 +43,9 @@ struct Data {
     mapped_impulses = 1u << 25,
     force_pressure = 1u << 26,  // of particles with averaged volumes, for one mapping of forces
     node_springs = 1u << 27,    // of walls that touch, then what they push with
+    affine = 1u << 28,          // affine part of particles' velocities
+    carried_sums = 1u << 29,    // of the patches' sums what these lose as they are carried along
+    node_volumes = 1u << 30,    // of matter that flows
   };
 };
 /// Their names, in the order of the bits.
@@ -52,7 +55,8 @@ inline constexpr auto data_names = std::to_array<std::string_view>(
      "node momentum",   "node velocity",  "ghost weights", "node force",      "node increments",
      "node remapped",   "node dashpots",  "contacts",      "patch sums",      "records",
      "energies",        "left cells",     "body force",    "unseen velocity", "impulses",
-     "mapped impulses", "force pressure", "node springs"});
+     "mapped impulses", "force pressure", "node springs",  "affine part",     "carried sums",
+     "node volumes"});
 
 /// The data and what shares its place (layout/node_records.hpp): who writes one takes the others.
 constexpr std::uint32_t places_of(std::uint32_t data) {

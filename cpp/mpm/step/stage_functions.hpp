@@ -66,6 +66,10 @@ void contact_momentum(Domain<D>& domain);
 
 /// Loads on surfaces, body forces, and the factors of walls that absorb.
 template <int D>
+void map_volumes(Domain<D>& domain);
+template <int D>
+void heat_gases(Domain<D>& domain);
+template <int D>
 void load_surfaces(Domain<D>& domain);
 template <int D>
 void add_body_forces(Domain<D>& domain);

@@ -24,13 +24,14 @@ struct Stages : Data {
                                  of_rigid = rigid_position | rigid_velocity;
 
   // The nodes are written as their memory is lent to the lists until momentum is mapped.
-  static constexpr Row activate{
-      "activate tiles", mpm::activate_tiles<D>,
-      of_particles | of_rigid | volume | stress | load_pieces | body_force | unseen |
-          force_pressure | lists | left_cells | patch_sums | impulses | mapped_impulses,
-      of_particles | of_rigid | volume | stress | load_pieces | body_force | unseen |
-          force_pressure | lists | left_cells | patch_sums | impulses | mapped_impulses |
-          node_mass | node_velocity | node_force};
+  static constexpr Row activate{"activate tiles", mpm::activate_tiles<D>,
+                                of_particles | of_rigid | volume | stress | load_pieces |
+                                    body_force | unseen | force_pressure | lists | left_cells |
+                                    patch_sums | impulses | mapped_impulses | affine | carried_sums,
+                                of_particles | of_rigid | volume | stress | load_pieces |
+                                    body_force | unseen | force_pressure | lists | left_cells |
+                                    patch_sums | impulses | mapped_impulses | affine |
+                                    carried_sums | node_mass | node_velocity | node_force};
   // Before momentum is mapped, so that it has the nodes for itself and nothing of contact's
   // correction; velocities stay until they are advanced, as the energies are those of FLIP's step.
   static constexpr Row filter{"filter velocities", mpm::filter_velocities<D>, lists | of_particles,
@@ -38,8 +39,8 @@ struct Stages : Data {
   static constexpr Row map_momentum{
       "map momentum",
       mpm::map_momentum<D>,
-      lists | of_particles | of_rigid,
-      node_mass | node_momentum | ghost_weights | node_dashpots | node_springs,
+      lists | of_particles | affine | of_rigid,
+      node_mass | node_momentum | ghost_weights | node_dashpots | node_springs | node_volumes,
       true,
       true};
   static constexpr Row fold_momentum{"fold momentum",
@@ -79,6 +80,8 @@ struct Stages : Data {
       node_force,
       true,
       true};
+  static constexpr Row map_volumes{
+      "map volumes", mpm::map_volumes<D>, lists | position | volume, node_volumes, true, true};
   static constexpr Row load_surfaces{"load surfaces", mpm::load_surfaces<D>,
                                      lists | position | load_pieces | node_force | impulses,
                                      load_pieces | node_force | impulses};
@@ -101,13 +104,16 @@ struct Stages : Data {
                                      node_springs,
                                      false,
                                      true};
-  static constexpr Row fold_forces{
-      "fold forces", mpm::fold_forces<D>, node_force | impulses, node_force | impulses, false,
-      true};
+  static constexpr Row fold_forces{"fold forces",
+                                   mpm::fold_forces<D>,
+                                   node_force | node_volumes | impulses,
+                                   node_force | node_volumes | impulses,
+                                   false,
+                                   true};
   static constexpr Row exchange_forces{"exchange forces",
                                        mpm::exchange_forces<D>,
-                                       node_force | node_dashpots | node_springs,
-                                       node_force | node_dashpots | node_springs,
+                                       node_force | node_dashpots | node_springs | node_volumes,
+                                       node_force | node_dashpots | node_springs | node_volumes,
                                        false,
                                        false,
                                        mpm::start_forces<D>};
@@ -125,29 +131,42 @@ struct Stages : Data {
                                       node_mass | node_velocity | node_force | contacts,
                                       node_force | contacts};
   // It reads pieces and body forces for the work of these, once increments are known.
-  static constexpr Row advance_nodes{"advance nodes", mpm::advance_nodes<D>,
-                                     lists | position | mass | load_pieces | body_force |
-                                         node_mass | node_velocity | node_force | node_dashpots |
-                                         node_springs | patch_sums | impulses,
-                                     node_velocity | node_increments | patch_sums | impulses};
+  static constexpr Row advance_nodes{
+      "advance nodes", mpm::advance_nodes<D>,
+      lists | position | mass | load_pieces | body_force | node_mass | node_velocity | node_force |
+          node_dashpots | node_springs | node_volumes | patch_sums | impulses,
+      node_velocity | node_increments | node_volumes | patch_sums | impulses};
+  // With the velocities that strain, before particles are released from what contact has corrected.
+  static constexpr Row heat_gases{
+      "heat gases",
+      mpm::heat_gases<D>,
+      lists | position | mass | volume | stress | node_velocity | node_increments | patch_sums,
+      stress | patch_sums,
+      true,
+      true};
   static constexpr Row release{"release from contact", mpm::release_from_contact<D>,
                                node_velocity | node_increments | contacts,
                                node_velocity | contacts};
   static constexpr Row restore{"restore contact", mpm::restore_contact<D>, node_velocity | contacts,
                                node_velocity | contacts};
-  static constexpr Row advance_particles{
-      "advance particles",
-      mpm::advance_particles<D>,
-      lists | of_particles | of_rigid | unseen | node_velocity | node_increments | patch_sums,
-      velocity | rigid_velocity | patch_sums,
-      true,
-      true};
+  static constexpr Row advance_particles{"advance particles",
+                                         mpm::advance_particles<D>,
+                                         lists | of_particles | affine | of_rigid | unseen |
+                                             volume | stress | node_velocity | node_increments |
+                                             node_volumes | patch_sums,
+                                         velocity | affine | stress | rigid_velocity | patch_sums,
+                                         true,
+                                         true};
   // Before anything takes their velocities: the remap in MUSL, the end of the step in the others.
   static constexpr Row hold_rigid{"project rigid velocities", mpm::project_rigid_velocities<D>,
                                   lists | of_rigid | patch_sums | impulses,
                                   rigid_velocity | patch_sums | impulses};
-  static constexpr Row remap_momentum{
-      "remap momentum", mpm::remap_momentum<D>, lists | of_particles, node_remapped, true, true};
+  static constexpr Row remap_momentum{"remap momentum",
+                                      mpm::remap_momentum<D>,
+                                      lists | of_particles | affine,
+                                      node_remapped | node_volumes,
+                                      true,
+                                      true};
   // Apart from that of others, so that theirs can be fused with eq. (17) while rigid bodies wait
   // for their motion (decision 0034).
   static constexpr Row remap_rigid{"remap rigid bodies",
@@ -168,17 +187,17 @@ struct Stages : Data {
   // Last of what reads nodes: until here weights are those of the mapping. It marks
   // patches that a particle has left its cell in.
   static constexpr Row move_particles{"move particles", mpm::move_particles<D>,
-                                      lists | position | node_velocity, position | left_cells,
-                                      true};
+                                      lists | position | mass | affine | node_velocity,
+                                      position | affine | left_cells | carried_sums, true};
   static constexpr Row move_rigid{"move rigid bodies", mpm::move_rigid_bodies<D>,
                                   lists | of_rigid | patch_sums,
                                   of_rigid | left_cells | patch_sums};
   static constexpr Row record_contacts{"record contacts", mpm::record_contacts<D>,
                                        node_mass | contacts | records, records};
   template <bool forces_follow>
-  static constexpr Row sum_energies{"sum energies", mpm::sum_energies<D, forces_follow>,
-                                    patch_sums | impulses | mapped_impulses | records | energies,
-                                    energies};
+  static constexpr Row sum_energies{
+      "sum energies", mpm::sum_energies<D, forces_follow>,
+      patch_sums | carried_sums | impulses | mapped_impulses | records | energies, energies};
 
   static constexpr Row update_first =
       update_stress_row<D>(mpm::update_stress_first<D>, node_velocity);

@@ -85,7 +85,7 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   // Gradients come with respect to xi, in cells: 1 / h of eq. (20) and dt of eqs. (18)-(19) in one.
   const T scale(duration / grid.cell_size);
   const LocalPosition<D> local_position(grid, pool);
-  Moving<D> moving(grid, pool, domain.time_step);
+  Moving<T, D> moving(grid, pool, domain.time_step);
   MaterialBlock<D> block;
   // Blocks of up to 128 across cells, in full registers however few particles a cell has; one
   // indirect call for each part of the material and block (material_block.hpp). No particle's
@@ -127,7 +127,7 @@ template <int W, bool moves, int straining_at, int D, BasisModel B>
   if (forces_follow && duration > 0.0)
     for (double* const work : {&sums.force_power, &sums.averaging})
       *work *= domain.time_step / duration;
-  if constexpr (moves) patch.left_cell = moving.left_cell();
+  if constexpr (moves) moving.write(patch, domain.sums[p]);
 }
 
 template <bool moves, int straining_at, int D>

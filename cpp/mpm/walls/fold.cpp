@@ -49,6 +49,10 @@ void fold_forces(Domain<D>& domain) {
   add_reactions(domain, deformable | free_rigid, force_at, &AngularImpulses::walls,
                 [&](const Patch<D>&, int) { return domain.time_step; });
   fold(domain, force_at);
+  if (!domain.grid.has_ghosts()) return;
+  for_each_flowing_patch(domain, [&](const Patch<D>& patch, const NodeBlock<D>& block) {
+    fold_volumes(domain.grid, patch, block);
+  });
 }
 
 template <int D>

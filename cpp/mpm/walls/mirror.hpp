@@ -93,6 +93,22 @@ void subtract_ghost_weight(const Domain<D>& domain, const Patch<D>& patch,
     for (int a = 0; a < D; ++a) block.ghost_weight(a)[n] += weights[n][a];
 }
 
+/// The same of the volumes of matter that flows, which have no direction.
+template <int D>
+void fold_volumes(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block) {
+  for_each_ghost_node(grid, patch, [&](int node, int image, const WallImage<D>&) {
+    block.records[image][volume_at] += block.records[node][volume_at];
+    block.records[node][volume_at] = 0.0;
+  });
+}
+/// After the sums: a node beyond a wall has as much around it as its image.
+template <int D>
+void reflect_volumes(const TileGrid<D>& grid, const Patch<D>& patch, const NodeBlock<D>& block) {
+  for_each_ghost_node(grid, patch, [&](int node, int image, const WallImage<D>&) {
+    block.records[node][volume_at] = block.records[image][volume_at];
+  });
+}
+
 /// When the nodes have their velocities, the vector at number `at` of the records: those beyond the
 /// walls take their images'.
 template <int D>

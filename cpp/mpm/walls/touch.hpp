@@ -187,14 +187,14 @@ void start_solution(const Domain<D>& domain, const Patch<D>& patch, const NodeBl
     const double friction = domain.grid.walls.friction[a][touched.F[a] > 0.0 ? 0 : 1];
     // What is held along the normal does not come nearer.
     const bool stands = (touched.held >> a & 1u) != 0;
-    solution.pairs.push_back(
-        {0,
-         1,
-         true,
-         false,
-         friction,
-         normal,
-         {dt * std::abs(touched.F[a]), stands ? 0.0 : 0.5 * dt * dt * touched.K[a], true}});
+    solution.pairs.push_back({0,
+                              1,
+                              true,
+                              false,
+                              friction,
+                              normal,
+                              {dt * std::abs(touched.F[a]),
+                               stands ? 0.0 : share_of_approach * dt * dt * touched.K[a], true}});
   }
 }
 

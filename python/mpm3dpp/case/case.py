@@ -21,6 +21,7 @@ from mpm3dpp.base.errors import CaseError, from_validation, key_text
 from mpm3dpp.base.errors import Path as KeyPath
 from mpm3dpp.base.model import CaseModel, Choice, Text
 from mpm3dpp.grains import Grains
+from mpm3dpp.materials.catalogue import catalogue
 
 from . import file as case_file
 from .body import Body
@@ -90,7 +91,8 @@ class Case(CaseModel):
         Raises:
             ValueError: a violation, of which the sentence is made where the case is read or run.
         """
-        self.__dict__ |= with_choices(self.grid.basis, self.run, self.contact)
+        flows = any(self.flows(part) for part in self.parts())
+        self.__dict__ |= with_choices(self.grid.basis, self.run, self.contact, flows)
         check_case(self)
 
     @property
@@ -213,13 +215,22 @@ class Case(CaseModel):
 
     @property
     def has_springs(self) -> bool:
-        """Whether bodies in contact push each other by springs."""
-        return self.contact_enabled and self.contact.response == "springs"
+        """Whether any bodies in contact push each other by springs."""
+        return self.contact_enabled and self.contact.response != "impulses"
 
     @property
     def has_set_back(self) -> bool:
         """Whether springs push particles, of bodies or at walls, which may be set back for them."""
         return self.has_springs or CONTACT in self.grid.walls
+
+    def flows(self, part: str) -> bool:
+        """Return whether a body has no shape of its own: a gas, a liquid, an explosive.
+
+        Args:
+            part: name of the body, or of an entry of grains.
+        """
+        material = self.material.get(self.parts()[part].material)
+        return material is not None and catalogue()[material.strength.model].flows
 
     def is_rigid(self, part: str) -> bool:
         """Return whether a body does not deform: by its material, or by a prescribed motion.

@@ -114,9 +114,9 @@ def _transfer(case: Case) -> Found:
 def _springs(case: Case) -> Found:
     """Refuse what does not go with springs: they know where particles are, in every step."""
     contact = case.contact
-    if contact.response != "springs":
+    if contact.response == "impulses":
         return
-    with_it = 'does not go with contact.response = "springs"'
+    with_it = f'does not go with contact.response = "{contact.response}"'
     if contact.detection != "gap":
         rule, remedy = f"{with_it}, which act where particles overlap", "leave it out"
         yield violation(rule, remedy, value=contact.detection, path=("contact", "detection"))

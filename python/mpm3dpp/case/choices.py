@@ -3,7 +3,8 @@
 
 By what was measured on thirteen problems (docs/decisions/0048-the-table.md): a basis with which an
 affine transfer goes has AFLIP, and this has USF, steps twice as long as those of the others, and
-contact by springs (docs/decisions/0054-a-smooth-surface-for-springs.md).
+contact by springs (docs/decisions/0054-a-smooth-surface-for-springs.md), where a body flows by
+impulses (docs/decisions/0061-matter-that-flows.md).
 """
 
 from __future__ import annotations
@@ -22,12 +23,12 @@ BASIS, TRANSFER = "quadratic_bspline", "aflip"
 AFFINE: dict[str, Any] = {"scheme": "usf", "cfl": 0.5}
 OTHERS: dict[str, Any] = {"scheme": "musl", "cfl": 0.25}
 OTHER_TRANSFER = "flip"
-RESPONSE, OTHER_RESPONSE = "springs", "impulses"
+RESPONSE, FLOWING_RESPONSE, OTHER_RESPONSE = "springs", "by_matter", "impulses"
 
 _Table = TypeVar("_Table", bound=CaseModel)
 
 
-def with_choices(basis: str, run: Run, contact: Contact) -> dict[str, Run | Contact]:
+def with_choices(basis: str, run: Run, contact: Contact, flows: bool) -> dict[str, Run | Contact]:
     """Return `run` and `contact` of a case with what they leave out, by their names.
 
     Args:
@@ -35,9 +36,10 @@ def with_choices(basis: str, run: Run, contact: Contact) -> dict[str, Run | Cont
         run: stays as it is, as another case may have it too, and is returned if it has all of
             `transfer`, `scheme` and `cfl`.
         contact: likewise, with its `response`.
+        flows: whether a body has no shape of its own: a gas, a liquid, an explosive.
     """
     run = _run(run, basis)
-    return {"run": run, "contact": _contact(contact, run)}
+    return {"run": run, "contact": _contact(contact, run, flows)}
 
 
 def _run(run: Run, basis: str) -> Run:
@@ -50,14 +52,15 @@ def _run(run: Run, basis: str) -> Run:
     return _with(run, chosen | {key: value for key, value in more.items() if key not in given})
 
 
-def _contact(contact: Contact, run: Run) -> Contact:
+def _contact(contact: Contact, run: Run, flows: bool) -> Contact:
     if "response" in contact.model_fields_set:
         return contact
     # What springs do not go with has been asked for by name.
     planes = contact.normal == "plane" and contact.normal_refresh_distance == 0.0
     fits = planes and contact.detection == "gap"
     affine = _core.transfers[run.transfer.word]["affine"]
-    return _with(contact, {"response": RESPONSE if fits and affine else OTHER_RESPONSE})
+    chosen = FLOWING_RESPONSE if flows else RESPONSE
+    return _with(contact, {"response": chosen if fits and affine else OTHER_RESPONSE})
 
 
 def _with(table: _Table, chosen: dict[str, Any]) -> _Table:

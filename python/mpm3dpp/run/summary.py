@@ -222,6 +222,14 @@ def _body_lines(case: Case, bodies: Filled, per_metre: str) -> list[str]:
     return lines
 
 
+def _response(case: Case) -> str:
+    """Return how bodies in contact part, with the names of those that flow where that decides."""
+    if case.contact.response != "by_matter":
+        return case.contact.response
+    flowing = ", ".join(f'"{name}"' for name in case.parts() if case.flows(name))
+    return f"springs, but impulses at {flowing}" if flowing else "springs"
+
+
 def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
     """Return what the case amounts to: bodies, materials, memory, cells, time step, steps."""
     per_metre = " per metre" if case.grid.dimension == 2 else ""
@@ -234,7 +242,7 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
     bounds = " x ".join(str(n) for n in box) + " cells" if box else "no bounds"
     contact = "none, the bodies are bonded" if case.contact.bonded else "none"
     if case.contact_enabled:
-        contact = f"{case.contact.detection} detection, {case.contact.response}"
+        contact = f"{case.contact.detection} detection, {_response(case)}"
         contact += f", friction {case.contact.friction:g}"
     lines += [
         f"total: {particles:,} particles, mass {mass:.6g} kg{per_metre}, "

@@ -52,7 +52,9 @@ struct Blocks {
     connect_tiles(domain.contact, domain.grid, domain.bodies, Response::springs);
   }
   void find() {
-    find_touches(domain.contact, domain.grid, domain.bodies, domain.pools, 0.0, domain.threads);
+    domain.contact_settings.response = Response::springs;
+    find_touches(domain.contact, domain.grid, domain.bodies, domain.pools, domain.contact_settings,
+                 domain.threads);
   }
   std::vector<Touch<D>> all() const {
     std::vector<Touch<D>> touches;

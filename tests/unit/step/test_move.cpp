@@ -51,11 +51,14 @@ struct OneCell {
   double middle(int a) const { return grid.origin[a] + h * -2.5; }
   /// Does any leave when all go so far [cells]?
   bool leaves(const Vec<double, D>& way) {
-    Moving<D> moving(grid, pool, dt);
+    Moving<Batch<4>, D> moving(grid, pool, dt);
     for_each_group<4>(cell, [&](const auto& group) {
       moving.move(cell, group, OneVelocity<D>{(h / dt) * way}, nullptr);
     });
-    return moving.left_cell();
+    Patch<D> patch;
+    PatchSums<D> sums;
+    moving.write(patch, sums);
+    return patch.left_cell;
   }
 };
 

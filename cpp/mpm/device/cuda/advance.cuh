@@ -23,6 +23,17 @@ struct ParticleStep {
   std::size_t patches;
 };
 
+/// What the affine parts of a patch's particles have lost as they were carried along: the sum of
+/// what carry_affine() has returned to the threads.
+template <int threads, int D>
+__device__ void write_carried(const ParticleStep<D>& step, std::size_t patch, double carried,
+                              double* scratch) {
+  carried = block_sum<threads>(carried, scratch);
+  if (threadIdx.x == 0)
+    step.sums[(DeviceSum::carried - DeviceSum::of_nodes) * step.patches + patch] =
+        0.5 * step.affine_moment * carried;
+}
+
 /// What is done beside eq. (17) while the particles are at hand.
 enum class DeviceAlso { nothing, remap, move };
 
@@ -65,7 +76,7 @@ __global__ void __launch_bounds__(advance_threads<also>, also != DeviceAlso::rem
   constexpr bool reads_velocity = Transfer::takes_grid_velocity || also == DeviceAlso::move;
   shared.nodes.load(nodes, lists.nodes_beside + patch * Tile<D>::neighbours, reads_velocity, true);
 
-  double kinetic = 0.0, second_order = 0.0, transferred = 0.0;
+  double kinetic = 0.0, second_order = 0.0, transferred = 0.0, carried = 0.0;
   Vec<double, D> momentum = Vec<double, D>::zero();
   bool changed = false;
   const NodeStrides<D> stride(Block<B, D>::edge,
@@ -125,6 +136,8 @@ __global__ void __launch_bounds__(advance_threads<also>, also != DeviceAlso::rem
     }
     kinetic = fma(m, speed2, kinetic);
     second_order = fma(m, change2, second_order);
+    if constexpr (also == DeviceAlso::move && Transfer::affine)
+      carried += carry_affine(of, row, step.time_step);
     if constexpr (also == DeviceAlso::move)
       changed |= move_particle(
           step.grid, step.coordinates, lists, of, patch, g, row, at,
@@ -138,6 +151,8 @@ __global__ void __launch_bounds__(advance_threads<also>, also != DeviceAlso::rem
   write(DeviceSum::kinetic, 0.5 * kinetic);
   write(DeviceSum::second_order, 0.5 * second_order);
   if constexpr (Transfer::takes_grid_velocity) write(DeviceSum::transferred, 0.5 * transferred);
+  if constexpr (also == DeviceAlso::move && Transfer::affine)
+    write_carried<threads>(step, patch, carried, scratch);
   for (int a = 0; a < D; ++a) write(DeviceSum::momentum + a, momentum[a]);
   // All have read the nodes, and all have written their velocities.
   if (__syncthreads_or(changed) && threadIdx.x == 0) *step.moves.changed = 1;
@@ -159,6 +174,8 @@ __global__ void __launch_bounds__(move_threads)
   const NodeStrides<D> stride(Block<B, D>::edge,
                               D == 3 ? Block<B, D>::edge * Block<B, D>::edge : 0);
   const B basis(body.edge);
+  __shared__ double scratch[move_threads / 32];
+  double carried = 0.0;
   bool changed = false;
   const std::uint32_t end = lists.cell_begin[(patch + 1) * Tile<D>::cell_count];
   for (std::uint32_t g = lists.cell_begin[patch * Tile<D>::cell_count] + threadIdx.x; g < end;
@@ -167,9 +184,11 @@ __global__ void __launch_bounds__(move_threads)
     const InCell<D> at(step.coordinates, first_cell, of, row);
     const DeviceField<B, D> field(shared.from(at.in_tile), stride);
     const Vec<double, D> v = field.template vector<velocity_at>(weights_at(basis, at.xi));
+    if (of.affine[0] != nullptr) carried += carry_affine(of, row, step.time_step);
     changed |= move_particle(step.grid, step.coordinates, lists, of, patch, g, row, at, v,
                              step.time_step, step.moves);
   }
+  write_carried<move_threads>(step, patch, carried, scratch);
   if (__syncthreads_or(changed) && threadIdx.x == 0) *step.moves.changed = 1;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // From the nodes of a patch, in the memory of a block of threads, to its particles: a thread a
 // particle, with the bits of the host's fields (schedule/multilinear_field.hpp, nodal_field.hpp).
+#include "mpm/step/transfer/apic.hpp"
 #include "mpm/basis/basis.hpp"
 #include "mpm/device/cuda/views.cuh"
 #include "mpm/schedule/nodal_field.hpp"
@@ -155,6 +156,17 @@ __device__ bool find_target(const GridGeometry<D>& grid, const CellCoordinates<D
   moves.target[entry] = target;
   moves.slot[entry] = atomicAdd(moves.counts + target, 1u);
   return left;
+}
+
+/// The affine part as it is carried along: the expression of Moving on the host. Returns the kinetic
+/// energy over half of D that it loses.
+template <int D>
+__device__ double carry_affine(const ParticleView<D>& of, std::uint32_t row, double time_step) {
+  Mat<double, D> C;
+  for (int k = 0; k < D * D; ++k) C[k / D][k % D] = of.affine[k][row];
+  const Mat<double, D> now = carried_along(C, time_step);
+  for (int k = 0; k < D * D; ++k) of.affine[k][row] = now[k / D][k % D];
+  return of.mass[row] * square_difference(C, now);
 }
 
 /// Eq. (16), and the list that the particle belongs to from now on: the expression of Moving on the

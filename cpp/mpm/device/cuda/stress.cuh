@@ -83,6 +83,7 @@ __global__ void __launch_bounds__(stress_threads, MPM_STRESS_BLOCKS)
   material.judged = !std::is_same_v<Failures, NoFailures>;
   StressSums sums;
   bool changed = false;
+  double carried = 0.0;
   const std::uint32_t begin = lists.cell_begin[patch * Tile<D>::cell_count],
                       end = lists.cell_begin[(patch + 1) * Tile<D>::cell_count];
   for (std::uint32_t g = begin + threadIdx.x; g < end; g += stress_threads) {
@@ -102,6 +103,8 @@ __global__ void __launch_bounds__(stress_threads, MPM_STRESS_BLOCKS)
     for (int i = 0; i < D; ++i)
       for (int j = 0; j < D; ++j)
         block.gradient[i][j][0] = step.gradient_scale * asked.gradients[i][j];
+    if (!step.first && of.affine[0] != nullptr)
+      carried += carry_affine(of, row, step.all.time_step);
     if (!step.first)
       changed |= move_particle(step.all.grid, step.all.coordinates, lists, of, patch, g, row, at,
                                asked.velocity, step.all.time_step, step.all.moves);
@@ -122,6 +125,7 @@ __global__ void __launch_bounds__(stress_threads, MPM_STRESS_BLOCKS)
     write(DeviceSum::energy_floor, sums.energy_floor);
   }
   write(DeviceSum::force_power, step.power_scale * sums.force_power);
+  if (!step.first) write_carried<stress_threads>(step.all, patch, carried, scratch);
   const double fastest = block_max<stress_threads>(sums.fastest, scratch);
   if (threadIdx.x == 0) step.fastest[patch] = fastest;
   if (__syncthreads_or(sums.negative_volume) && threadIdx.x == 0) *step.negative = 1;

@@ -18,6 +18,7 @@ struct DruckerPrager : ElasticPlastic<DruckerPrager> {
   static constexpr std::string_view source =
       "Drucker & Prager 1952; the corner of shear and tension by Koiter 1953";
   static constexpr EosUse eos = EosUse::never;
+  static constexpr bool breaks_up = true;
 
   double E{}, nu{}, q_phi{}, k_phi{}, q_psi{}, tension{};
   double K{}, limit{};  // limit: of the mean stress in tension

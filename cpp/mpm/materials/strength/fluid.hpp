@@ -12,6 +12,7 @@ struct Fluid {
       "fluid with Newton's viscosity, or none; its pressure comes from an equation of state";
   static constexpr std::string_view source = "Batchelor 1967, eq. 3.3.11";
   static constexpr EosUse eos = EosUse::must;
+  static constexpr bool flows = true;
 
   double viscosity{}, density{};
 

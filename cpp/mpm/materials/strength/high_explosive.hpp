@@ -17,6 +17,7 @@ struct HighExplosive {
   static constexpr std::string_view source =
       "Wilkins 1964; Hallquist 2006 (LS-DYNA theory manual), sec. 19.8";
   static constexpr EosUse eos = EosUse::must;
+  static constexpr bool flows = true;
   static constexpr double width = 1.5;   // of the front [cells]
   static constexpr double never = 1e30;  // [s]
 

@@ -19,6 +19,7 @@ struct MohrCoulomb : ElasticPlastic<MohrCoulomb> {
   static constexpr std::string_view source =
       "Coulomb 1773; return by regions after Clausen, Damkilde & Andersen 2006";
   static constexpr EosUse eos = EosUse::never;
+  static constexpr bool breaks_up = true;
   // Ten roundings of the principal stresses, there and back, and the return's; and where stresses
   // vanish half a rounding of E, of which the elastic step has made them.
   static constexpr double rounding_of_stress = 1e-14, rounding_of_modulus = 1e-16;

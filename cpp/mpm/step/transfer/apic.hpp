@@ -1,4 +1,6 @@
 #pragma once
+#include "mpm/math/tensor.hpp"
+#include "mpm/math/unrolled.hpp"
 #include "mpm/step/transfer/flip.hpp"
 
 namespace mpm {
@@ -28,5 +30,38 @@ struct Apic : Flip {
     return of_grid;
   }
 };
+
+/// C_p when the particle has moved: C' = C - dt/2 (C C + (C C)^T). The field of velocities that C_p
+/// describes goes with its matter: with F = 1 + dt C its gradient becomes C F^-1 = C - dt C C, of
+/// which the symmetric part is taken, so that the angular momentum m_p D ax C_p stays. Without it
+/// what turns or expands keeps a C_p of the place where it was.
+template <class T, int D>
+MPM_HD MPM_INLINE inline Mat<T, D> carried_along(const Mat<T, D>& C, T dt) {
+  Mat<T, D> now = C;
+  const T half = T(-0.5) * dt;
+  unrolled<D>([&](auto a) MPM_INLINE {
+    unrolled<D>([&](auto b) MPM_INLINE {
+      if constexpr (a <= b) {
+        T both(0.0);
+        unrolled<D>([&](auto c)
+                        MPM_INLINE { both = fma(C[a][c], C[c][b], fma(C[b][c], C[c][a], both)); });
+        now[a][b] = fma(half, both, C[a][b]);
+        if constexpr (a != b) now[b][a] = fma(half, both, C[b][a]);
+      }
+    });
+  });
+  return now;
+}
+
+/// C : C - C' : C'; m_p D / 2 times that is the kinetic energy which C_p loses as it becomes C'.
+template <class T, int D>
+MPM_HD MPM_INLINE inline T square_difference(const Mat<T, D>& before, const Mat<T, D>& after) {
+  T difference(0.0);
+  unrolled<D * D>([&](auto k) MPM_INLINE {
+    const T b = before[k / D][k % D], a = after[k / D][k % D];
+    difference = fma(b - a, b + a, difference);
+  });
+  return difference;
+}
 
 }  // namespace mpm
