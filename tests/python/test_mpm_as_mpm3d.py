@@ -11,10 +11,13 @@ import numpy as np
 import pytest
 
 from commands import mpm3dpp
-from mpm3dpp import CaseError
+from mpm3dpp import CaseError, Simulation, load_case
+from mpm3dpp.base.time_functions import at
 from mpm3dpp.fill.build import build
 from mpm3dpp.importers import import_file
-from mpm3dpp.importers.mpm3d.statements import REFUSED, STATEMENTS
+from mpm3dpp.importers.mpm3d.lexer import split
+from mpm3dpp.importers.mpm3d.particles import points_of
+from mpm3dpp.importers.mpm3d.statements import REFUSED, STATEMENTS, read_deck
 from mpm3dpp.importers.write import write_case
 from mpm_text import GOOD, MATE, PART, TWO, edited, of, with_part
 
@@ -68,15 +71,15 @@ def test_forces_on_all_particles_of_a_body_are_gravity() -> None:
 
 def test_all_mistakes_come_at_once_by_their_lines() -> None:
     wrong = edited(
-        ("endi\n", "bimp\nload part 1 0 0 1\n part 2 0 0 1\n endl\nQuLo 1\nDamp 0.1\n"
-         "velo vsin 1 node 1 0 0 1 endv\nnumthread 2\nsgmp\ndcell E70\nendi\n"),
+        ("endi\n", "bimp\nload node 1 0 0 1\n node 2 0 0 1\n endl\nQuLo 0\nDamp -1\n"
+         "velo ksin 1 1 node 1 0 0 1 endv\nnumthread 2\nsgmp\ndcell E70\nendi\n"),
         ("fixed 0 0 0 0 2 1", "fixed 0 0 0 0 2 3"),
     )  # fmt: skip
     with pytest.raises(CaseError) as caught:
         of(wrong)
     lines = [error.sentence() for error in (caught.value, *caught.value.others)]
-    parts = ["17: fixed has (0, 0, 0, 0, 2, 3)", "25: bimp asks", '26: load has "part"',
-             "29: QuLo asks", "30: Damp asks", '31: velo has "vsin"', '31: velo has "node"',
+    parts = ["17: fixed has (0, 0, 0, 0, 2, 3)", "25: bimp asks", '26: load has "node"',
+             "29: QuLo is 0", "30: Damp is -1", '31: velo has "ksin"', '31: velo has "node"',
              "32: numthread is not", "33: sgmp asks", '34: dcell has "E70"']  # fmt: skip
     assert [part in line for part, line in zip(parts, lines, strict=False)] == [True] * 10
     assert "(and so 1 times more)" in lines[2]
@@ -154,13 +157,13 @@ def test_force_does_not_destroy_the_source(tmp_path: Path) -> None:
 
 
 def test_several_problems_on_the_command_line(tmp_path: Path) -> None:
-    (tmp_path / "x.mpm").write_text(GOOD.replace("endi\n", "bimp\nQuLo 2\nendi\n"))
+    (tmp_path / "x.mpm").write_text(GOOD.replace("endi\n", "bimp\ndrda\nendi\n"))
     for words in (("check", "x.mpm"), ("import", "x.mpm"), ("run", "x.mpm")):
         done = mpm3dpp(*words, cwd=tmp_path)
         assert done.returncode == 2
         lines = done.stderr.splitlines()
         assert lines[0].startswith("mpm3dpp: error: x.mpm:25: bimp asks for")
-        assert lines[1].startswith("mpm3dpp: error: x.mpm:26: QuLo asks for")
+        assert lines[1].startswith("mpm3dpp: error: x.mpm:26: drda asks for")
         assert lines[2] == "mpm3dpp: 2 mistakes"
     assert not (tmp_path / "x.toml").exists()
 
@@ -178,3 +181,76 @@ def test_the_page_names_every_keyword() -> None:
     words = {*STATEMENTS, *REFUSED, "endi"}
     assert len(words) == 43
     assert {word for word in words if not re.search(rf"\b{word}\b", first)} == set()
+
+
+WAVE = "velo body 1 0 2 0 vsin 3 endv\n"
+
+
+def test_a_wave_of_velocities_is_a_formula_of_place() -> None:
+    """`velo vsin v0` is vx = v0 sin(pi y / 6), the 6 in the file's unit of length: here mm."""
+    found = of(edited(("velo\n body 1 0.0 0.0 -100.0\nendv\n", WAVE)))
+    [body] = build(found.case)
+    y = body.positions[:, 1]
+    assert np.allclose(body.velocities[:, 0], 3.0 * np.sin(np.pi * y / 6e-3), rtol=1e-12, atol=0)
+    assert np.all(body.velocities[:, 1:] == [2.0, 0.0])
+    later = of(edited(("velo\n body 1 0.0 0.0 -100.0\nendv\n", "velo vsin 3 body 1 1 0 0 endv\n")))
+    assert later.case.body["body_1"].velocity == (1.0, 0.0, 0.0)
+    both = with_part(TWO[0], TWO[1].format(1), more=(("velo\n", "velo vsin 3\n"),))
+    assert [float(np.ptp(b.velocities[:, 0])) > 0.0 for b in build(both.case)] == [False, True]
+
+
+def test_damping_of_motions_is_that_of_every_body() -> None:
+    """A body at 100 m/s with `Damp 5`, of 5 / ms, has exp(-5000 t) of it left."""
+    text = edited(("endi\n", "Damp 5\nendi\n"), ("fixed 0 0 0 0 2 1", "fixed 0 0 0 0 0 0"))
+    case = of(text.replace("endtime 1.0d-3", "endtime 0.1").replace("outtime 2.0d-4", "")).case
+    sim = Simulation(case, threads=1)
+    sim.advance(10**6, end_time=1e-4)
+    # The velocity in the middle of the step: (1 - a dt / 2) / (1 + a dt / 2), of second order.
+    speed = sim.column("body_1", "velocity")[:, 2]
+    assert np.allclose(speed, -100.0 * np.exp(-5e3 * 1e-4), rtol=1e-4, atol=0)
+    two = with_part(TWO[0], TWO[1].format(1), more=(("endi\n", "Damp 5\nendi\n"),)).case
+    assert [two.body[name].damping.mass for name in two.body] == [5e3, 5e3]
+
+
+STILL = ("velo\n body 1 0.0 0.0 -100.0\nendv\n", "")
+FREE = ("fixed 0 0 0 0 2 1", "fixed 0 0 0 0 0 0")
+
+
+@pytest.mark.parametrize("rise", ["", "QuLo 0.02\n"])
+def test_forces_on_single_particles_push_their_body(rise: str) -> None:
+    """p = F t; with QuLo F t / T from 0 to T, and F from there. F = 3 and -1 mN."""
+    load = "load part 22 0 0 3.0d-3 part 43 0 0 -1.0d-3 endl\n"
+    text = edited(STILL, FREE, ("endi\n", load + rise + "endi\n"))
+    text = text.replace("endtime 1.0d-3", "endtime 0.04").replace("outtime 2.0d-4", "")
+    found = of(text)
+    points = points_of(read_deck(split(text)).parts[0])
+    for number in (22, 43):
+        assert found.case.load[f"particle_{number}"].point == tuple(1e-3 * points[number - 1])
+    sim = Simulation(found.case, threads=1)
+    sim.advance(10**6, end_time=4e-5)
+    end = dict(zip(sim.core.history_columns, sim.core.history()[-1], strict=True))
+    impulse = 2e-3 * (3e-5 if rise else 4e-5)
+    assert end["momentum_z"] == pytest.approx(impulse, rel=1e-9)
+    assert any("MPM3D-F90 goes on from there" in note for note in found.notes) == bool(rise)
+
+
+def test_a_rising_force_on_all_particles_is_a_rising_gravity() -> None:
+    """`load body` rises with QuLo, `load grav` does not."""
+    mass = 7.8e-3 * 0.5**3
+    load = f"load body 1 0 0 {-2 * mass:.12e} grav 1 1 0 4 endl\nQuLo 0.02\n"
+    case = of(edited(("endi\n", load + "endi\n"))).case
+    x, y, z = case.run.gravity
+    assert (x, y) == (1e3, 0.0)
+    assert [at(z, t) for t in (0.0, 1e-5, 2e-5, 1.0)] == pytest.approx([4e3, 3e3, 2e3, 2e3])
+
+
+def test_what_is_carried_over_comes_back_from_the_case_file(tmp_path: Path) -> None:
+    load = "load part 22 0 0 3.0d-3 endl\nQuLo 0.02\nDamp 5\n"
+    text = edited((STILL[0], WAVE), FREE, ("endi\n", load + "endi\n"))
+    (tmp_path / "a.mpm").write_text(text)
+    found = import_file(tmp_path / "a.mpm")
+    write_case(found, tmp_path / "a.toml")
+    again = load_case(tmp_path / "a.toml")
+    one, other = (build(case)[0] for case in (found.case, again))
+    assert np.array_equal(one.velocities, other.velocities)
+    assert again.load == found.case.load and again.body["body_1"].damping.mass == 5e3

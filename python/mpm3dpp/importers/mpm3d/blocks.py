@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The statements with an inner grammar: material, seos, part, load, velo."""
+"""The statements with an inner grammar about materials and bodies: material, seos, part."""
 
 from __future__ import annotations
 
@@ -129,71 +129,3 @@ def _points(reader: Reader, deck: Deck, line: int) -> Part:
     return Part(
         "point", component, int(materials[-1]), line, masses=table[:, 2], points=table[:, 3:]
     )
-
-
-def load(reader: Reader, deck: Deck) -> None:
-    """Read loads until `endl`; forces on single particles cannot be honoured."""
-    while True:
-        word = reader.word("endl")
-        line = reader.line
-        if word.key == "endl":
-            return
-        if word.key == "grav":
-            body = _body(reader, deck)
-            deck.gravity[body] = (reader.numbers("gx", "gy", "gz"), line)
-        elif word.key == "body":
-            body = _body(reader, deck)
-            deck.force[body] = (reader.numbers("fx", "fy", "fz"), line)
-        elif word.key == "part":
-            reader.integer("the number of a particle")
-            if any(reader.numbers("fx", "fy", "fz")) or deck.force:
-                rule = f'has "{word.text}": forces on single particles cannot be honoured'
-                remedy = "of the loads grav can be, and body where all particles have one mass"
-                deck.refuse(reader.keyword, rule, remedy, line)
-        elif word.key == "node":
-            while reader.number_follows():
-                reader.number("a force")
-            rule = f'has "{word.text}": at this load MPM3D-F90 itself stops'
-            deck.refuse(reader.keyword, rule, "it is called part now", line)
-        else:
-            rule = f'has the unknown load "{word.text}"'
-            raise reader.error(rule, "the loads are grav, body and part; endl ends them")
-
-
-# Initial velocities that cannot be honoured: what they are, and the numbers that follow.
-_VELOCITIES = {
-    "node": ("velocities of single particles", ("its particle", "vx", "vy", "vz")),
-    "vsin": ("this velocity field", ("v0",)),
-    "ksin": ("this velocity field", ("v0", "its body")),
-    "nuli": ("this velocity field", ("its amplitude",)),
-}
-
-
-def velocity(reader: Reader, deck: Deck) -> None:
-    """Read initial velocities until `endv`; those of whole bodies can be honoured."""
-    while True:
-        word = reader.word("endv")
-        line = reader.line
-        if word.key == "endv":
-            return
-        if word.key == "body":
-            body = _body(reader, deck)
-            deck.velocity[body] = (reader.numbers("vx", "vy", "vz"), line)
-        elif word.key in _VELOCITIES:
-            what, numbers = _VELOCITIES[word.key]
-            reader.numbers(*numbers)
-            rule = f'has "{word.text}": {what} cannot be honoured'
-            remedy = "use body, or leave it out and call Simulation.set_velocity in Python"
-            deck.refuse(reader.keyword, rule, remedy, line)
-        else:
-            rule = f'has the unknown velocity "{word.text}"'
-            raise reader.error(rule, "the velocities are body, node, vsin; endv ends them")
-
-
-def _body(reader: Reader, deck: Deck) -> int:
-    number = reader.integer("the number of a body")
-    if not 1 <= number <= max(deck.bodies, 1):
-        rule = f"names body {number} but nbbo is {deck.bodies}"
-        remedy = "bodies are numbered from 1 in the order of the part statements"
-        deck.refuse(reader.keyword, rule, remedy, reader.line)
-    return number

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -51,6 +52,13 @@ class Part:
     points: Array | None = None
 
 
+@dataclass(frozen=True)
+class Wave:
+    """The x component of `velo vsin`, v0 sin(pi y / 6), with the 6 in the file's unit of length."""
+
+    v0: float
+
+
 @dataclass
 class Deck:
     """The statements of a file, each with its default.
@@ -73,6 +81,8 @@ class Deck:
         detonations: points, with their lines.
         parts: the bodies, in their order.
         gravity, force, velocity: by number of the body, with the line; force on each particle.
+        particle_force: by number of the particle, with the line.
+        damping, rise: Damp and QuLo; 0 without.
         variables: of outr, curv and curx, with their lines.
     """
 
@@ -100,7 +110,10 @@ class Deck:
     parts: list[Part] = field(default_factory=list)
     gravity: dict[int, tuple[list[float], int]] = field(default_factory=dict)
     force: dict[int, tuple[list[float], int]] = field(default_factory=dict)
-    velocity: dict[int, tuple[list[float], int]] = field(default_factory=dict)
+    velocity: dict[int, tuple[Sequence[float | Wave], int]] = field(default_factory=dict)
+    particle_force: dict[int, tuple[list[float], int]] = field(default_factory=dict)
+    damping: float = 0.0
+    rise: float = 0.0
     variables: list[tuple[str, int]] = field(default_factory=list)
 
     def error(self, keyword: str, rule: str, remedy: str = "", line: int | None = None) -> Any:

@@ -8,25 +8,18 @@ from collections.abc import Callable
 
 from mpm3dpp.base.errors import CaseError
 
-from . import blocks
+from . import acting, blocks
 from .deck import Deck
 from .lexer import Reader, Source
 
 Statement = Callable[[Reader, Deck], None]
 
-# Keywords that change the physics in ways that a case cannot: how many numbers follow, why, and
-# what to do.
+# Keywords that change the physics in ways that a case cannot: why, and what to do.
 REFUSED = {
-    "bimp": (0, "quadratic B-spline shape functions", "use gimp or the linear basis"),
-    "sgmp": (0, "the staggered-grid method", "leave it out for the standard method"),
-    "tlmp": (0, "the total Lagrangian method", "leave it out for the standard method"),
-    "qulo": (
-        1,
-        "loads that rise with time, and a run that goes on until it is at rest",
-        "leave it out",
-    ),
-    "damp": (1, "a force against the velocity", "leave it out"),
-    "drda": (0, "kinetic damping", "leave it out"),
+    "bimp": ("quadratic B-spline shape functions", "use gimp or the linear basis"),
+    "sgmp": ("the staggered-grid method", "leave it out for the standard method"),
+    "tlmp": ("the total Lagrangian method", "leave it out for the standard method"),
+    "drda": ("kinetic damping", "leave it out"),
 }
 # Keywords about output that have another counterpart or none.
 OUTPUT = {
@@ -89,13 +82,9 @@ def _statement(reader: Reader, deck: Deck, before: str) -> str:
 
 
 def _refuse(reader: Reader, deck: Deck, key: str) -> None:
-    keyword, line = reader.keyword, reader.line
-    count, what, remedy = REFUSED[key]
-    numbers = [reader.number("its factor") for _ in range(count)]
-    if key == "damp" and not any(numbers):
-        deck.note("Damp 0 has no effect")
-        return
-    deck.refuse(keyword, f"asks for {what}, which cannot be honoured", remedy, line)
+    what, remedy = REFUSED[key]
+    rule = f"asks for {what}, which cannot be honoured"
+    deck.refuse(reader.keyword, rule, remedy, reader.line)
 
 
 def _go_on(reader: Reader) -> None:
@@ -287,8 +276,10 @@ STATEMENTS: dict[str, Statement] = {
     "seos": blocks.equation_of_state,
     "deto": _points_of_detonation,
     "part": blocks.part,
-    "load": blocks.load,
-    "velo": blocks.velocity,
+    "load": acting.load,
+    "velo": acting.velocity,
+    "damp": acting.damping,
+    "qulo": acting.rise,
     "tecp": _noted("tecp"),
     "para": _noted("para"),
     "smoo": _noted("smoo"),

@@ -11,11 +11,12 @@ from mpm3dpp.importers.imported import Imported, Lines
 
 from .box import Bounds, bounds_of, grid_table
 from .contact import contact_table, joined
-from .deck import Deck
+from .deck import Deck, Wave
 from .lexer import Source, read_source
+from .loads import gravity_vector, load_tables
 from .materials import material_name, material_tables
 from .output import fields_of
-from .particles import body_table, check_counts, one_part, particle_mass
+from .particles import body_table, check_counts, one_part
 from .statements import read_deck
 from .units import UnitSystem, choose
 
@@ -74,7 +75,10 @@ def _tables(deck: Deck, units: UnitSystem) -> tuple[dict[str, Any], Lines] | Non
         return None
     fields = caught(fields_of, deck, materials)
     bodies = None if groups is None else _bodies(deck, groups, bounds, units)
+    loads = None if groups is None else caught(load_tables, deck, groups, bounds, units)
     if grid is None or run is None or contact is None or fields is None or bodies is None:
+        return None
+    if loads is None:
         return None
     output: dict[str, Any] = {"interval": units.si(deck.interval, "time")}
     tables: dict[str, Any] = {"title": deck.title, "grid": grid, "run": run}
@@ -84,7 +88,10 @@ def _tables(deck: Deck, units: UnitSystem) -> tuple[dict[str, Any], Lines] | Non
     for point, _ in deck.detonations:
         place = [units.si(x, "length") for x in point]
         tables.setdefault("detonation", []).append({"point": place})
-    return tables, _lines(deck, materials)
+    if loads[0]:
+        tables["load"] = loads[0]
+    lines = _lines(deck, materials)
+    return tables, lines | {("load", name): line for name, line in loads[1].items()}
 
 
 def _bodies(
@@ -100,8 +107,18 @@ def _bodies(
         body = found[f"body_{number + 1}"] = {"material": material_name(deck, part.material)}
         body |= table
         if number + 1 in deck.velocity:
-            body["velocity"] = [units.si(v, "velocity") for v in deck.velocity[number + 1][0]]
+            body["velocity"] = [_speed(v, units) for v in deck.velocity[number + 1][0]]
+        if deck.damping:
+            body["damping"] = {"mass": units.si(deck.damping, "rate")}
     return found if len(found) == len(groups) else None
+
+
+def _speed(value: float | Wave, units: UnitSystem) -> Any:
+    """Return a component of a velocity in SI units; that of `vsin` as a formula of place."""
+    if not isinstance(value, Wave):
+        return units.si(value, "velocity")
+    v0, half = units.si(value.v0, "velocity"), units.si(6.0, "length")
+    return {"expression": f"{v0!r} * sin(pi * y / {half!r})"}
 
 
 def _lines(deck: Deck, materials: dict[str, dict[str, Any]]) -> Lines:
@@ -150,9 +167,10 @@ def _run(deck: Deck, units: UnitSystem) -> dict[str, Any]:
     quadratic, linear = deck.bulk
     if quadratic or linear:
         table["viscosity"] = {"quadratic": quadratic, "linear": linear}
-    gravity = _gravity(deck)
-    if any(gravity):
-        table["gravity"] = [units.si(g, "acceleration") for g in gravity]
+    if gravity := gravity_vector(deck, units):
+        table["gravity"] = gravity
+    if deck.rise and not any(deck.force) and not any(deck.particle_force):
+        deck.note("QuLo: no force on particles is there to rise, and gravity does not, there too")
     return table
 
 
@@ -164,38 +182,6 @@ def _scheme(deck: Deck) -> str:
         rule = f"has several schemes on: {', '.join(asked)}"
         raise deck.error(asked[-1], rule, "keep one; MPM3D-F90 would mix them")
     return asked[0]
-
-
-def _gravity(deck: Deck) -> list[float]:
-    """Return the acceleration that acts on all bodies: gravity, and a force on each particle over
-    its mass."""
-    if not deck.gravity and not deck.force:
-        return [0.0, 0.0, 0.0]
-    values = [_acceleration(deck, number) for number in range(1, len(deck.parts) + 1)]
-    apart = [abs(x - y) for g in values for x, y in zip(g, values[0], strict=True)]
-    if max(apart, default=0.0) > 1e-12 * max(abs(x) for g in values for x in g or [0.0]):
-        what = "different loads" if deck.force else "different gravity"
-        rule = f"gives the bodies {what} (those not named have none)"
-        line = min(line for _, line in [*deck.gravity.values(), *deck.force.values()])
-        raise deck.error("load", rule, "give every body the same acceleration", line)
-    return values[0]
-
-
-def _acceleration(deck: Deck, number: int) -> list[float]:
-    """Return what acts on the particles of a body per mass, in units of the file."""
-    gravity = deck.gravity.get(number, ([0.0] * 3, 0))[0]
-    force, line = deck.force.get(number, ([0.0] * 3, 0))
-    if not any(force):
-        return gravity
-    mass = particle_mass(deck.parts[number - 1])
-    if mass is None:
-        rule = f"gives all particles of body {number} one force, but they have different masses"
-        raise deck.error("load", rule, "use grav, an acceleration", line)
-    deck.note(
-        f"line {line}: the force on every particle of body {number} is gravity here, the force "
-        f"over a particle's mass of {mass:g}"
-    )
-    return [g + f / mass for g, f in zip(gravity, force, strict=True)]
 
 
 def _check_bodies(deck: Deck) -> bool:

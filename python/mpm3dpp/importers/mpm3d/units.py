@@ -48,6 +48,7 @@ class UnitSystem:
             "stress": m / (length * t**2),
             "viscosity": m / (length * t),
             "rate": 1 / t,
+            "force": m * length / t**2,
             "specific heat": length**2 / t**2,
         }[kind]
 
