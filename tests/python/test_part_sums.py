@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from cases import CELL, block, materials, three_blocks
-from mpm3dpp import Case, Grid, Run, Simulation, load_case, run_case
+from mpm3dpp import Case, Grid, Run, Simulation, load_case, open_results, run_case
 from mpm3dpp.io.history import read_history
 from mpm3dpp.io.part_cells import PART_COLUMNS
 
@@ -195,3 +195,85 @@ def test_a_gas_has_its_energy_from_the_start(tmp_path: Path) -> None:
     rows = [dict(zip(PART_COLUMNS, row, strict=True)) for row in sim.core.part_sums()[1]]
     whole = sim.core.history()[0][sim.core.history_columns.index("internal")]
     assert sum(row["internal"] for row in rows) == pytest.approx(whole, rel=1e-14) and whole > 0.0
+
+
+SPINS = """
+[grid]
+dimension = {dimension}
+cell_size = "5 mm"
+[run]
+end_time = "0.4 ms"
+[output]
+frames = 2
+[material.s]
+density = 1000
+strength = {{ rigid = {{}} }}
+[material.e]
+density = 1000
+strength = {{ elastic = {{ E = "100 MPa", nu = 0.3 }} }}
+[body.rigid]
+material = "s"
+shape = {shape[0]}
+angular_velocity = {spin}
+[body.soft]
+material = "e"
+shape = {shape[1]}
+angular_velocity = {spin}
+[body.driven]
+material = "s"
+shape = {shape[2]}
+motion = {{ angular_velocity = {spin} }}
+[body.driven_soft]
+material = "e"
+shape = {shape[3]}
+motion = {{ angular_velocity = {spin} }}
+[grains.hard]
+material = "s"
+lattice = {{ lower = {lower[4]}, count = {one}, radius = "20 mm" }}
+angular_velocity = {spin}
+[grains.g]
+material = "e"
+lattice = {{ lower = {lower[5]}, count = {one}, radius = "20 mm" }}
+angular_velocity = {spin}
+"""
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_spins_are_told_as_given(dimension: int, tmp_path: Path) -> None:
+    """Of what deforms, is rigid or driven, one by one and in the history, also of a run that went
+    on. Only bodies that deform have an affine part; in their material others have room for it."""
+    kind = "disc" if dimension == 2 else "sphere"
+    corners = [[0.1 * k] + [0.0] * (dimension - 1) for k in range(6)]
+    shapes = [f'{{ {kind} = {{ centre = {c}, radius = "20 mm" }} }}' for c in corners]
+    spin = 100.0 if dimension == 2 else [60.0, 0.0, 80.0]
+    lower = [[x - 0.02 for x in c] for c in corners]
+    one = [1] * dimension
+    text = SPINS.format(dimension=dimension, shape=shapes, spin=spin, lower=lower, one=one)
+    case = Case.from_text(text)
+    given = np.array([0.0, 0.0, 100.0] if dimension == 2 else spin)
+
+    def check(sim: Simulation) -> None:
+        rows = [dict(zip(PART_COLUMNS, row, strict=True)) for row in sim.core.part_sums()[1]]
+        found = [[row[f"spin_{a}"] for a in "xyz"] for row in rows]
+        assert len(found) == 6 and np.abs(np.array(found) - given).max() <= 1e-4 * 100.0
+        rigid = [k for k, name in enumerate(case.parts()) if name not in ("soft", "g")]
+        assert np.abs(np.array(found)[rigid] - given).max() <= 1e-10 * 100.0
+
+    sim = Simulation(case, threads=1)
+    check(sim)
+    sim.advance(3)
+    sim.save(tmp_path / "state")
+    again = Simulation(case, threads=1)
+    again.restore(tmp_path / "state")
+    check(again)
+    if dimension == 3:
+        return
+    run_case(case, tmp_path / "out", threads=1, pictures=False)
+    history = read_history(tmp_path / "out")
+    told = np.isfinite(history["body_rigid_spin_z"])
+    for name in ("rigid", "driven", "driven_soft", "hard"):
+        assert np.abs(history[f"body_{name}_spin_z"][told] - 100.0).max() <= 1e-9
+    with open_results(tmp_path / "out") as results:
+        for frame in range(len(results.times)):
+            spins = np.asarray(results.grains(frame)["spin_z"])
+            assert len(spins) == 6 and np.abs(spins - 100.0).max() <= 0.01

@@ -52,6 +52,9 @@ std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping) {
     parts[g].momentum = {s[4], s[5], s[6]};
     parts[g].kinetic = s[7];
   }
+  std::vector<bool> deforms(parts.size());
+  for (std::size_t b = 0; b < domain.bodies.size(); ++b)
+    deforms[grouping.number[b]] = domain.bodies[b].deforms();
   const auto turning = sum_groups<9>(
       domain, grouping, [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t group) {
         const Vector3 centre = parts[group].centre;
@@ -60,9 +63,9 @@ std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping) {
         const double m = pool.mass()[row];
         of.add(m, in_space<D>(pool.position_of(row)) - centre, Vector3::zero());
         // The affine part of a rigid motion is its spin, of which the momentum is `moment` times
-        // the curl.
+        // the curl. Bodies that do not deform have none, whatever others of their material have.
         const Matrix3& I = of.inertia;
-        const double own = pool.affine < 0 ? 0.0 : 2.0 * m * moment;
+        const double own = pool.affine < 0 || !deforms[group] ? 0.0 : 2.0 * m * moment;
         return std::array{L[0],          L[1],    L[2],    I[0][0] + own, I[1][1] + own,
                           I[2][2] + own, I[1][2], I[0][2], I[0][1]};
       });
