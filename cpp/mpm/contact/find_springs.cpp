@@ -10,7 +10,8 @@ namespace {
 template <int D>
 SpringSide<D> side_of(const TileGrid<D>& grid, const Body<D>& body, std::int32_t number,
                       const Index<D>& node) {
-  return {number, body.deforms() ? 1.0 / body.stiffness : 0.0,
+  // No compliance if it is rigid. One that is held for a while keeps its own.
+  return {number, 1.0 / body.stiffness,
           NodeShares<D>(grid.basis, body.mean_edge / grid.cell_size, grid.walls, node)};
 }
 

@@ -17,7 +17,8 @@ void for_each_loaded_piece(Domain<D>& domain, std::size_t p, std::size_t l, F&& 
   const TileGrid<D>& grid = domain.grid;
   const Patch<D>& patch = grid.patches[p];
   const SurfaceLoad<D>& load = domain.loads[l];
-  if (load.body != patch.body) return;
+  // A body that is held while the run settles has none until then.
+  if (load.body != patch.body || !domain.body_of(patch).deforms()) return;
   ParticlePool<D>& pool = domain.pool_of(patch);
   // The box of the particle's function. Within it the nodes around the piece are among those to
   // which the particle gives mass.

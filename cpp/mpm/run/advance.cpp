@@ -87,7 +87,8 @@ std::int64_t advance(Simulation<D>& simulation, std::int64_t max_steps, double e
     const double left = next_stop - domain.time;
     const bool last = simulation.next_time_step >= left;
     // Two last steps of equal length rather than a tiny one, in which forces would be rounding.
-    domain.step_before = domain.time_step;
+    // What is strained before forces (USF) has no velocity from before the time 0.
+    domain.step_before = domain.time == 0.0 ? 0.0 : domain.time_step;
     domain.time_step = last ? left : std::min(simulation.next_time_step, 0.5 * left);
     make_step(simulation, last ? next_stop : domain.time + domain.time_step);
     ++made;

@@ -209,6 +209,9 @@ template <int D>
 void set_velocity(Simulation<D>& simulation, int number, std::span<const double> velocities) {
   Domain<D>& domain = simulation.domain;
   Body<D>& b = domain.body_at(number);
+  for (const HeldBody& held : simulation.held)
+    if (held.body == number)
+      throw std::invalid_argument(b.name + " is held until the run has settled: set it then");
   if (b.is_prescribed()) throw std::invalid_argument("the motion of " + b.name + " is prescribed");
   if (velocities.size() != b.count * D) throw std::invalid_argument("velocities must be (n, D)");
   check_finite(velocities, "velocities");
@@ -228,7 +231,9 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
       pool.v(static_cast<int>(a))[row] = static_cast<Storage>(velocities[pool.id[row] * D + a]);
   });
   project_rigid_velocities(domain);
-  start_affine(domain, number);
+  std::vector<bool> meant(domain.bodies.size(), false);
+  meant[static_cast<std::size_t>(number)] = true;
+  start_affine(domain, meant);
   Ledger& ledger = domain.ledger;
   ledger.external += kinetic_energy(domain) - before;
   ledger.kinetic = kinetic_energy(domain);

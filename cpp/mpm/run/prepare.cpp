@@ -6,6 +6,7 @@
 #include "mpm/contact/candidates.hpp"
 #include "mpm/particles/give_to_owners.hpp"
 #include "mpm/particles/make_body.hpp"
+#include "mpm/run/held_bodies.hpp"
 #include "mpm/run/loads.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/part_sums.hpp"
@@ -34,25 +35,6 @@ void check_bodies(const Domain<D>& domain) {
   };
   check_setting(!domain.grid.bonded || std::ranges::none_of(domain.bodies, damped_otherwise),
                 "bodies are bonded and move as one, so all must have the same damping");
-}
-
-/// Give the particles of bodies with prescribed motion their velocities at the start.
-template <int D>
-void start_motions(Domain<D>& domain) {
-  for (const std::size_t b : domain.prescribed) {
-    PrescribedMotion& motion = *domain.bodies[b].motion;
-    motion.radius = 0.0;
-    for (const Patch<D>& patch : patches_of<D>(domain.grid.patches, static_cast<int>(b))) {
-      ParticlePool<D>& pool = domain.pool_of(patch);
-      for (const std::uint32_t row : pool.rows(patch)) {
-        const Vector3 x = in_space<D>(pool.position_of(row));
-        motion.radius = std::max(motion.radius, norm(x - motion.now.centre));
-        const Vector3 v = motion.now.velocity_at(x);
-        for (int a = 0; a < D; ++a) pool.v(a)[row] = static_cast<Storage>(v[a]);
-      }
-    }
-    motion.radius = all_max(*domain.grid.partition.comm, motion.radius);
-  }
 }
 
 template <int D>
@@ -93,6 +75,7 @@ void prepare(Simulation<D>& simulation) {
   simulation.phase = Phase::broken;  // until all is done
   domain.grid.partition.shares_tiles = domain.has_contact();
   add_contact_columns(domain);
+  find_held_bodies(simulation);
   place_anchor(domain.grid, domain.bodies);
   std::optional<Owners<D>> owners = give_to_owners(domain.grid, domain.bodies);
   fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches);
@@ -105,7 +88,7 @@ void prepare(Simulation<D>& simulation) {
   if (domain.grid.walls.exist) domain.face_parts.resize(domain.grid.patches.size());
   list_kinds(domain);
   start_settling(simulation);
-  start_motions(domain);
+  set_prescribed_velocities(domain);
   project_rigid_velocities(domain);
   start_affine(domain);
   start_contact(domain);
@@ -116,6 +99,7 @@ void prepare(Simulation<D>& simulation) {
   const double cfl = simulation.settings.run.cfl;
   const double fastest = cfl * domain.grid.cell_size / stable_time_step(domain, cfl);
   domain.contact.records.set_scale(total_mass(domain), fastest);
+  hold_bodies(simulation);
   start_ledger(domain);
   look_at_start(simulation);
   simulation.watch.notes.reserve(2 * note_names.size());

@@ -4,6 +4,7 @@
 #include "mpm/contact/candidates.hpp"
 #include "mpm/grid/blocks.hpp"
 #include "mpm/run/check_restored.hpp"
+#include "mpm/run/held_bodies.hpp"
 #include "mpm/run/time_step.hpp"
 
 namespace mpm {
@@ -11,7 +12,7 @@ namespace {
 
 constexpr const char* other_version = "it was made by another version of mpm3dpp";
 constexpr const char* other_case = "it was made from another case";
-constexpr std::int64_t format = 14;  // raised whenever exchange() or what a value means changes
+constexpr std::int64_t format = 15;  // raised whenever exchange() or what a value means changes
 
 template <int D>
 void exchange_body(StateStream& stream, Body<D>& body) {
@@ -75,6 +76,10 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   stream.same(domain.bodies.size(), other_case);
   stream.same(domain.loads.size(), other_case);
   stream.same(domain.pools.size(), other_case);
+  auto held = static_cast<std::int64_t>(simulation.held.size());
+  stream(held);
+  if (stream.restores() && held == 0) free_held_bodies(simulation);  // It has settled.
+  StateStream::check(std::cmp_equal(held, simulation.held.size()), other_case);
   for (Body<D>& body : domain.bodies) exchange_body(stream, body);
   stream(domain.grid.cell_size, domain.grid.anchor, domain.grid.walls.cells);
   if (stream.restores()) check_grid(domain);

@@ -1,5 +1,6 @@
 #include "mpm/run/settle.hpp"
 
+#include "mpm/run/held_bodies.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/part_sums.hpp"
 #include "mpm/step/stage_functions.hpp"
@@ -35,6 +36,8 @@ void start_settling(Simulation<D>& simulation) {
   if (!simulation.settings.run.settle) return;
   Domain<D>& domain = simulation.domain;
   domain.time = -simulation.settings.run.settle->longest;
+  for (Body<D>& body : domain.bodies)
+    if (body.is_prescribed()) body.motion->stand_still();
   // Those that have none get one, which is nothing once the run has begun.
   const auto none = static_cast<int>(domain.dampings.size());
   domain.dampings.emplace_back();
@@ -63,6 +66,7 @@ void end_settling_step(Simulation<D>& simulation) {
   // at rest where it is in balance.
   stop_all(domain);
   domain.time = domain.time_after = 0.0;
+  start_moving(simulation);
   if (balanced) return;
   Note note{.kind = NoteKind::unsettled, .body = 0, .value = ratio, .against = settle->ratio};
   note.group = domain.bodies[0].group;

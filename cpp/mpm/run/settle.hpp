@@ -9,11 +9,13 @@ namespace mpm {
 template <int D>
 void start_settling(Simulation<D>& simulation);
 
-/// What is otherwise in such a step: prescribed bodies stand still, all others have its damping.
+/// What is otherwise in such a step: prescribed bodies stand still, as those do that are held, and
+/// all others have its damping.
 template <int D>
 void begin_settling_step(Simulation<D>& simulation);
 
-/// When forces balance, or the time is over: take the velocities, and set the clock to 0.
+/// When forces balance, or the time is over: take the velocities, set the clock to 0, and give the
+/// bodies those velocities that they have at the start.
 template <int D>
 void end_settling_step(Simulation<D>& simulation);
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "mpm/device/on_device.hpp"
 #include "mpm/run/history_rows.hpp"
@@ -19,6 +20,12 @@ namespace mpm {
 /// What a simulation can be asked for: to take bodies in; to step; nothing, when preparing or
 /// restoring it has failed half-way.
 enum class Phase { building, ready, broken };
+
+/// A body that does not move while the run settles (held_bodies.hpp), and what it is then.
+struct HeldBody {
+  int body;
+  BodyKind kind;
+};
 
 /// What has passed between the ranks in steps of this process.
 struct StepTraffic {
@@ -41,6 +48,7 @@ struct Simulation {
   double next_time_step = 0.0;  // [s]
   int coarsenings = 0;          // of the cells so far
   Phase phase = Phase::building;
+  std::vector<HeldBody> held;  // until the run has settled
   std::optional<Failure> failure;
   Watch<D> watch;
   bool wants_device = false;            // to make the steps (use_device.hpp) ...

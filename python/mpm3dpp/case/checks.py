@@ -13,11 +13,10 @@ from mpm3dpp.base.errors import CaseError, Path, nearest, report, violation
 from mpm3dpp.base.expression import Expression
 from mpm3dpp.base.model import plain
 from mpm3dpp.base.outputs import COLUMNS, ON_REQUEST, STANDARD
-from mpm3dpp.base.time_functions import at
 
 from .cut import cut_bodies
 from .detonation import check_detonations
-from .forces import check_forces, force_values
+from .forces import acts_at_first, check_forces, force_values
 from .initial import check_initial
 from .loads import check_loads
 from .material_checks import check_material
@@ -83,22 +82,13 @@ def _bodies_together(case: Case) -> Found:
     yield from check_forces(case)
     yield from check_bonds(case)
     yield from _dampings(case)
-    if case.run.settle is not None and not _acts_at_first(case):
+    if case.run.settle is not None and not acts_at_first(case):
         rule = (
             "needs a force to settle under: at the time 0 there is no gravity, load or body force"
         )
         yield violation(rule, "give one, or remove it", path=("run", "settle"))
     yield from _transfer(case)
     yield from _springs(case)
-
-
-def _acts_at_first(case: Case) -> bool:
-    """Return whether any force may act at the time 0, formulas by place among them."""
-    loads = (getattr(load, kind) for load in case.load.values() for kind in _core.load_kinds)
-    values = [v for load in loads for v in (load if isinstance(load, tuple) else [load])]
-    known = [v for v in [*case.run.gravity, *values] if v is not None]
-    forces = any(force_values(part) for part in case.parts().values())
-    return forces or any(at(value, 0.0) for value in known)
 
 
 def _transfer(case: Case) -> Found:

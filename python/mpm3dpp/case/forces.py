@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
 
 from pydantic_core import PydanticCustomError
 
+from mpm3dpp import _core
 from mpm3dpp.base.errors import violation
 from mpm3dpp.base.expression import Expression, program_of
 from mpm3dpp.base.model import plain
+from mpm3dpp.base.time_functions import at
 
 if TYPE_CHECKING:
     from mpm3dpp.grains import Grains
@@ -41,6 +43,22 @@ def force_programs(part: Body | Grains, mass: float) -> list[Program]:
     if not by_mass or not shared:
         return by_mass or shared
     return [[*a, *b, ("add", 0.0)] for a, b in zip(by_mass, shared, strict=True)]
+
+
+def acts_at_first(case: Case, on: Collection[str] | None = None) -> bool:
+    """Return whether any force may act at the time 0, formulas by place among them.
+
+    Args:
+        case: of the forces.
+        on: names of the bodies and entries of grains that are meant; None for all.
+    """
+    names = case.parts() if on is None else on
+    acting = [load for load in case.load.values() if load.body in names]
+    loads = (getattr(load, kind) for load in acting for kind in _core.load_kinds)
+    values = [v for load in loads for v in (load if isinstance(load, tuple) else [load])]
+    known = [v for v in [*case.run.gravity, *values] if v is not None]
+    forces = any(force_values(case.parts()[name]) for name in names)
+    return forces or any(at(value, 0.0) for value in known)
 
 
 def check_forces(case: Case) -> Iterator[PydanticCustomError]:

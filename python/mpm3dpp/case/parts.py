@@ -29,8 +29,9 @@ class Viscosity(_Viscosity):
 class Settle(_Settle):
     """The way to rest before the run, under gravity and the loads of the time 0.
 
-    Bodies with a prescribed motion stand still. When forces balance all velocities are set to
-    zero and the run begins, at the time 0. Equations: docs/theory/damping.md.
+    Bodies with a prescribed motion stand still, and those with a velocity at the start are held.
+    When forces balance all velocities are set to zero and the run begins, at the time 0, at which
+    these get theirs. Equations: docs/theory/damping.md.
     """
 
 

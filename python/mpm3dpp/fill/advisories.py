@@ -19,6 +19,7 @@ from mpm3dpp.ranks.world import World, together
 
 from .initial import at_rest
 from .parts import Filled, FilledPart
+from .settling import settling_notes
 from .unit_notes import unit_notes
 from .wall_notes import wall_notes
 
@@ -48,6 +49,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *_beyond_strength(case),
         *_locking(case),
         *_springs(case, bodies),
+        *settling_notes(case, bodies),
         *_narrow(case, bodies),
     ]
     return found + unit_notes(case, bodies)

@@ -22,6 +22,7 @@ from mpm3dpp.shapes.shells import SHELLS
 from .capacity import capacity_mistakes
 from .parts import Filled, FilledPart, Particles, Survey, joined, ranges, survey
 from .placement import box_mistakes, overlap_mistakes
+from .settling import settling_mistakes
 from .slices import number_of_all, survey_of_slices
 from .velocities import start_velocities
 
@@ -43,7 +44,8 @@ def build(case: Case, world: World | None = None) -> Filled:
     Raises:
         CaseError: a body holds no particle, misses its mass by more than half, or reaches out of
             the box or of the region that is kept; or particles of two bodies stand in the same
-            place; or the case is too large. There may be `others`.
+            place; or nothing is left that could settle; or the case is too large. There may be
+            `others`.
     """
     from mpm3dpp.base.errors import from_violation
 
@@ -54,6 +56,7 @@ def build(case: Case, world: World | None = None) -> Filled:
     filled = fill_all(case, world)
     mistakes = [one for part in filled.parts.values() for one in box_mistakes(case, part, world)]
     mistakes += overlap_mistakes(case, filled, world)
+    mistakes += settling_mistakes(case, filled)
     if mistakes:
         raise first_of(mistakes)
     return filled

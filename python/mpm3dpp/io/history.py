@@ -184,6 +184,11 @@ class HistoryWriter:
         if self._parts:
             self._parts.note(parts)
 
+    def begin_bodies(self) -> None:
+        """Take the next sums for the first of the bodies: a run that has settled begins then."""
+        if self._parts:
+            self._parts.first = None
+
     @property
     def first_bodies(self) -> np.ndarray:
         """Rows of what bodies had when the run began, shape (bodies, PART_COLUMNS)."""

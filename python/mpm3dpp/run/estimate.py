@@ -54,15 +54,19 @@ def estimate_line(case: Case, bodies: Filled, ranks: int = 1, threads: int | Non
         models.append((_block(case, _material_of_most(others), count), count))
     stepped = sum(count for _, count in models)
     each = sum(_seconds(model, threads) * count for model, count in models) / stepped
-    steps = math.ceil(case.run.end_time / time_step(case, bodies))
+    settling = case.run.settle.longest if case.run.settle is not None else 0.0
+    whole = case.run.end_time + settling
+    steps = math.ceil(whole / time_step(case, bodies))
     at_once = min(ranks, max(1, cores // threads))  # The others wait for a core.
     seconds = each * bodies.particle_count * steps / at_once
     workers = f"{threads} thread{'s' if threads > 1 else ''}"
     if ranks > 1:
         workers = f"{ranks} ranks of {workers}"
     on_top = "contact and frames come" if case.contact_enabled and others else "frames come"
+    most = f", of which to settle at most {_in_words(seconds * settling / whole)}"
     return (
-        f"estimate: {_in_words(seconds)} with {workers} on this machine "
+        f"estimate: {_in_words(seconds)} with {workers} on this machine"
+        f"{most if settling else ''} "
         f"({1e9 * each:.3g} ns for a particle and step; {on_top} on top)"
     )
 

@@ -125,6 +125,7 @@ class Stepping:
         rows, pairs = core.history(), core.contact_groups() if self._contact else []
         if self._settles and core.time >= 0.0:
             self._tell_settled(rows)
+            history.begin_bodies()
         due = bool(self._frames) and core.time >= self._frames[0]
         # By the steps' numbers, so that a run that goes on has them in the same rows.
         summed = due or core.step // self._sums_every > before // self._sums_every
@@ -157,6 +158,12 @@ class Stepping:
     def _tell_settled(self, rows: np.ndarray) -> None:
         core, settle = self._simulation.core, self._simulation.case.run.settle
         ratio = rows[rows[:, 1] >= 0.0, core.history_columns.index("unbalanced")][0]
+        if ratio == 0.0:  # Forces that balance do so but for rounding.
+            self._progress.note(
+                "warning: run.settle had nothing to settle: at the time 0 no force acts on any "
+                "body that deforms and is not held; the run begins as the bodies are filled"
+            )
+            return
         word = "settled" if settle is not None and ratio <= settle.ratio else "not settled"
         self._progress.note(f"{word}: forces out of balance are {ratio:.3g} of those applied")
 

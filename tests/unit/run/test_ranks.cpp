@@ -38,6 +38,7 @@ struct RankedCase {
   bool load = false, force = false, erodes = false;
   bool rigid = false, prescribed = false;  // the second body
   bool contact = false;
+  bool settles = false;   // the first body; the others have velocities, and are held
   bool averages = false;  // volumes over cells
 };
 
@@ -74,6 +75,10 @@ void build(Simulation<D>& simulation, const RankedCase& choice) {
   constexpr double length = 0.5 * block_edge<D>;
   add_block(simulation, stone, length + 0.5, 25.0);
   add_block(simulation, rubber, -length - 2.5, 60.0);
+  if (choice.settles) {
+    const std::size_t count = simulation.domain.bodies[0].count;
+    set_velocity(simulation, 0, std::vector<double>(count * D, 0.0));
+  }
   if (choice.prescribed) {
     TimeFunction shaking(10.0), turning(5.0);
     shaking.amplitude = 200.0;
@@ -369,12 +374,18 @@ std::vector<RankedCase> choices() {
                    s.grid.coarsening->tiles = 5;
                    s.grid.coarsening->times = 1;
                  }});
-  all.push_back({"settling", [](Settings& s) {
-                   s.run.settle.emplace();
-                   s.run.settle->longest = 0.02;
-                   s.run.gravity[1] = TimeFunction(-9.81);
-                   put_walls(s);
-                 }});
+  const auto settle = [](Settings& s) {
+    s.run.settle.emplace();
+    s.run.settle->longest = 0.02;
+    s.run.gravity[1] = TimeFunction(-9.81);
+    put_walls(s);
+  };
+  all.push_back({.name = "settling", .set = settle, .settles = true});
+  all.push_back({.name = "settling beside rigid bodies",
+                 .set = settle,
+                 .rigid = true,
+                 .contact = true,
+                 .settles = true});
   const auto threads = [](Settings& s) { s.execution.threads = 2; };
   all.push_back({.name = "threads", .set = threads, .rigid = true, .contact = true});
   all.push_back({.name = "rigid bodies that leave",

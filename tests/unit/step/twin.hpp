@@ -1,5 +1,6 @@
 #pragma once
 // The same bodies twice: in a domain, for the stages, and in the reference step.
+#include <limits>
 #include <random>
 #include <stdexcept>
 
@@ -163,6 +164,7 @@ struct Twin {
     Body<D> body =
         make_body<D>("body", domain.materials[0], domain.pools[0], x, v, std::array{volume});
     body.kind = kind;
+    if (!body.deforms()) body.stiffness = std::numeric_limits<double>::infinity();
     reference::Body<D>& other = reference.bodies.emplace_back();
     other.kind = kind;
     other.material = Elastic::of(E, nu, density);
