@@ -253,3 +253,88 @@ def test_check_refuses_a_time_step_that_cannot_run(tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text(CASE.replace('"1 us"', '"1 us"\ntime_step = "1 ms"') + LIT)
     result = CliRunner().invoke(app, ["check", str(tmp_path / "case.toml")])
     assert result.exit_code != 0
+
+
+BONDED = """
+[grid]
+dimension = 2
+cell_size = "5 mm"
+[run]
+end_time = "1 ms"
+[material.rubber]
+density = 1000
+strength = { neo_hookean = { K = "0.8333 MPa", G = "0.3846 MPa" } }
+[material.s]
+density = 7800
+strength = { rigid = {} }
+[[contact.pair]]
+PAIR
+bonded = true
+[body.strip]
+material = "rubber"
+shape = { box = { lower = [0, 0], upper = ["50 mm", "20 mm"] } }
+[body.left]
+material = "WHAT"
+motion = "fixed"
+shape = { box = { lower = ["-15 mm", 0], upper = [0, "20 mm"] } }
+[body.right]
+material = "s"
+shape = { box = { lower = ["50 mm", 0], upper = ["65 mm", "20 mm"] } }
+"""
+
+
+@pytest.mark.parametrize(
+    ("pair", "what", "named"),
+    [
+        ('bodies = ["strip", "left"]', "s", "left, which does"),
+        ('bodies = ["strip", "left"]', "rubber", "left, which does"),  # Driven, of the same.
+        ('bodies = ["right", "strip"]', "s", "right, which does"),  # Free to move.
+        ('materials = ["rubber", "s"]', "s", "left and right, which do"),
+    ],
+)
+def test_bonds_of_bodies_that_do_not_deform_let_go(pair: str, what: str, named: str) -> None:
+    case = Case.from_text(BONDED.replace("PAIR", pair).replace("WHAT", what))
+    [said] = [note for note in notes(case, build(case)) if "bonded" in note]
+    assert said.startswith(f"strip is bonded to {named} not deform: such a bond (contact.pair")
+    assert "grid.box.walls" in said
+    soft = BONDED.replace("PAIR", 'bodies = ["strip", "right"]').replace("WHAT", "s")
+    soft = soft.replace('"s"\nshape', '"rubber"\nshape')
+    case = Case.from_text(soft)
+    assert not [note for note in notes(case, build(case)) if "bonded" in note]
+
+
+CROWD = """
+[grid]
+dimension = 3
+cell_size = "1 mm"
+[run]
+end_time = "1 us"
+[material.soft]
+density = 1000
+strength = {{ elastic = {{ E = "1 MPa", nu = 0.3 }} }}
+[contact]
+response = "{response}"
+[grains.all]
+material = "soft"
+lattice = {{ lower = [0, 0, 0], count = [{n}, {n}, {n}], radius = "{radius} mm" }}
+"""
+
+
+@pytest.mark.parametrize(
+    ("response", "n", "radius", "is_said"),
+    [
+        ("impulses", 3, 1.0, True),
+        ("impulses", 2, 1.0, False),
+        ("impulses", 3, 1.6, False),
+        ("springs", 3, 1.0, False),
+    ],
+)
+def test_impulses_of_crowds_of_small_grains(
+    response: str, n: int, radius: float, is_said: bool
+) -> None:
+    case = Case.from_text(CROWD.format(response=response, n=n, radius=radius))
+    said = [note for note in notes(case, build(case)) if "sweeps" in note]
+    assert bool(said) == is_said
+    if said:
+        assert said[0].startswith("grains.all has 27 grains of 2 cells: where they lie close")
+        assert 'give contact.response = "springs", or smaller cells' in said[0]

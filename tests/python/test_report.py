@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from mpm3dpp.run.report import body_lines, energy_line, warning_lines
+from mpm3dpp.io.records import ContactRecord
+from mpm3dpp.run.report import body_lines, contact_table, energy_line, warning_lines
 
 
 def manifest(initial: dict[str, float], final: dict[str, float]) -> Any:
@@ -99,3 +100,32 @@ def test_a_line_for_each_body_that_moves_freely() -> None:
     found.bodies = {f"grain {k}": rest for k in range(12)}
     assert body_lines(found)[-1] == "... and 2 more bodies, in manifest.json"
     assert len(body_lines(found)) == 11
+
+
+@pytest.mark.parametrize(
+    ("response", "bodies", "time", "is_said"),
+    [
+        ("impulses", 8, 95, True),
+        ("impulses", 4, 95, False),
+        ("impulses", 8, 50, False),
+        ("springs", 8, 95, False),
+    ],
+)
+def test_sweeps_of_impulses_that_take_the_time_are_told(
+    response: str, bodies: int, time: int, is_said: bool
+) -> None:
+    """The remedy is in the same sentence."""
+    contact = ContactRecord(bodies=9, overlapped_nodes_max=1, bodies_per_node_max=bodies)
+    given = SimpleNamespace(
+        contact=contact,
+        stages={"contact forces": time, "others": 100 - time},
+        case={"contact": {"response": response}},
+        cell_size=1.0,
+    )
+    said = [line for line in contact_table(given) if "sweeps" in line]  # type: ignore[arg-type]
+    assert bool(said) == is_said
+    if said:
+        assert said[0].startswith(
+            "warning: contact took 95% of the step's time: nodes with up to 8"
+        )
+        assert 'give contact.response = "springs"' in said[0]

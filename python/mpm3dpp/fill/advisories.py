@@ -17,6 +17,7 @@ from mpm3dpp.case.grid import CONTACT
 from mpm3dpp.case.initial import GEOSTATIC
 from mpm3dpp.ranks.world import World, together
 
+from .bond_notes import bond_notes
 from .initial import at_rest
 from .parts import Filled, FilledPart
 from .settling import settling_notes
@@ -28,6 +29,7 @@ _NARROW = 2.4  # Cells.
 _COARSE = 0.75  # Cells.
 # Of the edge of the other's particles: R - 1 and 2 R - 1 in 3D (decision 0054), and some less.
 _WIDE_GAP, _UNEQUAL = 0.8, 2.5
+_FEW, _NARROW_GRAIN = 20, 3.0  # Grains; cells over the diameter of one.
 _SEEN = 0.1  # Cells: a fifth of an edge; a lattice stands out by less.
 _STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
 
@@ -44,11 +46,13 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *_renamed(case),
         *_materials(case),
         *_rigid(case),
+        *bond_notes(case),
         *_detonations(case, bodies, world),
         *wall_notes(case),
         *_beyond_strength(case),
         *_locking(case),
         *_springs(case, bodies),
+        *_crowds(case, bodies),
         *settling_notes(case, bodies),
         *_narrow(case, bodies),
     ]
@@ -200,6 +204,22 @@ def _springs(case: Case, bodies: Filled) -> list[str]:
             "reach no further; give a smaller one, or larger particles"
         )
     return found
+
+
+def _crowds(case: Case, bodies: Filled) -> list[str]:
+    """Grains of so few cells that six to eight of them meet at a node, with impulses."""
+    if not case.contact_enabled or case.contact.response != "impulses":
+        return []
+    return [
+        f"{key_text(case.part_path(name))} has {len(part.names):,} grains of "
+        f"{2.0 * float(part.balls[1].mean()) / case.grid.cell_size:.2g} cells: where they lie "
+        "close, up to eight meet at a node, and impulses of so many take hundreds of sweeps, up to "
+        '27 times the time of a step; give contact.response = "springs", or smaller cells'
+        for name, part in bodies.parts.items()
+        if part.balls is not None
+        and len(part.names) > _FEW
+        and 2.0 * float(part.balls[1].mean()) < _NARROW_GRAIN * case.grid.cell_size
+    ]
 
 
 def refuse_time_step(case: Case, bodies: Filled) -> None:

@@ -13,6 +13,8 @@ _BODIES_SHOWN = 10
 _ROUNDING = 1e-9  # Components of a velocity that are less than this share of it are none.
 _OF_A_KIND = 3  # warnings shown
 _NUMERICAL_WARNING = 0.05
+_CROWD = 5  # Bodies at a node, beyond which impulses of all pairs take many sweeps ...
+_MOST_SHARE = 0.8  # ... which is told if contact takes more of the step's time than this.
 
 
 def summary_lines(manifest: Manifest) -> list[str]:
@@ -44,6 +46,13 @@ def contact_table(manifest: Manifest) -> list[str]:
         lines.append(
             f"warning: {contact.unconverged_nodes:,} contact solutions at nodes with several "
             "bodies stopped short of the tolerance; give smaller cells"
+        )
+    impulses = manifest.case.get("contact", {}).get("response") == "impulses"
+    if impulses and contact.bodies_per_node_max > _CROWD and share > _MOST_SHARE:
+        lines.append(
+            f"warning: contact took {share:.0%} of the step's time: nodes with up to "
+            f"{contact.bodies_per_node_max} bodies need hundreds of sweeps to find their impulses; "
+            'give contact.response = "springs", or smaller cells (six to eight over a grain)'
         )
     for pair in contact.pairs[:_PAIRS_SHOWN]:
         if pair.first_time is None or pair.first_gap is None:
