@@ -1,5 +1,5 @@
 #pragma once
-// Ctrl-C and SIGTERM while the core runs without the interpreter's lock.
+// Ctrl-C, SIGTERM and their like while the core runs without the interpreter's lock.
 #include <array>
 #include <atomic>
 #include <csignal>
@@ -14,9 +14,10 @@
 
 namespace mpm::bindings {
 
-/// While it lives, SIGINT and SIGTERM set a flag that a loop can look at, before Python takes
-/// notice of them as always. In the main thread only, where Python handles them, and only those
-/// that it does handle. Asking Python itself needs its lock, for which a loop would have to wait.
+/// While it lives, the signals that end a run set a flag that a loop can look at, before Python
+/// takes notice of them as always. In the main thread only, where Python handles them, and only
+/// those that it does handle. Asking Python itself needs its lock, for which a loop would have to
+/// wait.
 class InterruptFlag {
  public:
   InterruptFlag() {
@@ -43,20 +44,23 @@ class InterruptFlag {
   const std::atomic<bool>* get() const { return in_main_thread() ? &raised() : nullptr; }
 
  private:
-  static constexpr std::array<int, 2> kinds{SIGINT, SIGTERM};
+  /// As `base/signals.py` has them.
+  static constexpr std::array kinds{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2, SIGXCPU};
+  using Actions = std::array<struct sigaction, kinds.size()>;
 
   static std::atomic<bool>& raised() {
     static std::atomic<bool> flag{false};
     static_assert(std::atomic<bool>::is_always_lock_free);  // So that a signal may set it.
     return flag;
   }
-  static std::array<struct sigaction, 2>& olds() {
-    static std::array<struct sigaction, 2> found{};
+  static Actions& olds() {
+    static Actions found{};
     return found;
   }
   static void note(int kind) {
     raised().store(true);
-    olds()[kind == kinds[0] ? 0 : 1].sa_handler(kind);
+    for (std::size_t k = 0; k < kinds.size(); ++k)
+      if (kinds[k] == kind) olds()[k].sa_handler(kind);
   }
   static bool in_main_thread() {
 #if defined(__linux__)
@@ -66,7 +70,7 @@ class InterruptFlag {
 #endif
   }
 
-  std::array<bool, 2> installed_{};
+  std::array<bool, kinds.size()> installed_{};
 };
 
 }  // namespace mpm::bindings

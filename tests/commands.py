@@ -70,6 +70,7 @@ def interrupted(case: Case, folder: Path, looks: int, monkeypatch: pytest.Monkey
     left = iter(range(looks))
 
     class Pressed(contextlib.nullcontext[Any]):
+        kind = None
         taken = property(lambda _: next(left, None) is None)
 
         def __enter__(self) -> Pressed:

@@ -149,6 +149,59 @@ def test_ctrl_c_and_any_number_of_ranks_goes_on(tmp_path: Path, way: str) -> Non
     assert found[0]["result_hash"] == found[1]["result_hash"]
 
 
+@pytest.mark.parametrize("kind", [signal.SIGUSR1, signal.SIGXCPU, signal.SIGHUP])
+def test_a_signal_of_the_batch_system_ends_all_ranks(
+    tmp_path: Path, way: str, kind: signal.Signals
+) -> None:
+    write(tmp_path, LONG)
+    words = command("run", "case.toml", "--out", "out", "--ranks", 2)
+    with subprocess.Popen(words, cwd=tmp_path, env=environment(way)) as job:
+        wait_for((tmp_path / "out" / "checkpoint.zip").exists)
+        ranks = ranks_of(job)
+        for number in (job.pid, *ranks):  # As when it goes to all processes of a job.
+            os.kill(number, kind)
+        assert job.wait(60) == 130
+    check_interrupted(tmp_path / "out", f"stopped by {kind.name} at t = ")
+    wait_for(lambda: not any(map(is_there, ranks)))
+
+
+@pytest.mark.parametrize("killed", ["launcher", "mpiexec"])
+def test_ranks_end_with_who_has_started_them(tmp_path: Path, way: str, killed: str) -> None:
+    """That nobody could tell them to is no reason to stay, nor to leave without a checkpoint."""
+    write(tmp_path, LONG)
+    words = command("run", "case.toml", "--out", "out", "--ranks", 2)
+    with subprocess.Popen(words, cwd=tmp_path, env=environment(way)) as job:
+        wait_for((tmp_path / "out" / "checkpoint.zip").exists)
+        ranks = ranks_of(job)
+        assert len(ranks) == 2
+        (mpiexec,) = {parent_of(rank) for rank in ranks}
+        os.kill(job.pid if killed == "launcher" else mpiexec, signal.SIGKILL)
+        job.wait(60)
+    wait_for(lambda: not any(map(is_there, [*ranks, mpiexec])))
+    if killed == "launcher":
+        check_interrupted(tmp_path / "out", "stopped by the user at t = ")
+    reached = read_about(tmp_path / "out" / "checkpoint.zip")["time"]
+    more = ("--resume", "--set", f"run.end_time={reached + 1e-4}", "--no-pictures")
+    assert run(way, tmp_path, "case.toml", "--out", "out", *more).returncode == 0
+
+
+def parent_of(process: int) -> int:
+    return int(Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[1])
+
+
+def is_there(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def check_interrupted(folder: Path, reason: str) -> None:
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert manifest["status"] == "interrupted" and manifest["reason"].startswith(reason)
+    assert step_of(folder / "checkpoint.zip") == manifest["steps"]
+
+
 def test_one_that_fails_alone_ends_all(tmp_path: Path, way: str) -> None:
     words = mpiexec(3, PROGRAMS / "one_fails.py", write(tmp_path), 1)
     done = job(way, tmp_path, words)

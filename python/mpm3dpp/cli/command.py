@@ -15,6 +15,7 @@ import sys
 import traceback
 
 from mpm3dpp.base import signals
+from mpm3dpp.base.start import forget_folder
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ _MOST_TOLD = 50  # Mistakes that are listed.
 
 def main() -> None:
     """Run the command line and exit; a mistake is a sentence, never a traceback."""
+    forget_folder()
     signals.end_at_once()
     _mend_streams()
     os.environ["MPLBACKEND"] = "agg"  # Pictures go into files, whatever the user's notebooks need.
@@ -101,8 +103,8 @@ def _command() -> None:
     except RunError as error:
         _say(f"error: {error}")
         sys.exit(1)
-    except KeyboardInterrupt:
-        _say(f"error: {signals.SENTENCE}")
+    except KeyboardInterrupt as stopped:
+        _say(f"error: {str(stopped) or signals.SENTENCE}")
         sys.exit(signals.CODE)
     except OSError as error:
         _refused(error)

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mpm3dpp.base import child
+
 from .labels import length_unit
 from .look import directions
 from .raster import FINER, balls, balls_of_owners
@@ -23,14 +25,6 @@ PIXELS = 1100  # longer side of the image, as many as it is shown with
 
 _BLOCK = 65536  # particles that are turned at a time
 _MOST_OWNERS = 2**24 - 1  # balls that have numbers in the colours of a card
-
-_PROBE = """
-import pyvista
-p = pyvista.Plotter(off_screen=True, window_size=(64, 64))
-p.add_mesh(pyvista.Sphere(), color="red")
-image = p.screenshot(return_img=True)
-raise SystemExit(0 if image.std() > 0 else 1)
-"""
 
 
 @dataclasses.dataclass
@@ -166,9 +160,8 @@ def _pyvista_works() -> bool:
     if not _has_graphics_card():
         return False
     try:
-        probe = subprocess.run(
-            [sys.executable, "-c", _PROBE], capture_output=True, timeout=60, check=False
-        )
+        words = child.command("plots.probe_card")
+        probe = subprocess.run(words, capture_output=True, timeout=60, check=False)
         works = probe.returncode == 0
     except (OSError, subprocess.TimeoutExpired):
         works = False

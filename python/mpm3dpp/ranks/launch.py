@@ -14,28 +14,27 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
+from mpm3dpp.base import child, signals
 from mpm3dpp.base.errors import CaseError, RunError
 from mpm3dpp.base.machine import TYPED, command_line, thread_count
-from mpm3dpp.base.signals import CODE, SENTENCE
+from mpm3dpp.base.signals import CODE, sentence
+from mpm3dpp.base.starter import end_with
 
 from .world import INSTALL
 
 TOLD = "MPM3DPP_LAUNCHED"
-"""The folder in which the first process leaves its number for signals, and its exit code."""
+"""The folder in which the first process leaves its number for signals, and its exit code; and the
+launcher its own number, with which the first process ends."""
 _FEW, _OF_A_CORE = 16, 4  # Ranks that may be tried, more than there are cores.
 AS_ROOT = {
     f"{who}_ALLOW_RUN_AS_ROOT{more}": "1" for who in ("OMPI", "PRTE") for more in ("", "_CONFIRM")
-}
-_PASSED_ON = {
-    signal.SIGINT: signal.SIGINT,
-    **dict.fromkeys((signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT), signal.SIGTERM),
 }
 
 
 def launch(count: int, words: list[str], threads: int | None) -> int:
     """Run the command with these words on so many ranks, and return its exit code.
 
-    Ctrl-C and SIGTERM go to the first process, which brings the run to an orderly stop.
+    Ctrl-C, SIGTERM and the others go to the first process, which brings the run to an orderly stop.
 
     Raises:
         CaseError: there is no MPI, or none that fits.
@@ -45,7 +44,7 @@ def launch(count: int, words: list[str], threads: int | None) -> int:
     if threads is None:
         words = [*words[:1], "--threads", str(each), *words[1:]]
     command, added = command_of(count, each)
-    command += [sys.executable, "-m", "mpm3dpp", *words]
+    command += child.command("__main__", *words, by_us=False)
     cores = len(os.sched_getaffinity(0))
     if count > cores:
         text = (
@@ -53,12 +52,13 @@ def launch(count: int, words: list[str], threads: int | None) -> int:
         )
         print(f"note: {text}", file=sys.stderr, flush=True)
     with tempfile.TemporaryDirectory(prefix="mpm3dpp-") as told:
+        Path(told, "launcher").write_text(str(os.getpid()))
         with _Job(Path(told, "pid")) as job:
             code = job.run(command, os.environ | {TOLD: told, TYPED: command_line()} | added)
         with contextlib.suppress(OSError, ValueError):
             return int(Path(told, "code").read_text())
-    if job.stopped:  # before there was a first process that says so
-        print(f"mpm3dpp: error: {SENTENCE}", file=sys.stderr, flush=True)
+    if job.stopped is not None:  # before there was a first process that says so
+        print(f"mpm3dpp: error: {sentence(job.stopped)}", file=sys.stderr, flush=True)
         return CODE
     how = f"by signal {-code}" if code < 0 else f"with exit code {code}"
     raise RunError(
@@ -107,17 +107,17 @@ class _Job:
         number: the file in which that leaves its number; before, the job is ended.
 
     Attributes:
-        stopped: whether there was a signal.
+        stopped: the first signal, if there was one.
     """
 
     def __init__(self, number: Path) -> None:
-        self.stopped = False
+        self.stopped: int | None = None
         self._number = number
         self._job: subprocess.Popen[bytes] | None = None
         self._before: dict[signal.Signals, Any] = {}
 
     def __enter__(self) -> _Job:
-        for kind in _PASSED_ON:
+        for kind in signals.heeded():
             self._before[kind] = signal.signal(kind, self._pass_on)
         return self
 
@@ -129,19 +129,18 @@ class _Job:
         """Run it to its end; return its exit code."""
         # In a session of its own, so that Ctrl-C at the terminal comes to this process alone.
         with subprocess.Popen(command, env=environment, start_new_session=True) as self._job:
-            if self.stopped:  # before there was anybody to pass it on to
+            if self.stopped is not None:  # before there was anybody to pass it on to
                 self._job.terminate()
             return self._job.wait()
 
     def _pass_on(self, kind: int, _: FrameType | None) -> None:
-        self.stopped = True
-        kind = _PASSED_ON[signal.Signals(kind)]
+        self.stopped = self.stopped or kind
         try:
             os.kill(int(self._number.read_text()), kind)
         except (OSError, ValueError):
-            if self._job is not None:
+            if self._job is not None:  # What mpiexec would make of others is not known.
                 with contextlib.suppress(OSError):
-                    self._job.send_signal(kind)
+                    self._job.send_signal(signal.SIGTERM)
 
 
 def note_begin() -> None:
@@ -149,6 +148,9 @@ def note_begin() -> None:
     if TOLD in os.environ:
         with contextlib.suppress(OSError):
             Path(os.environ[TOLD], "pid").write_text(str(os.getpid()))
+        with contextlib.suppress(OSError, ValueError):
+            launcher = int(Path(os.environ[TOLD], "launcher").read_text())
+            end_with(launcher, is_parent=False)
 
 
 def exit_code(code: int) -> int:
@@ -169,8 +171,8 @@ def find_mpiexec() -> tuple[str, bool]:
     Raises:
         CaseError: there is no mpi4py, no MPI, or no mpiexec that goes with it.
     """
-    ask = "from mpi4py import MPI; print(MPI.Get_library_version())"
-    asked = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=False)
+    ask = child.command("ranks.which_mpi")
+    asked = subprocess.run(ask, capture_output=True, text=True, check=False)
     if asked.returncode != 0:
         reason = (asked.stderr.strip().splitlines() or ["no reason"])[-1]
         raise CaseError(f"--ranks: mpi4py cannot be used: {reason}", INSTALL)

@@ -17,6 +17,7 @@ import numpy as np
 from mpm3dpp.base.errors import NO_VALUE, CaseError
 from mpm3dpp.base.machine import MEMORY
 from mpm3dpp.base.parts import equal_part
+from mpm3dpp.base.starter import end_with
 
 from .launcher import started
 
@@ -24,6 +25,7 @@ INSTALL = "install it: pip install 'mpm3dpp[mpi]', and an MPI where there is non
 THROUGH = "MPM3DPP_THROUGH_MPI4PY"
 """Set, the core speaks to MPI through mpi4py, though there is a module of ours."""
 _SPIN, _PAUSE = 0.002, 0.001  # s: who waits looks all the time, then now and then
+_AFTER = 60.0  # s, to end in order when mpiexec has been killed
 PATIENCE = 5.0  # s, for ranks that have not failed yet
 
 
@@ -50,6 +52,7 @@ class World:
         self._firsts = sorted(set(self.comm.allgather(self._here.bcast(self.rank))))
         here = self._here.allreduce(MEMORY, op=mpi.MIN)
         self.memory: int = self.comm.allreduce(here if self.rank in self._firsts else 0)
+        end_with(os.getppid(), is_parent=True, patience=_AFTER)  # That is mpiexec, or its helper.
         self._core: Any = None
         self._module = module_for(mpi)
         self.native = self._module is not None

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mpm3dpp.base import signals
 from mpm3dpp.case.case import Case
 from mpm3dpp.io.background import FRAME_SHARE, BackgroundWriter
 from mpm3dpp.io.result_hash import Parts
@@ -207,8 +208,8 @@ def follow(ranks: World) -> Any:
 
 @contextlib.contextmanager
 def _deaf() -> Any:
-    """Leave Ctrl-C and SIGTERM to the first process."""
-    kinds = (signal.SIGINT, signal.SIGTERM)
+    """Leave Ctrl-C, SIGTERM and their like to the first process."""
+    kinds = signals.heeded()
     before = [signal.signal(kind, signal.SIG_IGN) for kind in kinds]
     try:
         yield

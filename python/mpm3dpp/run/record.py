@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError, RunError
-from mpm3dpp.base.signals import Notice
+from mpm3dpp.base.signals import Notice, sentence
 from mpm3dpp.io.checkpoint import CHECKPOINT, no_checkpoint
 from mpm3dpp.io.folders import forget_last_run, only_run_in, writable_folder
 from mpm3dpp.io.manifest import Manifest
@@ -42,13 +42,13 @@ class Recorded:
 
         Raises:
             CaseError: `steps` is no whole number > 0; or the disk is full.
-            KeyboardInterrupt: Ctrl-C or SIGTERM; the step is made to its end.
+            KeyboardInterrupt: Ctrl-C, SIGTERM or their like; the step is made to its end.
         """
         steps = arguments.whole_number("steps", steps, 1)
         with self._notice:  # Whole steps, and whole rows of what is written.
             goes_on = self._recording.advance(self.simulation.step + steps)
         if self._notice.taken:
-            raise KeyboardInterrupt
+            raise KeyboardInterrupt(sentence(self._notice.kind))
         return goes_on
 
     def write_frame(self) -> None:
@@ -77,7 +77,8 @@ def record(
     Args:
         simulation: one that has made no step; `Simulation(case, device="cuda")` has a GPU make
             them.
-        out: the output folder; it is made. Results in it are replaced.
+        out: the output folder; it is made. Results in it are replaced; files of their names that no
+            run has written are not.
         resume: go on from the checkpoint in the folder.
         quiet: no progress.
 

@@ -63,7 +63,7 @@ def run_case(
     Raises:
         CaseError: a mistake in the case or the call, a folder that cannot be written, or no device.
         RunError: the run became unstable, or the disk is full; what was written before is kept.
-        KeyboardInterrupt: the user stopped it; what was computed is kept.
+        KeyboardInterrupt: the user or the system stopped it; what was computed is kept.
     """
     ranks = world()
     if ranks is not None and ranks.rank > 0:
@@ -121,7 +121,7 @@ def _run_case(
     if manifest.status == "failed":
         raise RunError(f"{manifest.reason}; frames and history up to then are in {folder}")
     if manifest.status == "interrupted":
-        raise KeyboardInterrupt
+        raise KeyboardInterrupt((manifest.reason or "").partition(" at t = ")[0])
     return manifest
 
 

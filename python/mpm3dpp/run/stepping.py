@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp.base.errors import RunError
-from mpm3dpp.base.signals import Notice
+from mpm3dpp.base.signals import Notice, sentence
 from mpm3dpp.io.background import BackgroundWriter
 from mpm3dpp.io.history import HistoryWriter
 from mpm3dpp.io.manifest import Status
@@ -152,7 +152,7 @@ class Stepping:
         if ends:
             return "completed", ends
         if self._notice.taken:
-            return "interrupted", f"stopped by the user at t = {core.time:.6g} s"
+            return "interrupted", f"{sentence(self._notice.kind)} at t = {core.time:.6g} s"
         return None
 
     def _tell_settled(self, rows: np.ndarray) -> None:
