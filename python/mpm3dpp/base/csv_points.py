@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .disk import writing
+from .disk import write_atomically
 from .errors import CaseError
 from .machine import MEMORY, memory_text
 from .reading import open_file, unreadable
@@ -194,6 +194,10 @@ def _lines(file: io.TextIOWrapper, name: str) -> Iterator[tuple[int, str]]:
             rule = f"has more than {_LONGEST:,} characters in line {number}"
             raise CaseError(rule, "give a line for each point", value=name)
         if line.strip() and not line.lstrip().startswith("#"):
+            if not line.endswith("\n"):
+                rule = f"ends in the midst of line {number}, which has no end of a line"
+                remedy = "copy or write the file anew, or, if it is whole, end that line too"
+                raise CaseError(rule, remedy, value=name)
             yield number, line
 
 
@@ -272,8 +276,7 @@ def write_points(path: Path, names: list[str], table: Array, about: str = "") ->
     lines = [f"# {line}" for line in about.splitlines()]
     lines.append(",".join(names))
     lines += [",".join(map(repr, row)) for row in (table + 0.0).tolist()]
-    with writing(path):
-        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_atomically(path, "\n".join(lines) + "\n")
 
 
 def digest_of(table: Array) -> str:

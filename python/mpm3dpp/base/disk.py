@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from .errors import CaseError
+from .reading import open_file
 
 _PIECE = 1 << 16  # bytes that are read at a time, less than what is mapped anew for each
 
@@ -24,6 +25,7 @@ _REMEDIES = {
     errno.EROFS: "the disk is read-only; choose another folder with --out",
     errno.ENOTDIR: "a part of this path is a file; choose another folder with --out",
     errno.EISDIR: "a folder has this name; choose another folder with --out",
+    errno.ELOOP: "a link has this name, which is not followed: remove it",
     errno.EEXIST: "a file has this name; choose another folder with --out",
 }
 
@@ -48,6 +50,11 @@ def writing(path: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise cannot_write(path, error) from error
+
+
+def no_link(path: str, flags: int) -> int:
+    """Open a file as `open` does by its `opener`, but no link: that is not followed in writing."""
+    return os.open(path, flags | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0), 0o666)
 
 
 def make_folder(path: Path) -> None:
@@ -92,7 +99,9 @@ def replacing(path: Path, keep: Path | None = None) -> Iterator[BinaryIO]:
     new = unfinished(path)
     with writing(path):
         try:
-            with open(new, "wb") as file:
+            if new.is_symlink():
+                new.unlink()
+            with open(new, "wb", opener=no_link) as file:
                 yield file
                 file.flush()
                 os.fsync(file.fileno())
@@ -124,10 +133,15 @@ def checksum(path: Path, size: int | None = None) -> int | None:
     """Return the CRC-32 of a file, or of its first `size` bytes; None if it has not so many.
 
     Raises:
-        OSError: it cannot be read.
+        FileNotFoundError: there is none.
+        CaseError: it is no file, or cannot be read.
     """
     value, left = 0, size
-    with open(path, "rb") as file:
+    try:
+        opened = open_file(path)
+    except CaseError as error:
+        raise CaseError(f"'{path}' {error.rule}", error.remedy) from error
+    with opened as file:
         while left != 0 and (piece := file.read(min(_PIECE, left or _PIECE))):
             value = zlib.crc32(piece, value)
             left = None if left is None else left - len(piece)

@@ -54,6 +54,16 @@ def open_file(path: Path) -> BinaryIO:
         raise unreadable(error) from None
 
 
+def refuse_other_kinds(path: Path) -> None:
+    """Raise if something stands there that is no file, for a library that will open it.
+
+    Raises:
+        OSError: there is nothing, or it cannot be asked.
+        CaseError: it is a pipe, a device or the like; rule and remedy only.
+    """
+    _refuse_other_kinds(os.stat(path).st_mode)
+
+
 def read_file(path: Path, most: int, remedy: str) -> bytes:
     """Return all bytes of a file.
 

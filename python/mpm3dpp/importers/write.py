@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp.base.csv_points import write_points
-from mpm3dpp.base.disk import make_folder, writing
+from mpm3dpp.base.disk import make_folder, write_atomically
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.readers import reader_of
 from mpm3dpp.case.particles import Particles
@@ -67,8 +67,7 @@ def write_case(found: Imported, target: Path, force: bool = False) -> list[Path]
         about = f"{what} of {name} from {origin}{line}; SI units."
         write_points(file, given.columns(), given.table_of_numbers(), about)
         tables[kind] = tables[kind] | {name: tables[kind][name] | {key: file.name}}
-    with writing(target):
-        target.write_text(case_text(found, tables), encoding="utf-8")
+    write_atomically(target, case_text(found, tables))
     return files
 
 

@@ -26,6 +26,7 @@ from mpm3dpp.base.errors import CaseError
 
 from .frame_tables import Table, columns_of, write_tables
 from .new_h5 import new_h5
+from .open_h5 import open_h5, own
 
 if TYPE_CHECKING:
     import h5py
@@ -208,8 +209,8 @@ def _read_part(
     with _frame(frame_path(folder, frame, part)) as file:
         info, columns = _info(file), {}
         for name in names:
-            columns[name] = column = file["arrays"][name][()]
-            if len(column) != info.rows[part] or zlib.crc32(column.data) != info.checks[name]:
+            columns[name] = column = own(file["arrays"][name], info.rows[part])[()]
+            if zlib.crc32(column.data) != info.checks[name]:
                 raise ValueError(name)
         return info, columns
 
@@ -217,17 +218,18 @@ def _read_part(
 @contextlib.contextmanager
 def _frame(path: Path) -> Iterator[h5py.File]:
     """Give the file of a frame to read; what goes wrong in the block is one sentence."""
-    import h5py
-
     number = path.stem.partition(".")[0].lstrip("0") or "0"
     try:
-        with h5py.File(path, "r", locking=False) as file:
+        with open_h5(path) as file:
             yield file
     except FileNotFoundError as error:
         rule = f"frame {number} is missing: there is no file '{path}'"
         raise CaseError(rule, "bring it back, or use other frames") from error
     except PermissionError as error:
         raise CaseError(f"cannot read '{path}': permission denied", "make it readable") from error
+    except CaseError as error:
+        rule = f"frame {number}: '{path}' {error.rule}"
+        raise CaseError(rule, "bring it back, or use other frames") from error
     except (OSError, KeyError, TypeError, ValueError, RuntimeError, AttributeError) as error:
         rule = f"frame {number} is damaged: '{path}' cannot be read as it was written"
         raise CaseError(rule, "bring it back, or use other frames") from error

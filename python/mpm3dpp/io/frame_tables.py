@@ -12,6 +12,7 @@ import numpy as np
 from mpm3dpp import _core
 from mpm3dpp.base.names import grain_numbers, numbered
 
+from .open_h5 import own
 from .part_cells import PART_COLUMNS, PART_LIMIT
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def columns_of(file: h5py.File, name: str, check: int) -> dict[str, np.ndarray]:
     Raises:
         ValueError: it is not what was written.
     """
-    table = file[f"tables/{name}"][()]
+    table = own(file[f"tables/{name}"])[()]
     if zlib.crc32(table.tobytes()) != check:
         raise ValueError(name)
     return {key: np.ascontiguousarray(table[key]) for key in table.dtype.names}

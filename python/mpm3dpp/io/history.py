@@ -17,7 +17,7 @@ from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.names import numbered
 
 from .part_cells import PartCells, Sums
-from .table import Table, check_table
+from .table import Table, check_table, whole_lines
 
 TERMS: dict[str, dict[str, str]] = _core.history_terms
 """The columns of the table, before those of pairs: `unit`, `meaning`, `role` in the balance of the
@@ -278,14 +278,15 @@ def read_history(path: str | Path) -> dict[str, np.ndarray]:
     if path.is_dir():
         path = path / "history.csv"
     try:
-        with open(path, newline="", encoding="utf-8") as file:
-            lines = file.read().split("\n")[:-1]  # a whole row ends with a newline
+        lines = whole_lines(path)
         rows = list(csv.reader(lines))
         header = rows[0]
         table = [[float(cell or "nan") for cell in row] for row in rows[1:]]
         columns = np.array(table, dtype=float).reshape(len(table), len(header))
     except FileNotFoundError as error:
         raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
+    except CaseError as error:
+        raise CaseError(f"'{path}' {error.rule}", error.remedy) from error
     except UnicodeDecodeError as error:
         raise CaseError(f"'{path}' is not a history table of mpm3dpp: it is no text") from error
     except (OSError, ValueError, IndexError, csv.Error) as error:

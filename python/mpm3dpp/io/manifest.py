@@ -17,6 +17,7 @@ import numpy as np
 from mpm3dpp.base.disk import write_atomically
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.machine import command_line, processor_name
+from mpm3dpp.base.reading import read_file
 
 from .records import (
     ContactRecord,
@@ -224,6 +225,9 @@ def build_manifest(
     )
 
 
+_MOST = 256 << 20  # Bytes of a manifest that are read.
+
+
 def hash_case(case: Mapping[str, Any]) -> str:
     """SHA-256 (hexadecimal) of the case as JSON with sorted keys and no white space."""
     text = json.dumps(_plain(dict(case)), sort_keys=True, separators=(",", ":"))
@@ -253,9 +257,11 @@ def read_manifest(path: str | Path) -> dict[str, Any]:
     if path.is_dir():
         path = path / "manifest.json"
     try:
-        return dict(json.loads(path.read_text(encoding="utf-8")))
+        return dict(json.loads(read_file(path, _MOST, "give the output folder of a run")))
     except FileNotFoundError as error:
         raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
+    except CaseError as error:
+        raise CaseError(f"'{path}' {error.rule}", error.remedy) from error
     except (OSError, TypeError, ValueError) as error:
         raise CaseError(f"'{path}' is not a manifest of mpm3dpp: {error}") from error
 

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from mpm3dpp.base.errors import CaseError, nearest
+from mpm3dpp.base.reading import open_file
 
-from .table import check_table
+from .table import check_table, whole_lines
 
 PROBES = "probes"
 FIRST_COLUMNS = ("time", "step", "particles", "mass")
@@ -29,7 +30,7 @@ def tables_of_probes(folder: Path) -> list[Path]:
     """Return the tables of probes in the folder of a run, in order; other files are the user's."""
     found = []
     for path in sorted((folder / PROBES).glob("*.csv")):
-        with contextlib.suppress(OSError), open(path, "rb") as file:
+        with contextlib.suppress(OSError, CaseError), open_file(path) as file:
             if file.readline().startswith(",".join(FIRST_COLUMNS).encode()):
                 found.append(path)
     return found
@@ -50,14 +51,15 @@ def read_probe(folder: Path, name: str) -> dict[str, np.ndarray]:
     """
     path = probe_path(folder, name)
     try:
-        lines = path.read_text(encoding="utf-8").split("\n")[:-1]  # A whole row ends with one.
-        header, *rows = csv.reader(lines)
+        header, *rows = csv.reader(whole_lines(path))
         table = np.array([list(map(float, row)) for row in rows], dtype=float)
         columns = table.reshape(len(rows), len(header))
     except FileNotFoundError as error:
         known = probe_names(folder)
         remedy = nearest(name, known) if known else "give the case a table [probe.NAME]"
         raise CaseError("is no probe of this run", remedy, value=name) from error
+    except CaseError as error:
+        raise CaseError(f"'{path}' {error.rule}", error.remedy) from error
     except (OSError, ValueError, csv.Error) as error:
         raise CaseError(f"'{path}' is not a table of a probe: {error}") from error
     return {title: columns[:, k] for k, title in enumerate(header)}

@@ -18,6 +18,7 @@ from .frame_file import frame_path, is_whole, read_arrays, read_info, read_table
 from .grain_results import GrainResults
 from .history import read_history
 from .one_file import arrays_of_one_file
+from .open_h5 import checked_h5, own
 from .part_cells import PART_COLUMNS, PART_LIMIT, of_body
 from .probe_tables import read_probe
 from .rows import FROM_VTK, is_tensor
@@ -44,8 +45,6 @@ class Results(Sampling, GrainResults, Shown):
     """
 
     def __init__(self, path: str | Path) -> None:
-        import h5py
-
         path = arguments.path("path", path)
         if path.is_dir():
             path = path / "results.vtkhdf"
@@ -53,12 +52,12 @@ class Results(Sampling, GrainResults, Shown):
         if not path.is_file():
             raise CaseError(f"there is no file '{path}': give the output folder of a run")
         try:
-            self._file = h5py.File(path, "r", locking=False)
+            self._file = checked_h5(path)
             root = self._file["VTKHDF"]
             count = int(root["Steps"].attrs["NSteps"])
-            times, steps = root["Steps/Values"][:count].tolist(), []
+            times, steps = own(root["Steps/Values"])[:count].tolist(), []
             if "step" in root["FieldData"]:
-                steps = root["FieldData/step"][:count].tolist()
+                steps = own(root["FieldData/step"])[:count].tolist()
             self._names = ["position", *root["PointData"]]
             run = json.loads(self._file["mpm3dpp"].attrs["run"])
             folder = run.get("frames")

@@ -11,8 +11,10 @@ import zlib
 from collections.abc import Mapping
 from pathlib import Path
 
-from mpm3dpp.base.disk import bring_to_disk, checksum, writing
+from mpm3dpp.base.disk import bring_to_disk, checksum, no_link, writing
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.machine import MEMORY
+from mpm3dpp.base.reading import read_file
 
 
 class Table:
@@ -27,10 +29,11 @@ class Table:
         self._path = path
         self._size, self._check = (known["size"], known["check"]) if known else (0, 0)
         with writing(path):
-            if known is not None:
-                os.truncate(path, self._size)
             # Not buffered: what could not be written must not be tried again later.
-            self._file = open(path, "wb" if known is None else "ab", buffering=0)  # noqa: SIM115
+            mode = "wb" if known is None else "ab"
+            self._file = open(path, mode, buffering=0, opener=no_link)  # noqa: SIM115
+            if known is not None:
+                self._file.truncate(self._size)
         if known is None:
             text = io.StringIO()
             csv.writer(text, lineterminator="\n").writerow(header)
@@ -54,13 +57,25 @@ class Table:
                     left = left[self._file.write(left) :]
         except CaseError:
             with contextlib.suppress(OSError):  # A reader drops half a row.
-                os.truncate(self._path, self._size)
+                self._file.truncate(self._size)
             raise
         self._size, self._check = self._size + len(data), check
 
     def close(self) -> None:
         with writing(self._path):
             self._file.close()
+
+
+def whole_lines(path: Path) -> list[str]:
+    """Return the lines of a table; a last one that a killed run left unfinished is dropped.
+
+    Raises:
+        FileNotFoundError: there is none.
+        CaseError: it is no file, has more than the memory, or cannot be read; rule and remedy only.
+        UnicodeDecodeError: it is no text.
+    """
+    data = read_file(path, MEMORY // 8, "take rows out")
+    return data.decode("utf-8").replace("\r\n", "\n").split("\n")[:-1]
 
 
 def check_table(path: Path, known: Mapping[str, int]) -> None:
