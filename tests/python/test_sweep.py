@@ -147,7 +147,7 @@ def test_a_sweep(tmp_path: Path) -> None:
     assert len(lines) == 7 and lines[-2:] == ["out/sweep.csv", "out/sweep.png"]
     with open(tmp_path / "out" / "sweep.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert rows[1]["folder"] == "friction=0_velocity=_3_1"
+    assert rows[1]["folder"] == "contact.friction=0,body.left.velocity=_3,1_4d1409"
     case = load_case(tmp_path / "case.toml")
     for row in rows:
         velocity = [5, 0] if row["body.left.velocity"] == "[5,0]" else [3, 1]

@@ -28,6 +28,7 @@ from typing import Any
 from mpm3dpp.base.errors import CaseError, nearest
 from mpm3dpp.base.machine import MEMORY, PARTICLE_BYTES_WITH_GRID
 from mpm3dpp.io.folders import writable_folder
+from mpm3dpp.io.foreign import refuse_to_draw
 from mpm3dpp.run.device import CPU, CUDA, ONE_PROCESS
 
 from .cases import BENCHES, Bench
@@ -218,6 +219,7 @@ def main(
         raise CaseError("is not the name of a PNG file", remedy, key="--plot", value=str(plot))
     if plot is not None:
         writable_folder(plot.parent)
+        refuse_to_draw(plot)
     alone = len(sizes) <= 1 and len(threads) == len(ranks) == 1
     with progress(quiet=json) as told:
         try:

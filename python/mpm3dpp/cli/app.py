@@ -87,7 +87,8 @@ def run(
         bool,
         typer.Option(
             "--anew",
-            help="Begin anew, though the folder holds an unfinished run or another case's.",
+            help="Begin anew, though the folder holds an unfinished run or another case's; other "
+            "files are never written over.",
         ),
     ] = False,
     no_pictures: Annotated[
@@ -99,6 +100,7 @@ def run(
     mpm3dpp run case.toml --set contact.friction=0.2 --out results/rough
     """
     from mpm3dpp.io.folders import default_folder, folder_of_run
+    from mpm3dpp.io.foreign import refuse_foreign
     from mpm3dpp.run.resume import refuse_to_begin_anew
 
     count = ranks or 1
@@ -112,6 +114,7 @@ def run(
 
         raise CaseError(f"{ONE_PROCESS}: leave --ranks out")
     with folder_of_run(folder):
+        refuse_foreign(folder, loaded.probe)
         if not resume and not anew:
             refuse_to_begin_anew(folder, loaded)
         if count > 1:

@@ -44,6 +44,7 @@ def export(
 
     mpm3dpp export results/rings --where "body=left, velocity_x < 0"
     """
+    from mpm3dpp.base.ours import refuse_link
     from mpm3dpp.io.export import export as write
     from mpm3dpp.io.export import file_name
     from mpm3dpp.io.results import open_results
@@ -53,6 +54,8 @@ def export(
             rule = f"is no frame: there are {len(results)}"
             raise CaseError(rule, "counted from 0", key="--frame", value=frame)
         folder = out if every and out is not None else folder / "export"
+        if out is None:
+            refuse_link(folder)
         for k in range(len(results)) if every else [results.number(frame)]:
             target = folder / file_name(k, kind.value)
             if out is not None and not every:

@@ -19,7 +19,9 @@ def import_file(
         Path | None, typer.Option("-o", "--out", help="Case file; default NAME.toml here.")
     ] = None,
     units: Units = None,
-    force: Annotated[bool, typer.Option("--force", help="Write over files.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over files that are there.")
+    ] = False,
 ) -> None:
     """Write an input file of MPM3D as a case file in SI units."""
     from mpm3dpp.importers import import_file as read

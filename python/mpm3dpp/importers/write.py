@@ -13,6 +13,7 @@ import numpy as np
 from mpm3dpp.base.csv_points import write_points
 from mpm3dpp.base.disk import make_folder, write_atomically
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.ours import refuse_link
 from mpm3dpp.base.readers import reader_of
 from mpm3dpp.case.particles import Particles
 from mpm3dpp.grains import GrainCentres
@@ -40,7 +41,7 @@ def write_case(found: Imported, target: Path, force: bool = False) -> list[Path]
     Args:
         found: what was imported.
         target: the case file; the others are named `NAME_BODY.csv` after it.
-        force: write over files that are there.
+        force: write over files that are there, whose they are; but over no link.
 
     Returns:
         The files written, the case file first.
@@ -59,6 +60,8 @@ def write_case(found: Imported, target: Path, force: bool = False) -> list[Path]
     if there is not None and not force:
         remedy = "give another name with -o, or --force to write over it"
         raise CaseError("is there already", remedy, key=str(there))
+    for file in files:
+        refuse_link(file)
     make_folder(target.parent)
     origin = Path(found.name).name
     for ((kind, name, key), given), file in zip(points.items(), files[1:], strict=True):

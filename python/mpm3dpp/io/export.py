@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import shutil
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,7 @@ import numpy as np
 
 from mpm3dpp.base.disk import make_folder, replacing, writing
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.ours import MARK, refuse_others
 
 from .data_frames import columns_of
 from .results import Results
@@ -39,7 +42,8 @@ def export(
 
     Raises:
         IndexError: there is no such frame.
-        CaseError: the file cannot be written, PyVista is not installed, or see `chosen`.
+        CaseError: the file cannot be written, or one is there that is not of an export; PyVista is
+            not installed, or see `chosen`.
     """
     arrays = results.arrays(frame)
     if strain:
@@ -54,6 +58,7 @@ def export(
         raise CaseError("leaves no particle", "give other conditions", key="where", value=where)
     make_folder(out.parent)
     if kind == "csv":
+        refuse_others(out, b"position_x,", mark="")
         _write_csv(out, {name: values[keep] for name, values in columns.items()})
         return out
     cloud: Any = results[frame]
@@ -62,9 +67,22 @@ def export(
     if where:
         cloud = cloud.extract_points(np.flatnonzero(keep), adjacent_cells=False)
     whole = cloud.cast_to_unstructured_grid() if kind == "vtu" else _as_poly_data(cloud)
-    with writing(out):
-        whole.save(out)
+    refuse_others(out, b"<?xml")
+    _save_vtk(out, whole, kind)
     return out
+
+
+def _save_vtk(out: Path, whole: Any, kind: str) -> None:
+    """Write a file for VTK, with our mark as a comment at its head."""
+    with (
+        writing(out),
+        tempfile.TemporaryDirectory(prefix=".", dir=out.parent) as folder,
+    ):
+        made = Path(folder, f"made.{kind}")
+        whole.save(made)
+        with open(made, "rb") as source, replacing(out) as file:
+            file.write(source.readline() + f"<!-- {MARK} -->\n".encode())
+            shutil.copyfileobj(source, file)
 
 
 def _as_poly_data(cloud: Any) -> Any:

@@ -38,12 +38,12 @@ def beside_default(case_file: Path, what: str) -> Path:
 
 
 # What a run writes beside the frames and the history, which it begins anew.
-_PICTURES = (
+PICTURES = (
     *("frame.png", "energies.png", "probes.png", "first_contact.png", "force_network.png"),
     "animation.gif",
 )
 REPORT = "report.html"
-_OF_A_RUN = ("manifest.json", REPORT, *_PICTURES)
+OF_A_RUN = ("manifest.json", REPORT, *PICTURES)
 
 
 def forget_last_run(folder: Path, checkpoint: bool = True) -> None:
@@ -59,7 +59,7 @@ def forget_last_run(folder: Path, checkpoint: bool = True) -> None:
     """
     half = unfinished(Path(CHECKPOINT)).name
     anew = (PAIRS, half, PREVIOUS, CHECKPOINT)  # A run that begins anew may have no such table.
-    old = [folder / name for name in (*_OF_A_RUN, *(anew if checkpoint else ()))]
+    old = [folder / name for name in (*OF_A_RUN, *(anew if checkpoint else ()))]
     for path in [*old, *(tables_of_probes(folder) if checkpoint else ())]:
         try:
             path.unlink(missing_ok=True)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mpm3dpp.base.disk import writing
+from mpm3dpp.base.disk import replacing
+from mpm3dpp.base.ours import refuse_others
 from mpm3dpp.plots.labels import prefix
 
 from .curves import Curve
@@ -68,9 +69,10 @@ def table(options: Options, columns: dict[str, np.ndarray], units: dict[str, str
 def write_csv(path: Path, columns: dict[str, np.ndarray], units: dict[str, str]) -> Path:
     """Write all rows and columns; the first line holds the names and units."""
     head = ",".join(f"{name} [{units[name] or '1'}]" for name in columns)
-    with writing(path):
+    refuse_others(path, head.encode(), mark="")
+    with replacing(path) as file:
         rows = np.column_stack(list(columns.values()))
-        np.savetxt(path, rows, "%.12g", ",", header=head, comments="")
+        np.savetxt(file, rows, "%.12g", ",", header=head, comments="")
     return path
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mpm3dpp.base.disk import make_folder, replacing
+from mpm3dpp.base.ours import MARK
 
 from .frames import View, draw_frame, view_of
 from .look import PLAIN, Look
@@ -67,7 +68,13 @@ def save_animation(
     make_folder(path.parent)
     with replacing(path) as file:
         shown[0].save(
-            file, format="GIF", save_all=True, append_images=shown[1:], duration=durations, loop=0
+            file,
+            format="GIF",
+            save_all=True,
+            append_images=shown[1:],
+            duration=durations,
+            loop=0,
+            comment=MARK.encode(),
         )
     return path
 

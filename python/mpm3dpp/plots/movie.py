@@ -16,7 +16,9 @@ import numpy as np
 
 from mpm3dpp.base.disk import cannot_write, make_folder, unfinished, writing
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.ours import MARK
 from mpm3dpp.base.progress import ProgressLine
+from mpm3dpp.io.foreign import refuse_to_draw
 
 from .animation import LENGTH, evenly, pictures, save_animation
 from .frames import view_of
@@ -55,6 +57,7 @@ def save_movie(
             written; or see `draw_frame`.
     """
     check_movie(path)
+    refuse_to_draw(path)
     with ProgressLine(quiet=quiet) as line:
 
         def told(count: int, total: int) -> None:
@@ -136,12 +139,14 @@ class _Encoder:
             self._new.unlink(missing_ok=True)
 
     def _start(self, size: tuple[int, int]) -> None:
+        self._new.unlink(missing_ok=True)  # It might be a link.
         kind, *codec = _CODECS[self._path.suffix.lower()]
         # Players want numbers of pixels that are even.
         even = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p"]
         given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}"]
         given += ["-r", f"{self._rate:g}", "-i", "-"]
         command = [self._program, "-loglevel", "error", "-y", *given, "-an", *even, *codec]
+        command += ["-metadata", f"comment={MARK}"]
         try:
             self._process = subprocess.Popen(
                 [*command, "-f", kind, str(self._new.absolute())],

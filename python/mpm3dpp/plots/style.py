@@ -13,7 +13,9 @@ import numpy as np
 
 from mpm3dpp.base.disk import make_folder, replacing, writing
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.ours import MARK
 from mpm3dpp.base.reading import refuse_nul
+from mpm3dpp.io.foreign import refuse_to_draw
 
 from .labels import short
 
@@ -64,6 +66,10 @@ _SETTINGS: Any = {
 }
 
 
+_PROGRAM = {"png": "Software", **dict.fromkeys(("pdf", "ps", "eps", "svg"), "Creator")}
+"""Where formats of pictures have the name of the program that has made them."""
+
+
 @contextlib.contextmanager
 def styled() -> Iterator[None]:
     """Our settings of matplotlib inside the block; the user's own stay untouched."""
@@ -109,13 +115,16 @@ def save(figure: Figure, path: Path, whole: bool = False) -> Path:
     """Write a picture, the white margin cut off unless it is wanted whole.
 
     Raises:
-        CaseError: that fails.
+        CaseError: that fails, or a file is there that is not ours.
     """
     picture_path(path)
+    refuse_to_draw(path)
     make_folder(path.parent)
     with replacing(path) as file:
         form = path.suffix.lstrip(".")
         cut: dict[str, Any] = {} if whole else {"bbox_inches": "tight", "pad_inches": 0.06}
+        if program := _PROGRAM.get(form.lower()):
+            cut["metadata"] = {program: MARK}
         figure.savefig(file, format=form, dpi="figure", **cut)
     return path
 

@@ -26,7 +26,9 @@ def report(folder: str | Path, path: str | Path | None = None) -> Path:
             or a file of the run is damaged, once the page without it has been written.
     """
     from mpm3dpp.base.disk import write_atomically
+    from mpm3dpp.base.ours import refuse_link, refuse_others
     from mpm3dpp.io.folders import REPORT, writable_folder
+    from mpm3dpp.io.foreign import is_run
 
     from .found import look  # With what follows the slowest imports.
     from .page import compose
@@ -35,6 +37,9 @@ def report(folder: str | Path, path: str | Path | None = None) -> Path:
     target = folder / REPORT if path is None else arguments.path("path", path)
     with look(folder) as found:
         _check_target(target)
+        if not (target.name == REPORT and is_run(target.parent)):
+            refuse_others(target, b"<!DOCTYPE html>")
+        refuse_link(target)
         writable_folder(target.parent)
         write_atomically(target, compose(found, target.parent))
         problems = found.problems

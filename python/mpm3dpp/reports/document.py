@@ -7,6 +7,7 @@ import html
 from dataclasses import dataclass
 
 from mpm3dpp.base.markup import Html
+from mpm3dpp.base.ours import MARK
 
 from .style import STYLE
 
@@ -36,6 +37,7 @@ def document(title: str, body: str) -> str:
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f'<meta name="generator" content="{MARK}">\n'
         '<meta name="color-scheme" content="light dark">\n'
         f"<title>{html.escape(title)}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n"
         f"{body}</main>\n</body>\n</html>\n"

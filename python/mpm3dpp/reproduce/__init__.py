@@ -11,6 +11,7 @@ from typing import Any
 
 from mpm3dpp.base.errors import CaseError, RunError, nearest
 from mpm3dpp.base.machine import processor_name, thread_count
+from mpm3dpp.base.ours import MARK, refuse_others
 from mpm3dpp.base.shipped import shipped
 from mpm3dpp.io.folders import writable_folder
 
@@ -56,6 +57,8 @@ def reproduce(
     cases = Path(examples) if examples is not None else shipped("examples")
     there, missing = chosen(only, cases)
     folder, workers = writable_folder(Path(out)), thread_count(threads)
+    for path in (*folder.glob("reproduce.*"), *folder.glob("*.png")):
+        refuse_others(path)
 
     from mpm3dpp import (
         __version__,
@@ -102,7 +105,7 @@ def _write_numbers(measured: list[Any], size: str, build: dict[str, Any], path: 
         }
         for found in measured
     }
-    content = {"size": size, **build, "examples": examples}
+    content = {"program": MARK, "size": size, **build, "examples": examples}
     write_atomically(path, json.dumps(content, indent=2) + "\n")
     return path
 

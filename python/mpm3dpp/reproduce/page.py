@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from mpm3dpp.base.ours import MARK
 from mpm3dpp.reports.document import document
 
 from . import paper
@@ -157,6 +158,6 @@ def write(text: str, out: Path) -> list[Path]:
     from mpm3dpp.base.disk import write_atomically
 
     paths = [out / "reproduce.md", out / "reproduce.html"]
-    for path, content in zip(paths, (text, as_html(text)), strict=True):
+    for path, content in zip(paths, (f"{text}\n<!-- {MARK} -->\n", as_html(text)), strict=True):
         write_atomically(path, content)
     return paths

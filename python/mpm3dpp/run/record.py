@@ -12,6 +12,7 @@ from mpm3dpp.base.errors import CaseError, RunError
 from mpm3dpp.base.signals import Notice, sentence
 from mpm3dpp.io.checkpoint import CHECKPOINT, no_checkpoint
 from mpm3dpp.io.folders import forget_last_run, only_run_in, writable_folder
+from mpm3dpp.io.foreign import refuse_foreign
 from mpm3dpp.io.manifest import Manifest
 from mpm3dpp.ranks.world import world
 
@@ -100,6 +101,7 @@ def record(
     before: Checkpoint | None = None
     notes: list[str] = []
     with only_run_in(folder):
+        refuse_foreign(folder, simulation.case.probe)
         if resume:
             _, before, notes = go_on(folder, simulation.case, lambda: simulation)
         checkpoints = Checkpoints(folder, simulation.case, before)

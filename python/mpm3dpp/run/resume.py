@@ -88,7 +88,7 @@ def refuse_to_begin_anew(folder: Path, case: Case) -> None:
 
     It is the same case if its file is, edited or not, or if its content is, wherever the file.
     """
-    _refuse_another_case(folder, case)
+    refuse_another_case(folder, case)
     if not has_checkpoint(folder):
         return
     before = _first_that_can(folder, Checkpoint.of)[0]
@@ -103,7 +103,8 @@ def refuse_to_begin_anew(folder: Path, case: Case) -> None:
         raise CaseError(rule, remedy)
 
 
-def _refuse_another_case(folder: Path, case: Case) -> None:
+def refuse_another_case(folder: Path, case: Case) -> None:
+    """Raise `CaseError` if a folder holds the run of another case; see `refuse_to_begin_anew`."""
     try:
         before = read_manifest(folder)
     except CaseError:  # None, or not ours.

@@ -14,6 +14,7 @@ from mpm3dpp.base.signals import Notice, as_exceptions
 from mpm3dpp.case.case import Case, load_case
 from mpm3dpp.io.checkpoint import CHECKPOINT, no_checkpoint
 from mpm3dpp.io.folders import forget_last_run, only_run_in, writable_folder
+from mpm3dpp.io.foreign import refuse_foreign
 from mpm3dpp.io.manifest import Manifest
 from mpm3dpp.plots.apart import draw_apart
 from mpm3dpp.ranks.world import world
@@ -44,7 +45,8 @@ def run_case(
     Args:
         case: what to run, or its file.
         out: the output folder; it is made. Results in it are replaced, also those of another case:
-            only the command refuses that. Of several processes, which mpiexec has started, all
+            only the command refuses that. Files of these names that no run has written are not.
+            Of several processes, which mpiexec has started, all
             return what the first one does; the folder is on a disk that all have.
         threads: of each process, how many; by default OMP_NUM_THREADS, else all cores.
         quiet: no progress and no summary.
@@ -105,6 +107,7 @@ def _run_case(
         raise no_checkpoint(folder / CHECKPOINT)
     writable_folder(folder)
     with only_run_in(folder):
+        refuse_foreign(folder, case.probe)
         manifest, late = _run(case, folder, threads, quiet or json, resume, interval, call, device)
     if json:
         print(json_format.dumps(manifest.to_dict(), indent=2))

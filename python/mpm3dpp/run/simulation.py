@@ -14,6 +14,7 @@ from mpm3dpp import _core
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError, RunError, nearest
 from mpm3dpp.base.machine import thread_count
+from mpm3dpp.base.ours import refuse_others
 from mpm3dpp.case.case import Case
 from mpm3dpp.fill.advisories import notes, overlap
 from mpm3dpp.fill.build import build, warnings
@@ -283,14 +284,17 @@ class Simulation:
         """Write the state to a file, in one step; `restore` goes on from it.
 
         Raises:
-            CaseError: it cannot be written, or the run has become unstable.
+            CaseError: it cannot be written, there is a file that holds no state, or the run has
+                become unstable.
         """
         if self.core.failure is not None:
             raise CaseError("a run that had to stop cannot be saved", "save it while it goes on")
         if self._world is not None and self._world.rank > 0:
             self.core.save(len)  # The first process writes.
             return
-        write_checkpoint(arguments.path("path", path), self.core, {"case": self.case.content()})
+        path = arguments.path("path", path)
+        refuse_others(path, b"PK", mark="about.json")
+        write_checkpoint(path, self.core, {"case": self.case.content()})
 
     def restore(self, path: str | Path) -> None:
         """Bring a simulation that has made no step to the state in a file, of `save` or of a run.

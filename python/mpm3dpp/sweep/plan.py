@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import itertools
 import re
 from collections.abc import Sequence
@@ -14,6 +15,7 @@ from mpm3dpp.case.case import Case
 from mpm3dpp.case.changes import assignment, path_of, value_of, values_of, with_changes
 
 _MOST = 10_000  # runs
+_LONGEST = 80  # Letters of the name of a folder, before such digits.
 
 
 @dataclass(frozen=True)
@@ -60,19 +62,21 @@ def plan_of(case: Case, sweeps: Sequence[str], out: Path) -> list[Planned]:
     found = list(itertools.product(*lists.values()))
     if len(found) > _MOST:
         raise CaseError(f"{len(found):,} runs are more than {_MOST:,}", "give fewer values")
-    plan, names = [], set[str]()
+    plan = []
     for combination in found:
         given = dict(zip(lists, combination, strict=True))
         changes = {path_of(key): value_of(value) if value else None for key, value in given.items()}
-        name = _folder(given)
-        if name in names:  # Where letters were left out.
-            name = f"{name}_{len(names)}"
-        names.add(name)
-        plan.append(Planned(given, with_changes(case, changes), out / name))
+        plan.append(Planned(given, with_changes(case, changes), out / _folder(given)))
     return plan
 
 
 def _folder(values: dict[str, str]) -> str:
-    """Return a name that says the values, so that other values have other folders."""
-    words = [f"{key.rpartition('.')[2]}={value}" for key, value in values.items()]
-    return re.sub(r"[^\w.=+-]+", "_", ",".join(words))[:80].strip("_")
+    """Return a name that says keys and values, so that others have other folders.
+
+    Where not all of it can be in a name, some digits stand for the rest.
+    """
+    whole = ",".join(f"{key}={value}" for key, value in values.items())
+    name = re.sub(r"[^\w.=+,-]+", "_", whole)[:_LONGEST].strip("_")
+    if name == whole.replace(" ", "_"):
+        return name
+    return f"{name}_{hashlib.sha256(whole.encode()).hexdigest()[:6]}"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shlex
 import subprocess
 import threading
 import time
@@ -15,7 +16,9 @@ from mpm3dpp.base import child
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.machine import thread_count
 from mpm3dpp.base.signals import as_exceptions
+from mpm3dpp.io.foreign import refuse_foreign
 from mpm3dpp.io.manifest import read_manifest
+from mpm3dpp.run.resume import refuse_another_case
 
 from .numbers import numbers_of
 from .plan import Planned
@@ -63,6 +66,25 @@ class _Processes:
             self._stopped = True
             for process in self._running:
                 process.terminate()
+
+
+def refuse_other_cases(plan: Sequence[Planned], file: Path) -> None:
+    """Raise `CaseError` if a run would take the place of one of another case, or of other files.
+
+    That of the same file is made anew, if the file has been edited.
+    """
+    for planned in plan:
+        refuse_foreign(planned.folder, planned.case.probe)
+        if str(file.absolute()) not in _command(planned.folder):
+            refuse_another_case(planned.folder, planned.case)
+
+
+def _command(folder: Path) -> list[str]:
+    """Return the words that have made the run in a folder; none where there is no such run."""
+    try:
+        return shlex.split(str(read_manifest(folder).get("command", "")))
+    except (CaseError, ValueError):
+        return []
 
 
 def run_all(

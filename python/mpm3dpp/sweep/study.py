@@ -11,11 +11,12 @@ from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.units import to_si
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.changes import changes_of, path_of, value_of, with_changes
+from mpm3dpp.io.foreign import refuse_to_draw
 
 from .numbers import chosen, unit_of
 from .plan import Planned, plan_of
 from .richardson import Converged, convergence
-from .runs import Outcome, Say, run_all
+from .runs import Outcome, Say, refuse_other_cases, run_all
 from .study_picture import save_study
 from .sweep import Swept
 from .table import replace_table
@@ -56,7 +57,8 @@ def run_study(
         say: tells the user as runs end.
 
     Raises:
-        CaseError: a mistake in the sizes or numbers, before any run begins; the disk is full.
+        CaseError: a mistake in the sizes or numbers, before any run begins; a folder holds what is
+            not of this case; the disk is full.
     """
     if cells < _LEAST:
         raise CaseError("is too few to tell an order", "give 3 or more", key="--cells", value=cells)
@@ -75,6 +77,8 @@ def run_study(
             raise CaseError("converges to nothing", remedy, key="--number", value=name)
     plan = _plan(case, changes, sizes, out)
     make_folder(out)
+    refuse_to_draw(out / "study.png")
+    refuse_other_cases(plan, file)
     outcomes = run_all(plan, file, jobs, threads, pictures, say)
     failures = [
         f"{planned.words()}: {outcome.said}"

@@ -9,11 +9,12 @@ from pathlib import Path
 
 from mpm3dpp.base.disk import make_folder
 from mpm3dpp.case.case import Case
+from mpm3dpp.io.foreign import refuse_to_draw
 
 from .numbers import chosen
 from .picture import save_sweep
 from .plan import plan_of
-from .runs import Say, run_all
+from .runs import Say, refuse_other_cases, run_all
 from .table import table_lines, write_table
 
 
@@ -57,11 +58,14 @@ def run_sweep(
         say: tells the user as runs end.
 
     Raises:
-        CaseError: a mistake in values or numbers, before any run begins; the disk is full.
+        CaseError: a mistake in values or numbers, before any run begins; a folder holds what is
+            not of this case; the disk is full.
     """
     plan = plan_of(case, sweeps, out)
     names = chosen(case, numbers)
     make_folder(out)
+    refuse_to_draw(out / "sweep.png")
+    refuse_other_cases(plan, file)
     outcomes = run_all(plan, file, jobs, threads, pictures, say)
     table = out / "sweep.csv"
     write_table(plan, outcomes, table)
