@@ -369,12 +369,15 @@ def test_mistakes_are_one_sentence(
     assert (finished / "history.csv").read_bytes() == before
 
 
+OLD = "<!DOCTYPE html>\nold, written by mpm3dpp"
+
+
 @pytest.mark.usefixtures("no_curves")
 def test_a_full_disk_leaves_the_old_page(
     finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     page = tmp_path / "page.html"
-    page.write_text("old")
+    page.write_text(OLD)
 
     def full(_: int) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -382,7 +385,7 @@ def test_a_full_disk_leaves_the_old_page(
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(CaseError, match="no space left on device; free some space"):
         mpm3dpp.report(finished, page)
-    assert page.read_text() == "old" and [p.name for p in tmp_path.iterdir()] == ["page.html"]
+    assert page.read_text() == OLD and [p.name for p in tmp_path.iterdir()] == ["page.html"]
 
 
 @pytest.mark.usefixtures("no_curves")

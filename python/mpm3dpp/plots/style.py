@@ -118,8 +118,8 @@ def save(figure: Figure, path: Path, whole: bool = False) -> Path:
         CaseError: that fails, or a file is there that is not ours.
     """
     picture_path(path)
-    refuse_to_draw(path)
     make_folder(path.parent)
+    refuse_to_draw(path)
     with replacing(path) as file:
         form = path.suffix.lstrip(".")
         cut: dict[str, Any] = {} if whole else {"bbox_inches": "tight", "pad_inches": 0.06}

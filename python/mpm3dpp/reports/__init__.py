@@ -37,10 +37,10 @@ def report(folder: str | Path, path: str | Path | None = None) -> Path:
     target = folder / REPORT if path is None else arguments.path("path", path)
     with look(folder) as found:
         _check_target(target)
+        writable_folder(target.parent)
         if not (target.name == REPORT and is_run(target.parent)):
             refuse_others(target, b"<!DOCTYPE html>")
         refuse_link(target)
-        writable_folder(target.parent)
         write_atomically(target, compose(found, target.parent))
         problems = found.problems
     if problems:
