@@ -67,6 +67,22 @@ def test_the_response_of_contact_follows_the_transfer(run, contact, chosen) -> N
     assert Case.from_text(text).contact.response == chosen
 
 
+@pytest.mark.parametrize(
+    ("run", "contact", "chosen"),
+    [
+        ("", "", "by_matter"),
+        ('transfer = "flip"', "", "impulses"),
+        ("", 'normal = "pair"', "impulses"),
+        ("", 'response = "springs"', "springs"),
+    ],
+)
+def test_what_flows_is_stopped_at_the_nodes(run, contact, chosen) -> None:
+    text = CASE.format(preset="", grid="", run=run) + f"[contact]\n{contact}\n"
+    water = "density = 1000\nstrength = { fluid = {} }\neos = { tait = { c0 = 10 } }\n"
+    body = '[body.wet]\nmaterial = "wet"\nshape = { disc = { centre = [1, 1], radius = 0.1 } }\n'
+    assert Case.from_text(f"{text}[material.wet]\n{water}{body}").contact.response == chosen
+
+
 def test_the_response_follows_a_transfer_that_is_assigned() -> None:
     case = Case.from_text(CASE.format(preset="", grid="", run=""))
     case.run.transfer = "flip"

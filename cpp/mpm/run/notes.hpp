@@ -82,8 +82,8 @@ template <int D>
 struct Sight {
   std::int64_t particles = 0;
   Seen outside, odd, swollen, left[2 * D];  // swollen: of gases
-  // Of bodies that keep together: cells that hold some, and those beside an empty cell behind which
-  // there are some again.
+  // Of bodies that keep together: cells that hold some, and those beside one or two empty cells
+  // behind which there are some again.
   std::int64_t cells = 0;
   Seen gaps;
 

@@ -17,7 +17,7 @@ constexpr double small_volume = 0.01, large_volume = 100.0;  // over that at the
 // Of a gas, that fills any volume: over that at the start; and in cells. One that is alone stands
 // for ten at most (step/flowing_matter.hpp).
 constexpr double small_of_gas = 1e-3, large_of_gas = 100.0;
-constexpr double many_gaps = 0.05;  // of a body's cells, more than at the start
+constexpr double many_gaps = 0.01;  // of a body's cells, more than at the start
 constexpr double beyond = 0.1;  // of a cell, behind a wall: GIMP may push a centre a little past it
 // At a node: each meets each, 435 pairs. Equal spheres have twelve neighbours, grains of two cells
 // ten.
@@ -122,9 +122,12 @@ void look_for_gaps(const ParticlePool<D>& pool, const Patch<D>& patch, Sight<D>&
     const int step = Tile<D>::cell(one);
     for (std::uint64_t left = patch.occupied; left != 0; left &= left - 1) {
       const int cell = std::countr_zero(left);
-      if (Tile<D>::cell_index(cell)[a] + 2 >= Tile<D>::cells) continue;
-      if ((patch.occupied >> (cell + step) & 1u) != 0) continue;
-      if ((patch.occupied >> (cell + 2 * step) & 1u) == 0) continue;
+      // One or two empty cells: what is farther off may be another part of it.
+      const int behind = Tile<D>::cells - 1 - Tile<D>::cell_index(cell)[a];
+      const auto holds = [&](int k) {
+        return k <= behind && (patch.occupied >> (cell + k * step) & 1u) != 0;
+      };
+      if (holds(1) || !(holds(2) || holds(3))) continue;
       const std::uint32_t row =
           pool.order[patch.begin + patch.cell_begin[static_cast<std::size_t>(cell)]];
       sight.gaps.add(pool, patch.body, row, 1.0, 0.0);

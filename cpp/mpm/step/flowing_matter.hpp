@@ -3,7 +3,7 @@
 // part, whose inertia is m D an axis: its heat would go into a motion that the next step takes
 // away, and its volume grow without end. So a volume may not grow beyond the room that the grid has
 // for it, and a gas is heated by the work of the very forces that have acted and by all that the
-// transfer takes of its motion (docs/theory/step.md, "Matter that flows"; decision 0061).
+// transfer takes of its motion (docs/theory/step.md, "Matter that flows"; decision 0062).
 #include <algorithm>
 #include <cmath>
 

@@ -4,7 +4,7 @@
 By what was measured on thirteen problems (docs/decisions/0048-the-table.md): a basis with which an
 affine transfer goes has AFLIP, and this has USF, steps twice as long as those of the others, and
 contact by springs (docs/decisions/0054-a-smooth-surface-for-springs.md), where a body flows by
-impulses (docs/decisions/0061-matter-that-flows.md).
+impulses (docs/decisions/0062-matter-that-flows.md).
 """
 
 from __future__ import annotations
