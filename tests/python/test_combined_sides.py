@@ -78,7 +78,7 @@ def test_a_ring_is_a_disc_without_a_disc() -> None:
     whole = Disc(centre=(0.0, 0.0), radius=0.5), Disc(centre=(0.0, 0.0), radius=0.2)
     ring = Ring(centre=(0.0, 0.0), inner_radius=0.2, outer_radius=0.5)
     one = found_in({"shape": ring, "fill": "lattice"}, "inner")
-    other = found_in({"shape": whole[0] - whole[1]}, "1.outer")
+    other = found_in({"shape": whole[0] - whole[1], "fill": "lattice"}, "1.outer")
     for name in ("particles", "areas", "sizes", "arms"):
         assert np.array_equal(getattr(one, name), getattr(other, name)), name
 

@@ -24,7 +24,7 @@ from mpm3dpp.grains import GrainPacking
 from mpm3dpp.grains.orientation import orientations
 from mpm3dpp.run.summary import echo
 from mpm3dpp.shapes import Box, Cylinder, Disc, Ring, Rotate, Shape, Sphere, Translate, Tube, fill
-from mpm3dpp.shapes.filling import fill_shape
+from mpm3dpp.shapes.lattice import fill_shape
 from mpm3dpp.shapes.shells import ball_count, shell_count, shell_points, takes_shells
 from mpm3dpp.shapes.spheres import directions
 from mpm3dpp.shapes.turns import cos_sin, cube_root

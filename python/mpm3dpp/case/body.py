@@ -13,7 +13,17 @@ from mpm3dpp.base.expression import ForceField, SpinField, TotalForce, VelocityF
 from mpm3dpp.base.model import CaseModel, Choice, Count, Flag, Text
 from mpm3dpp.base.units import PositiveLength
 from mpm3dpp.shapes.base import MaybeShape
-from mpm3dpp.shapes.shells import LATTICE, SHELLS, WAYS, default_way, takes_shells, unmoved
+from mpm3dpp.shapes.cut_round import was_round
+from mpm3dpp.shapes.faces import FACES, has_faces
+from mpm3dpp.shapes.shells import (
+    LATTICE,
+    LEAVE_OUT,
+    SHELLS,
+    WAYS,
+    default_way,
+    no_shells,
+    takes_shells,
+)
 
 from .grid import Grid
 from .initial import Initial
@@ -33,8 +43,10 @@ class Body(CaseModel):
         particles_per_cell: particles per cell along each direction; default 2.
         spacing: distance of the particles [m], in place of `particles_per_cell`.
         fill: how particles fill the shape: "shells", circles and spheres about the middle, the
-            default for a disc, ring, sphere, cylinder or tube, also moved or turned; or "lattice",
-            a lattice that is aligned with the grid's origin, for all others.
+            default for a disc, ring, sphere, cylinder or tube, also moved, turned, bored or cut
+            through its middle; "faces", a lattice whose cells end at flat faces, the default for
+            boxes and what else has some across its axes, also turned; or "lattice", a lattice that
+            is aligned with the grid's origin, for all others.
         cut_at_box: leave out what of the shape lies beyond the faces of `grid.box`, as of a ball
             behind planes of symmetry.
         velocity: initial velocity [m/s], D numbers or formulas of x, y, z, r; default zero.
@@ -96,17 +108,26 @@ class Body(CaseModel):
             rule = "must not be given together with particles"
             raise violation(rule, "remove it", value=self.fill, path=("fill",))
         if self.fill == SHELLS and self.shape is not None and not takes_shells(self.shape):
-            kind = unmoved(self.shape).kind
-            rule = f"is for a disc, ring, sphere, cylinder or tube, and the shape is a {kind}"
-            remedy = f'write fill = "{LATTICE}", or leave it out'
-            raise violation(rule, remedy, value=self.fill, path=("fill",))
+            raise violation(no_shells(self.shape), LEAVE_OUT, value=self.fill, path=("fill",))
+        if self.fill == FACES and self.shape is not None and not has_faces(self.shape):
+            rule = "is for what has flat faces along the axes, and the shape has none"
+            raise violation(rule, LEAVE_OUT, value=self.fill, path=("fill",))
         return self
 
     def filled_by(self, preset: str | None = None) -> str:
-        """Return "shells" or "lattice": what fills the shape in a case of a preset."""
+        """Return "shells", "faces" or "lattice": what fills the shape in a case of a preset."""
         if self.fill is not None or self.shape is None:
             return self.fill or LATTICE
         return LATTICE if preset is not None else default_way(self.shape)
+
+    def is_weighted(self, preset: str | None = None) -> bool:
+        """Return whether the volumes of its particles are made such that the mass is the shape's.
+
+        That is so for what was round before it was cut so that shells cannot fill it.
+        """
+        if self.shape is None or self.fill is not None or preset is not None:
+            return False
+        return self.filled_by() != SHELLS and was_round(self.shape)
 
     @property
     def filling(self) -> str:

@@ -191,7 +191,7 @@ class Case(CaseModel):
         return {**self.body, **self.grains}
 
     def filled_by(self, part: str) -> str:
-        """Return "shells" or "lattice": what fills an entry of `body` or `grains`."""
+        """Return "shells", "faces" or "lattice": what fills an entry of `body` or `grains`."""
         return self.parts()[part].filled_by(self.preset)
 
     def part_path(self, name: str) -> KeyPath:

@@ -8,6 +8,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from mpm3dpp.grains import Grains
+from mpm3dpp.shapes.faces import FACES, fits_the_lattice
 from mpm3dpp.shapes.shells import SHELLS
 
 from .grid import Grid
@@ -41,6 +42,13 @@ def content_of(case: Case) -> dict[str, Any]:
     table.pop("preset", None)
     for name, body in case.body.items():
         _note_fill(table["body"][name], body, case.preset)
+        if body.shape is not None and body.filled_by(case.preset) == FACES:
+            spacing = body.particle_spacing(case.grid)
+            # Where the lattice ends at all faces it is as it was before there was a choice.
+            if not fits_the_lattice(body.shape, case.grid.origin, spacing):
+                table["body"][name]["fill"] = FACES
+        if body.is_weighted(case.preset):
+            table["body"][name]["mass"] = "of the shape"
         if body.particles is not None:
             table["body"][name]["particles"] = body.particles.digest
         if body.initial is not None and body.initial.fields is not None:

@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 
 from mpm3dpp.base.errors import violation
 from mpm3dpp.shapes import Box, Intersection
-from mpm3dpp.shapes.shells import SHELLS
+from mpm3dpp.shapes.shells import LEAVE_OUT, SHELLS, no_shells, takes_shells
 
 if TYPE_CHECKING:
     from .case import Case
@@ -28,10 +28,10 @@ def cut_bodies(case: Case) -> Iterator[PydanticCustomError]:
         elif body.shape is None:
             rule = "is for a shape, and the particles of this body are given"
             yield violation(rule, "remove it, and give those inside the box", path=path)
-        elif body.fill == SHELLS:
-            rule = "does not go with shells, which fill a whole disc or sphere"
-            yield violation(rule, 'leave out fill = "shells"', path=path)
         else:
             left = Intersection(shapes=[body.shape, Box(lower=box.lower, upper=box.upper)])
+            if body.fill == SHELLS and not takes_shells(left):
+                yield violation(no_shells(left), LEAVE_OUT, value=SHELLS, path=(*path[:2], "fill"))
+                continue
             # A copy: the user's may be of another case too.
             case.body[name] = body.model_copy(update={"shape": left, "cut_at_box": False})

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from mpm3dpp.base.model import plain
 from mpm3dpp.base.settings import functions
+from mpm3dpp.shapes.faces import FACES
 from mpm3dpp.shapes.particle_faces import faces
 from mpm3dpp.shapes.shells import LATTICE, SHELLS
 from mpm3dpp.shapes.surface_parts import Surface
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 # Points of a surface for each spacing of the particles: on a circle the more the evener its load.
-_FINER = {(2, LATTICE): 8, (2, SHELLS): 64, (3, LATTICE): 4, (3, SHELLS): 4}
+_FINER = {(2, LATTICE): 8, (2, FACES): 8, (2, SHELLS): 64}  # In 3D 4.
 _REACH = 2.5  # spacings, from a point of a surface to the particle that carries it at most
 _REACH_OF_POINT = 1.5  # the same of a point, whose arm should not leave the nodes around
 _SAME = 1e-9  # Distances that differ by less than this share of the spacing are equal.
@@ -80,7 +81,7 @@ def pieces(
         return _at_point(case, name, positions, spacing, near)
     dimension = positions.shape[1]
     shape = case.body[load.body].shape
-    finer = _FINER[dimension, case.filled_by(load.body)]
+    finer = _FINER.get((dimension, case.filled_by(load.body)), 4)
     if shape is not None:
         side = surface(shape, load.side, spacing / finer)
     else:

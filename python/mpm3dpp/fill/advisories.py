@@ -21,6 +21,7 @@ from .bond_notes import bond_notes
 from .initial import at_rest
 from .parts import Filled, FilledPart
 from .settling import settling_notes
+from .shape_notes import shape_notes
 from .unit_notes import unit_notes
 from .wall_notes import wall_notes
 
@@ -54,6 +55,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *_springs(case, bodies),
         *_crowds(case, bodies),
         *settling_notes(case, bodies),
+        *shape_notes(case),
         *_narrow(case, bodies),
     ]
     return found + unit_notes(case, bodies)

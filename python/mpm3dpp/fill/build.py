@@ -16,8 +16,9 @@ from mpm3dpp.grains import GrainFilling, Grains
 from mpm3dpp.grains.packing import ball_volume
 from mpm3dpp.ranks.world import World, agreed, share_of, together
 from mpm3dpp.shapes import fill, reference_volume
+from mpm3dpp.shapes.faces import FACES, cells_are_alike, fits_the_lattice
 from mpm3dpp.shapes.filling import holds_none
-from mpm3dpp.shapes.shells import SHELLS
+from mpm3dpp.shapes.shells import LATTICE, SHELLS
 
 from .capacity import capacity_mistakes
 from .parts import Filled, FilledPart, Particles, Survey, joined, ranges, survey
@@ -163,10 +164,20 @@ def _filled_grains(case: Case, name: str, grains: Grains, world: World | None) -
     return part
 
 
+def _refuse_mass(case: Case, name: str, error: float) -> None:
+    if abs(error) > MASS_ERROR:
+        rule = f"is filled too coarsely: its particles have {error:+.0%} of the shape's mass"
+        remedy = "give a smaller grid.cell_size or more particles_per_cell"
+        raise case.error(("body", name, "shape"), rule, remedy)
+
+
 def _filled(case: Case, name: str, body: Body, world: World | None) -> FilledPart:
     way, path = case.filled_by(name), ("body", name, body.filling)
     spacing = body.particle_spacing(case.grid)
-    sliced = world if body.shape is not None else None
+    shape, weighted = body.shape, body.is_weighted(case.preset)
+    # A slice has particles of one volume.
+    alike = way != FACES or shape is None or cells_are_alike(shape, case.grid.origin, spacing)
+    sliced = world if shape is not None and alike and not weighted else None
 
     def make(ranks: World | None = None) -> Particles:
         part, parts = (ranks.rank, ranks.size) if ranks else (0, 1)
@@ -181,6 +192,8 @@ def _filled(case: Case, name: str, body: Body, world: World | None) -> FilledPar
         if body.shape is not None and not number_of_all(len(positions), ranks):
             error = holds_none(body.shape, spacing)
             raise case.error(path, error.rule, error.remedy)
+        if weighted and shape is not None:
+            volumes = volumes * (reference_volume(shape)[0] / volumes.sum())
         velocities = agreed(
             lambda: start_velocities(case, name, positions, volumes, world=ranks), ranks
         )
@@ -191,26 +204,24 @@ def _filled(case: Case, name: str, body: Body, world: World | None) -> FilledPar
         seen, own = survey_of_slices(particles, sliced)
     else:
         seen = survey(particles)
+    if way == FACES and shape is not None and fits_the_lattice(shape, case.grid.origin, spacing):
+        way = LATTICE
     count, volumes = int(seen.counts[0]), particles.volumes
     shape_volume, exact, mass_error = None, True, 0.0
-    if body.shape is not None:
+    if own is not None or (shape is not None and bool(np.all(volumes == volumes[:1]))):
         volume = count * (own.volume if own else float(volumes[0]))
-        shape_volume, exact = reference_volume(body.shape)
-        mass_error = volume / shape_volume - 1 if shape_volume > 0 else math.inf
-        if abs(mass_error) > MASS_ERROR:
-            rule = (
-                f"is filled too coarsely: its particles have {mass_error:+.0%} of the shape's mass"
-            )
-            remedy = "give a smaller grid.cell_size or more particles_per_cell"
-            raise case.error(("body", name, "shape"), rule, remedy)
     else:
         volume = float(volumes.sum())
+    if shape is not None:
+        shape_volume, exact = reference_volume(shape)
+        mass_error = volume / shape_volume - 1 if shape_volume > 0 else math.inf
+        _refuse_mass(case, name, mass_error)
     return FilledPart(
         name=name,
         material=body.material,
         names=[name],
         spacing=spacing,
-        fill=way if body.shape is not None else "",
+        fill=way if shape is not None else "",
         survey=seen,
         volumes=np.array([volume / count]),
         masses=np.array([volume * case.material[body.material].density]),

@@ -13,7 +13,8 @@ from mpm3dpp.case.case import Case
 from mpm3dpp.grains import Grains
 from mpm3dpp.grains.packing import ball_volume
 from mpm3dpp.shapes.base import Shape
-from mpm3dpp.shapes.filling import LENGTHS_REMEDY, reference_volume
+from mpm3dpp.shapes.filling import reference_volume
+from mpm3dpp.shapes.lattice import LENGTHS_REMEDY
 from mpm3dpp.shapes.shells import SHELLS, ball_count, shell_count
 
 MANY = 1e6

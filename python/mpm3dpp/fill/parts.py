@@ -43,9 +43,9 @@ class FilledBody:
         material: name in the case.
         positions: [m], shape (n, D).
         velocities: [m/s], shape (1, D) if all are equal, else (n, D).
-        volumes: [m^3; in 2D m^2 times 1 m], shape (n,); all equal if a shape was filled.
+        volumes: [m^3; in 2D m^2 times 1 m], shape (n,).
         spacing: distance of neighbours [m], in shells about that.
-        fill: "lattice" or "shells"; "" for particles given one by one.
+        fill: "lattice", "faces" or "shells"; "" for particles given one by one.
         mass: sum over the particles [kg; in 2D per metre of thickness].
         shape_volume: the shape's volume [m^3; in 2D m^2]; None for particles given one by one.
         volume_is_exact: whether that is a closed form, else a fine lattice gave it.
@@ -108,7 +108,7 @@ class FilledPart:
         material: name in the case.
         names: of the bodies, m of them.
         spacing: distance of neighbouring particles [m], in shells about that.
-        fill: "lattice" or "shells"; "" for particles given one by one.
+        fill: "lattice", "faces" or "shells"; "" for particles given one by one.
         survey: counts, places and speeds.
         volumes: of a particle of each, on average [m^3; in 2D m^2 times 1 m], shape (m,).
         masses: [kg; in 2D per metre of thickness], shape (m,).

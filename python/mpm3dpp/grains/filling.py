@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.shapes import Disc, Sphere
-from mpm3dpp.shapes.filling import fill_round, fill_shape
+from mpm3dpp.shapes.filling import fill_round
+from mpm3dpp.shapes.lattice import fill_shape
 from mpm3dpp.shapes.shells import SHELLS
 
 from .orientation import orientations

@@ -17,7 +17,7 @@ from mpm3dpp.base.machine import BODY_BYTES, MEMORY, memory_text
 from mpm3dpp.base.model import CaseModel, Choice, Count, Text
 from mpm3dpp.base.units import Point, PositiveLength
 from mpm3dpp.shapes.shells import DEFAULT, LATTICE, SHELLS
-from mpm3dpp.shapes.shells import WAYS as FILLS
+from mpm3dpp.shapes.shells import GRAIN_WAYS as FILLS
 
 from .centres import AnyCentres
 from .packed import GrainPacking, Lengths, Wrong, needs

@@ -18,6 +18,7 @@ from mpm3dpp.fill.point_warnings import point_warnings
 from mpm3dpp.io.background import FRAME_SHARE
 from mpm3dpp.materials import Failure, catalogue, state_columns
 from mpm3dpp.plots.labels import scaled
+from mpm3dpp.shapes.faces import FACES
 from mpm3dpp.shapes.shells import SHELLS
 
 from .summary_conditions import (
@@ -178,8 +179,9 @@ def _body_line(case: Case, part: FilledPart, per_metre: str) -> str:
 
 
 def _apart(part: FilledPart) -> str:
-    """Return how far apart the particles of a body are, and whether they stand in shells."""
-    return f"{part.spacing:.4g} m apart" + (f" in {SHELLS}" if part.fill == SHELLS else "")
+    """Return how far apart the particles of a body are, and in what they stand but a lattice."""
+    how = {SHELLS: f" in {SHELLS}", FACES: " or nearly so, to end at its faces"}
+    return f"{part.spacing:.4g} m apart{how.get(part.fill, '')}"
 
 
 def _off(error: float) -> str:

@@ -47,7 +47,7 @@ def circle_counts(inner: float, outer: float, spacing: float) -> Array:
     return counts
 
 
-def circles(inner: float, outer: float, spacing: float) -> Array:
+def circles(inner: float, outer: float, spacing: float, off_axes: bool = False) -> Array:
     """Return points of equal area that fill a ring about zero [m], shape (n, 2).
 
     The points of the outermost circle lie half a step beside the axes, those of the next on them,
@@ -56,19 +56,22 @@ def circles(inner: float, outer: float, spacing: float) -> Array:
     Args:
         inner, outer: radii [m]; inner is 0 for a disc.
         spacing: about the distance of the points [m].
+        off_axes: whether all lie half a step beside the axes, none on them.
     """
     shells = len(circle_counts(inner, outer, spacing)) - 1
-    found = [circle(inner, outer, spacing, k) for k in range(shells)]
+    found = [circle(inner, outer, spacing, k, off_axes) for k in range(shells)]
     return np.concatenate([np.zeros((0, 2)), *found])
 
 
-def circle(inner: float, outer: float, spacing: float, number: int) -> Array:
+def circle(
+    inner: float, outer: float, spacing: float, number: int, off_axes: bool = False
+) -> Array:
     """Return the points of one of the circles of `circles`, from the inside, shape (n, 2)."""
     counts = circle_counts(inner, outer, spacing)
     k = number + 1
     share = (counts[k] + counts[k - 1]) / (2.0 * counts[-1])
     radius = math.sqrt(inner * inner + (outer - inner) * (outer + inner) * share)
-    offset = 0.5 if (len(counts) - 1 - k) % 2 == 0 else 0.0
+    offset = 0.5 if off_axes or (len(counts) - 1 - k) % 2 == 0 else 0.0
     return radius * _circle(int(counts[k] - counts[k - 1]), offset)
 
 
