@@ -108,11 +108,14 @@ void def_acting(SimulationClass& simulation) {
                      const TimeFunction& local) { add_damping(s, bodies, mass, local); }),
            nb::arg("bodies"), nb::arg("mass"), nb::arg("local"))
       .def("set_friction", of_any([](auto& s, int a, int b, double mu) {
-             set_pair_law(s.domain, a, b, {mu, false});
+             set_pair_law(s.domain, a, b, {mu, false, 0.0});
            }),
            nb::arg("body_a"), nb::arg("body_b"), nb::arg("mu"))
-      .def("bond", of_any([](auto& s, int a, int b) { set_pair_law(s.domain, a, b, {0.0, true}); }),
+      .def("bond",
+           of_any([](auto& s, int a, int b) { set_pair_law(s.domain, a, b, {0.0, true, 0.0}); }),
            nb::arg("body_a"), nb::arg("body_b"))
+      .def("press", of_any([](auto& s, int a, int b, double depth) { press(s, a, b, depth); }),
+           nb::arg("body_a"), nb::arg("body_b"), nb::arg("depth"))
       .def("set_velocity", changing_any([](auto& s, int body, const Input& velocities) {
              set_velocity(s, body, span_of(velocities));
            }),

@@ -1,6 +1,7 @@
 // Which particles overlap another body, and by how much (decision 0054).
 #include "mpm/contact/find_touches.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 #include <utility>
@@ -231,8 +232,16 @@ std::uint8_t surface_range(const TileGrid<D>& grid, const ParticlePool<D>& pool,
 template <int D>
 void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
                   const std::vector<ParticlePool<D>>& pools, const ContactSettings& settings,
-                  Threads& threads) {
+                  Threads& threads, bool presses) {
   const double distance = settings.gap_distance / grid.cell_size;
+  const bool pressed = presses && std::ranges::any_of(settings.pair_laws, [](const auto& x) {
+                         return x.second.pressed > 0.0;
+                       });
+  const auto further = [&](std::int32_t r, std::int32_t s) {
+    if (!pressed) return 0.0;
+    const auto group = [&](std::int32_t b) { return bodies[static_cast<std::size_t>(b)].group; };
+    return law_of(settings, group(r), group(s)).pressed / grid.cell_size;
+  };
   find_ranges(contact, grid, bodies, pools, threads);
   const TileShares shares(contact.tiles.size(), threads.count());
   // None goes: their memory is used again.
@@ -254,7 +263,8 @@ void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vecto
       for (const BodyNear<D>& r : around.all())
         for (const BodyNear<D>& s : around.all())
           if (may_push(r, s, settings.response))
-            add_touches(grid, bodies, pools[pool_number(bodies, r.body)], r, s, distance, touches);
+            add_touches(grid, bodies, pools[pool_number(bodies, r.body)], r, s,
+                        distance + further(r.body, s.body), touches);
       tile.touches.count = static_cast<std::uint32_t>(touches.size()) - tile.touches.first;
     }
   });
@@ -263,10 +273,10 @@ void find_touches(Contact<D>& contact, const TileGrid<D>& grid, const std::vecto
 template std::uint8_t surface_range<2>(const TileGrid<2>&, const ParticlePool<2>&, const Patch<2>&);
 template std::uint8_t surface_range<3>(const TileGrid<3>&, const ParticlePool<3>&, const Patch<3>&);
 template void find_touches<2>(Contact<2>&, const TileGrid<2>&, const std::vector<Body<2>>&,
-                              const std::vector<ParticlePool<2>>&, const ContactSettings&,
-                              Threads&);
+                              const std::vector<ParticlePool<2>>&, const ContactSettings&, Threads&,
+                              bool);
 template void find_touches<3>(Contact<3>&, const TileGrid<3>&, const std::vector<Body<3>>&,
-                              const std::vector<ParticlePool<3>>&, const ContactSettings&,
-                              Threads&);
+                              const std::vector<ParticlePool<3>>&, const ContactSettings&, Threads&,
+                              bool);
 
 }  // namespace mpm

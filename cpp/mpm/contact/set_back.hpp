@@ -1,4 +1,5 @@
 #pragma once
+#include "mpm/comm/comm.hpp"
 #include "mpm/contact/contact.hpp"
 
 namespace mpm {
@@ -14,5 +15,11 @@ template <int D>
 void set_back_surfaces(Contact<D>& contact, const std::vector<Body<D>>& bodies,
                        std::vector<ParticlePool<D>>& pools, const ContactSettings& settings,
                        double cell_size);
+
+/// What springs have taken up as bodies that are pressed into each other (PairLaw::pressed) went
+/// further by `more` of that before the touches were found [J; in 2D J/m]. Each rank calls it.
+template <int D>
+double work_of_pressing(const Contact<D>& contact, const std::vector<Body<D>>& bodies,
+                        const ContactSettings& whole, double more, double cell_size, Comm& comm);
 
 }  // namespace mpm

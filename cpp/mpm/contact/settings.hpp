@@ -16,6 +16,7 @@ namespace mpm {
 struct PairLaw {
   double friction = 0.0;  // coefficient of friction
   bool bonded = false;    // they stick together wherever they meet
+  double pressed = 0.0;   // depth to which they push each other from the start [m]
 };
 
 struct ContactSettings {
@@ -84,7 +85,7 @@ inline PairLaw law_of(const ContactSettings& settings, int a, int b) {
   const auto& list = settings.pair_laws;
   const auto at =
       std::ranges::lower_bound(list, key, {}, &std::pair<std::uint64_t, PairLaw>::first);
-  return at != list.end() && at->first == key ? at->second : PairLaw{settings.friction, false};
+  return at != list.end() && at->first == key ? at->second : PairLaw{settings.friction, false, 0.0};
 }
 
 /// Are any pairs bonded?

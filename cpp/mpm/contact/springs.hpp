@@ -70,6 +70,17 @@ class NodeShares {
   Index<D> last_{};
 };
 
+/// Stiffness of a particle that overlaps another body [Pa cells^(D - 2)], by the compliances of its
+/// own and of the other body [1/Pa].
+template <int D>
+double stiffness_of(const Touch<D>& touch, double own, double other) {
+  double face = 1.0;
+  for (int a = 0; a + 1 < D; ++a) face *= 2.0 * touch.half;
+  // Blocks of an edge each, one behind the other, that are shortened by the overlap; half of it,
+  // as the other body's particles do the same.
+  return 0.5 * face / (2.0 * (touch.half * own + touch.half_of_other * other));
+}
+
 /// Body r or s of a pair at a node.
 template <int D>
 struct SpringSide {
@@ -88,12 +99,7 @@ class Springs {
            const SpringSide<D>& s) {
     const bool of_r = touch.body == r.body;
     const SpringSide<D>&own = of_r ? r : s, &other = of_r ? s : r;
-    double face = 1.0;
-    for (int a = 0; a + 1 < D; ++a) face *= 2.0 * touch.half;
-    // Blocks of an edge each, one behind the other, that are shortened by the overlap; half of it,
-    // as the other body's particles do the same.
-    const double of_all =
-        0.5 * face / (2.0 * (touch.half * own.compliance + touch.half_of_other * other.compliance));
+    const double of_all = stiffness_of(touch, own.compliance, other.compliance);
     const double to_s = of_r ? 1.0 : -1.0;
     own.shares.of(touch.place() - node, [&](double share, const Vec<double, D>& signs) {
       const double stiffness = share * of_all;

@@ -206,6 +206,17 @@ void set_pair_law(Domain<D>& domain, int a, int b, const PairLaw& law) {
 }
 
 template <int D>
+void press(Simulation<D>& simulation, int a, int b, double depth) {
+  require(simulation, Phase::building, "bodies must be pressed before prepare()");
+  if (!(depth >= 0.0 && std::isfinite(depth)))
+    throw std::invalid_argument("a depth must be a finite number >= 0");
+  PairLaw law = law_of(simulation.domain.contact_settings, a, b);
+  law.pressed = depth;
+  set_pair_law(simulation.domain, a, b, law);
+  set_law(simulation.settings.contact, a, b, law);  // all of it, whatever the time
+}
+
+template <int D>
 void set_velocity(Simulation<D>& simulation, int number, std::span<const double> velocities) {
   Domain<D>& domain = simulation.domain;
   Body<D>& b = domain.body_at(number);
@@ -279,6 +290,8 @@ template void set_group<2>(Simulation<2>&, int, int);
 template void set_group<3>(Simulation<3>&, int, int);
 template void set_pair_law<2>(Domain<2>&, int, int, const PairLaw&);
 template void set_pair_law<3>(Domain<3>&, int, int, const PairLaw&);
+template void press<2>(Simulation<2>&, int, int, double);
+template void press<3>(Simulation<3>&, int, int, double);
 template void set_velocity<2>(Simulation<2>&, int, std::span<const double>);
 template void set_velocity<3>(Simulation<3>&, int, std::span<const double>);
 template void set_gravity<2>(Domain<2>&, const std::array<TimeFunction, 3>&);

@@ -55,6 +55,10 @@ void set_group(Simulation<D>& simulation, int body, int first);
 /// What holds between the bodies of two groups, each given by its first body; of one, if a == b.
 template <int D>
 void set_pair_law(Domain<D>& domain, int a, int b, const PairLaw& law);
+/// Let the bodies of two groups touch from that distance on [m], which they are drawn into each
+/// other: little by little while the run settles, see begin_settling_step().
+template <int D>
+void press(Simulation<D>& simulation, int a, int b, double depth);
 /// Of the particles of a body, (n, D) row by row; between two steps the ledger takes the work.
 template <int D>
 void set_velocity(Simulation<D>& simulation, int body, std::span<const double> velocities);

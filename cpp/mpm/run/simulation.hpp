@@ -51,6 +51,7 @@ struct Simulation {
   std::vector<HeldBody> held;  // until the run has settled
   std::optional<Failure> failure;
   Watch<D> watch;
+  double pressed_further = 0.0;         // in this step, of all that bodies are pressed (settle.hpp)
   bool wants_device = false;            // to make the steps (use_device.hpp) ...
   std::unique_ptr<OnDevice<D>> device;  // ... and has the particles
   HistoryRows history;

@@ -20,7 +20,7 @@ void start_contact(Domain<D>& domain) {
     exchange_guests(domain.contact, domain.grid, domain.bodies, domain.pools);
   if (domain.has_springs()) {
     find_touches(domain.contact, domain.grid, domain.bodies, domain.pools, domain.contact_settings,
-                 domain.threads);
+                 domain.threads, false);
     set_back_surfaces(domain.contact, domain.bodies, domain.pools, domain.contact_settings,
                       domain.grid.cell_size);
   }

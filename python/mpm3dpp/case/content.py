@@ -12,6 +12,7 @@ from mpm3dpp.shapes.faces import FACES, fits_the_lattice
 from mpm3dpp.shapes.shells import SHELLS
 
 from .grid import Grid
+from .parts import SET_BACK
 
 if TYPE_CHECKING:
     from .body import Body
@@ -58,6 +59,7 @@ def content_of(case: Case) -> dict[str, Any]:
         if grains.file is not None:
             table["grains"][name]["file"] = grains.file.digest
     del table["output"]["checkpoint_interval"]
+    _drop_interference(table["contact"])
     return dict(_rounded(table))
 
 
@@ -77,6 +79,15 @@ def _note_fill(table: dict[str, Any], part: Body | Grains, preset: str | None) -
         table["fill"] = SHELLS
     elif isinstance(part, Grains):
         table["align"] = part.align or "between"
+
+
+def _drop_interference(contact: dict[str, Any]) -> None:
+    """Leave out what older cases did not know, so that these keep their hash."""
+    if contact["interference"] == SET_BACK:
+        del contact["interference"]
+    for pair in contact.get("pair", []):
+        if pair.get("interference") is None:
+            pair.pop("interference", None)
 
 
 def _rounded(value: Any) -> Any:

@@ -11,6 +11,8 @@ from pydantic_core import PydanticCustomError
 
 from mpm3dpp.base.errors import Path, nearest, violation
 
+from .parts import PRESSED
+
 if TYPE_CHECKING:
     from .case import Case
     from .parts import ContactPair
@@ -29,6 +31,25 @@ def listed_pairs(case: Case) -> dict[tuple[int, int], ContactPair]:
     return dict(sorted(found.items()))
 
 
+def is_bonded(case: Case, first: str, second: str) -> bool:
+    """Return whether two bodies are bonded."""
+    pair = _pair_of(case, first, second)
+    return case.contact.bonded or (pair is not None and pair.bonded)
+
+
+def is_pressed(case: Case, first: str, second: str) -> bool:
+    """Return whether two bodies push each other apart where they are drawn into each other."""
+    pair = _pair_of(case, first, second)
+    given = pair.interference if pair is not None else None
+    return (given or case.contact.interference) == PRESSED
+
+
+def _pair_of(case: Case, first: str, second: str) -> ContactPair | None:
+    numbers = case.first_bodies()
+    a, b = sorted((numbers[first], numbers[second]))
+    return listed_pairs(case).get((a, b))
+
+
 def check_pairs(case: Case) -> Iterator[PydanticCustomError]:
     """Check the names in `contact.pair`.
 
@@ -39,7 +60,7 @@ def check_pairs(case: Case) -> Iterator[PydanticCustomError]:
         return  # Then no name is known, which is told already.
     for index, pair in enumerate(case.contact.pair):
         key = "bodies" if pair.bodies is not None else "materials"
-        path: Path = ("contact", "pair", index, key)
+        path = ("contact", "pair", index, key)
         known = case.parts() if pair.bodies is not None else case.material
         names = pair.bodies or pair.materials or []
         first, second = pair.bodies or ("", " ")
@@ -50,6 +71,31 @@ def check_pairs(case: Case) -> Iterator[PydanticCustomError]:
             if word not in known:
                 rule = f"is not a {'body' if key == 'bodies' else 'material'} of this case"
                 yield violation(rule, nearest(word, known), value=word, path=(*path, position))
+
+
+def check_pressed(case: Case) -> Iterator[PydanticCustomError]:
+    """Refuse bodies that are pressed into each other without springs, or without coming to rest.
+
+    Yields:
+        The violations, with their paths in the case.
+    """
+    asked: list[tuple[Path, str | None]] = [
+        (("contact", "interference"), case.contact.interference),
+        *(
+            (("contact", "pair", k, "interference"), pair.interference)
+            for k, pair in enumerate(case.contact.pair)
+        ),
+    ]
+    for path, word in asked:
+        if word != PRESSED or not case.contact_enabled:
+            continue
+        if not case.has_springs:
+            rule = "is for contact by springs, and here contact.response is impulses"
+            yield violation(rule, 'give contact.response = "springs"', value=word, path=path)
+        elif case.run.settle is None:
+            rule = "needs a run that settles: bodies go into each other little by little before it"
+            remedy = 'give run.settle = { longest = "1 ms" }, of many waves through the bodies'
+            yield violation(rule, remedy, value=word, path=path)
 
 
 def check_bonds(case: Case) -> Iterator[PydanticCustomError]:

@@ -124,13 +124,18 @@ class Output(CaseModel):
         return self
 
 
+SET_BACK, PRESSED = INTERFERENCES = ("set_back", "pressed")
+"""What becomes of bodies that are drawn into each other."""
+
+
 class ContactPair(CaseModel):
     """What holds between two bodies, or between all bodies of two materials.
 
     The name of a `grains` entry stands for all its bodies; twice, for the pairs among them.
 
     Attributes:
-        friction: Coulomb coefficient.
+        friction: Coulomb coefficient; without one that of `contact`.
+        interference: what becomes of what is drawn into each other, as in `contact`.
         bonded: they stick together wherever they meet, as one body of two materials; then without
             friction.
     """
@@ -138,6 +143,7 @@ class ContactPair(CaseModel):
     bodies: list[Text] | None = None
     materials: list[Text] | None = None
     friction: NonNegative | None = None
+    interference: Annotated[str, Choice(INTERFERENCES)] | None = None
     bonded: bool = False
 
     @model_validator(mode="after")
@@ -149,7 +155,7 @@ class ContactPair(CaseModel):
         names = getattr(self, name)
         if len(names) != 2:
             raise violation("must have two names", "give two", value=names, path=(name,))
-        if (self.friction is None) != self.bonded:
+        if (self.friction is None and self.interference is None) != self.bonded:
             remedy = "give one of them, for example friction = 0.3"
             raise violation("must have either friction or bonded = true", remedy)
         return self
@@ -162,8 +168,13 @@ class Contact(_Contact):
     "plane" and with normal_refresh_distance the default response is "impulses".
 
     Attributes:
+        interference: what becomes of bodies that are drawn into each other: with "set_back" their
+            surfaces are set back until they touch, without stress; with "pressed" they push each
+            other apart from the start, as a press fit does: into that state they come in the first
+            half of `run.settle`. For bodies with a shape, and springs.
         pair: friction of single pairs, or that they are bonded; a pair of bodies wins over a pair
             of materials, and a later entry over an earlier one.
     """
 
+    interference: Annotated[str, Choice(INTERFERENCES)] = SET_BACK
     pair: list[ContactPair] = Field(default_factory=list)

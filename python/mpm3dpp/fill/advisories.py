@@ -19,6 +19,7 @@ from mpm3dpp.ranks.world import World, together
 
 from .bond_notes import bond_notes
 from .initial import at_rest
+from .interference import Interference, beyond_walls, interference_notes
 from .parts import Filled, FilledPart
 from .settling import settling_notes
 from .shape_notes import shape_notes
@@ -55,25 +56,40 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *_springs(case, bodies),
         *_crowds(case, bodies),
         *settling_notes(case, bodies),
+        *interference_notes(case, bodies.interferences),
+        *beyond_walls(case),
         *shape_notes(case),
         *_narrow(case, bodies),
     ]
     return found + unit_notes(case, bodies)
 
 
-def overlap(case: Case, contact: dict[str, Any]) -> list[str]:
-    """Return a note on bodies that overlapped at the start, by more than particles' places do.
+def with_overlap(
+    told: list[str], case: Case, contact: dict[str, Any], drawn: list[Interference]
+) -> list[str]:
+    """Return notes with one on bodies that overlapped at the start more than particles' places do.
+
+    It takes the place of those on bodies that are drawn into each other.
 
     Args:
+        told: the other notes.
         case: that which is run.
         contact: `contact_summary()` of the core, with the bodies in it.
+        drawn: bodies that are drawn into each other.
     """
     count, most = contact["set_back_particles"], contact["set_back_most"]
     if most < _SEEN * case.grid.cell_size:
-        return []
-    return [
+        return told
+    loose = [one for one in drawn if not one.pressed]
+    known = interference_notes(case, loose)
+    who = "".join(
+        f"; body.{one.second} is drawn {one.depth:.3g} m into body.{one.first}: give "
+        'contact.interference = "pressed" if that is a press fit'
+        for one in loose
+    )
+    return [note for note in told if note not in known] + [
         f"bodies overlap at the start by up to {most:.3g} m; the surfaces of {count:,} particles "
-        "are set back by that, so that contact does not throw them apart"
+        f"are set back by that, so that contact does not throw them apart{who}"
     ]
 
 

@@ -21,6 +21,7 @@ from mpm3dpp.shapes.filling import holds_none
 from mpm3dpp.shapes.shells import LATTICE, SHELLS
 
 from .capacity import capacity_mistakes
+from .interference import interferences, too_deep
 from .parts import Filled, FilledPart, Particles, Survey, joined, ranges, survey
 from .placement import box_mistakes, overlap_mistakes
 from .settling import settling_mistakes
@@ -58,6 +59,9 @@ def build(case: Case, world: World | None = None) -> Filled:
     mistakes = [one for part in filled.parts.values() for one in box_mistakes(case, part, world)]
     mistakes += overlap_mistakes(case, filled, world)
     mistakes += settling_mistakes(case, filled)
+    filled.interferences = interferences(case)
+    if not mistakes:
+        mistakes += too_deep(case, filled.interferences)
     if mistakes:
         raise first_of(mistakes)
     return filled

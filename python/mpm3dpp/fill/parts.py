@@ -10,6 +10,8 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from .interference import Interference
+
 Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
@@ -193,10 +195,12 @@ class Filled(Sequence[FilledBody]):
 
     Attributes:
         parts: the entries of the case, by name, in the order of the bodies.
+        interferences: which of them are drawn into each other.
     """
 
-    def __init__(self, parts: list[FilledPart]) -> None:
+    def __init__(self, parts: list[FilledPart], interferences: Sequence[Interference] = ()) -> None:
         self.parts = {part.name: part for part in parts}
+        self.interferences = list(interferences)
 
     def __len__(self) -> int:
         return sum(len(part.names) for part in self.parts.values())

@@ -16,7 +16,7 @@ from mpm3dpp.base.errors import CaseError, RunError, nearest
 from mpm3dpp.base.machine import thread_count
 from mpm3dpp.base.ours import refuse_others
 from mpm3dpp.case.case import Case
-from mpm3dpp.fill.advisories import notes, overlap
+from mpm3dpp.fill.advisories import notes, with_overlap
 from mpm3dpp.fill.build import build, warnings
 from mpm3dpp.fill.initial import overburden
 from mpm3dpp.fill.point_warnings import point_warnings
@@ -102,6 +102,7 @@ class Simulation:
         numbers = {name: self._add_material(name) for name in used}
         above = overburden(case, filled, world)
         masses = {name: float(part.masses.sum()) for name, part in filled.parts.items()}
+        drawn = filled.interferences
         del filled
         entries.reverse()
         while entries:  # What the core has taken is dropped, so that memory holds it once.
@@ -109,11 +110,14 @@ class Simulation:
         self.is_recorded = False
         self._forced = set(arguments.texts("forced", forced))
         add_actions(self.core, case, self._numbers, masses, forced)
+        for one in drawn:
+            if one.pressed:
+                self.core.press(self._number(one.first), self._number(one.second), one.depth)
         try:
             self.core.prepare()
         except ValueError as error:
             raise self._refusal(str(error)) from None
-        self.notes += overlap(case, self.core.contact_summary())
+        self.notes = with_overlap(self.notes, case, self.core.contact_summary(), drawn)
         self.device_seconds = 0.0
         self.take_device()
 
