@@ -23,6 +23,7 @@ from .interference import Interference, beyond_walls, interference_notes
 from .parts import Filled, FilledPart
 from .settling import settling_notes
 from .shape_notes import shape_notes
+from .stretch_notes import stretch_notes
 from .unit_notes import unit_notes
 from .wall_notes import wall_notes
 
@@ -60,6 +61,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *beyond_walls(case),
         *shape_notes(case),
         *_narrow(case, bodies),
+        *stretch_notes(case, bodies),
     ]
     return found + unit_notes(case, bodies)
 
