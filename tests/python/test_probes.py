@@ -13,7 +13,7 @@ from mpm3dpp import Case, Probe, ProbeRegion, Simulation, load_case, open_result
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io import read_history, read_manifest
 from mpm3dpp.io.probe_tables import probe_path, read_probe
-from mpm3dpp.plots.probes import save_probes
+from mpm3dpp.plots.probes import draw_probes, save_probes
 from mpm3dpp.run.probes import next_look
 
 DOCS = Path(__file__).resolve().parents[2] / "docs" / "how-to"
@@ -120,6 +120,28 @@ def test_they_are_drawn_and_read(run: Path) -> None:
         assert [*results.probe("gauge")][:5] == ["time", "step", "particles", "mass", "velocity_x"]
         with pytest.raises(CaseError, match=r'"gauge2" is no probe .*; did you mean "gauge"'):
             results.probe("gauge2")
+
+
+def test_pictures_keep_the_signs_of_what_probes_saw() -> None:
+    """Of vectors, of tensors and of the way; what is nil all the time is no curve."""
+    time = np.linspace(0.0, 1.0, 5)
+    table = {"time": time, "step": time, "particles": time, "mass": time}
+    table |= {"velocity_x": -3.0 * time, "velocity_y": time, "velocity_z": 0.0 * time}
+    table |= {f"stress_{c}": 0.0 * time for c in ("xx", "yy", "zz", "yz", "xz")}
+    table |= {"stress_xy": -7.0 * time, "pressure": -time, "pressure_min": -2.0 * time}
+    table |= {"pressure_max": 0.0 * time, "position_x": 5.0 - 2.0 * time, "position_y": 0.0 * time}
+    figure = draw_probes({"gauge": table}, {"velocity": "m/s", "stress": "Pa"})
+    assert figure is not None
+    drawn = {
+        axes.get_ylabel().partition(" [")[0]: {
+            str(line.get_label()): float(line.get_ydata()[-1]) for line in axes.lines
+        }
+        for axes in figure.axes
+    }
+    assert drawn["velocity"] == {"gauge x": -3.0, "gauge y": 1.0}
+    assert drawn["stress"] == {"gauge xy": -7.0}
+    assert drawn["pressure"] == {"gauge": -1.0}
+    assert drawn["way from the start"] == {"gauge x": -2.0}
 
 
 def test_a_point_sees_a_linear_field() -> None:

@@ -27,8 +27,8 @@ def probes(found: Found) -> Section | None:
     drawing = draw_probes(tables, units) if tables else None
     if drawing is not None:
         caption = (
-            "What probes saw over time: of vectors the size, of positions the way from the start, "
-            "of regions and bodies also the range from the least to the largest."
+            "What probes saw over time, each component with its sign: of positions the way from "
+            "the start, of regions and bodies also the range from the least to the largest."
         )
         parts.append(curves(drawing, "probes", caption))
     return Section("probes", "Probes", joined(parts))
