@@ -27,7 +27,7 @@ from mpm3dpp.case.probe import Probe, ProbeRegion
 from mpm3dpp.case.stop import Stop
 from mpm3dpp.grains import GrainLattice, GrainPacking, Grains
 from mpm3dpp.io import history as terms
-from mpm3dpp.io import part_cells
+from mpm3dpp.io import pair_columns, part_cells
 from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
 from mpm3dpp.materials.catalogue import catalogue
 from mpm3dpp.materials.chosen import ACTIONS
@@ -302,8 +302,8 @@ def history_page() -> str:
         "",
         "A run with contact has these too, for each pair of bodies; all grains of an entry count",
         "as one body. At the start they are empty.",
-        f"With more than {terms.PAIR_LIMIT} pairs they are in `{terms.PAIRS}`, one row for each",
-        "pair that touches, with the columns `step`, `time`, `body_a`, `body_b`,",
+        f"With more than {pair_columns.PAIR_LIMIT} pairs they are in `{terms.PAIRS}`, one row for",
+        "each pair that touches, with the columns `step`, `time`, `body_a`, `body_b`,",
         "`contact_force_x`, ...",
         "",
         *table(terms.PAIR_MEANINGS),

@@ -167,7 +167,7 @@ def test_data_of_one_file_in_another(tmp_path: Path) -> None:
             '{"title": "", "case_hash": "", "bodies": [], "materials": [], "dimension": 3, '
             '"cell_size": 1, "origin": [0, 0, 0], "units": {}}'
         )
-    with open_results(path) as results, pytest.raises(CaseError, match=r"frame 0 .* is damaged"):
+    with open_results(path) as results, pytest.raises(CaseError, match="frame 0 is damaged"):
         results.arrays(0)
 
 

@@ -7,9 +7,10 @@ Nothing heavy is imported here; h5py is loaded when a file is opened, vtk never.
 from .background import BackgroundWriter
 from .fields import Frame, frame_of
 from .history import HistoryWriter, read_history
-from .manifest import Manifest, build_manifest, read_manifest
+from .manifest import Manifest, build_manifest
 from .result_hash import result_hash
 from .results import Results, open_results
+from .stored_manifest import read_manifest
 from .vtkhdf import ResultsWriter
 
 __all__ = [

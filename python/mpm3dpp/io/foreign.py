@@ -15,9 +15,9 @@ from .checkpoint import CHECKPOINT, PREVIOUS, read_about
 from .folders import OF_A_RUN, PICTURES
 from .frame_file import frame_numbers, frame_path, frames_folder
 from .history import PAIRS
-from .manifest import read_manifest
 from .open_h5 import open_h5
 from .probe_tables import FIRST_COLUMNS, PROBES, probe_path
+from .stored_manifest import manifest_data
 from .vtkhdf import RESULTS
 
 _HISTORY = "history.csv"
@@ -28,7 +28,7 @@ _PICTURE = re.compile(r"frame_\d{4,}\.png|" + "|".join(map(re.escape, PICTURES))
 def is_run(folder: Path) -> bool:
     """Return whether a folder holds a run: one of the files that tell of it is ours."""
     with contextlib.suppress(CaseError):
-        if {"case_hash", "result_hash"} <= read_manifest(folder).keys():
+        if {"case_hash", "result_hash"} <= manifest_data(folder).keys():
             return True
     with contextlib.suppress(CaseError):
         if "made_by" in read_about(folder / CHECKPOINT):

@@ -16,14 +16,17 @@ import re
 import zlib
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from pydantic import FiniteFloat, TypeAdapter
 
 from mpm3dpp.base.disk import writing
 from mpm3dpp.base.errors import CaseError
 
+from .forms import Count
 from .frame_tables import Table, columns_of, write_tables
 from .new_h5 import new_h5
 from .open_h5 import open_h5, own
@@ -51,14 +54,14 @@ class FrameInfo:
         tables: name -> CRC-32, of the tables that the file has (`io/frame_tables.py`).
     """
 
-    time: float
-    step: int
-    count: int
-    rows: list[int] = field(default_factory=list)
-    checks: dict[str, int] = field(default_factory=dict)
-    elsewhere: dict[str, int] = field(default_factory=dict)
+    time: FiniteFloat
+    step: Count
+    count: Count
+    rows: list[Count] = field(default_factory=list)
+    checks: dict[str, Count] = field(default_factory=dict)
+    elsewhere: dict[str, Count] = field(default_factory=dict)
     kinds: dict[str, tuple[int, str]] = field(default_factory=dict)
-    tables: dict[str, int] = field(default_factory=dict)
+    tables: dict[str, Count] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.rows = self.rows or [self.count]
@@ -186,6 +189,8 @@ def read_arrays(
         for name in here:
             of_parts = [columns.pop(name) for _, columns in parts]
             found[name] = np.concatenate(of_parts) if len(of_parts) > 1 else of_parts[0]
+            if len(found[name]) != info.count:
+                raise damaged(frame_path(folder, frame))
     return {name: found[name] for name in wanted}
 
 
@@ -218,25 +223,42 @@ def _read_part(
 @contextlib.contextmanager
 def _frame(path: Path) -> Iterator[h5py.File]:
     """Give the file of a frame to read; what goes wrong in the block is one sentence."""
-    number = path.stem.partition(".")[0].lstrip("0") or "0"
     try:
         with open_h5(path) as file:
             yield file
     except FileNotFoundError as error:
-        rule = f"frame {number} is missing: there is no file '{path}'"
+        rule = f"frame {_number(path)} is missing: there is no file '{path}'"
         raise CaseError(rule, "bring it back, or use other frames") from error
     except PermissionError as error:
         raise CaseError(f"cannot read '{path}': permission denied", "make it readable") from error
     except CaseError as error:
-        rule = f"frame {number}: '{path}' {error.rule}"
+        rule = f"frame {_number(path)}: '{path}' {error.rule}"
         raise CaseError(rule, "bring it back, or use other frames") from error
-    except (OSError, KeyError, TypeError, ValueError, RuntimeError, AttributeError) as error:
-        rule = f"frame {number} is damaged: '{path}' cannot be read as it was written"
-        raise CaseError(rule, "bring it back, or use other frames") from error
+    except (OSError, LookupError, TypeError, ValueError, RuntimeError, AttributeError) as error:
+        raise damaged(path) from error
+
+
+def damaged(path: Path, frame: int | None = None) -> CaseError:
+    """Return the mistake that the file of a frame is not as it was written."""
+    number = _number(path) if frame is None else frame
+    rule = f"frame {number} is damaged: '{path}' cannot be read as it was written"
+    return CaseError(rule, "bring it back, or use other frames")
+
+
+def _number(path: Path) -> str:
+    return path.stem.partition(".")[0].lstrip("0") or "0"
 
 
 def _info(file: h5py.File) -> FrameInfo:
-    return FrameInfo(**json.loads(file.attrs["frame"]))
+    info = _form().validate_json(file.attrs["frame"], strict=True)
+    if sum(info.rows) != info.count:
+        raise ValueError("other particles")
+    return info
+
+
+@cache
+def _form() -> TypeAdapter[FrameInfo]:
+    return TypeAdapter(FrameInfo)
 
 
 def _kind(column: Any) -> tuple[int, str]:

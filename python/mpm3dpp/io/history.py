@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import csv
-import itertools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from mpm3dpp.base.disk import make_folder
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.names import numbered
 
+from .pair_columns import pairs_with_columns
 from .part_cells import PartCells, Sums
 from .table import Table, check_table, whole_lines
 
@@ -34,9 +34,6 @@ PAIR_MEANINGS: dict[str, tuple[str, str]] = {
 
 ERROR_PARTS = tuple(name for name, term in TERMS.items() if term["part_of"] == "numerical")
 """The named parts of `numerical` [J]."""
-
-PAIR_LIMIT = 66
-"""Most pairs that get columns of their own (12 names); more go to `contact_pairs.csv`."""
 
 PAIRS = "contact_pairs.csv"
 
@@ -105,8 +102,8 @@ class HistoryWriter:
         self._bodies = list(bodies)
         names, numbers = numbered(bodies)
         firsts = [numbers.index(k) for k in range(len(names))]
-        pairs = list(itertools.combinations(firsts, 2)) if contact else []
-        self._pairs = {pair: k for k, pair in enumerate(pairs)} if len(pairs) <= PAIR_LIMIT else {}
+        pairs = pairs_with_columns(firsts if contact else [])
+        self._pairs = {pair: k for k, pair in enumerate(pairs or [])}
         header = list(columns)
         first = state["bodies"] if state else ()
         self._parts = PartCells(names, walls, first) if parts else None
@@ -118,7 +115,7 @@ class HistoryWriter:
         known = [None, None] if state is None or anew else state["tables"]
         self._table = Table(self.path, header, known[0])
         self._long: Table | None = None
-        if len(pairs) > PAIR_LIMIT:
+        if pairs is None:
             values = [f"contact_{kind}_{x}" for kind in ("force", "impulse") for x in _AXES]
             path = self.path.with_name(PAIRS)
             self._long = Table(path, ["step", "time", "body_a", "body_b", *values], known[1])
@@ -298,4 +295,9 @@ def read_history(path: str | Path) -> dict[str, np.ndarray]:
                 f"'{path}' is not a history table of mpm3dpp, or damaged: it has no column {name}"
             )
             raise CaseError(rule)
+    for name in ("time", "step", "dt"):
+        wrong = np.flatnonzero(~np.isfinite(columns[:, header.index(name)]))
+        if len(wrong):
+            rule = f"'{path}' is damaged: line {wrong[0] + 2} has no number for {name}"
+            raise CaseError(rule, "take the line out, or run the case again")
     return {name: columns[:, k] for k, name in enumerate(header)}

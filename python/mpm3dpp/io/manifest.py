@@ -15,10 +15,9 @@ from typing import Any, Literal
 import numpy as np
 
 from mpm3dpp.base.disk import write_atomically
-from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.machine import command_line, processor_name
-from mpm3dpp.base.reading import read_file
 
+from .forms import CaseTables, Count, Ends, Energies, Gone, Length, Limiter, Number, Ranks, Size
 from .records import (
     ContactRecord,
     LoadRecord,
@@ -76,31 +75,31 @@ class Manifest:
     case_hash: str
     status: Status
     reason: str | None
-    mass: float
-    eroded: dict[str, Any]
-    left: dict[str, Any]
-    cell_size: float
-    particles: int
-    threads: int
+    mass: Number
+    eroded: Gone
+    left: Gone
+    cell_size: Length
+    particles: Count
+    threads: Count
     device: str
-    ranks: dict[str, Any]
-    steps: int
-    resumed_step: int
+    ranks: Ranks
+    steps: Count
+    resumed_step: Count
     end_time: float
-    wall_time: float
-    ns_per_particle_step: float
-    stages: dict[str, float]
-    peak_memory_bytes: int
-    bytes: dict[str, int]
+    wall_time: Size
+    ns_per_particle_step: Size
+    stages: dict[str, Size]
+    peak_memory_bytes: Count
+    bytes: dict[str, Count]
     result_hash: str
     contact: ContactRecord
     loads: dict[str, LoadRecord]
     walls: dict[str, WallRecord]
     warnings: list[WarningRecord]
     notes: list[str]
-    limiter: dict[str, Any] | None
-    energies: dict[str, Any]
-    bodies: dict[str, dict[str, dict[str, float]]]
+    limiter: Limiter | None
+    energies: Energies
+    bodies: dict[str, Ends]
     compiler: str
     flags: str
     isa: str
@@ -108,7 +107,7 @@ class Manifest:
     processor: str
     python: str
     command: str
-    case: dict[str, Any]
+    case: CaseTables
     case_text: str
     case_file: str
 
@@ -225,9 +224,6 @@ def build_manifest(
     )
 
 
-_MOST = 256 << 20  # Bytes of a manifest that are read.
-
-
 def hash_case(case: Mapping[str, Any]) -> str:
     """SHA-256 (hexadecimal) of the case as JSON with sorted keys and no white space."""
     text = json.dumps(_plain(dict(case)), sort_keys=True, separators=(",", ":"))
@@ -242,28 +238,6 @@ def peak_memory_bytes() -> int:
         return 0
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak if platform.system() == "Darwin" else 1024 * peak  # Linux counts in KiB
-
-
-def read_manifest(path: str | Path) -> dict[str, Any]:
-    """The record of a run as plain data.
-
-    Args:
-        path: `manifest.json` or the output folder that holds it.
-
-    Raises:
-        CaseError: the file is missing or is not JSON.
-    """
-    path = Path(path)
-    if path.is_dir():
-        path = path / "manifest.json"
-    try:
-        return dict(json.loads(read_file(path, _MOST, "give the output folder of a run")))
-    except FileNotFoundError as error:
-        raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
-    except CaseError as error:
-        raise CaseError(f"'{path}' {error.rule}", error.remedy) from error
-    except (OSError, TypeError, ValueError) as error:
-        raise CaseError(f"'{path}' is not a manifest of mpm3dpp: {error}") from error
 
 
 def _plain(value: Any) -> Any:

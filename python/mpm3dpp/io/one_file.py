@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mpm3dpp.base.errors import CaseError
-
+from .frame_file import damaged
 from .open_h5 import own
 
 if TYPE_CHECKING:
@@ -22,13 +22,12 @@ def arrays_of_one_file(
     """Return arrays of a frame, as stored; all if `names` is None.
 
     Raises:
-        CaseError: it cannot be read.
+        CaseError: they are not there as they were written.
     """
     try:
         return _arrays(root, frame, names)
-    except (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError) as error:
-        rule = f"frame {frame} of '{root.file.filename}' is damaged: it cannot be read"
-        raise CaseError(rule, "use other frames") from error
+    except (OSError, LookupError, TypeError, ValueError, RuntimeError, AttributeError) as error:
+        raise damaged(Path(root.file.filename), frame) from error
 
 
 def _arrays(root: h5py.Group, frame: int, names: Collection[str] | None) -> dict[str, np.ndarray]:

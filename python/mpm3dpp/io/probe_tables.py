@@ -54,6 +54,10 @@ def read_probe(folder: Path, name: str) -> dict[str, np.ndarray]:
         header, *rows = csv.reader(whole_lines(path))
         table = np.array([list(map(float, row)) for row in rows], dtype=float)
         columns = table.reshape(len(rows), len(header))
+        if missing := set(FIRST_COLUMNS) - set(header):
+            raise ValueError(f"it has no column {sorted(missing)[0]}")
+        if not np.isfinite(columns[:, header.index("time")]).all():
+            raise ValueError("a row has no time")
     except FileNotFoundError as error:
         known = probe_names(folder)
         remedy = nearest(name, known) if known else "give the case a table [probe.NAME]"

@@ -5,12 +5,18 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any
+from typing import Annotated, Any
 
+from pydantic import Field, FiniteFloat
+
+from .forms import Count, Number
 from .part_cells import wall_pressure
 
+Pair = Annotated[list[str], Field(min_length=2, max_length=2)]
+Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
 
-@dataclasses.dataclass
+
+@dataclasses.dataclass(kw_only=True)
 class PairRecord:
     """Contact of two bodies, or of the grains of an entry with each other or with others.
 
@@ -27,14 +33,14 @@ class PairRecord:
         friction_work: energy lost by friction [J] (per metre in 2D).
     """
 
-    bodies: list[str]
-    pairs: int
-    first_time: float | None
-    first_gap: float | None
-    first_normal: list[float] | None
-    first_node: list[float] | None
-    impulse: list[float]
-    friction_work: float
+    bodies: Pair
+    pairs: Count
+    first_time: FiniteFloat | None
+    first_gap: FiniteFloat | None = None  # Earlier versions have recorded less.
+    first_normal: Vector | None = None
+    first_node: Vector | None = None
+    impulse: list[Number]
+    friction_work: Number
 
 
 @dataclasses.dataclass
@@ -47,9 +53,9 @@ class LoadRecord:
         area: on which it acts at the end [m^2; in 2D m times 1 m].
     """
 
-    impulse: list[float]
-    force: list[float]
-    area: float
+    impulse: list[Number]
+    force: list[Number]
+    area: Number
 
 
 @dataclasses.dataclass
@@ -63,10 +69,10 @@ class WallRecord:
         area: of the face [m^2; in 2D m times 1 m].
     """
 
-    force: list[float]
-    impulse: list[float]
-    pressure: float
-    area: float
+    force: list[Number]
+    impulse: list[Number]
+    pressure: Number
+    area: Number
 
 
 @dataclasses.dataclass
@@ -89,10 +95,10 @@ class WarningRecord:
     body: str
     particle: int
     step: int
-    time: float
-    position: list[float]
-    share: float
-    count: int
+    time: Number
+    position: list[Number]
+    share: Number
+    count: Count
     is_error: bool
     message: str
 
@@ -105,12 +111,12 @@ class ContactRecord:
     the tolerance; 0 is usual.
     """
 
-    bodies: int = 0
-    overlapped_nodes: int = 0
-    overlapped_nodes_max: int = 0
-    bodies_per_node_max: int = 0
-    peak_bytes: int = 0
-    unconverged_nodes: int = 0
+    bodies: Count = 0
+    overlapped_nodes: Count = 0
+    overlapped_nodes_max: Count = 0
+    bodies_per_node_max: Count = 0
+    peak_bytes: Count = 0
+    unconverged_nodes: Count = 0
     pairs: list[PairRecord] = dataclasses.field(default_factory=list)
 
 

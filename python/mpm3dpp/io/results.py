@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,13 +13,13 @@ from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError, nearest
 
 from .data_frames import data_frame, maybe_frame
-from .frame_file import frame_path, is_whole, read_arrays, read_info, read_table
+from .frame_file import damaged, frame_path, is_whole, read_arrays, read_info, read_table
 from .grain_results import GrainResults
 from .history import read_history
 from .one_file import arrays_of_one_file
-from .open_h5 import checked_h5, own
 from .part_cells import PART_COLUMNS, PART_LIMIT, of_body
 from .probe_tables import read_probe
+from .results_file import are_whole, open_file
 from .rows import FROM_VTK, is_tensor
 from .sampling import Sampling
 from .shown import Shown
@@ -51,36 +50,22 @@ class Results(Sampling, GrainResults, Shown):
         self.path = path
         if not path.is_file():
             raise CaseError(f"there is no file '{path}': give the output folder of a run")
-        try:
-            self._file = checked_h5(path)
-            root = self._file["VTKHDF"]
-            count = int(root["Steps"].attrs["NSteps"])
-            times, steps = own(root["Steps/Values"])[:count].tolist(), []
-            if "step" in root["FieldData"]:
-                steps = own(root["FieldData/step"])[:count].tolist()
-            self._names = ["position", *root["PointData"]]
-            run = json.loads(self._file["mpm3dpp"].attrs["run"])
-            folder = run.get("frames")
-        except (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError) as error:
-            raise CaseError(
-                f"'{path}' is not a results file of mpm3dpp: give the results.vtkhdf of a run"
-            ) from error
-        self._folder = path.parent / folder if folder else None
-        self._root = root
+        told = open_file(path)
+        self._file, self._root, self._names = told.file, told.root, told.names
+        run, times, steps = told.run, told.times, told.steps
+        self._folder = path.parent / run.frames if run.frames else None
         if self._folder is not None:
             self._file.close()  # A run that goes on replaces it.
             self._add_later(self._folder, times, steps)
         self._open = True
         self.times = np.array(times, dtype=float)
         self.steps = np.array(steps, dtype=np.int64)
-        self.title: str = run["title"]
-        self.case_hash: str = run["case_hash"]
-        self.bodies: list[str] = run["bodies"]
-        self.materials: list[str] = run["materials"]
-        self.dimension: int = run["dimension"]
-        self.cell_size: float = run["cell_size"]
-        self.origin = np.array(run["origin"])
-        self.units: dict[str, str] = run["units"]
+        self.title, self.case_hash = run.title, run.case_hash
+        self.bodies, self.materials = run.bodies, run.materials
+        self.dimension: int = run.dimension
+        self.cell_size = run.cell_size
+        self.origin = np.array(run.origin)
+        self.units = run.units
 
     @property
     def fields(self) -> list[str]:
@@ -113,6 +98,10 @@ class Results(Sampling, GrainResults, Shown):
             arrays = read_arrays(self._folder, frame, wanted)
         else:
             arrays = arrays_of_one_file(self._root, frame, wanted)
+        known = self._names if wanted is None else wanted.intersection(self._names)
+        counts = {"body": len(self.bodies), "material": len(self.materials)}
+        if not are_whole(arrays, known, counts):
+            raise damaged(frame_path(self._folder, frame) if self._folder else self.path, frame)
         return {k: v[:, FROM_VTK] if is_tensor(v) else v for k, v in arrays.items()}
 
     def to_pandas(self, frame: int, names: Collection[str] | None = None) -> Any:

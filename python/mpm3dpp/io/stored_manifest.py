@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The record of a run, read back from `manifest.json` as the `Manifest` that was written."""
+"""The record of a run, read back from `manifest.json`, and checked as it is read."""
 
 from __future__ import annotations
 
-import dataclasses
-import math
-from collections.abc import Mapping
+import json
+from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
 
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.reading import read_file
 
-from .manifest import Manifest, read_manifest
-from .records import ContactRecord, LoadRecord, PairRecord, WallRecord, WarningRecord
+from .manifest import Manifest
 
-Record = TypeVar("Record")
+_MOST = 256 << 20  # Bytes of a manifest that are read.
 
 # What the manifests of earlier versions did not have.
 _LATER: dict[str, Any] = {
@@ -29,39 +30,69 @@ _LATER: dict[str, Any] = {
 }
 
 
-def stored_manifest(folder: Path) -> Manifest:
-    """Return the record of a run; numbers that JSON could not hold are NaN.
+def read_manifest(path: str | Path) -> dict[str, Any]:
+    """The record of a run as plain data.
 
     Args:
-        folder: of the run.
+        path: `manifest.json` or the output folder that holds it.
 
     Raises:
         CaseError: the file is missing, or is no manifest, or damaged.
     """
-    data = _LATER | read_manifest(folder)
+    path = _file(path)
+    data = manifest_data(path)
+    _checked(data, path)
+    return data
+
+
+def stored_manifest(path: str | Path) -> Manifest:
+    """Return the record of a run; numbers that JSON could not hold are NaN.
+
+    Args:
+        path: see `read_manifest`.
+
+    Raises:
+        CaseError: see `read_manifest`.
+    """
+    path = _file(path)
+    return _checked(manifest_data(path), path)
+
+
+def manifest_data(path: str | Path) -> dict[str, Any]:
+    """Return what a manifest holds, whatever that is. Arguments and errors: `read_manifest`."""
+    path = _file(path)
     try:
-        contact = dict(data["contact"])
-        contact["pairs"] = [_record(PairRecord, pair) for pair in contact["pairs"]]
-        data["contact"] = _record(ContactRecord, contact)
-        data["loads"] = {k: _record(LoadRecord, v) for k, v in data["loads"].items()}
-        data["walls"] = {k: _record(WallRecord, v) for k, v in data["walls"].items()}
-        data["warnings"] = [_record(WarningRecord, v) for v in data["warnings"]]
-        for name in ("energies", "bodies"):
-            data[name] = _numbers(data[name])
-        return _record(Manifest, data)
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        rule = f"'{folder / 'manifest.json'}' is not a manifest of mpm3dpp, or damaged"
+        data = json.loads(read_file(path, _MOST, "give the output folder of a run"))
+    except FileNotFoundError as error:
+        raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
+    except CaseError as error:
+        raise CaseError(f"'{path}' {error.rule}", error.remedy) from error
+    except (OSError, ValueError, RecursionError) as error:
+        raise CaseError(f"'{path}' is not a manifest of mpm3dpp: {error}") from error
+    if not isinstance(data, dict):
+        raise CaseError(f"'{path}' is not a manifest of mpm3dpp: it holds no table")
+    return data
+
+
+def _file(path: str | Path) -> Path:
+    path = Path(path)
+    return path / "manifest.json" if path.is_dir() else path
+
+
+def _checked(data: dict[str, Any], path: Path) -> Manifest:
+    """Return the record; names that it does not have are left out."""
+    try:
+        # Text, since tables are those of JSON there and no objects of ours.
+        return _form().validate_json(json.dumps(_LATER | data), strict=True)
+    except (ValidationError, ValueError, RecursionError) as error:
+        where = ""
+        if isinstance(error, ValidationError):
+            first = error.errors(include_url=False, include_context=False, include_input=False)[0]
+            where = f" ({'.'.join(map(str, first['loc']))}: {first['msg'].lower()})"
+        rule = f"'{path}' is not a manifest of mpm3dpp, or damaged{where}"
         raise CaseError(rule, "remove it, or run the case again") from error
 
 
-def _record(kind: type[Record], data: Mapping[str, Any]) -> Record:
-    """Return a record of what is known of it; names that it does not have are left out."""
-    names = {field.name for field in dataclasses.fields(kind)}  # type: ignore[arg-type]
-    return kind(**{name: value for name, value in data.items() if name in names})
-
-
-def _numbers(value: Any) -> Any:
-    """Return tables of numbers with NaN for what JSON could not hold."""
-    if isinstance(value, dict):
-        return {name: _numbers(item) for name, item in value.items()}
-    return math.nan if value is None else value
+@cache
+def _form() -> TypeAdapter[Manifest]:
+    return TypeAdapter(Manifest)

@@ -4,16 +4,16 @@
 from __future__ import annotations
 
 import dataclasses
-import itertools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.errors import CaseError, show
 from mpm3dpp.io.history import read_history
-from mpm3dpp.io.manifest import read_manifest
+from mpm3dpp.io.pair_columns import pairs_of
 from mpm3dpp.io.results import open_results
+from mpm3dpp.io.stored_manifest import stored_manifest
 
 from .flat import draw_cells, draw_particles, set_view
 from .frames import PLACED, drawn, sizes_of, view_of
@@ -118,27 +118,43 @@ def plane_of(
 def _first(folder: Path, bodies: list[str]) -> Touch | None:
     """The contact that came first."""
     folder = folder if folder.is_dir() else folder.parent
-    found: list[Touch] = []
-    try:
-        pairs: list[dict[str, Any]] = read_manifest(folder)["contact"]["pairs"]
-        for pair in pairs:
-            a, b = (bodies.index(name) for name in pair["bodies"])
-            if pair["first_time"] is not None and a != b:
-                known = pair.get("first_normal") is not None  # Earlier versions recorded none.
-                plane = [np.array(pair[f"first_{k}"]) for k in ("normal", "node") if known]
-                if known and not plane[0].any():
-                    continue  # They are bonded, and touch along no plane.
-                gap = pair["first_gap"] if known else None
-                found.append(Touch(float(pair["first_time"]), a, b, gap, *plane))
-    except CaseError:  # a killed run has no manifest
-        history = read_history(folder)
-        for a, b in itertools.combinations(range(len(bodies)), 2):
-            names = [f"contact_force_{bodies[a]}_{bodies[b]}_{x}" for x in "xyz"]
-            if names[0] in history:
-                touching = np.any([np.nan_to_num(history[n]) != 0.0 for n in names], axis=0)
-                if touching.any():
-                    found.append(Touch(float(history["time"][touching][0]), a, b))
+    if (folder / "manifest.json").is_file():
+        found = _recorded(folder, bodies)
+    else:  # A killed run has none.
+        found = _of_history(read_history(folder), bodies)
     return min(found, key=lambda f: (f.time, f.a, f.b), default=None)
+
+
+def _recorded(folder: Path, bodies: list[str]) -> list[Touch]:
+    """The first contacts that the manifest has."""
+    found = []
+    for pair in stored_manifest(folder).contact.pairs:
+        for name in pair.bodies:
+            if name not in bodies:
+                rule = f"'{folder / 'manifest.json'}' tells of {show(name)}, a body that the"
+                raise CaseError(f"{rule} frames do not have", "run the case again")
+        a, b = (bodies.index(name) for name in pair.bodies)
+        if pair.first_time is None or a == b:
+            continue
+        plane = [np.array(v) for v in (pair.first_normal, pair.first_node) if v is not None]
+        if len(plane) < 2:  # Earlier versions recorded none.
+            found.append(Touch(pair.first_time, a, b))
+        elif plane[0].any():  # Else they are bonded, and touch along no plane.
+            found.append(Touch(pair.first_time, a, b, pair.first_gap, *plane))
+    return found
+
+
+def _of_history(history: dict[str, np.ndarray], bodies: list[str]) -> list[Touch]:
+    """The first contacts that the columns of pairs have."""
+    found, number = [], {name: k for k, name in enumerate(bodies)}
+    for a, b, column in pairs_of(history, bodies):
+        names = [f"{column}_{x}" for x in "xyz"]
+        touching = np.any([np.nan_to_num(history[n]) != 0.0 for n in names], axis=0)
+        if touching.any():
+            time = float(history["time"][touching][0])
+            first, second = sorted((number[a], number[b]))
+            found.append(Touch(time, first, second))
+    return found
 
 
 def draw_contact(results: Results, frame: int, touch: Touch) -> Figure:

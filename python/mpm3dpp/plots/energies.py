@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mpm3dpp.io.history import ENERGIES, ERROR_PARTS, TERMS
+from mpm3dpp.io.pair_columns import FORCE, pairs_of
 
 from .labels import prefix, short
 from .style import PALETTE, new_figure, save, styled
@@ -229,15 +230,14 @@ def _positive(curve: np.ndarray) -> np.ndarray:
 def _forces(history: dict[str, np.ndarray], bodies: list[str]) -> dict[str, np.ndarray]:
     """Size of the contact force of each pair that ever touched, "a \N{EN DASH} b" -> (rows,)."""
     forces = {}
-    head = "contact_force_"
-    both = {f"{a}_{b}": (a, b) for a in bodies for b in bodies}
+    known = {column: (a, b) for a, b, column in pairs_of(history, bodies)}
     for name in history:
-        if name.startswith(head) and name.endswith("_x"):
-            pair = name[len(head) : -2]
-            parts = [history[f"{head}{pair}_{x}"] for x in "xyz"]
+        if name.startswith(FORCE) and name.endswith("_x"):
+            column = name[: -len("_x")]
+            parts = [history[f"{column}_{x}"] for x in "xyz"]
             size = np.sqrt(sum(part**2 for part in parts))
             if np.nansum(size) > 0.0:
-                names = both.get(pair, (pair,))
+                names = known.get(column, (column[len(FORCE) :],))
                 label = " \N{EN DASH} ".join(short(each, _NAME) for each in names)
                 if label in forces:  # Cut to the same: their whole names.
                     label = " \N{EN DASH} ".join(names)

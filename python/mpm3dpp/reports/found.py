@@ -12,8 +12,10 @@ from typing import Any, TypeVar
 import numpy as np
 
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.io.about import check_about
 from mpm3dpp.io.checkpoint import CHECKPOINT, read_about
 from mpm3dpp.io.folders import is_run_in
+from mpm3dpp.io.forms import check_case
 from mpm3dpp.io.history import read_history
 from mpm3dpp.io.manifest import Manifest
 from mpm3dpp.io.results import Results, open_results
@@ -127,8 +129,12 @@ def look(folder: Path) -> Iterator[Found]:
         history = found.read(lambda: read_history(folder))
         found.history = history if history and len(history["time"]) else None
     if found.manifest is None and (folder / CHECKPOINT).exists():
-        with contextlib.suppress(CaseError):  # It matters to who goes on, and is told then.
-            found.checkpoint = read_about(folder / CHECKPOINT)
+        # If it is damaged that matters to who goes on, and is told then.
+        with contextlib.suppress(CaseError, ValueError):
+            about = read_about(folder / CHECKPOINT)
+            check_about(about)
+            check_case(about["case"])
+            found.checkpoint = about
     if RESULTS in there:
         found.results = found.read(lambda: open_results(folder))
     try:

@@ -79,6 +79,8 @@ def _limiter(found: Found, run: dict[str, Any]) -> str:
     if who is None or found.manifest is None:
         return ""
     cell, wave, speed = _cell(found), who["sound_speed"], who["speed"]
+    if not wave + speed > 0.0:
+        return ""
     text = (
         f"At the end the fastest was particle {who['particle']:,} of {who['body']}: waves in it go "
         f"at {number(wave, 5)} m/s and it moves at {number(speed, 5)} m/s, so that a cell of "

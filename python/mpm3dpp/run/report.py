@@ -80,11 +80,13 @@ def body_lines(manifest: Manifest) -> list[str]:
     for name, found in manifest.bodies.items():
         if given.get(name, {}).get("motion") is not None:
             continue
+        if not found:
+            continue
         velocities = [[found[k][f"velocity_{x}"] for x in axes] for k in ("initial", "final")]
         before, after = (math.hypot(*velocity) for velocity in velocities)
         energies = " -> ".join(f"{found[k]['kinetic']:.4g}" for k in ("initial", "final"))
         final = [v if abs(v) > _ROUNDING * after else 0.0 for v in velocities[1]]
-        eroded = found["final"]["eroded_mass"]
+        eroded = found["final"].get("eroded_mass", 0.0)
         lines.append(
             f"{name}: {before:.4g} -> {after:.4g} m/s ({_listed(final)}), kinetic energy "
             f"{energies} {unit}" + (f", eroded {eroded:.4g} kg{unit[1:]}" if eroded else "")
@@ -143,7 +145,7 @@ def gone_lines(manifest: Manifest) -> list[str]:
         energy = manifest.energies.get("final", {}).get(word, 0.0)
         lines.append(
             f"{word}: {count:,} of {manifest.particles:,} particles, {mass:.4g} kg{per} "
-            f"({mass / manifest.mass:.2%} of the mass), {energy:.4g} J{per}"
+            f"({mass / (manifest.mass or 1.0):.2%} of the mass), {energy:.4g} J{per}"
         )
     return lines
 

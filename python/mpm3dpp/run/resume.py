@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 from mpm3dpp.base.errors import CaseError, show
 from mpm3dpp.case.case import Case
 from mpm3dpp.io.checkpoint import ANEW, CHECKPOINT, PREVIOUS, DamagedError, restore_checkpoint
-from mpm3dpp.io.manifest import read_manifest
+from mpm3dpp.io.stored_manifest import manifest_data
 from mpm3dpp.io.vtkhdf import RESULTS
 
 from .checkpoints import Checkpoint
@@ -106,7 +106,7 @@ def refuse_to_begin_anew(folder: Path, case: Case) -> None:
 def refuse_another_case(folder: Path, case: Case) -> None:
     """Raise `CaseError` if a folder holds the run of another case; see `refuse_to_begin_anew`."""
     try:
-        before = read_manifest(folder)
+        before = manifest_data(folder)
     except CaseError:  # None, or not ours.
         return
     if "case_file" not in before:  # By an earlier version: the file may be the same one, edited.
@@ -114,7 +114,9 @@ def refuse_another_case(folder: Path, case: Case) -> None:
     file = before["case_file"]
     if before.get("case_hash") in (None, case.case_hash) or (file and file == case.file_path):
         return
-    title = (before.get("case") or {}).get("title", "")
-    name = " of ".join(word for word in (show(title) if title else "", file) if word)
+    told = before.get("case")
+    title = told.get("title") if isinstance(told, dict) else None
+    words = show(title) if title and isinstance(title, str) else "", file
+    name = " of ".join(word for word in words if word and isinstance(word, str))
     rule = f"'{folder}' holds the run of another case{', ' if name else ''}{name}"
     raise CaseError(rule, f"choose another --out, or {ANEW}")

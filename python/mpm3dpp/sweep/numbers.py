@@ -29,22 +29,27 @@ def numbers_of(manifest: Mapping[str, Any]) -> dict[str, float]:
     for body, told in manifest["bodies"].items():
         final = told.get("final", {})
         if final:
-            parts = [final[f"velocity_{axis}"] for axis in "xyz"]
+            parts = [_number(final[f"velocity_{axis}"]) for axis in "xyz"]
             found[f"{body}.speed"] = math.hypot(*parts)
-        found |= {f"{body}.{name}": float(value) for name, value in final.items()}
+        found |= {f"{body}.{name}": _number(value) for name, value in final.items()}
     energies = manifest["energies"].get("final", {})
-    found |= {name: float(value) for name, value in energies.items()}
+    found |= {name: _number(value) for name, value in energies.items()}
     for face, wall in (manifest.get("walls") or {}).items():
         for axis, force in zip("xyz", wall["force"], strict=False):
-            found[f"wall.{face}.force_{axis}"] = float(force)
+            found[f"wall.{face}.force_{axis}"] = _number(force)
         for axis, impulse in zip("xyz", wall["impulse"], strict=False):
-            found[f"wall.{face}.impulse_{axis}"] = float(impulse)
-        found[f"wall.{face}.pressure"] = float(wall["pressure"])
-    pairs = manifest["contact"]["pairs"]
-    of_pairs = math.fsum(float(pair["friction_work"]) for pair in pairs)
+            found[f"wall.{face}.impulse_{axis}"] = _number(impulse)
+        found[f"wall.{face}.pressure"] = _number(wall["pressure"])
+    pairs = manifest["contact"].get("pairs", [])
+    of_pairs = math.fsum(_number(pair["friction_work"]) for pair in pairs)
     found["friction_work"] = found.get("friction", of_pairs)  # at walls, too
-    found |= {name: float(manifest[name]) for name in _OF_THE_RUN}
+    found |= {name: _number(manifest[name]) for name in _OF_THE_RUN}
     return found
+
+
+def _number(value: float | None) -> float:
+    """Return a number of a manifest: NaN where JSON could not hold it."""
+    return math.nan if value is None else float(value)
 
 
 def unit_of(name: str, dimension: int) -> str:

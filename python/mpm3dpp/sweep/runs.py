@@ -17,7 +17,7 @@ from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.machine import thread_count
 from mpm3dpp.base.signals import as_exceptions
 from mpm3dpp.io.foreign import refuse_foreign
-from mpm3dpp.io.manifest import read_manifest
+from mpm3dpp.io.stored_manifest import manifest_data, read_manifest
 from mpm3dpp.run.resume import refuse_another_case
 
 from .numbers import numbers_of
@@ -82,7 +82,7 @@ def refuse_other_cases(plan: Sequence[Planned], file: Path) -> None:
 def _command(folder: Path) -> list[str]:
     """Return the words that have made the run in a folder; none where there is no such run."""
     try:
-        return shlex.split(str(read_manifest(folder).get("command", "")))
+        return shlex.split(str(manifest_data(folder).get("command", "")))
     except (CaseError, ValueError):
         return []
 
