@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from .disk import write_atomically
 from .errors import CaseError
 from .machine import MEMORY, memory_text
+from .other_programs import mistaken_file
 from .reading import open_file, unreadable
 from .units import to_si
 
@@ -129,6 +130,7 @@ def read_points(path: Path, name: str, layout: Layout, unit: str = "m") -> Point
     """
     try:
         with _text(path) as file:
+            _check_kind(file, layout)
             _check_size(file, name, layout)
             lines = _lines(file, name)
             first = next(lines, None)
@@ -169,6 +171,13 @@ def _scaled(values: Array, factor: float, power: int) -> Array:
 
 def _text(path: Path) -> io.TextIOWrapper:
     return io.TextIOWrapper(open_file(path), encoding="utf-8-sig")
+
+
+def _check_kind(file: io.TextIOWrapper, layout: Layout) -> None:
+    """Raise if a file is one of another program."""
+    head = os.pread(file.fileno(), _SAMPLE, 0)
+    if other := mistaken_file(head, os.fstat(file.fileno()).st_size):
+        raise CaseError(other.rule, layout.give)
 
 
 def _check_size(file: io.TextIOWrapper, name: str, layout: Layout) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from pydantic import BaseModel, ConfigDict, PrivateAttr, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
+from .absent_keys import unknown_key
 from .errors import (
     MISSING,
     CaseError,
@@ -77,8 +78,8 @@ class CaseModel(BaseModel, metaclass=_CaseMeta):
         found = []
         for key in data:
             if key not in known:
-                remedy = nearest(str(key), cls.model_fields)
-                found.append(violation("is not a known key", remedy, path=(str(key),)))
+                rule, remedy = unknown_key(str(key), cls.model_fields)
+                found.append(violation(rule, remedy, path=(str(key),)))
         try:
             made = handler(known)
             if not found:

@@ -27,7 +27,7 @@ from . import file as case_file
 from .body import Body
 from .changes import paths_of, with_changes
 from .checks import check_case
-from .choices import with_choices
+from .choices import with_choices, with_picture
 from .content import PRESETS, content_of, hash_of, with_preset
 from .detonation import Detonation
 from .grid import CONTACT, Grid
@@ -92,7 +92,8 @@ class Case(CaseModel):
             ValueError: a violation, of which the sentence is made where the case is read or run.
         """
         flows = any(self.flows(part) for part in self.parts())
-        self.__dict__ |= with_choices(self.grid.basis, self.run, self.contact, flows)
+        chosen = with_choices(self.grid.basis, self.run, self.contact, flows)
+        self.__dict__ |= chosen | with_picture(self)
         check_case(self)
 
     @property

@@ -17,13 +17,17 @@ from mpm3dpp.base.model import CaseModel, plain
 from .transfer import Transfer
 
 if TYPE_CHECKING:
-    from .parts import Contact, Run
+    from .case import Case
+    from .parts import Contact, Output, Run
 
 BASIS, TRANSFER = "quadratic_bspline", "aflip"
 AFFINE: dict[str, Any] = {"scheme": "usf", "cfl": 0.5}
 OTHERS: dict[str, Any] = {"scheme": "musl", "cfl": 0.25}
 OTHER_TRANSFER = "flip"
 RESPONSE, FLOWING_RESPONSE, OTHER_RESPONSE = "springs", "by_matter", "impulses"
+FLUIDS = ("fluid", "high_explosive")
+"""Strengths that bear no shear, or next to none."""
+SHEARED, PRESSED = "von_mises", "pressure"
 
 _Table = TypeVar("_Table", bound=CaseModel)
 
@@ -40,6 +44,22 @@ def with_choices(basis: str, run: Run, contact: Contact, flows: bool) -> dict[st
     """
     run = _run(run, basis)
     return {"run": run, "contact": _contact(contact, run, flows)}
+
+
+def with_picture(case: Case) -> dict[str, Output]:
+    """Return `output` of a case with what colours its picture, where it says nothing of that."""
+    output = case.output
+    if "picture" in output.model_fields_set:
+        return {"output": output}
+    picture = PRESSED if has_fluids_alone(case) else SHEARED
+    return {"output": _with(output, {"picture": picture})}
+
+
+def has_fluids_alone(case: Case) -> bool:
+    """Return whether all that deforms bears no shear, or next to none."""
+    used = [case.material[name] for name in case.materials_used if name in case.material]
+    strengths = {material.strength.model for material in used} - {"rigid"}
+    return bool(strengths) and strengths <= set(FLUIDS)
 
 
 def _run(run: Run, basis: str) -> Run:

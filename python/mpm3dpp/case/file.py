@@ -12,6 +12,7 @@ from typing import Any
 
 from mpm3dpp.base import errors
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.other_programs import mistaken_file
 from mpm3dpp.base.readers import SUFFIXES, reader_of
 from mpm3dpp.base.reading import read_file
 
@@ -163,11 +164,14 @@ def read_text(path: Path) -> str:
     """Return the text of a case file.
 
     Raises:
-        CaseError: the file is missing, no regular file, not readable, too large, or not UTF-8 text.
+        CaseError: the file is missing, no regular file, not readable, too large, not UTF-8 text, or
+            one of another program.
     """
     name = str(path)
     try:
         data = read_file(path, MOST_BYTES, "put particles into a CSV file beside it")
+        if other := mistaken_file(data):
+            raise other
         return data.decode("utf-8-sig")
     except FileNotFoundError:
         remedy = similar_file(path)

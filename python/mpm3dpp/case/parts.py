@@ -94,7 +94,8 @@ class Output(CaseModel):
         fields: what to write beyond position, velocity, stress, pressure, von_mises, id, body and
             material: "density", "sound_speed", "displacement" from the start, "volume", or a state
             column of a material.
-        picture: the column that colours the picture and the animation.
+        picture: the column that colours the picture and the animation; by default "von_mises", or
+            "pressure" where all that deform are fluids, which bear no shear.
         animation: whether a run ends with an animation of its frames, `animation.gif`.
         compression: of the frames: 0 for none, else the level of gzip, 1 to 9. Level 1 makes the
             file a third to a half smaller; it is written at some 50 MB/s then.

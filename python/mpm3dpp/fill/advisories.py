@@ -21,6 +21,7 @@ from .bond_notes import bond_notes
 from .initial import at_rest
 from .interference import Interference, beyond_walls, interference_notes
 from .parts import Filled, FilledPart
+from .run_notes import run_notes
 from .settling import settling_notes
 from .shape_notes import shape_notes
 from .stretch_notes import stretch_notes
@@ -63,6 +64,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *_narrow(case, bodies),
         *stretch_notes(case, bodies),
     ]
+    found += run_notes(case, bodies, fastest(case, bodies))
     return found + unit_notes(case, bodies)
 
 

@@ -17,6 +17,8 @@ from mpm3dpp.shapes.filling import reference_volume
 from mpm3dpp.shapes.lattice import LENGTHS_REMEDY
 from mpm3dpp.shapes.shells import SHELLS, ball_count, shell_count
 
+from .placement import CUT
+
 MANY = 1e6
 """Particles from which it is worth while to look whether a shape is inside the box, before it is
 filled: fewer are filled at once, and then looked at one by one."""
@@ -51,7 +53,8 @@ def capacity_mistakes(case: Case, memory: float = MEMORY) -> Iterator[CaseError]
             rule = _shape_outside(case, part.shape, part.particle_spacing(case.grid))
         if rule:
             path = (*case.part_path(name), part.filling)
-            yield case.error(path, rule, f"move the {part.filling}, or enlarge the box")
+            cut = "" if isinstance(part, Grains) else f"{CUT}, "
+            yield case.error(path, rule, f"move the {part.filling}, {cut}or enlarge the box")
 
 
 def _particles(case: Case, name: str, memory: float) -> float:

@@ -15,6 +15,7 @@ from mpm3dpp.base.neighbours import overlapping_boxes
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.grid import FARTHEST
 from mpm3dpp.ranks.world import World
+from mpm3dpp.shapes.shells import SHELLS
 
 from .parts import FilledPart
 from .slices import number_of_all, of_one, strips
@@ -22,6 +23,7 @@ from .slices import number_of_all, of_one, strips
 if TYPE_CHECKING:
     from .parts import Filled
 
+CUT = "leave out what lies beyond with cut_at_box = true"
 CLOSE = 0.25  # Particles of two bodies nearer than this share of their spacing overlap.
 _SLACK = 1e-9  # How far, in cells, a particle may stand outside the box by rounding.
 
@@ -71,6 +73,7 @@ def _outside(
     slack = _SLACK * case.grid.cell_size
     what = "box" if region == "box" else "region"
     positions, (lower, upper) = body.positions(world), body.bounds()
+    part_count = body.part.count
     for d, axis in enumerate("xyz"[: case.grid.dimension]):
         x = positions[:, d]
         for sign, limit, end in ((-1, corners[0][d], lower[d]), (1, corners[1][d], upper[d])):
@@ -82,7 +85,19 @@ def _outside(
                 if body.name != body.part.name:
                     who = f"the particles of {body.name}"
                 rule = f"reaches out of grid.{region}: {count} of {who} are at {side}"
-                yield case.error(path, rule, f"move the {filling}, or enlarge the {what}")
+                cut = ""
+                if region == "box" and count < part_count and body.part.name in case.body:
+                    cut = _cut(case, body.part.name)
+                yield case.error(path, rule, f"move the {filling}, {cut}or enlarge the {what}")
+
+
+def _cut(case: Case, name: str) -> str:
+    """Return the remedy for a shape that lies across a face, as one across a plane of symmetry."""
+    body = case.body[name]
+    if body.shape is None:
+        return ""
+    lattice = ' and fill = "lattice"' if body.fill == SHELLS else ""
+    return f"{CUT}{lattice}, "
 
 
 def _key(case: Case, part: str) -> tuple[KeyPath, str]:

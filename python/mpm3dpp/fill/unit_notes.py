@@ -12,12 +12,14 @@ _FASTEST = 10.0  # Times the speed of sound; the fastest impacts in laboratories
 _LIGHTEST = 20.0  # [kg/m^3]; metals have up to that in g/cm^3, and few foams are lighter.
 _HEAVIEST = 25_000.0  # [kg/m^3]; osmium has 22,590.
 _FASTEST_WAVE = 20_000.0  # [m/s]; diamond has 18,000.
+_SOFTEST, _TOUGHEST = 1e-6, 1.0  # Yield stress over E; pure metals have 1e-5, glass 0.05.
+_YIELDS = ("Y0", "A")  # Of soils a cohesion may be as little as one likes.
 _GASEOUS = ("fluid",)  # Strengths of what may be as light as a gas.
 
 
 def unit_notes(case: Case, bodies: Filled) -> list[str]:
     """Return a sentence for each number that no material or experiment has."""
-    return [*_densities(case), *_waves(case), *_speeds(case, bodies)]
+    return [*_densities(case), *_yields(case), *_waves(case), *_speeds(case, bodies)]
 
 
 def _densities(case: Case) -> list[str]:
@@ -32,6 +34,24 @@ def _densities(case: Case) -> list[str]:
             f"material.{name}.density = {material.density:.4g} kg/m^3 is {rule}; look at its unit "
             "(a plain number is in kg/m^3)"
         )
+    return found
+
+
+def _yields(case: Case) -> list[str]:
+    """Yield stresses that no solid has beside its stiffness."""
+    found = []
+    for name in case.materials_used:
+        strength = case.material[name].strength
+        stiffness = strength.parameters.get("E", 0.0)
+        for key in _YIELDS if stiffness else ():
+            share = strength.parameters.get(key, 0.0) / stiffness
+            if share <= 0.0 or _SOFTEST <= share <= _TOUGHEST:
+                continue
+            found.append(
+                f"material.{name}.strength.{strength.model}.{key} is {share:.3g} of E = "
+                f"{stiffness:.4g} Pa, {'less' if share < _SOFTEST else 'more'} than in any solid; "
+                "look at the units of both (a plain number is in Pa)"
+            )
     return found
 
 

@@ -43,7 +43,7 @@ class Shown(abc.ABC):
     def plot(
         self,
         frame: int = -1,
-        colour: str = "von_mises",
+        colour: str | None = None,
         *,
         section: Any = None,
         view: Any = None,

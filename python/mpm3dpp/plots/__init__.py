@@ -43,7 +43,7 @@ def plot_results(
             `output.animation`.
         colour: array that colours the particles ("von_mises", "pressure", "speed", "body",
             "velocity_x", "stress_xy", ... or any stored field); default the case's
-            `output.picture`, else "von_mises".
+            `output.picture`, else "von_mises", or "pressure" where no particle has a shear stress.
         out: folder for the pictures; default `folder`.
         section: a plane, in 3D: `{"y": 0.005}` or "y=5 mm". What lies on the viewer's side of it is
             cut away.
@@ -83,7 +83,7 @@ def plot_results(
 def draw_results(
     results: Results,
     frame: int = -1,
-    colour: str = "von_mises",
+    colour: str | None = None,
     **look: Any,
 ) -> Figure:
     """Return a picture of a frame as a matplotlib figure; see `Results.plot`.
@@ -91,13 +91,14 @@ def draw_results(
     Args:
         results: of `open_results`.
         frame: its number; negative numbers count from the end.
-        colour: see `plot_results`.
+        colour: see `plot_results`; by default as without a manifest there.
         look: section, view, crop, range, size and arrows, see `plot_results`.
     """
     from .frames import draw_frame
     from .look import look_of
+    from .paint import default_colour
 
-    colour = arguments.text("colour", colour)
+    colour = default_colour(results) if colour is None else arguments.text("colour", colour)
     return draw_frame(results, frame, colour, dpi=_DPI_INLINE, look=look_of(**look))
 
 

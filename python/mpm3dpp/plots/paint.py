@@ -86,6 +86,20 @@ def _of_neighbours(
     return np.array(medians)
 
 
+def default_colour(results: Any) -> str:
+    """Return the array that colours particles if nobody says: of the stress that there is.
+
+    That is "von_mises"; "pressure" where the last frame has no shear, as of a fluid; "body" where
+    it has no stress at all.
+    """
+    stresses = ("von_mises", "pressure")
+    arrays = results.arrays(len(results) - 1, stresses) if len(results) else {}
+    for name in stresses:
+        if np.nan_to_num(arrays.get(name, np.zeros(0))).any():
+            return name
+    return "body" if stresses[0] in arrays else stresses[0]
+
+
 @dataclasses.dataclass
 class ColourBar:
     """What a colour bar shows: colours with their range, label with unit, pointed ends."""

@@ -16,6 +16,7 @@ from mpm3dpp.io.stored_manifest import read_manifest
 
 from .contact import first_contact
 from .look import PLAIN, Look
+from .paint import default_colour
 
 _A_HEAP = 10  # Grains of a name, from which their forces are drawn.
 
@@ -39,7 +40,7 @@ def draw_all(
     source = folder if folder.is_dir() else folder.parent
     out = out or source
     wishes = _output(source)
-    colour = colour or wishes.get("picture") or "von_mises"
+    wished = colour or wishes.get("picture")
     animation = bool(wishes.get("animation")) if animation is None else animation
     with open_results(folder) as results:
         count = len(results)
@@ -50,6 +51,7 @@ def draw_all(
                 f"frame {frame} does not exist in '{results.path}': "
                 f"give 0 to {count - 1}, or -1 for the last"
             )
+        colour = wished or default_colour(results)
         if movie is not None:
             from .movie import save_movie
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.other_programs import mistaken_file
 from mpm3dpp.base.reading import read_file
 from mpm3dpp.case.file import similar_file
 
@@ -73,6 +74,8 @@ def read_source(path: Path) -> Source:
     name = str(path)
     try:
         data = read_file(path, _MOST_BYTES, "give the particles as a CSV file beside a case file")
+        if other := mistaken_file(data):
+            raise other
     except FileNotFoundError:
         raise CaseError("there is no such file", similar_file(path), place=name) from None
     except CaseError as error:
