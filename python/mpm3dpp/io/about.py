@@ -56,6 +56,7 @@ class History(_Strict):
     summary: Summary | None
     momentum: list[float]
     bodies: list[list[float]]
+    last_bodies: list[list[float]]
 
     @model_validator(mode="after")
     def _whole(self) -> History:

@@ -105,8 +105,8 @@ class HistoryWriter:
         pairs = pairs_with_columns(firsts if contact else [])
         self._pairs = {pair: k for k, pair in enumerate(pairs or [])}
         header = list(columns)
-        first = state["bodies"] if state else ()
-        self._parts = PartCells(names, walls, first) if parts else None
+        ends = [state["bodies"], state["last_bodies"]] if state else [(), ()]
+        self._parts = PartCells(names, walls, *ends) if parts else None
         self._part_cells = self._parts.header if self._parts else []
         header += self._part_cells
         for both in (f"{self._bodies[a]}_{self._bodies[b]}" for a, b in self._pairs):
@@ -158,12 +158,14 @@ class HistoryWriter:
         """Return what a writer needs to go on from here, for JSON; it is on the disk then."""
         tables = [table.saved() if table else None for table in (self._table, self._long)]
         summary = self.summary() or None
-        first = self._parts.first if self._parts else None
+        ends = [self._parts.first, self._parts.last] if self._parts else [None, None]
+        first, last = ([] if rows is None else rows.tolist() for rows in ends)
         return {
             "tables": tables,
             "summary": summary,
             "momentum": self._momentum.tolist(),
-            "bodies": [] if first is None else first.tolist(),
+            "bodies": first,
+            "last_bodies": last,
         }
 
     def summary(self) -> dict[str, Any]:

@@ -67,7 +67,7 @@ class PartCells:
     Args:
         names: of the bodies, all grains of an entry being one.
         walls: names of the faces of the box that are not free.
-        first: rows of the first sums of a run that goes on; none if it begins.
+        first, last: rows of the first and last sums of a run that goes on; none if it begins.
     """
 
     def __init__(
@@ -75,11 +75,12 @@ class PartCells:
         names: Sequence[str],
         walls: Sequence[str] = (),
         first: Sequence[Sequence[float]] = (),
+        last: Sequence[Sequence[float]] = (),
     ) -> None:
         self._names, self._walls = list(names), list(walls)
         self._told = self._names if len(names) <= PART_LIMIT else []
         self.first = np.array(first) if len(first) else None
-        self._last = self.first
+        self.last = np.array(last) if len(last) else self.first
 
     @property
     def header(self) -> list[str]:
@@ -90,7 +91,7 @@ class PartCells:
 
     def note(self, sums: Sums) -> None:
         """Keep the sums of the bodies if they are the first, and as the last."""
-        self._last = sums[1]
+        self.last = sums[1]
         if self.first is None:
             self.first = sums[1]
 
@@ -104,7 +105,7 @@ class PartCells:
     def records(self) -> dict[str, dict[str, dict[str, float]]]:
         """Return of each body what PART_COLUMNS were, `initial` and `final`."""
         found = {}
-        for which, rows in (("initial", self.first), ("final", self._last)):
+        for which, rows in (("initial", self.first), ("final", self.last)):
             if rows is not None:
                 found[which] = [dict(zip(PART_COLUMNS, row, strict=True)) for row in rows.tolist()]
         return {

@@ -104,7 +104,10 @@ class Recording:
             if self.outcome is None or self.outcome[0] != "failed":
                 core = self._simulation.core
                 self._stepping.flush()
-                self._history.note_bodies(sums_of(core))
+                # Without a step the sums stay: those of particles in other lists differ in their
+                # last bits.
+                if self._before is None or core.step > self._before.step:
+                    self._history.note_bodies(sums_of(core))
                 told = self._checkpoints.write_last(core, self.frames, self._history)
                 tell(self._progress, told)
 
