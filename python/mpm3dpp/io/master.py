@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mpm3dpp import _core
 from mpm3dpp.base.disk import replacing
 
 from .frame_file import CELLS, FrameInfo, frame_path, frames_folder
@@ -24,6 +25,7 @@ from .new_h5 import LIBVER
 if TYPE_CHECKING:
     import h5py
 
+_FEW = 64  # frames of which the memory is not worth while to be given back
 _TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
 
 
@@ -55,22 +57,30 @@ def write_master(path: Path, frames: Sequence[FrameInfo], meta: Mapping[str, Any
             steps.create_group(name)
         _place_field_data(root, steps, frames, meta)
         _place_cells(root, steps, folder, frames)
-        for name in frames[0].names if frames else ():
-            rows = [f.rows if name in f.checks else [] for f in frames]
-            firsts = _firsts([*map(sum, rows)])
-            offsets = firsts[[f.where(name, k) for k, f in enumerate(frames)]]
-            components, kind = next(f.kinds[name] for f in frames if name in f.kinds)
-            tail = (components,) if components else ()
-            group, place = (root, "Points") if name == "position" else (root["PointData"], name)
-            _virtual(group, place, folder, f"arrays/{name}", rows, tail, np.dtype(kind))
-            if name == "position":
-                steps["PointOffsets"] = offsets
-            else:
-                steps["PointDataOffsets"][name] = offsets
         about = {**meta, "frames": folder.name}
         file.create_group("mpm3dpp").attrs["run"] = json.dumps(about)
+    # One by one: HDF5 holds some kilobytes for each frame and array until a file is closed.
+    for name in frames[0].names if frames else ():
+        with h5py.File(image, "r+", libver=LIBVER) as file:
+            _place_array(file["VTKHDF"], folder, frames, name)
+        if len(frames) > _FEW:
+            _core.return_freed_memory()
     with replacing(path) as raw:
         raw.write(image.getbuffer())
+
+
+def _place_array(root: h5py.Group, folder: Path, frames: Sequence[FrameInfo], name: str) -> None:
+    """An array of particles, of all frames."""
+    rows = [f.rows if name in f.checks else [] for f in frames]
+    offsets = _firsts([*map(sum, rows)])[[f.where(name, k) for k, f in enumerate(frames)]]
+    components, kind = next(f.kinds[name] for f in frames if name in f.kinds)
+    tail = (components,) if components else ()
+    group, place = (root, "Points") if name == "position" else (root["PointData"], name)
+    _virtual(group, place, folder, f"arrays/{name}", rows, tail, np.dtype(kind))
+    if name == "position":
+        root["Steps"]["PointOffsets"] = offsets
+    else:
+        root["Steps"]["PointDataOffsets"][name] = offsets
 
 
 def _place_field_data(

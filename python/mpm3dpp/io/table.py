@@ -9,6 +9,7 @@ import io
 import os
 import zlib
 from collections.abc import Mapping
+from io import FileIO
 from pathlib import Path
 
 from mpm3dpp.base.disk import bring_to_disk, checksum, no_link, writing
@@ -21,19 +22,29 @@ class Table:
     """A CSV file that only ever holds whole rows, even when the disk runs full.
 
     With what `saved` returned, an old one goes on from there.
+
+    Args:
+        path: the file.
+        header: names of the columns.
+        known: of an old one, what `saved` returned.
+        keep_open: false where there are many: the system lets a process have some 1,000 files open.
     """
 
     def __init__(
-        self, path: Path, header: list[str], known: Mapping[str, int] | None = None
+        self,
+        path: Path,
+        header: list[str],
+        known: Mapping[str, int] | None = None,
+        keep_open: bool = True,
     ) -> None:
         self._path = path
         self._size, self._check = (known["size"], known["check"]) if known else (0, 0)
         with writing(path):
-            # Not buffered: what could not be written must not be tried again later.
-            mode = "wb" if known is None else "ab"
-            self._file = open(path, mode, buffering=0, opener=no_link)  # noqa: SIM115
+            self._file: FileIO | None = self._open("wb" if known is None else "ab")
             if known is not None:
                 self._file.truncate(self._size)
+        if not keep_open:
+            self.close()
         if known is None:
             text = io.StringIO()
             csv.writer(text, lineterminator="\n").writerow(header)
@@ -50,20 +61,31 @@ class Table:
     def _write(self, text: str) -> None:
         data = memoryview(text.encode())
         check = zlib.crc32(data, self._check)
-        try:
-            with writing(self._path):
-                left = data
+        with writing(self._path), self._opened() as file:
+            left = data
+            try:
                 while left:
-                    left = left[self._file.write(left) :]
-        except CaseError:
-            with contextlib.suppress(OSError):  # A reader drops half a row.
-                self._file.truncate(self._size)
-            raise
+                    left = left[file.write(left) :]
+            except OSError:
+                with contextlib.suppress(OSError):  # A reader drops half a row.
+                    file.truncate(self._size)
+                raise
         self._size, self._check = self._size + len(data), check
 
+    def _open(self, mode: str) -> FileIO:
+        # Not buffered: what could not be written must not be tried again later.
+        return FileIO(self._path, mode, opener=no_link)
+
+    def _opened(self) -> contextlib.AbstractContextManager[FileIO]:
+        """Return the file, which is closed after use if it is not kept open."""
+        return contextlib.nullcontext(self._file) if self._file else self._open("ab")
+
     def close(self) -> None:
+        """Close the file; another row opens it again."""
         with writing(self._path):
-            self._file.close()
+            if self._file is not None:
+                self._file.close()
+                self._file = None
 
 
 def whole_lines(path: Path) -> list[str]:

@@ -18,6 +18,8 @@ from mpm3dpp.io.table import Table
 
 from .simulation import Simulation
 
+_MOST_OPEN = 64  # tables; those of more probes are opened for each row
+
 
 class Probes:
     """The probes of a run.
@@ -45,7 +47,8 @@ class Probes:
         self._probes: list[_Probe] = []
         try:
             for name, probe in case.probe.items():
-                self._probes.append(_Probe(name, probe, simulation, folder, known.get(name)))
+                saved, few = known.get(name), len(case.probe) <= _MOST_OPEN
+                self._probes.append(_Probe(name, probe, simulation, folder, saved, few))
         except BaseException:
             self.close()
             raise
@@ -87,6 +90,7 @@ class _Probe:
         simulation: Simulation,
         folder: Path,
         state: Mapping[str, Any] | None,
+        keep_open: bool,
     ) -> None:
         self.name, self._case = name, simulation.case
         self._probe = probe
@@ -102,7 +106,7 @@ class _Probe:
         widths = [known.get(field, 1) for field in probe.fields]
         path = probe_path(folder, name)
         saved = state["table"] if state and path.exists() else None
-        self.table = Table(path, header_of(probe, widths), saved)
+        self.table = Table(path, header_of(probe, widths), saved, keep_open)
 
     def look(self, core: Any) -> None:
         """Write a row."""

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import math
+from collections import deque
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -62,7 +64,7 @@ class Stepping:
         rare = simulation.device.name != CPU and not case.run.stop
         self._sums_every = max(_PARTS_EVERY_OF_DEVICE if rare else _PARTS_EVERY, every)
         self._most = min(most, self._sums_every) if case.run.stop else most
-        self._frames = [t for t in case.frame_times() if t > core.time]
+        self._frames = deque(t for t in case.frame_times() if t > core.time)
         self._touched = _touched(core.contact_groups()) if self._contact else 0
         self._told = len(core.warnings())  # Those of the parts of the run before.
         self._begun = False
@@ -138,7 +140,7 @@ class Stepping:
         if sums is not None and not ends:
             ends = self._watch.end_of(sums, history.first_bodies)
         while self._frames and core.time >= self._frames[0]:
-            self._frames.pop(0)
+            self._frames.popleft()
         if due or core.step // _BLOCK > before // _BLOCK:  # Not at each step: others are asked too.
             results.check()
         # A frame too whenever two entries first touch, but for those that do so while they settle.
@@ -188,7 +190,7 @@ def _touched(pairs: list[Any]) -> int:
     return sum(pair.first_step >= 0 for pair in pairs)
 
 
-def _steps(most: int, frames: list[float], core: Any) -> int:
+def _steps(most: int, frames: Sequence[float], core: Any) -> int:
     """Return how many steps to make before the next look: not past the next frame's time.
 
     Looks are at multiples of `most`, so that those at frames do not shift them.

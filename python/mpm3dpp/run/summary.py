@@ -38,6 +38,7 @@ _PARTICLE_BYTES, _NODE_BYTES = {2: 96, 3: 128}, {2: 150, 3: 200}
 
 
 _HISTORY_BYTES = 8 * (_core.Simulation.history_capacity + 1) * len(_core.history_terms)
+_BYTES_OF_FRAME = 18 << 10  # what is known of it, and the writing of results.vtkhdf: measured
 _WITH_EDGES = 1.15  # of a rank's part of the core's memory
 _PROGRAM_BYTES = 62 << 20
 """Python and the libraries of a run, and what its start leaves [bytes]: measured with CPython 3.11,
@@ -73,12 +74,18 @@ def _step_rule(case: Case) -> str:
     return f"cfl {case.run.cfl:g}, " if case.run.time_step is None else ""
 
 
-def frames_in_words(case: Case, particles: int) -> str:
+def frame_count(case: Case, bodies: Filled) -> int:
+    """Return the number of frames, of which there is one at a step at most."""
+    steps = math.ceil(case.run.end_time / time_step(case, bodies))
+    return min(len(case.frame_times()), steps + 1)
+
+
+def frames_in_words(case: Case, bodies: Filled) -> str:
     """Return the number of frames, and the room that they need on the disk.
 
     Those at first contacts come on top: nobody knows yet how many.
     """
-    count = len(case.frame_times())
+    count, particles = frame_count(case, bodies), bodies.particle_count
     room = count * _FRAME_BYTES * particles
     size = f"{room / 2**30:,.1f} GiB" if room > 2**30 else f"{room / 2**20:,.1f} MiB"
     touching = case.contact_enabled and (len(case.body) > 1 or case.grains)
@@ -126,12 +133,12 @@ def memory_bytes(case: Case, bodies: Filled) -> int:
     return total
 
 
-def process_bytes(core: int) -> int:
+def process_bytes(core: int, frames: int = 0) -> int:
     """Return about the peak of the process of a run that writes frames, by that of the core.
 
     Pictures have a process of their own.
     """
-    return _PROGRAM_BYTES + round((1.0 + FRAME_SHARE) * core)
+    return _PROGRAM_BYTES + round((1.0 + FRAME_SHARE) * core) + _BYTES_OF_FRAME * frames
 
 
 def rank_line(core: int, ranks: int) -> str:
@@ -156,7 +163,10 @@ def material_lines(case: Case) -> list[str]:
                 continue
             units = {p.name: p.unit for p in catalogue(kind)[model.model].parameters}
             given = model.parameters.items()
-            numbers = [f"{key} {scaled(v, units[key], 6)}".strip() for key, v in given]
+            numbers = [
+                f"{key} {scaled(v, units[key], 9 if not units[key] else 6)}".strip()
+                for key, v in given
+            ]
             action = [f"action {model.action}"] if isinstance(model, Failure) else []
             parts.append(
                 f"{kind} {' '.join([model.model, ', '.join([*numbers, *action])])}".strip()
@@ -239,7 +249,7 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
     lines += _body_lines(case, bodies, per_metre) + material_lines(case)
     particles, core = bodies.particle_count, memory_bytes(case, bodies)
     mass = sum(float(part.masses.sum()) for part in bodies.parts.values())
-    cells = occupied_cells(case, bodies)
+    cells, frames = occupied_cells(case, bodies), frame_count(case, bodies)
     box = case.grid.box_cells
     bounds = " x ".join(str(n) for n in box) + " cells" if box else "no bounds"
     contact = "none, the bodies are bonded" if case.contact.bonded else "none"
@@ -248,7 +258,7 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
         contact += f", friction {case.contact.friction:g}"
     lines += [
         f"total: {particles:,} particles, mass {mass:.6g} kg{per_metre}, "
-        f"memory about {process_bytes(core) / 2**20:,.0f} MiB, of which the core "
+        f"memory about {process_bytes(core, frames) / 2**20:,.0f} MiB, of which the core "
         f"{core / 2**20:,.1f} MiB",
         *([rank_line(core, ranks)] if ranks > 1 else []),
         f"grid: {case.grid.dimension}D, cells of {case.grid.cell_size:.4g} m, {cells:,} occupied, "
@@ -258,7 +268,7 @@ def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:
         f"time: {case.run.scheme}, {case.run.transfer.word}, {_step_rule(case)}"
         f"end {case.run.end_time:.6g} s, "
         f"step about {time_step(case, bodies):.3g} s, "
-        f"{steps_in_words(case, bodies)}, {frames_in_words(case, particles)}",
+        f"{steps_in_words(case, bodies)}, {frames_in_words(case, bodies)}",
     ]
     sentences = [*warnings(bodies), *point_warnings(case, bodies)]
     lines += [f"warning: {sentence}" for sentence in sentences]
