@@ -118,7 +118,7 @@ def run(
         if not resume and not anew:
             refuse_to_begin_anew(folder, loaded)
         if count > 1:
-            raise typer.Exit(_on_ranks(count, threads))
+            raise typer.Exit(_on_ranks(count, threads, folder))
         from mpm3dpp.run.run import run_case  # The slowest import: after the mistakes.
 
         run_case(
@@ -126,10 +126,11 @@ def run(
         )
 
 
-def _on_ranks(ranks: int, threads: int | None) -> int:
+def _on_ranks(ranks: int, threads: int | None, folder: Path) -> int:
     """Run this command again, on several ranks, and return its exit code."""
     from mpm3dpp.ranks.launch import launch
     from mpm3dpp.ranks.launcher import started
+    from mpm3dpp.run.resume import has_checkpoint
 
     words, skips = [], False
     for word in sys.argv[1:]:
@@ -139,7 +140,7 @@ def _on_ranks(ranks: int, threads: int | None) -> int:
     if started() is not None:
         rule = "--ranks is for one process, and mpiexec has started several"
         raise CaseError(rule, "leave out --ranks")
-    return launch(ranks, words, threads)
+    return launch(ranks, words, threads, lambda: has_checkpoint(folder))
 
 
 @app.command()

@@ -29,6 +29,7 @@ from .unit_notes import unit_notes
 from .wall_notes import wall_notes
 
 _INCOMPRESSIBLE = 0.45
+_STIFFEST = 0.499
 _NARROW = 2.4  # Cells.
 _COARSE = 0.75  # Cells.
 # Of the edge of the other's particles: R - 1 and 2 R - 1 in 3D (decision 0054), and some less.
@@ -193,10 +194,21 @@ def _locking(case: Case) -> list[str]:
             nu = (3 * given["K"] - 2 * given["G"]) / (6 * given["K"] + 2 * given["G"])
         if nu > _INCOMPRESSIBLE and not material.volume_averaging:
             found.append(
-                f"material.{name} has nu = {nu:.4g}, nearly incompressible, and is too stiff where "
+                f"material.{name} has nu = {nu:.9g}, nearly incompressible, and is too stiff where "
                 f"it bends; give material.{name}.volume_averaging = true"
             )
+        if nu > _STIFFEST:
+            found.append(
+                f"material.{name} has nu = {nu:.9g}: waves are {_wave(nu) / _wave(_STIFFEST):.3g} "
+                f"times as fast as with {_STIFFEST:g}, steps that much shorter, and its volume "
+                "changes hardly less; give that"
+            )
     return found
+
+
+def _wave(nu: float) -> float:
+    """Return the speed of pressure waves over sqrt(E / rho)."""
+    return math.sqrt((1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)))
 
 
 def _springs(case: Case, bodies: Filled) -> list[str]:

@@ -13,6 +13,8 @@ from mpm3dpp.case.choices import PRESSED, SHEARED, has_fluids_alone
 
 from .parts import Filled
 
+_ODD = 50.0  # Times the median radius, or one over that.
+
 
 def run_notes(case: Case, bodies: Filled, fastest: float) -> list[str]:
     """Return a sentence for each thing.
@@ -22,14 +24,16 @@ def run_notes(case: Case, bodies: Filled, fastest: float) -> list[str]:
         bodies: its bodies, filled.
         fastest: the largest sum of the speeds of a wave and of a particle at the start [m/s].
     """
-    return [*_frames(case, fastest), *_picture(case), *_probes(case, bodies)]
+    found = [*_frames(case, fastest), *_picture(case), *_probes(case, bodies)]
+    return found + _odd_grains(case, bodies)
 
 
 def _frames(case: Case, fastest: float) -> list[str]:
     run, frames = case.run, len(case.frame_times()) - 1
     step = run.time_step or run.cfl * case.grid.cell_size / fastest
     steps = math.ceil(run.end_time / min(step, run.largest_time_step or math.inf))
-    if frames <= steps:
+    asked = {"frames", "interval"} & case.output.model_fields_set  # No number of them is a default.
+    if frames <= steps or not asked:
         return []
     key = "frames" if case.output.interval is None else "interval"
     return [
@@ -71,6 +75,24 @@ def _probes(case: Case, bodies: Filled) -> list[str]:
                 f"which reach over {extent:.4g} m, and {sees}; look at its unit (a plain number is "
                 "in m)"
             )
+    return found
+
+
+def _odd_grains(case: Case, bodies: Filled) -> list[str]:
+    """Grains of which one is so much larger or smaller than most that it is rather a slip."""
+    found = []
+    for name in case.grains:
+        balls = bodies.parts[name].balls
+        radii = case.grains[name].radii() if balls is None else balls[1]
+        middle = float(np.median(radii))
+        k = int(np.argmax(np.abs(np.log(radii / middle))))
+        ratio = float(radii[k]) / middle
+        if 1.0 / _ODD < ratio < _ODD:
+            continue
+        found.append(
+            f"grains.{name}: {bodies.parts[name].names[k]} has a radius of {radii[k]:.4g} m, "
+            f"{ratio:.3g} times the median of all; look at its unit (a plain number is in m)"
+        )
     return found
 
 

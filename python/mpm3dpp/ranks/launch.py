@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -31,10 +32,16 @@ AS_ROOT = {
 }
 
 
-def launch(count: int, words: list[str], threads: int | None) -> int:
+def launch(count: int, words: list[str], threads: int | None, can_go_on: Callable[[], bool]) -> int:
     """Run the command with these words on so many ranks, and return its exit code.
 
     Ctrl-C, SIGTERM and the others go to the first process, which brings the run to an orderly stop.
+
+    Args:
+        count: how many.
+        words: of the command.
+        threads: of each rank.
+        can_go_on: tells whether there is a checkpoint, once the run has ended.
 
     Raises:
         CaseError: there is no MPI, or none that fits.
@@ -63,7 +70,11 @@ def launch(count: int, words: list[str], threads: int | None) -> int:
     how = f"by signal {-code}" if code < 0 else f"with exit code {code}"
     raise RunError(
         f"a process of the run has ended, and mpiexec {how}; what was written before is kept, and "
-        "--resume goes on from the last checkpoint"
+        + (
+            "--resume goes on from the last checkpoint"
+            if can_go_on()
+            else "there is no checkpoint to go on from: begin anew"
+        )
     )
 
 

@@ -21,7 +21,7 @@ def gravity_vector(deck: Deck, units: UnitSystem) -> list[Any]:
     Raises:
         CaseError: it differs from body to body.
     """
-    if not deck.gravity and not deck.force:
+    if not deck.parts or not (deck.gravity or deck.force):  # No particles are told elsewhere.
         return []
     numbers = range(1, len(deck.parts) + 1)
     both = [(deck.gravity.get(k, ([0.0] * 3, 0))[0], _over_mass(deck, k)) for k in numbers]
