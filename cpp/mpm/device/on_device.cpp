@@ -171,9 +171,9 @@ std::unique_ptr<OnDevice<D>> start_on_device(Domain<D>& domain, Scheme scheme) {
   device->run = make_device_run(problem);
   if (HostPart<D>::needed(domain))
     // Springs leave the velocities as they are, and so do not keep them from particles.
-    device->host =
-        std::make_unique<HostPart<D>>(*device->run, domain, device->seconds,
-                                      domain.has_contact() && domain.contact_settings.response != Response::springs &&
+    device->host = std::make_unique<HostPart<D>>(
+        *device->run, domain, device->seconds,
+        domain.has_contact() && domain.contact_settings.response != Response::springs &&
             takes_of_grid(domain));
   return device;
 }

@@ -21,8 +21,7 @@ from .initial import check_initial
 from .loads import check_loads
 from .material_checks import check_material
 from .motion import check_motion
-from .pairs import check_bonds, check_pairs, check_pressed
-from .parts import PRESSED
+from .pairs import check_bonds, check_pairs, check_pressed, presses
 from .probe import check_probes
 from .stop import check_stops
 
@@ -84,8 +83,7 @@ def _bodies_together(case: Case) -> Found:
     yield from check_bonds(case)
     yield from check_pressed(case)
     yield from _dampings(case)
-    pressed = [case.contact.interference, *(pair.interference for pair in case.contact.pair)]
-    if case.run.settle is not None and not acts_at_first(case) and PRESSED not in pressed:
+    if case.run.settle is not None and not acts_at_first(case) and not presses(case):
         rule = (
             "needs a force to settle under: at the time 0 there is no gravity, load or body force"
         )

@@ -44,6 +44,11 @@ def is_pressed(case: Case, first: str, second: str) -> bool:
     return (given or case.contact.interference) == PRESSED
 
 
+def presses(case: Case) -> bool:
+    """Return whether any bodies that are drawn into each other push each other apart."""
+    return PRESSED in (case.contact.interference, *(p.interference for p in case.contact.pair))
+
+
 def _pair_of(case: Case, first: str, second: str) -> ContactPair | None:
     numbers = case.first_bodies()
     a, b = sorted((numbers[first], numbers[second]))

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from mpm3dpp import _core
 from mpm3dpp.case.case import Case
 
 
@@ -17,7 +18,15 @@ def bond_notes(case: Case) -> list[str]:
         for soft in (name for name in names if not case.is_rigid(name)):
             held = found.setdefault(soft, [])
             held += [name for name in names if case.is_rigid(name) and name not in held]
-    return [
+    affine = _core.transfers[case.run.transfer.word]["affine"]
+    free = [
+        f"{soft} is bonded to {' and '.join(loose)}, which is rigid and free: with "
+        f'run.transfer = "{case.run.transfer.word}" such a bond takes the energy of what vibrates '
+        'beside it; give run.transfer = "flip", which keeps it, or an elastic material'
+        for soft, rigid in found.items()
+        if affine and (loose := [name for name in rigid if not _is_driven(case, name)])
+    ]
+    return free + [
         f"{soft} is bonded to {' and '.join(rigid)}, which {_does(rigid)} not deform: such a bond "
         "(contact.pair.bonded) holds what is stretched beside it to 1.8 times its length at most, "
         "or sheared by 1.1, and lets go then without a word; for more hold it by a fixed face of "
@@ -25,6 +34,10 @@ def bond_notes(case: Case) -> list[str]:
         for soft, rigid in found.items()
         if rigid
     ]
+
+
+def _is_driven(case: Case, name: str) -> bool:
+    return getattr(case.parts()[name], "motion", None) is not None
 
 
 def _does(names: list[str]) -> str:

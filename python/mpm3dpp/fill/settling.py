@@ -7,6 +7,7 @@ from mpm3dpp.base.errors import CaseError, key_text
 from mpm3dpp.case.body import Body
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.forces import acts_at_first
+from mpm3dpp.case.pairs import presses
 
 from .parts import Filled
 
@@ -32,7 +33,7 @@ def settling_mistakes(case: Case, bodies: Filled) -> list[CaseError]:
             "the first), and are held until t = 0"
         )
         return [case.error(_PATH, rule, "leave it out, or give another body that settles")]
-    if not acts_at_first(case, settling):
+    if not acts_at_first(case, settling) and not presses(case):
         rule = (
             f"needs a force on the bodies that settle ({', '.join(settling)}): at the time 0 no "
             f"gravity, load or body force acts on them, and {first} is held until then"

@@ -125,9 +125,8 @@ def energy_line(manifest: Manifest) -> str:
     transfer = manifest.case.get("run", {}).get("transfer", "flip")
     if transfer != "flip":
         line += "; what run.transfer takes is in it"
-        if large and "aflip" in transfer:
-            taken = abs(final.get("numerical_transfer", 0.0)) > 0.5 * abs(final["numerical"])
-            line += f", and smaller cells{' or an aflip nearer 1' if taken else ''} make it less"
+        if large:
+            line += "; `mpm3dpp study CASE` tells whether smaller cells make it less"
     elif large:
         line += "; a smaller run.cfl or smaller cells may help"
     return line
