@@ -55,7 +55,8 @@ def test_energy_stops_at_absolute_zero() -> None:
     path = np.linspace(40.0, 1.2, 400)
     for solid, floor in ((True, -HEAT), (False, -STIFFNESS / NUMBERS["gamma0"])):
         found = swell(path, 0.0, solid, state={"volume": 40.0, "internal_energy": -1e6})
-        assert found["internal_energy"].min() == pytest.approx(floor, rel=1e-14)
+        # The step that would lead below bears no tension, and so ends a little above.
+        assert floor <= found["internal_energy"].min() < 0.95 * floor
 
 
 def test_tension_at_its_limit_opens_voids_and_heats_nothing() -> None:

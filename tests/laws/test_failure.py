@@ -242,4 +242,5 @@ def test_debris_that_closes_by_more_than_its_first_volume(lanes: bool) -> None:
         rows = drive([failure], moves, "elastic", ELASTIC, lanes, eos=eos)
         assert rows["failed"][-1] == 2.0
         assert rows["volume"][-2] > 80.0
-        assert rows["stress_xx"][-1] == 0.0
+        # The stress of the strength model, some GPa, is dropped to rounding.
+        assert abs(rows["stress_xx"][-1]) < 1e-6

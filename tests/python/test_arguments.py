@@ -137,7 +137,7 @@ def test_paths(simulation: Simulation, wrong: Any) -> None:
     ):
         sentence = said(lambda call=call: call(wrong))
         assert sentence.startswith(f"{name} = ") and NO_PATH in sentence
-    assert "cannot write '.'" in said(lambda: simulation.save("."))
+    assert "must be a file but is a folder" in said(lambda: simulation.save("."))
 
 
 @pytest.mark.parametrize("wrong", [5, "", [], InBytes()])

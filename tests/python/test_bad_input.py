@@ -206,8 +206,8 @@ EDITS: list[tuple[str, ...]] = [
     ("unfinished text", END, 'end_time = "1 ms', 'end_time = "1 ms', "not valid TOML", "write"),
     ("no particles", 'radius = "5 mm" }', 'radius = "0.1 mm" }', LEFT, "holds no particle",
      "cell_size", '"0.1 mm" }'),
-    ("far too coarse", DISC, "{ box = { lower = [0.010, 0.010], upper = [0.0103, 0.012] } }", LEFT,
-     "too coarsely", "cell_size", "0.0103"),
+    ("far too coarse", DISC, "{ polygon = { points = [[0.0111, 0.01], [0.0107, 0.0111], "
+     "[0.0103, 0.0114]] } }", LEFT, "too coarsely", "cell_size", "0.0103"),
     ("overlapping bodies", '["30 mm", "10 mm"]', '["17 mm", "10 mm"]', "body.right.shape",
      "overlaps body.left", "move one", "17 mm"),
     ("body outside the box", '["10 mm", "10 mm"]', '["4 mm", "10 mm"]', LEFT,

@@ -73,7 +73,7 @@ def test_a_study(tmp_path: Path) -> None:
     sizes = [name for name in row if name.startswith("cell_size=")]
     assert [float(name.partition("=")[2]) for name in sizes] == pytest.approx([0.08, 0.04, 0.02])
     for name in sizes:
-        manifest = read_manifest(tmp_path / "out" / name)
+        manifest = read_manifest(tmp_path / "out" / f"grid.{name}")
         assert float(row[name]) == manifest["energies"]["final"]["kinetic"]
     c2 = 1e9 * (1 - 0.3) / ((1 + 0.3) * (1 - 0.6)) / 1000
     answer = 1000 * 0.16 * 9.81**2 / (6 * c2)

@@ -22,11 +22,10 @@ struct BodyAtNode {
   Vec<double, D> mapped;  // velocity mapped from the particles [m/s]
 };
 
-/// Of the way by which bodies approach in a step the share that a spring's force of the step has. A
-/// half is the force in the middle, which damps like a dashpot of k dt / 2 and loses an impact's
-/// energy; none grows, as a force that goes to nodes by other weights than the overlap follows them
-/// is no gradient. A quarter still decays (decision 0062).
-inline constexpr double share_of_approach = 0.25;
+/// Of the way by which bodies approach in a step the share that a spring's force of the step has:
+/// the force in the middle neither takes energy nor makes any, and needs no smaller step (decision
+/// 0051).
+inline constexpr double share_of_approach = 0.5;
 
 /// The springs between two bodies, as a node has them; none without stiffness.
 struct ContactSpring {

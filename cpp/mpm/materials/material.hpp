@@ -102,11 +102,7 @@ struct Material {
   bool averages_volume = false;  // over a cell's particles (step/volume_averaging.hpp)
 
   bool moves_as_one() const {
-    return std::visit(
-        []<class M>(const M&) {
-          return requires { M::moves_as_one; };
-        },
-        strength);
+    return std::visit([]<class M>(const M&) { return requires { M::moves_as_one; }; }, strength);
   }
   bool burns() const {
     return std::visit([]<class M>(const M&) { return Burns<M>; }, strength);
@@ -116,20 +112,12 @@ struct Material {
   }
   /// Has it no shape of its own?
   bool flows() const {
-    return std::visit(
-        []<class M>(const M&) {
-          return requires { M::flows; };
-        },
-        strength);
+    return std::visit([]<class M>(const M&) { return requires { M::flows; }; }, strength);
   }
-  /// May its particles part: as it flows, is loose, or has failed?
+  /// May its particles part: as it flows, is loose, can fail or spall?
   bool breaks_up() const {
-    return flows() || !failures.empty() ||
-           std::visit(
-               []<class M>(const M&) {
-                 return requires { M::breaks_up; };
-               },
-               strength);
+    return flows() || !failures.empty() || bounds.tension < unbounded ||
+           std::visit([]<class M>(const M&) { return requires { M::breaks_up; }; }, strength);
   }
   /// Does it fill any volume? Products of detonation do.
   bool is_gas() const {

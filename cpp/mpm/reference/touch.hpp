@@ -70,7 +70,7 @@ void touch_walls(Step<D>& step) {
           for (int a = 0; a < D; ++a)
             free[a] = ((1.0 - drag) * node.m * node.v[a] + step.dt * (node.f[a] + others[a])) / m;
           step.hold(i, free);
-          const double share = 0.25 * step.dt * s.K;  // of the approach, springs' share_of_approach
+          const double share = 0.5 * step.dt * s.K;  // of the approach, springs' share_of_approach
           const double force =
               std::max((sign * s.F - share * sign * free[n]) / (1.0 + share * step.dt / m), 0.0);
           push[n] = sign * force;

@@ -46,6 +46,7 @@ struct Data {
     affine = 1u << 28,          // affine part of particles' velocities
     carried_sums = 1u << 29,    // of the patches' sums what these lose as they are carried along
     node_volumes = 1u << 30,    // of matter that flows
+    flowing = 1u << 31,  // volumes, stresses and heat of matter that flows, beside the others
   };
 };
 /// Their names, in the order of the bits.
@@ -56,7 +57,7 @@ inline constexpr auto data_names = std::to_array<std::string_view>(
      "node remapped",   "node dashpots",  "contacts",      "patch sums",      "records",
      "energies",        "left cells",     "body force",    "unseen velocity", "impulses",
      "mapped impulses", "force pressure", "node springs",  "affine part",     "carried sums",
-     "node volumes"});
+     "node volumes",    "flowing"});
 
 /// The data and what shares its place (layout/node_records.hpp): who writes one takes the others.
 constexpr std::uint32_t places_of(std::uint32_t data) {

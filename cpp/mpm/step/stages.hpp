@@ -10,8 +10,8 @@ constexpr Stage<D> update_stress_row(void (*run)(Domain<D>&), std::uint32_t stra
   return {"update stress",
           run,
           Data::lists | Data::position | Data::velocity | Data::mass | Data::volume | Data::stress |
-              Data::load_pieces | Data::patch_sums | straining,
-          Data::volume | Data::stress | Data::load_pieces | Data::patch_sums,
+              Data::load_pieces | Data::patch_sums | Data::flowing | straining,
+          Data::volume | Data::stress | Data::load_pieces | Data::patch_sums | Data::flowing,
           true,
           true};
 }
@@ -24,14 +24,14 @@ struct Stages : Data {
                                  of_rigid = rigid_position | rigid_velocity;
 
   // The nodes are written as their memory is lent to the lists until momentum is mapped.
-  static constexpr Row activate{"activate tiles", mpm::activate_tiles<D>,
-                                of_particles | of_rigid | volume | stress | load_pieces |
-                                    body_force | unseen | force_pressure | lists | left_cells |
-                                    patch_sums | impulses | mapped_impulses | affine | carried_sums,
-                                of_particles | of_rigid | volume | stress | load_pieces |
-                                    body_force | unseen | force_pressure | lists | left_cells |
-                                    patch_sums | impulses | mapped_impulses | affine |
-                                    carried_sums | node_mass | node_velocity | node_force};
+  static constexpr Row activate{
+      "activate tiles", mpm::activate_tiles<D>,
+      of_particles | of_rigid | volume | stress | load_pieces | body_force | unseen |
+          force_pressure | lists | left_cells | patch_sums | impulses | mapped_impulses | affine |
+          carried_sums | flowing,
+      of_particles | of_rigid | volume | stress | load_pieces | body_force | unseen |
+          force_pressure | lists | left_cells | patch_sums | impulses | mapped_impulses | affine |
+          carried_sums | flowing | node_mass | node_velocity | node_force};
   // Before momentum is mapped, so that it has the nodes for itself and nothing of contact's
   // correction; velocities stay until they are advanced, as the energies are those of FLIP's step.
   static constexpr Row filter{"filter velocities", mpm::filter_velocities<D>, lists | of_particles,
@@ -81,7 +81,8 @@ struct Stages : Data {
       true,
       true};
   static constexpr Row map_volumes{
-      "map volumes", mpm::map_volumes<D>, lists | position | volume, node_volumes, true, true};
+      "map volumes", mpm::map_volumes<D>, lists | position | volume | flowing, node_volumes, false,
+      true};
   static constexpr Row load_surfaces{"load surfaces", mpm::load_surfaces<D>,
                                      lists | position | load_pieces | node_force | impulses,
                                      load_pieces | node_force | impulses};
@@ -137,13 +138,13 @@ struct Stages : Data {
           node_dashpots | node_springs | node_volumes | patch_sums | impulses,
       node_velocity | node_increments | node_volumes | patch_sums | impulses};
   // With the velocities that strain, before particles are released from what contact has corrected.
-  static constexpr Row heat_gases{
-      "heat gases",
-      mpm::heat_gases<D>,
-      lists | position | mass | volume | stress | node_velocity | node_increments | patch_sums,
-      stress | patch_sums,
-      true,
-      true};
+  static constexpr Row heat_gases{"heat gases",
+                                  mpm::heat_gases<D>,
+                                  lists | position | mass | volume | stress | flowing |
+                                      node_velocity | node_increments | patch_sums,
+                                  flowing | patch_sums,
+                                  false,
+                                  true};
   static constexpr Row release{"release from contact", mpm::release_from_contact<D>,
                                node_velocity | node_increments | contacts,
                                node_velocity | contacts};
@@ -152,9 +153,9 @@ struct Stages : Data {
   static constexpr Row advance_particles{"advance particles",
                                          mpm::advance_particles<D>,
                                          lists | of_particles | affine | of_rigid | unseen |
-                                             volume | stress | node_velocity | node_increments |
+                                             flowing | node_velocity | node_increments |
                                              node_volumes | patch_sums,
-                                         velocity | affine | stress | rigid_velocity | patch_sums,
+                                         velocity | affine | flowing | rigid_velocity | patch_sums,
                                          true,
                                          true};
   // Before anything takes their velocities: the remap in MUSL, the end of the step in the others.

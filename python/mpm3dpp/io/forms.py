@@ -109,6 +109,7 @@ class _Case(_Form):
     grid: _CaseGrid = _CaseGrid()
     run: _CaseRun = _CaseRun()
     output: _CaseOutput = _CaseOutput()
+    contact: dict[str, Any] = {}
     material: dict[str, _CaseMaterial] = {}
     body: dict[str, _CasePart] = {}
     grains: dict[str, _CasePart] = {}

@@ -125,7 +125,7 @@ def energy_line(manifest: Manifest) -> str:
     transfer = manifest.case.get("run", {}).get("transfer", "flip")
     if transfer != "flip":
         line += "; what run.transfer takes is in it"
-        if large:
+        if large and "aflip" in transfer:
             line += "; `mpm3dpp study CASE` tells whether smaller cells make it less"
     elif large:
         line += "; a smaller run.cfl or smaller cells may help"

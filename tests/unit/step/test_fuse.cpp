@@ -56,5 +56,5 @@ void test_fuse(mpm::testing::Report& report) {
   check_fused<2>(report);
   check_fused<3>(report);
   for (std::size_t k = 0; k < data_names.size(); ++k) CHECK(!data_names[k].empty(), k);
-  CHECK_EQUAL(std::size_t{1} << (data_names.size() - 1), std::size_t{Data::node_volumes});
+  CHECK_EQUAL(std::size_t{1} << (data_names.size() - 1), std::size_t{Data::flowing});
 }
