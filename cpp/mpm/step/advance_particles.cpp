@@ -13,6 +13,7 @@ namespace {
 
 /// What is done beside eq. (17) while the particles, their weights and their nodes are at hand:
 /// stages fused (decisions 0015, 0034), from the source that makes the single ones too.
+/// The move, eq. (16), has the same weights: those of the positions before.
 enum class Also { nothing, remap, move };
 
 /// Whether matter keeps a shape of its own or flows.
@@ -45,11 +46,20 @@ struct LaneSums {
   }
 };
 
-/// In the place of what solids have not.
-struct Nothing {
+/// In the place of FlowingMatter, of what keeps its shape.
+struct NoFlow {
   template <class... Any>
-  explicit Nothing(const Any&...) {}
+  MPM_INLINE explicit NoFlow(const Any&...) {}
+  template <class... Any>
+  MPM_INLINE void begin(const Any&...) const {}
+  template <class... Any>
+  MPM_INLINE void end(const Any&...) const {}
+  template <class Sums>
+  void write(const Sums&) const {}
 };
+
+template <Matter matter, class T, int D>
+using FlowOf = std::conditional_t<matter == Matter::flowing, FlowingMatter<T, D>, NoFlow>;
 
 /// The columns of a pool that hold the particles' velocities; for a transfer that filters also what
 /// the grid has not seen of them.
@@ -125,10 +135,7 @@ template <int W, Also also, Matter matter = Matter::solid, class Transfer, int D
   DoubleBuffer<Mapping<typename Transfer::Gives>, what, D, B, half_record> cells(stride,
                                                                                  {remapped});
   [[maybe_unused]] TakingAffine<T, D> affine(grid, pool);
-  constexpr bool flows = matter == Matter::flowing;
-  [[maybe_unused]] std::conditional_t<flows, FlowingMatter<T, D>, Nothing> flow(
-      grid, pool, domain.material_of(patch), domain.time_step);
-
+  FlowOf<matter, T, D> flow(grid, pool, domain.material_of(patch), domain.time_step);
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
     const Transfer here = transfer_of_cell(transfer, grid, patch, cell.cell);
@@ -140,8 +147,7 @@ template <int W, Also also, Matter matter = Matter::solid, class Transfer, int D
       const Vec<T, D> dv = nodes.template vector<increment_at>(w);
       Vec<T, D> beside = Vec<T, D>::zero();
       Moments<T, D, B::nodes> moments;
-      [[maybe_unused]] T motion(0.0);
-      if constexpr (flows) motion = flow.motion(rows);
+      flow.begin(rows);
       if constexpr (Transfer::affine) {
         moments = moments_at<B>(xi, w);
         affine.take(nodes, rows, w, moments, m, beside, sums);
@@ -149,11 +155,7 @@ template <int W, Also also, Matter matter = Matter::solid, class Transfer, int D
       if constexpr (Transfer::takes_grid_velocity && !Transfer::affine)
         beside = nodes.template vector<velocity_at>(w);
       const Vec<T, D> v = velocities.take(here, rows, m, dv, beside, sums);
-      if constexpr (flows) {
-        flow.limit_growth(rows, nodes, w);
-        flow.give_back(rows, nodes, w, motion, dv);
-      }
-      // USF: eq. (16) with the same weights, which are those of the positions before.
+      flow.end(rows, nodes, w, dv);
       if constexpr (also == Also::move) moving.move(cell, rows, nodes, w);
       if constexpr (also == Also::remap) {
         auto& particles = cells.next();
@@ -171,7 +173,7 @@ template <int W, Also also, Matter matter = Matter::solid, class Transfer, int D
     copy_halves(block.records.at(remapped_at), {remapped}, block.count);
   }
   sums.write(domain.sums[p]);
-  if constexpr (flows) flow.write(domain.sums[p]);
+  flow.write(domain.sums[p]);
   if constexpr (also == Also::move) moving.write(patch, domain.sums[p]);
 }
 

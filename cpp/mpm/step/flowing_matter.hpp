@@ -40,6 +40,23 @@ class FlowingMatter {
     for (int k = 0; k < D * D; ++k) affine_[k] = pool.affine_part(k);
   }
 
+  /// Before the particles take anything from the nodes.
+  template <class Rows>
+  MPM_INLINE void begin(const Rows& rows) {
+    if (owed_ != nullptr) before_ = square_with(rows, affine(rows));
+  }
+  /// When they have taken their velocities; `dv`: the sum of N_ip dv_i.
+  template <class Rows, class Field, class W>
+  MPM_INLINE void end(const Rows& rows, const Field& nodes, const W& w, const Vec<T, D>& dv) {
+    limit_growth(rows, nodes, w);
+    if (owed_ != nullptr) give_back(rows, nodes, w, dv);
+  }
+  void write(PatchSums<D>& sums) const {
+    sums.returned = sum(returned_);
+    sums.unseen = sum(unseen_);
+  }
+
+ private:
   /// The volume up to which they may grow: the room that the cells have for all matter, shared out
   /// by volume; V most_filled / phi, phi = sum N_ip V_i / h^D with V_i = sum V_p N_ip.
   template <class Rows, class Field, class W>
@@ -48,24 +65,15 @@ class FlowingMatter {
     store(growth_limit_, rows, T(most_filled * cell_volume_) * load(volume_, rows) / filled);
   }
 
-  /// v_p^2 + D C_p : C_p as they stand: twice the kinetic energy over the mass.
-  template <class Rows>
-  MPM_INLINE T motion(const Rows& rows) const {
-    return square_with(rows, affine(rows));
-  }
-
   /// E += what the transfer takes: the kinetic energy that the nodes give, dt f . (v_i + dv_i / 2)
   /// shared out by N_ip, less that which the particle gets, once C_p has been carried along.
-  /// `before`, `dv`: motion() before, and the sum of N_ip dv_i.
   template <class Rows, class Field, class W>
-  MPM_INLINE void give_back(const Rows& rows, const Field& nodes, const W& w, T before,
-                            const Vec<T, D>& dv) {
-    if (owed_ == nullptr) return;
+  MPM_INLINE void give_back(const Rows& rows, const Field& nodes, const W& w, const Vec<T, D>& dv) {
     const T all = load(mass_, rows), per_volume = T(density_) / all;
     const T after = square_with(rows, carried_along(affine(rows), T(time_step_)));
     const T gained = nodes.template gain<velocity_at, increment_at>(w);
     T energy = load(energy_, rows);
-    const T owed = fma(all, fma(T(0.5), before - after, gained), load(owed_, rows));
+    const T owed = fma(all, fma(T(0.5), before_ - after, gained), load(owed_, rows));
     // No more than a tenth of the heat is taken in a step, and what is below absolute zero is lent.
     const T heat = max(energy - T(lowest_energy_), T(0.0)) / per_volume;
     T given = max(owed, T(-0.1) * heat);
@@ -80,18 +88,13 @@ class FlowingMatter {
     returned_ = fma(m / all, given, returned_);
     unseen_ = fma(T(0.5) * m, nodes.template square<increment_at>(w) - together, unseen_);
   }
-  void write(PatchSums<D>& sums) const {
-    sums.returned = sum(returned_);
-    sums.unseen = sum(unseen_);
-  }
-
- private:
   template <class Rows>
   MPM_INLINE Mat<T, D> affine(const Rows& rows) const {
     Mat<T, D> C;
     unrolled<D * D>([&](auto k) MPM_INLINE { C[k / D][k % D] = load(affine_[k], rows); });
     return C;
   }
+  /// v_p^2 + D C : C: twice the kinetic energy over the mass.
   template <class Rows>
   MPM_INLINE T square_with(const Rows& rows, const Mat<T, D>& C) const {
     T v2(0.0), C2(0.0);
@@ -103,13 +106,13 @@ class FlowingMatter {
     return fma(T(moment_), C2, v2);
   }
 
+  // In each lane [J]: what has been given back as heat; kinetic energy that the nodes' increments
+  // hold beyond those of particles. And square_with() what they had.
+  T returned_{0.0}, unseen_{0.0}, before_{0.0};
   double time_step_, cell_volume_, moment_, density_, lowest_energy_;
   const double *mass_, *volume_;
   double *growth_limit_, *owed_, *energy_, *recoverable_;
   const Storage *v_[D], *affine_[D * D];
-  // In each lane [J]: what has been given back as heat; kinetic energy that the nodes' increments
-  // hold beyond those of particles.
-  T returned_{0.0}, unseen_{0.0};
 };
 
 }  // namespace mpm

@@ -13,7 +13,7 @@ template <class T, int D>
 class Moving {
  public:
   Moving(const TileGrid<D>& grid, ParticlePool<D>& pool, double time_step)
-      : cells_(grid.coordinates()), time_step_(time_step) {
+      : time_step_(time_step), cells_(grid.coordinates()) {
     for (int a = 0; a < D; ++a) x_[a] = pool.x(a);
     if (pool.affine < 0) return;
     mass_ = pool.mass();
@@ -55,13 +55,13 @@ class Moving {
     lost_ = fma(of_valid(rows, load(mass_, rows)), square_difference(C, now), lost_);
   }
 
-  CellCoordinates<D> cells_;
-  double* x_[D];
+  T lost_{0.0};  // by affine parts, over half of the moment
   double time_step_, half_moment_ = 0.0;
   const double* mass_ = nullptr;  // null without an affine part
+  std::uint64_t left_ = 0;        // lanes of which one has
+  double* x_[D];
+  CellCoordinates<D> cells_;
   Storage* affine_[D * D] = {};
-  T lost_{0.0};
-  std::uint64_t left_ = 0;  // lanes of which one has
 };
 
 }  // namespace mpm
