@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from mpm3dpp import _core
 from mpm3dpp.base.model import CaseModel, plain
+from mpm3dpp.materials.catalogue import catalogue
 
 from .transfer import Transfer
 
@@ -25,8 +26,6 @@ AFFINE: dict[str, Any] = {"scheme": "usf", "cfl": 0.5}
 OTHERS: dict[str, Any] = {"scheme": "musl", "cfl": 0.25}
 OTHER_TRANSFER = "flip"
 RESPONSE, FLOWING_RESPONSE, OTHER_RESPONSE = "springs", "by_matter", "impulses"
-FLUIDS = ("fluid", "high_explosive")
-"""Strengths that bear no shear, or next to none."""
 SHEARED, PRESSED = "von_mises", "pressure"
 
 _Table = TypeVar("_Table", bound=CaseModel)
@@ -59,7 +58,7 @@ def has_fluids_alone(case: Case) -> bool:
     """Return whether all that deforms bears no shear, or next to none."""
     used = [case.material[name] for name in case.materials_used if name in case.material]
     strengths = {material.strength.model for material in used} - {"rigid"}
-    return bool(strengths) and strengths <= set(FLUIDS)
+    return bool(strengths) and all(catalogue()[name].flows for name in strengths)
 
 
 def _run(run: Run, basis: str) -> Run:
