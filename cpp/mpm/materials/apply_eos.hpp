@@ -27,6 +27,17 @@ MPM_HD T pressure_at_end(const LinearInEnergy<T>& line, T V, T energy, T change)
 /// energy: its tangent would lead to energies below zero where a shock halves the volume.
 inline constexpr int energy_steps = 5;
 
+/// E of the end but for -p dV / 2 of the new pressure: the old mean stress, tension positive, works
+/// on half of the change.
+template <class T>
+MPM_HD T without_new_pressure(const EosBounds& bounds, T energy, T deviatoric_work, T mean_before,
+                              T change) {
+  energy = energy + deviatoric_work + T(0.5) * mean_before * change;
+  if (bounds.active && any(bounds.limits(mean_before)))
+    energy = bounds.without_voids(energy, mean_before, change);
+  return energy;
+}
+
 /// The energy per initial volume grows by the work of the deviator, of the pressure (mean of old
 /// and new) and of the artificial viscosity; with p = A + B E that gives p in closed form. Where p
 /// is not linear in E, the same with its tangent is a step of Newton's method.
@@ -54,13 +65,10 @@ MPM_FLATTEN MPM_HD void apply_eos(const Model model, const MaterialView& materia
       const LinearInEnergy<T> line = line_of(model, V, energy);
       return burns ? line.burnt(group.get(block.burnt)) : line;
     };
-    // E of the end but for -p dV / 2 of the new pressure: the old mean stress, tension
-    // positive, works on half of the change.
     T energy = group.read(columns.energy);
     if (!heated_elsewhere)
-      energy = energy + work.deviatoric * per_volume + T(0.5) * mean_before * change;
-    if (!heated_elsewhere && bounds.active && any(bounds.limits(mean_before)))
-      energy = bounds.without_voids(energy, mean_before, change);
+      energy =
+          without_new_pressure(bounds, energy, work.deviatoric * per_volume, mean_before, change);
     // The speed of sound is that at the energy before the pressure's own work: it only bounds the
     // next step and scales the viscosity.
     LinearInEnergy<T> p = line_at(energy);
@@ -82,9 +90,8 @@ MPM_FLATTEN MPM_HD void apply_eos(const Model model, const MaterialView& materia
     if (bounds.active && any((pressure < T(-bounds.tension)) |
                              (energy - T(0.5) * pressure * change < T(bounds.lowest_energy))))
       pressure = bounds.held(pressure, energy, change, line_at(T(bounds.lowest_energy)));
-    const T mean = T(1.0 / 3.0) * trace(strength);
     // The strength's own mean stress is dropped: p takes its place, s - (mean + p) 1.
-    const T shift = mean + pressure;  // of the mean stress, downwards
+    const T shift = T(1.0 / 3.0) * trace(strength) + pressure;
     const Sym<T, D> stress = strength - Sym<T, D>::isotropic(shift);
     if (last) {
       if (settings.forces_follow)

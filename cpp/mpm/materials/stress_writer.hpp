@@ -46,24 +46,9 @@ class StressWriter {
           volume_change.dilation;
       heat += viscous_work;
     }
-    if (with_eos && columns_.energy && !heated_elsewhere) {
-      // The energy keeps what plastic flow and viscosity heat; the ledger's `internal` has neither,
-      // for both have columns of their own (materials.md).
-      T energy = group.read(columns_.energy) + heat * volume_change.per_volume;
-      if (bounds_.active) {
-        // The mean of both is given: the one before need not be read again.
-        const T last = T(1.0 / 3.0) * trace(after.stress), first = T(2.0) * mean_stress - last;
-        if (any(bounds_.limits(first) | bounds_.limits(last) |
-                (energy < T(bounds_.lowest_energy)))) {
-          const Taken taken = bound(bounds_, volume_change, first, last, energy);
-          energy = taken.energy;
-          done -= taken.opening - taken.given;
-          bounded_ += select(valid, taken.opening - taken.given, T(0.0));
-          floor_ -= select(valid, taken.given, T(0.0));
-        }
-      }
-      group.write(columns_.energy, energy);
-    }
+    if (with_eos && columns_.energy && !heated_elsewhere)
+      done -=
+          keep_energy(group, volume_change, heat, mean_stress, T(1.0 / 3.0) * trace(after.stress));
     if (columns_.recoverable) {
       const T energy = group.read(columns_.recoverable);
       group.write(columns_.recoverable, energy + (done - lost) * volume_change.per_volume);
@@ -107,6 +92,28 @@ class StressWriter {
   }
 
  private:
+  /// The energy of an equation of state keeps what plastic flow and viscosity heat; the ledger's
+  /// `internal` has neither, for both have columns of their own (materials.md). Gives the work that
+  /// the bounds took [J]; `last`: the mean stress of the end.
+  MPM_HD T keep_energy(const Group<T, D>& group, const VolumeChange<T>& volume_change, T heat,
+                       T mean_stress, T last) {
+    T energy = group.read(columns_.energy) + heat * volume_change.per_volume, work(0.0);
+    if (bounds_.active) {
+      // The mean of both is given: the one before need not be read again.
+      const T first = T(2.0) * mean_stress - last;
+      if (any(bounds_.limits(first) | bounds_.limits(last) | (energy < T(bounds_.lowest_energy)))) {
+        const Taken taken = bound(bounds_, volume_change, first, last, energy);
+        energy = taken.energy;
+        work = taken.opening - taken.given;
+        const auto valid = group.valid();
+        bounded_ += select(valid, work, T(0.0));
+        floor_ -= select(valid, taken.given, T(0.0));
+      }
+    }
+    group.write(columns_.energy, energy);
+    return work;
+  }
+
   /// What the bounds leave of an energy [J/m^3], and the work that they take and give [J].
   struct Taken {
     T energy, opening, given;
