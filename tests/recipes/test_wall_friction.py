@@ -105,14 +105,16 @@ def test_a_block_slides_and_comes_to_rest(tmp_path: Path, dimension: int, basis:
     """It slows down by mu g and stops after v / (mu g), 0.34 s: 2 % of the speed at the start.
 
     It shakes under its weight, which is there at once, and its trailing edge lifts a little; so the
-    force is that of the law in the mean, and the end comes within some of its shear waves.
+    force is that of the law in the mean, and the end comes within some of its shear waves. Where
+    the wall stops it in place of springs it is lifted more, and creeps on as it shakes.
     """
     rows = history(tmp_path, block(dimension, basis, end="0.5 s"))
     speed = momentum(rows, dimension) / momentum(rows, dimension)[0]
     time = rows["time"]
     expected = np.maximum(1.0 - 0.3 * G * time, 0.0)
-    assert np.abs(speed - expected).max() < 0.02
-    assert abs(speed[time > 0.45].mean()) < 2e-3
+    springs = basis == "quadratic_bspline"
+    assert np.abs(speed - expected).max() < (0.02 if springs else 0.025)
+    assert abs(speed[time > 0.45].mean()) < (2e-3 if springs else 0.01)
     kinetic = 0.5 * momentum(rows, dimension)[0]  # m v^2 / 2, 1 m/s
     assert rows["friction"][-1] == pytest.approx(kinetic, rel=0.03)
     assert np.abs(rows["residual"]).max() < 1e-10 * kinetic
@@ -303,7 +305,8 @@ def test_a_bar_rebounds(tmp_path: Path, dimension: int, basis: str) -> None:
 
     (St. Venant 1883.) The wall yields by the compliance of an edge of a particle, half a cell in
     80, and fronts are rounded by the grid: 3 % of the force, 5 % of the time, and of the speed 4 %,
-    which is what stays in the bar as vibration.
+    which is what stays in the bar as vibration. Where it stops the nodes on its face, in place of
+    springs, the energy of half a cell is lost, half a per cent of the speed.
     """
     sides = range(1, dimension)
     text = BAR.format(
@@ -320,7 +323,8 @@ def test_a_bar_rebounds(tmp_path: Path, dimension: int, basis: str) -> None:
     c = math.sqrt(10e6 * 0.7 / (1.3 * 0.4) / 1000.0)
     area = 0.03 ** (dimension - 1)
     time, speed = rows["time"], rows["momentum_x"] / (1000.0 * 0.4 * area)
-    assert speed[-1] == pytest.approx(1.0, abs=0.04)
+    lost = 0.04 if basis == "quadratic_bspline" else 0.045
+    assert speed[-1] == pytest.approx(1.0, abs=lost)
     hit, lasts = 5e-3, 0.8 / c  # At 1 m/s it is 5 mm away: within the surface of its particles.
     middle = (time > hit + 0.3 * lasts) & (time < hit + 0.8 * lasts)
     slope = np.polyfit(time[middle], speed[middle], 1)[0]

@@ -46,7 +46,7 @@ struct ContactSettings {
               "springs act along the normals of the surfaces"},
       Setting{"response", &Self::response,
               "\"springs\" (particles push a body whose surface they overlap) or \"impulses\" "
-              "(approach is stopped at the nodes)"},
+              "(approach is stopped at the nodes); of walls that are contact too"},
       Setting{"friction", &Self::friction, "Coulomb coefficient of all pairs not listed in `pair`",
               Rule::not_negative},
       Setting{"gap_distance", &Self::gap_distance, "bodies closer than this touch [m]",

@@ -7,8 +7,11 @@
 //   F_i = sum_p N_i k_p o_p, K_i = sum_p N_i k_p,
 // and over a step to the force in its middle with the approach u at its end, F_i + K_i u dt / 2;
 // friction takes up to mu of that (eqs. 14-15), no more than what brings the node to rest.
+// Where contact goes by impulses the springs only say which nodes are touched: on the face and
+// beyond it approach is stopped, eqs. (6)-(7), the wall being a body of infinite mass.
 #include "mpm/contact/contact_node.hpp"
 #include "mpm/contact/node_solver.hpp"
+#include "mpm/contact/response.hpp"
 #include "mpm/contact/springs.hpp"
 #include "mpm/contact/tile_particles.hpp"
 #include "mpm/schedule/cell_loop.hpp"
@@ -137,29 +140,45 @@ void fold_wall_springs(const TileGrid<D>& grid, const Patch<D>& patch, const Nod
   });
 }
 
-/// A node of which a wall's springs push.
+/// A node that a wall's springs push, or at which its particles are stopped.
 template <int D>
 struct TouchedNode {
   Vec<double, D> F, K, E;  // of the springs along each axis [N], [N/m], [J]
+  bool stopped;            // approach is stopped: these only say where
   unsigned held;           // axes along which other walls hold it
   bool any = false;
 
   ContactSpring spring(int a) const { return {std::abs(F[a]), K[a], E[a]}; }
+  /// From the body to the wall.
+  double outward(int a) const { return F[a] > 0.0 ? -1.0 : 1.0; }
+  int side(int a) const { return F[a] > 0.0 ? 0 : 1; }
+  /// Where the wall acts as springs along an axis, over a step.
+  SolvedSpring over(int a, double dt) const {
+    if (stopped) return {};
+    // What is held along the normal does not come nearer.
+    const double approaches = (held >> a & 1u) != 0 ? 0.0 : share_of_approach;
+    return {dt * std::abs(F[a]), approaches * dt * dt * K[a], true};
+  }
 };
 
 /// Take a node's springs from it.
 template <int D>
-TouchedNode<D> take_springs(const TileGrid<D>& grid, const Patch<D>& patch,
+TouchedNode<D> take_springs(const Domain<D>& domain, const Patch<D>& patch,
                             const NodeBlock<D>& block, int node) {
+  const Walls<D>& walls = domain.grid.walls;
   TouchedNode<D> touched;
+  touched.stopped = stops_approach(domain.contact_settings.response, domain.body_of(patch).flows);
+  const Index<D> at = index_of(domain.grid, patch, node);
   for (int a = 0; a < D; ++a) {
     touched.F[a] = block.spring(spring_force_at, a)[node];
     touched.K[a] = block.spring(spring_stiffness_at, a)[node];
     touched.E[a] = block.spring(spring_energy_at, a)[node];
+    const bool within = walls.depth_beyond(at, a, touched.side(a)) < 0;
+    if (touched.stopped && within) touched.K[a] = 0.0;
     touched.any = touched.any || touched.K[a] > 0.0;
   }
   clear(block.springs.from(node), 1, wall_record);
-  touched.held = touched.any ? grid.walls.constrained_axes(index_of(grid, patch, node)) : 0u;
+  touched.held = touched.any ? walls.constrained_axes(at) : 0u;
   return touched;
 }
 
@@ -182,23 +201,14 @@ void start_solution(const Domain<D>& domain, const Patch<D>& patch, const NodeBl
   solution.pairs.clear();
   for (int a = 0; a < D; ++a) {
     if (!(touched.K[a] > 0.0)) continue;
-    Vec<double, D> normal = Vec<double, D>::zero();  // from the body to the wall
-    normal[a] = touched.F[a] > 0.0 ? -1.0 : 1.0;
-    const double friction = domain.grid.walls.friction[a][touched.F[a] > 0.0 ? 0 : 1];
-    // What is held along the normal does not come nearer.
-    const bool stands = (touched.held >> a & 1u) != 0;
-    solution.pairs.push_back({0,
-                              1,
-                              true,
-                              false,
-                              friction,
-                              normal,
-                              {dt * std::abs(touched.F[a]),
-                               stands ? 0.0 : share_of_approach * dt * dt * touched.K[a], true}});
+    Vec<double, D> normal = Vec<double, D>::zero();
+    normal[a] = touched.outward(a);
+    const double friction = domain.grid.walls.friction[a][touched.side(a)];
+    solution.pairs.push_back({0, 1, true, false, friction, normal, touched.over(a, dt)});
   }
 }
 
-/// The springs' forces over a step on the nodes of a patch, with their friction, which are added to
+/// The walls' forces over a step on the nodes of a patch, with their friction, which are added to
 /// the others; returns the energy that is stored in them after it, of the nodes it owns [J].
 template <int D>
 double push_from_walls(Domain<D>& domain, const Patch<D>& patch, const NodeBlock<D>& block) {
@@ -207,7 +217,7 @@ double push_from_walls(Domain<D>& domain, const Patch<D>& patch, const NodeBlock
   const double dt = domain.time_step;
   double stored = 0.0;
   for (int n = 0; n < block.count; ++n) {
-    const TouchedNode<D> touched = take_springs(domain.grid, patch, block, n);
+    const TouchedNode<D> touched = take_springs(domain, patch, block, n);
     if (!touched.any || !(block.mass()[n] > 0.0)) continue;
     start_solution(domain, patch, block, n, touched, solution);
     if (!solve_node<true>(solution))
@@ -224,7 +234,8 @@ double push_from_walls(Domain<D>& domain, const Patch<D>& patch, const NodeBlock
         }
         const bool stands = (touched.held >> normal & 1u) != 0;
         const double way = stands ? 0.0 : dt * end[normal] * pair.normal[normal];
-        if (patch.counts(n)) stored += touched.spring(normal).energy_after(way);
+        if (patch.counts(n) && pair.spring.exists)
+          stored += touched.spring(normal).energy_after(way);
       }
   }
   return stored;

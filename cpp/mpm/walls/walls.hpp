@@ -45,6 +45,11 @@ struct Walls {
   /// Is a body's surface looked at as if it went on behind it, mirrored?
   MPM_HD static bool goes_on(Wall wall) { return wall != Wall::free && wall != Wall::contact; }
 
+  /// By how many cells a node lies beyond a face, < 0 where it lies before it.
+  MPM_HD int depth_beyond(const Index<D>& node, int axis, int side) const {
+    return side == 0 ? -node[axis] : node[axis] - cells[axis];
+  }
+
   /// Bit a is set if a node may not move along axis a. Nodes beyond a fixed face are held like
   /// those on it, or have images. On a slip face the normal velocity is 0 by symmetry, as for a
   /// turned component v = -v.
@@ -131,9 +136,6 @@ struct Walls {
       for (int side = 0; side < 2; ++side)
         if (f(face[a][side], a, depth_beyond(node, a, side))) faces |= 1u << (2 * a + side);
     return faces;
-  }
-  MPM_HD int depth_beyond(const Index<D>& node, int axis, int side) const {
-    return side == 0 ? -node[axis] : node[axis] - cells[axis];
   }
 };
 

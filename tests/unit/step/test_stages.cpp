@@ -118,13 +118,15 @@ void check_touching_walls(Report& report, BasisId basis) {
        {Transfers::id_of<Flip>(), Transfers::id_of<Pic>(), Transfers::id_of<Apic>()}) {
     if (is_affine(transfer) && second_moment(basis) == 0.0) continue;
     choice.transfer = transfer;
-    for (const bool contact : {false, true}) {
-      choice.contact = contact;
-      check_schemes(report, choice);
-    }
+    for (const bool contact : {false, true})
+      for (const bool springs : {false, true}) {
+        choice.contact = contact;
+        choice.springs = springs;
+        check_schemes(report, choice);
+      }
   }
   choice.transfer = Transfers::id_of<Flip>();
-  choice.springs = choice.damping = true;
+  choice.damping = true;
   check_schemes(report, choice);
 }
 
