@@ -27,7 +27,7 @@ NodeSolution<D>& solution_of(std::span<const BodyAtNode<D>> sides,
   return solution;
 }
 
-/// The force over a step with the approach at its end: F + k (u dt / 2) (share_of_approach).
+/// The force over a step with the approach at its end: F + k u dt / 4 (share_of_approach).
 SolvedSpring spring_over(const ContactSpring& spring, double time_step) {
   return {time_step * spring.force, share_of_approach * time_step * time_step * spring.stiffness,
           spring.stiffness > 0.0};

@@ -99,8 +99,8 @@ void contact_forces(Step<D>& step) {
     const double w = c.w_r / (1.0 + half_drag(0)) + c.w_s / (1.0 + half_drag(1));
     const Vec<double, D> slip = alone(0, *c.r) - alone(1, *c.s);
     const Vec<double, D> all = (1.0 / (w * step.dt)) * slip;
-    // In the middle of the step with the approach at its end: F + k u dt / 2.
-    const double per_speed = 0.5 * step.dt * c.stiffness;
+    // With the approach at the end of the step: F + k u dt / 4 (share_of_approach).
+    const double per_speed = 0.25 * step.dt * c.stiffness;
     const double f_nor =
         step.springs
             ? std::max((c.push + per_speed * dot(slip, c.n)) / (1 + per_speed * w * step.dt), 0.0)

@@ -5,8 +5,8 @@
 namespace mpm::reference {
 
 /// Springs k_p = rho c^2 A_p / e_p of particles that overlap a face by o_p = e_p / 2 - z_p, at the
-/// middle of the overlap, come to F_i and K_i at the nodes: the force in the middle of the step
-/// with the approach u at its end is F_i + K_i u dt / 2, if that pushes, and friction is up to mu
+/// middle of the overlap, come to F_i and K_i at the nodes: the force over a step
+/// with the approach u at its end is F_i + K_i u dt / 4, if that pushes, and friction is up to mu
 /// of it. The nodes are those that the particle reaches; the rest of a share is the face's. Without
 /// springs the approach is stopped at those of them that lie on the face or beyond it.
 template <int D>
@@ -71,7 +71,7 @@ void touch_walls(Step<D>& step) {
           for (int a = 0; a < D; ++a)
             free[a] = ((1.0 - drag) * node.m * node.v[a] + step.dt * (node.f[a] + others[a])) / m;
           step.hold(i, free);
-          const double share = 0.5 * step.dt * s.K;  // of the approach, springs' share_of_approach
+          const double share = 0.25 * step.dt * s.K;  // of the approach, springs' share_of_approach
           const bool inside = sign > 0.0 ? i[static_cast<std::size_t>(n)] > 0
                                          : i[static_cast<std::size_t>(n)] <
                                                step.walls.cells[static_cast<std::size_t>(n)];

@@ -5,7 +5,7 @@
 // (decision 0054), of the stiffness k_p = rho c^2 A_p / e_p, the edge's area over its length, at
 // the middle of the overlap. At a node the springs come to
 //   F_i = sum_p N_i k_p o_p, K_i = sum_p N_i k_p,
-// and over a step to the force in its middle with the approach u at its end, F_i + K_i u dt / 2;
+// and over a step, with the approach u at its end, to F_i + K_i u dt / 4 (share_of_approach);
 // friction takes up to mu of that (eqs. 14-15), no more than what brings the node to rest.
 // Where contact goes by impulses the springs only say which nodes are touched: on the face and
 // beyond it approach is stopped, eqs. (6)-(7), the wall being a body of infinite mass.
