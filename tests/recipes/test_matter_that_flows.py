@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm3dpp import Case, Simulation
+from mpm3dpp import Case, RunError, Simulation
+from mpm3dpp.fill.response_notes import response_notes
 from turning import balance
 
 GAMMA = 1.4
@@ -171,14 +172,12 @@ def front(simulation: Simulation, dimension: int, n: int) -> float:
 CHARGES = {"tnt": ({"library": "tnt"}, 0.3e-3), "gas": (gas(250e6, 100.0), 0.3e-3)}
 
 
-@pytest.mark.parametrize("filling", CHARGES)
-@pytest.mark.parametrize("around", ["water", "aluminium_6061_t6"])
-def test_what_flows_pushes_others_without_making_energy(filling: str, around: str) -> None:
-    # Springs made 429 % (TNT in water) and 189 % (gas in water) and stopped.
+def charge_in(filling: str, around: str, **contact: str) -> Case:
+    """Return a square charge, or a gas under pressure, in a block of something else."""
     material, time = CHARGES[filling]
     inner = {"box": {"lower": [-0.05, -0.05], "upper": [0.05, 0.05]}}
     outer = {"box": {"lower": [-0.2, -0.2], "upper": [0.2, 0.2]}}
-    case = Case.model_validate(
+    return Case.model_validate(
         {
             "grid": {"dimension": 2, "cell_size": 0.01},
             "run": {"end_time": time, "viscosity": {}},
@@ -187,15 +186,40 @@ def test_what_flows_pushes_others_without_making_energy(filling: str, around: st
                 "inner": {"material": "inner", "shape": inner},
                 "outer": {"material": "outer", "shape": {"difference": [outer, inner]}},
             },
+            "contact": contact,
             **({"detonation": [{"point": [0.0, 0.0]}]} if filling == "tnt" else {}),
         }
     )
+
+
+@pytest.mark.parametrize("filling", CHARGES)
+@pytest.mark.parametrize("around", ["water", "aluminium_6061_t6"])
+def test_what_flows_pushes_others_without_making_energy(filling: str, around: str) -> None:
+    # Springs made 429 % (TNT in water) and 189 % (gas in water) and stopped.
+    case = charge_in(filling, around)
     assert case.contact.response == "by_matter"
     _, row = end(case)
     whole = row["internal"][0]
     assert abs(row["contact"][-1]) < 0.01 * whole
     assert row["numerical"].min() > -0.01 * whole  # nothing is made
     assert 0.95 < kept(row) < 1.001
+
+
+@pytest.mark.parametrize("filling", CHARGES)
+def test_springs_of_what_flows_are_told_before_and_by_their_column(filling: str) -> None:
+    case = charge_in(filling, "water", response="springs")
+    told = " ".join(response_notes(case))
+    assert "makes energy where body.inner, which flows, meets other bodies" in told
+    assert not response_notes(charge_in(filling, "water"))
+
+
+def test_energy_made_is_told_by_its_column_with_what_helps() -> None:
+    case = charge_in("tnt", "water", response="springs")
+    case.run.energy_growth_limit, case.run.cfl = 0.02, 0.2
+    with pytest.raises(
+        RunError, match=r"in the column contact of history.csv: give contact\.response"
+    ):
+        end(case)
 
 
 def test_solids_beside_what_flows_keep_their_springs() -> None:

@@ -59,6 +59,7 @@
   X(loops) \
   X(fuse) \
   X(stages) \
+  X(rows) \
   X(stages_in_space) \
   X(two_bodies) \
   X(many_bodies) \

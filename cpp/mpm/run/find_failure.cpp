@@ -1,7 +1,9 @@
 #include "mpm/run/find_failure.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string_view>
 
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/use_device.hpp"
@@ -58,6 +60,19 @@ Failure first_failure(const Domain<D>& domain) {
   return failure_from(bytes);
 }
 
+/// The column of history.csv in which numerics have made most, and what helps against that.
+std::string_view largest_made(const Ledger& ledger) {
+  const double numerical = -(ledger.mapping + ledger.time_integration);
+  if (-ledger.contact > std::max(numerical, -ledger.energy_floor))
+    return "contact of history.csv: give contact.response = \"impulses\", or \"by_matter\" where "
+           "what flows meets other bodies, or halve run.cfl";
+  if (-ledger.energy_floor > numerical)
+    return "energy_floor of history.csv: give the material failure = { hydrostatic_tension = ... "
+           "}, "
+           "or halve run.cfl";
+  return "numerical of history.csv: halve run.cfl";
+}
+
 }  // namespace
 
 template <int D>
@@ -79,10 +94,9 @@ void find_failure(Simulation<D>& simulation) {
   if (fastest.body < 0)
     text << "no particle takes part any more";
   else
-    text << "the numerical terms have made " << domain.ledger.growth()
-         << " of the largest energy brought in (the column numerical of history.csv); halve "
-            "run.cfl, "
-            "or raise run.energy_growth_limit if that is meant";
+    text << "numerics have made " << domain.ledger.growth()
+         << " of the largest energy brought in, most of it in the column "
+         << largest_made(domain.ledger) << "; or raise run.energy_growth_limit if that is meant";
   simulation.failure = failure_at(domain, "energy growth", fastest, text.str());
 }
 

@@ -46,7 +46,8 @@ struct Data {
     affine = 1u << 28,          // affine part of particles' velocities
     carried_sums = 1u << 29,    // of the patches' sums what these lose as they are carried along
     node_volumes = 1u << 30,    // of matter that flows
-    flowing = 1u << 31,  // volumes, stresses and heat of matter that flows, beside the others
+    flowing = 1u
+        << 31,  // of matter that flows limits of volumes; of a gas its energies, and heat owed
   };
 };
 /// Their names, in the order of the bits.

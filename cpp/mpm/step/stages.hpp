@@ -83,15 +83,18 @@ struct Stages : Data {
   static constexpr Row map_volumes{
       "map volumes", mpm::map_volumes<D>, lists | position | volume | flowing, node_volumes, false,
       true};
-  static constexpr Row load_surfaces{"load surfaces", mpm::load_surfaces<D>,
-                                     lists | position | load_pieces | node_force | impulses,
-                                     load_pieces | node_force | impulses};
-  static constexpr Row add_body_forces{"body forces",
-                                       mpm::add_body_forces<D>,
-                                       lists | position | mass | body_force | node_force | impulses,
-                                       body_force | node_force | impulses,
-                                       false,
-                                       true};
+  // While a run settles the sizes of what they apply are summed as well.
+  static constexpr Row load_surfaces{
+      "load surfaces", mpm::load_surfaces<D>,
+      lists | position | load_pieces | node_force | impulses | patch_sums,
+      load_pieces | node_force | impulses | patch_sums};
+  static constexpr Row add_body_forces{
+      "body forces",
+      mpm::add_body_forces<D>,
+      lists | position | mass | body_force | node_force | impulses | patch_sums,
+      body_force | node_force | impulses | patch_sums,
+      false,
+      true};
   // Between the mappings and the exchange, as dashpots and loads are sums over particles as well.
   static constexpr Row place_dashpots{"place dashpots",
                                       mpm::place_dashpots<D>,
@@ -152,8 +155,8 @@ struct Stages : Data {
                                node_velocity | contacts};
   static constexpr Row advance_particles{"advance particles",
                                          mpm::advance_particles<D>,
-                                         lists | of_particles | affine | of_rigid | unseen |
-                                             flowing | node_velocity | node_increments |
+                                         lists | of_particles | volume | affine | of_rigid |
+                                             unseen | flowing | node_velocity | node_increments |
                                              node_volumes | patch_sums,
                                          velocity | affine | flowing | rigid_velocity | patch_sums,
                                          true,

@@ -21,6 +21,7 @@ from .bond_notes import bond_notes
 from .initial import at_rest
 from .interference import Interference, beyond_walls, interference_notes
 from .parts import Filled, FilledPart
+from .response_notes import response_notes
 from .run_notes import run_notes
 from .settling import settling_notes
 from .shape_notes import shape_notes
@@ -54,6 +55,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *bond_notes(case),
         *_detonations(case, bodies, world),
         *wall_notes(case),
+        *response_notes(case),
         *_beyond_strength(case),
         *_locking(case),
         *_springs(case, bodies),

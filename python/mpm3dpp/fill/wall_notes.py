@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from mpm3dpp import _core
 from mpm3dpp.base.errors import key_text
 from mpm3dpp.base.time_functions import TimeFunction
 from mpm3dpp.case.case import Case
@@ -30,13 +29,6 @@ def wall_notes(case: Case) -> list[str]:
             f"body.{pressed[0]} begins with a stress, and faces of the box that are contact push "
             'only as it moves into them: give run.settle = { longest = "5 s" }, which begins from '
             "this stress"
-        )
-    affine = _core.transfers[case.run.transfer.word]["affine"]
-    if case.contact.response != "impulses" and not affine:
-        found.append(
-            f'contact.response = "{case.contact.response}" makes energy at walls that are contact '
-            f'where run.transfer is "{case.run.transfer.word}": leave contact.response out, which '
-            'stops approach there, or run.transfer, which is then "aflip"'
         )
     frictions = case.grid.wall_friction(case.contact.friction)
     rigid = [name for name in case.parts() if case.is_rigid(name)]

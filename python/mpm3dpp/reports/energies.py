@@ -33,7 +33,7 @@ def energies(found: Found) -> Section:
     manifest, history = found.manifest, found.history
     parts: list[str] = []
     if manifest is not None and manifest.energies:
-        line = energy_line(manifest).removeprefix("energy: ")
+        line = energy_line(manifest).removeprefix("warning: ").removeprefix("energy: ")
         parts.append(paragraph(f"Errors of the method: {line}."))
     largest = _largest_residual(found)
     if largest is not None:

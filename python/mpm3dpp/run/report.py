@@ -120,8 +120,8 @@ def energy_line(manifest: Manifest) -> str:
         for what, share in shares.items()
         if share != 0.0 or what != "contact"
     ]
-    line = f"energy: {', '.join(said)} of {of_what}"
     large = max(map(abs, shares.values())) > _NUMERICAL_WARNING
+    line = f"{'warning: ' if large else ''}energy: {', '.join(said)} of {of_what}"
     transfer = manifest.case.get("run", {}).get("transfer", "flip")
     if transfer != "flip":
         line += "; what run.transfer takes is in it"

@@ -41,6 +41,7 @@ struct Choice {
   int filter_order = 1;
   std::int64_t filter_every = 1;
   bool averages = false;  // volumes over cells
+  bool flows = false;     // a gas, which the reference step does not have
   std::array<Wall, std::size_t{2} * D> walls{};
 };
 
@@ -97,7 +98,7 @@ struct Twin {
     reference.mu = 0.3;
     domain.threads.resize(1);
     if (choice.averages) reference.averages = reach_of(choice.basis).own_node;
-    add_material(choice.damping ? 1e-5 : 0.0, choice.averages);
+    add_material(choice.damping ? 1e-5 : 0.0, choice.averages, choice.flows);
     domain.pools[0].fastest = own_step * 0.5 * cell_size / domain.time_step;
     for (int k = 0; k < 2; ++k) add_body(k, k == 0 ? choice.kind : BodyKind::deformable);
     if (choice.body_force) add_body_force();
@@ -141,12 +142,16 @@ struct Twin {
   static constexpr double density = 1000.0, E = 1e9, nu = 0.3;
 
   double any() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }
-  void add_material(double beta, bool averages) {
+  void add_material(double beta, bool averages, bool flows) {
     MaterialChoice choice;
     choice.volume_averaging = averages;
     choice.density = density;
     choice.strength = {"elastic", {{"E", E}, {"nu", nu}}};
-    choice.damping = beta;
+    if (flows) {
+      choice.strength = {"fluid", {}};
+      choice.eos = ModelChoice{"ideal_gas", {{"gamma", 1.4}, {"E0", E}}};
+    }
+    choice.damping = flows ? 0.0 : beta;
     domain.materials.push_back(make_material(choice));
     domain.pools.push_back(
         make_pool(domain.materials[0], domain.grid, columns_of(domain.transfer)));
