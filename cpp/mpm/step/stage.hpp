@@ -105,8 +105,9 @@ struct StageList {
   constexpr void add(const Stage<D>& stage) { stages[count++] = stage; }
   constexpr std::size_t find(const Stage<D>& stage) const {
     std::size_t k = 0;
-    // By what it does: names are for people, and two stages may share one.
-    while (k < count && stages[k].run != stage.run) ++k;
+    // Those of one name differ in what they read, or are of different lists. (To compare functions
+    // is no constant expression where g++ 12 looks for undefined behaviour, its bug 71962.)
+    while (k < count && !(stages[k].name == stage.name && stages[k].reads == stage.reads)) ++k;
     return k;
   }
 };
