@@ -238,6 +238,13 @@ def test_slabs_do_not_change_the_filling(monkeypatch: pytest.MonkeyPatch) -> Non
         assert len(parts) == len(whole)
 
 
+def test_no_particle_is_close_to_none() -> None:
+    """Of several processes one may have no particles of a body."""
+    none, some = np.zeros((0, 2)), np.ones((3, 2))
+    assert close_particles(none, some, 0.5) == close_particles(some, none, 0.5) == 0
+    assert close_particles(none, none, 0.5) == 0
+
+
 def test_close_particles_against_all_pairs() -> None:
     generator = np.random.default_rng(3)
     for dimension in (2, 3):

@@ -223,5 +223,7 @@ def _common(
     points: NDArray[np.float64], others: NDArray[np.float64], distance: float
 ) -> NDArray[np.float64]:
     """Return the points within the bounds of the others, which are widened by a distance."""
+    if len(others) == 0:  # A process may have none of them.
+        return points[:0]
     lower, upper = others.min(axis=0) - distance, others.max(axis=0) + distance
     return points[np.all((points >= lower) & (points <= upper), axis=1)]
