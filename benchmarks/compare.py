@@ -3,6 +3,10 @@
 
     python benchmarks/compare.py old/.venv/bin/python build/release/python elastic3d:40 jc:40
 
+Numerics are those of a case that says nothing of them, but where an option is given. A build before
+bench had them knows the linear basis and FLIP alone, and needs a scheme: compare it with another by
+`--preset paper --scheme musl`.
+
 Each process makes two steps, then the other does: the drift of the machine meets both. A
 round has two fresh processes, which lie elsewhere in memory; the ratio is the median of its turns,
 B / A: below 1 means that B is faster. The range over the rounds says how far to trust it.
@@ -16,10 +20,12 @@ import os
 import statistics
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 STEPS, WARM_UP = "2", "5"
+NUMERICS = ("basis", "transfer", "preset")
 
 
 class Build:
@@ -28,14 +34,15 @@ class Build:
     Args:
         where: the Python interpreter of an environment, or a folder with the package.
         words: name, size, threads and scheme.
+        numerics: words such as "basis=gimp".
     """
 
-    def __init__(self, where: str, words: list[str]) -> None:
+    def __init__(self, where: str, words: list[str], numerics: Sequence[str]) -> None:
         folder = Path(where).is_dir()
         python = sys.executable if folder else where
         environment = {**os.environ, "PYTHONPATH": str(Path(where).absolute())} if folder else None
         self._process = subprocess.Popen(
-            [python, "-m", "mpm3dpp.bench.worker", *words, WARM_UP],
+            [python, "-m", "mpm3dpp.bench.worker", *words, WARM_UP, "cpu", *numerics],
             env=environment,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -67,9 +74,11 @@ class Build:
         self._process.communicate()
 
 
-def one_round(places: list[str], words: list[str], turns: int) -> list[list[dict[str, float]]]:
+def one_round(
+    places: list[str], words: list[str], turns: int, numerics: Sequence[str] = ()
+) -> list[list[dict[str, float]]]:
     """Return the blocks of each build; who begins changes from turn to turn."""
-    builds = [Build(where, words) for where in places]
+    builds = [Build(where, words, numerics) for where in places]
     for turn in range(turns):
         for build in builds if turn % 2 else reversed(builds):
             build.step()
@@ -104,15 +113,20 @@ def main() -> None:
     parser.add_argument("b", help="build B, likewise")
     parser.add_argument("names", nargs="+", metavar="NAME[:SIZE]", help="elastic3d:40, spheres:300")
     parser.add_argument("--threads", default="1")
-    parser.add_argument("--scheme", default="musl", choices=["usf", "usl", "musl"])
+    parser.add_argument("--scheme", default="-", help='default "-": that of a case')
+    for name in NUMERICS:
+        parser.add_argument(f"--{name}", help="as `mpm3dpp bench` has it")
     parser.add_argument("--rounds", type=int, default=4)
     parser.add_argument("--turns", type=int, default=12, help="in a round")
     given = parser.parse_args()
+    said = {name: getattr(given, name) for name in NUMERICS}
+    numerics = [f"{name}={value}" for name, value in said.items() if value]
     for name in given.names:
         bench, _, size = name.partition(":")
         words = [bench, size or "40", given.threads, given.scheme]
-        print(f"{bench}, size {words[1]}, {given.threads} threads, {given.scheme}")
-        rounds = [one_round([given.a, given.b], words, given.turns) for _ in range(given.rounds)]
+        print(f"{bench}, size {words[1]}, {given.threads} threads, {given.scheme}", *numerics)
+        places = [given.a, given.b]
+        rounds = [one_round(places, words, given.turns, numerics) for _ in range(given.rounds)]
         print("\n".join(table(rounds)), flush=True)
 
 

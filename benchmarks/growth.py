@@ -21,11 +21,12 @@ import matplotlib.pyplot as plt
 from record import measured
 
 
-def rows(grains: list[int], threads: int, steps: int) -> list[dict[str, Any]]:
+def rows(grains: list[int], threads: int, steps: int, preset: str) -> list[dict[str, Any]]:
     """Measure each number of grains and print its row."""
     found = []
     for count in grains:
         options = ["--size", str(count), "--threads", str(threads), "--steps", str(steps)]
+        options += ["--preset", preset] if preset else []
         one = measured(sys.executable, "spheres", options)
         contact = one["bytes_per_particle"]["contact"] * one["particles"]
         found.append({"grains": count, "bytes": contact, **one})
@@ -64,9 +65,10 @@ def main() -> None:
     parser.add_argument("grains", nargs="+", type=int, help="numbers of grains, such as 100 1000")
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--steps", type=int, default=10, help="of a block that is timed")
+    parser.add_argument("--preset", default="", help="as `mpm3dpp bench` has it, such as paper")
     parser.add_argument("--out", type=Path, default=Path("growth.png"), help="the picture")
     options = parser.parse_args()
-    draw(rows(options.grains, options.threads, options.steps), options.out)
+    draw(rows(options.grains, options.threads, options.steps, options.preset), options.out)
 
 
 if __name__ == "__main__":

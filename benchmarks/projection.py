@@ -25,7 +25,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 from record import measured
 
-from mpm3dpp import _core
 from mpm3dpp.bench.cases import BENCHES, make
 from mpm3dpp.bench.worker import advance
 
@@ -78,7 +77,7 @@ def counted(name: str, edge: int) -> Counted:
     """
     bench = BENCHES[name]
     size = RANKS * edge**3 if bench.bodies == 0 else round(RANKS ** (1 / 3)) * edge
-    simulation = make(_core, bench, size, 1, "musl", ranks=RANKS)
+    simulation = make(bench, size, ranks=RANKS)
     keys = ("bytes", "letters", "exchanges", "reductions")
     # Means since the start; in the first steps tiles may be shared out anew.
     told = []
@@ -127,7 +126,7 @@ def main() -> None:
     given = parser.parse_args()
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
     ranks = np.array([1, 2, 8, 64, 512, 1024, 4096, 10_000])
-    cases = (("elastic3d", (8, 12, 16, 20)), ("gimp3d", (8, 12, 16, 20)), ("spheres", (2, 3, 4)))
+    cases = (("elastic3d", (8, 12, 16, 20)), ("spheres", (2, 3, 4)))
     for color, (name, edges) in enumerate(cases):
         found = [counted(name, edge) for edge in edges]
         alone: dict[str, Any] = measured(sys.executable, name, ["--threads", "1", "--steps", "50"])

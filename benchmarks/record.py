@@ -3,7 +3,8 @@
 
     python benchmarks/record.py elastic3d two_cubes --threads 1 --note "idle machine"
 
-Record on an idle machine, with what is measured committed; a row of a changed tree says so.
+Numerics are those of a case that says nothing of them; `--preset paper` and its like as in `mpm3dpp
+bench`. Record on an idle machine, with what is measured committed; a row of a changed tree says so.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+NUMERICS = ("basis", "transfer", "scheme", "preset")
 HISTORY = Path(__file__).with_name("history.csv")
 
 
@@ -47,6 +49,8 @@ def measured(python: str, name: str, options: list[str]) -> dict[str, Any]:
 
 def row(result: dict[str, Any], commit_name: str, note: str) -> dict[str, Any]:
     """Return a result as a row of the history."""
+    if result["preset"]:
+        note = f"preset {result['preset']}; {note}".rstrip("; ")
     if "contact_ratio" in result:
         note = f"{result['contact_ratio']:.3f} of no contact; {note}".rstrip("; ")
     return {
@@ -54,7 +58,10 @@ def row(result: dict[str, Any], commit_name: str, note: str) -> dict[str, Any]:
         "version": result["version"],
         "commit": commit_name,
         "machine": f"{result['machine']} {result['isa']}",
-        **{key: result[key] for key in ("bench", "threads", "scheme", "particles")},
+        **{
+            key: result[key]
+            for key in ("bench", "basis", "transfer", "threads", "scheme", "particles")
+        },
         "ns_per_particle_step": f"{result['ns_per_particle_step']:.1f}",
         "bytes_per_particle": f"{result['bytes_per_particle']['total']:.1f}",
         "bandwidth_GBps": f"{result['bandwidth_GBps']:.1f}",
@@ -78,10 +85,11 @@ def main() -> None:
     parser.add_argument("--size", help="cells along an edge")
     parser.add_argument("--steps", help="steps that are timed")
     parser.add_argument("--threads", default="1")
-    parser.add_argument("--scheme", default="musl", choices=["usf", "usl", "musl"])
+    for name in NUMERICS:
+        parser.add_argument(f"--{name}", help="as `mpm3dpp bench` has it")
     given = parser.parse_args()
-    options = ["--threads", given.threads, "--scheme", given.scheme]
-    for name in ("size", "steps"):
+    options = ["--threads", given.threads]
+    for name in ("size", "steps", *NUMERICS):
         value = getattr(given, name)
         options += [f"--{name}", value] if value else []
     commit_name = commit(HISTORY.parent)

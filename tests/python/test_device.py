@@ -232,10 +232,8 @@ def test_a_benchmark_shows_what_a_device_does(
     class Here:
         """What the other process answers, of this one."""
 
-        def __init__(self, part: Any, scheme: str, warm_up: int) -> None:
-            self._simulation = bench.cases.make(
-                _core, bench.BENCHES[part.name], part.size, part.threads, scheme
-            )
+        def __init__(self, part: Any, warm_up: int) -> None:
+            self._simulation = bench.cases.make(bench.BENCHES[part.name], part.size)
 
         def __enter__(self) -> Here:
             return self
@@ -250,6 +248,7 @@ def test_a_benchmark_shows_what_a_device_does(
                 return {"ready": True}
             memory = dict(self._simulation.bytes())
             end = {"growth": 0, "bytes": memory, "overlapped_nodes": 0, "isa": "none"}
+            end["particles"] = self._simulation.particle_count
             return end | worker.measure_device(self._simulation, 2)
 
     patch(bench, "Process", Here)
@@ -263,5 +262,5 @@ def test_a_benchmark_shows_what_a_device_does(
     report.show(result)
     report.show_series([result, result])
     shown = capsys.readouterr().out
-    assert "MUSL, Card 1, 5 steps" in shown and "everything" in shown
+    assert "AFLIP, USF; Card 1, 5 steps" in shown and "everything" in shown
     assert "of 3000.0 GB/s" in shown and "the limit is nominal" in shown

@@ -336,8 +336,9 @@ def test_without_mpi4py(tmp_path: Path) -> None:
         assert "pip install 'mpm3dpp[mpi]'" in one_sentence(done.stderr)
 
 
-def test_bench_of_ranks(tmp_path: Path, way: str) -> None:
-    words = ("bench", "elastic2d", "--size", 16, "--steps", 5, "--ranks", 1, "--ranks", 2)
+@pytest.mark.parametrize("name", ["elastic2d", "drum"])
+def test_bench_of_ranks(tmp_path: Path, way: str, name: str) -> None:
+    words = ("bench", name, "--size", 16, "--steps", 5, "--ranks", 1, "--ranks", 2)
     line = command(*words, "--json", "--plot", tmp_path / "bench.png")
     done = subprocess.run(
         line, env=environment(way), capture_output=True, text=True, timeout=120, check=True

@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from cases import each_numerics, everything
-from mpm3dpp import Simulation, _core
+from mpm3dpp import Simulation
+from mpm3dpp.bench import Numerics
 from mpm3dpp.bench import cases as bench
 from mpm3dpp.io.result_hash import result_hash
 
@@ -36,11 +37,15 @@ def test_everything(tmp_path: Path, dimension: int, scheme: str, basis: str) -> 
 
 @pytest.mark.parametrize("scheme", ["usf", "musl"])
 @pytest.mark.parametrize(
-    ("name", "size"), [("spheres", 12), ("gimp3d", 6), ("jc", 6), ("debris", 6)]
+    ("name", "size"), [("spheres", 12), ("elastic3d", 6), ("jc", 6), ("debris", 6)]
 )
-def test_benchmarks(name: str, size: int, scheme: str, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("basis", [None, "gimp"])
+def test_benchmarks(
+    name: str, size: int, basis: str | None, scheme: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Contact of many bodies, cells that all particles cross, a plastic law with a search."""
-    plain = bench._settings
+    plain = bench.core_settings
+    numerics = Numerics(basis=basis, scheme=scheme)
     digests = {}
     for disorder, share in DISORDERS.items():
 
@@ -50,6 +55,6 @@ def test_benchmarks(name: str, size: int, scheme: str, monkeypatch: pytest.Monke
                 made.execution.disorder = share
             return made
 
-        monkeypatch.setattr(bench, "_settings", settings)
-        digests[disorder] = digest(bench.make(_core, bench.BENCHES[name], size, 1, scheme), 80)
+        monkeypatch.setattr(bench, "core_settings", settings)
+        digests[disorder] = digest(bench.make(bench.BENCHES[name], size, numerics=numerics), 80)
     assert len(set(digests.values())) == 1, digests

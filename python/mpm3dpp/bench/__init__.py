@@ -12,6 +12,7 @@ benchmark with a twin (`two_cubes`) takes turns with it, block by block, for an 
   negative.
 - Bandwidth and arithmetic: measured by the same process after its memory has been read. How the
   traffic and the operations of a step are counted: see `traffic.py` and `operations.py`.
+- Numerics are those of a case that says nothing of them, but where a word is given: `numerics.py`.
 - With a device both limits are nominal, of its clocks, and the traffic is the same count: what
   the stages of the step must move, whatever its kernels do.
 """
@@ -27,15 +28,17 @@ from typing import Any
 
 from mpm3dpp.base.errors import CaseError, nearest
 from mpm3dpp.base.machine import MEMORY, PARTICLE_BYTES_WITH_GRID
+from mpm3dpp.case.case import Case
 from mpm3dpp.io.folders import writable_folder
 from mpm3dpp.io.foreign import refuse_to_draw
 from mpm3dpp.run.device import CPU, CUDA, ONE_PROCESS
 
 from .cases import BENCHES, Bench
+from .numerics import DEFAULT, Numerics
 from .process import Part, Process
 from .result import result_of
 
-__all__ = ["BENCHES", "block_lengths", "find", "main", "measure", "series"]
+__all__ = ["BENCHES", "Numerics", "block_lengths", "find", "main", "measure", "series"]
 
 BLOCKS = 5
 STEPS = 400  # So that a block of 80 steps holds several crossings of whole layers of particles.
@@ -59,7 +62,7 @@ def measure(
     name: str,
     size: int | None = None,
     threads: int = 1,
-    scheme: str = "musl",
+    numerics: Numerics = DEFAULT,
     steps: int | None = None,
     told: Callable[[int, int], None] | None = None,
     ranks: int = 1,
@@ -71,7 +74,7 @@ def measure(
         name: see `cases.BENCHES`.
         size: cells along the edge of a body, or the number of grains.
         threads: how many.
-        scheme: "usf", "usl" or "musl".
+        numerics: what is said of them.
         steps: how many are timed.
         told: called with (parts done, parts in all) as the measurement goes on.
         ranks: processes, each with so many threads.
@@ -81,32 +84,35 @@ def measure(
         What `--json` prints: `particles`, `threads`, `ns_per_particle_step`, `stages` [ns per
         particle-step], `bytes_per_particle` {particles, grid, contact, other, total},
         `bandwidth_GBps`, `bandwidth_fraction`, `arithmetic_GFLOPS`, `arithmetic_fraction`; what
-        was measured (`bench`, `scheme`, `size`, `steps`, `version`, `machine`, `isa`); `ranks` and
-        what passes between them, see `Manifest.ranks`; `blocks`,
+        was measured (`bench`, `basis`, `transfer`, `scheme`, `preset`, `size`, `steps`, `version`,
+        `machine`, `isa`); `ranks` and what passes between them, see `Manifest.ranks`; `blocks`,
         all blocks [ns]; `device`, its name or "cpu", and with one `device_bytes_per_particle`,
         `stages` being its kernels, of steps of their own; and with a twin `without_contact_ns` and
-        `contact_ratio` (`elastic3d_ns`, `elastic3d_ratio` for `jc`, `debris` and `gimp3d`), the
-        median over pairs of blocks.
+        `contact_ratio` (`elastic3d_ns`, `elastic3d_ratio` for `jc` and `debris`), the median over
+        pairs of blocks. What is counted of traffic and operations is None for a transfer that is
+        not counted.
 
     Raises:
-        CaseError: there is no such benchmark, not with this scheme, or no memory for this size.
+        CaseError: there is no such benchmark, not with these numerics, or no memory for this size.
         RunError: it could not be run to its end, or there is no device that can.
     """
     bench = find(name)
-    _allow(bench, scheme, device, ranks)
     cells = size or bench.size
-    specs = [Part(part, cells, threads, ranks, device) for part in (name, bench.twin) if part]
+    specs = [
+        Part(part, cells, threads, ranks, device, numerics) for part in (name, bench.twin) if part
+    ]
     lengths = block_lengths(steps or STEPS)
     _check_memory(specs)
-    blocks, ends = _in_turns(specs, scheme, lengths, told)
-    return result_of(bench, specs[0], scheme, sum(lengths), blocks, ends[0])
+    case = _allowed(bench, cells, numerics, device, ranks)
+    blocks, ends = _in_turns(specs, lengths, told)
+    return result_of(bench, specs[0], case, sum(lengths), blocks, ends[0])
 
 
 def series(
     name: str,
     sizes: Sequence[int],
     threads: Sequence[int],
-    scheme: str = "musl",
+    numerics: Numerics = DEFAULT,
     steps: int | None = None,
     told: Callable[[int, int], None] | None = None,
     ranks: Sequence[int] = (1,),
@@ -118,34 +124,37 @@ def series(
     The twin of a benchmark is left out. Arguments, results and errors are those of `measure`.
     """
     bench = find(name)
-    _allow(bench, scheme, device, max(ranks))
     lengths = block_lengths(steps or STEPS)
     specs = [
-        Part(name, size, count, parts, device)
+        Part(name, size, count, parts, device, numerics)
         for size in sizes
         for parts in ranks
         for count in threads
     ]
     _check_memory(specs)
-    blocks, ends = _in_turns(specs, scheme, lengths, told)
+    case = _allowed(bench, sizes[0], numerics, device, max(ranks))
+    blocks, ends = _in_turns(specs, lengths, told)
     alone = replace(bench, twin="")
     return [
-        result_of(alone, part, scheme, sum(lengths), [found], end)
+        result_of(alone, part, case, sum(lengths), [found], end)
         for part, found, end in zip(specs, blocks, ends, strict=True)
     ]
 
 
-def _allow(bench: Bench, scheme: str, device: str, ranks: int) -> None:
+def _allowed(bench: Bench, size: int, numerics: Numerics, device: str, ranks: int) -> Case:
+    """Return the case of a benchmark. Raises `CaseError` if it cannot be measured so."""
     if device not in (CPU, CUDA):
         raise CaseError("must be cpu or cuda", nearest(device, (CPU, CUDA)), key="device")
     if device == CUDA and ranks > 1:
         raise CaseError(f"{ONE_PROCESS}: leave --ranks out")
-    if bench.loose and scheme == "usl":
+    case = bench.case(size, numerics)
+    if bench.loose and case.run.scheme == "usl":
         raise CaseError(
             "cannot be measured with USL, which is unstable where particles enter empty cells",
             "give usf or musl",
             value=bench.name,
         )
+    return case
 
 
 def _check_memory(specs: Sequence[Part]) -> None:
@@ -166,7 +175,6 @@ def _check_memory(specs: Sequence[Part]) -> None:
 
 def _in_turns(
     specs: Sequence[Part],
-    scheme: str,
     lengths: Sequence[int],
     told: Callable[[int, int], None] | None,
 ) -> tuple[list[list[dict[str, Any]]], list[dict[str, Any]]]:
@@ -186,7 +194,7 @@ def _in_turns(
         # One after the other: making particles disturbs the rest.
         for part in specs:
             tell()
-            worker = Process(part, scheme, min(WARM_UP, sum(lengths)))
+            worker = Process(part, min(WARM_UP, sum(lengths)))
             workers.append(stack.enter_context(worker))
             worker.ask()
         for length in lengths:
@@ -203,7 +211,7 @@ def main(
     name: str,
     sizes: Sequence[int] = (),
     threads: Sequence[int] = (1,),
-    scheme: str = "musl",
+    numerics: Numerics = DEFAULT,
     steps: int | None = None,
     json: bool = False,
     plot: Path | None = None,
@@ -225,14 +233,15 @@ def main(
         try:
             if alone:
                 size = next(iter(sizes), None)
-                results = [measure(name, size, threads[0], scheme, steps, told, ranks[0], device)]
+                results = [measure(name, size, threads[0], numerics, steps, told, ranks[0], device)]
             else:
                 sizes = sizes or (bench.size,)
-                results = series(name, sizes, threads, scheme, steps, told, ranks, device)
+                results = series(name, sizes, threads, numerics, steps, told, ranks, device)
         except CaseError as error:
-            if error.key != "size":
+            if error.key not in ("size", *Numerics._fields):
                 raise
-            raise CaseError(error.rule, error.remedy, key="--size", value=error.value) from None
+            key = f"--{error.key}"
+            raise CaseError(error.rule, error.remedy, key=key, value=error.value) from None
     if json:
         print(json_format.dumps(results[0] if alone else results, indent=2))
     elif alone:

@@ -1,53 +1,51 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The benchmarks: lattices of particles that strain and cross cells. SI units.
+"""The benchmarks: particles that strain and cross cells. SI units.
 
-The basis is the linear one, that of the paper and of most other codes, but where GIMP is in the
-name.
+Each has a case, which says nothing of numerics: these are what a user's case has. Only `drum` takes
+its bodies from there; of the others they are lattices that are made here.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import debris, spheres
+from mpm3dpp import _core
+from mpm3dpp.case.case import Case
+from mpm3dpp.ranks.world import World
+from mpm3dpp.run.core_settings import core_settings
+from mpm3dpp.run.simulation import Simulation
+
+from . import debris, drum, spheres
+from .numerics import DEFAULT, Numerics, case_of
 
 Array = NDArray[np.float64]
 
 CELL = 1e-3  # [m]
 PER_AXIS = 2  # Particles per cell along each axis.
-# Arguments of the core's add_material.
+# Tables of a case.
 ALUMINIUM: dict[str, Any] = {
     "density": 2700.0,
-    "strength": "elastic",
-    "parameters": {"E": 70e9, "nu": 0.3},
-    "eos": None,
-    "failures": [],
-    "viscosity": (0.0, 0.0),
-    "damping": 0.0,
-    "volume_averaging": False,
+    "strength": {"elastic": {"E": 70e9, "nu": 0.3}},
 }
 # OFHC copper: Johnson & Cook 1983; shock data of Steinberg 1996.
 COPPER: dict[str, Any] = {
     "density": 8960.0,
-    "strength": "johnson_cook",
-    "parameters": {
-        "E": 124e9, "nu": 0.34, "A": 90e6, "B": 292e6, "n": 0.31, "C": 0.025, "m": 1.09,
-        "T_melt": 1356.0, "cp": 383.0,
+    "strength": {
+        "johnson_cook": {
+            "E": 124e9, "nu": 0.34, "A": 90e6, "B": 292e6, "n": 0.31, "C": 0.025, "m": 1.09,
+            "T_melt": 1356.0, "cp": 383.0,
+        }
     },
-    "eos": ("mie_gruneisen", {"c0": 3940.0, "s": 1.49, "gamma0": 1.96}),
-    "failures": [],
-    "viscosity": (0.0, 0.0),
-    "damping": 0.0,
-    "volume_averaging": False,
+    "eos": {"mie_gruneisen": {"c0": 3940.0, "s": 1.49, "gamma0": 1.96}},
 }  # fmt: skip
 # A wave speed below that of the translation: the cloud of `debris` hardly feels its stress.
-SOFT: dict[str, Any] = {**ALUMINIUM, "parameters": {"E": 70e6, "nu": 0.3}}
-TIME_STEP_FACTOR = 0.5
+SOFT: dict[str, Any] = {**ALUMINIUM, "strength": {"elastic": {"E": 70e6, "nu": 0.3}}}
 DIRECTION = (3.0, 2.0, 1.0)  # Of the translation: oblique to the grid.
 # Speed of the translation [m/s]. With USL and the linear basis a particle that enters an empty cell
 # moves a node of almost no mass, and the run is unstable within thirty steps. So with USL the
@@ -60,6 +58,7 @@ YIELDING = 100.0  # The same where most particles shall yield; it turns from axi
 # near that the nodes of the face stay overlapped to the end: the cost is in finding the contact.
 APPROACH = 2.0
 FRICTION = 0.2
+FOREVER = 1e9  # End time that no benchmark reaches [s].
 
 
 @dataclass(frozen=True)
@@ -72,14 +71,14 @@ class Bench:
         dimension: 2 or 3.
         size: cells along the edge of a body, if the user gives none; of grains, how many.
         bodies: how many cubes (squares), side by side along x; 0 for grains.
-        basis: "linear" or "gimp".
         loose: whether the particles of the body lie apart at random (`debris`), as many as a cube
             of the given size has.
         contact: whether the bodies feel each other.
         twin: name of the benchmark that is measured in turn with this one, for their ratio.
-        material: keyword arguments of the core's add_material.
+        material: its table in a case.
         state: numbers that the material keeps for a particle besides its stress.
         law: name of the material in `operations.LAWS`.
+        whole: gives the tables of the case of a size, if the bodies are those of a case.
     """
 
     name: str
@@ -93,10 +92,12 @@ class Bench:
     state: int = 0
     law: str = "elastic"
     loose: bool = False
-    basis: str = "linear"
+    whole: Callable[[int], dict[str, Any]] | None = None
 
     def particles(self, size: int) -> int:
-        """Return the number of particles of all bodies."""
+        """Return the number of particles of all bodies; of a whole case about how many."""
+        if self.whole is not None:
+            return drum.PARTICLES * size
         if self.bodies == 0:
             return spheres.PARTICLES * size
         return int(self.bodies * (PER_AXIS * size) ** self.dimension)
@@ -105,14 +106,27 @@ class Bench:
         """Return the number of bodies."""
         return self.bodies or size
 
+    def case(self, size: int, numerics: Numerics) -> Case:
+        """Return the case that says what the numerics are; see `numerics.case_of` for errors."""
+        cell = {"box": {"lower": [0.0] * self.dimension, "upper": [CELL] * self.dimension}}
+        tables: dict[str, Any] = {
+            "run": {},
+            "material": {"its": self.material},
+            "body": {"its": {"material": "its", "shape": cell}},
+        }
+        if self.whole is not None:
+            tables = self.whole(size)
+        tables["grid"] = {"dimension": self.dimension, "cell_size": CELL}
+        tables["run"] |= {"end_time": FOREVER, "outside_limit": 1.0, "volume_limit": 1.0}
+        tables["contact"] = {"enabled": self.contact, "friction": FRICTION}
+        return case_of(tables, numerics)
+
 
 BENCHES = {
     bench.name: bench
     for bench in (
         Bench("elastic2d", "a square that flies and breathes", 2, 360),
         Bench("elastic3d", "a cube that flies and breathes", 3, 40),
-        Bench("gimp2d", "elastic2d with GIMP", 2, 360, twin="elastic2d", basis="gimp"),
-        Bench("gimp3d", "elastic3d with GIMP", 3, 40, twin="elastic3d", basis="gimp"),
         Bench(
             "jc",
             "the same cube of Johnson-Cook and Mie-Grueneisen copper, yielding",
@@ -152,6 +166,15 @@ BENCHES = {
             twin="spheres_apart",
         ),
         Bench("spheres_apart", "the same balls without contact", 3, 1000, bodies=0),
+        Bench(
+            "drum",
+            "touching discs of 5.5 cells across in a drum that turns, contact with friction",
+            2,
+            1000,
+            bodies=0,
+            contact=True,
+            whole=drum.tables,
+        ),
     )
 }
 
@@ -202,37 +225,41 @@ def _along(values: NDArray[Any], axis: int, dimension: int) -> NDArray[Any]:
 
 
 def make(
-    core: Any,
     bench: Bench,
     size: int,
-    threads: int,
-    scheme: str,
-    comm: Any = None,
+    threads: int = 1,
+    numerics: Numerics = DEFAULT,
+    world: World | None = None,
     ranks: int = 1,
 ) -> Any:
     """Return the core's simulation of a benchmark, ready to step.
 
     Args:
-        core: the module `mpm3dpp._core`.
         bench: which one.
         size: cells along the edge of a body, or the number of grains.
         threads: how many.
-        scheme: "usf", "usl" or "musl".
-        comm: of all ranks that work on it, `World.for_core()`.
-        ranks: how many threads do as ranks, without any `comm`.
+        numerics: what is said of them.
+        world: all processes that work on it.
+        ranks: how many threads do as ranks, without any `world`.
     """
-    settings = _settings(core, bench, threads, scheme)
+    case = bench.case(size, numerics)
+    if bench.whole is not None:
+        return Simulation(case, threads, ranks=ranks, world=world).core
+    settings = core_settings(case, threads)
     settings.execution.ranks = ranks
-    simulation = core.Simulation(settings, comm)
-    material = simulation.add_material(**bench.material)
+    simulation = _core.Simulation(settings, world.for_core() if world else None)
+    material = simulation.add_material(
+        **case.material["its"].for_core(), viscosity=(0.0, 0.0), damping=0.0
+    )
+    speed = SPEED[case.run.scheme]
     volume = np.array([(CELL / PER_AXIS) ** bench.dimension])
     at_rest = np.zeros((1, bench.dimension))
     if bench.bodies == 0:
-        _add_grains(simulation, material, size, volume, SPEED[scheme])
+        _add_grains(simulation, material, size, volume, speed)
     if bench.loose:
         edge = debris.SPREAD * size * CELL
         place = debris.positions(bench.particles(size), edge)
-        motion = debris.velocities(place, edge, _translation(3, SPEED[scheme]))
+        motion = debris.velocities(place, edge, _translation(3, speed))
         simulation.add_body("debris", material, place, motion, volume)
         simulation.prepare()
         return simulation
@@ -242,7 +269,7 @@ def make(
         simulation.add_body(f"body {body}", material, place, at_rest, volume)
         del place
         approach = APPROACH * (1 - 2 * body) if bench.bodies > 1 else 0.0
-        motion = velocities(bench.dimension, size, SPEED[scheme], approach, bench.state > 0)
+        motion = velocities(bench.dimension, size, speed, approach, bench.state > 0)
         simulation.set_velocity(body, motion)
         del motion
     simulation.prepare()
@@ -257,14 +284,3 @@ def _add_grains(simulation: Any, material: int, count: int, volume: Array, speed
         points = ball + centre
         motion = spheres.velocities(points, places.mean(axis=0), spacing, translation)
         simulation.add_body(f"ball {body}", material, points, motion, volume)
-
-
-def _settings(core: Any, bench: Bench, threads: int, scheme: str) -> Any:
-    settings = core.Settings()
-    grid, run, contact = settings.grid, settings.run, settings.contact
-    grid.dimension, grid.cell_size, grid.basis = bench.dimension, CELL, bench.basis
-    run.scheme, run.cfl = scheme, TIME_STEP_FACTOR
-    run.outside_limit = run.volume_limit = 1.0
-    contact.enabled, contact.friction = bench.contact, FRICTION
-    settings.execution.threads = threads
-    return settings

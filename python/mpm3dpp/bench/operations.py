@@ -2,10 +2,11 @@
 """How many additions and multiplications a step takes, to say how near it is to the best possible.
 
 Counted is what the equations say as they are written, for each particle and each node that it
-reaches (2^D with the linear basis, 3^D with GIMP): the product of one-axis factors for N_ip, D of
-them for its gradient, and a multiplication and an addition for each term of a sum. A code that
-shares work among the particles of a cell, as this one does, makes fewer: it is an upper estimate.
-Not counted are nodes, the one-axis factors themselves, lists, and what lanes that are empty do.
+reaches (2^D with the linear basis, 3^D with GIMP and the quadratic B-spline): the product of
+one-axis factors for N_ip, D of them for its gradient, and a multiplication and an addition for each
+term of a sum. A code that shares work among the particles of a cell, as this one does, makes fewer:
+it is an upper estimate. Not counted are nodes, the one-axis factors themselves and distances along
+an axis, lists, what the ledger sums, and what lanes that are empty do.
 """
 
 from __future__ import annotations
@@ -19,9 +20,14 @@ from .traffic import moves_particles
 # function such as exp counts as one.
 LAWS = {"elastic": (95, 40), "johnson_cook": (230, 160)}
 
+# Of a transfer, for v_p: sums over the nodes, of increments and of velocities, and the operations
+# beside them for a component. XPIC is not among them, whose filter goes through the particles as
+# often as its order says.
+TAKES = {"flip": (1, 1), "pic": (1, 0), "apic": (1, 0), "aflip": (2, 4)}
+
 
 def operations_per_particle_step(
-    stages: list[str], dimension: int, basis: str, law: str
+    stages: list[str], dimension: int, basis: str, transfer: str, law: str
 ) -> dict[str, int]:
     """Return the operations of each stage per particle and step.
 
@@ -32,6 +38,7 @@ def operations_per_particle_step(
         stages: names of the stages of a scheme.
         dimension: 2 or 3.
         basis: a word of `grid.basis`.
+        transfer: a word of `run.transfer` that is counted.
         law: of the material, a key of `LAWS`.
 
     Raises:
@@ -43,7 +50,15 @@ def operations_per_particle_step(
     weighted, mass = nodes, nodes  # m N_ip, and its sum
     vector, tensor = 2 * nodes * d, 2 * nodes * d * d
     update = gradient + tensor + LAWS[law][3 - d]
-    advance, move = function + vector + d, function + vector + 2 * d
+    sums, beside = TAKES[transfer]
+    advance = function + sums * vector + beside * d
+    of_grid, along = vector, 2 * d  # eq. (16): the sum of v_i N_ip, and dt times it
+    sum_is_there = transfer != "flip"
+    if _core.transfers[transfer]["affine"]:
+        vector += tensor  # p_i has C_p (x_i - x_p) beside v_p
+        advance += tensor + d * d  # C_p = sum N_ip v_i (x_i - x_p) / D
+        along += 2 * d**3 + 3 * d * d  # C_p - dt/2 (C_p C_p + (C_p C_p)^T)
+    move = function + of_grid + along
     counts = {
         "map momentum": function + weighted + mass + vector,  # eqs. (2), (3)
         "map forces": gradient + tensor,  # eq. (9)
@@ -51,7 +66,7 @@ def operations_per_particle_step(
         "advance particles": advance,  # eq. (17)
         "remap momentum": function + weighted + vector,
         "advance and remap particles": advance + weighted + vector,
-        "advance and move particles": advance + vector + 2 * d,
+        "advance and move particles": advance + along + (0 if sum_is_there else of_grid),
         "update stress": update,  # eqs. (18)-(20)
         "update stress, move particles": update + move,
         "move particles": move,  # eq. (16)

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from mpm3dpp.plots.style import PALETTE, new_figure, save, styled
 
+from .report import numerics
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -26,7 +28,7 @@ def save_picture(path: Path, results: list[dict[str, Any]]) -> Path:
         else:
             _growth(left, results)
         _memory(right, results)
-        title = f"{first['bench']}, {first['scheme'].upper()} ({first['machine']}, {first['isa']})"
+        title = f"{first['bench']}: {numerics(first)} ({first['machine']}, {first['isa']})"
         figure.suptitle(title, fontsize=10)
         return save(figure, path)
 

@@ -14,15 +14,25 @@ from mpm3dpp.base.errors import RunError
 from mpm3dpp.ranks.launch import command_of
 from mpm3dpp.run.device import CPU
 
+from .numerics import DEFAULT, Numerics
+
+NO_WORD = "-"
+"""In the place of the scheme where none is given."""
+
 
 class Part(NamedTuple):
-    """What is measured: a benchmark in a size, with threads of each of some ranks, or a device."""
+    """What is measured: a benchmark in a size, with threads of each of some ranks, or a device.
+
+    Attributes:
+        numerics: what is said of them.
+    """
 
     name: str
     size: int
     threads: int
     ranks: int
     device: str = CPU
+    numerics: Numerics = DEFAULT
 
     @property
     def on_device(self) -> bool:
@@ -33,7 +43,8 @@ class Part(NamedTuple):
 class Process:
     """A benchmark in a process of its own, or in several; a context manager that ends it."""
 
-    def __init__(self, part: Part, scheme: str, warm_up: int) -> None:
+    def __init__(self, part: Part, warm_up: int) -> None:
+        scheme = part.numerics.scheme or NO_WORD
         numbers = [str(part.size), str(part.threads), scheme, str(warm_up)]
         by, added = command_of(part.ranks, part.threads) if part.ranks > 1 else ([], {})
         self._process = child.start(
@@ -41,6 +52,7 @@ class Process:
             part.name,
             *numbers,
             part.device,
+            *part.numerics.words(),
             by=by,
             env=os.environ | added,
             stdout=subprocess.PIPE,

@@ -9,8 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from .cases import BENCHES, SPEED
-from .operations import operations_per_particle_step
-from .traffic import bytes_per_particle_step
+from .result import counted
 
 
 @contextmanager
@@ -77,8 +76,9 @@ def show_series(results: list[dict[str, Any]]) -> None:
         table.add_column(head, justify="right", no_wrap=True)
     for result in results:
         ns = result["ns_per_particle_step"]
-        used = result["bytes_moved_per_particle_step"] / ns
-        limits = (f"{used:.1f}", f"{result['bandwidth_GBps']:.1f}")
+        moved = result["bytes_moved_per_particle_step"]
+        used = "" if moved is None else f"{moved / ns:.1f}"
+        limits = (used, f"{result['bandwidth_GBps']:.1f}")
         table.add_row(
             f"{result['particles']:,}",
             f"{result['ranks']}",
@@ -91,22 +91,34 @@ def show_series(results: list[dict[str, Any]]) -> None:
     console = Console(highlight=False)
     about = BENCHES[first["bench"]].about
     console.print(
-        f"{first['bench']}: {about}; {first['scheme'].upper()}, {first['steps']} steps, in turns",
+        f"{first['bench']}: {about}; {numerics(first)}; {first['steps']} steps, in turns",
         markup=False, soft_wrap=True,
     )  # fmt: skip
     console.print(table)
     for line in (
         "ns per particle-step and their ratio to the first row; bytes per particle at the peak;",
-        *(_ABOUT_EXCHANGE if several else (_about_bandwidth(first),)),
+        *(_ABOUT_EXCHANGE if several else _about_bandwidth(first)),
         f"machine    {first['machine']}, {first['isa']}",
     ):
         console.print(line, markup=False, soft_wrap=True)
 
 
-def _about_bandwidth(first: dict[str, Any]) -> str:
+def numerics(result: dict[str, Any]) -> str:
+    """Return what the numerics were, in a few words."""
+    preset = f'preset "{result["preset"]}": ' if result["preset"] else ""
+    return f"{preset}{result['basis']}, {result['transfer'].upper()}, {result['scheme'].upper()}"
+
+
+def _about_bandwidth(first: dict[str, Any]) -> tuple[str, ...]:
+    if first["bytes_moved_per_particle_step"] is None:
+        return (_not_counted("bandwidth", first),)
     if _on_device(first):
-        return f"of {first['device']}; bandwidth used, and its nominal one"
-    return "bandwidth used, and measured in the same run"
+        return (f"of {first['device']}; bandwidth used, and its nominal one",)
+    return ("bandwidth used, and measured in the same run",)
+
+
+def _not_counted(limit: str, result: dict[str, Any]) -> str:
+    return f'{limit:10} not counted for transfer = "{result["transfer"]}"'
 
 
 _ABOUT_EXCHANGE = (
@@ -139,7 +151,7 @@ def headline(result: dict[str, Any]) -> str:
         on = result["device"]
     return (
         f"{result['bench']}: {BENCHES[result['bench']].about}; {result['particles']:,} particles, "
-        f"{result['scheme'].upper()}, {on}, {result['steps']} steps"
+        f"{numerics(result)}; {on}, {result['steps']} steps"
     )
 
 
@@ -167,11 +179,11 @@ def _stages(result: dict[str, Any]) -> Any:
 
     total, stages = result["ns_per_particle_step"], result["stages"]
     bench = BENCHES[result["bench"]]
-    moved = bytes_per_particle_step(list(stages), bench.dimension, bench.state)
-    made = operations_per_particle_step(list(stages), bench.dimension, bench.basis, bench.law)
+    moved, made = counted(bench, result, list(stages))
     table = Table(show_footer=True, caption="per particle and step")
     table.add_column("stage", footer="step", no_wrap=True)
-    footers = (f"{total:.1f}", "100 %", f"{sum(moved.values())}", f"{sum(made.values())}")
+    sums = [f"{sum(of.values())}" if of else "" for of in (moved, made)]
+    footers = (f"{total:.1f}", "100 %", *sums)
     heads = ("ns", "share", "bytes", "operations")
     for head, footer in zip(heads, footers, strict=True):
         table.add_column(head, footer=footer, justify="right")
@@ -186,20 +198,13 @@ def lines(result: dict[str, Any]) -> list[str]:
     """Return the lines below the table: spread, memory, bandwidth, contact."""
     memory, blocks = result["bytes_per_particle"], result["blocks"]
     parts = ", ".join(f"{key} {memory[key]:.1f}" for key in memory if key != "total")
-    used = result["bytes_moved_per_particle_step"] / result["ns_per_particle_step"]
-    cached = ": most comes from the caches" if result["bandwidth_fraction"] > 1.0 else ""
     device = _on_device(result)
     places = 3 if device else 1
-    limit = "nominal" if device else "measured now"
     found = [
         f"time       {result['ns_per_particle_step']:.{places}f} ns per particle-step, the median "
         f"of {len(blocks)} blocks from {min(blocks):.{places}f} to {max(blocks):.{places}f}",
         f"memory     {memory['total']:.1f} bytes per particle at the peak: {parts}",
-        f"bandwidth  {used:.1f} of {result['bandwidth_GBps']:.1f} GB/s "
-        f"({100 * result['bandwidth_fraction']:.0f} %{cached}), as counted; the limit is {limit}",
-        f"arithmetic {result['operations_per_particle_step'] / result['ns_per_particle_step']:.1f} "
-        f"of {result['arithmetic_GFLOPS']:.1f} GFLOP/s "
-        f"({100 * result['arithmetic_fraction']:.0f} %), as the equations are written",
+        *_shares(result),
     ]
     if device:
         found.insert(
@@ -230,3 +235,20 @@ def lines(result: dict[str, Any]) -> list[str]:
         found.append("note       with USL the bodies stay in place: no particle crosses cells")
     found.append(f"machine    {result['machine']}, {result['isa']}")
     return found
+
+
+def _shares(result: dict[str, Any]) -> tuple[str, ...]:
+    """Return the lines of bandwidth and arithmetic."""
+    if result["bytes_moved_per_particle_step"] is None:
+        return _not_counted("bandwidth", result), _not_counted("arithmetic", result)
+    ns = result["ns_per_particle_step"]
+    cached = ": most comes from the caches" if result["bandwidth_fraction"] > 1.0 else ""
+    limit = "nominal" if _on_device(result) else "measured now"
+    return (
+        f"bandwidth  {result['bytes_moved_per_particle_step'] / ns:.1f} of "
+        f"{result['bandwidth_GBps']:.1f} GB/s ({100 * result['bandwidth_fraction']:.0f} %{cached})"
+        f", as counted; the limit is {limit}",
+        f"arithmetic {result['operations_per_particle_step'] / ns:.1f} "
+        f"of {result['arithmetic_GFLOPS']:.1f} GFLOP/s "
+        f"({100 * result['arithmetic_fraction']:.0f} %), as the equations are written",
+    )

@@ -8,9 +8,11 @@ from typing import Any
 
 from mpm3dpp import _core
 from mpm3dpp.base.machine import processor_name
+from mpm3dpp.case.case import Case
 
 from .cases import Bench
-from .operations import operations_per_particle_step
+from .numerics import words_of
+from .operations import TAKES, operations_per_particle_step
 from .process import Part
 from .traffic import bytes_per_particle_step
 
@@ -18,7 +20,7 @@ from .traffic import bytes_per_particle_step
 def result_of(
     bench: Bench,
     part: Part,
-    scheme: str,
+    case: Case,
     steps: int,
     blocks: list[list[dict[str, Any]]],
     last: dict[str, Any],
@@ -26,15 +28,13 @@ def result_of(
     """Put the measurements together; see `measure`."""
     from mpm3dpp import __version__
 
-    size = part.size
-    count = bench.particles(size)
+    count, words = last["particles"], words_of(case)
     median = statistics.median_low(block["ns"] for block in blocks[0])
     block = next(block for block in blocks[0] if block["ns"] == median)
     stages = block["stages"]
     # A device has kernels in place of stages; what it must do is what the stages say.
-    told = [name for name, *_ in _core.stages(scheme, True)] if part.on_device else list(stages)
-    moved = sum(bytes_per_particle_step(told, bench.dimension, bench.state).values())
-    made = sum(operations_per_particle_step(told, bench.dimension, bench.basis, bench.law).values())
+    told = [name for name, *_ in _core.stages(words["scheme"], True)]
+    moved, made = counted(bench, words, told if part.on_device else list(stages))
     memory = {key: last["bytes"][key] / count for key in ("particles", "grid", "contact")}
     total = last["growth"] / count
     result: dict[str, Any] = {
@@ -42,8 +42,8 @@ def result_of(
         "version": __version__,
         "machine": processor_name(),
         "isa": last["isa"],
-        "scheme": scheme,
-        "size": size,
+        **words,
+        "size": part.size,
         "steps": steps,
         "particles": count,
         "threads": part.threads,
@@ -54,11 +54,9 @@ def result_of(
         "stages": last["kernels"] if part.on_device else stages,
         "bytes_per_particle": {**memory, "other": total - sum(memory.values()), "total": total},
         "bandwidth_GBps": last["bandwidth"],
-        "bytes_moved_per_particle_step": moved,
-        "bandwidth_fraction": moved / median / last["bandwidth"],
+        **_shares("bytes_moved", "bandwidth", moved, median, last),
         "arithmetic_GFLOPS": last["arithmetic"],
-        "operations_per_particle_step": made,
-        "arithmetic_fraction": made / median / last["arithmetic"],
+        **_shares("operations", "arithmetic", made, median, last),
         "overlapped_nodes": last["overlapped_nodes"],
     }
     if part.on_device:
@@ -70,3 +68,29 @@ def result_of(
         ratio = statistics.median(a["ns"] / b["ns"] for a, b in pairs)
         result["contact_ratio" if bench.contact else f"{key}_ratio"] = ratio
     return result
+
+
+def counted(
+    bench: Bench, words: dict[str, Any], stages: list[str]
+) -> tuple[dict[str, int], dict[str, int]]:
+    """Return bytes and operations of each stage per particle and step, of what is counted.
+
+    Args:
+        bench: which one.
+        words: with `basis` and `transfer`; for a transfer that is not counted nothing is returned.
+        stages: names of those of a step.
+    """
+    basis, transfer, d = words["basis"], words["transfer"], bench.dimension
+    if transfer not in TAKES:
+        return {}, {}
+    moved = bytes_per_particle_step(stages, d, transfer, bench.state)
+    return moved, operations_per_particle_step(stages, d, basis, transfer, bench.law)
+
+
+def _shares(
+    what: str, limit: str, each: dict[str, int], ns: float, last: dict[str, Any]
+) -> dict[str, Any]:
+    """Return the sum over the stages and its share of a limit; None of what is not counted."""
+    whole = sum(each.values()) if each else None
+    share = None if whole is None else whole / ns / last[limit]
+    return {f"{what}_per_particle_step": whole, f"{limit}_fraction": share}

@@ -8,7 +8,7 @@ read counts it again: for more particles than the caches hold it does come from 
 counted are the nodes (64 bytes each, which a step goes through some ten times: in large problems
 they come from memory too), the sorting of columns, and the mending of lists, so the fraction of the
 bandwidth that follows is a lower bound. A small problem stays in the caches, and its fraction can
-exceed 1.
+exceed 1. The affine part counts with the transfers that have it.
 """
 
 from __future__ import annotations
@@ -17,9 +17,10 @@ from mpm3dpp import _core
 
 _LIST = 4  # Bytes of an entry of the list of particles by cell.
 _ROUNDED = {"float64": 8, "float32": 4}[_core.build_info()["velocity_and_stress"]]
-_BYTES = {"velocity": _ROUNDED, "stress": _ROUNDED}  # Of a number; of all others 8.
+_AFFINE = "affine part"
+_BYTES = dict.fromkeys(("velocity", "stress", _AFFINE), _ROUNDED)  # Of a number; of all others 8.
 
-_COLUMNS = ("position", "velocity", "mass", "volume", "stress")
+_COLUMNS = ("position", "velocity", "mass", "volume", "stress", _AFFINE)
 
 
 def _touched() -> dict[str, tuple[tuple[str, ...], tuple[str, ...]]]:
@@ -51,25 +52,33 @@ def numbers(column: str, dimension: int) -> int:
     """Return how many numbers a column holds per particle."""
     if column == "stress":
         return 6 if dimension == 3 else 4  # Plane strain keeps xx yy zz xy.
+    if column == _AFFINE:
+        return dimension * dimension
     return dimension if column in ("position", "velocity") else 1
 
 
-def bytes_per_particle_step(stages: list[str], dimension: int, state: int = 0) -> dict[str, int]:
+def bytes_per_particle_step(
+    stages: list[str], dimension: int, transfer: str, state: int = 0
+) -> dict[str, int]:
     """Return the bytes that each stage moves per particle and step.
 
     Args:
         stages: names of the stages of a scheme.
         dimension: 2 or 3.
+        transfer: a word of `run.transfer` that `operations.TAKES` has.
         state: numbers of the material's state, which the stress stage reads and writes.
 
     Raises:
         KeyError: there is no such stage.
     """
     moved = {}
+    affine = _core.transfers[transfer]["affine"]
     for stage in stages:
         read, written = STAGES[stage]
         columns = sum(
-            numbers(column, dimension) * _BYTES.get(column, 8) for column in (*read, *written)
+            numbers(column, dimension) * _BYTES.get(column, 8)
+            for column in (*read, *written)
+            if affine or column != _AFFINE
         )
         columns += 2 * state * 8 if stage.startswith("update stress") else 0
         moved[stage] = columns + _LIST if columns else 0

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The process in which a benchmark runs alone, so that no earlier memory hides its own.
 
-    python -m mpm3dpp.bench.worker NAME SIZE THREADS SCHEME WARM_UP [DEVICE]
+    python -m mpm3dpp.bench.worker NAME SIZE THREADS SCHEME WARM_UP [DEVICE [KEY=VALUE ...]]
 
+Scheme "-" is that of a case which says nothing; keys are `basis`, `transfer` and `preset`, and
+`scheme` again.
 It answers commands on standard input with one line of JSON each on standard output: `block N`
 makes and times N steps, `finish` reads the memory and then, in the same process and state of the
 machine, measures what it can do at best. Of several ranks the first one answers.
@@ -19,12 +21,13 @@ from pathlib import Path
 from typing import Any
 
 from mpm3dpp import _core
+from mpm3dpp.base.errors import CaseError
 from mpm3dpp.ranks.world import World, world
 from mpm3dpp.run.device import CPU
 
-from .cases import BENCHES, make
-
-_FOREVER = 1e9  # End time that no benchmark reaches [s].
+from .cases import BENCHES, FOREVER, make
+from .numerics import Numerics
+from .process import NO_WORD
 
 
 def status_bytes(field: str) -> int:
@@ -45,7 +48,7 @@ def advance(simulation: Any, steps: int) -> None:
     """Make exactly `steps` steps; raise RuntimeError with the core's sentence if it cannot."""
     left = steps
     while left > 0:
-        left -= simulation.advance(min(left, simulation.history_capacity), _FOREVER)
+        left -= simulation.advance(min(left, simulation.history_capacity), FOREVER)
         simulation.history()
         if simulation.failure is not None:
             raise RuntimeError(simulation.failure.message)
@@ -91,10 +94,13 @@ def main(arguments: list[str]) -> None:
     size, threads, warm_up = int(arguments[1]), int(arguments[2]), int(arguments[4])
     device = arguments[5] if len(arguments) > 5 else CPU
     ranks = world()
+    numerics = Numerics.of_words(arguments[6:])
+    if scheme != NO_WORD:
+        numerics = numerics._replace(scheme=scheme)
+    BENCHES[name].case(size, numerics)  # What reads cases is in memory before it is measured.
     forget_peak()
     before = status_bytes("VmRSS")
-    comm = ranks.for_core() if ranks else None
-    simulation = make(_core, BENCHES[name], size, threads, scheme, comm)
+    simulation = make(BENCHES[name], size, threads, numerics, ranks)
     if device != CPU:
         simulation.use_device()
     advance(simulation, warm_up)
@@ -106,6 +112,7 @@ def main(arguments: list[str]) -> None:
             growth = status_bytes("VmHWM") - before
             result = {
                 "growth": ranks.comm.allreduce(growth) if ranks else growth,
+                "particles": simulation.particle_count,
                 "bytes": dict(simulation.bytes()),
                 "overlapped_nodes": simulation.contact_summary()["overlapped_nodes"],
                 "isa": _core.build_info()["isa"],
@@ -149,5 +156,5 @@ def answer(content: dict[str, Any], ranks: World | None = None) -> None:
 if __name__ == "__main__":
     try:
         main(sys.argv[1:])
-    except (RuntimeError, ValueError, MemoryError) as error:
+    except (CaseError, RuntimeError, ValueError, MemoryError) as error:
         answer({"error": str(error) or "there is not enough memory"})
