@@ -225,13 +225,14 @@ def lines(result: dict[str, Any]) -> list[str]:
             f"({result['without_contact_ns']:.1f} ns); {result['overlapped_nodes']:,} overlapped "
             "nodes"
         )
-    twin = BENCHES[result["bench"]].twin
+    bench = BENCHES[result["bench"]]
+    twin = bench.twin
     if f"{twin}_ratio" in result:
         found.append(
             f"against    {twin}, in turns: {result[f'{twin}_ratio']:.3f} times its "
             f"{result[f'{twin}_ns']:.1f} ns (median of the blocks' ratios)"
         )
-    if SPEED[result["scheme"]] == 0.0:
+    if SPEED[result["scheme"]] == 0.0 and bench.whole is None:
         found.append("note       with USL the bodies stay in place: no particle crosses cells")
     found.append(f"machine    {result['machine']}, {result['isa']}")
     return found
