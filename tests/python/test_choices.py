@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+import operator
+
 import pytest
 
-from mpm3dpp import Body, Case, CaseError, Grid, Material, Run, shapes
+from mpm3dpp import Body, Case, CaseError, Grid, Material, Run, _core, shapes
+from mpm3dpp.run.core_settings import core_settings
 
 CASE = """
 {preset}
@@ -47,6 +50,18 @@ def test_what_is_not_said_follows_what_is(preset, grid, run, basis, chosen) -> N
     case = Case.from_text(CASE.format(preset=preset, grid=grid, run=run))
     assert case.grid.basis == basis
     assert (case.run.transfer.table(), case.run.scheme, case.run.cfl) == chosen
+
+
+def test_the_settings_of_the_core_begin_as_those_of_a_case_that_says_nothing() -> None:
+    """One set of defaults: the core's structs have them, and the tables of a case read them."""
+    case = core_settings(Case.from_text(CASE.format(preset="", grid="", run="")), threads=1)
+    core = _core.Settings()
+    for table in ("grid", "run", "run.transfer", "contact"):
+        ours, theirs = (operator.attrgetter(table)(settings) for settings in (core, case))
+        rows = _core.settings[table]
+        names = [key for key, row in rows.items() if not row["required"] and key != "gravity"]
+        for key in [*names, "word"] if table == "run.transfer" else names:
+            assert getattr(ours, key) == getattr(theirs, key), f"{table}.{key}"
 
 
 @pytest.mark.parametrize(

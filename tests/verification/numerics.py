@@ -71,5 +71,4 @@ class Numerics:
             table = self.table()
             setattr(settings.run.transfer, self.transfer, table[self.transfer])
         settings.run.cfl = self.factor or factor
-        if self.response:
-            settings.contact.response = self.response
+        settings.contact.response = self.response or choices.OTHER_RESPONSE

@@ -24,7 +24,7 @@ struct ContactSettings {
   bool bonded = false;
   Detection detection = Detections::id_of<GapDetection>();
   NormalRule normal = NormalRules::id_of<PlaneNormal>();
-  Response response = Response::impulses;
+  Response response = Response::springs;
   double friction = 0.0;
   double gap_distance = 0.0;  // D of eq. (5)
   double normal_refresh_distance =

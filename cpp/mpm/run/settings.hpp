@@ -1,5 +1,6 @@
 #pragma once
-// The settings of a case: its tables `grid`, `run` and `contact`, and how it is executed.
+// The settings of a case: its tables `grid`, `run` and `contact`, and how it is executed. Members
+// begin as a case has them that says nothing; what follows where it does say one: case/choices.py.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -35,7 +36,7 @@ struct CoarseningSettings {
 struct GridSettings {
   int dimension = 0;
   double cell_size = std::numeric_limits<double>::quiet_NaN();
-  BasisId basis = basis_id<Gimp>;
+  BasisId basis = basis_id<QuadraticBSpline>;
 
   static constexpr std::string_view table = "grid";
   using Self = GridSettings;
@@ -61,7 +62,7 @@ struct GridSettings {
 
 /// The transfer's word, and the numbers that go with it: `aflip = 0.97` names it too.
 struct TransferSettings {
-  TransferId word = Transfers::id_of<Flip>();
+  TransferId word = Transfers::id_of<Aflip>();
   double flip = 1.0, aflip = 0.97, pic_rate = 0.0;
   int xpic = 4;
   std::int64_t every = 1;
@@ -118,8 +119,8 @@ struct SettleSettings {
 };
 
 struct RunSettings {
-  Scheme scheme = Scheme::musl;
-  double cfl = 0.25;
+  Scheme scheme = Scheme::usf;
+  double cfl = 0.5;
   std::optional<double> time_step, largest_time_step;
   std::array<TimeFunction, 3> gravity{};
   TransferSettings transfer;

@@ -49,18 +49,13 @@ def _field(row: dict[str, Any]) -> tuple[Any, Any]:
     return (made if row["default"] is not None else made | None), row["default"]
 
 
-def core_table(name: str, **defaults: Any) -> Any:
+def core_table(name: str) -> Any:
     """Return a model with the settings of a table of the core, for the table's class to derive of.
 
     Args:
         name: such as "contact".
-        defaults: of settings for which a case has another than the core.
     """
-    rows = {
-        key: row | {"default": defaults.get(key, row["default"])}
-        for key, row in _core.settings[name].items()
-    }
-    return table_of_rows(name, rows, _field)
+    return table_of_rows(name, _core.settings[name], _field)
 
 
 def table_of_rows(

@@ -4,7 +4,8 @@
 By what was measured on thirteen problems (docs/decisions/0048-the-table.md): a basis with which an
 affine transfer goes has AFLIP, and this has USF, steps twice as long as those of the others, and
 contact by springs (docs/decisions/0054-a-smooth-surface-for-springs.md), where a body flows by
-impulses (docs/decisions/0062-matter-that-flows.md).
+impulses (docs/decisions/0062-matter-that-flows.md). The core's settings begin so
+(`cpp/mpm/run/settings.hpp`); here is what follows where a case says one of them.
 """
 
 from __future__ import annotations
@@ -21,11 +22,12 @@ if TYPE_CHECKING:
     from .case import Case
     from .parts import Contact, Output, Run
 
-BASIS, TRANSFER = "quadratic_bspline", "aflip"
-AFFINE: dict[str, Any] = {"scheme": "usf", "cfl": 0.5}
+_BEGIN = _core.Settings()
+BASIS, TRANSFER = _BEGIN.grid.basis, _BEGIN.run.transfer.word
+AFFINE: dict[str, Any] = {"scheme": _BEGIN.run.scheme, "cfl": _BEGIN.run.cfl}
 OTHERS: dict[str, Any] = {"scheme": "musl", "cfl": 0.25}
 OTHER_TRANSFER = "flip"
-RESPONSE, FLOWING_RESPONSE, OTHER_RESPONSE = "springs", "by_matter", "impulses"
+RESPONSE, FLOWING_RESPONSE, OTHER_RESPONSE = _BEGIN.contact.response, "by_matter", "impulses"
 SHEARED, PRESSED = "von_mises", "pressure"
 
 _Table = TypeVar("_Table", bound=CaseModel)

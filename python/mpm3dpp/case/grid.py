@@ -16,8 +16,6 @@ from mpm3dpp.base.model import CaseModel
 from mpm3dpp.base.settings import choice, core_table
 from mpm3dpp.base.units import Point, Quantity
 
-from . import choices
-
 FACES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 MOST_CELLS = 2**30
 """Of a box along an axis: the core counts cells with 32 bits, and needs some beyond it."""
@@ -110,7 +108,7 @@ class GridBox(CaseModel):
 
 
 _Coarsening: Any = core_table("grid.coarsening")
-_Grid: Any = core_table("grid", basis=choices.BASIS)
+_Grid: Any = core_table("grid")
 
 
 class GridCoarsening(_Coarsening):

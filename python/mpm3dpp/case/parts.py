@@ -17,9 +17,9 @@ from .stop import Stop, one_or_more
 from .transfer import Transfer, WordOrTable
 
 _Viscosity: Any = core_table("run.viscosity")
-_Run: Any = core_table("run", **choices.AFFINE)
+_Run: Any = core_table("run")
 _Settle: Any = core_table("run.settle")
-_Contact: Any = core_table("contact", response=choices.RESPONSE)
+_Contact: Any = core_table("contact")
 
 
 class Viscosity(_Viscosity):

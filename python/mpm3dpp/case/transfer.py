@@ -27,7 +27,7 @@ class Transfer(_Transfer):
     Equations: docs/theory/step.md, transfers.
     """
 
-    _word: str = PrivateAttr("flip")
+    _word: str = PrivateAttr()
 
     @property
     def word(self) -> str:

@@ -89,7 +89,7 @@ struct Twin {
     domain.contact_settings.detection = Detections::id_of<VelocityDetection>();
     domain.contact_settings.normal = NormalRules::id_of<PairNormal>();
     domain.contact_settings.friction = 0.3;
-    if (choice.springs) domain.contact_settings.response = Response::springs;
+    domain.contact_settings.response = choice.springs ? Response::springs : Response::impulses;
     reference.springs = choice.springs;
     reference.edge = [edge = edge](double volume) {
       using T = Batch<contact_lanes>;
