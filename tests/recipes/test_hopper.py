@@ -32,7 +32,7 @@ def test_what_left_and_what_is_inside_is_the_start(half_empty: Simulation) -> No
     mass, state = (half_empty.column("sand", name)[:, 0] for name in ("mass", "failed"))
     left = half_empty.left()
     inside = state == 0
-    assert 100 < left["count"] < len(mass) - 100  # some grains of 21 particles on either side
+    assert 100 < left["count"] < len(mass) - 100  # some grains of 20 particles on either side
     assert left["count"] == np.count_nonzero(state == 4) == len(mass) - inside.sum()
     assert left["mass"] + mass[inside].sum() == pytest.approx(mass.sum(), rel=len(mass) * EPS)
 
@@ -42,8 +42,10 @@ def test_the_energy_closes(half_empty: Simulation) -> None:
     rows = dict(zip(core.history_columns, core.history().T, strict=True))
     assert rows["friction"][-1] > 0.0 and rows["left"][-1] > 0.0
     assert np.abs(rows["residual"]).max() < 1e-11 * rows["kinetic"].max()
-    # Nothing stops it but the walls, contact and friction: the method made little of it.
-    assert abs(rows["numerical"][-1]) < 0.05 * rows["kinetic"].max()
+    # Nothing stops it but the walls, contact and friction: the step makes little of it, and AFLIP
+    # takes what rings in grains of 2.5 cells, a tenth of what falls on the funnel.
+    assert abs(rows["numerical_time"][-1]) < 0.02 * rows["kinetic"].max()
+    assert 0.0 < rows["numerical_transfer"][-1] < 0.2 * rows["kinetic"].max()
 
 
 def test_grains_leave_by_the_outlet_only(half_empty: Simulation) -> None:
