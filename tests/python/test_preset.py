@@ -71,10 +71,10 @@ def test_another_word_is_a_mistake() -> None:
 
 def test_the_counts_are_those_of_the_paper() -> None:
     """Table 2 and section 4.3: 652,000 particles; grains of 1,821 and of 205."""
-    spheres = load_case(EXAMPLES / "03_thousand_spheres" / "case.toml")
+    spheres = load_case(EXAMPLES / "03_thousand_spheres" / "case_paper.toml")
     assert spheres.preset == "paper"
     assert sum(len(body.positions) for body in build(spheres)) == 652_000
-    shaken = load_case(EXAMPLES / "04_shaking_grains" / "case.toml")
+    shaken = load_case(EXAMPLES / "04_shaking_grains" / "case_paper.toml")
     assert shaken.preset == "paper"
     counts = {len(body.positions) for body in build(shaken) if body.part in shaken.grains}
     assert counts == {205, 1821}

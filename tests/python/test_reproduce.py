@@ -106,11 +106,11 @@ shape = {{ box = {{ lower = ["11 mm", "2 mm"], upper = ["19 mm", "8 mm"] }} }}
 velocity = ["-2 m/s", 0]
 """
 CASES = {
-    "02_penetration/case.toml": PENETRATION,
-    "03_thousand_spheres/case.toml": SPHERES,
-    "04_shaking_grains/case.toml": GRAINS,
-    "01_two_rings/case.toml": RINGS.replace("DETECTION", "gap"),
-    "01_two_rings/case_velocity.toml": RINGS.replace("DETECTION", "velocity"),
+    "02_penetration/case_paper.toml": PENETRATION,
+    "03_thousand_spheres/case_paper.toml": SPHERES,
+    "04_shaking_grains/case_paper.toml": GRAINS,
+    "01_two_rings/case_paper.toml": RINGS.replace("DETECTION", "gap"),
+    "01_two_rings/case_paper_velocity.toml": RINGS.replace("DETECTION", "velocity"),
 }
 
 
@@ -325,7 +325,7 @@ def test_mistakes(cases: Path, tmp_path: Path, arguments: dict[str, Any], says: 
 
 
 def test_a_case_that_has_no_quick_size(cases: Path, tmp_path: Path) -> None:
-    path = tmp_path / "03_thousand_spheres" / "case.toml"
+    path = tmp_path / "03_thousand_spheres" / "case_paper.toml"
     path.parent.mkdir()
     path.write_text(GRAINS)
     with pytest.raises(CaseError, match="has no quick size; give --size paper"):
@@ -335,7 +335,7 @@ def test_a_case_that_has_no_quick_size(cases: Path, tmp_path: Path) -> None:
 def test_a_run_that_fails_is_on_the_page(cases: Path, tmp_path: Path) -> None:
     folder = tmp_path / "cases"
     shutil.copytree(cases / "04_shaking_grains", folder / "04_shaking_grains")
-    file = folder / "04_shaking_grains" / "case.toml"
+    file = folder / "04_shaking_grains" / "case_paper.toml"
     heavy = GRAINS.replace("[run]", "[run]\nenergy_growth_limit = 1e-12\ntime_step_factor = 1.0")
     file.write_text(heavy.replace("-9.81 m/s^2", "-1e6 m/s^2"))
     with pytest.raises(RunError) as caught:

@@ -18,7 +18,7 @@ STEPS = 300
 
 def short() -> Case:
     """Return the case with two rows of small grains, all thrown down at 1 m/s."""
-    case = load_case(FOLDER / "case.toml")
+    case = load_case(FOLDER / "case_paper.toml")
     case.grains["small"].lattice.count = [23, 2]  # type: ignore[union-attr]
     for grains in case.grains.values():
         grains.velocity = (0.0, -1.0)
@@ -47,7 +47,7 @@ def history(simulation: Simulation) -> dict[str, np.ndarray]:
 
 def test_the_numbers_are_those_of_the_paper() -> None:
     """3 grains of 1,821 particles, 207 of 205, a container of 4,832, and 1,700,000 steps."""
-    case = load_case(FOLDER / "case.toml")
+    case = load_case(FOLDER / "case_paper.toml")
     simulation = Simulation(case, threads=1)
     core = simulation.core
     sizes = [len(core.column(b, "mass")) for b in range(core.body_count)]

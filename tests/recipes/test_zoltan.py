@@ -73,7 +73,7 @@ def surface(tiles: np.ndarray, part: np.ndarray) -> int:
 @pytest.mark.parametrize("parts", [2, 4, 8])
 def test_shares_beside_zoltan(zoltan: Path, parts: int) -> None:
     """Of a ball before a plate, of 542 tiles."""
-    case = load_case(shipped("examples") / "02_penetration" / "case.toml")
+    case = load_case(shipped("examples") / "02_penetration" / "case_paper.toml")
     simulation = Simulation(case, threads=1, ranks=parts)
     cells, owners, bodies = [], [], []
     for number, body in enumerate(simulation.bodies):

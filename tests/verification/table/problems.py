@@ -36,7 +36,7 @@ def case(body: dict[str, Any], cell: float, end: float, material: Any = None, **
 
 def rings(name: str, scheme: str) -> Measured:
     """Example 01 with cells of 1 mm: rebound against finite elements."""
-    given = load_case(examples.EXAMPLES / "01_two_rings" / "case.toml")
+    given = load_case(examples.EXAMPLES / "01_two_rings" / "case_paper.toml")
     given.preset, given.grid.cell_size = None, 1e-3
     for body in given.body.values():
         body.fill = "shells"
