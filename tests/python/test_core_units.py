@@ -18,8 +18,8 @@ def test_module_is_built():
     )
 
 
-SLOW = {"two_and_eight_ranks", "stages_in_space"}
-"""Half a minute and more: with three ranks the same is in `ranks`, in a plane in `stages`."""
+SLOW = {"two_and_eight_ranks", "stages_in_space", "rows_in_space"}
+"""Half a minute and more: with three ranks the same is in `ranks`, in a plane in the others."""
 
 
 @pytest.mark.parametrize(

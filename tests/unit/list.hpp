@@ -60,6 +60,7 @@
   X(fuse) \
   X(stages) \
   X(rows) \
+  X(rows_in_space) \
   X(stages_in_space) \
   X(two_bodies) \
   X(many_bodies) \

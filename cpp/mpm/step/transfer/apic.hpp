@@ -34,11 +34,16 @@ struct Apic : Flip {
 /// C_p when the particle has moved: C' = C - dt/2 (C C + (C C)^T). The field of velocities that C_p
 /// describes goes with its matter: with F = 1 + dt C its gradient becomes C F^-1 = C - dt C C, of
 /// which the symmetric part is taken, so that the angular momentum m_p D ax C_p stays. Without it
-/// what turns or expands keeps a C_p of the place where it was.
+/// what turns or expands keeps a C_p of the place where it was. Only where dt |C| is small is that
+/// a series: it fades by 1 - x^2, x^2 = dt^2 C:C / D, and debris beyond x = 1 keeps its C_p.
 template <class T, int D>
 MPM_HD MPM_INLINE inline Mat<T, D> carried_along(const Mat<T, D>& C, T dt) {
   Mat<T, D> now = C;
-  const T half = T(-0.5) * dt;
+  T square(0.0);
+  unrolled<D * D>([&](auto k)
+                      MPM_INLINE { square = fma(C[k / D][k % D], C[k / D][k % D], square); });
+  const T fade = max(fma(T(-1.0 / D) * dt * dt, square, T(1.0)), T(0.0));
+  const T half = T(-0.5) * dt * fade;
   unrolled<D>([&](auto a) MPM_INLINE {
     unrolled<D>([&](auto b) MPM_INLINE {
       if constexpr (a <= b) {
