@@ -79,7 +79,7 @@ def test_a_charge_throws_a_plate_as_gurney_says(bonded: bool) -> None:
 
 
 def test_soil_with_an_equation_of_state_is_thrown_alike_in_contact_and_bonded() -> None:
-    """The shock heats it, which the formula does not know: less than that, by a tenth or so."""
+    """Below the formula, which has neither heat of the shock nor layers of different speeds."""
     apart, bonded = (over_gurney(layers(WET_SOIL, bonded)) for bonded in (False, True))
     assert 0.8 < apart < 1.0
     assert bonded == pytest.approx(apart, abs=0.02)

@@ -206,7 +206,7 @@ def test_what_flows_pushes_others_without_making_energy(filling: str, around: st
 
 
 @pytest.mark.parametrize("filling", CHARGES)
-def test_springs_of_what_flows_are_told_before_and_by_their_column(filling: str) -> None:
+def test_check_tells_of_springs_where_matter_flows(filling: str) -> None:
     case = charge_in(filling, "water", response="springs")
     told = " ".join(response_notes(case))
     assert "makes energy where body.inner, which flows, meets other bodies" in told

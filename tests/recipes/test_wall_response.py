@@ -95,7 +95,7 @@ def test_the_lid_gives_what_the_floor_gives(tmp_path: Path) -> None:
     assert lid["contact"][-1] == pytest.approx(floor["contact"][-1], rel=1e-9)
 
 
-def test_a_liquid_is_stopped_by_a_wall_that_a_solid_rebounds_from(tmp_path: Path) -> None:
+def test_a_liquid_that_hits_a_wall_gains_no_energy(tmp_path: Path) -> None:
     """The choice is by matter, as between bodies: the liquid's energy never grows."""
     found = rows(tmp_path, material=WATER)
     start = found["kinetic"][0]

@@ -22,9 +22,9 @@ struct BodyAtNode {
   Vec<double, D> mapped;  // velocity mapped from the particles [m/s]
 };
 
-/// Of the way by which bodies approach in a step the share that a spring's force of the step has. It
-/// damps as a dashpot k dt share: none makes energy, for the stiffness is not quite symmetric; a half
-/// needs no smaller step; a quarter neither, and takes half as much (decision 0063).
+/// theta of F + theta k dt u, u being the approach at the end of the step. It acts as a dashpot
+/// theta k dt. With 0 bodies at rest gain energy, as the stiffness of the nodes is not quite
+/// symmetric; 1/2 and 1/4 are stable at the same steps, and 1/4 damps half as hard (decision 0063).
 inline constexpr double share_of_approach = 0.25;
 
 /// The springs between two bodies, as a node has them; none without stiffness.

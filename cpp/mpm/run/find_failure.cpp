@@ -61,16 +61,19 @@ Failure first_failure(const Domain<D>& domain) {
 }
 
 /// The column of history.csv in which numerics have made most, and what helps against that.
-std::string_view largest_made(const Ledger& ledger) {
+std::string_view largest_made(const Ledger& ledger, Response response) {
   const double numerical = -(ledger.mapping + ledger.time_integration);
   if (-ledger.contact > std::max(numerical, -ledger.energy_floor))
-    return "contact of history.csv: give contact.response = \"impulses\", or \"by_matter\" where "
-           "what flows meets other bodies, or halve run.cfl";
+    return response == Response::impulses ? "contact of history.csv: halve run.cfl"
+                                          : "contact of history.csv: give contact.response = "
+                                            "\"impulses\", or \"by_matter\" where "
+                                            "what flows meets other bodies, or halve run.cfl";
   if (-ledger.energy_floor > numerical)
-    return "energy_floor of history.csv: give the material failure = { hydrostatic_tension = ... "
-           "}, "
-           "or halve run.cfl";
-  return "numerical of history.csv: halve run.cfl";
+    return "energy_floor of history.csv: give the material failure = "
+           "{ hydrostatic_tension = ... }, or halve run.cfl";
+  return ledger.mapping < ledger.time_integration
+             ? "numerical_mapping of history.csv: halve run.cfl"
+             : "numerical_time of history.csv: halve run.cfl";
 }
 
 }  // namespace
@@ -96,7 +99,8 @@ void find_failure(Simulation<D>& simulation) {
   else
     text << "numerics have made " << domain.ledger.growth()
          << " of the largest energy brought in, most of it in the column "
-         << largest_made(domain.ledger) << "; or raise run.energy_growth_limit if that is meant";
+         << largest_made(domain.ledger, domain.contact_settings.response)
+         << "; or raise run.energy_growth_limit if that is meant";
   simulation.failure = failure_at(domain, "energy growth", fastest, text.str());
 }
 

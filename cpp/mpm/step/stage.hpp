@@ -46,8 +46,8 @@ struct Data {
     affine = 1u << 28,          // affine part of particles' velocities
     carried_sums = 1u << 29,    // of the patches' sums what these lose as they are carried along
     node_volumes = 1u << 30,    // of matter that flows
-    flowing = 1u
-        << 31,  // of matter that flows limits of volumes; of a gas its energies, and heat owed
+    // Of matter that flows limits of volumes; of a gas also its energies and the heat it is owed.
+    flowing = 1u << 31,
   };
 };
 /// Their names, in the order of the bits.
@@ -105,8 +105,8 @@ struct StageList {
   constexpr void add(const Stage<D>& stage) { stages[count++] = stage; }
   constexpr std::size_t find(const Stage<D>& stage) const {
     std::size_t k = 0;
-    // Those of one name differ in what they read, or are of different lists. (To compare functions
-    // is no constant expression where g++ 12 looks for undefined behaviour, its bug 71962.)
+    // By name and reads, which no two rows of a list share (test_fuse). Comparing `run` is no
+    // constant expression under -fsanitize=undefined of g++ 12 (its bug 71962).
     while (k < count && !(stages[k].name == stage.name && stages[k].reads == stage.reads)) ++k;
     return k;
   }

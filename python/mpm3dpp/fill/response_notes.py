@@ -22,9 +22,11 @@ def response_notes(case: Case) -> list[str]:
         )
     affine = _core.transfers[word]["affine"]
     if CONTACT in case.grid.walls and response != "impulses" and not affine:
+        fits = _core.bases[case.grid.basis]["second_moment"] > 0.0
+        others = "run.transfer, which is then" if fits else "grid.basis and run.transfer, then with"
         found.append(
             f'contact.response = "{response}" makes energy at walls that are contact where '
             f'run.transfer is "{word}": leave contact.response out, which stops approach there, or '
-            'run.transfer, which is then "aflip"'
+            f'{others} "aflip"'
         )
     return found

@@ -46,6 +46,12 @@ void check_fused(mpm::testing::Report& report) {
       CHECK_EQUAL(stages_of<D>(scheme, fused, Extra::filter).size(), plain + 1);
       CHECK(stages_of<D>(scheme, fused, Extra::release).size() >= plain + 2);
     }
+  // A stage of a list is found by its name and what it reads.
+  for (const auto* lists : {&Schemes<D>::plain, &Schemes<D>::fused})
+    for (const auto& schemes : *lists)
+      for (const StageList<D>& list : schemes)
+        for (std::size_t k = 0; k < list.count; ++k)
+          CHECK(list.find(list.stages[k]) == k, list.stages[k].name);
   CHECK_EQUAL(stages_of<D>(Scheme::musl, false).size(),
               stages_of<D>(Scheme::musl, true).size() + 4);
 }

@@ -144,6 +144,27 @@ void check_choice(mpm::testing::Report& report) {
   }
 }
 
+/// C' is the symmetric part of C F^-1 and the antisymmetric one of C, to the third order in the
+/// step; debris beyond keeps its C.
+void check_carried(mpm::testing::Report& report) {
+  const Mat<double, 2> C{{{3.0, -5.0}, {4.0, 2.0}}};
+  double before = 0.0;
+  for (const double dt : {1e-2, 5e-3}) {
+    const Mat<double, 2> now = carried_along(C, dt);
+    CHECK_CLOSE(now[0][1] - now[1][0], C[0][1] - C[1][0], 1e-15);
+    const double a = 1.0 + dt * C[0][0], b = dt * C[0][1], c = dt * C[1][0], d = 1.0 + dt * C[1][1];
+    const double exact = (C[0][0] * d - C[0][1] * c) / (a * d - b * c);  // of C F^-1
+    const double error = std::abs(now[0][0] - exact);
+    if (before > 0.0) CHECK(error < 0.3 * before, error, before);
+    before = error;
+  }
+  const double rate = 1.1 / 1e-2;
+  const Mat<double, 2> wild{{{-rate, 0.0}, {0.0, -rate}}};
+  CHECK_EQUAL(carried_along(wild, 1e-2)[0][0], wild[0][0]);
+  const Mat<double, 2> fast{{{-0.5 * rate, 0.0}, {0.0, -0.5 * rate}}};
+  CHECK(carried_along(fast, 1e-2)[0][0] > 1.5 * fast[0][0]);  // no more than half as much again
+}
+
 }  // namespace
 
 void test_transfer(mpm::testing::Report& report) {
@@ -154,4 +175,5 @@ void test_transfer(mpm::testing::Report& report) {
   check_damping(report);
   check_choice<2>(report);
   check_choice<3>(report);
+  check_carried(report);
 }

@@ -34,8 +34,9 @@ struct Apic : Flip {
 /// C_p when the particle has moved: C' = C - dt/2 (C C + (C C)^T). The field of velocities that C_p
 /// describes goes with its matter: with F = 1 + dt C its gradient becomes C F^-1 = C - dt C C, of
 /// which the symmetric part is taken, so that the angular momentum m_p D ax C_p stays. Without it
-/// what turns or expands keeps a C_p of the place where it was. Only where dt |C| is small is that
-/// a series: it fades by 1 - x^2, x^2 = dt^2 C:C / D, and debris beyond x = 1 keeps its C_p.
+/// what turns or expands keeps a C_p of the place where it was. The series is good only for small
+/// dt |C|: a factor (1 - x^2)_+, x^2 = dt^2 C:C / D, takes the correction away before that (an
+/// error of second order in x), and beyond x = 1 C_p stays.
 template <class T, int D>
 MPM_HD MPM_INLINE inline Mat<T, D> carried_along(const Mat<T, D>& C, T dt) {
   Mat<T, D> now = C;
