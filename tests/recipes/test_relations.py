@@ -268,7 +268,7 @@ def check_worlds(
     here.advance(steps)
     assert here.step == steps
     assert (here.core.contact_summary()["overlapped_nodes"] > 50) == meet
-    assert (here.eroded()["count"] > 0) == ("erode" in text)
+    assert "erode" not in text or here.eroded()["count"] > 0
     for world in worlds[case.grid.dimension]:
         there = Simulation(world.case(case, filled))
         there.advance(steps)

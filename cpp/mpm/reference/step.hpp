@@ -235,7 +235,7 @@ struct Step {
         double sum = 0.0;
         for (const auto& row : p.C.c)
           for (const double c : row) sum += c * c;
-        const double half = 0.5 * dt * std::max(1.0 - dt * dt * sum / D, 0.0);
+        const double x2 = dt * dt * sum / D, half = 0.5 * dt * std::max(1.0 - x2 * x2, 0.0);
         for (int a = 0; a < D; ++a)
           for (int c = 0; c < D; ++c) p.C[a][c] -= half * (square[a][c] + square[c][a]);
       }

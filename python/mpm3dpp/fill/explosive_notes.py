@@ -33,7 +33,7 @@ def explosive_notes(case: Case) -> list[str]:
                 f"{key_text(('material', name))} has no eos, and a modulus of {modulus:.2g} Pa "
                 f"against the {max(pressures):.2g} Pa of a detonation, which presses it to less "
                 "than 37 % of its volume where they meet: give it an equation of state and a "
-                "strength that takes one, for a wet soil strength = { j2 = ... } with eos = { mie_gruneisen = { c0 = "
-                '"1650 m/s", s = 1.5, gamma0 = 0.1 } }'
+                "strength that takes one, for a wet soil strength = { j2 = ... } with eos = "
+                '{ mie_gruneisen = { c0 = "1650 m/s", s = 1.5, gamma0 = 0.1 } }'
             )
     return found

@@ -162,7 +162,7 @@ void check_carried(mpm::testing::Report& report) {
   const Mat<double, 2> wild{{{-rate, 0.0}, {0.0, -rate}}};
   CHECK_EQUAL(carried_along(wild, 1e-2)[0][0], wild[0][0]);
   const Mat<double, 2> fast{{{-0.5 * rate, 0.0}, {0.0, -0.5 * rate}}};
-  CHECK(carried_along(fast, 1e-2)[0][0] > 1.5 * fast[0][0]);  // no more than half as much again
+  CHECK(carried_along(fast, 1e-2)[0][0] > 1.6 * fast[0][0]);  // no more than that again
 }
 
 }  // namespace

@@ -35,15 +35,15 @@ struct Apic : Flip {
 /// describes goes with its matter: with F = 1 + dt C its gradient becomes C F^-1 = C - dt C C, of
 /// which the symmetric part is taken, so that the angular momentum m_p D ax C_p stays. Without it
 /// what turns or expands keeps a C_p of the place where it was. The series is good only for small
-/// dt |C|: a factor (1 - x^2)_+, x^2 = dt^2 C:C / D, takes the correction away before that (an
-/// error of second order in x), and beyond x = 1 C_p stays.
+/// dt |C|: a factor (1 - x^4)_+, x^2 = dt^2 C:C / D, takes the correction away before that, and
+/// beyond x = 1 C_p stays.
 template <class T, int D>
 MPM_HD MPM_INLINE inline Mat<T, D> carried_along(const Mat<T, D>& C, T dt) {
   Mat<T, D> now = C;
   T square(0.0);
   unrolled<D * D>([&](auto k)
                       MPM_INLINE { square = fma(C[k / D][k % D], C[k / D][k % D], square); });
-  const T fade = max(fma(T(-1.0 / D) * dt * dt, square, T(1.0)), T(0.0));
+  const T x2 = T(1.0 / D) * dt * dt * square, fade = max(fma(-x2, x2, T(1.0)), T(0.0));
   const T half = T(-0.5) * dt * fade;
   unrolled<D>([&](auto a) MPM_INLINE {
     unrolled<D>([&](auto b) MPM_INLINE {
