@@ -144,41 +144,44 @@ void fold_wall_springs(const TileGrid<D>& grid, const Patch<D>& patch, const Nod
 template <int D>
 struct TouchedNode {
   Vec<double, D> F, K, E;  // of the springs along each axis [N], [N/m], [J]
-  bool stopped;            // approach is stopped: these only say where
+  bool stopped;            // the wall stops approach: F and K only tell which faces are touched
   unsigned held;           // axes along which other walls hold it
   bool any = false;
 
   ContactSpring spring(int a) const { return {std::abs(F[a]), K[a], E[a]}; }
   /// From the body to the wall.
-  double outward(int a) const { return F[a] > 0.0 ? -1.0 : 1.0; }
+  double outward(int a) const { return side(a) == 0 ? -1.0 : 1.0; }
   int side(int a) const { return F[a] > 0.0 ? 0 : 1; }
+  /// Is it held along the normal? Then it does not come nearer.
+  bool stands(int a) const { return (held >> a & 1u) != 0; }
   /// Where the wall acts as springs along an axis, over a step.
   SolvedSpring over(int a, double dt) const {
     if (stopped) return {};
-    // What is held along the normal does not come nearer.
-    const double approaches = (held >> a & 1u) != 0 ? 0.0 : share_of_approach;
+    const double approaches = stands(a) ? 0.0 : share_of_approach;
     return {dt * std::abs(F[a]), approaches * dt * dt * K[a], true};
   }
 };
 
-/// Take a node's springs from it.
+/// Take a node's springs from it: what they push with, or where it is stopped.
 template <int D>
 TouchedNode<D> take_springs(const Domain<D>& domain, const Patch<D>& patch,
-                            const NodeBlock<D>& block, int node) {
+                            const NodeBlock<D>& block, int node, bool stopped) {
   const Walls<D>& walls = domain.grid.walls;
   TouchedNode<D> touched;
-  touched.stopped = stops_approach(domain.contact_settings.response, domain.body_of(patch).flows);
-  const Index<D> at = index_of(domain.grid, patch, node);
+  touched.stopped = stopped;
   for (int a = 0; a < D; ++a) {
     touched.F[a] = block.spring(spring_force_at, a)[node];
     touched.K[a] = block.spring(spring_stiffness_at, a)[node];
     touched.E[a] = block.spring(spring_energy_at, a)[node];
-    const bool within = walls.depth_beyond(at, a, touched.side(a)) < 0;
-    if (touched.stopped && within) touched.K[a] = 0.0;
     touched.any = touched.any || touched.K[a] > 0.0;
   }
   clear(block.springs.from(node), 1, wall_record);
-  touched.held = touched.any ? walls.constrained_axes(at) : 0u;
+  touched.held = 0u;
+  if (!touched.any) return touched;
+  const Index<D> at = index_of(domain.grid, patch, node);
+  touched.held = walls.constrained_axes(at);
+  for (int a = 0; stopped && a < D; ++a)
+    if (walls.depth_beyond(at, a, touched.side(a)) < 0) touched.K[a] = 0.0;
   return touched;
 }
 
@@ -215,9 +218,11 @@ double push_from_walls(Domain<D>& domain, const Patch<D>& patch, const NodeBlock
   // Grows to two bodies and D pairs once.
   thread_local NodeSolution<D> solution;
   const double dt = domain.time_step;
+  const bool stopped =
+      stops_approach(domain.contact_settings.response, domain.body_of(patch).flows);
   double stored = 0.0;
   for (int n = 0; n < block.count; ++n) {
-    const TouchedNode<D> touched = take_springs(domain, patch, block, n);
+    const TouchedNode<D> touched = take_springs(domain, patch, block, n, stopped);
     if (!touched.any || !(block.mass()[n] > 0.0)) continue;
     start_solution(domain, patch, block, n, touched, solution);
     if (!solve_node<true>(solution))
@@ -232,8 +237,7 @@ double push_from_walls(Domain<D>& domain, const Patch<D>& patch, const NodeBlock
           block.face_force(normal, a)[n] = force;
           block.force(a)[n] += force;
         }
-        const bool stands = (touched.held >> normal & 1u) != 0;
-        const double way = stands ? 0.0 : dt * end[normal] * pair.normal[normal];
+        const double way = touched.stands(normal) ? 0.0 : dt * end[normal] * pair.normal[normal];
         if (patch.counts(n) && pair.spring.exists)
           stored += touched.spring(normal).energy_after(way);
       }
