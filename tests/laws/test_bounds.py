@@ -52,7 +52,7 @@ def test_debris_is_not_pulled_shut_without_bound(spall: float, solid: bool) -> N
 
 def test_energy_stops_at_absolute_zero() -> None:
     """Nothing is below E0 - rho0 cp T0; where the specific heat is unknown the bond energy is."""
-    path = np.linspace(40.0, 1.2, 400)
+    path = np.linspace(40.0, 1.2, 1600)
     for solid, floor in ((True, -HEAT), (False, -STIFFNESS / NUMBERS["gamma0"])):
         found = swell(path, 0.0, solid, state={"volume": 40.0, "internal_energy": -1e6})
         # The step that would lead below bears no tension, and so ends a little above.
@@ -109,3 +109,37 @@ def test_debris_that_closes_in_one_step_is_pressed(lanes: bool) -> None:
     state = {"volume": 10.0, "internal_energy": 1e9}
     found = swell(np.array([10.0, 0.95]), 0.0, False, lanes, state=state)
     assert found["pressure"][1] > 0.0
+
+
+EQUATIONS: tuple[tuple[str, dict[str, float]], ...] = (
+    ("mie_gruneisen", NUMBERS | {"spall_strength": 0.0}),
+    ("polynomial", {"c1": STIFFNESS, "c2": STIFFNESS, "c3": STIFFNESS, "c4": NUMBERS["gamma0"]}),
+)
+
+
+@pytest.mark.parametrize("share", [0.01, 0.3, 0.98, 1.02])
+@pytest.mark.parametrize("eos", EQUATIONS, ids=lambda eos: eos[0])
+def test_debris_is_no_stiffer_than_its_matter(
+    eos: tuple[str, dict[str, float]], share: float
+) -> None:
+    """What pulls at the nodes is pressure times volume: at 300 volumes that was 300 moduli."""
+    volumes = np.array([300.0, 315.0, 330.0, 305.0, 280.0, 270.0, 290.0])
+    evaporated = STIFFNESS / NUMBERS["gamma0"]
+    state = {"volume": 300.0, "internal_energy": share * evaporated}
+    found = swell(volumes, 0.0, False, state=state, eos=eos)
+    # 1.2 rho/rho0 of -K and, for the polynomial, of -c1 - c3, each by twice that within a step.
+    assert np.abs(found["pressure"] * volumes)[1:].max() < 5 * STIFFNESS
+    assert found["sound_speed"].max() < 3 * NUMBERS["c0"]
+
+
+@pytest.mark.parametrize("eos", EQUATIONS, ids=lambda eos: eos[0])
+def test_tension_is_linear_up_to_a_fifth_and_falls_with_the_density_beyond(
+    eos: tuple[str, dict[str, float]],
+) -> None:
+    given = (eos[0], eos[1] | {"gamma0" if eos[0] == "mie_gruneisen" else "c4": 0.0})
+    volumes = np.linspace(1.0, 3.0, 201)
+    found = swell(volumes, 0.0, False, eos=given)
+    mu = 1.0 / volumes - 1.0
+    tension = STIFFNESS * (mu if eos[0] == "mie_gruneisen" else mu + mu**3)
+    right = tension * np.minimum(1.2 / volumes, 1.0)
+    assert np.abs(found["pressure"] - right).max() < 1e-12 * STIFFNESS

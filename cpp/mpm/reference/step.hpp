@@ -231,15 +231,30 @@ struct Step {
           v += N * b.nodes[i].v;
         });
         p.x += dt * v;
-        const Mat<double, D> square = p.C * p.C;
-        double sum = 0.0;
-        for (const auto& row : p.C.c)
-          for (const double c : row) sum += c * c;
-        const double x2 = dt * dt * sum / D, half = 0.5 * dt * std::max(1.0 - x2 * x2, 0.0);
-        for (int a = 0; a < D; ++a)
-          for (int c = 0; c < D; ++c) p.C[a][c] -= half * (square[a][c] + square[c][a]);
+        carry_along(p.C);
       }
     }
+  }
+
+  /// C -= dt sym(C C), without what would make energy as the symmetric part closes, and not where
+  /// dt C is no longer small.
+  void carry_along(Mat<double, D>& C) const {
+    Mat<double, D> S = C, square = C * C;
+    double sum = 0.0, of_S = 0.0, cube = 0.0;
+    for (int a = 0; a < D; ++a)
+      for (int c = 0; c < D; ++c) {
+        S[a][c] = (C[a][c] + C[c][a]) / 2;
+        sum += C[a][c] * C[a][c];
+        of_S += S[a][c] * S[a][c];
+      }
+    const Mat<double, D> of_closing = S * S;
+    for (int a = 0; a < D; ++a)
+      for (int c = 0; c < D; ++c) cube += S[a][c] * of_closing[a][c];
+    const double x2 = dt * dt * sum / D, part = dt * std::max(1.0 - x2 * x2, 0.0);
+    const double along = cube < 0.0 ? cube / of_S : 0.0;
+    for (int a = 0; a < D; ++a)
+      for (int c = 0; c < D; ++c)
+        C[a][c] -= part * ((square[a][c] + square[c][a]) / 2 - along * S[a][c]);
   }
 
   /// Take away the components along the axes that walls hold at a node.

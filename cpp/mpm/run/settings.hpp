@@ -158,7 +158,8 @@ struct RunSettings {
               Rule::fraction},
       Setting{"volume_limit", &Self::volume_limit,
               "the run stops when more than this share of them has less than 0.01 or more than 100 "
-              "times the volume that it began with; gases, products of detonation and particles "
+              "times the volume that it began with (with an equation of state also more than 100 "
+              "cells); gases, products of detonation and particles "
               "that have failed do not count; 1 for never",
               Rule::fraction}};
 };

@@ -14,9 +14,11 @@ namespace mpm {
 namespace {
 
 constexpr double small_volume = 0.01, large_volume = 100.0;  // over that at the start
-// Of a gas, that fills any volume: over that at the start; and in cells. One that is alone stands
-// for ten at most (step/flowing_matter.hpp).
-constexpr double small_of_gas = 1e-3, large_of_gas = 100.0;
+// Of a gas, that fills any volume. One that is alone stands for ten cells at most
+// (step/flowing_matter.hpp).
+constexpr double small_of_gas = 1e-3;
+// What has an equation of state bears hardly anything in that state, and may have evaporated.
+constexpr double large_in_cells = 100.0;
 constexpr double many_gaps = 0.01;  // of a body's cells, more than at the start
 constexpr double beyond = 0.1;  // of a cell, behind a wall: GIMP may push a centre a little past it
 // At a node: each meets each, 435 pairs. Equal spheres have twelve neighbours, grains of two cells
@@ -222,15 +224,14 @@ void see(Simulation<D>& simulation) {
     const bool gas = b.deforms() && !solid;
     if (!solid && !gas && !placed) continue;
     for (const std::uint32_t i : of.rows(patch)) {
+      const double J = of.volume()[i] * b.initial_density / of.mass()[i];
+      const double cells = of.volume()[i] / cell_volume;
       if (solid && !(failed && failed[i] > 0.0)) {
-        const double J = of.volume()[i] * b.initial_density / of.mass()[i];
-        if (J < small_volume || J > large_volume)
-          sight.odd.add(of, patch.body, i, std::abs(std::log(J)), J);
+        const bool large = J > large_volume && (!material.eos || cells > large_in_cells);
+        if (J < small_volume || large) sight.odd.add(of, patch.body, i, std::abs(std::log(J)), J);
       }
       if (gas) {
-        const double J = of.volume()[i] * b.initial_density / of.mass()[i];
-        const double cells = of.volume()[i] / cell_volume;
-        if (J < small_of_gas || (J > large_volume && cells > large_of_gas))
+        if (J < small_of_gas || (J > large_volume && cells > large_in_cells))
           sight.swollen.add(of, patch.body, i, std::abs(std::log(J)), J);
       }
       if (!placed) continue;

@@ -7,13 +7,14 @@ namespace mpm {
 
 /// Mie-Grueneisen about the Hugoniot Us = c0 + s up, with gamma rho = gamma0 rho0:
 /// p = pH (1 - gamma0 eta / 2) + gamma0 E, pH = rho0 c0^2 eta / (1 - s eta)^2, eta = 1 - rho0 /
-/// rho; in tension p = rho0 c0^2 (rho / rho0 - 1) + gamma0 E.
+/// rho; in tension p = rho0 c0^2 (rho / rho0 - 1) + gamma0 E, and beyond 1.2 of the initial volume
+/// 1.2 rho / rho0 of that.
 struct MieGruneisen {
   static constexpr std::string_view name = "mie_gruneisen";
   static constexpr std::string_view doc =
       "Mie-Grueneisen about the shock Hugoniot Us = c0 + s up, gamma rho constant: p = pH (1 - "
       "gamma0 eta/2) + gamma0 E, pH = rho0 c0^2 eta / (1 - s eta)^2, eta = 1 - rho0/rho; linear in "
-      "tension";
+      "tension; beyond 1.2 of the initial volume p falls with the density";
   static constexpr std::string_view source =
       "Meyers 1994, eqs. 5.8 and 5.20; tension: Hallquist 2006";
 
@@ -56,10 +57,12 @@ struct MieGruneisen {
     const T factor = T(1.0) - T(0.5 * gamma0) * eta;
     const T density = T(1.0) / V;
     const auto compressed = eta > T(0.0);
-    return {select(compressed, hugoniot * factor, T(stiffness) * (density - T(1.0))), T(gamma0),
-            select(compressed, T(0.5 * gamma0) * hugoniot - slope * factor,
-                   T(-stiffness) * density * density),
-            T(0.0)};
+    return opened<T>(
+        {select(compressed, hugoniot * factor, T(stiffness) * (density - T(1.0))), T(gamma0),
+         select(compressed, T(0.5 * gamma0) * hugoniot - slope * factor,
+                T(-stiffness) * density * density),
+         T(0.0)},
+        density);
   }
 };
 

@@ -6,13 +6,13 @@
 namespace mpm {
 
 /// p = c0 + c1 mu + c2 mu^2 + c3 mu^3 + (c4 + c5 mu + c6 mu^2) E, mu = rho / rho0 - 1. In tension
-/// the even terms c2 and c6 are left out (Hallquist 2006, eq. 19.1.1).
+/// the even terms c2 and c6 are left out (Hallquist 2006, eq. 19.1.1). A gas, without
+/// c1, is given for any density; all others are `opened`.
 struct Polynomial {
   static constexpr std::string_view name = "polynomial";
   static constexpr std::string_view doc =
       "p = c0 + c1 mu + c2 mu^2 + c3 mu^3 + (c4 + c5 mu + c6 mu^2) E, mu = rho/rho0 - 1; without "
-      "c2 "
-      "and c6 in tension";
+      "c2 and c6 in tension; with c1, beyond 1.2 of the initial volume p falls with the density";
   static constexpr std::string_view source = "Hallquist 2006 (LS-DYNA theory manual), sec. 19.1";
 
   double c0{}, c1{}, c2{}, c3{}, c4{}, c5{}, c6{}, E0{};
@@ -46,9 +46,11 @@ struct Polynomial {
     const T density = T(1.0) / V, mu = density - T(1.0);
     const T d_mu = -density * density;
     const T two = select(mu > T(0.0), T(c2), T(0.0)), six = select(mu > T(0.0), T(c6), T(0.0));
-    return {T(c0) + mu * (T(c1) + mu * (two + mu * T(c3))), T(c4) + mu * (T(c5) + mu * six),
-            d_mu * (T(c1) + mu * (T(2.0) * two + mu * T(3.0 * c3))),
-            d_mu * (T(c5) + T(2.0) * mu * six)};
+    const LinearInEnergy<T> about{T(c0) + mu * (T(c1) + mu * (two + mu * T(c3))),
+                                  T(c4) + mu * (T(c5) + mu * six),
+                                  d_mu * (T(c1) + mu * (T(2.0) * two + mu * T(3.0 * c3))),
+                                  d_mu * (T(c5) + T(2.0) * mu * six)};
+    return is_gas() ? about : opened(about, density);
   }
 };
 
