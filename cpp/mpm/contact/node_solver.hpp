@@ -2,8 +2,10 @@
 // The impulses between any number of bodies at one node.
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "mpm/math/vec.hpp"
@@ -66,6 +68,7 @@ template <int D>
 struct NodeSolution {
   std::vector<SolvedSide<D>> sides;
   std::vector<SolvedPair<D>> pairs;
+  std::vector<std::uint32_t> order = {};  // in which pairs are swept: solve_node begins with it
 };
 
 /// m_r m_s / (m_r + m_s); one of the two may be infinite.
@@ -115,6 +118,36 @@ double rounding_of(const NodeSolution<D>& node) {
   return unresolved;
 }
 
+/// Put the pairs in an order of their masses and motions, which does not depend on how the bodies
+/// are numbered: sweeps end within a tolerance, and which pair begins would be seen in the last
+/// digits.
+template <int D>
+void order_pairs(NodeSolution<D>& node) {
+  const std::vector<SolvedSide<D>>& sides = node.sides;
+  const std::vector<SolvedPair<D>>& pairs = node.pairs;
+  node.order.clear();
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    // What does not take part is kept in the list, so that pairs of the solution and of the node
+    // have the same numbers.
+    if (pairs[k].takes_part) node.order.push_back(static_cast<std::uint32_t>(k));
+  if (node.order.size() < 2) return;
+  const auto key = [&](std::uint32_t k) {
+    const SolvedPair<D>& pair = pairs[k];
+    const SolvedSide<D>&r = sides[pair.r], &s = sides[pair.s];
+    // Neither changes when r and s are exchanged.
+    return std::pair(reduced_mass(r.mass, s.mass),
+                     dot(r.working_velocity() - s.working_velocity(), pair.normal));
+  };
+  // A strong order, for a run that is about to stop may have what is no number here.
+  const auto before = [](double a, double b) { return std::strong_order(a, b); };
+  std::ranges::sort(node.order, [&](std::uint32_t a, std::uint32_t b) {
+    const auto of_a = key(a), of_b = key(b);
+    if (const auto by_mass = before(of_a.first, of_b.first); by_mass != 0) return by_mass < 0;
+    if (const auto by_speed = before(of_a.second, of_b.second); by_speed != 0) return by_speed < 0;
+    return a < b;
+  });
+}
+
 /// Remove the approach of every pair that takes part, eqs. (6)-(7), working on
 /// SolvedSide::momentum, and all relative motion of one that is bonded; with friction, hold the
 /// tangential motion as far as Coulomb's law allows, eqs. (14)-(15). For two bodies this is the
@@ -123,7 +156,8 @@ double rounding_of(const NodeSolution<D>& node) {
 /// Gives false if it stopped short of the tolerance.
 template <bool with_friction, int D>
 bool solve_node(NodeSolution<D>& node) {
-  auto& [sides, pairs] = node;
+  auto& [sides, pairs, order] = node;
+  order_pairs(node);
   // Hundreds of bodies at a node would otherwise take minutes a step: what a sweep costs grows with
   // the square of their number.
   constexpr std::size_t most_sweeps = 20000, fewest_sweeps = 20, most_solved_pairs = 500'000;
@@ -133,9 +167,8 @@ bool solve_node(NodeSolution<D>& node) {
   const double unresolved = rounding_of(node);
   for (std::size_t sweep = 0; sweep < sweeps; ++sweep) {
     double change = 0.0, scale = 0.0;
-    for (SolvedPair<D>& pair : pairs) {
-      // Kept in the list, so that pairs of the solution and of the node have the same numbers.
-      if (!pair.takes_part) continue;
+    for (const std::uint32_t k : order) {
+      SolvedPair<D>& pair = pairs[k];
       SolvedSide<D>& r = sides[pair.r];
       SolvedSide<D>& s = sides[pair.s];
       const double m_rs = reduced_mass(r.mass, s.mass);
@@ -170,7 +203,7 @@ bool solve_node(NodeSolution<D>& node) {
       r.momentum -= impulse;
       s.momentum += impulse;
     }
-    if (pairs.size() == 1 || change <= std::max(tolerance * scale, unresolved)) return true;
+    if (order.size() < 2 || change <= std::max(tolerance * scale, unresolved)) return true;
   }
   return false;
 }

@@ -101,21 +101,22 @@ class Springs {
     const SpringSide<D>&own = of_r ? r : s, &other = of_r ? s : r;
     const double of_all = stiffness_of(touch, own.compliance, other.compliance);
     const double to_s = of_r ? 1.0 : -1.0;
+    Sum& sum = of_side_[of_r ? 0 : 1];
     own.shares.of(touch.place() - node, [&](double share, const Vec<double, D>& signs) {
       const double stiffness = share * of_all;
       Vec<double, D> n;  // from r to s
       for (int a = 0; a < D; ++a) n[a] = to_s * signs[a] * touch.normal[a];
-      force_ += (stiffness * touch.overlap) * n;
+      sum.force += (stiffness * touch.overlap) * n;
       for (int a = 0; a < D; ++a)
-        for (int b = 0; b <= a; ++b) stiffness_[a][b] += stiffness * n[a] * n[b];
-      energy_ += 0.5 * stiffness * touch.overlap * touch.overlap;
+        for (int b = 0; b <= a; ++b) sum.stiffness[a][b] += stiffness * n[a] * n[b];
+      sum.energy += 0.5 * stiffness * touch.overlap * touch.overlap;
       deepest_ = std::max(deepest_, touch.overlap);
     });
   }
 
   /// Of the force, from r to s; zero if there is none. Axes in `constrained` have no part.
   Vec<double, D> normal(unsigned constrained) const {
-    Vec<double, D> n = force_;
+    Vec<double, D> n = of_side_[0].force + of_side_[1].force;
     for (int a = 0; a < D; ++a)
       if (constrained >> a & 1u) n[a] = 0.0;
     return normalised(n);
@@ -124,20 +125,26 @@ class Springs {
   ContactSpring along(const Vec<double, D>& n, double cell_size) const {
     // Stiffness is a modulus times an area over a length.
     const double face = std::pow(cell_size, D - 1);
+    const auto& [r, s] = of_side_;
     double stiffness = 0.0;
     for (int a = 0; a < D; ++a) {
-      stiffness += n[a] * stiffness_[a][a] * n[a];
-      for (int b = 0; b < a; ++b) stiffness += 2.0 * n[a] * stiffness_[a][b] * n[b];
+      stiffness += n[a] * (r.stiffness[a][a] + s.stiffness[a][a]) * n[a];
+      for (int b = 0; b < a; ++b)
+        stiffness += 2.0 * n[a] * (r.stiffness[a][b] + s.stiffness[a][b]) * n[b];
     }
-    return {face * dot(force_, n), face / cell_size * stiffness, face * cell_size * energy_};
+    return {face * dot(r.force + s.force, n), face / cell_size * stiffness,
+            face * cell_size * (r.energy + s.energy)};
   }
   /// The least distance of the bodies [m]; infinite if nothing was added.
   double gap(double distance, double cell_size) const { return cell_size * (distance - deepest_); }
 
  private:
-  Vec<double, D> force_ = Vec<double, D>::zero();  // [Pa cells^(D - 1)]
-  double stiffness_[D][D] = {};                    // [Pa cells^(D - 2)], the lower triangle
-  double energy_ = 0.0;                            // [Pa cells^D]
+  struct Sum {
+    Vec<double, D> force = Vec<double, D>::zero();  // [Pa cells^(D - 1)]
+    double stiffness[D][D] = {};                    // [Pa cells^(D - 2)], the lower triangle
+    double energy = 0.0;                            // [Pa cells^D]
+  };
+  Sum of_side_[2];  // of the particles of r and of s: which body is which changes no bit
   double deepest_ = -std::numeric_limits<double>::infinity();
 };
 
