@@ -11,6 +11,8 @@ an axis, lists, what the ledger sums, and what lanes that are empty do.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from mpm3dpp import _core
 
 from .traffic import moves_particles
@@ -20,10 +22,17 @@ from .traffic import moves_particles
 # function such as exp counts as one.
 LAWS = {"elastic": (95, 40), "johnson_cook": (230, 160)}
 
-# Of a transfer, for v_p: sums over the nodes, of increments and of velocities, and the operations
-# beside them for a component. XPIC is not among them, whose filter goes through the particles as
-# often as its order says.
-TAKES = {"flip": (1, 1), "pic": (1, 0), "apic": (1, 0), "aflip": (2, 4)}
+
+class Take(NamedTuple):
+    """What a transfer does for v_p: sums over the nodes, and operations beside them a component."""
+
+    sums: int
+    beside: int
+
+
+# Sums of increments (flip), of velocities (pic, apic) or of both. XPIC is not among them, whose
+# filter goes through the particles as often as its order says.
+TAKES = {"flip": Take(1, 1), "pic": Take(1, 0), "apic": Take(1, 0), "aflip": Take(2, 4)}
 
 
 def operations_per_particle_step(
@@ -50,14 +59,15 @@ def operations_per_particle_step(
     weighted, mass = nodes, nodes  # m N_ip, and its sum
     vector, tensor = 2 * nodes * d, 2 * nodes * d * d
     update = gradient + tensor + LAWS[law][3 - d]
-    sums, beside = TAKES[transfer]
-    advance = function + sums * vector + beside * d
+    take = TAKES[transfer]
+    advance = function + take.sums * vector + take.beside * d
     of_grid, along = vector, 2 * d  # eq. (16): the sum of v_i N_ip, and dt times it
     sum_is_there = transfer != "flip"
     if _core.transfers[transfer]["affine"]:
         vector += tensor  # p_i has C_p (x_i - x_p) beside v_p
         advance += tensor + d * d  # C_p = sum N_ip v_i (x_i - x_p) / D
-        along += 2 * d**3 + 3 * d * d  # C_p - dt/2 (C_p C_p + (C_p C_p)^T)
+        # S, W and their squares; S S and W W; S : S S; what is taken from C_p (step/transfer).
+        along += 8 * d * d + 2 * d**3 + d * (d + 1) + 4 * d * d
     move = function + of_grid + along
     counts = {
         "map momentum": function + weighted + mass + vector,  # eqs. (2), (3)

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from .case import Case
     from .parts import Contact, Output, Run
 
-_BEGIN = _core.Settings()
-BASIS, TRANSFER = _BEGIN.grid.basis, _BEGIN.run.transfer.word
-AFFINE: dict[str, Any] = {"scheme": _BEGIN.run.scheme, "cfl": _BEGIN.run.cfl}
+_DEFAULTS = _core.Settings()
+BASIS, TRANSFER = _DEFAULTS.grid.basis, _DEFAULTS.run.transfer.word
+AFFINE: dict[str, Any] = {"scheme": _DEFAULTS.run.scheme, "cfl": _DEFAULTS.run.cfl}
 OTHERS: dict[str, Any] = {"scheme": "musl", "cfl": 0.25}
 OTHER_TRANSFER = "flip"
-RESPONSE, FLOWING_RESPONSE, OTHER_RESPONSE = _BEGIN.contact.response, "by_matter", "impulses"
+RESPONSE, FLOWING_RESPONSE, OTHER_RESPONSE = _DEFAULTS.contact.response, "by_matter", "impulses"
 SHEARED, PRESSED = "von_mises", "pressure"
 
 _Table = TypeVar("_Table", bound=CaseModel)

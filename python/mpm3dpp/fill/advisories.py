@@ -217,7 +217,7 @@ def _wave(nu: float) -> float:
 
 def _springs(case: Case, bodies: Filled) -> list[str]:
     """Sizes of particles with which springs of contact are coarse, or see bodies too late."""
-    if not case.has_set_back:
+    if not case.has_set_back or case.contact.response == "impulses":
         return []
     sizes = {name: part.spacing for name, part in bodies.parts.items()}
     found = [

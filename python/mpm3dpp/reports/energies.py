@@ -8,7 +8,7 @@ import numpy as np
 from mpm3dpp.base.markup import Html, element, escaped, joined, paragraph, table
 from mpm3dpp.io.history import ENERGIES, TERMS
 from mpm3dpp.plots.energies import draw_panel
-from mpm3dpp.run.report import energy_line
+from mpm3dpp.run.report import energies_made
 
 from .document import Section
 from .figures import curves
@@ -33,7 +33,7 @@ def energies(found: Found) -> Section:
     manifest, history = found.manifest, found.history
     parts: list[str] = []
     if manifest is not None and manifest.energies:
-        line = energy_line(manifest).removeprefix("warning: ").removeprefix("energy: ")
+        line = energies_made(manifest)[0]
         parts.append(paragraph(f"Errors of the method: {line}."))
     largest = _largest_residual(found)
     if largest is not None:

@@ -98,7 +98,13 @@ def body_lines(manifest: Manifest) -> list[str]:
 
 
 def energy_line(manifest: Manifest) -> str:
-    """Return the line about the energy that numerics made or lost.
+    """Return the line about the energy that numerics made or lost, a warning where it is large."""
+    said, large = energies_made(manifest)
+    return f"{'warning: ' if large else ''}energy: {said}"
+
+
+def energies_made(manifest: Manifest) -> tuple[str, bool]:
+    """Return what is said of the energy that numerics made or lost, and whether that is much.
 
     It is a share of what came in (kinetic energy at the start, or the most that work from outside
     had brought), or of all energy at the start where most of that is internal, as in a compressed
@@ -112,7 +118,7 @@ def energy_line(manifest: Manifest) -> str:
     if abs(internal) > whole:
         whole, of_what = kinetic + abs(internal), "the energy at the start"
     if not final or whole == 0.0:
-        return "energy: none came in"
+        return "none came in", False
     # One by one: what one makes and the other takes is no less wrong.
     shares = {"numerical terms": final["numerical"] / whole, "contact": final["contact"] / whole}
     said = [
@@ -121,7 +127,7 @@ def energy_line(manifest: Manifest) -> str:
         if share != 0.0 or what != "contact"
     ]
     large = max(map(abs, shares.values())) > _NUMERICAL_WARNING
-    line = f"{'warning: ' if large else ''}energy: {', '.join(said)} of {of_what}"
+    line = f"{', '.join(said)} of {of_what}"
     transfer = manifest.case.get("run", {}).get("transfer", "flip")
     if transfer != "flip":
         line += "; what run.transfer takes is in it"
@@ -129,7 +135,7 @@ def energy_line(manifest: Manifest) -> str:
             line += "; `mpm3dpp study CASE` tells whether smaller cells make it less"
     elif large:
         line += "; a smaller run.cfl or smaller cells may help"
-    return line
+    return line, large
 
 
 def gone_lines(manifest: Manifest) -> list[str]:
