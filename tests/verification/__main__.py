@@ -10,7 +10,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from .figure import Figure
-from .matrix import page, rows_of
+from .matrix import page, rows_of, updated
 from .runs import RUNS, Run
 
 
@@ -48,6 +48,11 @@ def main() -> None:
     parser.add_argument("--basis", help="one basis only")
     parser.add_argument("--out", type=Path, help="the page to write")
     parser.add_argument("--again", type=Path, help="run nothing: the rows of a page written before")
+    parser.add_argument(
+        "--update",
+        type=Path,
+        help="a page, in which the rows of these runs take the old ones' place",
+    )
     parser.add_argument("--workers", type=int, default=1, help="runs at a time, each on one core")
     chosen = parser.parse_args()
     if chosen.again:
@@ -74,8 +79,10 @@ def main() -> None:
         rows.append((run.problem, lines))
     total = f"{passed} of {judged} figures with a tolerance are within it"
     print(f"{total}; {seconds:.0f} s")
-    if chosen.out:
-        chosen.out.write_text(page(rows))
+    if chosen.update:
+        rows = updated(rows_of(chosen.update.read_text()), rows)
+    if out := chosen.out or chosen.update:
+        out.write_text(page(rows))
 
 
 def _done(runs: list[Run], workers: int) -> Iterator[tuple[list[Figure], str, float]]:

@@ -69,6 +69,22 @@ def rows_of(text: str) -> Rows:
     return [(name, (table.rstrip() + "\n").splitlines(True)) for name, table in tables.items()]
 
 
+def updated(rows: Rows, again: Rows) -> Rows:
+    """Return rows in which those of runs that were made again have taken the place of the old."""
+    found = {name: list(lines) for name, lines in rows}
+    for name, lines in again:
+        table = found.setdefault(name, [])
+        kind = _run_of(lines[0])
+        at = next((k for k, line in enumerate(table) if _run_of(line) == kind), len(table))
+        found[name] = [line for line in table if _run_of(line) != kind]
+        found[name][at:at] = lines
+    return list(found.items())
+
+
+def _run_of(line: str) -> list[str]:
+    return line.split(" | ", 2)[:2]
+
+
 def summary(rows: Rows) -> str:
     """Return how many figures pass: a row for each problem, a column for each basis and scheme."""
     counts = _counts(rows)

@@ -48,3 +48,17 @@ def test_every_problem_has_a_row_in_the_summary() -> None:
     said = matrix.summary(rows)
     assert said.startswith("2 of 3 figures")
     assert "| [E1](#e1) vibration of a bar | 2D 1/2, 3D 1/1 |\n" in said
+
+
+def test_rows_of_runs_made_again_take_the_old_ones_place() -> None:
+    def line(problem: str, options: str, ours: int) -> str:
+        return (
+            f"| {problem} vibration usf 2D default | {options} | drift | {ours} | 1 | - | pass |\n"
+        )
+
+    old = [("E1", [line("E1", "cells 8", 1), line("E1", "cells 8", 2), line("E1", "cells 16", 3)])]
+    again = [("E1", [line("E1", "cells 8", 7)]), ("E2", [line("E2", "default", 9)])]
+    assert matrix.updated(old, again) == [
+        ("E1", [line("E1", "cells 8", 7), line("E1", "cells 16", 3)]),
+        ("E2", [line("E2", "default", 9)]),
+    ]
