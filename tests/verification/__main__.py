@@ -51,7 +51,7 @@ def main() -> None:
     parser.add_argument(
         "--update",
         type=Path,
-        help="a page, in which the rows of these runs take the old ones' place",
+        help="a page, in which rows of these runs are replaced",
     )
     parser.add_argument("--workers", type=int, default=1, help="runs at a time, each on one core")
     chosen = parser.parse_args()
