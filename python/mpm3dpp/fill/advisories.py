@@ -26,6 +26,7 @@ from .response_notes import response_notes
 from .run_notes import run_notes
 from .settling import settling_notes
 from .shape_notes import shape_notes
+from .size_notes import size_notes
 from .stretch_notes import stretch_notes
 from .unit_notes import unit_notes
 from .wall_notes import wall_notes
@@ -33,10 +34,6 @@ from .wall_notes import wall_notes
 _INCOMPRESSIBLE = 0.45
 _STIFFEST = 0.499
 _NARROW = 2.4  # Cells.
-_COARSE = 0.75  # Cells.
-# Of the edge of the other's particles: R - 1 and 2 R - 1 in 3D (decision 0054), and some less.
-_WIDE_GAP, _UNEQUAL = 0.8, 2.5
-_FEW, _NARROW_GRAIN = 20, 3.0  # Grains; cells over the diameter of one.
 _SEEN = 0.1  # Cells: a fifth of an edge; a lattice stands out by less.
 _STEEPEST = math.sqrt(3.0)  # q_phi = 6 sin(phi) / (sqrt(3) (3 - sin(phi))) at 90 degrees
 
@@ -60,8 +57,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *explosive_notes(case),
         *_beyond_strength(case),
         *_locking(case),
-        *_springs(case, bodies),
-        *_crowds(case, bodies),
+        *size_notes(case, bodies),
         *settling_notes(case, bodies),
         *interference_notes(case, bodies.interferences),
         *beyond_walls(case),
@@ -213,51 +209,6 @@ def _locking(case: Case) -> list[str]:
 def _wave(nu: float) -> float:
     """Return the speed of pressure waves over sqrt(E / rho)."""
     return math.sqrt((1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)))
-
-
-def _springs(case: Case, bodies: Filled) -> list[str]:
-    """Sizes of particles with which springs of contact are coarse, or see bodies too late."""
-    if not case.has_set_back or case.contact.response == "impulses":
-        return []
-    sizes = {name: part.spacing for name, part in bodies.parts.items()}
-    found = [
-        f"{key_text(case.part_path(name))} has particles of {size / case.grid.cell_size:.2g} "
-        "cells, and springs of contact want two a cell along each axis; give smaller particles, or "
-        'contact.response = "impulses"'
-        for name, size in sizes.items()
-        if size > _COARSE * case.grid.cell_size
-    ]
-    fine, coarse = min(sizes, key=sizes.__getitem__), max(sizes, key=sizes.__getitem__)
-    if sizes[coarse] > _UNEQUAL * sizes[fine]:
-        found.append(
-            f"{key_text(case.part_path(coarse))} has particles {sizes[coarse] / sizes[fine]:.3g} "
-            f"times as large as {key_text(case.part_path(fine))}, and springs of contact between "
-            f"them lack up to half of their stiffness beyond {_UNEQUAL:g} times; give sizes that "
-            "are closer"
-        )
-    if case.contact.gap_distance > _WIDE_GAP * sizes[fine]:
-        found.append(
-            f"contact.gap_distance = {case.contact.gap_distance:g} m is more than {_WIDE_GAP:g} of "
-            f"the particles of {key_text(case.part_path(fine))} ({sizes[fine]:.3g} m), and springs "
-            "reach no further; give a smaller one, or larger particles"
-        )
-    return found
-
-
-def _crowds(case: Case, bodies: Filled) -> list[str]:
-    """Grains of so few cells that six to eight of them meet at a node, with impulses."""
-    if not case.contact_enabled or case.contact.response != "impulses":
-        return []
-    return [
-        f"{key_text(case.part_path(name))} has {len(part.names):,} grains of "
-        f"{2.0 * float(part.balls[1].mean()) / case.grid.cell_size:.2g} cells: where they lie "
-        "close, up to eight meet at a node, and impulses of so many take hundreds of sweeps, up to "
-        '27 times the time of a step; give contact.response = "springs", or smaller cells'
-        for name, part in bodies.parts.items()
-        if part.balls is not None
-        and len(part.names) > _FEW
-        and 2.0 * float(part.balls[1].mean()) < _NARROW_GRAIN * case.grid.cell_size
-    ]
 
 
 def refuse_time_step(case: Case, bodies: Filled) -> None:
