@@ -79,6 +79,7 @@ def test_blocks_that_are_not_run() -> None:
         "docs/quick-start.md": 1,
         "docs/how-to/reproduce-the-paper.md": 1,
         "docs/how-to/run-on-a-gpu.md": 2,
+        "docs/how-to/measure-speed.md": 1,
         "docs/how-to/run-on-several-ranks.md": 2,
     }
 

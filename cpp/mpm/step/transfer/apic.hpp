@@ -39,11 +39,12 @@ struct Apic : Flip {
 ///
 /// Where S closes an axis, S : S S < 0, S S would make energy, as the inertia of C_p does not
 /// lessen with the axis: debris that is flattened would close ever faster, to infinity at the time
-/// 1/|S|. There the part of S S along S, which alone does work on C_p, is left out.
+/// 1/|S|. There the part of S S along S, which alone does work on C_p, is left out; but not of a
+/// gas, `pays`: its heat pays for what C_p gains (step/flowing_matter.hpp).
 /// The series is good only for small dt |C|: a factor (1 - x^4)_+, x^2 = dt^2 C:C / D, takes the
 /// correction away before that, and beyond x = 1 C_p stays.
 template <class T, int D>
-MPM_HD MPM_INLINE inline Mat<T, D> carried_along(const Mat<T, D>& C, T dt) {
+MPM_HD MPM_INLINE inline Mat<T, D> carried_along(const Mat<T, D>& C, T dt, bool pays = false) {
   Mat<T, D> S, W, change;
   T squared_S(0.0), squared_W(0.0), cube(0.0);
   unrolled<D * D>([&](auto k) MPM_INLINE {
@@ -67,7 +68,8 @@ MPM_HD MPM_INLINE inline Mat<T, D> carried_along(const Mat<T, D>& C, T dt) {
   });
   const T x2 = T(1.0 / D) * dt * dt * (squared_S + squared_W);
   const T part = dt * max(fma(-x2, x2, T(1.0)), T(0.0));
-  const T along = min(cube, T(0.0)) / max(squared_S, T(1e-200));  // S : S S / S : S
+  // S : S S / S : S
+  const T along = pays ? T(0.0) : min(cube, T(0.0)) / max(squared_S, T(1e-200));
   Mat<T, D> now = C;
   unrolled<D * D>([&](auto k) MPM_INLINE {
     constexpr int a = k / D, b = k % D;
