@@ -61,7 +61,11 @@ LINES = {
 }
 
 
-@pytest.mark.parametrize("odd", [a_pipe, an_endless_file], ids=lambda odd: odd.__name__)
+@pytest.mark.parametrize(
+    "odd",
+    [a_pipe, pytest.param(an_endless_file, marks=pytest.mark.slow)],
+    ids=lambda odd: odd.__name__,
+)
 @pytest.mark.parametrize("name", [*FILES, "checkpoint.zip"])
 def test_a_pipe_or_an_endless_file_among_results(
     tmp_path: Path, out: Path, name: str, odd: Callable[[Path], None]

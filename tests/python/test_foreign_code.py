@@ -85,7 +85,13 @@ def test_a_process_runs_nothing_of_the_folder(tmp_path: Path, module: str) -> No
     assert not told.exists(), told.read_text()
 
 
-@pytest.mark.parametrize("words", ["{path}:", ":{path}", "{path}::/nowhere"])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ":{path}",
+        *(pytest.param(w, marks=pytest.mark.slow) for w in ("{path}:", "{path}::/nowhere")),
+    ],
+)
 def test_an_empty_word_in_pythonpath_is_not_the_folder(tmp_path: Path, words: str) -> None:
     """`PYTHONPATH=$PYTHONPATH:/lib` has one where there was nothing."""
     write(tmp_path, SHORT)

@@ -65,14 +65,13 @@ def corner(dimension: int, along: int, contact: dict[str, Any]) -> dict[str, Any
     [{}, {"friction": 0.3}, {"response": "impulses"}, {"response": "impulses", "friction": 0.3}],
     ids=["springs", "springs with friction", "impulses", "impulses with friction"],
 )
-@pytest.mark.parametrize(("dimension", "along", "steps"), [(2, 5, 300), (3, 2, 60)])
+@pytest.mark.parametrize(("dimension", "along", "steps"), [(2, 4, 150), (3, 2, 40)])
 def test_bodies_in_another_order(
     dimension: int, along: int, steps: int, contact: dict[str, Any]
 ) -> None:
-    """With springs 25 discs differed from the fifth step on: sums went by the bodies' numbers."""
+    """With springs discs differed from the fifth step on: sums went by the numbers of bodies."""
     case = corner(dimension, along, contact)
     count = along**dimension
     first = run(case, np.arange(count), steps)
-    for seed in (1, 2):
-        other = run(case, np.random.default_rng(seed).permutation(count), steps)
-        assert [name for name in first if first[name] != other[name]] == []
+    other = run(case, np.random.default_rng(1).permutation(count), steps)
+    assert [name for name in first if first[name] != other[name]] == []

@@ -163,7 +163,7 @@ def test_a_block_in_a_corner(tmp_path: Path) -> None:
     assert abs(rows["wall_x_min_force_y"][told][-1]) < 1e-6 * weight  # no friction there
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("slope", "slides"), [(15.0, False), (20.0, True)])
 def test_a_slope_holds_what_is_less_steep_than_the_friction_angle(
     tmp_path: Path, dimension: int, slope: float, slides: bool
