@@ -72,8 +72,8 @@ def test_a_gas_at_rest_in_disorder_stays_at_rest(
     simulation, row = end(case)
     volumes = simulation.column("gas", "volume").sum() / n**2
     # No volume grows beyond 1.12 of the room; those that are pressed where particles lie densely
-    # may stay so, some per cent of them.
-    assert 0.94 <= volumes <= 1.12
+    # may stay so, some per cent of them, with MUSL up to eight.
+    assert (0.94 if scheme == "usf" else 0.92) <= volumes <= 1.12
     assert abs(kept(row) - 1.0) < 1e-3
 
 
