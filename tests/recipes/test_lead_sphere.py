@@ -72,8 +72,8 @@ def test_a_sphere_of_lead_through_a_plate(numerics: str, tmp_path: Path) -> None
     """It runs to the end without a spall strength, and no bound of the energy makes any.
 
     MPM3D-F90 makes 2.2 % of the energy on its way. Of the kinetic energy here 2 to 3 % more are
-    left without an affine transfer, and 3.3 % less with the default, which loses 5.6 % of the
-    energy where debris of different speeds meets in a cell.
+    left without an affine transfer, and 3.3 % less with the default, whose numerics lose 5.6 % of
+    the energy.
     """
     case = case_of(tmp_path, numerics)
     simulation = Simulation(case, threads=2)
@@ -86,4 +86,5 @@ def test_a_sphere_of_lead_through_a_plate(numerics: str, tmp_path: Path) -> None
         assert np.abs(row[column]).max() < 0.01 * start
     # In the first steps cells that both bodies fill take the difference of their velocities.
     assert np.abs(np.diff(row["numerical"])[10:]).max() < 0.01 * start
+    # 0.044 with the default, 0.11 and more with the others: steps shorten as debris opens (0064).
     assert row["dt"][1:-1].min() > 0.04 * row["dt"][1]

@@ -139,11 +139,12 @@ void order_pairs(NodeSolution<D>& node) {
                      dot(r.working_velocity() - s.working_velocity(), pair.normal));
   };
   // A strong order, for a run that is about to stop may have what is no number here.
-  const auto before = [](double a, double b) { return std::strong_order(a, b); };
   std::ranges::sort(node.order, [&](std::uint32_t a, std::uint32_t b) {
     const auto of_a = key(a), of_b = key(b);
-    if (const auto by_mass = before(of_a.first, of_b.first); by_mass != 0) return by_mass < 0;
-    if (const auto by_speed = before(of_a.second, of_b.second); by_speed != 0) return by_speed < 0;
+    if (const auto by_mass = std::strong_order(of_a.first, of_b.first); by_mass != 0)
+      return by_mass < 0;
+    if (const auto by_speed = std::strong_order(of_a.second, of_b.second); by_speed != 0)
+      return by_speed < 0;
     return a < b;
   });
 }
