@@ -221,16 +221,24 @@ def step_of(checkpoint: Path) -> int:
 
 
 def ranks_of(job: subprocess.Popen[Any]) -> list[int]:
-    """Return the processes of a job that mpiexec has started, by their environment."""
+    """Return the ranks of a job by their environment: of no other job, that of another test."""
     found = []
     for folder in Path("/proc").iterdir():
         try:
             about = (folder / "environ").read_bytes()
-            parent = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
+            above = ancestors(int(folder.name))
         except (OSError, ValueError, IndexError):
             continue
-        if f"{launch.TOLD}=".encode() in about and parent != job.pid and b"RANK" in about:
+        # Below mpiexec, which the launcher has started.
+        if f"{launch.TOLD}=".encode() in about and b"RANK" in about and job.pid in above[1:]:
             found.append(int(folder.name))
+    return found
+
+
+def ancestors(process: int) -> list[int]:
+    found = [parent_of(process)]
+    while found[-1] > 1:
+        found.append(parent_of(found[-1]))
     return found
 
 
