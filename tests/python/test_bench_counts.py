@@ -63,8 +63,8 @@ def test_operations_and_traffic_of_an_affine_part_by_hand():
     assert take["apic"] == take["pic"] + 9 * 8 + 4  # C_p, and the division by its second moment
     assert take["aflip"] == take["apic"] + 9 * 4 + 2 * 4  # dv, and alpha of two components
     assert move["flip"] == 9 * (1 + 4) + 4
-    # S and W; S : S and W : W; S S and W W, symmetric; their sum and S : S S; two terms from C_p.
-    assert move["aflip"] == move["flip"] + 16 + 12 + (12 + 4) + (3 + 7) + 16
+    # C : C; C C and its transpose, symmetric; what it takes from C_p.
+    assert move["aflip"] == move["flip"] + 8 + 24 + 8
 
     moved = {
         word: traffic.bytes_per_particle_step(stages, 2, word) for word in ("flip", "pic", "aflip")

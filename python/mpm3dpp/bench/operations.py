@@ -66,8 +66,9 @@ def operations_per_particle_step(
     if _core.transfers[transfer]["affine"]:
         vector += tensor  # p_i has C_p (x_i - x_p) beside v_p
         advance += tensor + d * d  # C_p = sum N_ip v_i (x_i - x_p) / D
-        # S, W and their squares; S S and W W; S : S S; what is taken from C_p (step/transfer).
-        along += 8 * d * d + 2 * d**3 + d * (d + 1) + 4 * d * d
+        # C : C; C_p - dt/2 (C_p C_p + (C_p C_p)^T), of which the change is symmetric. What is seen
+        # to where matter closes fast is seldom (step/transfer/apic.hpp).
+        along += 2 * d * d + 2 * d * d * (d + 1) + 2 * d * d
     move = function + of_grid + along
     counts = {
         "map momentum": function + weighted + mass + vector,  # eqs. (2), (3)

@@ -163,8 +163,8 @@ void check_carried(mpm::testing::Report& report) {
   CHECK_EQUAL(carried_along(wild, 1e-2)[0][0], wild[0][0]);
 }
 
-/// Debris that is flattened keeps its rate; what is merely sheared feels nothing, and what closes
-/// makes no energy, to the second order in the step.
+/// Debris that is flattened nearly keeps its rate; what is merely sheared feels nothing, and what
+/// closes makes no energy, to the second order in the step.
 void check_closing(mpm::testing::Report& report) {
   const double dt = 1e-2;
   const Mat<double, 3> flattened{{{-2.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
@@ -181,14 +181,16 @@ void check_closing(mpm::testing::Report& report) {
     const double rate = (C[0][0] + C[1][1] + C[2][2]) / 3.0;
     for (int a = 0; a < 3; ++a) C[a][a] -= rate;
   }
-  CHECK_CLOSE(energy(C), energy(flattened), 1e-12 * energy(flattened));
+  // From x^2 = 1e-5 on it closes no faster than by 1e-5 / dt^2 in a unit of time.
+  const double at_end = (2.0 + 1e-5 / (dt * dt)) / 2.0;
+  CHECK_CLOSE(energy(C), at_end * at_end * energy(flattened), 1e-3 * energy(flattened));
 
   const Mat<double, 3> opening{{{3.0, 1.0, 0.0}, {1.0, -1.0, 0.5}, {0.0, 0.5, 1.0}}};
   Mat<double, 3> closing = opening;
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) closing[a][b] = -opening[a][b];
   CHECK(energy(carried_along(opening, dt)) < 0.97 * energy(opening));
-  CHECK_CLOSE(energy(carried_along(closing, dt)), energy(closing), 2e-3 * energy(closing));
+  CHECK_CLOSE(energy(carried_along(closing, dt)), energy(closing), 4e-3 * energy(closing));
 
   const Mat<double, 2> sheared{{{0.0, 7.0}, {0.0, 0.0}}};  // C C = 0
   for (int a = 0; a < 2; ++a)
