@@ -52,7 +52,7 @@ def test_debris_is_not_pulled_shut_without_bound(spall: float, solid: bool) -> N
 
 def test_energy_stops_at_absolute_zero() -> None:
     """Nothing is below E0 - rho0 cp T0; where the specific heat is unknown the bond energy is."""
-    path = np.linspace(40.0, 1.2, 1600)
+    path = np.linspace(40.0, 1.2, 1600)  # so fine that a step passes the last 5 % above the floor
     for solid, floor in ((True, -HEAT), (False, -STIFFNESS / NUMBERS["gamma0"])):
         found = swell(path, 0.0, solid, state={"volume": 40.0, "internal_energy": -1e6})
         # The step that would lead below bears no tension, and so ends a little above.
@@ -118,17 +118,17 @@ EQUATIONS: tuple[tuple[str, dict[str, float]], ...] = (
 
 
 @pytest.mark.parametrize("share", [0.01, 0.3, 0.98, 1.02])
-@pytest.mark.parametrize("eos", EQUATIONS, ids=lambda eos: eos[0])
+@pytest.mark.parametrize(("eos", "most"), [*zip(EQUATIONS, (1.2, 2.4), strict=True)])
 def test_debris_is_no_stiffer_than_its_matter(
-    eos: tuple[str, dict[str, float]], share: float
+    eos: tuple[str, dict[str, float]], most: float, share: float
 ) -> None:
     """What pulls at the nodes is pressure times volume: at 300 volumes that was 300 moduli."""
     volumes = np.array([300.0, 315.0, 330.0, 305.0, 280.0, 270.0, 290.0])
     evaporated = STIFFNESS / NUMBERS["gamma0"]
     state = {"volume": 300.0, "internal_energy": share * evaporated}
     found = swell(volumes, 0.0, False, state=state, eos=eos)
-    # 1.2 rho/rho0 of -K and, for the polynomial, of -c1 - c3, each by twice that within a step.
-    assert np.abs(found["pressure"] * volumes)[1:].max() < 5 * STIFFNESS
+    # At most 1.2 K (and 1.2 (c1 + c3) of the polynomial), doubled for steps of 5 % in the volume.
+    assert np.abs(found["pressure"] * volumes)[1:].max() < 2 * most * STIFFNESS
     assert found["sound_speed"].max() < 3 * NUMBERS["c0"]
 
 

@@ -66,6 +66,7 @@ def main() -> None:
         and not (chosen.quick and run.slow)
         and not (chosen.basis and run.basis not in (chosen.basis, "-"))
     ]
+    old = rows_of(chosen.update.read_text()) if chosen.update else []
     rows, judged, passed, seconds = [], 0, 0, 0.0
     for run, (figures, stopped, took) in zip(runs, _done(runs, chosen.workers), strict=True):
         seconds += took
@@ -80,7 +81,7 @@ def main() -> None:
     total = f"{passed} of {judged} figures with a tolerance are within it"
     print(f"{total}; {seconds:.0f} s")
     if chosen.update:
-        rows = updated(rows_of(chosen.update.read_text()), rows)
+        rows = updated(old, rows)
     if out := chosen.out or chosen.update:
         out.write_text(page(rows))
 

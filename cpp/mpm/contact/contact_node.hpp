@@ -76,8 +76,8 @@ struct ContactNode {
 constexpr std::uint32_t pair_count(std::uint32_t sides) { return sides * (sides - 1) / 2; }
 
 /// Put the bodies at a node into an order that does not depend on how bodies are numbered, as far
-/// as masses and velocities tell them apart: the solution for several bodies with friction is not
-/// unique, and the order of its steps chooses.
+/// as masses and velocities tell them apart. Pairs that are alike in all that `order_pairs` knows
+/// of are swept in that order.
 template <int D>
 void sort_sides(std::span<BodyAtNode<D>> sides) {
   std::sort(sides.begin(), sides.end(), [](const BodyAtNode<D>& x, const BodyAtNode<D>& y) {

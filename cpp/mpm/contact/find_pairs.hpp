@@ -15,7 +15,6 @@ void for_each_new_pair(const std::vector<Body<D>>& bodies, const ContactSettings
                        ContactPart<D>& part, const ContactNode& node, F&& f) {
   const auto sides = part.sides_of(node);
   ContactPair<D>* next = &part.pairs[node.first_pair];
-  // This order of pairs is the order of the solver's sweeps; the sides were sorted for it.
   for (std::uint16_t r = 0; r < node.sides; ++r)
     for (auto s = static_cast<std::uint16_t>(r + 1); s < node.sides; ++s) {
       ContactPair<D>& pair = *next++;

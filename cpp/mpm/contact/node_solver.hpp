@@ -1,6 +1,7 @@
 #pragma once
 // The impulses between any number of bodies at one node.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <compare>
 #include <cstdint>
@@ -68,7 +69,7 @@ template <int D>
 struct NodeSolution {
   std::vector<SolvedSide<D>> sides;
   std::vector<SolvedPair<D>> pairs;
-  std::vector<std::uint32_t> order = {};  // in which pairs are swept: solve_node begins with it
+  std::vector<std::uint32_t> order = {};  // pairs that take part, as they are swept (order_pairs)
 };
 
 /// m_r m_s / (m_r + m_s); one of the two may be infinite.
@@ -120,7 +121,7 @@ double rounding_of(const NodeSolution<D>& node) {
 
 /// Put the pairs in an order of their masses and motions, which does not depend on how the bodies
 /// are numbered: sweeps end within a tolerance, and which pair begins would be seen in the last
-/// digits.
+/// digits. Pairs that are equal in these keep the order of the sides.
 template <int D>
 void order_pairs(NodeSolution<D>& node) {
   const std::vector<SolvedSide<D>>& sides = node.sides;
@@ -134,17 +135,17 @@ void order_pairs(NodeSolution<D>& node) {
   const auto key = [&](std::uint32_t k) {
     const SolvedPair<D>& pair = pairs[k];
     const SolvedSide<D>&r = sides[pair.r], &s = sides[pair.s];
-    // Neither changes when r and s are exchanged.
-    return std::pair(reduced_mass(r.mass, s.mass),
-                     dot(r.working_velocity() - s.working_velocity(), pair.normal));
+    // None changes when r and s are exchanged; + 0.0, so that there is no -0.
+    const Vec<double, D> relative = r.working_velocity() - s.working_velocity();
+    return std::array{reduced_mass(r.mass, s.mass),
+                      pair.bonded ? norm(relative) : dot(relative, pair.normal) + 0.0,
+                      pair.spring.impulse};
   };
   // A strong order, for a run that is about to stop may have what is no number here.
   std::ranges::sort(node.order, [&](std::uint32_t a, std::uint32_t b) {
     const auto of_a = key(a), of_b = key(b);
-    if (const auto by_mass = std::strong_order(of_a.first, of_b.first); by_mass != 0)
-      return by_mass < 0;
-    if (const auto by_speed = std::strong_order(of_a.second, of_b.second); by_speed != 0)
-      return by_speed < 0;
+    for (std::size_t k = 0; k < of_a.size(); ++k)
+      if (const auto order = std::strong_order(of_a[k], of_b[k]); order != 0) return order < 0;
     return a < b;
   });
 }
@@ -152,7 +153,7 @@ void order_pairs(NodeSolution<D>& node) {
 /// Remove the approach of every pair that takes part, eqs. (6)-(7), working on
 /// SolvedSide::momentum, and all relative motion of one that is bonded; with friction, hold the
 /// tangential motion as far as Coulomb's law allows, eqs. (14)-(15). For two bodies this is the
-/// paper's formula; more are solved together by projected Gauss-Seidel in a fixed order, to 1e-12
+/// paper's formula; more are solved together by projected Gauss-Seidel, to 1e-12
 /// of the largest impulse or to the rounding of their momenta. Pairs come in without impulses.
 /// Gives false if it stopped short of the tolerance.
 template <bool with_friction, int D>

@@ -59,7 +59,7 @@ struct StiffnessDamping {
 
 /// What an equation of state must not exceed. The pressure of a solid is linear in its energy also
 /// where a particle is debris of many times its volume, most of which is void; there an energy
-/// below zero pulls the void shut, which lowers the energy further, exponentially with the volume.
+/// below zero pulls the void shut, which lowers the energy further.
 struct EosBounds {
   double lowest_energy = -unbounded;  // at absolute zero [J/m^3 of initial volume]
   double tension = unbounded;         // spall strength [Pa]

@@ -149,14 +149,15 @@ struct LinearInEnergy {
   }
 };
 
-/// A pressure that is given about a solid's initial density, here of any `density` rho / rho0. Once
-/// the matter has opened by more than a fifth it is debris or vapour, and both parts fall with the
-/// density from there on. As they are given they would tend to a tension of about the bulk modulus,
-/// and to a gamma that grows with the volume, however much of that is void.
-inline constexpr double opened_at = 1.0 / 1.2;
+inline constexpr double opened_volume = 1.2;  // over that at the start; beyond: debris or vapour
+
+/// The pressure of a law that is made for a solid near its initial density, at any `density`
+/// rho / rho0: beyond `opened_volume` both parts fall with the density. As the law has them they
+/// would tend to a tension of about the bulk modulus, and to a gamma that grows with the volume,
+/// however much of that is void.
 template <class T>
 MPM_HD LinearInEnergy<T> opened(const LinearInEnergy<T>& solid, T density) {
-  const T share = min(density * T(1.0 / opened_at), T(1.0));
+  const T share = min(T(opened_volume) * density, T(1.0));
   const T slope = select(share < T(1.0), -share * density, T(0.0));  // d share / dV
   return {share * solid.A, share * solid.B, share * solid.dA + slope * solid.A,
           share * solid.dB + slope * solid.B};

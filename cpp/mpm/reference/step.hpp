@@ -251,8 +251,8 @@ struct Step {
     for (int a = 0; a < D; ++a)
       for (int c = 0; c < D; ++c) cube += S[a][c] * of_closing[a][c];
     const double x2 = dt * dt * sum / D, part = dt * std::max(1.0 - x2 * x2, 0.0);
-    // Not of what closes slowly, which makes next to nothing: up to x^2 = 1e-5.
-    const double along = cube < 0.0 ? std::max(1.0 - 1e-5 / x2, 0.0) * cube / of_S : 0.0;
+    // Not of what closes slowly, which makes next to nothing: all from x^2 = 2e-5 on.
+    const double along = cube < 0.0 ? std::clamp(1e5 * x2 - 1.0, 0.0, 1.0) * cube / of_S : 0.0;
     for (int a = 0; a < D; ++a)
       for (int c = 0; c < D; ++c)
         C[a][c] -= part * ((square[a][c] + square[c][a]) / 2 - along * S[a][c]);

@@ -156,12 +156,13 @@ struct RunSettings {
               "the run stops when more than this share of the particles of a body, or of all "
               "grains of an entry, lies beyond slip or fixed walls of the box; 1 for never",
               Rule::fraction},
-      Setting{"volume_limit", &Self::volume_limit,
-              "the run stops when more than this share of them has less than 0.01 or more than 100 "
-              "times the volume that it began with (with an equation of state also more than 100 "
-              "cells); gases, products of detonation and particles "
-              "that have failed do not count; 1 for never",
-              Rule::fraction}};
+      Setting{
+          "volume_limit", &Self::volume_limit,
+          "the run stops when more than this share of them has less than 0.01 or more than 100 "
+          "times the volume that it began with (where the equation of state knows heat: and more "
+          "than 100 cells too); gases, products of detonation and particles "
+          "that have failed do not count; 1 for never",
+          Rule::fraction}};
 };
 
 /// What moves no bit of the results.

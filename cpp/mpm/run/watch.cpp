@@ -14,10 +14,9 @@ namespace mpm {
 namespace {
 
 constexpr double small_volume = 0.01, large_volume = 100.0;  // over that at the start
-// Of a gas, that fills any volume. One that is alone stands for ten cells at most
-// (step/flowing_matter.hpp).
-constexpr double small_of_gas = 1e-3;
-// What has an equation of state bears hardly anything in that state, and may have evaporated.
+constexpr double small_of_gas = 1e-3;  // the same of a gas, which fills any volume
+// Less than that may be a gas that is alone, ten cells at most (step/flowing_matter.hpp), or what
+// has evaporated, which bears hardly anything (`opened`, materials/model.hpp).
 constexpr double large_in_cells = 100.0;
 constexpr double many_gaps = 0.01;  // of a body's cells, more than at the start
 constexpr double beyond = 0.1;  // of a cell, behind a wall: GIMP may push a centre a little past it
@@ -218,6 +217,7 @@ void see(Simulation<D>& simulation) {
     sight.particles += patch.count;
     const Material& material = domain.material_of(patch);
     const bool solid = b.deforms() && !material.is_gas();
+    const bool may_evaporate = std::isfinite(material.bounds.lowest_energy);
     if (solid && !material.breaks_up()) look_for_gaps(of, patch, sight);
     const double* failed = of.at.failed >= 0 ? of.columns.component(of.at.failed) : nullptr;
     const bool placed = grid.walls.exist && !b.is_prescribed();
@@ -227,7 +227,7 @@ void see(Simulation<D>& simulation) {
       const double J = of.volume()[i] * b.initial_density / of.mass()[i];
       const double cells = of.volume()[i] / cell_volume;
       if (solid && !(failed && failed[i] > 0.0)) {
-        const bool large = J > large_volume && (!material.eos || cells > large_in_cells);
+        const bool large = J > large_volume && (!may_evaporate || cells > large_in_cells);
         if (J < small_volume || large) sight.odd.add(of, patch.body, i, std::abs(std::log(J)), J);
       }
       if (gas) {

@@ -70,7 +70,9 @@ class FlowingMatter {
   template <class Rows, class Field, class W>
   MPM_INLINE void give_back(const Rows& rows, const Field& nodes, const W& w, const Vec<T, D>& dv) {
     const T all = load(mass_, rows), per_volume = T(density_) / all;
-    const T after = square_with(rows, carried_along(affine(rows), T(time_step_), true));
+    // As Moving does it with a body that owes heat.
+    const T after =
+        square_with(rows, carried_along(affine(rows), T(time_step_), Closing::as_it_would));
     const T gained = nodes.template gain<velocity_at, increment_at>(w);
     T energy = load(energy_, rows);
     const T owed = fma(all, fma(T(0.5), before_ - after, gained), load(owed_, rows));

@@ -18,7 +18,7 @@ class Moving {
     if (pool.affine < 0) return;
     mass_ = pool.mass();
     half_moment_ = 0.5 * grid.affine_moment();
-    pays_ = pool.at.heat_owed >= 0;
+    if (pool.at.heat_owed >= 0) closes_ = Closing::as_it_would;
     for (int k = 0; k < D * D; ++k) affine_[k] = pool.affine_part(k);
   }
 
@@ -51,7 +51,7 @@ class Moving {
   MPM_INLINE void carry_affine(const Rows& rows) {
     Mat<T, D> C;
     unrolled<D * D>([&](auto k) MPM_INLINE { C[k / D][k % D] = load(affine_[k], rows); });
-    const Mat<T, D> now = carried_along(C, T(time_step_), pays_);
+    const Mat<T, D> now = carried_along(C, T(time_step_), closes_);
     unrolled<D * D>([&](auto k) MPM_INLINE { store(affine_[k], rows, now[k / D][k % D]); });
     lost_ = fma(of_valid(rows, load(mass_, rows)), square_difference(C, now), lost_);
   }
@@ -59,8 +59,8 @@ class Moving {
   T lost_{0.0};  // by affine parts, over half of the moment
   double time_step_, half_moment_ = 0.0;
   const double* mass_ = nullptr;  // null without an affine part
-  bool pays_ = false;             // with heat, for what the affine part gains
-  std::uint64_t left_ = 0;        // lanes of which one has
+  Closing closes_ = Closing::no_faster;
+  std::uint64_t left_ = 0;  // lanes of which one has
   double* x_[D];
   CellCoordinates<D> cells_;
   Storage* affine_[D * D] = {};

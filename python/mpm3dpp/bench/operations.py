@@ -66,8 +66,8 @@ def operations_per_particle_step(
     if _core.transfers[transfer]["affine"]:
         vector += tensor  # p_i has C_p (x_i - x_p) beside v_p
         advance += tensor + d * d  # C_p = sum N_ip v_i (x_i - x_p) / D
-        # C : C; C_p - dt/2 (C_p C_p + (C_p C_p)^T), of which the change is symmetric. What is seen
-        # to where matter closes fast is seldom (step/transfer/apic.hpp).
+        # C : C; C_p - dt/2 (C_p C_p + (C_p C_p)^T), of which the change is symmetric. Not counted:
+        # `closing_part` (step/transfer/apic.hpp), which few particles need.
         along += 2 * d * d + 2 * d * d * (d + 1) + 2 * d * d
     move = function + of_grid + along
     counts = {

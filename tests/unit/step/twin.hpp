@@ -295,8 +295,10 @@ struct Twin {
       }
       p.X = p.x;
       p.m = pool.mass()[i];
+      // Every second one so fast that it is kept from closing faster (step/transfer/apic.hpp).
+      const double rate = i % 2 == 0 ? 200.0 : 2000.0;
       for (int c = 0; c < (pool.affine < 0 || !other.deforms() ? 0 : D * D); ++c)
-        p.C[c / D][c % D] = pool.affine_part(c)[i] = static_cast<Storage>(200.0 * any());
+        p.C[c / D][c % D] = pool.affine_part(c)[i] = static_cast<Storage>(rate * any());
       p.V = pool.volume()[i];
       for (int c = 0; c < Sym<double, D>::size; ++c)
         p.sigma.c[c] = pool.columns.rounded(pool.at.stress + c)[i] =

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+
 #include "mpm/math/tensor.hpp"
 #include "mpm/math/unrolled.hpp"
 #include "mpm/step/transfer/flip.hpp"
@@ -31,14 +33,14 @@ struct Apic : Flip {
   }
 };
 
-/// dt^2 C:C / D from which on a C_p that closes is seen to: below, it would take 300 steps to
-/// close, and the velocities that it describes are less than a hundredth of that of the waves.
+/// dt^2 C:C / D from which on less is made of a C_p that closes; from twice that on nothing. Below,
+/// it would take hundreds of steps to close, and its velocities are a hundredth of that of waves.
 inline constexpr double closing_from = 1e-5;
 
-/// S, the symmetric part of C_p, times (S : S S / S : S) (1 - closing_from / x^2) where C_p closes,
-/// S : S S < 0, and 0 elsewhere: what is left out of C'. This part of S S along S, which alone does
-/// work on C_p, would make energy, as the inertia of C_p does not lessen with the axis that closes:
-/// debris that is flattened would close ever faster, to infinity at the time 1/|S|.
+/// What `carried_along` leaves out where S, the symmetric part of C_p, closes (S : S S < 0): the
+/// part of S S along S, S (S : S S) / (S : S). Of S S that part alone changes C : C. It would make
+/// energy, as the inertia of C_p does not lessen with the axis that closes: with its volume kept
+/// debris that is flattened, (-2, 1, 1) a, would be infinitely fast at the time 1/a.
 template <class T, int D>
 MPM_HD MPM_INLINE inline Sym<T, D> closing_part(const Mat<T, D>& C, T x2) {
   const Sym<T, D> S = symmetric_part(C);
@@ -51,7 +53,7 @@ MPM_HD MPM_INLINE inline Sym<T, D> closing_part(const Mat<T, D>& C, T x2) {
       cube = fma(a == b ? S(a, b) : T(2.0) * S(a, b), both, cube);
     }
   });
-  const T share = T(1.0) - T(closing_from) / max(x2, T(closing_from));
+  const T share = min(max(fma(T(1.0 / closing_from), x2, T(-1.0)), T(0.0)), T(1.0));
   return share * (min(cube, T(0.0)) / max(inner(S, S), T(1e-200))) * S;
 }
 
@@ -61,10 +63,11 @@ MPM_HD MPM_INLINE inline Sym<T, D> closing_part(const Mat<T, D>& C, T x2) {
 /// what turns or expands keeps a C_p of the place where it was.
 /// The series is good only for small dt |C|: a factor (1 - x^4)_+, x^2 = dt^2 C:C / D, takes the
 /// correction away before that, and beyond x = 1 C_p stays.
-/// What closes does not close faster (`closing_part`), but for a gas, which `pays` with its heat
-/// for what C_p gains (step/flowing_matter.hpp).
+/// What closes does not close faster (`closing_part`), but for a gas: with its heat it pays for
+/// what C_p gains (step/flowing_matter.hpp).
+enum class Closing : std::uint8_t { no_faster, as_it_would };
 template <class T, int D>
-MPM_HD MPM_INLINE inline Mat<T, D> carried_along(const Mat<T, D>& C, T dt, bool pays = false) {
+MPM_HD MPM_INLINE inline Mat<T, D> carried_along(const Mat<T, D>& C, T dt, Closing closes) {
   Mat<T, D> now = C;
   T square(0.0);
   unrolled<D * D>([&](auto k)
@@ -82,7 +85,7 @@ MPM_HD MPM_INLINE inline Mat<T, D> carried_along(const Mat<T, D>& C, T dt, bool 
       }
     });
   });
-  if (!pays && any(x2 > T(closing_from))) [[unlikely]] {
+  if (closes == Closing::no_faster && any(x2 > T(closing_from))) [[unlikely]] {
     const Sym<T, D> closing = closing_part<T, D>(C, x2);
     unrolled<D * D>([&](auto k) MPM_INLINE {
       constexpr int a = k / D, b = k % D;
