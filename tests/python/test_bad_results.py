@@ -52,6 +52,7 @@ def an_endless_file(path: Path) -> None:
 
 
 FILES = ["results.vtkhdf", FRAME, "manifest.json", "history.csv", "probes/tip.csv"]
+QUICK = (FRAME, "manifest.json", "checkpoint.zip")
 LINES = {
     "plot": ("plot", "out"),
     "report": ("report", "out"),
@@ -66,7 +67,13 @@ LINES = {
     [a_pipe, pytest.param(an_endless_file, marks=pytest.mark.slow)],
     ids=lambda odd: odd.__name__,
 )
-@pytest.mark.parametrize("name", [*FILES, "checkpoint.zip"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *QUICK,
+        *(pytest.param(name, marks=pytest.mark.slow) for name in FILES if name not in QUICK),
+    ],
+)
 def test_a_pipe_or_an_endless_file_among_results(
     tmp_path: Path, out: Path, name: str, odd: Callable[[Path], None]
 ) -> None:

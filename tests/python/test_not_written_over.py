@@ -131,7 +131,11 @@ NAMED = {
 }
 
 
-@pytest.mark.parametrize("ending", NAMED)
+@pytest.mark.parametrize(
+    "ending",
+    # The others are written by the same commands.
+    [e if e in ("csv", "png", "html") else pytest.param(e, marks=pytest.mark.slow) for e in NAMED],
+)
 def test_a_file_that_the_user_names(tmp_path: Path, out: Path, ending: str) -> None:
     """Refused where it is the user's; replaced where the same command has written it."""
     if ending in ("vtu", "vtp"):

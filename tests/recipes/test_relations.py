@@ -138,7 +138,7 @@ def test_another_world_is_the_same_with_pic() -> None:
 
 @pytest.mark.parametrize(
     ("text", "steps"),
-    [slow(RINGS, 1800), (IMPACT, 600)],
+    [slow(RINGS, 1800), slow(IMPACT, 600)],
     ids=["two rings", "impact with erosion"],
 )
 def test_another_world_is_the_same_with_xpic(text: str, steps: int) -> None:

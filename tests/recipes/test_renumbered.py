@@ -62,12 +62,24 @@ def corner(dimension: int, along: int, contact: dict[str, Any]) -> dict[str, Any
     }
 
 
+CONTACTS: dict[str, dict[str, Any]] = {
+    "springs": {},
+    "impulses with friction": {"response": "impulses", "friction": 0.3},
+    "springs with friction": {"friction": 0.3},
+    "impulses": {"response": "impulses"},
+}
+HEAPS = [(2, 4, 150), (3, 2, 40)]
+
+
 @pytest.mark.parametrize(
-    "contact",
-    [{}, {"friction": 0.3}, {"response": "impulses"}, {"response": "impulses", "friction": 0.3}],
-    ids=["springs", "springs with friction", "impulses", "impulses with friction"],
+    ("dimension", "along", "steps", "contact"),
+    [
+        pytest.param(*heap, contact, id=f"{heap[0]}D {name}", marks=marks)
+        for k, (name, contact) in enumerate(CONTACTS.items())
+        for heap in HEAPS
+        for marks in [() if k < 2 and (heap[0] == 2 or k == 0) else pytest.mark.slow]
+    ],
 )
-@pytest.mark.parametrize(("dimension", "along", "steps"), [(2, 4, 150), (3, 2, 40)])
 def test_bodies_in_another_order(
     dimension: int, along: int, steps: int, contact: dict[str, Any]
 ) -> None:
