@@ -2,7 +2,7 @@
 """A sphere of lead at 6.6 km/s through a plate of lead, as one of MPM3D-F90's samples has it.
 
 MPM3D-F90 runs to 30 us in 755 steps, without a spall strength; of 513 kJ of kinetic energy 436 are
-left then.
+left then, in the energies that its run of the sample Lead_dtscale0p2 has written.
 """
 
 from __future__ import annotations
