@@ -164,7 +164,8 @@ template <int D>
 __device__ double carry_affine(const ParticleView<D>& of, std::uint32_t row, double time_step) {
   Mat<double, D> C;
   for (int k = 0; k < D * D; ++k) C[k / D][k % D] = of.affine[k][row];
-  const Mat<double, D> now = carried_along(C, time_step, Closing::no_faster);  // gases are not on a device
+  // Gases, which would close as they do, are not on a device.
+  const Mat<double, D> now = carried_along(C, time_step, Closing::no_faster);
   for (int k = 0; k < D * D; ++k) of.affine[k][row] = now[k / D][k % D];
   return of.mass[row] * square_difference(C, now);
 }
