@@ -114,6 +114,18 @@ void add_materials(nb::module_& m) {
       "`springs`: of contact");
 
   m.def(
+      "matter",
+      [](double density, const std::string& strength, const Parameters& parameters,
+         const std::optional<Named>& eos) {
+        const Material material =
+            make_material(choice_of(density, strength, parameters, eos, {}, {}, 0.0, false));
+        if (!material.flows()) return "solid";
+        return material.is_gas() ? "gas" : "liquid";
+      },
+      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
+      "What bodies of a material are to others that touch them: \"solid\", \"liquid\" or \"gas\"");
+
+  m.def(
       "drive_material",
       [](double density, const std::string& strength, const Parameters& parameters,
          const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,

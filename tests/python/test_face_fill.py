@@ -26,7 +26,7 @@ from mpm3dpp.shapes import (
     Union,
     fill,
 )
-from mpm3dpp.shapes.faces import cells_are_alike, fits_the_lattice
+from mpm3dpp.shapes.faces import cells_are_alike, fill_from_faces, fits_the_lattice
 from mpm3dpp.shapes.lattice import fill_shape
 
 BLOCKS = """
@@ -257,6 +257,48 @@ def test_a_box_at_the_walls_ends_at_them() -> None:
     assert a.mass == pytest.approx(1000 * 0.009 * 0.017, rel=1e-12)
     assert b.mass == pytest.approx(1000 * 0.0213 * 0.02, rel=1e-12)
     assert a.positions[:, 0].min() == pytest.approx(0.009 / 5 / 2)
+
+
+@pytest.mark.parametrize(("thick", "width"), [(10.0, 10.0 / 3), (9.0, 4.5), (13.0, 13.0 / 3)])
+def test_cells_of_a_thin_body_are_squares(thick: float, width: float) -> None:
+    """Those along it take the width of the few across it, wherever these come to lie."""
+    box = Box(lower=(-10.0, -thick), upper=(90.0, 0.0))
+    points, _ = fill_from_faces(box, ZERO[:2], 4.0)
+    along, across = (np.unique(np.round(points[:, d], 9)) for d in (0, 1))
+    assert np.diff(across) == pytest.approx(width)
+    assert np.diff(along) == pytest.approx(width, rel=0.03)
+
+
+def test_a_block_slides_by_coulomb_on_a_thin_table() -> None:
+    """Particles wider than high lay 0.04 of an edge too deep: the block hopped, and its friction
+    was 1.026 times what it can be."""
+    text = """
+[grid]
+dimension = 2
+cell_size = "8 mm"
+[run]
+end_time = "0.1 s"
+gravity = [0, -9.81]
+[material.rubber]
+density = 1000
+strength = { elastic = { E = "0.5 MPa", nu = 0.3 } }
+[body.block]
+material = "rubber"
+shape = { box = { lower = [0, 0], upper = ["40 mm", "20 mm"] } }
+velocity = [0.4, 0]
+initial = { stress = "geostatic" }
+[body.table]
+material = "rubber"
+shape = { box = { lower = ["-10 mm", "-10 mm"], upper = ["90 mm", 0] } }
+motion = "fixed"
+[contact]
+friction = 0.3
+"""
+    simulation = Simulation(Case.from_text(text))
+    simulation.advance(100_000, 0.1)
+    (pair,) = simulation.core.contact_pairs()
+    ratio = -pair.impulse[0] / pair.impulse[1]
+    assert ratio == pytest.approx(0.3, rel=2e-3)
 
 
 def test_the_hash_is_that_of_before_where_nothing_changes() -> None:

@@ -21,6 +21,7 @@ CASE = """\
 dimension = 2
 cell_size = "1 mm"
 [run]
+viscosity = {}
 end_time = "1 us"
 [material.tnt]
 library = "tnt"

@@ -141,9 +141,9 @@ def test_a_box_that_is_no_whole_cells_of_each_size(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_coarse_grid_that_fails_is_left_out(tmp_path: Path) -> None:
     """The finer ones tell the order all the same; the command ends as one that has failed."""
-    words = ("study", write(tmp_path), "--out", "out", "--cells", 4, "--finest", "25 mm")
+    words = ("study", write(tmp_path), "--out", "out", "--cells", 5, "--finest", "25 mm")
     done = mpm3dpp(*words, "--number", "left.speed", cwd=tmp_path)
     assert done.returncode == 1
     first, head, *_ = done.stdout.splitlines()
-    assert first.startswith("grid.cell_size = 0.2: error: ") and "holds no particle" in first
-    assert head.split()[:5] == ["cells", "[mm]", "100", "50", "25"]
+    assert first.startswith("grid.cell_size = 0.4: error: ") and "holds no particle" in first
+    assert head.split()[:6] == ["cells", "[mm]", "200", "100", "50", "25"]

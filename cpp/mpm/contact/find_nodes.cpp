@@ -186,10 +186,13 @@ void fill_springs(const Contact<D>& contact, const TileGrid<D>& grid,
 template <int D>
 bool stops_any(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
                const TileBodies<D>& around) {
-  return settings.response == Response::by_matter &&
-         std::ranges::any_of(around.all(), [&](const TileBody<D>& at) {
-           return bodies[static_cast<std::size_t>(at.body)].flows;
-         });
+  if (settings.response != Response::by_matter) return false;
+  const auto count = [&](Matter matter) {
+    return std::ranges::count_if(around.all(), [&](const TileBody<D>& at) {
+      return bodies[static_cast<std::size_t>(at.body)].matter == matter;
+    });
+  };
+  return count(Matter::gas) > 0 || count(Matter::liquid) > 1;
 }
 
 /// How many nodes are overlapped, and by how many bodies at most, on all ranks.

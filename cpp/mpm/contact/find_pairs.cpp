@@ -91,7 +91,7 @@ ContactPair<D> new_pair(const std::vector<Body<D>>& bodies, const ContactSetting
   const PairLaw law = law_of(settings, body_r.group, body_s.group);
   pair.friction = law.friction;
   pair.gap = std::numeric_limits<double>::infinity();
-  pair.stopped = stops_approach(settings.response, body_r.flows || body_s.flows);
+  pair.stopped = stops_approach(settings.response, body_r.matter, body_s.matter);
   // Two rigid bodies have no stress that could part them, nor hold them.
   if (law.bonded && (body_r.deforms() || body_s.deforms())) {
     pair.gap = 0.0;

@@ -16,7 +16,8 @@ namespace {
 template <int D>
 struct BodyNear {
   std::int32_t body;
-  bool deforms, flows;
+  bool deforms;
+  Matter matter;
   int range;  // of its widest particle here, SurfaceSum::range()
   std::span<const TileHolder> holders;
   const Patch<D>* own;   // its patch of the tile itself, if any
@@ -40,7 +41,7 @@ Reach reach_to(int range) { return {range, range, 0.0}; }
 template <int D>
 bool may_push(const BodyNear<D>& r, const BodyNear<D>& s, Response response) {
   return r.own != nullptr && r.body != s.body && (r.deforms || s.deforms) &&
-         !stops_approach(response, r.flows || s.flows);
+         !stops_approach(response, r.matter, s.matter);
 }
 
 template <int D>
@@ -55,7 +56,7 @@ void find_bodies(const Contact<D>& contact, const TileGrid<D>& grid,
     at.body = contact.holders[h].body;
     const Body<D>& body = bodies[static_cast<std::size_t>(at.body)];
     at.deforms = body.deforms();
-    at.flows = body.flows;
+    at.matter = body.matter;
     at.range = 1;
     const std::uint32_t first = h;
     for (std::uint32_t k = h; k < end && contact.holders[k].body == at.body; ++k)

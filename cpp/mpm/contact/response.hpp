@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "mpm/catalogue/words.hpp"
+#include "mpm/particles/body.hpp"
 
 namespace mpm {
 
@@ -12,15 +13,15 @@ inline constexpr auto words<Response> = std::to_array<Word<Response>>(
     {{"impulses", Response::impulses, "approach is stopped at the nodes, eqs. (6)-(7), (13)"},
      {"springs", Response::springs, "particles push a body whose surface they overlap"},
      {"by_matter", Response::by_matter,
-      "springs between bodies that have a surface, impulses where one of the two flows: a gas, a "
-      "liquid, an explosive"}});
+      "springs where one of the two is a solid and none a gas or an explosive, else impulses"}});
 
 /// Do particles push any bodies by springs?
 constexpr bool may_spring(Response response) { return response != Response::impulses; }
-/// Is the approach of two bodies stopped at the nodes? `flows`: has one of them no shape of its
-/// own?
-constexpr bool stops_approach(Response response, bool flows) {
-  return response == Response::impulses || (response == Response::by_matter && flows);
+/// Is the approach of two bodies stopped at the nodes? By matter it is where particles of a gas meet
+/// others, or liquids each other: no surface stays the same there, and springs would make energy.
+constexpr bool stops_approach(Response response, Matter a, Matter b) {
+  if (response != Response::by_matter) return response == Response::impulses;
+  return a == Matter::gas || b == Matter::gas || (a == Matter::liquid && b == Matter::liquid);
 }
 
 }  // namespace mpm

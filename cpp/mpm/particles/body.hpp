@@ -19,6 +19,10 @@ enum class BodyKind : std::uint8_t {
   prescribed,  // as one, Body::motion, whatever acts on them
 };
 
+/// What a body is to others that touch it: a solid, whose surface keeps its particles; a liquid, of
+/// which others become the surface; a gas, products of an explosive too, which has none.
+enum class Matter : std::uint8_t { solid, liquid, gas };
+
 /// The particles of a body as the user gives them, until they are in a pool: a rank's share, then
 /// those in its tiles.
 struct GivenParticles {
@@ -55,7 +59,7 @@ struct Body {
   double mean_edge = 0.0;        // edge of a square or cube of the mean initial particle volume [m]
   double total_mass = 0.0;       // [kg]
   BodyKind kind = BodyKind::deformable;
-  bool flows = false;                        // a gas, a liquid: it has no shape of its own
+  Matter matter = Matter::solid;
   int rigid = -1;                            // place among Domain::rigid, if it is rigid and free
   int force = -1;                            // place among Domain::body_forces, if it has one
   int damping = -1;                          // and among Domain::dampings

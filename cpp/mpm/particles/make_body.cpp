@@ -97,7 +97,7 @@ Body<D> empty_body(std::string name, const Material& material, const ParticlePoo
   body.name = std::move(name);
   body.count = count;
   if (material.moves_as_one()) body.kind = BodyKind::rigid;
-  body.flows = material.flows();
+  if (material.flows()) body.matter = material.is_gas() ? Matter::gas : Matter::liquid;
   const double speed = pool.sound_speed;
   body.total_mass = material.density * volume;
   body.stiffness =

@@ -218,8 +218,9 @@ double push_from_walls(Domain<D>& domain, const Patch<D>& patch, const NodeBlock
   // Grows to two bodies and D pairs once.
   thread_local NodeSolution<D> solution;
   const double dt = domain.time_step;
-  const bool stopped =
-      stops_approach(domain.contact_settings.response, domain.body_of(patch).flows);
+  // As two of its kind: liquids too, of which walls, that lie at nodes, take little.
+  const Matter matter = domain.body_of(patch).matter;
+  const bool stopped = stops_approach(domain.contact_settings.response, matter, matter);
   double stored = 0.0;
   for (int n = 0; n < block.count; ++n) {
     const TouchedNode<D> touched = take_springs(domain, patch, block, n, stopped);

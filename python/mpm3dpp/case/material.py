@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from pydantic import ConfigDict, Field
 
+from mpm3dpp import _core
 from mpm3dpp.base.damping import MaterialDamping
 from mpm3dpp.base.model import CaseModel, Flag, Text
 from mpm3dpp.base.units import Density
@@ -91,6 +92,16 @@ class Material(CaseModel):
             ValueError: the core refuses parameters or models that do not go together.
         """
         return _sound_speed(**self.for_core())
+
+    def matter(self) -> str:
+        """Return what it is to others that touch it: "solid", "liquid" or "gas".
+
+        Products of an explosive are a gas.
+        """
+        of_core = self.for_core()
+        named = ("density", "strength", "parameters", "eos")
+        matter: str = _core.matter(**{name: of_core[name] for name in named})
+        return matter
 
     def eos_sound_speed(self) -> float | None:
         """Return what the equation of state alone gives for it [m/s]: 0 without stiffness.

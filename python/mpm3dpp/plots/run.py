@@ -45,7 +45,10 @@ def draw_all(
     with open_results(folder) as results:
         count = len(results)
         if count == 0:
-            raise CaseError(f"'{results.path}' has no frame yet: wait for the run to write one")
+            raise CaseError(
+                f"'{results.path}' has no frame yet: wait for the run to write one, or "
+                "let one that was stopped go on with `mpm3dpp run CASE --resume`"
+            )
         if not -count <= frame < count:
             raise CaseError(
                 f"frame {frame} does not exist in '{results.path}': "

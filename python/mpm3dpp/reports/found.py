@@ -15,6 +15,7 @@ from mpm3dpp.base.errors import CaseError
 from mpm3dpp.io.about import check_about
 from mpm3dpp.io.checkpoint import CHECKPOINT, read_about
 from mpm3dpp.io.folders import is_run_in
+from mpm3dpp.io.foreign import is_run
 from mpm3dpp.io.forms import check_case
 from mpm3dpp.io.history import read_history
 from mpm3dpp.io.manifest import Manifest
@@ -121,6 +122,9 @@ def look(folder: Path) -> Iterator[Found]:
     there = {name for name in names if (folder / name).exists()}
     if not there:
         rule = f"has nothing of a run: none of {', '.join(names)}"
+        raise CaseError(rule, "give the --out of a run", place=str(folder))
+    if there == {"history.csv"} and not is_run(folder):
+        rule = "has a history.csv that is of no run, and nothing else of one"
         raise CaseError(rule, "give the --out of a run", place=str(folder))
     found = Found(folder, is_run_in(folder))
     if "manifest.json" in there:

@@ -12,6 +12,7 @@ import numpy as np
 
 from mpm3dpp.base.errors import RunError
 from mpm3dpp.base.signals import Notice, sentence
+from mpm3dpp.case.pairs import presses
 from mpm3dpp.io.background import BackgroundWriter
 from mpm3dpp.io.history import HistoryWriter
 from mpm3dpp.io.manifest import Status
@@ -161,6 +162,12 @@ class Stepping:
         core, settle = self._simulation.core, self._simulation.case.run.settle
         ratio = rows[rows[:, 1] >= 0.0, core.history_columns.index("unbalanced")][0]
         if ratio == 0.0:  # Forces that balance do so but for rounding.
+            if presses(self._simulation.case):
+                self._progress.note(
+                    "note: run.settle has pressed the interferences; no other force acts at the "
+                    "time 0, so that no ratio tells whether the bodies have come to rest"
+                )
+                return
             self._progress.note(
                 "warning: run.settle had nothing to settle: at the time 0 no force acts on any "
                 "body that deforms and is not held; the run begins as the bodies are filled"

@@ -15,6 +15,7 @@ from mpm3dpp.fill.advisories import fastest, notes
 from mpm3dpp.fill.build import warnings
 from mpm3dpp.fill.parts import Filled, FilledPart, Particles
 from mpm3dpp.fill.point_warnings import point_warnings
+from mpm3dpp.fill.response_notes import parts_by_matter
 from mpm3dpp.io.background import FRAME_SHARE
 from mpm3dpp.materials import Failure, catalogue, state_columns
 from mpm3dpp.plots.labels import scaled
@@ -238,8 +239,12 @@ def _response(case: Case) -> str:
     """Return how bodies in contact part, with the names of those that flow where that decides."""
     if case.contact.response != "by_matter":
         return case.contact.response
-    flowing = ", ".join(f'"{name}"' for name in case.parts() if case.flows(name))
-    return f"springs, but impulses at {flowing}" if flowing else "springs"
+    bodies = parts_by_matter(case)
+    gases = ", ".join(f'"{name}"' for name in bodies["gas"])
+    others = [f"at {gases}"] if gases else []
+    if len(bodies["liquid"]) > 1:
+        others.append("between liquids")
+    return f"springs, but impulses {' and '.join(others)}" if others else "springs"
 
 
 def echo(case: Case, bodies: Filled, ranks: int = 1) -> str:

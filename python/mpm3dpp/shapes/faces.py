@@ -3,8 +3,10 @@
 
 Between two faces across an axis there are as many cells of equal width as come next to the
 spacing, so that the surface of the particles is the drawn surface, a gap as wide as it is drawn,
-and the mass of a box exact. Where all faces along an axis lie on planes of the lattice of the grid
-its points are taken, to the bit. What is turned is filled before it is turned.
+and the mass of a box exact. Where few cells lie across a thin body the others take their width: a
+surface of particles that are wider than high is not where bodies are felt to touch. Where all faces
+along an axis lie on planes of the lattice of the grid its points are taken, to the bit. What is
+turned is filled before it is turned.
 """
 
 from __future__ import annotations
@@ -32,6 +34,9 @@ ON_PLANE = 1e-6  # Of a spacing: so near to a plane of the lattice a face lies o
 _NARROW = 0.5  # Spacings: faces that are nearer are one; what is narrower holds no particle.
 _SAME = 1e-12  # Spacings.
 _MOST_CELLS = 1 << 20  # Between faces, for a volume.
+_OBLONG = 1.05  # Widths over heights, up to which cells count as squares or cubes.
+# Spacings: wider and narrower cells are for the one layer of a thin plate alone.
+_FINE, _COARSE = 0.75 - ON_PLANE, 1.25
 
 
 class Axis(NamedTuple):
@@ -109,19 +114,49 @@ def fitted_axes(shape: Shape, origin: Points, spacing: float) -> list[Axis | Non
         spacing: about the width of the cells [m].
     """
     lower, upper = shape.bounds()
-    found, slack = [], ON_PLANE * spacing
-    for d, all_faces in enumerate(faces_of(shape)):
-        faces = [x for x in sorted(all_faces) if lower[d] - slack <= x <= upper[d] + slack]
-        found.append(_axis(faces, lower[d], upper[d], origin[d], spacing))
-    return found
+    slack = ON_PLANE * spacing
+    faces = [
+        [x for x in sorted(all_faces) if lower[d] - slack <= x <= upper[d] + slack]
+        for d, all_faces in enumerate(faces_of(shape))
+    ]
+    found = [
+        None if _on_planes(x, origin[d], spacing) else _axis(x, lower[d], upper[d], spacing)
+        for d, x in enumerate(faces)
+    ]
+    thin = _thin(found, upper - lower, spacing)
+    if thin is None or not all(faces):
+        return found
+    width = float(thin.widths[0])
+    alike: list[Axis | None] = [
+        one if one is thin else _axis(faces[d], lower[d], upper[d], width)
+        for d, one in enumerate(found)
+    ]
+    widths = np.concatenate([one.widths for one in alike if one is not None])
+    return alike if widths.max() <= _OBLONG * widths.min() else found
 
 
-def _axis(
-    faces: list[float], low: float, high: float, origin: float, spacing: float
-) -> Axis | None:
-    off = [(x - origin) / spacing - round((x - origin) / spacing) for x in faces]
-    if all(abs(x) < ON_PLANE for x in off):
+def _thin(axes: list[Axis | None], lengths: Points, spacing: float) -> Axis | None:
+    """Return the cells along the axis that has the fewest, if others are longer or shorter there.
+
+    None where cells are squares or cubes, of several widths, or far from the spacing.
+    """
+    widths = [np.array([spacing]) if axis is None else axis.widths for axis in axes]
+    if any(not len(w) or np.ptp(w) > _SAME * spacing for w in widths):
         return None
+    each = np.array([w[0] for w in widths])
+    fewest = int(np.argmin(np.round(lengths / each)))
+    oblong = each.max() > _OBLONG * each.min()
+    fits = _FINE * spacing <= each[fewest] <= _COARSE * spacing
+    return axes[fewest] if oblong and fits else None
+
+
+def _on_planes(faces: list[float], origin: float, spacing: float) -> bool:
+    """Return whether all faces lie on planes of the lattice of the grid."""
+    off = [(x - origin) / spacing - round((x - origin) / spacing) for x in faces]
+    return all(abs(x) < ON_PLANE for x in off)
+
+
+def _axis(faces: list[float], low: float, high: float, spacing: float) -> Axis:
     # The ends of the shape are kept, of faces between them those that are far enough from others.
     near = ON_PLANE * spacing
     kept = [x for x, end in ((faces[0], low), (faces[-1], high)) if abs(x - end) <= near]
