@@ -44,12 +44,11 @@ struct ContactSettings {
               "direction of impulses: \"plane\" (separates the two bodies' points), or from "
               "gradients of mass, of both (\"pair\") or one (\"first\", \"second\", \"stiffer\"); "
               "springs act along the normals of the surfaces"},
-      Setting{
-          "response", &Self::response,
-          "\"springs\" (particles push a body whose surface they overlap), \"impulses\" "
-          "(approach is stopped at the nodes; the default without an affine transfer) or "
-          "\"by_matter\" (springs, but impulses where a gas meets others or liquids each other; the "
-          "default where a body flows); walls that are \"contact\" do the same"},
+      Setting{"response", &Self::response,
+              "\"springs\" (particles push a body whose surface they overlap), \"impulses\" "
+              "(approach is stopped at the nodes; the default without an affine transfer) or "
+              "\"by_matter\" (springs, but impulses where a gas meets others or liquids each "
+              "other; the default where a body flows); walls that are \"contact\" do the same"},
       Setting{"friction", &Self::friction, "Coulomb coefficient of all pairs not listed in `pair`",
               Rule::not_negative},
       Setting{"gap_distance", &Self::gap_distance, "bodies closer than this touch [m]",
