@@ -69,6 +69,27 @@ std::vector<CatalogueModel> catalogue() {
   return models;
 }
 
+void add_drive(nb::module_& m) {
+  m.def(
+      "drive_material",
+      [](double density, const std::string& strength, const Parameters& parameters,
+         const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
+         Viscosity viscosity, bool volume_averaging, const Input& increments, double time_step,
+         double cell_size, const Parameters& state, bool lanes) {
+        if (increments.ndim() != 3 || increments.shape(1) != 3 || increments.shape(2) != 3)
+          throw std::invalid_argument("increments must have the shape (n, 3, 3)");
+        DrivenPoint point =
+            drive_material(choice_of(density, strength, parameters, eos, failures, viscosity, 0.0,
+                                     volume_averaging),
+                           {span_of(increments), time_step, cell_size, state, lanes});
+        const std::size_t columns = point.names.size();
+        return std::tuple(to_numpy(std::move(point.values), columns), point.names, point.units);
+      },
+      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
+      nb::arg("failures"), nb::arg("viscosity"), nb::arg("volume_averaging"), nb::arg("increments"),
+      nb::arg("time_step"), nb::arg("cell_size"), nb::arg("state"), nb::arg("lanes"));
+}
+
 }  // namespace
 
 void add_materials(nb::module_& m) {
@@ -124,25 +145,7 @@ void add_materials(nb::module_& m) {
       },
       nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
       "What bodies of a material are to others that touch them: \"solid\", \"liquid\" or \"gas\"");
-
-  m.def(
-      "drive_material",
-      [](double density, const std::string& strength, const Parameters& parameters,
-         const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
-         Viscosity viscosity, bool volume_averaging, const Input& increments, double time_step,
-         double cell_size, const Parameters& state, bool lanes) {
-        if (increments.ndim() != 3 || increments.shape(1) != 3 || increments.shape(2) != 3)
-          throw std::invalid_argument("increments must have the shape (n, 3, 3)");
-        DrivenPoint point =
-            drive_material(choice_of(density, strength, parameters, eos, failures, viscosity, 0.0,
-                                     volume_averaging),
-                           {span_of(increments), time_step, cell_size, state, lanes});
-        const std::size_t columns = point.names.size();
-        return std::tuple(to_numpy(std::move(point.values), columns), point.names, point.units);
-      },
-      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
-      nb::arg("failures"), nb::arg("viscosity"), nb::arg("volume_averaging"), nb::arg("increments"),
-      nb::arg("time_step"), nb::arg("cell_size"), nb::arg("state"), nb::arg("lanes"));
+  add_drive(m);
 }
 
 }  // namespace mpm::bindings
