@@ -393,3 +393,10 @@ def test_links_are_from_where_the_page_is(finished: Path, tmp_path: Path) -> Non
     found = Page(mpm3dpp.report(finished, tmp_path / "a" / "page.html").read_text())
     [link] = [link for link in found.links if not link.startswith("#")]
     assert (tmp_path / "a" / link.replace("%20", " ")).resolve() == finished / "my film.mp4"
+
+
+def test_a_folder_with_a_history_of_something_else_gets_no_page(tmp_path: Path) -> None:
+    (tmp_path / "history.csv").write_text("hi\n")
+    with pytest.raises(CaseError, match=r"has a history\.csv that is of no run"):
+        mpm3dpp.report(tmp_path)
+    assert not (tmp_path / "report.html").exists()
