@@ -186,13 +186,14 @@ void fill_springs(const Contact<D>& contact, const TileGrid<D>& grid,
 template <int D>
 bool stops_any(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
                const TileBodies<D>& around) {
-  if (settings.response != Response::by_matter) return false;
-  const auto count = [&](Matter matter) {
-    return std::ranges::count_if(around.all(), [&](const TileBody<D>& at) {
-      return bodies[static_cast<std::size_t>(at.body)].matter == matter;
-    });
+  const std::span<const TileBody<D>> all = around.all();
+  const auto matter = [&](const TileBody<D>& at) {
+    return bodies[static_cast<std::size_t>(at.body)].matter;
   };
-  return count(Matter::gas) > 0 || count(Matter::liquid) > 1;
+  for (std::size_t a = 0; a < all.size(); ++a)
+    for (std::size_t b = a + 1; b < all.size(); ++b)
+      if (stops_approach(settings.response, matter(all[a]), matter(all[b]))) return true;
+  return false;
 }
 
 /// How many nodes are overlapped, and by how many bodies at most, on all ranks.

@@ -17,8 +17,9 @@ inline constexpr auto words<Response> = std::to_array<Word<Response>>(
 
 /// Do particles push any bodies by springs?
 constexpr bool may_spring(Response response) { return response != Response::impulses; }
-/// Is the approach of two bodies stopped at the nodes? By matter it is where particles of a gas meet
-/// others, or liquids each other: no surface stays the same there, and springs would make energy.
+/// Is the approach of two bodies stopped at the nodes? By matter it is where particles of a gas
+/// meet others, or liquids each other: no surface stays the same there, and springs would make
+/// energy.
 constexpr bool stops_approach(Response response, Matter a, Matter b) {
   if (response != Response::by_matter) return response == Response::impulses;
   return a == Matter::gas || b == Matter::gas || (a == Matter::liquid && b == Matter::liquid);
