@@ -45,8 +45,9 @@ struct Domain {
   std::int64_t balance_every = 20;       // steps after which costs of ranks are compared ...
   double imbalance_limit = 1.05;         // ... and evened out above this, the largest over the mean
   TransferId transfer{};
-  double flip_share = 1.0;  // of the velocity, in "flip" and "aflip"; the rest is the grid's
-  double pic_rate = 0.0;    // at which particles take over the velocity of the grid [1/s]
+  // Of the velocity, in "flip" and "aflip"; the rest is the grid's.
+  double flip_share = 1.0, flip_share_of_gases = 1.0;
+  double pic_rate = 0.0;  // at which particles take over the velocity of the grid [1/s]
 
   int filter_order = 1;           // how often velocities are mapped to the grid and back ...
   std::int64_t filter_every = 1;  // ... in each step whose number this divides

@@ -14,9 +14,9 @@ namespace {
 
 /// The transfer of the step, as a device names it, and the number that it is made with.
 template <int D>
-std::pair<DeviceTransfer, double> transfer_of(const Domain<D>& domain, double own) {
+std::pair<DeviceTransfer, double> transfer_of(const Domain<D>& domain, ShareOf of) {
   std::pair<DeviceTransfer, double> found{DeviceTransfer::flip, 1.0};
-  with_transfer(domain, own, [&](const auto& of_run) {
+  with_transfer(domain, of, [&](const auto& of_run) {
     const auto transfer = taken_by(of_run);
     using T = std::remove_const_t<decltype(transfer)>;
     if constexpr (std::is_same_v<T, FlipPic>) found = {DeviceTransfer::flip_pic, transfer.pic};
@@ -192,11 +192,11 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
     for (const Body<D>& body : domain.bodies)
       step.damping.push_back(damping_in(domain.dampings, body.damping));
   for (const ParticlePool<D>& pool : domain.pools) {
-    const double own = own_step(domain, pool);
-    const auto [transfer, share] = transfer_of(domain, own);
+    const ShareOf of = share_of(domain, pool);
+    const auto [transfer, share] = transfer_of(domain, of);
     step.transfer = transfer;
     step.share.push_back(share);
-    step.grid_share.push_back(grid_share(domain, own));
+    step.grid_share.push_back(grid_share(domain, of));
   }
   HostSeconds& seconds = device.seconds;
   add_seconds(seconds.particles, [&] {

@@ -22,11 +22,12 @@ enum class NoteKind {
   crowd,
   unsettled,
   gas_volume,
-  sparse
+  sparse,
+  sparse_gas
 };
 inline constexpr std::array note_names = {
-    "time step", "energy of a step", "load",      "outside walls", "volume",
-    "left box",  "crowded node",     "unsettled", "gas volume",    "sparse particles"};
+    "time step",    "energy of a step", "load",       "outside walls",    "volume",    "left box",
+    "crowded node", "unsettled",        "gas volume", "sparse particles", "sparse gas"};
 
 /// Told once for each kind and body (the first of its group), then counted. Trivially copyable, so
 /// that a checkpoint holds it.
@@ -81,7 +82,7 @@ struct Seen {
 template <int D>
 struct Sight {
   std::int64_t particles = 0;
-  Seen outside, odd, swollen, left[2 * D];  // swollen: of gases
+  Seen outside, odd, swollen, thin, left[2 * D];  // swollen, thin: of gases
   // Of bodies that keep together: cells that hold some, and those beside one or two empty cells
   // behind which there are some again.
   std::int64_t cells = 0;

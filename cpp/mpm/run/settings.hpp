@@ -63,7 +63,7 @@ struct GridSettings {
 /// The transfer's word, and the numbers that go with it: `aflip = 0.97` names it too.
 struct TransferSettings {
   TransferId word = Transfers::id_of<Aflip>();
-  double flip = 1.0, aflip = 0.97, pic_rate = 0.0;
+  double flip = 1.0, aflip = 0.97, aflip_of_gases = 0.7, pic_rate = 0.0;
   int xpic = 4;
   std::int64_t every = 1;
 
@@ -75,6 +75,10 @@ struct TransferSettings {
       Setting{"aflip", &Self::aflip,
               "the same of AFLIP, in a step in which the material's fastest wave passes half a "
               "cell; in shorter ones it takes as much less of the grid's",
+              Rule::share},
+      Setting{"aflip_of_gases", &Self::aflip_of_gases,
+              "the same of gases and explosives, whose noise grows where it takes less; what it "
+              "takes of them is their heat",
               Rule::share},
       Setting{"pic_rate", &Self::pic_rate,
               "rate at which particles take over the velocity of the grid [1/s], beside \"flip\" "
@@ -92,6 +96,9 @@ struct TransferSettings {
 
   /// FLIP's share of a step's velocity, where the transfer has one.
   double flip_share() const { return word == Transfers::id_of<Aflip>() ? aflip : flip; }
+  double flip_share_of_gases() const {
+    return word == Transfers::id_of<Aflip>() ? aflip_of_gases : flip;
+  }
 };
 
 /// The way to rest under the loads of the time 0, before that time.

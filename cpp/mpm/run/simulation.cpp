@@ -94,6 +94,7 @@ Simulation<D>::Simulation(const Settings& given, Comm* comm)
   domain.gravity_of_time = given.run.gravity;
   domain.transfer = given.run.transfer.word;
   domain.flip_share = given.run.transfer.flip_share();
+  domain.flip_share_of_gases = given.run.transfer.flip_share_of_gases();
   domain.pic_rate = given.run.transfer.pic_rate;
   domain.filter_order = given.run.transfer.xpic;
   domain.filter_every = given.run.transfer.every;

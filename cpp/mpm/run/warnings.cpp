@@ -63,6 +63,12 @@ std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded
            << " % of its cells have an empty one beside them and particles behind it): it comes "
               "apart there by the numerics; give it a smaller spacing, or larger cells";
       break;
+    case NoteKind::sparse_gas:
+      text << per_cent << " % of the particles of " << whose
+           << " are more than 1.5 cells apart: such a gas presses too little on walls and on what "
+              "it meets (a tenth at 1.7 cells, a fifth at 1.9); give it a smaller spacing, or "
+              "larger cells";
+      break;
     case NoteKind::crowd:
       text << n.value << " bodies meet at one node, and the time of a step grows with the square "
            << "of their number; give smaller cells, larger grains, or one body in place of many";

@@ -18,6 +18,9 @@ constexpr double small_of_gas = 1e-3;  // the same of a gas, which fills any vol
 // Less than that may be a gas that is alone, ten cells at most (step/flowing_matter.hpp), or what
 // has evaporated, which bears hardly anything (`opened`, materials/model.hpp).
 constexpr double large_in_cells = 100.0;
+// A gas that has filled an empty box presses on its walls with .995, .98, .90 and .78 of its
+// pressure where its particles are 1.2, 1.4, 1.7 and 1.9 cells apart.
+constexpr double far_apart = 1.5;   // cells, of half the particles of a gas
 constexpr double many_gaps = 0.01;  // of a body's cells, more than at the start
 constexpr double beyond = 0.1;  // of a cell, behind a wall: GIMP may push a centre a little past it
 // At a node: each meets each, 435 pairs. Equal spheres have twelve neighbours, grains of two cells
@@ -104,6 +107,7 @@ void judge(Simulation<D>& simulation) {
     tell(NoteKind::outside, sight.outside, -1, simulation.settings.run.outside_limit);
     tell(NoteKind::volume, sight.odd, -1, simulation.settings.run.volume_limit);
     tell(NoteKind::gas_volume, sight.swollen, -1, simulation.settings.run.volume_limit);
+    if (2 * sight.thin.count > sight.particles) tell(NoteKind::sparse_gas, sight.thin, -1, 1.0);
     const double gaps = sight.gap_share();
     if (gaps > simulation.watch.gaps_at_start[g] + many_gaps)
       note_at(simulation, {.kind = NoteKind::sparse, .share = gaps}, sight.gaps.at);
@@ -142,11 +146,11 @@ void add_others(Simulation<D>& simulation) {
   Comm& comm = *simulation.domain.grid.partition.comm;
   if (comm.alone()) return;
   // Most have seen nothing: all counts at once, and the rest where there is any.
-  constexpr std::size_t kinds = 4 + 2 * D;
+  constexpr std::size_t kinds = 5 + 2 * D;
   std::vector<Sight<D>>& sights = simulation.watch.sights;
   const auto seen = [](Sight<D>& sight, std::size_t kind) -> Seen& {
-    Seen* const others[] = {&sight.outside, &sight.odd, &sight.swollen, &sight.gaps};
-    return kind < 4 ? *others[kind] : sight.left[kind - 4];
+    Seen* const others[] = {&sight.outside, &sight.odd, &sight.swollen, &sight.gaps, &sight.thin};
+    return kind < 5 ? *others[kind] : sight.left[kind - 5];
   };
   std::vector<std::int64_t> counts;
   for (Sight<D>& sight : sights) {
@@ -233,6 +237,8 @@ void see(Simulation<D>& simulation) {
       if (gas) {
         if (J < small_of_gas || (J > large_volume && cells > large_in_cells))
           sight.swollen.add(of, patch.body, i, std::abs(std::log(J)), J);
+        const double apart = std::pow(cells, 1.0 / D);
+        if (apart > far_apart) sight.thin.add(of, patch.body, i, apart, apart);
       }
       if (!placed) continue;
       bool outside = false;

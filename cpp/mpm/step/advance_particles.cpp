@@ -217,7 +217,7 @@ void advance(Domain<D>& domain) {
         advance_rigid_patch<lanes>(domain, p, basis);
       else
         with_transfer_for<B>(
-            domain, own_step(domain, domain.pool_of(patch)), [&](const auto& transfer) {
+            domain, share_of(domain, domain.pool_of(patch)), [&](const auto& transfer) {
               advance_deformable<lanes, also>(domain, p, basis, taken_by(transfer));
             });
     });

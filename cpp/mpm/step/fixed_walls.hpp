@@ -24,8 +24,9 @@ Transfer transfer_of_cell(const Transfer& transfer, const TileGrid<D>& grid, con
 /// Do particles take the velocity of the grid anywhere?
 template <int D>
 bool takes_of_grid(const Domain<D>& domain) {
-  bool takes = grid_share(domain, 1.0) > 0.0;
-  with_transfer(domain, 1.0, [&]<class T>(const T&) { takes = takes || OtherAtFixedWalls<T>; });
+  bool takes = grid_share(domain, any_share(domain)) > 0.0;
+  with_transfer(domain, any_share(domain),
+                [&]<class T>(const T&) { takes = takes || OtherAtFixedWalls<T>; });
   return takes;
 }
 
@@ -34,9 +35,9 @@ bool takes_of_grid(const Domain<D>& domain) {
 // wall some may be, near an edge where both meet: what they take more there is not counted.
 template <int D>
 double grid_share_at(const Domain<D>& domain, const Patch<D>& patch, int node) {
-  const double own = own_step(domain, domain.pool_of(patch));
-  double share = grid_share(domain, own);
-  with_transfer(domain, own, [&]<class T>(const T& transfer) {
+  const ShareOf of = share_of(domain, domain.pool_of(patch));
+  double share = grid_share(domain, of);
+  with_transfer(domain, of, [&]<class T>(const T& transfer) {
     if constexpr (OtherAtFixedWalls<T>) {
       Index<D> place = patch.shape.index(node);
       for (std::size_t a = 0; a < D; ++a) place[a] += domain.grid.first_cell(patch.tile)[a];

@@ -14,7 +14,7 @@ void scatter_by_transfer(const Domain<D>& domain, const Patch<D>& patch, const N
   const ParticlePool<D>& pool = domain.pool_of(patch);
   with_basis_and_lanes(
       grid, domain.body_of(patch), patch, [&]<BasisModel B>(const B& basis, auto lanes) {
-        with_transfer_for<B>(domain, 1.0, [&]<class Transfer>(const Transfer&) {
+        with_transfer_for<B>(domain, any_share(domain), [&]<class Transfer>(const Transfer&) {
           // Forces are mapped alike by all.
           constexpr bool momentum = (what & gives_momentum) != 0;
           using Gives = std::conditional_t<momentum, typename Transfer::Gives, Flip>;

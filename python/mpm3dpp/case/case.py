@@ -245,9 +245,7 @@ class Case(CaseModel):
 
     def viscosity_of(self, material: str) -> tuple[float, float]:
         """Return a material's quadratic and linear factors of artificial viscosity; 0, 0: none."""
-        own = self.material[material].artificial_viscosity
-        found = self.run.viscosity if own is None else own
-        return (0.0, 0.0) if found is None else (found.quadratic, found.linear)
+        return self.material[material].viscosity_in(self.run.viscosity)
 
     def frictions(self) -> list[tuple[int, int, float]]:
         """Return (body, body, coefficient) of the pairs with a friction in `contact.pair`, a <= b.

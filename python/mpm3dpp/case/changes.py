@@ -43,7 +43,12 @@ def with_changes(case: Case, changes: Changes) -> Case:
 def _made(case: Case, changes: Changes) -> Case:
     name = str(case.source)
     tables = changed_tables(case._text, name, changes)
-    found = type(case).from_tables(tables, name, case_file.locate_keys(case._text, name))
+    lines = case_file.locate_keys(case._text, name)
+    for key in changes:
+        path = tuple(int(part) if part.isdigit() else part for part in key)
+        lines = {at: line for at, line in lines.items() if at[: len(path)] != path}
+        lines[path] = case_file.CHANGED
+    found = type(case).from_tables(tables, name, lines)
     found._text, found._changes = case._text, dict(changes)
     return found
 

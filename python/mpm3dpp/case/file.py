@@ -149,13 +149,18 @@ def locate_keys(text: str, name: str = "") -> dict[errors.Path, int]:
         raise too_deep(name) from None
 
 
+CHANGED = 0
+"""Line of a key whose value is not the file's."""
+
+
 def locator(lines: dict[errors.Path, int], name: str) -> Callable[[errors.Path], str]:
     """Return a function that gives the place (`case.toml:14`) of a path or its nearest parent."""
 
     def place(path: errors.Path) -> str:
         while path and path not in lines:
             path = path[:-1]
-        return f"{name}:{lines.get(path, 1)}"
+        line = lines.get(path, 1)
+        return f"{name} as changed" if line == CHANGED else f"{name}:{line}"
 
     return place
 

@@ -36,7 +36,7 @@ class Material(CaseModel):
             takes no part any more). With `library` also "library", which takes the library's
             models with "no_tension", or `{"library": {"action": "erode"}}`.
         artificial_viscosity: bulk viscosity of this material in place of `run.viscosity`, with the
-            same keys; both 0 for none.
+            same keys; both 0 for none. A gas and an explosive have it where neither is given.
         volume_averaging: whether all particles of a body in a cell take the mean of the changes of
             their volumes, and the nodes the mean of their pressures, so that nearly incompressible
             matter, also that which flows plastically, does not lock (Coombs et al. 2018).
@@ -102,6 +102,19 @@ class Material(CaseModel):
         named = ("density", "strength", "parameters", "eos")
         matter: str = _core.matter(**{name: of_core[name] for name in named})
         return matter
+
+    def viscosity_in(self, run: Viscosity | None) -> tuple[float, float]:
+        """Return the quadratic and linear factor of its artificial viscosity; 0, 0: none.
+
+        A gas for which nothing is said has the usual ones: it has nothing else that ends a shock.
+
+        Args:
+            run: `run.viscosity`, that of materials without their own.
+        """
+        found = run if self.artificial_viscosity is None else self.artificial_viscosity
+        if found is None and self.matter() == "gas":
+            found = Viscosity()
+        return (0.0, 0.0) if found is None else (found.quadratic, found.linear)
 
     def eos_sound_speed(self) -> float | None:
         """Return what the equation of state alone gives for it [m/s]: 0 without stiffness.

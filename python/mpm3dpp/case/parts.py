@@ -47,7 +47,8 @@ class Run(_Run):
             smooths and keeps turning; "aflip", which smooths less; "xpic", which takes noise that
             the grid does not see; or "pic", which takes all motion of a cell's size away, turning
             too.
-        viscosity: artificial bulk viscosity; None for none.
+        viscosity: artificial bulk viscosity of all materials; None for that of gases and
+            explosives alone, both factors 0 for none.
         settle: how bodies come to rest before the run; None for a run that begins with them as
             they are filled.
         stop: conditions under which the run ends before, a table or a list of them.
@@ -170,9 +171,9 @@ class Contact(_Contact):
 
     Attributes:
         interference: what becomes of bodies that are drawn into each other: with "set_back" their
-            surfaces are set back until they touch, without stress; with "pressed" they push each
-            other apart from the start, as a press fit does: into that state they come in the first
-            half of `run.settle`. For bodies with a shape, and springs.
+            surfaces are set back until they touch, without stress; with "pressed" they come into
+            each other, as in a press fit, in the first half of `run.settle`, and push each other
+            apart from then on. For bodies with a shape, and springs.
         pair: friction of single pairs, or that they are bonded; a pair of bodies wins over a pair
             of materials, and a later entry over an earlier one.
     """

@@ -59,7 +59,7 @@ class Transfer(_Transfer):
         found = []
         for key, field in cls.model_fields.items():
             value = getattr(made, key)
-            if value == field.default or key == made.word:
+            if value == field.default or key in (made.word, f"{made.word}_of_gases"):
                 continue
             if key not in _GOES_WITH:
                 rule, remedy = f"is of another transfer than {made.word}", f"remove {key}"

@@ -129,8 +129,8 @@ def too_deep(case: Case, found: list[Interference]) -> Iterator[CaseError]:
         spacings = [case.body[name].particle_spacing(case.grid) for name in (one.first, one.second)]
         if one.depth > _MOST * min(spacings):
             rule = (
-                f"overlaps body.{one.first} by {one.depth:.3g} m or more, and by more than "
-                f"{_MOST:g} of the distance of particles, {min(spacings):.3g} m, both fill the "
+                f"overlaps body.{one.first} by {one.depth:.3g} m or more, which is more than "
+                f"{_MOST:g} of the distance of particles, {min(spacings):.3g} m: both fill the "
                 "same place"
             )
             remedy = "move one of the two, or cut one out of the other with difference"
@@ -143,7 +143,7 @@ def interference_notes(case: Case, found: list[Interference]) -> list[str]:
     for one in found:
         who = f"body.{one.second} is drawn {one.depth:.3g} m into body.{one.first}"
         if one.pressed:
-            sentences.append(f"{who}: they push each other apart from the start (pressed)")
+            sentences.append(f"{who}: they are pressed into each other while the case settles")
         elif case.has_springs:
             sentences.append(
                 f"{who}, which makes no stress: their surfaces are set back until they touch; give "

@@ -24,7 +24,7 @@ def _unviscous(case: Case) -> list[str]:
     bare = [name for name in gases if case.viscosity_of(name) == (0.0, 0.0)]
     return [
         f"{key_text(('material', name))} is a gas without artificial viscosity: a shock in it "
-        "becomes noise that may grow without limit; give run.viscosity = {}"
+        "becomes noise that may grow without limit; leave factors of 0 out"
         for name in bare
     ]
 

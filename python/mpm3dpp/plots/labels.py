@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from mpm3dpp.base.errors import CaseError, nearest
-from mpm3dpp.io.rows import field_of
+from mpm3dpp.io.rows import component_words, field_of
 
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _PREFIXED = {"m", "s", "Pa", "J", "J/m", "N", "N/m", "N s", "N s/m", "J/kg", "W"}
@@ -98,5 +98,11 @@ def choose(
     if component is not None:
         name, _, axis = colour.rpartition("_")
         return component, f"{name.replace('_', ' ')} {axis}", units.get(name, "")
-    known = [*arrays, "speed", "velocity_x", "stress_xx"]
+    parts = [
+        f"{name}_{word}"
+        for name, array in arrays.items()
+        if array.ndim == 2 and name != "position"
+        for word in component_words(array.shape[1])
+    ]
+    known = [*(name for name in arrays if name != "position"), "speed", *parts]
     raise CaseError(f"'{colour}' is not an array of these results", nearest(colour, known))

@@ -6,7 +6,7 @@ from __future__ import annotations
 from mpm3dpp.base.markup import Html, bullets, details, element, escaped, joined, paragraph
 from mpm3dpp.io.manifest import Manifest
 from mpm3dpp.plots.labels import scaled
-from mpm3dpp.run.report import summary_lines
+from mpm3dpp.run.report import often, summary_lines
 
 from .document import Section
 from .found import Found
@@ -120,9 +120,5 @@ def _warnings(manifest: Manifest) -> list[Html]:
     found = []
     for w in manifest.warnings:
         word = "Warning:" if w.is_error else "Note:"
-        found.append(joined([element("strong", word), f"{w.message}; seen {_often(w.count)}"], " "))
+        found.append(joined([element("strong", word), f"{w.message}; seen {often(w.count)}"], " "))
     return found
-
-
-def _often(count: int) -> str:
-    return "once" if count == 1 else f"{count:,} times"

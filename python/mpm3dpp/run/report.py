@@ -155,6 +155,11 @@ def gone_lines(manifest: Manifest) -> list[str]:
     return lines
 
 
+def often(count: int) -> str:
+    """Return a number of times in words: "once", "1,200 times"."""
+    return "once" if count == 1 else f"{count:,} times"
+
+
 def warning_lines(manifest: Manifest) -> list[str]:
     """Return a line for each thing that the run has warned of, with how often it was seen.
 
@@ -164,7 +169,7 @@ def warning_lines(manifest: Manifest) -> list[str]:
     for w in manifest.warnings:
         told[w.kind] += w.is_error
         if w.is_error and told[w.kind] <= _OF_A_KIND:
-            lines.append(f"warning: {w.message}; seen {w.count:,} times")
+            lines.append(f"warning: {w.message}; seen {often(w.count)}")
     for kind, count in told.items():
         if count > _OF_A_KIND:
             lines.append(f"warning: {count - _OF_A_KIND:,} more of {kind}, in manifest.json")

@@ -135,7 +135,7 @@ void check_choice(mpm::testing::Report& report) {
   for (const double damping : {0.0, 30.0, 1e4}) {
     domain.pic_rate = damping;
     int called = 0;
-    with_transfer(domain, 1.0, [&]<class Transfer>(const Transfer& transfer) {
+    with_transfer(domain, any_share(domain), [&]<class Transfer>(const Transfer& transfer) {
       ++called;
       if constexpr (std::is_same_v<Transfer, FlipPic>)
         CHECK_CLOSE(transfer.pic, damping == 30.0 ? 0.3 : 1.0, 1e-15);

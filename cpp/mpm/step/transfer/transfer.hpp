@@ -57,22 +57,38 @@ bool filters_now(const Domain<D>& domain) {
   return filters(domain.transfer) && (domain.step + 1) % domain.filter_every == 0;
 }
 
-/// How long the step is for a material: over the time in which its fastest wave and particle
-/// together pass half a cell, its own step at the default `cfl`. One where it makes the step.
+/// What the share of a transfer depends on of a material.
+struct ShareOf {
+  double own;   // the step over its own, see share_of()
+  double flip;  // FLIP's share in a step of its own
+};
+
+/// Of a material. Its own step is that in which its fastest wave and particle together pass half a
+/// cell, as they do at the default `cfl` where it is alone. The noise of a gas grows with the share
+/// of AFLIP that solids need (decision 0065); bonded bodies share nodes, and have one share.
 template <int D>
-double own_step(const Domain<D>& domain, const ParticlePool<D>& pool) {
-  return domain.time_step * pool.fastest / (0.5 * domain.grid.cell_size);
+ShareOf share_of(const Domain<D>& domain, const ParticlePool<D>& pool) {
+  const auto is_gas = [](const ParticlePool<D>& of) { return of.at.heat_owed >= 0; };
+  const bool gas = domain.grid.bonded ? std::ranges::all_of(domain.pools, is_gas) : is_gas(pool);
+  return {domain.time_step * pool.fastest / (0.5 * domain.grid.cell_size),
+          gas ? domain.flip_share_of_gases : domain.flip_share};
 }
 
-/// f(transfer) for that of the run, of a material for which the step is that long (own_step()).
+/// Of a material that makes the step: for what does not depend on the share.
+template <int D>
+ShareOf any_share(const Domain<D>& domain) {
+  return {1.0, domain.flip_share};
+}
+
+/// f(transfer) for that of the run, of a material with that share (share_of(), any_share()).
 // The share of AFLIP is a matter of its own step: where a stiff body makes steps that are short for
 // a soft one, the same share in each would take as many times more (decision 0055).
 template <int D, class F>
-void with_transfer(const Domain<D>& domain, double own, F&& f) {
+void with_transfer(const Domain<D>& domain, ShareOf of, F&& f) {
   // A rate times the step, so that the damping in time does not depend on the steps' length; 1 is
   // PIC.
   const double damped = domain.pic_rate * domain.time_step;
-  const double share = std::min(damped + 1.0 - domain.flip_share, 1.0);
+  const double share = std::min(damped + 1.0 - of.flip, 1.0);
   Transfers::with(domain.transfer, [&]<class T>(const T& transfer) {
     if constexpr (std::is_same_v<T, Flip>)
       // Without damping the grid's velocity is not even read.
@@ -80,7 +96,7 @@ void with_transfer(const Domain<D>& domain, double own, F&& f) {
     if constexpr (T::filters)
       if (!filters_now(domain)) return f(Flip());
     if constexpr (std::is_same_v<T, Aflip>)
-      f(Aflip(std::max(1.0 - (1.0 - domain.flip_share) * own - damped, 0.0)));
+      f(Aflip(std::max(1.0 - (1.0 - of.flip) * of.own - damped, 0.0)));
     else
       f(transfer);
   });
@@ -100,9 +116,9 @@ auto taken_by(const T& transfer) {
 
 /// The share of the grid's velocity in that which particles take; the rest is FLIP.
 template <int D>
-double grid_share(const Domain<D>& domain, double own) {
+double grid_share(const Domain<D>& domain, ShareOf of) {
   double share = 0.0;
-  with_transfer(domain, own, [&]<class T>(const T& transfer) {
+  with_transfer(domain, of, [&]<class T>(const T& transfer) {
     if constexpr (T::takes_grid_velocity) share = transfer.take(0.0, 0.0, 1.0);
   });
   return share;
@@ -110,8 +126,8 @@ double grid_share(const Domain<D>& domain, double own) {
 
 /// f(transfer) likewise, of a basis with which it goes: others were refused.
 template <BasisModel B, int D, class F>
-void with_transfer_for(const Domain<D>& domain, double own, F&& f) {
-  with_transfer(domain, own, [&]<class T>(const T& transfer) {
+void with_transfer_for(const Domain<D>& domain, ShareOf of, F&& f) {
+  with_transfer(domain, of, [&]<class T>(const T& transfer) {
     if constexpr (!T::affine || B::second_moment > 0.0) f(transfer);
   });
 }

@@ -12,6 +12,7 @@ from .units import UnitSystem
 Table = dict[str, Any]
 NEEDS_EOS = ("sjc", "sjcf", "jcf", "hiex", "null")
 LINEAR_VISCOSITY = ("elas", "neoh", "null")  # Only for these has bulk a linear term.
+MAYBE_GASES = ("hiex", "null")
 START_TEMPERATURE = 293.0  # Of every particle in MPM3D-F90.
 
 _UNITS = {
@@ -81,6 +82,9 @@ def _table(deck: Deck, number: int, units: UnitSystem) -> Table:
     quadratic, linear = deck.bulk
     if linear and record.kind not in LINEAR_VISCOSITY:
         table["artificial_viscosity"] = {"quadratic": quadratic, "linear": 0.0}
+    elif record.kind in MAYBE_GASES and not quadratic and not linear:
+        # What a gas has here by default, it has not there.
+        table["artificial_viscosity"] = {"quadratic": 0.0, "linear": 0.0}
     return table
 
 
