@@ -265,6 +265,8 @@ def test_the_linear_viscosity_acts_where_it_does_there() -> None:
     assert case.material["elas_1"].artificial_viscosity is None
     none = of(two.replace("bulk 1.5 0.06", "bulk 1.5 0")).case
     assert none.material["pla1_2"].artificial_viscosity is None
+    off = of(two.replace("bulk 1.5 0.06", "bulk 0 0")).case
+    assert off.viscosity_of("elas_1") == off.viscosity_of("pla1_2") == (0.0, 0.0)
 
 
 # Kind, numbers after density and dp; the points that the language gives, in its order.

@@ -216,3 +216,10 @@ def test_of_several_mistakes_of_a_run_the_first_is_told() -> None:
     assert runs._why(told) == "error: a must be b (and 1 more)"
     assert runs._why("mpm3dpp: error: a must be b\n") == "error: a must be b"
     assert runs._why("") == ""
+
+
+def test_a_mistake_in_a_changed_key_names_no_line_of_the_file(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(CASE)
+    done = mpm3dpp("check", "case.toml", "--set", "run.cfl=7", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "case.toml as changed: run.cfl = 7 must obey 0 < f <= 1" in done.stderr
