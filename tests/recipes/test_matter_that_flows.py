@@ -72,7 +72,7 @@ def test_a_gas_at_rest_in_disorder_stays_at_rest(
     simulation, row = end(case)
     volumes = simulation.column("gas", "volume").sum() / n**2
     # A volume grows to 1.12 of the room, by which that of all does (1.13), and none is cut: two
-    # cells apart .937 are filled in the mean of six seeds, .931 to .943.
+    # cells apart .937 are filled in the mean of four seeds.
     assert (0.95 if spacing < 2.0 else 0.92) <= volumes <= 1.14
     assert abs(kept(row) - 1.0) < 1e-3
     if spacing != 1.5:

@@ -186,6 +186,7 @@ void fill_springs(const Contact<D>& contact, const TileGrid<D>& grid,
 template <int D>
 bool stops_any(const std::vector<Body<D>>& bodies, const ContactSettings& settings,
                const TileBodies<D>& around) {
+  if (settings.response == Response::springs) return false;  // whatever the pair
   const std::span<const TileBody<D>> all = around.all();
   const auto matter = [&](const TileBody<D>& at) {
     return bodies[static_cast<std::size_t>(at.body)].matter;
