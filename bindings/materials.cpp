@@ -140,8 +140,7 @@ void add_materials(nb::module_& m) {
          const std::optional<Named>& eos) {
         const Material material =
             make_material(choice_of(density, strength, parameters, eos, {}, {}, 0.0, false));
-        if (!material.flows()) return "solid";
-        return material.is_gas() ? "gas" : "liquid";
+        return matter_names[static_cast<std::size_t>(material.matter())];
       },
       nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
       "What bodies of a material are to others that touch them: \"solid\", \"liquid\" or \"gas\"");

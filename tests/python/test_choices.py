@@ -8,6 +8,8 @@ import operator
 import pytest
 
 from mpm3dpp import Body, Case, CaseError, Grid, Material, Run, _core, shapes
+from mpm3dpp.case.matter import have_springs, liquids_that_meet
+from mpm3dpp.fill.response_notes import response_notes
 from mpm3dpp.run.core_settings import core_settings
 
 CASE = """
@@ -96,6 +98,39 @@ def test_what_flows_is_stopped_at_the_nodes(run, contact, chosen) -> None:
     water = "density = 1000\nstrength = { fluid = {} }\neos = { tait = { c0 = 10 } }\n"
     body = '[body.wet]\nmaterial = "wet"\nshape = { disc = { centre = [1, 1], radius = 0.1 } }\n'
     assert Case.from_text(f"{text}[material.wet]\n{water}{body}").contact.response == chosen
+
+
+WET = """
+[material.wet]
+density = 1000
+strength = { fluid = {} }
+eos = { tait = { c0 = 10 } }
+[material.air]
+density = 1.2
+strength = { fluid = {} }
+eos = { ideal_gas = { gamma = 1.4, E0 = 2.5e5 } }
+[grains.drops]
+material = "wet"
+lattice = { lower = [1, 1], count = [2, 1], radius = "2 mm" }
+"""
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "springs"),
+    [("disc", "drops", True), ("drops", "drops", False), ("disc", "air", False)],
+)
+def test_pairs_that_have_springs(first: str, second: str, springs: bool) -> None:
+    air = '[body.air]\nmaterial = "air"\nshape = { disc = { centre = [2, 1], radius = 0.1 } }\n'
+    case = Case.from_text(CASE.format(preset="", grid="", run="") + WET + air)
+    assert case.contact.response == "by_matter"
+    assert have_springs(case, first, second) is springs
+    assert liquids_that_meet(case) == ["drops"]
+
+
+def test_drops_of_one_entry_are_told_of_springs() -> None:
+    text = CASE.format(preset="", grid="", run="") + WET + '[contact]\nresponse = "springs"\n'
+    (told,) = response_notes(Case.from_text(text))
+    assert "makes energy where the liquid bodies of grains.drops meet each other" in told
 
 
 def test_the_response_follows_a_transfer_that_is_assigned() -> None:

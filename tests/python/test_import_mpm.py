@@ -269,6 +269,22 @@ def test_the_linear_viscosity_acts_where_it_does_there() -> None:
     assert off.viscosity_of("elas_1") == off.viscosity_of("pla1_2") == (0.0, 0.0)
 
 
+EXPLOSIVE = " 1 hiex 1.63d-3 6930\nseos 1 3 3.712d5 3.21d3 4.15 0.95 0.3 6993\n"
+AIR = " 1 null 1.225d-6 0.1 0\nseos 1 1 0 0 0 0 0.4 0.4 0 0.2534\n"
+
+
+@pytest.mark.parametrize("records", [EXPLOSIVE, AIR])
+@pytest.mark.parametrize(("bulk", "wanted"), [("bulk 0 0", (0.0, 0.0)), ("bulk 1.5 0", (1.5, 0.0))])
+def test_a_gas_has_the_viscosity_of_its_file_and_not_the_default(
+    records: str, bulk: str, wanted: tuple[float, float]
+) -> None:
+    part = PART.replace("7.8d-3", records.split()[2])
+    case = of(edited((MATE, records), (PART, part), ("bulk 1.5 0.06", bulk))).case
+    (name,) = case.material
+    assert case.material[name].matter() == "gas"
+    assert case.viscosity_of(name) == wanted
+
+
 # Kind, numbers after density and dp; the points that the language gives, in its order.
 def brute(kind: str, n: list[float], dp: float) -> list[tuple[float, ...]]:
     if kind in ("block", "blod"):

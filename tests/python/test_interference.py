@@ -119,6 +119,19 @@ def test_pressed_blocks_have_the_stress_of_the_excess() -> None:
     assert pressure(BLOCKS + pair) == pytest.approx(exact, rel=0.03)
 
 
+def test_what_flows_is_not_pressed_without_a_word() -> None:
+    """A gas has no springs against what holds it."""
+    gas = "strength = { fluid = {} }\neos = { ideal_gas = { gamma = 1.4, E0 = 2.5e5 } }"
+    text = BLOCKS.replace("[body.b]", f"[material.air]\ndensity = 1.2\n{gas}\n[body.b]")
+    start = text.index("[body.b]")
+    air = text[:start] + text[start:].replace('"e"', '"air"')
+    case = Case.from_text(air + '[run.settle]\nlongest = "0.1 s"\n' + PRESSED)
+    [found] = build(case).interferences
+    assert not found.pressed
+    [note] = [note for note in notes(case, build(case)) if "is drawn" in note]
+    assert "makes no stress: one of them flows, and their approach is stopped" in note
+
+
 def test_what_is_drawn_beyond_a_wall_is_said() -> None:
     walls = 'box = { lower = ["-110 mm", 0], upper = ["110 mm", "100 mm"], walls = WALLS }\n'
     text = BLOCKS.replace('"-2 mm"', '"0 mm"').replace(

@@ -224,8 +224,8 @@ def test_a_blast_keeps_its_energy_and_comes_as_far_as_sedov_says(
     )
     simulation, row = end(case)
     assert abs(kept(row) - 1.0) < 1e-3
-    # Two per cent: the front, three cells wide, is found to half a cell. In 3D it is .7 cells ahead
-    # (.9 at a radius of 30 cells), more than that.
+    # One per cent and half a cell, to which a front three cells wide is found. In 3D it is .7 cells
+    # ahead (.9 at a radius of 30 cells): 4 %, told as a miss in decision 0065.
     most = 0.5 + 0.01 * radius if dimension == 2 else 0.8
     assert front(simulation, dimension, n) == pytest.approx(radius, abs=most)
 
@@ -309,7 +309,7 @@ def test_a_liquid_splashes_on_a_solid(
     dimension: int, cell: float, target: dict[str, Any], time: float
 ) -> None:
     # Impulses took 33, 19 and 63 % of a drop of a radius of 10 mm that comes with 5 m/s. What is
-    # left to be lost is the motion of single particles; in 3D springs give back up to 3 % more than
+    # left to be lost is the motion of single particles. In 3D springs give back 2.4 % more than
     # they took, as the surface that they push is another one by then.
     low, high = [-0.03] * dimension, [0.03] * dimension
     low[-1], high[-1] = -0.008, 0.0
@@ -332,7 +332,7 @@ def test_a_liquid_splashes_on_a_solid(
     assert case.contact.response == "by_matter" and not response_notes(case)
     _, row = end(case)
     assert 0.87 < kept(row) < 1.04
-    assert row["contact"].min() > -0.065 * row["kinetic"][0]
+    assert row["contact"].min() > -0.035 * row["kinetic"][0]
 
 
 def test_check_tells_of_liquids_that_meet_by_springs() -> None:

@@ -227,6 +227,10 @@ def test_what_goes_with_a_transfer() -> None:
         ({"xpic": 0}, r"run\.transfer\.xpic = 0 must be >= 1"),
         ({"xpic": 2.5}, r"run\.transfer\.xpic = 2\.5 must be a whole number"),
         ({"xpic": 2, "every": 0}, r"run\.transfer\.every = 0 must be >= 1"),
+        (
+            {"flip": 1, "aflip_of_gases": 0.5},
+            r"aflip_of_gases = 0\.5 is of another transfer than flip",
+        ),
         ({"flip": 1, "every": 2}, r"transfer\.every = 2 goes with xpic, and not with flip; remove"),
         ({"flip": 1, "rate": 1}, r"run\.transfer\.rate is not a known key; did you mean"),
     ],
@@ -237,7 +241,9 @@ def test_mistakes_in_a_transfer(given: object, said: str) -> None:
 
 
 def test_a_transfer_is_written_as_it_is_given() -> None:
-    forms = ["pic", "aflip", {"flip": 0.9}, {"flip": 1.0, "pic_rate": 5.0}, {"xpic": 4, "every": 2}]
+    of_gases = {"aflip": 0.97, "aflip_of_gases": 0.9}
+    both = [{"flip": 1.0, "pic_rate": 5.0}, {"xpic": 4, "every": 2}, of_gases]
+    forms = ["pic", "aflip", {"flip": 0.9}, {"aflip": 0.9}, *both]
     for form in forms:
         run = Run(end_time=1.0, transfer=form)
         assert run.table()["transfer"] == form
@@ -246,6 +252,14 @@ def test_a_transfer_is_written_as_it_is_given() -> None:
     run = Run(end_time=1.0, transfer="pic")
     with pytest.raises(CaseError, match=r"pic_rate = 5\.0 goes with flip and aflip, and not with"):
         run.transfer.pic_rate = 5.0
+
+
+def test_gases_never_keep_more_of_their_own_than_was_asked() -> None:
+    """`aflip` alone is for all matter: gases have the smaller of it and their default."""
+    for given, wanted in [({"aflip": 0.5}, 0.5), ({"aflip": 0.9}, 0.7), ("aflip", 0.7)]:
+        assert Run(end_time=1.0, transfer=given).transfer.aflip_of_gases == wanted
+    more = Run(end_time=1.0, transfer={"aflip": 0.5, "aflip_of_gases": 0.9})
+    assert more.transfer.aflip_of_gases == 0.9
 
 
 @pytest.mark.parametrize(

@@ -64,6 +64,7 @@
   X(stages_in_space) \
   X(two_bodies) \
   X(many_bodies) \
+  X(response) \
   X(separation) \
   X(springs) \
   X(touches) \

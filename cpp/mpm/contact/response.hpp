@@ -13,7 +13,7 @@ inline constexpr auto words<Response> = std::to_array<Word<Response>>(
     {{"impulses", Response::impulses, "approach is stopped at the nodes, eqs. (6)-(7), (13)"},
      {"springs", Response::springs, "particles push a body whose surface they overlap"},
      {"by_matter", Response::by_matter,
-      "springs where one of the two is a solid and none a gas or an explosive, else impulses"}});
+      "impulses where one is a gas or an explosive, or both are liquids; else springs"}});
 
 /// Do particles push any bodies by springs?
 constexpr bool may_spring(Response response) { return response != Response::impulses; }

@@ -48,7 +48,8 @@ struct ContactSettings {
               "\"springs\" (particles push a body whose surface they overlap), \"impulses\" "
               "(approach is stopped at the nodes; the default without an affine transfer) or "
               "\"by_matter\" (springs, but impulses where a gas meets others or liquids each "
-              "other; the default where a body flows); walls that are \"contact\" do the same"},
+              "other; the default where a body flows); walls that are \"contact\" do "
+              "the same, but for liquids, whose approach they stop"},
       Setting{"friction", &Self::friction, "Coulomb coefficient of all pairs not listed in `pair`",
               Rule::not_negative},
       Setting{"gap_distance", &Self::gap_distance, "bodies closer than this touch [m]",

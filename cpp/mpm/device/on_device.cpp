@@ -14,7 +14,7 @@ namespace {
 
 /// The transfer of the step, as a device names it, and the number that it is made with.
 template <int D>
-std::pair<DeviceTransfer, double> transfer_of(const Domain<D>& domain, ShareOf of) {
+std::pair<DeviceTransfer, double> transfer_of(const Domain<D>& domain, TransferShare of) {
   std::pair<DeviceTransfer, double> found{DeviceTransfer::flip, 1.0};
   with_transfer(domain, of, [&](const auto& of_run) {
     const auto transfer = taken_by(of_run);
@@ -192,7 +192,7 @@ void step_on_device(OnDevice<D>& device, Domain<D>& domain, bool look) {
     for (const Body<D>& body : domain.bodies)
       step.damping.push_back(damping_in(domain.dampings, body.damping));
   for (const ParticlePool<D>& pool : domain.pools) {
-    const ShareOf of = share_of(domain, pool);
+    const TransferShare of = share_of(domain, pool);
     const auto [transfer, share] = transfer_of(domain, of);
     step.transfer = transfer;
     step.share.push_back(share);

@@ -76,7 +76,8 @@ struct Ledger {
            damped + eroded + left + bounded + numerical() - external - start;
   }
   /// Energy made by numerics, as a fraction of the largest energy brought in; 0 while there is
-  /// none. What transfers take does not hide what is made, and what they make counts.
+  /// none. What transfers take does not hide what others make, and what they make on balance
+  /// counts.
   double growth() const { return largest > 0.0 ? std::max(0.0, made()) / largest : 0.0; }
   /// Energy made by numerics so far, lost if negative; that which an energy below absolute zero was
   /// given is made as well [J].

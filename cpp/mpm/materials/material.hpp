@@ -2,6 +2,7 @@
 // A material: an initial density, one strength model, at most one equation of state and any number
 // of failure models, composed at run time.
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -91,6 +92,11 @@ struct EosBounds {
   }
 };
 
+/// What matter is to others that touch it: a solid, whose surface keeps its particles; a liquid, of
+/// which others become the surface; a gas, products of an explosive too, which has none.
+enum class Matter : std::uint8_t { solid, liquid, gas };
+inline constexpr const char* matter_names[] = {"solid", "liquid", "gas"};
+
 struct Material {
   double density = 0.0;  // initial [kg/m^3]
   StrengthModels::Any strength;
@@ -119,9 +125,11 @@ struct Material {
     return flows() || !failures.empty() || bounds.tension < unbounded ||
            std::visit([]<class M>(const M&) { return requires { M::breaks_up; }; }, strength);
   }
-  /// Does it fill any volume? Products of detonation do.
-  bool is_gas() const {
-    return eos && std::visit([](const auto& model) { return model.is_gas(); }, *eos);
+  /// A gas fills any volume, and so do products of detonation.
+  Matter matter() const {
+    if (!flows()) return Matter::solid;
+    const bool gas = eos && std::visit([](const auto& model) { return model.is_gas(); }, *eos);
+    return gas ? Matter::gas : Matter::liquid;
   }
   bool erodes() const {
     return std::any_of(failures.begin(), failures.end(),

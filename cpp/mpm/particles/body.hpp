@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mpm/comm/share.hpp"
+#include "mpm/materials/material.hpp"
 #include "mpm/rigid/prescribed_motion.hpp"
 
 namespace mpm {
@@ -18,10 +19,6 @@ enum class BodyKind : std::uint8_t {
   rigid,       // as one, those of all (Newton, Euler)
   prescribed,  // as one, Body::motion, whatever acts on them
 };
-
-/// What a body is to others that touch it: a solid, whose surface keeps its particles; a liquid, of
-/// which others become the surface; a gas, products of an explosive too, which has none.
-enum class Matter : std::uint8_t { solid, liquid, gas };
 
 /// The particles of a body as the user gives them, until they are in a pool: a rank's share, then
 /// those in its tiles.

@@ -97,7 +97,7 @@ Body<D> empty_body(std::string name, const Material& material, const ParticlePoo
   body.name = std::move(name);
   body.count = count;
   if (material.moves_as_one()) body.kind = BodyKind::rigid;
-  if (material.flows()) body.matter = material.is_gas() ? Matter::gas : Matter::liquid;
+  body.matter = material.matter();
   const double speed = pool.sound_speed;
   body.total_mass = material.density * volume;
   body.stiffness =
@@ -121,12 +121,12 @@ template <int D>
 ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
                           const TransferColumns& transfer) {
   ParticlePool<D> pool;
+  pool.matter = material.matter();
   add_columns(pool, material, grid.outflow_box.exist);
   if (transfer.affine) {
     pool.affine = pool.columns.add("affine_velocity", "1/s", D * D, Precision::rounded);
     if (material.flows()) pool.at.growth_limit = pool.columns.add("growth_limit", "m^3", 1);
-    if (material.flows() && material.is_gas())
-      pool.at.heat_owed = pool.columns.add("heat_owed", "J", 1);
+    if (pool.matter == Matter::gas) pool.at.heat_owed = pool.columns.add("heat_owed", "J", 1);
   }
   if (transfer.unseen)
     pool.unseen = pool.columns.add("unseen_velocity", "m/s", D, Precision::rounded);

@@ -35,6 +35,7 @@ struct ParticlePool {
   int body_force = -1;      // force per mass [m/s^2], D components; -1: none
   int start_position = -1;  // [m], D components; -1: none
   int set_back = -1;  // share of half its edge that the surface is set back in contact; -1: none
+  Matter matter = Matter::solid;     // of its material
   double sound_speed = 0.0;          // of its material at the start [m/s]
   double fastest = 0.0;              // wave and particle together, before the step [m/s]
   std::vector<std::uint32_t> id;     // number of each particle in its body, as the user gave them

@@ -77,8 +77,8 @@ struct TransferSettings {
               "cell; in shorter ones it takes as much less of the grid's",
               Rule::share},
       Setting{"aflip_of_gases", &Self::aflip_of_gases,
-              "the same of gases and explosives, whose noise grows where it takes less; what it "
-              "takes of them is their heat",
+              "the same of gases and explosives, whose noise grows where it takes less, and whose "
+              "heat it is; aflip itself where that is given and smaller",
               Rule::share},
       Setting{"pic_rate", &Self::pic_rate,
               "rate at which particles take over the velocity of the grid [1/s], beside \"flip\" "

@@ -19,19 +19,24 @@ const char* remedy_for_torn(bool loaded) {
                "run.cfl";
 }
 
-/// Of a solid whose particles part, or a gas whose particles are far apart.
-std::string too_sparse(const Note& n, const std::string& whose, double per_cent) {
+/// Of a solid whose particles part.
+std::string parted(const std::string& whose, double per_cent) {
   std::ostringstream text;
   text.precision(4);
-  if (n.kind == NoteKind::sparse)
-    text << "particles of " << whose << " are more than a cell apart along an axis (" << per_cent
-         << " % of its cells have an empty one beside them and particles behind it): it comes "
-            "apart there by the numerics; give it a smaller spacing, or larger cells";
-  else
-    text << per_cent << " % of the particles of " << whose
-         << " are more than 1.5 cells apart: such a gas presses too little on walls and on what it "
-            "meets (a tenth at 1.7 cells, a fifth at 1.9); give it a smaller spacing, or larger "
-            "cells";
+  text << "particles of " << whose << " are more than a cell apart along an axis (" << per_cent
+       << " % of its cells have an empty one beside them and particles behind it): it comes apart "
+          "there by the numerics; give it a smaller spacing, or larger cells";
+  return text.str();
+}
+
+/// Of a gas whose particles are far apart.
+std::string too_sparse(const std::string& whose, double per_cent) {
+  std::ostringstream text;
+  text.precision(4);
+  text << per_cent << " % of the particles of " << whose
+       << " are more than 1.5 cells apart: on walls and on what it meets such a gas presses too "
+          "little (a tenth at 1.7 cells, a fifth at 1.9); give it a smaller spacing, or larger "
+          "cells";
   return text.str();
 }
 
@@ -75,8 +80,10 @@ std::string what_and_remedy(const Note& n, const std::string& whose, bool loaded
              "the default basis, or smaller steps";
       break;
     case NoteKind::sparse:
+      text << parted(whose, per_cent);
+      break;
     case NoteKind::sparse_gas:
-      text << too_sparse(n, whose, per_cent);
+      text << too_sparse(whose, per_cent);
       break;
     case NoteKind::crowd:
       text << n.value << " bodies meet at one node, and the time of a step grows with the square "

@@ -20,7 +20,7 @@ constexpr double small_of_gas = 1e-3;  // the same of a gas, which fills any vol
 constexpr double large_in_cells = 100.0;
 // A gas that has filled an empty box presses on its walls with .995, .98, .90 and .78 of its
 // pressure where its particles are 1.2, 1.4, 1.7 and 1.9 cells apart.
-constexpr double far_apart = 1.5;   // cells, of half the particles of a gas
+constexpr double far_apart = 1.5;   // cells
 constexpr double many_gaps = 0.01;  // of a body's cells, more than at the start
 constexpr double beyond = 0.1;  // of a cell, behind a wall: GIMP may push a centre a little past it
 // At a node: each meets each, 435 pairs. Equal spheres have twelve neighbours, grains of two cells
@@ -107,6 +107,7 @@ void judge(Simulation<D>& simulation) {
     tell(NoteKind::outside, sight.outside, -1, simulation.settings.run.outside_limit);
     tell(NoteKind::volume, sight.odd, -1, simulation.settings.run.volume_limit);
     tell(NoteKind::gas_volume, sight.swollen, -1, simulation.settings.run.volume_limit);
+    // Of half of its particles: few that fly ahead of it do not matter.
     if (2 * sight.thin.count > sight.particles) tell(NoteKind::sparse_gas, sight.thin, -1, 1.0);
     const double gaps = sight.gap_share();
     if (gaps > simulation.watch.gaps_at_start[g] + many_gaps)
@@ -220,7 +221,7 @@ void see(Simulation<D>& simulation) {
     Sight<D>& sight = seen[number(b.group)];
     sight.particles += patch.count;
     const Material& material = domain.material_of(patch);
-    const bool solid = b.deforms() && !material.is_gas();
+    const bool solid = b.deforms() && b.matter != Matter::gas;
     const bool may_evaporate = std::isfinite(material.bounds.lowest_energy);
     if (solid && !material.breaks_up()) look_for_gaps(of, patch, sight);
     const double* failed = of.at.failed >= 0 ? of.columns.component(of.at.failed) : nullptr;

@@ -16,9 +16,6 @@ namespace {
 /// The move, eq. (16), has the same weights: those of the positions before.
 enum class Also { nothing, remap, move };
 
-/// Whether matter keeps a shape of its own or flows.
-enum class Matter { solid, flowing };
-
 /// Of the particles in the lanes, for the ledger: every lane has its own sums over the patch, which
 /// are brought together once at the end, in one order (decision 0038).
 template <class T, int D>
@@ -58,8 +55,8 @@ struct NoFlow {
   void write(const Sums&) const {}
 };
 
-template <Matter matter, class T, int D>
-using FlowOf = std::conditional_t<matter == Matter::flowing, FlowingMatter<T, D>, NoFlow>;
+template <bool flows, class T, int D>
+using FlowOf = std::conditional_t<flows, FlowingMatter<T, D>, NoFlow>;
 
 /// The columns of a pool that hold the particles' velocities; for a transfer that filters also what
 /// the grid has not seen of them.
@@ -114,7 +111,7 @@ struct VelocityColumns {
 /// Lanes behind the last particle repeat its row. With no mass they count for nothing in the
 /// ledger; the nodes are told how many there are (`place`). With MPM_FLOAT32 velocities are rounded
 /// when stored; the ledger and the remap take v as computed (decision 0021).
-template <int W, Also also, Matter matter = Matter::solid, class Transfer, int D, BasisModel B>
+template <int W, Also also, bool flows = false, class Transfer, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void advance_patch(Domain<D>& domain, std::size_t p, const B& basis,
                                                    const Transfer transfer) {
   using T = Batch<W>;
@@ -135,7 +132,7 @@ template <int W, Also also, Matter matter = Matter::solid, class Transfer, int D
   DoubleBuffer<Mapping<typename Transfer::Gives>, what, D, B, half_record> cells(stride,
                                                                                  {remapped});
   [[maybe_unused]] TakingAffine<T, D> affine(grid, pool);
-  FlowOf<matter, T, D> flow(grid, pool, domain.material_of(patch), domain.time_step);
+  FlowOf<flows, T, D> flow(grid, pool, domain.material_of(patch), domain.time_step);
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const auto nodes = field_of<B>(block.records.from(cell.first_node), stride);
     const Transfer here = transfer_of_cell(transfer, grid, patch, cell.cell);
@@ -203,7 +200,7 @@ void advance_deformable(Domain<D>& domain, std::size_t p, const B& basis,
                         const Transfer& transfer) {
   if constexpr (Transfer::affine)
     if (domain.pool_of(domain.grid.patches[p]).at.growth_limit >= 0)
-      return advance_patch<W, also, Matter::flowing>(domain, p, basis, transfer);
+      return advance_patch<W, also, true>(domain, p, basis, transfer);
   advance_patch<W, also>(domain, p, basis, transfer);
 }
 

@@ -35,7 +35,7 @@ bool takes_of_grid(const Domain<D>& domain) {
 // wall some may be, near an edge where both meet: what they take more there is not counted.
 template <int D>
 double grid_share_at(const Domain<D>& domain, const Patch<D>& patch, int node) {
-  const ShareOf of = share_of(domain, domain.pool_of(patch));
+  const TransferShare of = share_of(domain, domain.pool_of(patch));
   double share = grid_share(domain, of);
   with_transfer(domain, of, [&]<class T>(const T& transfer) {
     if constexpr (OtherAtFixedWalls<T>) {

@@ -218,7 +218,8 @@ double push_from_walls(Domain<D>& domain, const Patch<D>& patch, const NodeBlock
   // Grows to two bodies and D pairs once.
   thread_local NodeSolution<D> solution;
   const double dt = domain.time_step;
-  // As two of its kind: liquids too, of which walls, that lie at nodes, take little.
+  // As against its own kind: liquids are stopped too, of which walls, that lie at nodes, take
+  // little.
   const Matter matter = domain.body_of(patch).matter;
   const bool stopped = stops_approach(domain.contact_settings.response, matter, matter);
   double stored = 0.0;

@@ -45,7 +45,10 @@ def _made(case: Case, changes: Changes) -> Case:
     tables = changed_tables(case._text, name, changes)
     lines = case_file.locate_keys(case._text, name)
     for key in changes:
-        path = tuple(int(part) if part.isdigit() else part for part in key)
+        path = tuple(
+            int(part) if part.isdigit() and above not in _NAMED else part  # A body may be "1".
+            for above, part in zip(("", *key), key, strict=False)
+        )
         lines = {at: line for at, line in lines.items() if at[: len(path)] != path}
         lines[path] = case_file.CHANGED
     found = type(case).from_tables(tables, name, lines)

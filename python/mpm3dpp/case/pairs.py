@@ -11,6 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from mpm3dpp.base.errors import Path, nearest, violation
 
+from .matter import have_springs
 from .parts import PRESSED
 
 if TYPE_CHECKING:
@@ -41,7 +42,8 @@ def is_pressed(case: Case, first: str, second: str) -> bool:
     """Return whether two bodies push each other apart where they are drawn into each other."""
     pair = _pair_of(case, first, second)
     given = pair.interference if pair is not None else None
-    return (given or case.contact.interference) == PRESSED
+    pressed = (given or case.contact.interference) == PRESSED
+    return pressed and have_springs(case, first, second)
 
 
 def presses(case: Case) -> bool:

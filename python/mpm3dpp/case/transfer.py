@@ -16,6 +16,8 @@ _GOES_WITH = {
     "pic_rate": "shares",
     "every": "filters",
 }  # Key -> the property of the transfers that it goes with.
+_OF_GASES = "aflip_of_gases"  # Where `aflip` is given and smaller, that.
+_NUMBER_OF = {_OF_GASES: "aflip"}  # A further number -> its word.
 _FORM = "for example { aflip = 0.97 }"
 
 
@@ -51,6 +53,8 @@ class Transfer(_Transfer):
             raise violation("has no number", remedy, value=table[word], path=(word,))
         made = handler(table)
         made._word = word
+        if "aflip" in table and _OF_GASES not in table:
+            made.aflip_of_gases = min(made.aflip_of_gases, made.aflip)
         return cls._checked(made)
 
     @classmethod
@@ -59,7 +63,7 @@ class Transfer(_Transfer):
         found = []
         for key, field in cls.model_fields.items():
             value = getattr(made, key)
-            if value == field.default or key in (made.word, f"{made.word}_of_gases"):
+            if value == field.default or made.word in (key, _NUMBER_OF.get(key)):
                 continue
             if key not in _GOES_WITH:
                 rule, remedy = f"is of another transfer than {made.word}", f"remove {key}"

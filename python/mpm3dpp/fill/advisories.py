@@ -19,6 +19,7 @@ from mpm3dpp.ranks.world import World, together
 
 from .bond_notes import bond_notes
 from .explosive_notes import explosive_notes
+from .gas_notes import gas_notes
 from .initial import at_rest
 from .interference import Interference, beyond_walls, interference_notes
 from .parts import Filled, FilledPart
@@ -53,6 +54,7 @@ def notes(case: Case, bodies: Filled, world: World | None = None) -> list[str]:
         *bond_notes(case),
         *_detonations(case, bodies, world),
         *wall_notes(case),
+        *gas_notes(case),
         *response_notes(case),
         *explosive_notes(case),
         *_beyond_strength(case),

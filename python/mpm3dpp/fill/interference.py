@@ -12,6 +12,7 @@ import numpy as np
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.grid import FACES as FACES_OF_BOX
+from mpm3dpp.case.matter import have_springs
 from mpm3dpp.case.pairs import is_bonded, is_pressed
 from mpm3dpp.shapes.base import Points, Shape
 from mpm3dpp.shapes.surfaces import surface
@@ -144,10 +145,15 @@ def interference_notes(case: Case, found: list[Interference]) -> list[str]:
         who = f"body.{one.second} is drawn {one.depth:.3g} m into body.{one.first}"
         if one.pressed:
             sentences.append(f"{who}: they are pressed into each other while the case settles")
-        elif case.has_springs:
+        elif have_springs(case, one.first, one.second):
             sentences.append(
                 f"{who}, which makes no stress: their surfaces are set back until they touch; give "
                 'contact.interference = "pressed" with run.settle, or draw them apart'
+            )
+        elif case.has_springs:
+            sentences.append(
+                f"{who}, which makes no stress: one of them flows, and their approach is stopped "
+                "where they are; draw them apart, or cut one out of the other with difference"
             )
         else:
             sentences.append(

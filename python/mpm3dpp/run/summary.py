@@ -11,11 +11,11 @@ import numpy as np
 from mpm3dpp import _core
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.load_pieces import pieces
+from mpm3dpp.case.matter import liquids_that_meet, parts_by_matter
 from mpm3dpp.fill.advisories import fastest, notes
 from mpm3dpp.fill.build import warnings
 from mpm3dpp.fill.parts import Filled, FilledPart, Particles
 from mpm3dpp.fill.point_warnings import point_warnings
-from mpm3dpp.fill.response_notes import parts_by_matter
 from mpm3dpp.io.background import FRAME_SHARE
 from mpm3dpp.materials import Failure, catalogue, state_columns
 from mpm3dpp.plots.labels import scaled
@@ -239,10 +239,9 @@ def _response(case: Case) -> str:
     """Return how bodies in contact part, with the names of those that flow where that decides."""
     if case.contact.response != "by_matter":
         return case.contact.response
-    bodies = parts_by_matter(case)
-    gases = ", ".join(f'"{name}"' for name in bodies["gas"])
+    gases = ", ".join(f'"{name}"' for name in parts_by_matter(case)["gas"])
     others = [f"at {gases}"] if gases else []
-    if len(bodies["liquid"]) > 1:
+    if liquids_that_meet(case):
         others.append("between liquids")
     return f"springs, but impulses {' and '.join(others)}" if others else "springs"
 

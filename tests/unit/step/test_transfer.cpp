@@ -235,6 +235,41 @@ void check_lanes_carried(mpm::testing::Report& report) {
   }
 }
 
+/// A domain with a pool of each matter.
+Domain<2> domain_of(std::initializer_list<Matter> pools) {
+  Domain<2> domain;
+  domain.grid.cell_size = 2.0;
+  domain.time_step = 0.25;
+  domain.flip_share = 0.97;
+  domain.flip_share_of_gases = 0.7;
+  for (const Matter matter : pools) {
+    domain.pools.emplace_back().matter = matter;
+    domain.pools.back().fastest = 3.0;
+  }
+  return domain;
+}
+
+/// Gases and explosives have their share, others that of solids; where bodies are bonded gases have
+/// theirs if there is nothing else.
+void check_shares(mpm::testing::Report& report) {
+  constexpr auto solid = Matter::solid, liquid = Matter::liquid, gas = Matter::gas;
+  Domain<2> mixed = domain_of({solid, gas, liquid});
+  const auto share = [&](const Domain<2>& domain, std::size_t k) {
+    return share_of(domain, domain.pools[k]);
+  };
+  CHECK_CLOSE(share(mixed, 0).flip, 0.97, 0.0);
+  CHECK_CLOSE(share(mixed, 1).flip, 0.7, 0.0);
+  CHECK_CLOSE(share(mixed, 2).flip, 0.97, 0.0);
+  CHECK_CLOSE(share(mixed, 1).own, 0.75, 1e-15);  // 3 m/s for 0.25 s, over half a cell
+  mixed.grid.bonded = true;
+  for (std::size_t k = 0; k < 3; ++k) CHECK_CLOSE(share(mixed, k).flip, 0.97, 0.0);
+  Domain<2> gases = domain_of({gas, gas});
+  for (const bool bonded : {false, true}) {
+    gases.grid.bonded = bonded;
+    for (std::size_t k = 0; k < 2; ++k) CHECK_CLOSE(share(gases, k).flip, 0.7, 0.0);
+  }
+}
+
 }  // namespace
 
 void test_transfer(mpm::testing::Report& report) {
@@ -248,4 +283,5 @@ void test_transfer(mpm::testing::Report& report) {
   check_carried(report);
   check_closing(report);
   check_lanes_carried(report);
+  check_shares(report);
 }

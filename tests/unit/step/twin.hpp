@@ -74,7 +74,7 @@ struct Twin {
     domain.step_before = reference.dt_before = 0.9e-5;
     domain.pic_rate = choice.pic_rate;
     domain.transfer = choice.transfer;
-    domain.flip_share = choice.flip_share;
+    domain.flip_share = domain.flip_share_of_gases = choice.flip_share;
     domain.filter_order = choice.filter_order;
     domain.filter_every = choice.filter_every;
     const bool flips =

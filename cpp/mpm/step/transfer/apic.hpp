@@ -33,8 +33,9 @@ struct Apic : Flip {
   }
 };
 
-/// dt^2 C:C / D from which on less is made of a C_p that closes; from twice that on nothing. Below,
-/// it would take hundreds of steps to close, and its velocities are a hundredth of that of waves.
+/// dt^2 C:C / D up to which a C_p that closes is carried along whole; from twice that on all of
+/// `closing_part` is left out. Below, it would take hundreds of steps to close, and its velocities
+/// are a hundredth of that of waves.
 inline constexpr double closing_from = 1e-5;
 
 /// What `carried_along` leaves out where S, the symmetric part of C_p, closes (S : S S < 0): the
@@ -57,6 +58,9 @@ MPM_HD MPM_INLINE inline Sym<T, D> closing_part(const Mat<T, D>& C, T x2) {
   return share * (min(cube, T(0.0)) / max(inner(S, S), T(1e-200))) * S;
 }
 
+/// May what closes close faster, as it would by itself?
+enum class Closing : std::uint8_t { no_faster, as_it_would };
+
 /// C_p when the particle has moved: C' = C - dt/2 (C C + (C C)^T). The field of velocities that C_p
 /// describes goes with its matter: with F = 1 + dt C its gradient becomes C F^-1 = C - dt C C, of
 /// which the symmetric part is taken, so that the angular momentum m_p D ax C_p stays. Without it
@@ -65,7 +69,6 @@ MPM_HD MPM_INLINE inline Sym<T, D> closing_part(const Mat<T, D>& C, T x2) {
 /// correction away before that, and beyond x = 1 C_p stays.
 /// What closes does not close faster (`closing_part`), but for a gas: with its heat it pays for
 /// what C_p gains (step/flowing_matter.hpp).
-enum class Closing : std::uint8_t { no_faster, as_it_would };
 template <class T, int D>
 MPM_HD MPM_INLINE inline Mat<T, D> carried_along(const Mat<T, D>& C, T dt, Closing closes) {
   Mat<T, D> now = C;

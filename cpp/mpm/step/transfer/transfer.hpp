@@ -58,25 +58,26 @@ bool filters_now(const Domain<D>& domain) {
 }
 
 /// What the share of a transfer depends on of a material.
-struct ShareOf {
+struct TransferShare {
   double own;   // the step over its own, see share_of()
   double flip;  // FLIP's share in a step of its own
 };
 
 /// Of a material. Its own step is that in which its fastest wave and particle together pass half a
 /// cell, as they do at the default `cfl` where it is alone. The noise of a gas grows with the share
-/// of AFLIP that solids need (decision 0065); bonded bodies share nodes, and have one share.
+/// of AFLIP that solids need (decision 0065). Bonded bodies take the same number of it: where a
+/// solid is among them its waves are the gas's as well.
 template <int D>
-ShareOf share_of(const Domain<D>& domain, const ParticlePool<D>& pool) {
-  const auto is_gas = [](const ParticlePool<D>& of) { return of.at.heat_owed >= 0; };
+TransferShare share_of(const Domain<D>& domain, const ParticlePool<D>& pool) {
+  const auto is_gas = [](const ParticlePool<D>& of) { return of.matter == Matter::gas; };
   const bool gas = domain.grid.bonded ? std::ranges::all_of(domain.pools, is_gas) : is_gas(pool);
   return {domain.time_step * pool.fastest / (0.5 * domain.grid.cell_size),
           gas ? domain.flip_share_of_gases : domain.flip_share};
 }
 
-/// Of a material that makes the step: for what does not depend on the share.
+/// Of a solid that makes the step: for what depends only on whether there is a share at all.
 template <int D>
-ShareOf any_share(const Domain<D>& domain) {
+TransferShare any_share(const Domain<D>& domain) {
   return {1.0, domain.flip_share};
 }
 
@@ -84,7 +85,7 @@ ShareOf any_share(const Domain<D>& domain) {
 // The share of AFLIP is a matter of its own step: where a stiff body makes steps that are short for
 // a soft one, the same share in each would take as many times more (decision 0055).
 template <int D, class F>
-void with_transfer(const Domain<D>& domain, ShareOf of, F&& f) {
+void with_transfer(const Domain<D>& domain, TransferShare of, F&& f) {
   // A rate times the step, so that the damping in time does not depend on the steps' length; 1 is
   // PIC.
   const double damped = domain.pic_rate * domain.time_step;
@@ -116,7 +117,7 @@ auto taken_by(const T& transfer) {
 
 /// The share of the grid's velocity in that which particles take; the rest is FLIP.
 template <int D>
-double grid_share(const Domain<D>& domain, ShareOf of) {
+double grid_share(const Domain<D>& domain, TransferShare of) {
   double share = 0.0;
   with_transfer(domain, of, [&]<class T>(const T& transfer) {
     if constexpr (T::takes_grid_velocity) share = transfer.take(0.0, 0.0, 1.0);
@@ -126,7 +127,7 @@ double grid_share(const Domain<D>& domain, ShareOf of) {
 
 /// f(transfer) likewise, of a basis with which it goes: others were refused.
 template <BasisModel B, int D, class F>
-void with_transfer_for(const Domain<D>& domain, ShareOf of, F&& f) {
+void with_transfer_for(const Domain<D>& domain, TransferShare of, F&& f) {
   with_transfer(domain, of, [&]<class T>(const T& transfer) {
     if constexpr (!T::affine || B::second_moment > 0.0) f(transfer);
   });
