@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "mpm/reference/affine.hpp"
 #include "mpm/reference/shape.hpp"
 #include "mpm/reference/state.hpp"
 #include "mpm/walls/walls.hpp"
@@ -231,31 +232,9 @@ struct Step {
           v += N * b.nodes[i].v;
         });
         p.x += dt * v;
-        carry_along(p.C);
+        carry_along(p.C, dt);
       }
     }
-  }
-
-  /// C -= dt sym(C C), without what would make energy as the symmetric part closes, and not where
-  /// dt C is no longer small.
-  void carry_along(Mat<double, D>& C) const {
-    Mat<double, D> S = C, square = C * C;
-    double sum = 0.0, of_S = 0.0, cube = 0.0;
-    for (int a = 0; a < D; ++a)
-      for (int c = 0; c < D; ++c) {
-        S[a][c] = (C[a][c] + C[c][a]) / 2;
-        sum += C[a][c] * C[a][c];
-        of_S += S[a][c] * S[a][c];
-      }
-    const Mat<double, D> of_closing = S * S;
-    for (int a = 0; a < D; ++a)
-      for (int c = 0; c < D; ++c) cube += S[a][c] * of_closing[a][c];
-    const double x2 = dt * dt * sum / D, part = dt * std::max(1.0 - x2 * x2, 0.0);
-    // Not of what closes slowly, which makes next to nothing: all from x^2 = 2e-5 on.
-    const double along = cube < 0.0 ? std::clamp(1e5 * x2 - 1.0, 0.0, 1.0) * cube / of_S : 0.0;
-    for (int a = 0; a < D; ++a)
-      for (int c = 0; c < D; ++c)
-        C[a][c] -= part * ((square[a][c] + square[c][a]) / 2 - along * S[a][c]);
   }
 
   /// Take away the components along the axes that walls hold at a node.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "mpm/contact/find_nodes.hpp"
+#include "mpm/contact/crowd.hpp"
 #include "mpm/run/find_failure.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/use_device.hpp"

@@ -59,7 +59,8 @@ class Manifest:
         bytes: of the core alone: particles, grid, contact, other.
         loads: see `LoadRecord`, by name.          walls: see `WallRecord`, by face.
         warnings: see `WarningRecord`.
-        notes: what was told before the first step, "note: ..." or "warning: ...".
+        notes: what was told before the first step, of settling and of the energy that numerics made
+            or lost, "note: ..." or "warning: ...".
         result_hash: see `mpm3dpp.io.result_hash`.
         contact: see `ContactRecord`.          end_time: time reached [s].
         status, reason: "completed", "interrupted" or "failed", and why.

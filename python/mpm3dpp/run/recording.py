@@ -21,6 +21,7 @@ from .checkpoints import Checkpoint, Checkpoints
 from .device import failures_of
 from .lead import background_writer, column_parts
 from .progress import Progress
+from .report import energies_made, energy_line
 from .simulation import Simulation
 from .sliced_frames import fields_of
 from .stepping import Outcome, Stepping, tell
@@ -85,7 +86,9 @@ class Recording:
         with failures_of(self._simulation.device):
             manifest = _manifest(self._simulation, status, reason, wall_time, begin)
         manifest.energies, manifest.bodies = self._history.summary(), self._history.bodies()
-        manifest.notes = self._told
+        manifest.notes = [*self._told, *self._stepping.told]
+        if energies_made(manifest)[1]:
+            manifest.notes.append(energy_line(manifest))
         manifest.write(self._folder)
         return manifest
 

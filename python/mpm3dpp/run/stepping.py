@@ -67,6 +67,7 @@ class Stepping:
         self._most = min(most, self._sums_every) if case.run.stop else most
         self._frames = deque(t for t in case.frame_times() if t > core.time)
         self._touched = _touched(core.contact_groups()) if self._contact else 0
+        self.told: list[str] = []
         self._told = len(core.warnings())  # Those of the parts of the run before.
         self._begun = False
         # The steps between the last look and the next.
@@ -162,16 +163,17 @@ class Stepping:
         core, settle = self._simulation.core, self._simulation.case.run.settle
         ratio = rows[rows[:, 1] >= 0.0, core.history_columns.index("unbalanced")][0]
         if ratio == 0.0:  # Forces that balance do so but for rounding.
-            if presses(self._simulation.case):
-                self._progress.note(
-                    "note: run.settle has pressed the interferences; no other force acts at the "
-                    "time 0, so that no ratio tells whether the bodies have come to rest"
-                )
-                return
-            self._progress.note(
+            sentence = (
                 "warning: run.settle had nothing to settle: at the time 0 no force acts on any "
                 "body that deforms and is not held; the run begins as the bodies are filled"
             )
+            if presses(self._simulation.case):
+                sentence = (
+                    "note: run.settle has pressed what is drawn into each other; no other force "
+                    "acts at the time 0, so that no ratio tells whether the bodies have come to rest"
+                )
+            self.told.append(sentence)
+            self._progress.note(sentence)
             return
         word = "settled" if settle is not None and ratio <= settle.ratio else "not settled"
         self._progress.note(f"{word}: forces out of balance are {ratio:.3g} of those applied")
