@@ -25,7 +25,7 @@ from mpm3dpp.base.neighbours import overlapping_boxes
 from mpm3dpp.case.pairs import frictions_of
 from mpm3dpp.fill.build import build
 from mpm3dpp.grains.packing import ball_volume
-from mpm3dpp.io.history import read_history
+from mpm3dpp.io import read_history
 from mpm3dpp.plots import preview
 from mpm3dpp.run.summary import echo
 
