@@ -8,16 +8,14 @@ The pages are committed; tests/python/test_reference.py fails while they differ 
 
 from __future__ import annotations
 
-import inspect
-import re
 from pathlib import Path
-from typing import Any
 
 from gallery import gallery_page
+from markdown_tables import docstring, keys_table
+from material_pages import library_page, materials_page
 from reference_python import python_page
 
 from mpm3dpp.base.damping import Damping, MaterialDamping
-from mpm3dpp.base.rules import requirement
 from mpm3dpp.case import body, case, grid, parts, transfer
 from mpm3dpp.case.detonation import Detonation
 from mpm3dpp.case.initial import Initial
@@ -28,11 +26,6 @@ from mpm3dpp.case.stop import Stop
 from mpm3dpp.grains import GrainLattice, GrainPacking, Grains
 from mpm3dpp.io import history as terms
 from mpm3dpp.io import pair_columns, part_cells
-from mpm3dpp.materials.catalogue import KINDS as MODEL_KINDS
-from mpm3dpp.materials.catalogue import catalogue
-from mpm3dpp.materials.chosen import ACTIONS
-from mpm3dpp.materials.describe import lines_for_a_case, provenance, rows
-from mpm3dpp.materials.library import NamedMaterial, library
 from mpm3dpp.shapes.base import KINDS
 
 NOTE = "Made by `tools/make_reference.py` from the code: do not edit."
@@ -72,69 +65,6 @@ TABLES: tuple[tuple[str, type, str], ...] = (
 )
 
 
-def docstring(model: type) -> tuple[str, dict[str, str]]:
-    """Return a class's docstring without its list of attributes, and the attributes' texts."""
-    text = inspect.cleandoc(model.__doc__ or "")
-    about, _, attributes = text.partition("Attributes:")
-    found: dict[str, str] = {}
-    entry = re.compile(r"^    (\w+(?:, \w+)*): (.*(?:\n {8}.*)*)", re.M)
-    for names, meaning in entry.findall(attributes):
-        for name in names.split(", "):
-            found[name] = " ".join(meaning.split()).replace("None for", "leave it out for")
-    return " ".join(about.split()), found
-
-
-def kind(schema: dict[str, Any]) -> str:
-    """Return in words what values a key of the JSON schema takes."""
-    if "enum" in schema:
-        return " ".join(f'`"{word}"`' for word in schema["enum"])
-    if "$ref" in schema:
-        return "table"
-    if schema.get("type") == "array":
-        item = schema["items"]
-        if "description" in item:
-            return f"list of 2 or 3, each {item['description']}"
-        return "list of tables" if kind(item) == "table" else f"list of {kind(item)}"
-    if "description" in schema and "type" not in schema:
-        return str(schema["description"])
-    if "anyOf" in schema:
-        return " or ".join(kind(part) for part in schema["anyOf"] if part.get("type") != "null")
-    if schema.get("type") == "integer":
-        if "maximum" in schema:
-            return f"whole number from {schema['minimum']} to {schema['maximum']}"
-        return f"whole number >= {schema['minimum']}"
-    words = {"object": "table", "string": "text", "boolean": "`true` or `false`"}
-    return words[schema["type"]]
-
-
-def default(name: str, schema: dict[str, Any], needed: bool) -> str:
-    """Return a key's default as one would write it; empty where leaving it out means none."""
-    if needed:
-        return "required"
-    value = schema.get("default")
-    if value in (None, [], "") or isinstance(value, dict):
-        return ""
-    return f"`{str(value).lower()}`" if not isinstance(value, str) else f'`"{value}"`'
-
-
-def cell(text: str) -> str:
-    """Return text that does not break a Markdown table."""
-    return text.replace("|", "\\|")
-
-
-def keys_table(model: type) -> list[str]:
-    """Return the Markdown table of the keys of a model."""
-    schema = model.model_json_schema()  # type: ignore[attr-defined]
-    _, meanings = docstring(model)
-    rows = ["| key | value | default | meaning |", "| --- | --- | --- | --- |"]
-    required = schema.get("required", [])
-    for name, entry in sorted(schema["properties"].items(), key=lambda p: p[0] not in required):
-        needed = name in required
-        cells = (f"`{name}`", kind(entry), default(name, entry, needed), meanings.get(name, ""))
-        rows.append("| " + " | ".join(cell(part) for part in cells) + " |")
-    return rows
-
-
 def case_page() -> str:
     """Return docs/reference/case.md."""
     lines = [
@@ -171,100 +101,6 @@ def case_page() -> str:
         else:
             lines += ["", *keys_table(shape)]
     return "\n".join(lines) + "\n"
-
-
-def materials_page() -> str:
-    """Return docs/reference/materials.md."""
-    lines = [
-        "# Material models",
-        f"*{NOTE}*",
-        "",
-        "The formulas: [theory](../theory/materials.md). A new model:",
-        "[Write a material](../how-to/write-a-material.md).",
-        "",
-        "A material is a density, one strength model,",
-        '`strength = { elastic = { E = "70 GPa", nu = 0.3 } }`, at most one equation of state,',
-        '`eos = { tait = { c0 = "30 m/s" } }`, and any number of failure models,',
-        '`failure = { plastic_strain = { limit = 1.5, action = "no_tension" } }`.',
-    ]
-    for kind, words in MODEL_KINDS.items():
-        plural = "equations of state" if kind == "eos" else f"{words}s"
-        lines += [
-            "",
-            f"## {plural[:1].upper()}{plural[1:]}: `{kind}`",
-        ]
-        if kind == "failure":
-            lines += ["`action` beside the parameters says what becomes of a particle that fails:"]
-            lines += [f"- `{word}`: {meaning}." for word, meaning in ACTIONS.items()]
-        lines += models_of(kind)
-    return "\n".join(lines) + "\n"
-
-
-EOS_USE = {
-    "never": "Takes no equation of state.",
-    "may": "An equation of state may give its pressure.",
-    "must": "Needs an equation of state.",
-}
-
-
-def models_of(kind: str) -> list[str]:
-    """Return the Markdown lines of all models of a kind."""
-    lines: list[str] = []
-    for name, model in catalogue(kind).items():
-        lines += ["", f"### {name}", f"{model.doc[:1].upper()}{model.doc[1:]}.", ""]
-        lines += [EOS_USE[model.eos], ""] if kind == "strength" else []
-        lines += [f"Source: {model.source}.", "", "| parameter | unit | meaning | rule | default |"]
-        lines += ["| --- | --- | --- | --- | --- |"]
-        for p in model.parameters:
-            start = "required" if p.default is None else f"{p.default:g}"
-            rule = requirement(p.rule) if p.rule else ""
-            cells = (f"`{p.name}`", p.unit or "1", p.meaning, rule, start)
-            lines.append("| " + " | ".join(cell(part) for part in cells) + " |")
-        names = ["internal_energy"] if kind == "eos" else [column.name for column in model.state]
-        stored = ", ".join(f"`{name}`" for name in names) or "nothing"
-        lines += ["", f"Stores for each particle (for `output.fields`): {stored}."]
-    return lines
-
-
-def library_page() -> str:
-    """Return docs/reference/library.md."""
-    lines = [
-        "# Named materials",
-        f"*{NOTE}*",
-        "",
-        '`library = "NAME"` in a `[material.X]` table of a case file takes one of these. Beside',
-        "it, parameters of the same model replace single numbers,",
-        '`strength = { johnson_cook = { A = "900 MPa" } }`, and another model replaces the part;',
-        '`without = ["eos"]` leaves a part out. `mpm3dpp check` and the manifest of a run have the',
-        "numbers that follow.",
-        'A material fails only where the case says so: `failure = "library"` takes the models here',
-        'with action `no_tension`; `failure = { library = { action = "erode" } }` with another.',
-        "[Check a material](../how-to/check-a-material.md) draws its curves.",
-        "",
-        "Every number has a source, in the last column. What nothing has confirmed is marked with",
-        "an asterisk: compare it with the source before a result depends on it. A number that we",
-        "do not know is not here, so some materials have no equation of state.",
-    ]
-    group = ""
-    for material in library().values():
-        if material.group != group:
-            group = material.group
-            lines += ["", f"## {group.capitalize()}"]
-        lines += material_lines(material)
-    return "\n".join(lines) + "\n"
-
-
-def material_lines(material: NamedMaterial) -> list[str]:
-    """Return the Markdown lines of a named material."""
-    lines = ["", f"### {material.name}", f"{material.title}."]
-    lines += ["", "```toml", *lines_for_a_case(material), "```", ""]
-    lines += ["| part | parameter | value | meaning | source |", "| --- | --- | --- | --- | --- |"]
-    for part, name, value, meaning, source in rows(material):
-        doubt = " *" if (f"{part.split(' ')[0]}.{name}").strip(".") in material.unconfirmed else ""
-        cells = (part, f"`{name}`", value, meaning, source + doubt)
-        lines.append("| " + " | ".join(cell(text) for text in cells) + " |")
-    lines += ["", *(f"{n}. {text}." for n, text in enumerate(provenance(material), 1))]
-    return [*lines, "", material.note] if material.note else lines
 
 
 def history_page() -> str:
@@ -317,8 +153,8 @@ def pages() -> dict[str, str]:
         "gallery.md": gallery_page(NOTE),
         "reference/case.md": case_page(),
         "reference/history.md": history_page(),
-        "reference/library.md": library_page(),
-        "reference/materials.md": materials_page(),
+        "reference/library.md": library_page(NOTE),
+        "reference/materials.md": materials_page(NOTE),
         "reference/python.md": python_page(NOTE, {name: model for name, model, _ in TABLES}),
     }
 

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from mpm3dpp import Body, Case, CaseError, Grid, Material, Run, Simulation, run_case
 from mpm3dpp.fill.advisories import notes
 from mpm3dpp.fill.build import build
-from mpm3dpp.io.history import read_history
+from mpm3dpp.io import read_history
 from mpm3dpp.shapes import (
     Box,
     Cylinder,

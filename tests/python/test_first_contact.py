@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mpm3dpp import open_results, run_case
-from mpm3dpp.io.history import read_history
+from mpm3dpp.io import read_history
 from mpm3dpp.plots import contact, space
 
 RUBBER = """

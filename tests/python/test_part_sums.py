@@ -11,7 +11,7 @@ import pytest
 
 from cases import CELL, block, materials, three_blocks
 from mpm3dpp import Case, Grid, Run, Simulation, load_case, open_results, run_case
-from mpm3dpp.io.history import read_history
+from mpm3dpp.io import read_history
 from mpm3dpp.io.part_cells import PART_COLUMNS
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"

@@ -11,7 +11,7 @@ import pytest
 
 from commands import mpm3dpp
 from mpm3dpp import Case, Simulation, open_results, run_case
-from mpm3dpp.io.history import read_history
+from mpm3dpp.io import read_history
 from mpm3dpp.io.results import Results
 from settling import HAMMER, HIT, ONLY_LOAD, hammer
 

@@ -16,7 +16,6 @@ from typing import Annotated, Any
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from mpm3dpp.base import arguments
-from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import CaseError, from_validation, key_text
 from mpm3dpp.base.errors import Path as KeyPath
 from mpm3dpp.base.model import CaseModel, Choice, Text
@@ -33,7 +32,6 @@ from .detonation import Detonation
 from .grid import CONTACT, Grid
 from .loads import Load
 from .material import Material as Material  # also for those who import it from here
-from .pairs import listed_pairs
 from .parts import Contact, Output, Run
 from .probe import Probe
 from .schema import schema_of
@@ -246,32 +244,6 @@ class Case(CaseModel):
     def viscosity_of(self, material: str) -> tuple[float, float]:
         """Return a material's quadratic and linear factors of artificial viscosity; 0, 0: none."""
         return self.material[material].viscosity_in(self.run.viscosity)
-
-    def frictions(self) -> list[tuple[int, int, float]]:
-        """Return (body, body, coefficient) of the pairs with a friction in `contact.pair`, a <= b.
-
-        Bodies are numbered; an entry of `grains` is given by its first. a == b is for the pairs
-        among its own.
-        """
-        pairs = listed_pairs(self)
-        return [(a, b, p.friction) for (a, b), p in pairs.items() if p.friction is not None]
-
-    def bonds(self) -> list[tuple[int, int]]:
-        """Return (body, body) of the bonded pairs in `contact.pair`, numbered as in `frictions`."""
-        return [ends for ends, pair in listed_pairs(self).items() if pair.bonded]
-
-    def dampings(self) -> list[tuple[Damping, list[str]]]:
-        """Return each damping of motions with the entries of `body` and `grains` that have it."""
-        found: list[tuple[Damping, list[str]]] = []
-        for name, part in self.parts().items():
-            if part.damping is None:
-                continue
-            same = next((names for damping, names in found if damping == part.damping), None)
-            if same is None:
-                found.append((part.damping, [name]))
-            else:
-                same.append(name)
-        return found
 
     def first_bodies(self) -> dict[str, int]:
         """Return the number of the first body of every entry of `body` and `grains`."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Single pairs of bodies: which of them `contact.pair` lists, and what it has wrong."""
+"""Single pairs of bodies: what `contact.pair` lists of them, and what it has wrong."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def listed_pairs(case: Case) -> dict[tuple[int, int], ContactPair]:
-    """Return what holds for pairs of bodies, by their numbers, a <= b; see `Case.frictions`."""
+    """Return what holds for pairs of bodies, by their numbers, a <= b; see `frictions_of`."""
     parts, firsts = case.parts(), case.first_bodies()
     found = {}
     for pair in sorted(case.contact.pair, key=lambda p: p.bodies is not None):
@@ -30,6 +30,21 @@ def listed_pairs(case: Case) -> dict[tuple[int, int], ContactPair]:
             if among_itself and sorted(ends) == sorted(pair.bodies or pair.materials or []):
                 found[first, second] = pair
     return dict(sorted(found.items()))
+
+
+def frictions_of(case: Case) -> list[tuple[int, int, float]]:
+    """Return (body, body, coefficient) of the pairs with a friction in `contact.pair`, a <= b.
+
+    Bodies are numbered; an entry of `grains` is given by its first. a == b is for the pairs
+    among its own.
+    """
+    pairs = listed_pairs(case)
+    return [(a, b, p.friction) for (a, b), p in pairs.items() if p.friction is not None]
+
+
+def bonds_of(case: Case) -> list[tuple[int, int]]:
+    """Return (body, body) of the bonded pairs in `contact.pair`, numbered as in `frictions_of`."""
+    return [ends for ends, pair in listed_pairs(case).items() if pair.bonded]
 
 
 def is_bonded(case: Case, first: str, second: str) -> bool:

@@ -6,8 +6,9 @@ Nothing heavy is imported here; h5py is loaded when a file is opened, vtk never.
 
 from .background import BackgroundWriter
 from .fields import Frame, frame_of
-from .history import HistoryWriter, read_history
+from .history import HistoryWriter
 from .manifest import Manifest, build_manifest
+from .read_history import read_history
 from .result_hash import result_hash
 from .results import Results, open_results
 from .stored_manifest import read_manifest

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -12,12 +11,11 @@ import numpy as np
 
 from mpm3dpp import _core
 from mpm3dpp.base.disk import make_folder
-from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.names import numbered
 
 from .pair_columns import pairs_with_columns
 from .part_cells import PartCells, Sums
-from .table import Table, check_table, whole_lines
+from .table import Table
 
 TERMS: dict[str, dict[str, str]] = _core.history_terms
 """The columns of the table, before those of pairs: `unit`, `meaning`, `role` in the balance of the
@@ -37,27 +35,11 @@ ERROR_PARTS = tuple(name for name, term in TERMS.items() if term["part_of"] == "
 
 PAIRS = "contact_pairs.csv"
 
+MOMENTUM = tuple(f"momentum_{x}" for x in "xyz")
+"""Those of the momentum of all bodies [N s]."""
+
 _AXES = ("x", "y", "z")
-_MOMENTUM = tuple(f"momentum_{x}" for x in _AXES)
-_NEEDED = ("time", "step", "dt", *ENERGIES, *_MOMENTUM)  # By summaries and pictures.
 _LARGEST = ("residual", "numerical", "external")  # of which the largest size is kept
-
-
-def has_no_history(folder: Path) -> bool:
-    """Return whether there is no table in a folder."""
-    return not any((folder / name).exists() for name in ("history.csv", PAIRS))
-
-
-def check_history(folder: Path, state: Mapping[str, Any]) -> None:
-    """Raise `CaseError` if a table has not the rows that it had, and say which.
-
-    Args:
-        folder: of the tables.
-        state: `HistoryWriter.state` then.
-    """
-    for path, known in zip((folder / "history.csv", folder / PAIRS), state["tables"], strict=True):
-        if known is not None:
-            check_table(path, known)
 
 
 class HistoryWriter:
@@ -241,7 +223,7 @@ class HistoryWriter:
 
     def _note(self, table: np.ndarray) -> None:
         column = {name: table[:, k] for name, k in self._index.items()}
-        momentum = table[:, [self._index[name] for name in _MOMENTUM]]
+        momentum = table[:, [self._index[name] for name in MOMENTUM]]
         new = self._summary
         if not new:
             new["initial"] = {name: float(column[name][0]) for name in ENERGIES}
@@ -260,46 +242,3 @@ def _three(vector: Sequence[float]) -> list[float]:
     """A vector of two or three components as three Python floats."""
     values = [float(v) for v in vector]
     return values + [0.0] * (3 - len(values))
-
-
-def read_history(path: str | Path) -> dict[str, np.ndarray]:
-    """The table as column name -> array (rows,), float64; empty cells are NaN.
-
-    A last row that a killed run left unfinished is dropped.
-
-    Args:
-        path: `history.csv` or the output folder that holds it.
-
-    Raises:
-        CaseError: the file is missing or is not a history table.
-    """
-    path = Path(path)
-    if path.is_dir():
-        path = path / "history.csv"
-    try:
-        lines = whole_lines(path)
-        rows = list(csv.reader(lines))
-        header = rows[0]
-        table = [[float(cell or "nan") for cell in row] for row in rows[1:]]
-        columns = np.array(table, dtype=float).reshape(len(table), len(header))
-    except FileNotFoundError as error:
-        raise CaseError(f"there is no file '{path}': give the output folder of a run") from error
-    except CaseError as error:
-        raise CaseError(f"'{path}' {error.rule}", error.remedy) from error
-    except UnicodeDecodeError as error:
-        raise CaseError(f"'{path}' is not a history table of mpm3dpp: it is no text") from error
-    except (OSError, ValueError, IndexError, csv.Error) as error:
-        raise CaseError(f"'{path}' is not a history table of mpm3dpp: {error}") from error
-    forces = [n[:-1] for n in header if n.startswith("contact_") and n.endswith("_x")]
-    for name in (*_NEEDED, *(n + x for n in forces for x in _AXES)):
-        if name not in header:
-            rule = (
-                f"'{path}' is not a history table of mpm3dpp, or damaged: it has no column {name}"
-            )
-            raise CaseError(rule)
-    for name in ("time", "step", "dt"):
-        wrong = np.flatnonzero(~np.isfinite(columns[:, header.index(name)]))
-        if len(wrong):
-            rule = f"'{path}' is damaged: line {wrong[0] + 2} has no number for {name}"
-            raise CaseError(rule, "take the line out, or run the case again")
-    return {name: columns[:, k] for k, name in enumerate(header)}

@@ -15,10 +15,10 @@ from mpm3dpp.base.errors import CaseError, nearest
 from .data_frames import data_frame, maybe_frame
 from .frame_file import damaged, frame_path, is_whole, read_arrays, read_info, read_table
 from .grain_results import GrainResults
-from .history import read_history
 from .one_file import arrays_of_one_file
 from .part_cells import PART_COLUMNS, PART_LIMIT, of_body
 from .probe_tables import read_probe
+from .read_history import read_history
 from .results_file import are_whole, open_file
 from .rows import FROM_VTK, is_tensor
 from .sampling import Sampling

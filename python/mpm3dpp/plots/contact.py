@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mpm3dpp.base.errors import CaseError, show
-from mpm3dpp.io.history import read_history
 from mpm3dpp.io.pair_columns import pairs_of
+from mpm3dpp.io.read_history import read_history
 from mpm3dpp.io.results import open_results
 from mpm3dpp.io.stored_manifest import stored_manifest
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from mpm3dpp.base.errors import CaseError, first_of
-from mpm3dpp.io.history import read_history
 from mpm3dpp.io.probe_tables import probe_names, read_probe
+from mpm3dpp.io.read_history import read_history
 from mpm3dpp.io.results import Results, open_results
 from mpm3dpp.io.stored_manifest import read_manifest
 

@@ -17,8 +17,8 @@ from mpm3dpp.io.checkpoint import CHECKPOINT, read_about
 from mpm3dpp.io.folders import is_run_in
 from mpm3dpp.io.foreign import is_run
 from mpm3dpp.io.forms import check_case
-from mpm3dpp.io.history import read_history
 from mpm3dpp.io.manifest import Manifest
+from mpm3dpp.io.read_history import read_history
 from mpm3dpp.io.results import Results, open_results
 from mpm3dpp.io.stored_manifest import stored_manifest
 from mpm3dpp.io.vtkhdf import RESULTS

@@ -17,7 +17,7 @@ from mpm3dpp.bench.report import progress
 from mpm3dpp.bench.worker import forget_peak
 from mpm3dpp.case.case import Case
 from mpm3dpp.case.changes import Changes, with_changes
-from mpm3dpp.io.history import read_history
+from mpm3dpp.io.read_history import read_history
 from mpm3dpp.io.results import open_results
 from mpm3dpp.io.stored_manifest import read_manifest
 from mpm3dpp.plots.frames import drawn

@@ -12,10 +12,12 @@ import numpy as np
 from mpm3dpp.base.errors import CaseError
 from mpm3dpp.base.settings import functions
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.dampings import dampings_of
 from mpm3dpp.case.detonation import lighting_times
 from mpm3dpp.case.forces import force_programs
 from mpm3dpp.case.load_pieces import add_load, pieces
 from mpm3dpp.case.motion import Motion
+from mpm3dpp.case.pairs import bonds_of, frictions_of
 from mpm3dpp.fill.initial import Overburden, start_columns
 from mpm3dpp.fill.parts import FilledPart, Particles
 from mpm3dpp.fill.slices import near_points
@@ -127,11 +129,11 @@ def add_actions(
     for name, part in case.parts().items():
         if programs := force_programs(part, masses[name]):
             core.add_body_force(numbers_of(name), programs)
-    for damping, names in case.dampings():
+    for damping, names in dampings_of(case):
         numbers = [number for name in names for number in numbers_of(name)]
         mass, local, _ = functions((damping.mass, damping.local))
         core.add_damping(numbers, mass, local)
-    for a, b, friction in case.frictions():
+    for a, b, friction in frictions_of(case):
         core.set_friction(a, b, friction)
-    for a, b in case.bonds():
+    for a, b in bonds_of(case):
         core.bond(a, b)

@@ -27,8 +27,9 @@ from mpm3dpp.io.checkpoint import (
     write_checkpoint,
 )
 from mpm3dpp.io.frame_file import frames_folder
-from mpm3dpp.io.history import PAIRS, HistoryWriter, check_history, has_no_history
+from mpm3dpp.io.history import PAIRS, HistoryWriter
 from mpm3dpp.io.probe_tables import check_probe, probe_path
+from mpm3dpp.io.read_history import check_history, has_no_history
 from mpm3dpp.io.vtkhdf import RESULTS, check_frames, has_no_results
 
 if TYPE_CHECKING:

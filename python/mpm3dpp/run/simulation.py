@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from mpm3dpp import _core
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError, RunError, nearest
 from mpm3dpp.base.machine import thread_count
@@ -18,15 +17,15 @@ from mpm3dpp.base.ours import refuse_others
 from mpm3dpp.case.case import Case
 from mpm3dpp.fill.advisories import notes, with_overlap
 from mpm3dpp.fill.build import build, warnings
-from mpm3dpp.fill.initial import overburden
 from mpm3dpp.fill.point_warnings import point_warnings
 from mpm3dpp.io.checkpoint import read_about, restore_checkpoint, write_checkpoint
 from mpm3dpp.ranks.world import World
 
-from .add_part import add_actions, add_part
+from .add_part import add_actions
+from .body_numbers import number_of, numbers_of
 from .checkpoints import check_same
-from .core_settings import core_settings
 from .device import CPU, check_device, take_device
+from .fill_core import fill_core, new_core, prepare_core
 
 
 class Simulation:
@@ -85,38 +84,19 @@ class Simulation:
         self.case, self._world = case, world
         cores = world.cores_of_rank() if world else None
         self.threads = thread_count(threads, cores)
-        entries = list(filled.parts.values())
-        self.bodies = [name for part in entries for name in part.names]
-        self.parts = [part.name for part in entries for _ in part.names]
-        self.materials = [part.material for part in entries for _ in part.names]
+        parts = filled.parts.values()
+        self.bodies = [name for part in parts for name in part.names]
+        self.parts = [part.name for part in parts for _ in part.names]
+        self.materials = [part.material for part in parts for _ in part.names]
         self.warnings = [*warnings(filled), *point_warnings(case, filled)]
         self.notes = notes(case, filled, world)
-        settings = core_settings(case, self.threads)
-        settings.execution.fused = fused
-        settings.execution.ranks = arguments.whole_number("ranks", ranks, 1, 1024)
-        for name, value in (("disorder", disorder), ("imbalance_limit", imbalance_limit)):
-            if value is not None:
-                setattr(settings.execution, name, value)
-        self.core = _core.Simulation(settings, world.for_core() if world else None)
-        used = dict.fromkeys(part.material for part in entries)
-        numbers = {name: self._add_material(name) for name in used}
-        above = overburden(case, filled, world)
-        masses = {name: float(part.masses.sum()) for name, part in filled.parts.items()}
-        drawn = filled.interferences
-        del filled
-        entries.reverse()
-        while entries:  # What the core has taken is dropped, so that memory holds it once.
-            add_part(self.core, case, entries.pop(), numbers, above, world)
+        self.core = new_core(case, self.threads, fused, disorder, imbalance_limit, ranks, world)
+        masses = fill_core(self.core, case, filled, world)
         self.is_recorded = False
         self._forced = set(arguments.texts("forced", forced))
         add_actions(self.core, case, self._numbers, masses, forced)
-        for one in drawn:
-            if one.pressed:
-                self.core.press(self._number(one.first), self._number(one.second), one.depth)
-        try:
-            self.core.prepare()
-        except ValueError as error:
-            raise self._refusal(str(error)) from None
+        drawn = filled.interferences
+        prepare_core(self.core, case, self.bodies, drawn)
         self.notes = with_overlap(self.notes, case, self.core.contact_summary(), drawn)
         self.device_seconds = 0.0
         self.take_device()
@@ -128,22 +108,6 @@ class Simulation:
             CaseError: it cannot.
         """
         self.device = take_device(self.core, self._wanted, alone=self._world is None)
-
-    def _refusal(self, sentence: str) -> CaseError:
-        """Return the mistake for what the core says of bodies that are all there."""
-        key, step = "run.time_step", self.case.run.time_step
-        if not sentence.startswith(key):
-            return CaseError(sentence, "bring the bodies together, or give larger cells")
-        rule = sentence.partition(" s ")[2]
-        remedy = "give a smaller one, or leave it out"
-        return self.case.error(("run", "time_step"), rule, remedy, value=step)
-
-    def _add_material(self, name: str) -> int:
-        material = self.case.material[name]
-        viscosity = self.case.viscosity_of(name)
-        return self.core.add_material(
-            **material.for_core(), viscosity=viscosity, damping=material.beta
-        )
 
     @property
     def time(self) -> float:
@@ -246,7 +210,7 @@ class Simulation:
             and self.case.body[body].motion is not None
         ):
             raise CaseError("has a prescribed motion", "remove motion from it", value=body)
-        number = self._number(body)
+        number = number_of(body, self.bodies)
         self.core.set_velocity(number, self._vectors("velocities", velocities, number))
 
     def set_body_force(self, body: str, forces: np.ndarray) -> None:
@@ -262,7 +226,7 @@ class Simulation:
         Raises:
             CaseError: there is no such body, it is not forced, or `forces` do not fit.
         """
-        number = self._number(body)
+        number = number_of(body, self.bodies)
         if self._forced.isdisjoint([body, self.parts[number]]):
             remedy = f'make it with Simulation(case, forced=["{body}"])'
             raise CaseError("takes no force from the program", remedy, value=body)
@@ -321,22 +285,10 @@ class Simulation:
             remedy = "give a state that was saved with this case"
             raise CaseError(error.rule, remedy, key=error.key, value=error.value) from error
 
-    def _number(self, body: str) -> int:
-        """Return the number of a single body. Raises `CaseError` if there is none of that name."""
-        if arguments.text("body", body) not in self.bodies:
-            raise CaseError("is not a body of the case", nearest(body, self.bodies), value=body)
-        return self.bodies.index(body)
-
     def _vectors(self, key: str, values: Any, number: int) -> np.ndarray:
         shape = self.core.body_particle_count(number), self.case.grid.dimension
         return arguments.finite_numbers(key, values, shape, "a row for each particle")
 
     def _numbers(self, body: str) -> list[int]:
         """Return the numbers of the bodies that a name stands for."""
-        if arguments.text("body", body) in self.case.grains:
-            first = self.case.first_bodies()[body]
-            return list(range(first, first + self.case.grains[body].count))
-        if body not in self.bodies:
-            known = [*self.bodies, *self.case.grains]
-            raise CaseError("is not a body of the case", nearest(body, known), value=body)
-        return [self.bodies.index(body)]
+        return numbers_of(body, self.bodies, self.case)

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from mpm3dpp.base.expression import Expression
 from mpm3dpp.base.time_functions import TimeFunction, highest
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.dampings import dampings_of
 from mpm3dpp.case.grid import CONTACT, FACES, GridCoarsening
 from mpm3dpp.case.initial import GEOSTATIC, Initial
 from mpm3dpp.case.initial_fields import STRESS
@@ -133,7 +134,7 @@ def condition_lines(case: Case) -> list[str]:
     for name in case.materials_used:
         if beta := case.material[name].beta:
             lines.append(f"damping of {name}: {_number(beta, 's')} times its stiffness")
-    for damping, parts in case.dampings():
+    for damping, parts in dampings_of(case):
         words = [in_words(damping.mass, "1/s")] if highest(damping.mass) else []
         words += [f"local {in_words(damping.local, '').strip()}"] if highest(damping.local) else []
         if words:

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The core of a simulation: made with a case's settings, filled with its materials and bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from mpm3dpp import _core
+from mpm3dpp.base import arguments
+from mpm3dpp.base.errors import CaseError
+from mpm3dpp.case.case import Case
+from mpm3dpp.fill.initial import overburden
+from mpm3dpp.fill.interference import Interference
+from mpm3dpp.fill.parts import Filled
+from mpm3dpp.ranks.world import World
+
+from .add_part import add_part
+from .core_settings import core_settings
+
+
+def new_core(
+    case: Case,
+    threads: int,
+    fused: bool,
+    disorder: float | None,
+    imbalance_limit: float | None,
+    ranks: int,
+    world: World | None,
+) -> Any:
+    """Return a core without bodies; the arguments are those of `Simulation`."""
+    settings = core_settings(case, threads)
+    settings.execution.fused = fused
+    settings.execution.ranks = arguments.whole_number("ranks", ranks, 1, 1024)
+    for name, value in (("disorder", disorder), ("imbalance_limit", imbalance_limit)):
+        if value is not None:
+            setattr(settings.execution, name, value)
+    return _core.Simulation(settings, world.for_core() if world else None)
+
+
+def fill_core(core: Any, case: Case, filled: Filled, world: World | None) -> dict[str, float]:
+    """Give the core the materials that are used and the bodies, which are taken out of `filled`.
+
+    Args:
+        core: without bodies.
+        case: of the simulation.
+        filled: its bodies; afterwards `filled.parts` is empty, so that memory holds them once.
+        world: processes that each give a share.
+
+    Returns:
+        The mass of each body, and of all the grains of an entry [kg; in 2D per metre].
+    """
+    used = dict.fromkeys(part.material for part in filled.parts.values())
+    numbers = {name: _add_material(core, case, name) for name in used}
+    above = overburden(case, filled, world)
+    masses = {name: float(part.masses.sum()) for name, part in filled.parts.items()}
+    for name in list(filled.parts):
+        add_part(core, case, filled.parts.pop(name), numbers, above, world)
+    return masses
+
+
+def _add_material(core: Any, case: Case, name: str) -> int:
+    """Return the number that the core gives to a material."""
+    material, viscosity = case.material[name], case.viscosity_of(name)
+    number = core.add_material(**material.for_core(), viscosity=viscosity, damping=material.beta)
+    return int(number)
+
+
+def prepare_core(
+    core: Any, case: Case, bodies: Sequence[str], drawn: Sequence[Interference]
+) -> None:
+    """Make a filled core ready to step.
+
+    Args:
+        core: with all that acts on its bodies.
+        case: of the simulation.
+        bodies: their names, in the order of their numbers.
+        drawn: which of them are drawn into each other.
+
+    Raises:
+        CaseError: the core refuses the bodies, or the step, now that all are there.
+    """
+    for one in drawn:
+        if one.pressed:
+            core.press(bodies.index(one.first), bodies.index(one.second), one.depth)
+    try:
+        core.prepare()
+    except ValueError as error:
+        raise _refusal(case, str(error)) from None
+
+
+def _refusal(case: Case, sentence: str) -> CaseError:
+    """Return the mistake for what the core says of bodies that are all there."""
+    key, step = "run.time_step", case.run.time_step
+    if not sentence.startswith(key):
+        return CaseError(sentence, "bring the bodies together, or give larger cells")
+    rule = sentence.partition(" s ")[2]
+    remedy = "give a smaller one, or leave it out"
+    return case.error(("run", "time_step"), rule, remedy, value=step)
