@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from mpm3dpp import Case, CaseError, Simulation
+from mpm3dpp import Case, CaseError, Simulation, load_case
 from mpm3dpp.fill.advisories import notes
 from mpm3dpp.fill.build import build
 
@@ -55,6 +57,7 @@ material = "e"
 shape = { box = { lower = ["-40.5 mm", "-40 mm"], upper = ["40 mm", "40 mm"] } }
 """
 )
+SETTLED = '[run.settle]\nlongest = "0.1 s"\n'
 PRESSED = '[contact]\ninterference = "pressed"\n'
 
 
@@ -125,7 +128,8 @@ def test_what_flows_is_not_pressed_without_a_word() -> None:
     text = BLOCKS.replace("[body.b]", f"[material.air]\ndensity = 1.2\n{gas}\n[body.b]")
     start = text.index("[body.b]")
     air = text[:start] + text[start:].replace('"e"', '"air"')
-    case = Case.from_text(air + '[run.settle]\nlongest = "0.1 s"\n' + PRESSED)
+    air = air.replace("[run]", "[run]\ngravity = [0, -1]")
+    case = Case.from_text(air + SETTLED + PRESSED)
     [found] = build(case).interferences
     assert not found.pressed
     [note] = [note for note in notes(case, build(case)) if "is drawn" in note]
@@ -194,3 +198,23 @@ def test_a_press_fit_has_the_pressure_of_lame() -> None:
     radial += 2 * stress[:, -1] * e[:, 0] * e[:, 1]
     lame = -pressure * a**2 / (b**2 - a**2) * (b**2 / radius**2 - 1)
     assert radial[ring].mean() == pytest.approx(lame[ring].mean(), rel=0.05)
+
+
+def test_points_are_not_pressed_without_a_word(tmp_path: Path) -> None:
+    """A body of particles has no surface that is drawn: no interference is known of it."""
+    points = "x,y\n" + "".join(f"{-0.0975 + 0.005 * k},0.0025\n" for k in range(21))
+    (tmp_path / "points.csv").write_text(points)
+    start, end = BLOCKS.index("shape"), BLOCKS.index("[body.b]")
+    text = BLOCKS[:start] + 'particles = "points.csv"\nspacing = "5 mm"\n' + BLOCKS[end:]
+    file = tmp_path / "case.toml"
+    file.write_text(text + SETTLED + PRESSED)
+    with pytest.raises(CaseError, match="needs a force .* none is drawn into another"):
+        build(load_case(file))
+    file.write_text(text.replace("[run]", "[run]\ngravity = [0, -1]") + SETTLED + PRESSED)
+    case = load_case(file)
+    [note] = [note for note in notes(case, build(case)) if "one by one" in note]
+    assert note.startswith('contact.interference = "pressed" does not hold for body.a')
+    pair = '[[contact.pair]]\nbodies = ["a", "b"]\ninterference = "pressed"\n'
+    file.write_text(text + SETTLED + pair)
+    with pytest.raises(CaseError, match=r"contact\.pair\[0\]\.interference = .* body\.a has part"):
+        load_case(file)

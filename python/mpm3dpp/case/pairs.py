@@ -101,23 +101,31 @@ def check_pressed(case: Case) -> Iterator[PydanticCustomError]:
     Yields:
         The violations, with their paths in the case.
     """
-    asked: list[tuple[Path, str | None]] = [
-        (("contact", "interference"), case.contact.interference),
+    asked: list[tuple[Path, str | None, list[str]]] = [
+        (("contact", "interference"), case.contact.interference, []),
         *(
-            (("contact", "pair", k, "interference"), pair.interference)
+            (("contact", "pair", k, "interference"), pair.interference, pair.bodies or [])
             for k, pair in enumerate(case.contact.pair)
         ),
     ]
-    for path, word in asked:
+    for path, word, names in asked:
         if word != PRESSED or not case.contact_enabled:
             continue
         if not case.has_springs:
             rule = "is for contact by springs, and here contact.response is impulses"
             yield violation(rule, 'give contact.response = "springs"', value=word, path=path)
+        elif shapeless := [name for name in names if name in case.body and _is_points(case, name)]:
+            rule = f"is for bodies with a shape, and body.{shapeless[0]} has particles one by one"
+            remedy = "give a shape, or draw them apart and move one by body.NAME.motion"
+            yield violation(rule, remedy, value=word, path=path)
         elif case.run.settle is None:
             rule = "needs a run that settles: bodies go into each other little by little before it"
             remedy = 'give run.settle = { longest = "1 ms" }, of many waves through the bodies'
             yield violation(rule, remedy, value=word, path=path)
+
+
+def _is_points(case: Case, name: str) -> bool:
+    return case.body[name].shape is None
 
 
 def check_bonds(case: Case) -> Iterator[PydanticCustomError]:

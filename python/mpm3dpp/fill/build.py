@@ -58,8 +58,8 @@ def build(case: Case, world: World | None = None) -> Filled:
     filled = fill_all(case, world)
     mistakes = [one for part in filled.parts.values() for one in box_mistakes(case, part, world)]
     mistakes += overlap_mistakes(case, filled, world)
-    mistakes += settling_mistakes(case, filled)
     filled.interferences = interferences(case)
+    mistakes += settling_mistakes(case, filled)
     if not mistakes:
         mistakes += too_deep(case, filled.interferences)
     if mistakes:

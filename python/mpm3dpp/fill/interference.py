@@ -14,6 +14,7 @@ from mpm3dpp.case.case import Case
 from mpm3dpp.case.grid import FACES as FACES_OF_BOX
 from mpm3dpp.case.matter import have_springs
 from mpm3dpp.case.pairs import is_bonded, is_pressed
+from mpm3dpp.case.parts import PRESSED
 from mpm3dpp.shapes.base import Points, Shape
 from mpm3dpp.shapes.surfaces import surface
 
@@ -140,7 +141,12 @@ def too_deep(case: Case, found: list[Interference]) -> Iterator[CaseError]:
 
 def interference_notes(case: Case, found: list[Interference]) -> list[str]:
     """Return a sentence for each interference of which no stress comes, and for those pressed."""
-    sentences = []
+    points = [name for name, body in case.body.items() if body.shape is None]
+    sentences = [
+        f'contact.interference = "pressed" does not hold for body.{name}, which has particles one '
+        "by one: where it is drawn into others surfaces are set back, without stress"
+        for name in (points if case.contact.interference == PRESSED else [])
+    ]
     for one in found:
         who = f"body.{one.second} is drawn {one.depth:.3g} m into body.{one.first}"
         if one.pressed:

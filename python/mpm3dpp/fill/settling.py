@@ -15,28 +15,31 @@ _PATH = ("run", "settle")
 
 
 def settling_mistakes(case: Case, bodies: Filled) -> list[CaseError]:
-    """Return why a case cannot settle, as bodies that have a velocity do not."""
+    """Return why a case cannot settle: bodies that have a velocity do not; no force acts."""
     held, whole = _held(case, bodies)
-    if case.run.settle is None or not held:
+    if case.run.settle is None:
         return []
-    first = key_text(case.part_path(held[0]))
-    if case.contact.bonded:
+    first = key_text(case.part_path(held[0])) if held else ""
+    if held and case.contact.bonded:
         rule = (
             f"would hold {first}, which has a velocity at the start, and contact.bonded makes all "
             "bodies move as one"
         )
         return [case.error(_PATH, rule, "bond them by [[contact.pair]], or give no velocity")]
     settling = [name for name in case.parts() if not case.is_rigid(name) and name not in whole]
-    if not settling:
+    if held and not settling:
         rule = (
             f"leaves no body to settle: all that deform have a velocity at the start ({first} is "
             "the first), and are held until t = 0"
         )
         return [case.error(_PATH, rule, "leave it out, or give another body that settles")]
-    if not acts_at_first(case, settling) and not presses(case):
+    pressed = any(one.pressed for one in bodies.interferences)
+    if settling and not acts_at_first(case, settling) and not pressed:
         rule = (
             f"needs a force on the bodies that settle ({', '.join(settling)}): at the time 0 no "
-            f"gravity, load or body force acts on them, and {first} is held until then"
+            "gravity, load or body force acts on them"
+            + (f", and {first} is held until then" if held else "")
+            + (", and none is drawn into another to be pressed" if presses(case) else "")
         )
         return [case.error(_PATH, rule, "give one, or remove it")]
     return []

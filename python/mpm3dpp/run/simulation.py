@@ -54,6 +54,7 @@ class Simulation:
         bodies: the bodies' names, in the order of their numbers; those of grains come last.
         parts: of each body, the name of its entry in the case: its own, or that of its grains.
         warnings, notes: sentences about the case, for the user.
+        presses: whether bodies are pressed into each other while it settles.
         is_recorded: whether a run is being written, which takes the history.
         device: who makes the steps, `mpm3dpp.run.device.Device`.
         device_seconds: that a device has taken for steps [s].
@@ -96,6 +97,7 @@ class Simulation:
         self._forced = set(arguments.texts("forced", forced))
         add_actions(self.core, case, self._numbers, masses, forced)
         drawn = filled.interferences
+        self.presses = any(one.pressed for one in drawn)
         prepare_core(self.core, case, self.bodies, drawn)
         self.notes = with_overlap(self.notes, case, self.core.contact_summary(), drawn)
         self.device_seconds = 0.0

@@ -12,7 +12,6 @@ import numpy as np
 
 from mpm3dpp.base.errors import RunError
 from mpm3dpp.base.signals import Notice, sentence
-from mpm3dpp.case.pairs import presses
 from mpm3dpp.io.background import BackgroundWriter
 from mpm3dpp.io.history import HistoryWriter
 from mpm3dpp.io.manifest import Status
@@ -167,10 +166,10 @@ class Stepping:
                 "warning: run.settle had nothing to settle: at the time 0 no force acts on any "
                 "body that deforms and is not held; the run begins as the bodies are filled"
             )
-            if presses(self._simulation.case):
+            if self._simulation.presses:
                 sentence = (
-                    "note: run.settle has pressed what is drawn into each other; no other force "
-                    "acts at the time 0, so that no ratio tells whether the bodies have come to rest"
+                    "note: run.settle has pressed the interferences; no other force acts at the "
+                    "time 0, so that no ratio tells whether the bodies have come to rest"
                 )
             self.told.append(sentence)
             self._progress.note(sentence)
