@@ -208,7 +208,7 @@ def test_points_are_not_pressed_without_a_word(tmp_path: Path) -> None:
     text = BLOCKS[:start] + 'particles = "points.csv"\nspacing = "5 mm"\n' + BLOCKS[end:]
     file = tmp_path / "case.toml"
     file.write_text(text + SETTLED + PRESSED)
-    with pytest.raises(CaseError, match="needs a force .* none is drawn into another"):
+    with pytest.raises(CaseError, match=r"needs a force .* none is drawn into another"):
         build(load_case(file))
     file.write_text(text.replace("[run]", "[run]\ngravity = [0, -1]") + SETTLED + PRESSED)
     case = load_case(file)

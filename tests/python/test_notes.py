@@ -237,7 +237,7 @@ def test_bodies_that_overlap_at_the_start() -> None:
     assert Simulation(Case.from_text(CASE + LIT)).notes == []
     disc = 'shape = { disc = { centre = ["5.8 mm", "2 mm"], radius = "2 mm" } }'
     [note] = Simulation(Case.from_text(CASE.replace(box, disc) + LIT)).notes
-    assert "is drawn 0.0002 m into body.charge" in note and "surfaces are set back" in note
+    assert "is drawn 0.0002 m into body.charge" in note and "one of them flows" in note
 
 
 def test_a_body_of_few_cells() -> None:

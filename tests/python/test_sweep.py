@@ -225,3 +225,6 @@ def test_a_mistake_in_a_changed_key_names_no_line_of_the_file(tmp_path: Path) ->
     done = mpm3dpp("check", "case.toml", "--set", "run.cfl=7", cwd=tmp_path)
     assert done.returncode == 2
     assert "case.toml as changed: run.cfl = 7 must obey 0 < f <= 1" in done.stderr
+    done = mpm3dpp("check", "case.toml", "--set", "foo.bar=3", cwd=tmp_path)  # No table of it.
+    assert done.returncode == 2
+    assert "case.toml as changed: foo is not a known key" in done.stderr

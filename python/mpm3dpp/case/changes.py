@@ -50,7 +50,8 @@ def _made(case: Case, changes: Changes) -> Case:
             for above, part in zip(("", *key), key, strict=False)
         )
         lines = {at: line for at, line in lines.items() if at[: len(path)] != path}
-        lines[path] = case_file.CHANGED
+        for length in range(1, len(path) + 1):  # Tables that the file has not, too.
+            lines.setdefault(path[:length], case_file.CHANGED)
     found = type(case).from_tables(tables, name, lines)
     found._text, found._changes = case._text, dict(changes)
     return found
