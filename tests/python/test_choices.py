@@ -162,3 +162,14 @@ def test_an_affine_transfer_on_another_basis_is_refused() -> None:
     text = CASE.format(preset="", grid='basis = "gimp"', run='transfer = "aflip"')
     with pytest.raises(CaseError, match="does not go with grid"):
         Case.from_text(text)
+
+
+def test_a_picture_is_of_the_pressure_where_all_that_deforms_flows() -> None:
+    """A plate that does not deform, as its motion is given, has no stress to be seen."""
+    text = CASE.format(preset="", grid="", run="") + WET
+    assert Case.from_text(text).output.picture == "von_mises"
+    fixed = text.replace(
+        '[body.disc]\nmaterial = "soft"', '[body.disc]\nmotion = "fixed"\nmaterial = "soft"'
+    )
+    assert fixed != text
+    assert Case.from_text(fixed).output.picture == "pressure"

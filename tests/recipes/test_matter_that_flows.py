@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from mpm3dpp import Case, RunError, Simulation
+from mpm3dpp.fill.gas_notes import gas_notes
 from mpm3dpp.fill.response_notes import response_notes
 from turning import balance
 
@@ -360,12 +361,14 @@ def test_check_tells_of_a_gas_without_viscosity_and_at_walls_that_are_contact() 
         "material": {"hot": gas(25e6, 10.0)},
         "body": {"charge": {"material": "hot", "shape": disc}},
     }
-    told = response_notes(Case.model_validate(tables))
+    case = Case.model_validate(tables)
+    told = [*gas_notes(case), *response_notes(case)]
     assert any("material.hot is a gas without artificial viscosity" in one for one in told)
     assert any('give grid.box.walls = "slip"' in one for one in told)
     del tables["run"]["viscosity"]
     walls["walls"] = "slip"
-    assert not response_notes(Case.model_validate(tables))
+    case = Case.model_validate(tables)
+    assert not gas_notes(case) and not response_notes(case)
 
 
 def test_energy_that_the_transfer_makes_stops_a_run() -> None:

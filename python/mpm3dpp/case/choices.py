@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from mpm3dpp import _core
 from mpm3dpp.base.model import CaseModel, plain
+from mpm3dpp.materials.catalogue import catalogue
 
 from .transfer import Transfer
 
@@ -57,9 +58,10 @@ def with_picture(case: Case) -> dict[str, Output]:
 
 def has_fluids_alone(case: Case) -> bool:
     """Return whether all that deforms bears no shear, or next to none."""
-    parts = [name for name, part in case.parts().items() if part.material in case.material]
-    deforming = [name for name in parts if not case.is_rigid(name)]
-    return bool(deforming) and all(case.flows(name) for name in deforming)
+    free = [part for part in case.parts().values() if getattr(part, "motion", None) is None]
+    used = [case.material[part.material] for part in free if part.material in case.material]
+    strengths = {material.strength.model for material in used} - {"rigid"}
+    return bool(strengths) and all(catalogue()[name].flows for name in strengths)
 
 
 def _run(run: Run, basis: str) -> Run:
