@@ -55,12 +55,13 @@ template <int D>
 void cut_blocks(TileGrid<D>& grid, Threads& threads) {
   if (!find_shapes(grid, threads) && grid.blocks_known) return;
   grid.blocks_known = true;
-  std::size_t needed = 0;
+  std::size_t needed = 0, kept = 0;
   grid.patches_with_particles = grid.records_with_particles = 0;
   for (Patch<D>& patch : grid.patches) {
     // One behind another in the order of the patches. Nothing in a block outlives a step, so they
-    // may move freely (decision 0013).
-    patch.memory = needed;
+    // may move freely (decision 0013). Those that keep their nodes stay where they are, as their
+    // patches and cells do.
+    patch.memory = patch.keeps ? kept : needed;
     patch.at_wall = box_touches_wall(grid, patch);
     if (patch.occupied != 0) {
       ++grid.patches_with_particles;
@@ -68,10 +69,15 @@ void cut_blocks(TileGrid<D>& grid, Threads& threads) {
       const int own = BlockShape<D>::around(patch.occupied, grid.reach()).node_count;
       grid.records_with_particles += grid.numbers_of_block(own, patch.at_wall) / record;
     }
-    needed += grid.numbers_of_block(patch.shape.node_count, patch.at_wall);
+    if (patch.keeps)
+      kept += grid.numbers_kept(patch.shape.node_count);
+    else
+      needed += grid.numbers_of_block(patch.shape.node_count, patch.at_wall);
   }
   grid.nodes.needed = needed;
   make_room(grid.nodes.numbers, needed, needed + needed / 16);
+  grid.kept.needed = kept;
+  make_room(grid.kept.numbers, kept, kept);
   threads.for_each(grid.patches.size(), [&](std::size_t p) {
     Patch<D>& patch = grid.patches[p];
     if (patch.primary != p) patch.owned.fill(0);

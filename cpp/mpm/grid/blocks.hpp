@@ -14,6 +14,7 @@ void cut_blocks(TileGrid<D>& grid, Threads& threads);
 template <int D>
 void release_nodes(TileGrid<D>& grid) {
   grid.nodes.numbers.release_and_allocate(0);
+  grid.kept.numbers.release_and_allocate(0);
   grid.shared.entries.release_and_allocate(0);
   grid.shared.used = 0;
 }

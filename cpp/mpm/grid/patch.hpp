@@ -19,6 +19,7 @@ struct NodeBlock {
   NodeRecords records;
   int count;
   WallRecords springs{nullptr};  // behind records and dashpots, if it is at a wall that touches
+  HalfRecords displacements{nullptr};  // behind the records, of a patch that keeps its nodes [m]
   NodeField<record> mass() const { return {records.data + mass_at}; }                   // [kg]
   NodeField<record> momentum(int a) const { return {records.data + momentum_at + a}; }  // [kg m/s]
   NodeField<record> velocity(int a) const { return {records.data + velocity_at + a}; }  // [m/s]
@@ -64,6 +65,7 @@ struct Patch {
                           // primary; none of a secondary one
   SharedNodes<D> shared;  // of a primary; of others it means nothing
   bool at_wall = false;   // its block has nodes on a wall, or next to one that touches
+  bool keeps = false;       // its nodes keep their displacements and velocities
   bool left_cell = false;   // a particle has left its cell since the lists were made
   bool in_contact = false;  // its block may have nodes where bodies meet
   bool foreign = false;     // of another rank (partition.hpp): it has nodes here, but no particles

@@ -12,9 +12,10 @@ void list_shared_nodes(TileGrid<D>& grid, Threads& threads);
 
 /// Add up what the patches sharing a node have put there, for numbers [first, last) of the records,
 /// half a record or a whole, always in the order of the tiles (of bonded bodies in one tile: of the
-/// bodies); then every patch holds the sum.
+/// bodies); then every patch holds the sum. With `kept` those that keep their nodes as well, of
+/// which the last half of these is summed: their first half is no sum, but what they keep.
 template <int D>
-void sum_shared_nodes(TileGrid<D>& grid, Threads& threads, int first, int last);
+void sum_shared_nodes(TileGrid<D>& grid, Threads& threads, int first, int last, bool kept = true);
 /// The same for what walls need of the nodes, if they do: dashpots, springs.
 template <int D>
 void sum_shared_at_walls(TileGrid<D>& grid, Threads& threads);

@@ -58,8 +58,8 @@ void sum_nodes_of(TileGrid<D>& grid, const Patch<D>& patch, F&& begin_of) {
   });
 }
 
-template <int halves, int width, int D, class F>
-void sum_shared(TileGrid<D>& grid, Threads& threads, F&& begin_of) {
+template <int halves, int width, int D, class F, class Keeping>
+void sum_shared(TileGrid<D>& grid, Threads& threads, F&& begin_of, Keeping&& sum_keeping) {
   /// f(p's half record, q's) for the nodes that both hold.
   const auto each_quad = [&](const Patch<D>& p, const Patch<D>& q, auto&& f) {
     const Nodes<width> of_p{begin_of(p)}, of_q{begin_of(q)};
@@ -79,7 +79,11 @@ void sum_shared(TileGrid<D>& grid, Threads& threads, F&& begin_of) {
   });
   // All entries of a node are read and written by the one patch that owns it.
   threads.for_each(grid.primaries.size(), [&](std::size_t k) {
-    sum_nodes_of<halves, width>(grid, grid.patches[grid.primaries[k]], begin_of);
+    const Patch<D>& patch = grid.patches[grid.primaries[k]];
+    if (patch.keeps)
+      sum_keeping(patch);
+    else
+      sum_nodes_of<halves, width>(grid, patch, begin_of);
   });
   for_each_secondary(grid, threads, [&](const Patch<D>& patch, const Patch<D>& primary) {
     each_quad(patch, primary,
@@ -90,26 +94,32 @@ void sum_shared(TileGrid<D>& grid, Threads& threads, F&& begin_of) {
 }  // namespace
 
 template <int D>
-void sum_shared_nodes(TileGrid<D>& grid, Threads& threads, int first, int last) {
-  const auto begin_of = [&](const Patch<D>& p) { return grid.block(p).records.data + first; };
+void sum_shared_nodes(TileGrid<D>& grid, Threads& threads, int first, int last, bool kept) {
+  const auto from = [&](int number) {
+    return [&grid, number](const Patch<D>& p) { return grid.block(p).records.data + number; };
+  };
+  const auto keeping = [&](const Patch<D>& patch) {
+    if (kept) sum_nodes_of<1, record>(grid, patch, from(last - half_record));
+  };
   if (last - first == record)
-    sum_shared<2, record>(grid, threads, begin_of);
+    sum_shared<2, record>(grid, threads, from(first), keeping);
   else
-    sum_shared<1, record>(grid, threads, begin_of);
+    sum_shared<1, record>(grid, threads, from(first), keeping);
 }
 
 template <int D>
 void sum_shared_at_walls(TileGrid<D>& grid, Threads& threads) {
+  const auto none = [](const Patch<D>&) {};
   if (grid.has_dashpots)
-    sum_shared<1, half_record>(grid, threads,
-                               [&](const Patch<D>& p) { return grid.block(p).dashpots().data; });
+    sum_shared<1, half_record>(
+        grid, threads, [&](const Patch<D>& p) { return grid.block(p).dashpots().data; }, none);
   if (grid.has_wall_springs)
-    sum_shared<3, wall_record>(grid, threads,
-                               [&](const Patch<D>& p) { return grid.block(p).springs.data; });
+    sum_shared<3, wall_record>(
+        grid, threads, [&](const Patch<D>& p) { return grid.block(p).springs.data; }, none);
 }
 
-template void sum_shared_nodes<2>(TileGrid<2>&, Threads&, int, int);
-template void sum_shared_nodes<3>(TileGrid<3>&, Threads&, int, int);
+template void sum_shared_nodes<2>(TileGrid<2>&, Threads&, int, int, bool);
+template void sum_shared_nodes<3>(TileGrid<3>&, Threads&, int, int, bool);
 template void sum_shared_at_walls<2>(TileGrid<2>&, Threads&);
 template void sum_shared_at_walls<3>(TileGrid<3>&, Threads&);
 

@@ -27,18 +27,28 @@ struct TileGrid : GridGeometry<D> {
 
   // Made by cut_blocks().
   NodeMemory nodes;
+  NodeMemory kept;  // of the patches that keep their nodes
   SharedLists<D> shared;
   std::vector<std::uint8_t> reshaped;  // scratch: of each patch, its block is another than before
   std::size_t patches_with_particles = 0, records_with_particles = 0;  // records: of their nodes
   bool blocks_known = false;  // the blocks are those of the patches there are
 
   NodeBlock<D> block(const Patch<D>& patch) {
-    double* const begin = nodes.numbers.data() + patch.memory;
     const int count = patch.shape.node_count;
+    if (patch.keeps) {
+      double* const first = kept.numbers.data() + patch.memory;
+      return {{first}, count, {nullptr}, {first + std::ptrdiff_t{count} * record}};
+    }
+    double* const begin = nodes.numbers.data() + patch.memory;
     const bool touches = has_wall_springs && patch.at_wall;
     return {{begin}, count, {touches ? begin + numbers_before_springs(count) : nullptr}};
   }
   NodeBlock<D> block(std::size_t patch) { return block(patches[patch]); }
+  /// Of a block that keeps its nodes: records, then displacements.
+  static std::size_t numbers_kept(int count) {
+    const auto nodes = static_cast<std::size_t>(count);
+    return record * (nodes + (nodes + 1) / 2);
+  }
   /// Of a block of so many nodes, in whole cache lines: all, and those before the springs of walls.
   std::size_t numbers_of_block(int count, bool at_wall) const {
     const auto nodes = static_cast<std::size_t>(count);
@@ -67,7 +77,7 @@ std::size_t all_patches(const TileGrid<D>& grid) {
 /// What they have taken.
 template <int D>
 std::size_t bytes_of(const TileGrid<D>& grid) {
-  return grid.nodes.numbers.bytes() + grid.shared.entries.bytes() +
+  return grid.nodes.numbers.bytes() + grid.kept.numbers.bytes() + grid.shared.entries.bytes() +
          grid.patches.capacity() * sizeof(Patch<D>);
 }
 

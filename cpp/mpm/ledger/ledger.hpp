@@ -144,7 +144,8 @@ struct Ledger {
     damped += s.stress.damped - (s.damping_first + s.damping_second);
     const double second = s.second_order - s.gravity_second - s.load_second - s.dashpot_second -
                           s.wall_push.second - s.wall_friction.second - s.damping_second;
-    const double at_end = forces_follow ? 0.0 : 2.0 * second;
+    // Bodies on nodes of their own strain with velocities at the end of the step, whatever others do.
+    const double at_end = 2.0 * (forces_follow ? s.kept_second : second);
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
     averaging -= s.stress.averaging;
     transferred += s.transferred + s.carried + s.unseen - s.returned;

@@ -27,6 +27,8 @@ struct PatchSums {
   StressSums stress;
   double kinetic = 0.0;       // of the particles after the step [J]
   double second_order = 0.0;  // half sum of m_p (sum of dv_i N_ip)^2 [J]
+  // Of nodes in bodies what second_order has of internal and contact forces [J].
+  double kept_second = 0.0;
   double transferred = 0.0;   // kinetic energy that the transfer has taken against FLIP; of affine
                               // transfers all that particles lack against the start of the step [J]
   double carried = 0.0;       // kinetic energy that affine parts lose as they are carried along [J]
@@ -62,6 +64,7 @@ struct PatchSums {
                             &stress.averaging,
                             &kinetic,
                             &second_order,
+                            &kept_second,
                             &transferred,
                             &carried,
                             &returned,
@@ -92,7 +95,7 @@ struct PatchSums {
       f(prescribed.impulse[a]);
     }
   }
-  static constexpr std::size_t numbers = 33 + 3 * D;  // of for_each
+  static constexpr std::size_t numbers = 34 + 3 * D;  // of for_each
 };
 
 /// The sums over all patches of all ranks, which depend on no order.

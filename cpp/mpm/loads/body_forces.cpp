@@ -24,7 +24,7 @@ void for_each_weight(const Domain<D>& domain, const Patch<D>& patch, F&& f) {
         const std::uint32_t row = cell.rows[k];
         AxisWeights<double, B::nodes> w[D];
         for (int a = 0; a < D; ++a)
-          w[a] = basis.along(local_coordinate(grid.in_cells(pool.x(a)[row], a),
+          w[a] = basis.along(local_coordinate(grid.in_cells(pool.listed(a)[row], a),
                                               cell.cell[static_cast<std::size_t>(a)]));
         for_each_index<D>(low, high, [&](const Index<D>& i) {
           double N = 1.0;
@@ -89,7 +89,7 @@ Vector3 angular_impulse(const Domain<D>& domain, const Patch<D>& patch, const Pa
 template <int D>
 void add_body_forces(Domain<D>& domain) {
   if (!domain.has_body_forces()) return;
-  for_each_patch(domain, deformable, [&](std::size_t p) {
+  for_each_patch(domain, deformable | in_body, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     const int number = domain.body_of(patch).force;
     if (number < 0) return;

@@ -47,7 +47,7 @@ template <int at, int D>
         for_each_piece(l, pool, cell, [&](std::uint32_t row, SurfacePiece<D>& piece) {
           Vec<double, D> xi;
           for (int a = 0; a < D; ++a)
-            xi[a] = local_coordinate(grid.in_cells(pool.x(a)[row], a), cell.cell[a]);
+            xi[a] = local_coordinate(grid.in_cells(pool.listed(a)[row], a), cell.cell[a]);
           const auto w = weights_at(basis, xi);
           const auto gradients = nodes.template gradients<at>(w);
           Mat<double, D> L;

@@ -60,6 +60,7 @@ struct StressSettings {
   BulkViscosity viscosity;
   bool
       forces_follow;  // USF: this step's forces use the new stress; else they have used the old one
+  bool in_space = true;  // the nodes: the time step heeds how fast particles pass them
 };
 
 /// What the ledger and the time step need from a block; energies in J.

@@ -59,13 +59,15 @@ class StressWriter {
     dissipated_ += select(valid, lost, T(0.0));
     force_power_ += select(valid, used, T(0.0));
 
-    Vec<T, D> v;
-    for (int a = 0; a < D; ++a) v[a] = group.read(columns_.velocity[a]);
     T speed = after.speed;
     if (columns_.damping_stress[0])
       speed = speed_with_damping(material_, speed, volume_change.after / volume_change.mass,
                                  settings_.cell_size);
-    speed += sqrt(dot(v, v));
+    if (settings_.in_space) {
+      Vec<T, D> v;
+      for (int a = 0; a < D; ++a) v[a] = group.read(columns_.velocity[a]);
+      speed += sqrt(dot(v, v));
+    }
     // What flows must not change its volume by more than a wave's way in a step allows.
     if (with_eos && columns_.growth_limit)
       speed = max(speed,

@@ -18,6 +18,7 @@ enum class BodyKind : std::uint8_t {
   deformable,  // each its own forces
   rigid,       // as one, those of all (Newton, Euler)
   prescribed,  // as one, Body::motion, whatever acts on them
+  material,    // as deformable, on nodes that lie in the body and keep their motion
 };
 
 /// The particles of a body as the user gives them, until they are in a pool: a rank's share, then
@@ -69,7 +70,9 @@ struct Body {
   /// Of its particles, until they go to the ranks of their tiles.
   Share share() const { return given ? given->share : Share{}; }
   std::size_t active() const { return count - removed; }
-  bool deforms() const { return kind == BodyKind::deformable; }
+  bool deforms() const { return kind == BodyKind::deformable || keeps_nodes(); }
+  /// Do its nodes keep their displacements and velocities (step/material_frame.hpp)?
+  bool keeps_nodes() const { return kind == BodyKind::material; }
   bool is_prescribed() const { return kind == BodyKind::prescribed; }
   bool is_free_rigid() const { return kind == BodyKind::rigid; }
 };

@@ -33,13 +33,14 @@ std::uint64_t key_of(const Index<D>& tile, int cell) {
 
 /// Add the patches of a body, whose particles are given by key and number, with their lists.
 template <int D>
-void add_patches(TileGrid<D>& grid, int body, const ParticlePool<D>& pool,
+void add_patches(TileGrid<D>& grid, int body, bool keeps, const ParticlePool<D>& pool,
                  const std::vector<Key>& keys, std::vector<std::uint32_t>& order) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    const auto [tile, cell] = grid.tile_and_cell(pool.position_of(keys[i].row));
+    const auto [tile, cell] = grid.tile_and_cell(pool.listed_of(keys[i].row));
     if (i == 0 || grid.patches.back().tile != tile) {
       Patch<D>& made = grid.patches.emplace_back();
       made.body = body;
+      made.keeps = keeps;
       made.tile = tile;
       made.begin = static_cast<std::uint32_t>(order.size());
     }
@@ -90,7 +91,7 @@ void place_anchor(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     for (const Patch<D>& patch : grid.patches) {
       const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
       const ParticlePool<D>& pool = pools[static_cast<std::size_t>(body.material)];
-      for (const std::uint32_t row : pool.rows(patch)) f(body, pool.position_of(row));
+      for (const std::uint32_t row : pool.rows(patch)) f(body, pool.listed_of(row));
     }
   });
 }
@@ -116,13 +117,13 @@ void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
     const auto m = static_cast<std::size_t>(bodies[b].material);
     std::vector<Key> keys;
     for_each_active_row(before, pools[m], static_cast<int>(b), [&](std::uint32_t row) {
-      const auto [tile, cell] = grid.tile_and_cell(pools[m].position_of(row));
+      const auto [tile, cell] = grid.tile_and_cell(pools[m].listed_of(row));
       keys.push_back({key_of<D>(tile, cell), pools[m].id[row], row});
     });
     // By number within a cell: sums over its particles have one order wherever rows lie (decision
     // 0033).
     std::ranges::sort(keys, {}, [](const Key& k) { return std::pair(k.value, k.id); });
-    add_patches(grid, static_cast<int>(b), pools[m], keys, orders[m]);
+    add_patches(grid, static_cast<int>(b), bodies[b].keeps_nodes(), pools[m], keys, orders[m]);
   }
   for (std::size_t m = 0; m < pools.size(); ++m) {
     pools[m].used = orders[m].size();

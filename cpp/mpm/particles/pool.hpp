@@ -20,9 +20,11 @@ struct RemovedRow {
   int body;
 };
 
-/// What a transfer keeps of particles beside their velocity.
+/// What a transfer keeps of particles beside their velocity; or what bodies that keep their nodes
+/// do in its place.
 struct TransferColumns {
   bool affine = false, unseen = false;  // the affine part; what a filter takes of the velocity
+  bool reference = false;               // places in the body, and its deformation
 };
 
 template <int D>
@@ -34,6 +36,9 @@ struct ParticlePool {
   int unseen = -1;          // what a filter takes of the velocity [m/s], D; -1: none
   int body_force = -1;      // force per mass [m/s^2], D components; -1: none
   int start_position = -1;  // [m], D components; -1: none
+  // Of bodies that keep their nodes: the place X among these [m], D, and F = dx/dX, D x D; -1: of
+  // others, whose nodes lie in space.
+  int reference = -1, deformation = -1;
   int set_back = -1;  // share of half its edge that the surface is set back in contact; -1: none
   Matter matter = Matter::solid;     // of its material
   double sound_speed = 0.0;          // of its material at the start [m/s]
@@ -68,6 +73,19 @@ struct ParticlePool {
     for (int a = 0; a < D; ++a) place[a] = x(a)[row];
     return place;
   }
+
+  /// The place by which particles have their cell and weights: in space, or in the body.
+  const double* listed(int a) const {
+    return columns.component((reference < 0 ? position : reference) + a);
+  }
+  Vec<double, D> listed_of(std::size_t row) const {
+    Vec<double, D> place;
+    for (int a = 0; a < D; ++a) place[a] = listed(a)[row];
+    return place;
+  }
+  /// Component F_ij of the deformation gradient, k = D i + j.
+  double* deformation_part(int k) { return columns.component(deformation + k); }
+  const double* deformation_part(int k) const { return columns.component(deformation + k); }
 
   /// The rows of a patch's particles.
   std::span<const std::uint32_t> rows(const Patch<D>& patch) const {

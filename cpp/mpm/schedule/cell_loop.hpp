@@ -45,7 +45,7 @@ template <int D>
 class LocalPosition {
  public:
   LocalPosition(const TileGrid<D>& grid, const ParticlePool<D>& pool) : cells_(grid.coordinates()) {
-    for (int a = 0; a < D; ++a) x_[a] = pool.x(a);
+    for (int a = 0; a < D; ++a) x_[a] = pool.listed(a);
   }
   template <class Rows>
   auto operator()(const CellRange<D>& cell, const Rows& rows) const {

@@ -12,18 +12,18 @@ namespace mpm {
 /// nodes for all of them, as cells are centred at the nodes (decision 0022). So particles can be
 /// the lanes, and each number of a node is loaded once for all of them and repeated (decision
 /// 0024).
-template <int D, int count>
+template <int D, int count, int width = record>
 class NodalField {
  public:
-  /// `first`: the records from the first node in reach on.
-  MPM_HD NodalField(const NodeRecords& first, const NodeStrides<D>& stride)
+  /// `first`: the records from the first node in reach on, or halves of them.
+  MPM_HD NodalField(const Nodes<width>& first, const NodeStrides<D>& stride)
       : first_(first), stride_(stride) {}
 
   /// The vector at number `at` of the records.
   template <int at, class T>
   MPM_HD Vec<T, D> vector(const Weights<T, D, count>& w) const {
     Vec<T, D> total = Vec<T, D>::zero();
-    for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
+    for_each_row([&](auto y, auto z, const Nodes<width>& row) MPM_INLINE {
       // Along x first: N_y N_z is then multiplied in once a row, not at every node. Rows come y
       // within z in all instances, so that the sum has one order.
       T share = w.axis[1].N[y];
@@ -65,23 +65,17 @@ class NodalField {
   template <int at, class T>
   MPM_HD std::array<Vec<T, D>, D> gradients(const Weights<T, D, count>& w) const {
     std::array<Vec<T, D>, D> g;
-    g.fill(Vec<T, D>::zero());
-    for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
-      // d/dx, d/dy, d/dz of N_x N_y N_z: of each row two sums along x are enough, with N and with
-      // dN, as the other factors are one for the row. 270 operations in 3D and 48 in 2D for all
-      // particles in the lanes (decision 0024).
-      T N = w.axis[1].N[y], dy = w.axis[1].dN[y], dz(0.0);
-      if constexpr (D == 3) {
-        dz = N * w.axis[D - 1].dN[z];
-        N *= w.axis[D - 1].N[z];
-        dy *= w.axis[D - 1].N[z];
-      }
-      unrolled<D>([&](auto i) MPM_INLINE {
-        const T value = along(row.at(at + i), w.axis[0].N);
-        g[i][0] = fma(N, along(row.at(at + i), w.axis[0].dN), g[i][0]);
-        g[i][1] = fma(dy, value, g[i][1]);
-        if constexpr (D == 3) g[i][2] = fma(dz, value, g[i][2]);
-      });
+    sum_gradients<at>(w, g, [](auto, const T&, const T&) MPM_INLINE {});
+    return g;
+  }
+  /// The vector as well.
+  template <int at, class T>
+  MPM_HD std::array<Vec<T, D>, D> value_and_gradients(const Weights<T, D, count>& w,
+                                                      Vec<T, D>& total) const {
+    std::array<Vec<T, D>, D> g;
+    total = Vec<T, D>::zero();
+    sum_gradients<at>(w, g, [&](auto i, const T& N, const T& value) MPM_INLINE {
+      total[i] = fma(N, value, total[i]);
     });
     return g;
   }
@@ -95,7 +89,7 @@ class NodalField {
     for (auto& row : moments.c)
       for (T& each : row) each = T(0.0);
     // As gradients, with M in place of dN; the sums along x with N serve the value too.
-    for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
+    for_each_row([&](auto y, auto z, const Nodes<width>& row) MPM_INLINE {
       T N = w.axis[1].N[y], My = M.axis[1][y], Mz(0.0);
       if constexpr (D == 3) {
         Mz = N * M.axis[D - 1][z];
@@ -113,11 +107,35 @@ class NodalField {
   }
 
  private:
+  /// Derivatives along the axes, and f(i, N, sum along x of component i) for each row of nodes.
+  template <int at, class T, class F>
+  MPM_HD MPM_INLINE void sum_gradients(const Weights<T, D, count>& w, std::array<Vec<T, D>, D>& g,
+                                       F&& f) const {
+    g.fill(Vec<T, D>::zero());
+    for_each_row([&](auto y, auto z, const Nodes<width>& row) MPM_INLINE {
+      // d/dx, d/dy, d/dz of N_x N_y N_z: of each row two sums along x are enough, with N and with
+      // dN, as the other factors are one for the row. 270 operations in 3D and 48 in 2D for all
+      // particles in the lanes (decision 0024).
+      T N = w.axis[1].N[y], dy = w.axis[1].dN[y], dz(0.0);
+      if constexpr (D == 3) {
+        dz = N * w.axis[D - 1].dN[z];
+        N *= w.axis[D - 1].N[z];
+        dy *= w.axis[D - 1].N[z];
+      }
+      unrolled<D>([&](auto i) MPM_INLINE {
+        const T value = along(row.at(at + i), w.axis[0].N);
+        g[i][0] = fma(N, along(row.at(at + i), w.axis[0].dN), g[i][0]);
+        g[i][1] = fma(dy, value, g[i][1]);
+        f(i, N, value);
+        if constexpr (D == 3) g[i][2] = fma(dz, value, g[i][2]);
+      });
+    });
+  }
   /// sum N_i f(record of the node).
   template <class T, class F>
   MPM_HD T sum_of(const Weights<T, D, count>& w, F&& f) const {
     T total(0.0);
-    for_each_row([&](auto y, auto z, const NodeRecords& row) MPM_INLINE {
+    for_each_row([&](auto y, auto z, const Nodes<width>& row) MPM_INLINE {
       T share = w.axis[1].N[y];
       if constexpr (D == 3) share *= w.axis[D - 1].N[z];
       T along_x = w.axis[0].N[0] * T(f(row[0]));
@@ -137,13 +155,13 @@ class NodalField {
   /// Of a row, whose records begin at the number that is wanted: the sum with factors along x. It
   /// begins with a product: 0 + a b would be an addition that the compiler must keep.
   template <class T>
-  MPM_HD MPM_INLINE static T along(const NodeRecords& row, const T* x) {
+  MPM_HD MPM_INLINE static T along(const Nodes<width>& row, const T* x) {
     T sum = x[0] * T(*row[0]);
     unrolled<count - 1>([&](auto k) MPM_INLINE { sum = fma(x[k + 1], T(*row[k + 1]), sum); });
     return sum;
   }
 
-  NodeRecords first_;
+  Nodes<width> first_;
   NodeStrides<D> stride_;
 };
 

@@ -78,6 +78,14 @@ struct PayloadRecords {
       lay_out(traction[b] + at, t(0, b), t(1, b), D == 3 ? t(D - 1, b) : none, none);
     });
   }
+  /// Of nodes in the body, where it is not symmetric: [a][b] of component a by derivatives along b.
+  template <class T>
+  void add_tractions(int at, const Mat<T, D>& t) {
+    const T none(0.0);
+    unrolled<D>([&](auto b) MPM_INLINE {
+      lay_out(traction[b] + at, t[0][b], t[1][b], D == 3 ? t[D - 1][b] : none, none);
+    });
+  }
 
  private:
   template <class T>

@@ -33,9 +33,9 @@ class CellBuffer {
     Scatter<B, D>::put_moments(places_, count_, M);
     payload_.template add<what>(count_, m, v, G);
   }
-  /// -V_p (sigma_p - q_p 1) / h [N].
-  template <class T>
-  void add_tractions(const Sym<T, D>& t) {
+  /// -V_p (sigma_p - q_p 1) / h [N]; times F^-T, a Mat, where nodes lie in the body.
+  template <class Tractions>
+  void add_tractions(const Tractions& t) {
     payload_.add_tractions(count_, t);
   }
 
@@ -120,24 +120,57 @@ class AffineVelocity {
   const Storage* columns_[D * D] = {};
 };
 
-/// Takes what particles give out of the columns of a pool; `velocity` is the first component of the
-/// velocity among them. Pointers to columns and 1 / h are found once a patch (decision 0015).
-template <unsigned what, int D>
-class ParticleReader {
+/// The stress that nodal forces use, sigma_p - q_p 1 + s_p. Stress is positive in tension, the
+/// pressure q of the artificial viscosity in compression, hence the difference, on the diagonal
+/// alone: its components come first in `Sym`. s_p is the stress of the material's damping.
+template <int D>
+class ForceStress {
  public:
-  ParticleReader(const TileGrid<D>& grid, const ParticlePool<D>& pool, int velocity)
-      : local_position_(grid, pool), minus_per_cell_size_(-1.0 / grid.cell_size) {
-    if constexpr ((what & gives_affine) != 0) affine_ = AffineVelocity<D>(grid, pool);
-    mass_ = pool.mass();
-    volume_ = pool.volume();
+  explicit ForceStress(const ParticlePool<D>& pool) {
     // With averaged volumes a column holds q and what the cell's mean pressure changes.
     const int q = pool.at.force_pressure >= 0 ? pool.at.force_pressure : pool.at.viscosity_pressure;
     if (q >= 0) q_ = pool.columns.component(q);
     if (const int s = pool.at.damping_stress; s >= 0)
       for (int c = 0; c < Sym<double, D>::size; ++c) damping_[c] = pool.columns.component(s + c);
     viscous_ = q_ || damping_[0];
-    for (int a = 0; a < D; ++a) velocity_[a] = pool.columns.rounded(velocity + a);
     for (int c = 0; c < Sym<double, D>::size; ++c) stress_[c] = pool.stress(c);
+  }
+  template <class T, class Rows>
+  MPM_INLINE Sym<T, D> of(const Rows& rows) const {
+    Sym<T, D> stress;
+    unrolled<Sym<T, D>::size>([&](auto c) { stress.c[c] = load(stress_[c], rows); });
+    if (viscous_) add_viscous(stress, rows);
+    return stress;
+  }
+
+ private:
+  template <class T, class Rows>
+  MPM_INLINE void add_viscous(Sym<T, D>& stress, const Rows& rows) const {
+    if (q_) {
+      const T q = load(q_, rows);
+      unrolled<D>([&](auto c) { stress.c[c] = stress.c[c] - q; });
+    }
+    if (damping_[0])
+      unrolled<Sym<T, D>::size>(
+          [&](auto c) { stress.c[c] = stress.c[c] + load(damping_[c], rows); });
+  }
+
+  const double *q_ = nullptr, *damping_[Sym<double, D>::size] = {};
+  bool viscous_ = false;  // is there any of the two?
+  const Storage* stress_[Sym<double, D>::size];
+};
+
+/// Takes what particles give out of the columns of a pool; `velocity` is the first component of the
+/// velocity among them. Pointers to columns and 1 / h are found once a patch (decision 0015).
+template <unsigned what, int D>
+class ParticleReader {
+ public:
+  ParticleReader(const TileGrid<D>& grid, const ParticlePool<D>& pool, int velocity)
+      : local_position_(grid, pool), minus_per_cell_size_(-1.0 / grid.cell_size), stress_(pool) {
+    if constexpr ((what & gives_affine) != 0) affine_ = AffineVelocity<D>(grid, pool);
+    mass_ = pool.mass();
+    volume_ = pool.volume();
+    for (int a = 0; a < D; ++a) velocity_[a] = pool.columns.rounded(velocity + a);
   }
 
   template <BasisModel B, class Rows>
@@ -148,15 +181,11 @@ class ParticleReader {
     const Vec<T, D> xi = local_position_(cell, rows);
     const Weights<T, D, B::nodes> w = weights_at(basis, xi);
     // -V_p (sigma_p - q_p 1 + s_p) / h: the sign and the volume V_p = m_p / rho_p of eq. (9), with
-    // 1 / h as gradients are in cells; s_p is the stress of the material's damping. Stress is
-    // positive in tension, q in compression, hence the difference, on the diagonal alone: its
-    // components come first in `Sym`. In 2D zz is carried along and not used, as nothing varies
+    // 1 / h as gradients are in cells. In 2D zz is carried along and not used, as nothing varies
     // along z.
     if constexpr ((what & gives_forces) != 0) {
       const T scale = T(minus_per_cell_size_) * load(volume_, rows);
-      Sym<T, D> tractions;
-      unrolled<Sym<T, D>::size>([&](auto c) { tractions.c[c] = load(stress_[c], rows); });
-      if (viscous_) add_viscous(tractions, rows);
+      Sym<T, D> tractions = stress_.template of<T>(rows);
       unrolled<Sym<T, D>::size>([&](auto c) { tractions.c[c] = scale * tractions.c[c]; });
       to.add_tractions(tractions);
     }
@@ -173,23 +202,11 @@ class ParticleReader {
   }
 
  private:
-  /// The pressure of the artificial viscosity and the stress of the material's damping.
-  template <class T, class Rows>
-  MPM_INLINE void add_viscous(Sym<T, D>& stress, const Rows& rows) const {
-    if (q_) {
-      const T q = load(q_, rows);
-      unrolled<D>([&](auto c) { stress.c[c] = stress.c[c] - q; });
-    }
-    if (damping_[0])
-      unrolled<Sym<T, D>::size>(
-          [&](auto c) { stress.c[c] = stress.c[c] + load(damping_[c], rows); });
-  }
-
   LocalPosition<D> local_position_;
   double minus_per_cell_size_;
-  const double *mass_, *volume_, *q_ = nullptr, *damping_[Sym<double, D>::size] = {};
-  bool viscous_ = false;  // is there any of the two?
-  const Storage *velocity_[D], *stress_[Sym<double, D>::size];
+  const double *mass_, *volume_;
+  const Storage* velocity_[D];
+  ForceStress<D> stress_;
   AffineVelocity<D> affine_{};
 };
 

@@ -1,6 +1,7 @@
 #include "mpm/loads/body_forces.hpp"
 #include "mpm/loads/carry_loads.hpp"
 #include "mpm/rigid/prescribed_bodies.hpp"
+#include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stage_functions.hpp"
 #include "mpm/walls/absorb.hpp"
@@ -110,7 +111,9 @@ DampedWork advance_damped_block(const Domain<D>& domain, const Patch<D>& patch,
     sums.unbalanced += own[n] * norm(all);
     sums.weight += own[n] * m * norm(domain.gravity);
     if (dot(force, force) > 0.0)
-      sums.moment += cross(place_of(domain.grid, patch, n), in_space<D>(force));
+      sums.moment += cross(patch.keeps ? place_of_kept(domain.grid, patch, block, n)
+                                       : place_of(domain.grid, patch, n),
+                           in_space<D>(force));
   }
   return sums;
 }
@@ -135,6 +138,7 @@ void add_impulses(Domain<D>& domain, std::size_t p, const NodeBlock<D>& block, c
   const bool has_gravity = dot(domain.gravity, domain.gravity) > 0.0;
   Vector3 mass_moment = Vector3::zero();
   if (has_gravity) mass_moment = first_moment(grid, patch, block, own);
+  if (has_gravity && patch.keeps) mass_moment += displaced_moment(block, own);
   if (patch.at_wall) {
     // What is left of the moment of folding (walls/reactions.hpp), by who owns the node beyond.
     const Reaction<D> walls = reaction_of(domain, p, &AngularImpulses::walls);
@@ -182,7 +186,7 @@ void advance_nodes(Domain<D>& domain) {
   const double dt = domain.time_step;
   const bool absorb = grid.walls.absorb(), loaded = domain.has_loads();
   for_each_patch(domain, prescribed, [&](std::size_t p) { advance_prescribed_nodes(domain, p); });
-  for_each_patch(domain, deformable | free_rigid, [&](std::size_t p) {
+  for_each_patch(domain, deformable | free_rigid | in_body, [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
     const NodeBlock<D> block = grid.block(p);
     double own[BlockShape<D>::nodes_max];
@@ -229,6 +233,10 @@ void advance_nodes(Domain<D>& domain) {
     sums.wall_friction = friction;
     sums.gravity_first = dt * (done.gravity_first - weight_first);
     sums.gravity_second = 0.5 * dt * (done.gravity_second - weight_second);
+    if (!patch.keeps) return;
+    move_kept_nodes(domain, block, own, sums);
+    sums.kept_second =
+        sums.second_order - sums.gravity_second - sums.load_second - sums.damping_second;
   });
 }
 

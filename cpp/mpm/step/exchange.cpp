@@ -38,7 +38,7 @@ void exchange_nodes(Domain<D>& domain) {
     if (what.forces) finish_at_walls(grid);
     grid.partition.on_its_way = false;
   }
-  sum_shared_nodes(grid, domain.threads, what.first, what.last);
+  sum_shared_nodes(grid, domain.threads, what.first, what.last, what.forces);
   if (what.forces) sum_shared_at_walls(grid, domain.threads);
 }
 

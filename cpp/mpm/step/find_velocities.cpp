@@ -15,6 +15,7 @@ void find(Domain<D>& domain, int at, F&& prescribed) {
   auto& grid = domain.grid;
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
+    if (patch.keeps) return;  // they have theirs
     const NodeBlock<D> block = grid.block(p);
     const Body<D>& body = domain.body_of(patch);
     if (body.is_prescribed()) {

@@ -1,3 +1,4 @@
+#include "mpm/step/map_in_body.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/scatter_momentum.hpp"
 #include "mpm/step/stage_functions.hpp"
@@ -6,9 +7,28 @@
 namespace mpm {
 namespace {
 
+/// The forces of a patch that keeps its nodes, which are all that it maps.
+template <int D>
+void map_kept_patch(Domain<D>& domain, std::size_t p) {
+  const Patch<D>& patch = domain.grid.patches[p];
+  const NodeRecords nodes = domain.grid.block(p).records;
+  for (int n = 0; n < patch.shape.node_count; ++n)
+    Batch<half_record>(0.0).store(nodes[n] + force_at);
+  with_basis_and_lanes(domain.grid, domain.body_of(patch), patch,
+                       [&]<BasisModel B>(const B& basis, auto lanes) {
+                         if constexpr (B::nodes > 2)
+                           scatter_in_body<lanes>(basis, domain.grid, domain.pool_of(patch), patch,
+                                                  nodes);
+                       });
+}
+
 /// What a patch's particles give to its nodes.
 template <unsigned what, int D>
 void map_patch(Domain<D>& domain, std::size_t p) {
+  if (domain.grid.patches[p].keeps) {
+    if constexpr ((what & gives_forces) != 0) map_kept_patch(domain, p);
+    return;
+  }
   // With all three at once the bits are those of two stages, as each sum starts at 0 and has the
   // same terms in the same order (decision 0034).
   constexpr bool momentum = (what & gives_momentum) != 0;

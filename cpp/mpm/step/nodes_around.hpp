@@ -21,7 +21,7 @@ struct NodesAround {
       const auto k = static_cast<std::size_t>(a);
       // A cell that is centred at its own node reaches half a cell to both sides of it: before it,
       // the node below is the lower corner.
-      place[a] = grid.among_nodes(pool.x(a)[row], a);
+      place[a] = grid.among_nodes(pool.listed(a)[row], a);
       const bool before = grid.reach().own_node > 0.0 && place[a] < cell.cell[k];
       lower[k] = cell.cell[k] - (before ? 1 : 0);
       from_cell[k] = lower[k] - cell.cell[k];

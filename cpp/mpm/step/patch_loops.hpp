@@ -10,6 +10,7 @@ constexpr Kinds kind_bit(BodyKind kind) { return 1u << static_cast<unsigned>(kin
 inline constexpr Kinds deformable = kind_bit(BodyKind::deformable);
 inline constexpr Kinds free_rigid = kind_bit(BodyKind::rigid);
 inline constexpr Kinds prescribed = kind_bit(BodyKind::prescribed);
+inline constexpr Kinds in_body = kind_bit(BodyKind::material);
 
 /// f(p) for all patches, or for those of the part that is done now. The range is always that of all
 /// patches, so that a thread has the same ones in every stage, and in its cache (decision 0025).

@@ -51,6 +51,7 @@ struct Schemes {
       S::contact_forces,
       S::advance_nodes,
       S::heat_gases,
+      S::update_in_body,
       S::release,
       S::advance_particles,
       S::hold_rigid,
@@ -85,6 +86,7 @@ struct Schemes {
       S::contact_forces,
       S::advance_nodes,
       S::heat_gases,
+      S::update_in_body,
       S::release,
       S::advance_particles,
       S::hold_rigid,
@@ -121,6 +123,7 @@ struct Schemes {
       S::contact_forces,
       S::advance_nodes,
       S::heat_gases,
+      S::update_in_body,
       S::release,
       S::advance_particles,
       S::hold_rigid,
@@ -147,32 +150,42 @@ struct Schemes {
       fuse(musl, S::map_both, S::exchange_both, S::advance_and_remap, S::update_remapped_and_move);
 
   /// The list as a transfer wants it: those of the velocity of the grid release particles from
-  /// contact's correction, XPIC filters.
-  static constexpr StageList<D> with(const StageList<D>& list, Extra extra) {
+  /// contact's correction, XPIC filters; and with or without bodies on nodes of their own.
+  static constexpr StageList<D> with(const StageList<D>& list, Extra extra, bool in_body) {
     StageList<D> rest = list;
     if (extra != Extra::filter) rest = without(rest, S::filter);
     if (extra != Extra::release) rest = without(without(rest, S::release), S::restore);
-    return rest;
+    return in_body ? rest : without(rest, S::update_in_body);
   }
-  using Lists = std::array<StageList<D>, 3>;  // by extra
+  using ByExtra = std::array<StageList<D>, 3>;
+  using Lists = std::array<ByExtra, 2>;  // without and with such bodies
+  static constexpr ByExtra with_each(const StageList<D>& list, bool in_body) {
+    return {with(list, Extra::none, in_body), with(list, Extra::release, in_body),
+            with(list, Extra::filter, in_body)};
+  }
   static constexpr Lists with_each(const StageList<D>& list) {
-    return {with(list, Extra::none), with(list, Extra::release), with(list, Extra::filter)};
+    return {with_each(list, false), with_each(list, true)};
   }
   static constexpr std::array<Lists, 3> plain = {with_each(usf), with_each(usl), with_each(musl)};
   // Particles that are released are moved with the corrected velocity and advanced with another:
   // with USF they are read twice.
-  static constexpr std::array<Lists, 3> fused = {
-      Lists{fuse(with(usf, Extra::none), S::advance_and_move), with(usf, Extra::release),
-            fuse(with(usf, Extra::filter), S::advance_and_move)},
-      with_each(usl_fused), with_each(musl_fused)};
+  static constexpr ByExtra usf_fused(bool in_body) {
+    return {fuse(with(usf, Extra::none, in_body), S::advance_and_move),
+            with(usf, Extra::release, in_body),
+            fuse(with(usf, Extra::filter, in_body), S::advance_and_move)};
+  }
+  static constexpr std::array<Lists, 3> fused = {Lists{usf_fused(false), usf_fused(true)},
+                                                 with_each(usl_fused), with_each(musl_fused)};
 };
 
-/// The stages of a step, as a scheme lists them or with neighbours fused, to the same bits.
+/// The stages of a step, as a scheme lists them or with neighbours fused, to the same bits;
+/// `in_body`: there are bodies on nodes of their own.
 template <int D>
-std::span<const Stage<D>> stages_of(Scheme scheme, bool fused, Extra extra = Extra::none) {
+std::span<const Stage<D>> stages_of(Scheme scheme, bool fused, Extra extra = Extra::none,
+                                    bool in_body = false) {
   const auto& lists = fused ? Schemes<D>::fused : Schemes<D>::plain;
   const StageList<D>& list =
-      lists[static_cast<std::size_t>(scheme)][static_cast<std::size_t>(extra)];
+      lists[static_cast<std::size_t>(scheme)][in_body ? 1 : 0][static_cast<std::size_t>(extra)];
   return {list.stages.data(), list.count};
 }
 

@@ -13,41 +13,43 @@ namespace mpm {
 /// What stages work on, a bit each. Of particles of bodies that deform the columns; of rigid bodies
 /// all particles' columns are two. Of the nodes the halves of their records.
 struct Data {
-  enum Bits : std::uint32_t {
-    position = 1u << 0,
-    velocity = 1u << 1,
-    mass = 1u << 2,
-    volume = 1u << 3,
-    stress = 1u << 4,          // and all state of the material
-    rigid_position = 1u << 5,  // of the particles and of the centre
-    rigid_velocity = 1u << 6,
-    lists = 1u << 7,  // of particles by cell; the patches and their blocks
-    load_pieces = 1u << 8,
-    node_mass = 1u << 9,
-    node_momentum = 1u << 10,
-    node_velocity = 1u << 11,
-    ghost_weights = 1u << 12,
-    node_force = 1u << 13,
-    node_increments = 1u << 14,
-    node_remapped = 1u << 15,
-    node_dashpots = 1u << 16,
-    contacts = 1u << 17,
-    patch_sums = 1u << 18,
-    records = 1u << 19,
-    energies = 1u << 20,
-    left_cells = 1u << 21,  // whether particles have left the cells of their lists
-    body_force = 1u << 22,  // of particles, and their places at the start
-    unseen = 1u << 23,      // what is filtered out of their velocities
+  enum Bits : std::uint64_t {
+    position = std::uint64_t{1} << 0,
+    velocity = std::uint64_t{1} << 1,
+    mass = std::uint64_t{1} << 2,
+    volume = std::uint64_t{1} << 3,
+    stress = std::uint64_t{1} << 4,          // and all state of the material
+    rigid_position = std::uint64_t{1} << 5,  // of the particles and of the centre
+    rigid_velocity = std::uint64_t{1} << 6,
+    lists = std::uint64_t{1} << 7,  // of particles by cell; the patches and their blocks
+    load_pieces = std::uint64_t{1} << 8,
+    node_mass = std::uint64_t{1} << 9,
+    node_momentum = std::uint64_t{1} << 10,
+    node_velocity = std::uint64_t{1} << 11,
+    ghost_weights = std::uint64_t{1} << 12,
+    node_force = std::uint64_t{1} << 13,
+    node_increments = std::uint64_t{1} << 14,
+    node_remapped = std::uint64_t{1} << 15,
+    node_dashpots = std::uint64_t{1} << 16,
+    contacts = std::uint64_t{1} << 17,
+    patch_sums = std::uint64_t{1} << 18,
+    records = std::uint64_t{1} << 19,
+    energies = std::uint64_t{1} << 20,
+    left_cells = std::uint64_t{1} << 21,  // whether particles have left the cells of their lists
+    body_force = std::uint64_t{1} << 22,  // of particles, and their places at the start
+    unseen = std::uint64_t{1} << 23,      // what is filtered out of their velocities
     // Of the patches' sums the angular impulses: of forces; of walls on mapped velocities.
-    impulses = 1u << 24,
-    mapped_impulses = 1u << 25,
-    force_pressure = 1u << 26,  // of particles with averaged volumes, for one mapping of forces
-    node_springs = 1u << 27,    // of walls that touch, then what they push with
-    affine = 1u << 28,          // affine part of particles' velocities
-    carried_sums = 1u << 29,    // of the patches' sums what these lose as they are carried along
-    node_volumes = 1u << 30,    // of matter that flows
+    impulses = std::uint64_t{1} << 24,
+    mapped_impulses = std::uint64_t{1} << 25,
+    force_pressure = std::uint64_t{1} << 26,  // of particles with averaged volumes, for one mapping of forces
+    node_springs = std::uint64_t{1} << 27,    // of walls that touch, then what they push with
+    affine = std::uint64_t{1} << 28,          // affine part of particles' velocities
+    carried_sums = std::uint64_t{1} << 29,    // of the patches' sums what these lose as they are carried along
+    node_volumes = std::uint64_t{1} << 30,    // of matter that flows
     // Of matter that flows limits of volumes; of a gas also its energies and the heat it is owed.
-    flowing = 1u << 31,
+    flowing = std::uint64_t{1} << 31,
+    kept_nodes = std::uint64_t{1} << 32,  // what nodes that lie in bodies keep: their motion
+    deformation = std::uint64_t{1} << 33,  // of the particles of these bodies
   };
 };
 /// Their names, in the order of the bits.
@@ -58,15 +60,15 @@ inline constexpr auto data_names = std::to_array<std::string_view>(
      "node remapped",   "node dashpots",  "contacts",      "patch sums",      "records",
      "energies",        "left cells",     "body force",    "unseen velocity", "impulses",
      "mapped impulses", "force pressure", "node springs",  "affine part",     "carried sums",
-     "node volumes",    "flowing"});
+     "node volumes",    "flowing",        "kept nodes",    "deformation"});
 
 /// The data and what shares its place (layout/node_records.hpp): who writes one takes the others.
-constexpr std::uint32_t places_of(std::uint32_t data) {
+constexpr std::uint64_t places_of(std::uint64_t data) {
   // First halves of records beside the mass; second halves.
-  constexpr std::uint32_t shared[] = {
+  constexpr std::uint64_t shared[] = {
       Data::node_momentum | Data::node_velocity,
       Data::ghost_weights | Data::node_force | Data::node_increments | Data::node_remapped};
-  for (const std::uint32_t one : shared)
+  for (const std::uint64_t one : shared)
     if (data & one) data |= one;
   return data;
 }
@@ -75,7 +77,7 @@ template <int D>
 struct Stage {
   std::string_view name;
   void (*run)(Domain<D>&) = nullptr;
-  std::uint32_t reads = 0, writes = 0;  // of Data
+  std::uint64_t reads = 0, writes = 0;  // of Data
   bool all_particles = false;           // it goes through all of them, and not only some
   bool by_patch = false;                // what it does for a patch needs no other
   void (*start)(Domain<D>&) = nullptr;  // of an exchange: may come as soon as the edge is done
@@ -86,7 +88,7 @@ template <int D>
 constexpr bool independent(const Stage<D>& a, const Stage<D>& b) {
   // Neither writes what the other reads or writes; by places, as writing a field ends those that
   // share its place.
-  const std::uint32_t taken_by_a = places_of(a.writes), taken_by_b = places_of(b.writes);
+  const std::uint64_t taken_by_a = places_of(a.writes), taken_by_b = places_of(b.writes);
   return !(taken_by_a & b.reads) && !(a.reads & taken_by_b) && !(taken_by_a & b.writes);
 }
 

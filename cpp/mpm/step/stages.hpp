@@ -6,7 +6,7 @@
 namespace mpm {
 
 template <int D>
-constexpr Stage<D> update_stress_row(void (*run)(Domain<D>&), std::uint32_t straining) {
+constexpr Stage<D> update_stress_row(void (*run)(Domain<D>&), std::uint64_t straining) {
   return {"update stress",
           run,
           Data::lists | Data::position | Data::velocity | Data::mass | Data::volume | Data::stress |
@@ -20,7 +20,7 @@ constexpr Stage<D> update_stress_row(void (*run)(Domain<D>&), std::uint32_t stra
 template <int D>
 struct Stages : Data {
   using Row = Stage<D>;
-  static constexpr std::uint32_t of_particles = position | velocity | mass,
+  static constexpr std::uint64_t of_particles = position | velocity | mass,
                                  of_rigid = rigid_position | rigid_velocity;
 
   // The nodes are written as their memory is lent to the lists until momentum is mapped.
@@ -76,7 +76,7 @@ struct Stages : Data {
   static constexpr Row map_forces{
       "map forces",
       mpm::map_forces<D>,
-      lists | position | volume | stress | force_pressure | ghost_weights,
+      lists | position | volume | stress | deformation | force_pressure | ghost_weights,
       node_force,
       true,
       true};
@@ -138,8 +138,13 @@ struct Stages : Data {
   static constexpr Row advance_nodes{
       "advance nodes", mpm::advance_nodes<D>,
       lists | position | mass | load_pieces | body_force | node_mass | node_velocity | node_force |
-          node_dashpots | node_springs | node_volumes | patch_sums | impulses,
-      node_velocity | node_increments | node_volumes | patch_sums | impulses};
+          node_dashpots | node_springs | node_volumes | kept_nodes | patch_sums | impulses,
+      node_velocity | node_increments | node_volumes | kept_nodes | patch_sums | impulses};
+  // Of bodies on nodes of their own alone, which hold all there is of their motion.
+  static constexpr Row update_in_body{
+      "update in the body", mpm::update_in_body<D>,
+      lists | position | mass | volume | stress | deformation | kept_nodes | patch_sums,
+      position | volume | stress | deformation | patch_sums, true};
   // With the velocities that strain, before particles are released from what contact has corrected.
   static constexpr Row heat_gases{"heat gases",
                                   mpm::heat_gases<D>,

@@ -1,0 +1,99 @@
+// Bodies on nodes of their own: places and deformation of the particles from the displacements of
+// the nodes, (M1) of kept_nodes.hpp, and from its change, (M4), the stress.
+#include "mpm/math/inverse.hpp"
+#include "mpm/schedule/cell_loop.hpp"
+#include "mpm/schedule/choose.hpp"
+#include "mpm/step/patch_loops.hpp"
+#include "mpm/step/stage_functions.hpp"
+
+namespace mpm {
+namespace {
+
+/// Square of the largest stretch by F^-1, or more: the largest sum of a row of F^-1 F^-T, which is
+/// exact along the axes.
+template <class T, int D>
+T largest_square(const Mat<T, D>& inverse) {
+  T largest(0.0);
+  for (int i = 0; i < D; ++i) {
+    T row(0.0);
+    for (int j = 0; j < D; ++j) {
+      T c = inverse[i][0] * inverse[j][0];
+      for (int k = 1; k < D; ++k) c = fma(inverse[i][k], inverse[j][k], c);
+      row += absolute(c);
+    }
+    largest = max(largest, row);
+  }
+  return largest;
+}
+
+template <int W, int D, BasisModel B>
+[[gnu::noinline, gnu::flatten]] void update_patch(Domain<D>& domain, std::size_t p,
+                                                  const B& basis) {
+  using T = Batch<W>;
+  TileGrid<D>& grid = domain.grid;
+  const Patch<D>& patch = grid.patches[p];
+  ParticlePool<D>& pool = domain.pool_of(patch);
+  const Material& material = domain.material_of(patch);
+  // The stress follows the forces, as the velocities that strain are those of the step.
+  const StressSettings settings{domain.time_step,   domain.time_after, grid.cell_size,
+                                material.viscosity, false,             false};
+  const Nodes<half_record> displacements = grid.block(p).displacements;
+  const NodeStrides<D> stride(patch.shape);
+  const LocalPosition<D> local_position(grid, pool);
+  const T per_cell_size(1.0 / grid.cell_size);
+  StressSums& sums = domain.sums[p].stress;
+  MaterialBlock<D> block;
+  const auto flush = [&] {
+    update_block<Batch<native_lanes>>(material, pool.columns, pool.at, block, settings, sums);
+    block.count = 0;
+  };
+  T squeezed(0.0);
+  for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
+    const NodalField<D, B::nodes, half_record> nodes(
+        displacements.from(cell.first_node + stride.to_first(B::before)), stride);
+    for_each_group<W>(cell, [&](const auto& rows) {
+      if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
+      Vec<T, D> u;
+      const auto gradients = nodes.template value_and_gradients<0>(
+          weights_at(basis, local_position(cell, rows)), u);
+      Mat<T, D> before, F, change;
+      unrolled<D * D>([&](auto k) {
+        constexpr int i = k / D, j = k % D;
+        before[i][j] = load(pool.deformation_part(k), rows);
+        F[i][j] = fma(per_cell_size, gradients[i][j], T(i == j ? 1.0 : 0.0));
+        change[i][j] = F[i][j] - before[i][j];
+        store(pool.deformation_part(k), rows, F[i][j]);
+      });
+      const Mat<T, D> L = change * inverse_of(before);
+      unrolled<D * D>([&](auto k) {
+        constexpr int i = k / D, j = k % D;
+        L[i][j].store(block.gradient[i][j] + block.count);
+      });
+      unrolled<D>([&](auto a) { store(pool.x(a), rows, load(pool.listed(a), rows) + u[a]); });
+      squeezed = max(squeezed, of_valid(rows, largest_square(inverse_of(F))));
+      unrolled<W>([&](auto k) { block.row[block.count + k] = rows[k]; });
+      block.count += static_cast<std::size_t>(rows.count);
+    });
+  });
+  if (block.count > 0) flush();
+  // A wave passes from node to node the sooner, the nearer these are to each other.
+  sums.fastest *= std::sqrt(largest(squeezed));
+}
+
+}  // namespace
+
+template <int D>
+void update_in_body(Domain<D>& domain) {
+  for_each_patch(domain, in_body, [&](std::size_t p) {
+    const Patch<D>& patch = domain.grid.patches[p];
+    with_basis_and_lanes(domain.grid, domain.body_of(patch), patch,
+                         [&]<BasisModel B>(const B& basis, auto lanes) {
+                           if constexpr (B::nodes > 2) update_patch<lanes>(domain, p, basis);
+                         });
+  });
+}
+
+template void update_in_body<2>(Domain<2>&);
+template void update_in_body<3>(Domain<3>&);
+
+}  // namespace mpm
