@@ -32,4 +32,21 @@ MPM_HD Mat<T, 3> inverse_of(const Mat<T, 3>& a) {
   return r;
 }
 
+/// The square of the largest stretch by a matrix A, or somewhat more: the largest sum of a row of
+/// the sizes in A A^T, which is exact along the axes and along their diagonals.
+template <class T, int D>
+MPM_HD T largest_stretch_squared(const Mat<T, D>& a) {
+  T largest(0.0);
+  for (int i = 0; i < D; ++i) {
+    T row(0.0);
+    for (int j = 0; j < D; ++j) {
+      T c = a[i][0] * a[j][0];
+      for (int k = 1; k < D; ++k) c = fma(a[i][k], a[j][k], c);
+      row += absolute(c);
+    }
+    largest = max(largest, row);
+  }
+  return largest;
+}
+
 }  // namespace mpm

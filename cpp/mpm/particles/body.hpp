@@ -71,7 +71,7 @@ struct Body {
   Share share() const { return given ? given->share : Share{}; }
   std::size_t active() const { return count - removed; }
   bool deforms() const { return kind == BodyKind::deformable || keeps_nodes(); }
-  /// Do its nodes keep their displacements and velocities (step/material_frame.hpp)?
+  /// Do its nodes keep their displacements and velocities (step/kept_nodes.hpp)?
   bool keeps_nodes() const { return kind == BodyKind::material; }
   bool is_prescribed() const { return kind == BodyKind::prescribed; }
   bool is_free_rigid() const { return kind == BodyKind::rigid; }

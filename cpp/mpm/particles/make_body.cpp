@@ -97,6 +97,7 @@ Body<D> empty_body(std::string name, const Material& material, const ParticlePoo
   body.name = std::move(name);
   body.count = count;
   if (material.moves_as_one()) body.kind = BodyKind::rigid;
+  if (pool.reference >= 0) body.kind = BodyKind::material;
   body.matter = material.matter();
   const double speed = pool.sound_speed;
   body.total_mass = material.density * volume;
@@ -123,6 +124,10 @@ ParticlePool<D> make_pool(const Material& material, const TileGrid<D>& grid,
   ParticlePool<D> pool;
   pool.matter = material.matter();
   add_columns(pool, material, grid.outflow_box.exist);
+  if (transfer.reference) {
+    pool.reference = pool.columns.add("reference_position", "m", D);
+    pool.deformation = pool.columns.add("deformation_gradient", "1", D * D);
+  }
   if (transfer.affine) {
     pool.affine = pool.columns.add("affine_velocity", "1/s", D * D, Precision::rounded);
     if (material.flows()) pool.at.growth_limit = pool.columns.add("growth_limit", "m^3", 1);
@@ -220,6 +225,13 @@ void fill_pools(std::vector<ParticlePool<D>>& pools, const std::vector<Material>
   for (ParticlePool<D>& pool : pools)
     for (int a = 0; a < (pool.start_position < 0 ? 0 : D); ++a)
       std::copy_n(pool.x(a), pool.count(), pool.columns.component(pool.start_position + a));
+  for (ParticlePool<D>& pool : pools) {
+    if (pool.reference < 0) continue;
+    for (int a = 0; a < D; ++a)
+      std::copy_n(pool.x(a), pool.count(), pool.columns.component(pool.reference + a));
+    for (int k = 0; k < D * D; ++k)
+      std::fill_n(pool.deformation_part(k), pool.count(), k / D == k % D ? 1.0 : 0.0);
+  }
   for (ParticlePool<D>& pool : pools)
     for (int a = 0; a < (pool.unseen < 0 ? 0 : D); ++a)
       std::fill_n(pool.unseen_velocity(a), pool.count(), Storage{0.0});

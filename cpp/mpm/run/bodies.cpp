@@ -10,6 +10,7 @@
 #include "mpm/run/measures.hpp"
 #include "mpm/run/part_sums.hpp"
 #include "mpm/run/start_affine.hpp"
+#include "mpm/run/start_in_body.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/step/stage_functions.hpp"
 #include "mpm/step/transfer/transfer.hpp"
@@ -32,12 +33,15 @@ bool leads_group(const Domain<D>& domain, int number) {
 }  // namespace
 
 template <int D>
-int add_material(Simulation<D>& simulation, const MaterialChoice& choice) {
+int add_material(Simulation<D>& simulation, const MaterialChoice& choice, bool in_body) {
   require(simulation, Phase::building, "materials must be added before prepare()");
   Domain<D>& domain = simulation.domain;
-  domain.materials.push_back(make_material(choice));
-  domain.pools.push_back(
-      make_pool(domain.materials.back(), domain.grid, columns_of(domain.transfer)));
+  const Material material = make_material(choice);
+  if (in_body) check_in_body(material);
+  domain.materials.push_back(material);
+  const TransferColumns kept =
+      in_body ? TransferColumns{.reference = true} : columns_of(domain.transfer);
+  domain.pools.push_back(make_pool(domain.materials.back(), domain.grid, kept));
   return static_cast<int>(domain.materials.size()) - 1;
 }
 
@@ -245,6 +249,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
   std::vector<bool> meant(domain.bodies.size(), false);
   meant[static_cast<std::size_t>(number)] = true;
   start_affine(domain, meant);
+  find_kept_velocities(domain, meant);
   Ledger& ledger = domain.ledger;
   ledger.external += kinetic_energy(domain) - before;
   ledger.kinetic = kinetic_energy(domain);
@@ -262,8 +267,8 @@ void set_gravity(Domain<D>& domain, const std::array<TimeFunction, 3>& gravity) 
   domain.gravity_of_time = gravity;
 }
 
-template int add_material<2>(Simulation<2>&, const MaterialChoice&);
-template int add_material<3>(Simulation<3>&, const MaterialChoice&);
+template int add_material<2>(Simulation<2>&, const MaterialChoice&, bool);
+template int add_material<3>(Simulation<3>&, const MaterialChoice&, bool);
 template int add_body<2>(Simulation<2>&, const std::string&, int, std::span<const double>,
                          std::span<const double>, std::span<const double>);
 template int add_body<3>(Simulation<3>&, const std::string&, int, std::span<const double>,

@@ -1,6 +1,7 @@
 #include "mpm/run/measures.hpp"
 
 #include "mpm/comm/all_sums.hpp"
+#include "mpm/step/kept_nodes.hpp"
 
 namespace mpm {
 
@@ -16,22 +17,38 @@ double total_mass(const Domain<D>& domain) {
 }
 
 template <int D>
-double kinetic_energy(const Domain<D>& domain) {
+double kinetic_energy(Domain<D>& domain) {
   ExactSum total;
-  domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
-    total.add(mpm::kinetic_energy(of, row, domain.grid.affine_moment()));
-  });
+  for (const Patch<D>& patch : domain.grid.patches) {
+    if (patch.keeps) {
+      for_each_kept_node(domain.grid, patch, [&](double m, const Vector3&, const Vector3& v) {
+        total.add(0.5 * m * dot(v, v));
+      });
+      continue;
+    }
+    const ParticlePool<D>& of = domain.pool_of(patch);
+    for (const std::uint32_t row : of.rows(patch))
+      total.add(mpm::kinetic_energy(of, row, domain.grid.affine_moment()));
+  }
   all_sum(*domain.grid.partition.comm, {&total, 1});
   return total.value();
 }
 
 template <int D>
-std::array<double, 3> momentum(const Domain<D>& domain) {
+std::array<double, 3> momentum(Domain<D>& domain) {
   std::array<ExactSum, D> total{};
-  domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
-    for (std::size_t a = 0; a < D; ++a)
-      total[a].add(of.mass()[row] * of.v(static_cast<int>(a))[row]);
-  });
+  for (const Patch<D>& patch : domain.grid.patches) {
+    const auto add = [&](double m, const auto&, const auto& v) {
+      for (std::size_t a = 0; a < D; ++a) total[a].add(m * v[static_cast<int>(a)]);
+    };
+    if (patch.keeps) {
+      for_each_kept_node(domain.grid, patch, add);
+      continue;
+    }
+    const ParticlePool<D>& of = domain.pool_of(patch);
+    for (const std::uint32_t row : of.rows(patch))
+      add(of.mass()[row], 0, velocity_in_space(of, row));
+  }
   all_sum(*domain.grid.partition.comm, total);
   std::array<double, 3> sums{};
   for (std::size_t a = 0; a < D; ++a) sums[a] = total[a].value();
@@ -172,10 +189,10 @@ template ContactSummary contact_summary<2>(const Simulation<2>&);
 template ContactSummary contact_summary<3>(const Simulation<3>&);
 template double total_mass<2>(const Domain<2>&);
 template double total_mass<3>(const Domain<3>&);
-template double kinetic_energy<2>(const Domain<2>&);
-template double kinetic_energy<3>(const Domain<3>&);
-template std::array<double, 3> momentum<2>(const Domain<2>&);
-template std::array<double, 3> momentum<3>(const Domain<3>&);
+template double kinetic_energy<2>(Domain<2>&);
+template double kinetic_energy<3>(Domain<3>&);
+template std::array<double, 3> momentum<2>(Domain<2>&);
+template std::array<double, 3> momentum<3>(Domain<3>&);
 template double energy_at_start<2>(const ParticlePool<2>&, const Body<2>&, std::uint32_t);
 template double energy_at_start<3>(const ParticlePool<3>&, const Body<3>&, std::uint32_t);
 template double initial_internal_energy<2>(const Domain<2>&);

@@ -10,9 +10,9 @@ namespace mpm {
 template <int D>
 double total_mass(const Domain<D>& domain);  // of all particles, those that are removed too [kg]
 template <int D>
-double kinetic_energy(const Domain<D>& domain);  // [J]
+double kinetic_energy(Domain<D>& domain);  // [J]
 template <int D>
-std::array<double, 3> momentum(const Domain<D>& domain);  // [kg m/s]
+std::array<double, 3> momentum(Domain<D>& domain);  // [kg m/s]
 /// What the material of a particle has at the start: the energy of its equation of state, or the
 /// elastic one of the stress that it begins with, V (p^2 / 2K + s:s / 4G) [J].
 template <int D>

@@ -1,26 +1,56 @@
 #include "mpm/run/part_sums.hpp"
 
 #include "mpm/comm/all_sums.hpp"
+#include "mpm/step/kept_nodes.hpp"
 
 namespace mpm {
 namespace {
 
+/// A mass with its motion: of a particle, with what its affine part adds, or of a node.
+struct Moving {
+  double mass, kinetic;  // [kg]; [J]
+  Vector3 place, velocity;
+  Vector3 own_momentum = Vector3::zero();  // angular, about its place [N m s]
+  double own_inertia = 0.0;                // about each axis [kg m^2]
+};
+
+/// f(moving) for what a patch has.
+template <int D, class F>
+void for_each_moving(Domain<D>& domain, const Patch<D>& patch, SumsOf of, F&& f) {
+  if (patch.keeps && of == SumsOf::kept_nodes) {
+    for_each_kept_node(domain.grid, patch, [&](double m, const Vector3& x, const Vector3& v) {
+      f(Moving{m, 0.5 * m * dot(v, v), x, v});
+    });
+    return;
+  }
+  const double moment = domain.grid.affine_moment();
+  const ParticlePool<D>& pool = domain.pool_of(patch);
+  // The affine part of a rigid motion is its spin, of which the momentum is `moment` times the
+  // curl. Bodies that do not deform have none, whatever others of their material have.
+  const bool affine = pool.affine >= 0 && domain.body_of(patch).deforms();
+  for (const std::uint32_t row : pool.rows(patch)) {
+    const double m = pool.mass()[row];
+    f(Moving{m, kinetic_energy(pool, row, moment), in_space<D>(pool.position_of(row)),
+             velocity_in_space(pool, row), (m * moment) * turning(pool, row),
+             affine ? 2.0 * m * moment : 0.0});
+  }
+}
+
 /// Exact sums of some numbers over the patches of each group.
 template <std::size_t count, int D, class F>
 std::vector<std::array<double, count>> sum_groups(Domain<D>& domain, const Grouping& grouping,
-                                                  F&& of_particle) {
+                                                  SumsOf of, F&& numbers_of) {
   const std::size_t groups = grouping.count;
   const auto group_of = [&](std::size_t p) {
     return grouping.number[static_cast<std::size_t>(domain.grid.patches[p].body)];
   };
   std::vector<std::array<double, count>> parts(domain.grid.patches.size());
   domain.threads.for_each(parts.size(), [&](std::size_t p) {
-    const Patch<D>& patch = domain.grid.patches[p];
     parts[p].fill(0.0);
-    for (const std::uint32_t row : domain.pool_of(patch).rows(patch)) {
-      const std::array<double, count> each = of_particle(domain.pool_of(patch), row, group_of(p));
+    for_each_moving(domain, domain.grid.patches[p], of, [&](const Moving& moving) {
+      const std::array<double, count> each = numbers_of(moving, group_of(p));
       for (std::size_t k = 0; k < count; ++k) parts[p][k] += each[k];
-    }
+    });
   });
   std::vector<std::array<double, count>> sums(groups);
   for (std::size_t k = 0; k < count; ++k) {
@@ -35,14 +65,11 @@ std::vector<std::array<double, count>> sum_groups(Domain<D>& domain, const Group
 }  // namespace
 
 template <int D>
-std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping) {
-  const double moment = domain.grid.affine_moment();
-  const auto linear = sum_groups<8>(
-      domain, grouping, [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t) {
-        const double m = pool.mass()[row];
-        const Vector3 x = m * in_space<D>(pool.position_of(row)),
-                      p = m * velocity_in_space(pool, row);
-        return std::array{m, x[0], x[1], x[2], p[0], p[1], p[2], kinetic_energy(pool, row, moment)};
+std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping, SumsOf of) {
+  const auto linear =
+      sum_groups<8>(domain, grouping, of, [](const Moving& each, std::size_t) {
+        const Vector3 x = each.mass * each.place, p = each.mass * each.velocity;
+        return std::array{each.mass, x[0], x[1], x[2], p[0], p[1], p[2], each.kinetic};
       });
   std::vector<PartSums> parts(linear.size());
   for (std::size_t g = 0; g < parts.size(); ++g) {
@@ -52,20 +79,14 @@ std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping) {
     parts[g].momentum = {s[4], s[5], s[6]};
     parts[g].kinetic = s[7];
   }
-  std::vector<bool> deforms(parts.size());
-  for (std::size_t b = 0; b < domain.bodies.size(); ++b)
-    deforms[grouping.number[b]] = domain.bodies[b].deforms();
-  const auto turning = sum_groups<9>(
-      domain, grouping, [&](const ParticlePool<D>& pool, std::uint32_t row, std::size_t group) {
-        const Vector3 centre = parts[group].centre;
-        const Vector3 L = angular_momentum(pool, row, moment, centre);
-        RigidSums of;
-        const double m = pool.mass()[row];
-        of.add(m, in_space<D>(pool.position_of(row)) - centre, Vector3::zero());
-        // The affine part of a rigid motion is its spin, of which the momentum is `moment` times
-        // the curl. Bodies that do not deform have none, whatever others of their material have.
-        const Matrix3& I = of.inertia;
-        const double own = pool.affine < 0 || !deforms[group] ? 0.0 : 2.0 * m * moment;
+  const auto turning =
+      sum_groups<9>(domain, grouping, of, [&](const Moving& each, std::size_t group) {
+        const Vector3 arm = each.place - parts[group].centre;
+        const Vector3 L = each.mass * cross(arm, each.velocity) + each.own_momentum;
+        RigidSums sums;
+        sums.add(each.mass, arm, Vector3::zero());
+        const Matrix3& I = sums.inertia;
+        const double own = each.own_inertia;
         return std::array{L[0],          L[1],    L[2],    I[0][0] + own, I[1][1] + own,
                           I[2][2] + own, I[1][2], I[0][2], I[0][1]};
       });
@@ -99,7 +120,7 @@ std::vector<double> balance_row(const AngularLedger& ledger, const AngularTotals
   return row;
 }
 
-template std::vector<PartSums> part_sums<2>(Domain<2>&, const Grouping&);
-template std::vector<PartSums> part_sums<3>(Domain<3>&, const Grouping&);
+template std::vector<PartSums> part_sums<2>(Domain<2>&, const Grouping&, SumsOf);
+template std::vector<PartSums> part_sums<3>(Domain<3>&, const Grouping&, SumsOf);
 
 }  // namespace mpm

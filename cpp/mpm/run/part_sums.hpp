@@ -67,9 +67,14 @@ struct Grouping {
   std::size_t count;                    // of sums
 };
 
+/// Who has mass and motion of a body on nodes of its own: those, or the particles that are moved by
+/// them. Both have the same mass, centre and momentum.
+enum class SumsOf : std::uint8_t { kept_nodes, particles };
+
 /// Zeros where there are no particles. They depend on no order of patches or threads.
 template <int D>
-std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping);
+std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping,
+                                SumsOf of = SumsOf::kept_nodes);
 /// Of each group, in the order of the groups' first bodies.
 template <int D>
 std::vector<PartSums> part_sums(Domain<D>& domain) {

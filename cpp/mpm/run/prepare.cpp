@@ -13,6 +13,7 @@
 #include "mpm/run/settle.hpp"
 #include "mpm/run/start_affine.hpp"
 #include "mpm/run/start_contact.hpp"
+#include "mpm/run/start_in_body.hpp"
 #include "mpm/run/time_step.hpp"
 #include "mpm/run/watch.hpp"
 
@@ -72,6 +73,7 @@ void prepare(Simulation<D>& simulation) {
   require(simulation, Phase::building, "prepare() has been called already");
   check_setting(!domain.bodies.empty(), "there is no body");
   check_bodies(domain);
+  check_in_body(simulation);
   simulation.phase = Phase::broken;  // until all is done
   domain.grid.partition.shares_tiles = domain.has_contact();
   add_contact_columns(domain);
@@ -87,10 +89,12 @@ void prepare(Simulation<D>& simulation) {
   domain.sums.resize(domain.grid.patches.size());
   if (domain.grid.walls.exist) domain.face_parts.resize(domain.grid.patches.size());
   list_kinds(domain);
+  choose_stages(simulation);
   start_settling(simulation);
   set_prescribed_velocities(domain);
   project_rigid_velocities(domain);
   start_affine(domain);
+  start_in_body(domain);
   start_contact(domain);
   probe_speeds(domain);
   const std::string problem = choose_time_step(simulation);

@@ -43,6 +43,19 @@ void exchange_removed(StateStream& stream, Removed& removed) {
     removed.count = stream.comm().rank() == 0 ? static_cast<std::size_t>(count) : 0;
 }
 
+/// What nodes in bodies keep. Their patches and blocks follow from the places of the particles in
+/// their bodies, which never change.
+template <int D>
+void exchange_kept_nodes(Domain<D>& domain, StateStream& stream) {
+  NodeMemory& kept = domain.grid.kept;
+  stream.same(kept.needed, other_case);
+  const std::span<double> numbers(kept.numbers.data(), kept.needed);
+  stream.array(numbers);
+  if (!stream.restores()) return;
+  stream.check_all(std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }),
+                   "its nodes are damaged");
+}
+
 /// The lists anew, from where particles are: none depends on those that there were.
 template <int D>
 void rebuild(Domain<D>& domain, std::vector<Patch<D>> bodies, const StateStream& stream) {
@@ -58,7 +71,7 @@ void rebuild(Domain<D>& domain, std::vector<Patch<D>> bodies, const StateStream&
   release_nodes(domain.grid);
   build_cell_lists(domain.grid, domain.bodies, domain.pools, domain.threads, domain.list_scratch);
   // What has failed in the last step, or is in another cell, is seen to in the next.
-  for (Patch<D>& patch : domain.grid.patches) patch.left_cell = !patch.foreign;
+  for (Patch<D>& patch : domain.grid.patches) patch.left_cell = !patch.foreign && !patch.keeps;
   if (domain.has_contact())
     connect_tiles(domain.contact, domain.grid, domain.bodies, domain.contact_settings.response);
   probe_speeds(domain);
@@ -88,6 +101,7 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
     exchange_particles(domain, m, stream, bodies);
   for (SurfaceLoad<D>& load : domain.loads) stream(load.mean, load.force, load.impulse);
   if (stream.restores()) rebuild(domain, std::move(bodies), stream);
+  exchange_kept_nodes(domain, stream);
   if (domain.has_contact())
     exchange_contact(domain.contact, stream, domain.bodies.size(), domain.grid.partition);
   stream(domain.time, domain.time_step, domain.step, domain.gravity);

@@ -7,6 +7,7 @@
 #include "mpm/run/held_bodies.hpp"
 #include "mpm/run/measures.hpp"
 #include "mpm/run/part_sums.hpp"
+#include "mpm/run/start_in_body.hpp"
 #include "mpm/step/stage_functions.hpp"
 
 namespace mpm {
@@ -26,6 +27,7 @@ void stop_all(Domain<D>& domain) {
     }
   }
   project_rigid_velocities(domain);
+  stop_kept_nodes(domain);
   Ledger& ledger = domain.ledger;
   ledger.kinetic = kinetic_energy(domain);
   ledger.damped += before - ledger.kinetic;

@@ -86,8 +86,7 @@ void set_grid(TileGrid<D>& grid, const GridSettings& given) {
 
 template <int D>
 Simulation<D>::Simulation(const Settings& given, Comm* comm)
-    : settings(checked(given)),
-      stages(stages_of<D>(given.run.scheme, given.execution.fused, extra_stages(given))) {
+    : settings(checked(given)) {
   set_grid(domain.grid, given.grid);
   if (comm != nullptr) domain.grid.partition.comm = comm;
   domain.grid.bonded = given.contact.bonded;
@@ -103,9 +102,20 @@ Simulation<D>::Simulation(const Settings& given, Comm* comm)
   domain.imbalance_limit = given.execution.imbalance_limit;
   domain.contact_settings = given.contact;
   domain.threads.resize(given.execution.threads);
-  for (std::size_t k = 0; k < stages.size(); ++k) timers.name(k, stages[k].name);
+  choose_stages(*this);
 }
 
+template <int D>
+void choose_stages(Simulation<D>& simulation) {
+  const Settings& s = simulation.settings;
+  simulation.stages = stages_of<D>(s.run.scheme, s.execution.fused, extra_stages(s),
+                                   simulation.domain.has_kept_nodes());
+  for (std::size_t k = 0; k < simulation.stages.size(); ++k)
+    simulation.timers.name(k, simulation.stages[k].name);
+}
+
+template void choose_stages<2>(Simulation<2>&);
+template void choose_stages<3>(Simulation<3>&);
 template struct Simulation<2>;
 template struct Simulation<3>;
 

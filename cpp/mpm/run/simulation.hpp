@@ -57,6 +57,10 @@ struct Simulation {
   HistoryRows history;
 };
 
+/// The stages of a step, by the settings and by the kinds of the bodies that there are.
+template <int D>
+void choose_stages(Simulation<D>& simulation);
+
 /// Throws std::invalid_argument with the sentence unless the simulation is in a phase.
 template <int D>
 void require(const Simulation<D>& simulation, Phase phase, const char* sentence) {

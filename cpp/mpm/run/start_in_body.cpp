@@ -8,32 +8,33 @@
 #include "mpm/run/part_sums.hpp"
 #include "mpm/schedule/choose.hpp"
 #include "mpm/schedule/scatter.hpp"
+#include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/patch_loops.hpp"
-#include "mpm/step/transfer/flip.hpp"
-#include "mpm/walls/reactions.hpp"
 
 namespace mpm {
 namespace {
 
 // What is left of the particles' velocities after a pass is given to the nodes in the next: smooth
-// fields are met after a few, and what nodes do not see is no part of a body's motion.
+// fields are met after a few, and what nodes cannot have is no part of a body's motion.
 constexpr int passes = 20;
-constexpr double small_rest = 1e-13;  // of the fastest particle
+constexpr double small_rest = 1e-15;  // of the fastest particle
+constexpr int lanes = 4;
 
-/// f(patch, block) for the patches of bodies that are meant.
+// What particles give to nodes stands in the second halves of their records until it is taken.
+constexpr int given_mass = half_record + mass_at, given_velocity = half_record + velocity_at;
+
+/// f(p) for the patches of bodies on nodes of their own that are meant.
 template <int D, class F>
 void for_each_meant(Domain<D>& domain, const std::vector<bool>& bodies, F&& f) {
   for_each_patch(domain, in_body, [&](std::size_t p) {
-    const Patch<D>& patch = domain.grid.patches[p];
-    if (bodies.empty() || bodies[static_cast<std::size_t>(patch.body)])
-      f(patch, domain.grid.block(p));
+    const auto body = static_cast<std::size_t>(domain.grid.patches[p].body);
+    if (bodies.empty() || bodies[body]) f(p);
   });
 }
 
-/// f(rows, sum N_ip v_i) for the particles of a patch.
-template <int D, class F>
+/// f(rows, sum N_ip of the vectors at a number of the records) for the particles of a patch.
+template <int at, int D, class F>
 void for_each_velocity(Domain<D>& domain, const Patch<D>& patch, F&& f) {
-  constexpr int lanes = 4;
   const ParticlePool<D>& pool = domain.pool_of(patch);
   const NodeRecords records = domain.grid.block(patch).records;
   const NodeStrides<D> stride(patch.shape);
@@ -42,99 +43,185 @@ void for_each_velocity(Domain<D>& domain, const Patch<D>& patch, F&& f) {
     for_each_cell(domain.grid, pool, patch, [&](const CellRange<D>& cell) {
       const auto nodes = field_of<B>(records.from(cell.first_node), stride);
       for_each_group<lanes>(cell, [&](const auto& rows) {
-        f(rows, nodes.template vector<velocity_at>(
-                    weights_at(basis, local_position(cell, rows))));
+        f(rows, nodes.template vector<at>(weights_at(basis, local_position(cell, rows))));
       });
     });
   });
 }
 
-/// Mass and momentum of the nodes from the particles, as the first half of their records has them.
-template <int D>
-void map_kept(Domain<D>& domain, const std::vector<bool>& bodies) {
-  for_each_meant(domain, bodies, [&](const Patch<D>& patch, const NodeBlock<D>& block) {
-    for (int n = 0; n < block.count; ++n) std::fill_n(block.records[n], half_record, 0.0);
-    scatter<Mapping<Flip>, gives_mass | gives_momentum>(domain.grid, domain.body_of(patch),
-                                                        domain.pool_of(patch), patch,
-                                                        block.records);
+/// Take from the particles' velocities what the nodes give them by those at a number of the records.
+template <int at, int D>
+void take_from_particles(Domain<D>& domain, const std::vector<bool>& bodies) {
+  for_each_meant(domain, bodies, [&](std::size_t p) {
+    const Patch<D>& patch = domain.grid.patches[p];
+    ParticlePool<D>& pool = domain.pool_of(patch);
+    for_each_velocity<at>(domain, patch, [&](const auto& rows, const auto& v) {
+      for (int a = 0; a < D; ++a) store(pool.v(a), rows, load(pool.v(a), rows) - v[a]);
+    });
   });
 }
 
-/// The velocity at a place of the rigid motion of a body.
-struct RigidField {
-  Vector3 centre = Vector3::zero(), velocity = Vector3::zero(), spin = Vector3::zero();
-  Vector3 at(const Vector3& x) const { return velocity + cross(spin, x - centre); }
-};
-
+/// The mass that particles give to nodes, and the mean of their velocities there, m_i v_i = sum m_p
+/// v_p N_ip.
 template <int D>
-std::vector<RigidField> rigid_fields(Domain<D>& domain) {
+void give_to_nodes(Domain<D>& domain, const std::vector<bool>& bodies) {
+  for_each_meant(domain, bodies, [&](std::size_t p) {
+    const Patch<D>& patch = domain.grid.patches[p];
+    const NodeBlock<D> block = domain.grid.block(p);
+    for (int n = 0; n < block.count; ++n)
+      std::fill_n(block.records[n] + half_record, half_record, 0.0);
+    scatter<Mapping<Flip>, gives_mass | gives_momentum>(
+        domain.grid, domain.body_of(patch), domain.pool_of(patch), patch,
+        NodeRecords{block.records.data + half_record});
+  });
+  sum_shared_nodes(domain.grid, domain.threads, half_record, record);
+  for_each_meant(domain, bodies, [&](std::size_t p) {
+    const NodeBlock<D> block = domain.grid.block(p);
+    for (int n = 0; n < block.count; ++n) {
+      double* const numbers = block.records[n];
+      const double m = numbers[given_mass];
+      for (int a = 0; a < D; ++a) numbers[given_velocity + a] *= m > 0.0 ? 1.0 / m : 0.0;
+    }
+  });
+}
+
+/// Let the nodes have those velocities as well; returns the largest of them.
+template <int D>
+double add_given(Domain<D>& domain, const std::vector<bool>& bodies) {
+  std::vector<double> largest(domain.grid.patches.size(), 0.0);
+  for_each_meant(domain, bodies, [&](std::size_t p) {
+    const NodeBlock<D> block = domain.grid.block(p);
+    for (int n = 0; n < block.count; ++n)
+      for (int a = 0; a < D; ++a) {
+        const double v = block.records[n][given_velocity + a];
+        block.records[n][velocity_at + a] += v;
+        largest[p] = std::max(largest[p], std::abs(v));
+      }
+  });
+  return *std::ranges::max_element(largest);
+}
+
+/// The nodes' velocities by the rigid motion that each body has by its particles.
+template <int D>
+void begin_with_rigid_motions(Domain<D>& domain, const std::vector<bool>& bodies) {
   std::vector<std::size_t> numbers(domain.bodies.size());
   for (std::size_t b = 0; b < numbers.size(); ++b) numbers[b] = b;
-  const auto parts = particle_sums(domain, Grouping{numbers, numbers.size()});
-  std::vector<RigidField> fields;
-  fields.reserve(parts.size());
-  for (const PartSums& part : parts)
-    fields.push_back({part.centre, velocity_of(part), spin_of(part, D)});
-  return fields;
+  const std::vector<PartSums> parts =
+      part_sums(domain, Grouping{numbers, numbers.size()}, SumsOf::particles);
+  for_each_meant(domain, bodies, [&](std::size_t p) {
+    const Patch<D>& patch = domain.grid.patches[p];
+    const NodeBlock<D> block = domain.grid.block(p);
+    const PartSums& part = parts[static_cast<std::size_t>(patch.body)];
+    const Vector3 velocity = velocity_of(part), spin = spin_of(part, D);
+    for (int n = 0; n < block.count; ++n) {
+      const double m = block.records[n][mass_at];
+      const Vector3 arm = place_of_kept(domain.grid, patch, block, n) - part.centre;
+      const Vector3 v = velocity + cross(spin, arm);
+      for (int a = 0; a < D; ++a) block.records[n][velocity_at + a] = m > 0.0 ? v[a] : 0.0;
+    }
+  });
+}
+
+void check_setting(bool holds, const char* sentence) {
+  if (!holds)
+    throw std::invalid_argument(std::string("frame = \"material\" does not go with ") + sentence);
 }
 
 }  // namespace
 
+void check_in_body(const Material& material) {
+  check_setting(!material.moves_as_one(), "a rigid body, which does not deform");
+  check_setting(!material.breaks_up(),
+                "a material that flows or breaks: fluids, gases, explosives, loose soils, failure "
+                "models and spall strengths need frame = \"updated\"");
+  check_setting(!material.averages_volume, "volume_averaging: leave one of them away");
+}
+
+template <int D>
+void check_in_body(const Simulation<D>& simulation) {
+  const Domain<D>& domain = simulation.domain;
+  if (!domain.has_kept_nodes()) return;
+  const Settings& s = simulation.settings;
+  check_setting(s.grid.basis != basis_id<Linear>,
+                "grid.basis = \"linear\", whose gradients jump: give \"quadratic_bspline\"");
+  check_setting(domain.bodies.size() == 1 || !s.contact.enabled,
+                "contact yet: give contact = false, or frame = \"updated\"");
+  check_setting(domain.bodies.size() == 1 || !s.contact.bonded,
+                "bonded bodies yet: give frame = \"updated\"");
+  const bool held = std::ranges::any_of(s.grid.walls, [](Wall w) { return w != Wall::free; });
+  check_setting(s.grid.box_cells[0] == 0 || !held,
+                "walls of the box yet: give free faces, or frame = \"updated\"");
+  check_setting(!s.grid.outflow, "a region that particles leave: give frame = \"updated\"");
+  check_setting(!s.grid.coarsening, "grid.coarsening: give frame = \"updated\"");
+  check_setting(domain.loads.empty(), "loads on surfaces yet: give frame = \"updated\"");
+  check_setting(domain.grid.partition.comm->size() == 1, "several ranks yet: run it on one");
+  for (const HeldBody& held_body : simulation.held)
+    check_setting(!domain.body_at(held_body.body).keeps_nodes(),
+                  "a velocity at the start and run.settle yet: leave one of them away");
+  for (const Body<D>& body : domain.bodies)
+    check_setting(!body.is_prescribed() || domain.pool_of(body).reference < 0,
+                  "a prescribed motion, as such a body does not deform");
+}
+
 template <int D>
 void start_in_body(Domain<D>& domain) {
-  for (ParticlePool<D>& pool : domain.pools) {
-    if (pool.reference < 0) continue;
-    for (int k = 0; k < D * D; ++k)
-      std::fill_n(pool.deformation_part(k), pool.count(), k / D == k % D ? 1.0 : 0.0);
-  }
-  for_each_meant(domain, {}, [&](const Patch<D>&, const NodeBlock<D>& block) {
-    for (int n = 0; n < block.count; ++n) {
-      std::fill_n(block.records[n], record, 0.0);
-      std::fill_n(block.displacements[n], half_record, 0.0);
-    }
+  if (!domain.has_kept_nodes()) return;
+  std::fill_n(domain.grid.kept.numbers.data(), domain.grid.kept.needed, 0.0);
+  give_to_nodes(domain, {});
+  for_each_meant(domain, {}, [&](std::size_t p) {
+    const NodeBlock<D> block = domain.grid.block(p);
+    for (int n = 0; n < block.count; ++n)
+      block.records[n][mass_at] = block.records[n][given_mass];
   });
+  find_kept_velocities(domain);
 }
 
 template <int D>
 void find_kept_velocities(Domain<D>& domain, const std::vector<bool>& bodies) {
-  if (std::ranges::none_of(domain.bodies, &Body<D>::keeps_nodes)) return;
-  const std::vector<RigidField> fields = rigid_fields(domain);
-  // The rest of each particle's velocity, in its column until the nodes have all they can take.
-  std::vector<double> fastest(domain.grid.patches.size(), 0.0), rest = fastest;
-  const auto number_of = [&](const Patch<D>& patch) {
-    return static_cast<std::size_t>(&patch - domain.grid.patches.data());
-  };
-  const auto largest = [](const std::vector<double>& of) {
-    return of.empty() ? 0.0 : *std::ranges::max_element(of);
-  };
-  for_each_meant(domain, bodies, [&](const Patch<D>& patch, const NodeBlock<D>& block) {
-    for (int n = 0; n < block.count; ++n) {
-      const Vector3 v = fields[static_cast<std::size_t>(patch.body)].at(
-          place_of_kept(domain.grid, patch, block, n));
-      for (int a = 0; a < D; ++a) block.records[n][force_at + a] = v[a];
-    }
-  });
-  for (int pass = 0;; ++pass) {
-    // The nodes hold in their second half what they have got so far: to the first, with the mass.
-    map_kept(domain, bodies);
-    sum_shared_nodes(domain.grid, domain.threads, 0, half_record);
-    for_each_meant(domain, bodies, [&](const Patch<D>&, const NodeBlock<D>& block) {
-      for (int n = 0; n < block.count; ++n) {
-        double* const numbers = block.records[n];
-        const double m = numbers[mass_at];
-        for (int a = 0; a < D; ++a) {
-          // In the first pass the rigid motion alone, of which particles have the rest then.
-          if (pass > 0 && m > 0.0) numbers[force_at + a] += numbers[momentum_at + a] / m;
-          numbers[velocity_at + a] = m > 0.0 ? numbers[force_at + a] : 0.0;
-        }
-      }
-    });
-    (void)fastest;
-    break;
+  if (!domain.has_kept_nodes()) return;
+  begin_with_rigid_motions(domain, bodies);
+  take_from_particles<velocity_at>(domain, bodies);
+  double largest = 0.0;
+  for (int k = 0; k < passes; ++k) {
+    give_to_nodes(domain, bodies);
+    const double given = add_given(domain, bodies);
+    largest = std::max(largest, given);
+    if (!(given > small_rest * largest)) break;
+    take_from_particles<given_velocity>(domain, bodies);
   }
-  (void)rest;
-  (void)largest;
-  (void)number_of;
+  give_kept_velocities(domain);
 }
+
+template <int D>
+void stop_kept_nodes(Domain<D>& domain) {
+  for_each_meant(domain, {}, [&](std::size_t p) {
+    const NodeBlock<D> block = domain.grid.block(p);
+    for (int n = 0; n < block.count; ++n)
+      std::fill_n(block.records[n] + velocity_at, D, 0.0);
+  });
+}
+
+template <int D>
+void give_kept_velocities(Domain<D>& domain) {
+  if (!domain.has_kept_nodes()) return;
+  for_each_meant(domain, {}, [&](std::size_t p) {
+    const Patch<D>& patch = domain.grid.patches[p];
+    ParticlePool<D>& pool = domain.pool_of(patch);
+    for_each_velocity<velocity_at>(domain, patch, [&](const auto& rows, const auto& v) {
+      for (int a = 0; a < D; ++a) store(pool.v(a), rows, v[a]);
+    });
+  });
+}
+
+template void check_in_body<2>(const Simulation<2>&);
+template void check_in_body<3>(const Simulation<3>&);
+template void start_in_body<2>(Domain<2>&);
+template void start_in_body<3>(Domain<3>&);
+template void find_kept_velocities<2>(Domain<2>&, const std::vector<bool>&);
+template void find_kept_velocities<3>(Domain<3>&, const std::vector<bool>&);
+template void stop_kept_nodes<2>(Domain<2>&);
+template void stop_kept_nodes<3>(Domain<3>&);
+template void give_kept_velocities<2>(Domain<2>&);
+template void give_kept_velocities<3>(Domain<3>&);
 
 }  // namespace mpm

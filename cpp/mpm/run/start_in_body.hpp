@@ -3,23 +3,30 @@
 // of their particles, which nothing in a step asks for.
 #include <vector>
 
-#include "mpm/domain.hpp"
+#include "mpm/run/simulation.hpp"
 
 namespace mpm {
 
-/// Throws std::invalid_argument, in one sentence, for what such bodies do not go with yet.
+/// Throw std::invalid_argument, in one sentence, for matter that does not hold together, and for what
+/// such bodies do not go with yet.
+void check_in_body(const Material& material);
 template <int D>
-void check_in_body(const Domain<D>& domain);
+void check_in_body(const Simulation<D>& simulation);
 
-/// The places of the particles in their bodies, F = 1, and the masses of the nodes, which are at
-/// rest where they are; once lists are made.
+/// The masses of the nodes, which have their places and the velocities of the particles; once lists
+/// are made.
 template <int D>
 void start_in_body(Domain<D>& domain);
 
 /// The velocities of the nodes from those of the particles, of bodies that are meant; of all if
-/// none are named. The motion that is rigid is met exactly, and momentum kept.
+/// none are named. Rigid motions are met exactly, and momentum is kept; then the particles have what
+/// the nodes give them.
 template <int D>
 void find_kept_velocities(Domain<D>& domain, const std::vector<bool>& bodies = {});
+
+/// Bring all nodes to rest.
+template <int D>
+void stop_kept_nodes(Domain<D>& domain);
 
 /// v_p = sum N_ip v_i of the particles, for those who read it between steps.
 template <int D>

@@ -2,6 +2,7 @@
 // A run whose steps a device makes. The host keeps its bodies, its ledger and the time; it is given
 // the particles when somebody wants to read them.
 #include "mpm/run/simulation.hpp"
+#include "mpm/run/start_in_body.hpp"
 #include "mpm/run/time_step.hpp"
 
 namespace mpm {
@@ -22,9 +23,11 @@ void use_device(Simulation<D>& simulation) {
   simulation.wants_device = true;
 }
 
-/// Give the host the particles as they are now, if a device has them.
+/// Give the host the particles as they are now, if a device has them; and those of bodies on nodes
+/// of their own the velocities of these, of which steps have no need.
 template <int D>
 void bring_home(Simulation<D>& simulation) {
+  if (simulation.phase == Phase::ready) give_kept_velocities(simulation.domain);
   if (simulation.device) fetch_from_device(*simulation.device, simulation.domain);
 }
 

@@ -223,7 +223,8 @@ void see(Simulation<D>& simulation) {
     const Material& material = domain.material_of(patch);
     const bool solid = b.deforms() && b.matter != Matter::gas;
     const bool may_evaporate = std::isfinite(material.bounds.lowest_energy);
-    if (solid && !material.breaks_up()) look_for_gaps(of, patch, sight);
+    // On nodes of their own bodies hold together, however far their particles are apart.
+    if (solid && !material.breaks_up() && !b.keeps_nodes()) look_for_gaps(of, patch, sight);
     const double* failed = of.at.failed >= 0 ? of.columns.component(of.at.failed) : nullptr;
     const bool placed = grid.walls.exist && !b.is_prescribed();
     const bool gas = b.deforms() && !solid;

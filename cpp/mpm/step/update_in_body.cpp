@@ -9,23 +9,6 @@
 namespace mpm {
 namespace {
 
-/// Square of the largest stretch by F^-1, or more: the largest sum of a row of F^-1 F^-T, which is
-/// exact along the axes.
-template <class T, int D>
-T largest_square(const Mat<T, D>& inverse) {
-  T largest(0.0);
-  for (int i = 0; i < D; ++i) {
-    T row(0.0);
-    for (int j = 0; j < D; ++j) {
-      T c = inverse[i][0] * inverse[j][0];
-      for (int k = 1; k < D; ++k) c = fma(inverse[i][k], inverse[j][k], c);
-      row += absolute(c);
-    }
-    largest = max(largest, row);
-  }
-  return largest;
-}
-
 template <int W, int D, BasisModel B>
 [[gnu::noinline, gnu::flatten]] void update_patch(Domain<D>& domain, std::size_t p,
                                                   const B& basis) {
@@ -70,7 +53,7 @@ template <int W, int D, BasisModel B>
         L[i][j].store(block.gradient[i][j] + block.count);
       });
       unrolled<D>([&](auto a) { store(pool.x(a), rows, load(pool.listed(a), rows) + u[a]); });
-      squeezed = max(squeezed, of_valid(rows, largest_square(inverse_of(F))));
+      squeezed = max(squeezed, of_valid(rows, largest_stretch_squared(inverse_of(F))));
       unrolled<W>([&](auto k) { block.row[block.count + k] = rows[k]; });
       block.count += static_cast<std::size_t>(rows.count);
     });
