@@ -58,6 +58,7 @@
   X(nodes_around) \
   X(loops) \
   X(fuse) \
+  X(kept_nodes) \
   X(stages) \
   X(rows) \
   X(rows_in_space) \

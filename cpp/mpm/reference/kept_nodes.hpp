@@ -1,0 +1,79 @@
+#pragma once
+// A step of a body on nodes of its own, as step/kept_nodes.hpp writes it: one particle and one node
+// at a time. Nodes keep u and v, particles F; where these lie in the body, X, is that of the start.
+#include "mpm/math/inverse.hpp"
+#include "mpm/reference/step.hpp"
+
+namespace mpm::reference {
+
+template <int D>
+struct KeptNodes {
+  const Step<D>& step;  // shape functions, gravity, time step
+  Body<D> body{};       // its nodes have masses and velocities
+  std::map<Index<D>, Vec<double, D>> u{};  // [m]
+  std::vector<Mat<double, D>> F{};         // of each particle
+
+  /// m_i = sum m_p N_ip once, and v_i as they are given by the index of the node.
+  template <class Velocity>
+  void start(Velocity&& velocity) {
+    for (const Particle<D>& p : body.particles)
+      step.for_each_node(p.X, [&](const Index<D>& i, double N, const Vec<double, D>&) {
+        body.nodes[i].m += p.m * N;
+      });
+    for (auto& [i, node] : body.nodes) {
+      node.v = velocity(i);
+      u[i] = Vec<double, D>::zero();
+    }
+    Mat<double, D> one{};
+    for (int a = 0; a < D; ++a) one[a][a] = 1.0;
+    F.assign(body.particles.size(), one);
+  }
+
+  /// f_i = m_i g - sum V_p sigma_p F_p^-T grad_X N_ip, (M2).
+  void map_forces() {
+    for (auto& [i, node] : body.nodes) node.f = node.m * step.g;
+    for (std::size_t k = 0; k < F.size(); ++k) {
+      const Particle<D>& p = body.particles[k];
+      const Mat<double, D> inverse = inverse_of(F[k]);
+      step.for_each_node(p.X, [&](const Index<D>& i, double, const Vec<double, D>& dN) {
+        for (int a = 0; a < D; ++a)
+          for (int b = 0; b < D; ++b)
+            for (int c = 0; c < D; ++c)
+              body.nodes[i].f[a] -= p.V * p.sigma(a, b) * inverse[c][b] * dN[c];
+      });
+    }
+  }
+
+  /// v_i += dt f_i / m_i, u_i += dt v_i, (M3).
+  void advance_nodes() {
+    for (auto& [i, node] : body.nodes) {
+      node.dv = (step.dt / node.m) * node.f;
+      node.v += node.dv;
+      u[i] += step.dt * node.v;
+    }
+  }
+
+  /// x_p, F_p, (M1), and the stress by L dt = (F_p - F_p before) (F_p before)^-1, (M4).
+  void update() {
+    for (std::size_t k = 0; k < F.size(); ++k) {
+      Particle<D>& p = body.particles[k];
+      Mat<double, D> now{}, change{};
+      for (int a = 0; a < D; ++a) now[a][a] = 1.0;
+      p.x = p.X;
+      step.for_each_node(p.X, [&](const Index<D>& i, double N, const Vec<double, D>& dN) {
+        p.x += N * u[i];
+        for (int a = 0; a < D; ++a)
+          for (int b = 0; b < D; ++b) now[a][b] += u[i][a] * dN[b];
+      });
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) change[a][b] = now[a][b] - F[k][a][b];
+      StrainIncrement<double, D> motion{};
+      motion.gradient = change * inverse_of(F[k]);
+      body.material.update(motion, p.sigma);
+      p.V *= determinant(now) / determinant(F[k]);
+      F[k] = now;
+    }
+  }
+};
+
+}  // namespace mpm::reference
