@@ -28,11 +28,12 @@ struct CatalogueModel {
 /// contact.
 template <int D>
 std::vector<std::string> names_of_columns(const Material& material, bool may_leave, bool forced,
-                                          bool of_start, TransferId transfer, bool springs) {
+                                          bool of_start, TransferId transfer, bool springs,
+                                          bool in_body) {
   TileGrid<D> grid;
   grid.cell_size = 1.0;
   grid.outflow_box.exist = may_leave;
-  ParticlePool<D> pool = make_pool(material, grid, columns_of(transfer));
+  ParticlePool<D> pool = make_pool(material, grid, columns_of(transfer, in_body));
   if (forced) add_force_column(pool);
   if (of_start) add_start_positions(pool);
   if (springs) add_set_back(pool);
@@ -118,21 +119,33 @@ void add_materials(nb::module_& m) {
       [](int dimension, bool may_leave, bool forced, bool of_start, const std::string& transfer,
          bool springs, double density, const std::string& strength, const Parameters& parameters,
          const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
-         Viscosity viscosity, double damping, bool volume_averaging) {
+         Viscosity viscosity, double damping, bool volume_averaging, bool in_body) {
         const Material material = make_material(choice_of(
             density, strength, parameters, eos, failures, viscosity, damping, volume_averaging));
         const TransferId id = choice_named<TransferId>("transfer", transfer);
         return dimension == 2
-                   ? names_of_columns<2>(material, may_leave, forced, of_start, id, springs)
-                   : names_of_columns<3>(material, may_leave, forced, of_start, id, springs);
+                   ? names_of_columns<2>(material, may_leave, forced, of_start, id, springs, in_body)
+                   : names_of_columns<3>(material, may_leave, forced, of_start, id, springs, in_body);
       },
       nb::arg("dimension"), nb::arg("may_leave"), nb::arg("forced"), nb::arg("of_start"),
       nb::arg("transfer"), nb::arg("springs"), nb::arg("density"), nb::arg("strength"),
       nb::arg("parameters"), nb::arg("eos").none(), nb::arg("failures"), nb::arg("viscosity"),
-      nb::arg("damping"), nb::arg("volume_averaging"),
+      nb::arg("damping"), nb::arg("volume_averaging"), nb::arg("in_body") = false,
       "The names of the columns that particles of a material have; `may_leave`: there is an "
       "outflow box, `forced`: a body force, which is a formula `of_start`, of places at the start; "
-      "`springs`: of contact");
+      "`springs`: of contact; `in_body`: of a body on nodes of its own");
+  m.def(
+      "breaks_up",
+      [](double density, const std::string& strength, const Parameters& parameters,
+         const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
+         bool volume_averaging) {
+        return make_material(choice_of(density, strength, parameters, eos, failures, {}, 0.0,
+                                       volume_averaging))
+            .breaks_up();
+      },
+      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
+      nb::arg("failures"), nb::arg("volume_averaging"),
+      "Whether particles of a material may part: it flows, is loose, can fail or spall");
 
   m.def(
       "matter",

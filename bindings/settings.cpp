@@ -100,7 +100,7 @@ nb::dict all_operations() {
 
 /// Of each stage: its name, what it reads and writes, and whether it goes through all particles.
 nb::list stage_rows(const std::string& scheme, bool fused) {
-  const auto names = [](std::uint32_t data) {
+  const auto names = [](std::uint64_t data) {
     nb::list said;
     for (std::size_t k = 0; k < data_names.size(); ++k)
       if (data >> k & 1u) said.append(text(data_names[k]));

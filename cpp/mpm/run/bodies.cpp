@@ -39,9 +39,8 @@ int add_material(Simulation<D>& simulation, const MaterialChoice& choice, bool i
   const Material material = make_material(choice);
   if (in_body) check_in_body(material);
   domain.materials.push_back(material);
-  const TransferColumns kept =
-      in_body ? TransferColumns{.reference = true} : columns_of(domain.transfer);
-  domain.pools.push_back(make_pool(domain.materials.back(), domain.grid, kept));
+  domain.pools.push_back(
+      make_pool(domain.materials.back(), domain.grid, columns_of(domain.transfer, in_body)));
   return static_cast<int>(domain.materials.size()) - 1;
 }
 

@@ -103,7 +103,8 @@ template <int D>
 void start_affine(Domain<D>& domain, const std::vector<bool>& bodies) {
   if (!is_affine(domain.transfer)) return;
   const auto is_meant = [&](int body) {
-    return domain.body_at(body).deforms() &&
+    const Body<D>& of = domain.body_at(body);
+    return of.deforms() && !of.keeps_nodes() &&
            (bodies.empty() || bodies[static_cast<std::size_t>(body)]);
   };
   double fastest = 0.0;

@@ -24,6 +24,7 @@ void map(Domain<D>& domain, int j) {
   auto& grid = domain.grid;
   domain.threads.for_each(grid.patches.size(), [&](std::size_t p) {
     const Patch<D>& patch = grid.patches[p];
+    if (patch.keeps) return;
     const NodeBlock<D> block = grid.block(p);
     const Body<D>& body = domain.body_of(patch);
     const ParticlePool<D>& pool = domain.pool_of(patch);

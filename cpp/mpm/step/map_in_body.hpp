@@ -3,6 +3,7 @@
 #include "mpm/math/inverse.hpp"
 #include "mpm/schedule/scatter.hpp"
 #include "mpm/step/transfer/flip.hpp"
+#include "mpm/step/transfer/mapping.hpp"
 
 namespace mpm {
 

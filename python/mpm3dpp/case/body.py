@@ -10,6 +10,7 @@ from pydantic import model_validator
 from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import violation
 from mpm3dpp.base.expression import ForceField, SpinField, TotalForce, VelocityField
+from mpm3dpp.base.frames import FRAMES, UPDATED
 from mpm3dpp.base.model import CaseModel, Choice, Count, Flag, Text
 from mpm3dpp.base.units import PositiveLength
 from mpm3dpp.shapes.base import MaybeShape
@@ -59,6 +60,9 @@ class Body(CaseModel):
             or formulas of the time t; None for none.
         damping: what damps its motion beside its material, in proportion to the mass or locally;
             None for nothing.
+        frame: where its nodes lie: in space, "updated", where any flow is possible; or in the body,
+            "material", where they keep their motion and nothing of it is lost, as of elastic bodies
+            of few cells that vibrate, spin or hit (no fluids, failure, contact or walls yet).
         motion: "fixed", or a motion that the body has whatever acts on it; it does not deform
             then; None for a body that is free to move.
     """
@@ -76,6 +80,7 @@ class Body(CaseModel):
     body_force: ForceField | None = None
     force: TotalForce | None = None
     damping: Damping | None = None
+    frame: Annotated[str, Choice(FRAMES)] = UPDATED
     motion: MaybeMotion = None
 
     @model_validator(mode="after")

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 from pydantic_core import PydanticCustomError
@@ -11,12 +12,14 @@ from pydantic_core import PydanticCustomError
 from mpm3dpp import _core
 from mpm3dpp.base.errors import CaseError, Path, nearest, report, violation
 from mpm3dpp.base.expression import Expression
+from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.base.model import plain
 from mpm3dpp.base.outputs import COLUMNS, ON_REQUEST, STANDARD
 
 from .cut import cut_bodies
 from .detonation import check_detonations
 from .forces import acts_at_first, check_forces, force_values
+from .frame import check_frames
 from .initial import check_initial
 from .loads import check_loads
 from .material_checks import check_material
@@ -82,6 +85,7 @@ def _bodies_together(case: Case) -> Found:
     yield from check_forces(case)
     yield from check_bonds(case)
     yield from check_pressed(case)
+    yield from check_frames(case)
     yield from _dampings(case)
     if case.run.settle is not None and not acts_at_first(case) and not presses(case):
         rule = (
@@ -236,7 +240,8 @@ def _columns(case: Case, material: str) -> list[str]:
     """Return the names of the columns that the core has for particles of a material."""
     parts = [part for part in case.parts().values() if part.material == material]
     given = [value for part in parts for value in force_values(part)]
-    return _core.column_names(
+    columns = partial(
+        _core.column_names,
         dimension=case.grid.dimension,
         may_leave=case.grid.outflow_box is not None,
         forced=bool(given),
@@ -247,6 +252,8 @@ def _columns(case: Case, material: str) -> list[str]:
         damping=case.material[material].beta,
         **case.material[material].for_core(),
     )
+    frames = {part.frame == MATERIAL for part in parts}
+    return list(dict.fromkeys(name for frame in frames for name in columns(in_body=frame)))
 
 
 def _output(case: Case) -> Found:

@@ -13,6 +13,7 @@ from pydantic import model_validator
 from mpm3dpp.base.damping import Damping
 from mpm3dpp.base.errors import CaseError, Path, violation
 from mpm3dpp.base.expression import ForceField, SpinField, TotalForce, VelocityField
+from mpm3dpp.base.frames import FRAMES, UPDATED
 from mpm3dpp.base.machine import BODY_BYTES, MEMORY, memory_text
 from mpm3dpp.base.model import CaseModel, Choice, Count, Text
 from mpm3dpp.base.units import Point, PositiveLength
@@ -108,6 +109,7 @@ class Grains(CaseModel):
             mass, D numbers or formulas of the time t; None for none.
         damping: what damps their motion beside their material, in proportion to the mass or
             locally; None for nothing.
+        frame: where their nodes lie, "updated" (in space) or "material" (in each of them).
     """
 
     material: Text
@@ -123,6 +125,7 @@ class Grains(CaseModel):
     body_force: ForceField | None = None
     force: TotalForce | None = None
     damping: Damping | None = None
+    frame: Annotated[str, Choice(FRAMES)] = UPDATED
 
     @model_validator(mode="after")
     def _one_way(self) -> Grains:

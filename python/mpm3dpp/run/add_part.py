@@ -28,7 +28,7 @@ def add_part(
     core: Any,
     case: Case,
     part: FilledPart,
-    materials: dict[str, int],
+    materials: Mapping[tuple[str, str], int],
     above: Overburden | None,
     world: World | None,
 ) -> None:
@@ -38,11 +38,11 @@ def add_part(
         core: the core's simulation.
         case: of which the entry is.
         part: the entry.
-        materials: their numbers in the core.
+        materials: their numbers in the core, by `kind_of`.
         above: what presses on them, where a stress is geostatic.
         world: processes that each give a share of the grains, or a slice of a body.
     """
-    material = materials[part.material]
+    material = materials[kind_of(case, part)]
     if part.balls is not None:
         _add_grains(core, case, part, material, world)
         return
@@ -63,6 +63,11 @@ def add_part(
     for name, load in case.load.items():
         if load.body == part.name:
             add_load(core, case, name, number, pieces(case, name, positions, part.spacing, near))
+
+
+def kind_of(case: Case, part: FilledPart) -> tuple[str, str]:
+    """Return the material and the frame of an entry, which particles of one pool share."""
+    return part.material, case.parts()[part.name].frame
 
 
 def _add_body(core: Any, part: FilledPart, particles: Particles, material: int) -> int:

@@ -9,13 +9,14 @@ from typing import Any
 from mpm3dpp import _core
 from mpm3dpp.base import arguments
 from mpm3dpp.base.errors import CaseError
+from mpm3dpp.base.frames import MATERIAL
 from mpm3dpp.case.case import Case
 from mpm3dpp.fill.initial import overburden
 from mpm3dpp.fill.interference import Interference
 from mpm3dpp.fill.parts import Filled
 from mpm3dpp.ranks.world import World
 
-from .add_part import add_part
+from .add_part import add_part, kind_of
 from .core_settings import core_settings
 
 
@@ -50,8 +51,8 @@ def fill_core(core: Any, case: Case, filled: Filled, world: World | None) -> dic
     Returns:
         The mass of each body, and of all the grains of an entry [kg; in 2D per metre].
     """
-    used = dict.fromkeys(part.material for part in filled.parts.values())
-    numbers = {name: _add_material(core, case, name) for name in used}
+    used = dict.fromkeys(kind_of(case, part) for part in filled.parts.values())
+    numbers = {kind: _add_material(core, case, *kind) for kind in used}
     above = overburden(case, filled, world)
     masses = {name: float(part.masses.sum()) for name, part in filled.parts.items()}
     for name in list(filled.parts):
@@ -59,10 +60,15 @@ def fill_core(core: Any, case: Case, filled: Filled, world: World | None) -> dic
     return masses
 
 
-def _add_material(core: Any, case: Case, name: str) -> int:
-    """Return the number that the core gives to a material."""
+def _add_material(core: Any, case: Case, name: str, frame: str) -> int:
+    """Return the number that the core gives to a material, of bodies of one frame."""
     material, viscosity = case.material[name], case.viscosity_of(name)
-    number = core.add_material(**material.for_core(), viscosity=viscosity, damping=material.beta)
+    number = core.add_material(
+        **material.for_core(),
+        viscosity=viscosity,
+        damping=material.beta,
+        in_body=frame == MATERIAL,
+    )
     return int(number)
 
 

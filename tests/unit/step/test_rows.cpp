@@ -16,7 +16,7 @@ using namespace mpm::testing;
 struct Number {
   double* exact = nullptr;
   Storage* rounded = nullptr;
-  std::uint32_t data = 0;
+  std::uint64_t data = 0;
 
   double get() const { return exact ? *exact : double{*rounded}; }
   void set(double value) const {
@@ -52,10 +52,10 @@ class Numbers {
  private:
   std::vector<Number> all_;
 
-  void add(double& x, std::uint32_t data) { all_.push_back({&x, nullptr, data}); }
+  void add(double& x, std::uint64_t data) { all_.push_back({&x, nullptr, data}); }
   void add_particles(ParticlePool<D>& pool, const Patch<D>& patch, bool deforms) {
     for (const ColumnInfo& column : pool.columns.infos()) {
-      const std::uint32_t data = deforms ? data_of(pool, column.first) : rigid_data(pool, column);
+      const std::uint64_t data = deforms ? data_of(pool, column.first) : rigid_data(pool, column);
       for (int c = column.first; c < column.first + column.components; ++c)
         for (const std::uint32_t row : pool.rows(patch)) {
           Number number{.data = data};
@@ -74,7 +74,7 @@ class Numbers {
         }
       });
   }
-  static std::uint32_t data_of(const ParticlePool<D>& pool, int column) {
+  static std::uint64_t data_of(const ParticlePool<D>& pool, int column) {
     if (column == pool.position) return Data::position;
     if (column == pool.at.velocity) return Data::velocity;
     if (column == pool.at.mass) return Data::mass;
@@ -90,7 +90,7 @@ class Numbers {
     if (column == pool.set_back) return 0;  // of the start alone
     return Data::stress;
   }
-  static std::uint32_t rigid_data(const ParticlePool<D>& pool, const ColumnInfo& column) {
+  static std::uint64_t rigid_data(const ParticlePool<D>& pool, const ColumnInfo& column) {
     if (column.first == pool.position) return Data::rigid_position;
     if (column.first == pool.at.velocity) return Data::rigid_velocity;
     return Data::rigid_position | Data::rigid_velocity;
@@ -121,7 +121,7 @@ class Numbers {
   }
 };
 
-std::string names_of(std::uint32_t data) {
+std::string names_of(std::uint64_t data) {
   std::string names;
   for (std::size_t bit = 0; bit < data_names.size(); ++bit)
     if (data >> bit & 1u) names += (names.empty() ? "" : "/") + std::string(data_names[bit]);
@@ -148,7 +148,7 @@ class Poisoned {
   }
 
   void run(const Stage<D>& stage) {
-    const std::uint32_t reads = stage.reads, writes = stage.writes;
+    const std::uint64_t reads = stage.reads, writes = stage.writes;
     before_.clear();
     for (const Number& number : ours_.of(healthy_.domain)) before_.push_back(number.get());
     for (const Number& number : theirs_.of(poisoned_.domain))
@@ -162,7 +162,7 @@ class Poisoned {
     std::set<std::string> changed, missed;
     for (std::size_t k = 0; k < now.size(); ++k) {
       const double value = now[k].get(), other = theirs[k].get();
-      const std::uint32_t data = now[k].data;
+      const std::uint64_t data = now[k].data;
       const bool idle = listed && data & of_nodes;  // lent to the lists: nothing is in it yet
       const bool stays = !listed && same(value, before_[k]);
       if (!(data & writes) && !listed && !stays) changed.insert(names_of(data));
@@ -181,7 +181,7 @@ class Poisoned {
 
  private:
   static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-  static constexpr std::uint32_t of_nodes = Data::node_mass | Data::node_momentum |
+  static constexpr std::uint64_t of_nodes = Data::node_mass | Data::node_momentum |
                                             Data::node_force | Data::node_dashpots |
                                             Data::node_springs | Data::node_volumes;
   Report& report_;

@@ -50,7 +50,11 @@ constexpr bool takes_grid_velocity(TransferId id) {
 }
 /// Is a part of their velocity filtered out?
 constexpr bool filters(TransferId id) { return Transfers::filters[static_cast<std::size_t>(id)]; }
-constexpr TransferColumns columns_of(TransferId id) { return {is_affine(id), filters(id)}; }
+/// `in_body`: of bodies on nodes of their own, which no transfer acts on.
+constexpr TransferColumns columns_of(TransferId id, bool in_body = false) {
+  if (in_body) return {.reference = true};
+  return {.affine = is_affine(id), .unseen = filters(id)};
+}
 /// Is it in the step being made? Steps count from the start of the run, restarts or not.
 template <int D>
 bool filters_now(const Domain<D>& domain) {

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Bodies on nodes of their own, `frame = "material"`: what they do not go with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from pydantic_core import PydanticCustomError
+
+from mpm3dpp import _core
+from mpm3dpp.base.errors import violation
+from mpm3dpp.base.frames import MATERIAL, UPDATED
+
+if TYPE_CHECKING:
+    from .case import Case
+
+
+def in_body(case: Case) -> list[str]:
+    """Return the bodies and entries of grains whose nodes lie in them."""
+    return [name for name, part in case.parts().items() if part.frame == MATERIAL]
+
+
+def check_frames(case: Case) -> Iterator[PydanticCustomError]:
+    """Refuse what bodies on nodes of their own do not go with, or not yet.
+
+    Yields:
+        The violations, with their paths in the case.
+    """
+    for name in in_body(case):
+        for rule, remedy in (*_of_body(case, name), *_of_case(case, name)):
+            path = (*case.part_path(name), "frame")
+            yield violation(rule, remedy, value=MATERIAL, path=path)
+            break  # The next may follow from it.
+
+
+def _of_body(case: Case, name: str) -> Iterator[tuple[str, str]]:
+    """Yield what its own table has that does not go with it, each with the remedy."""
+    updated = f'give frame = "{UPDATED}"'
+    part = case.parts()[name]
+    if case.is_rigid(name):
+        yield "does not go with a body that does not deform", "remove frame"
+    material = case.material[part.material]
+    if _core.breaks_up(**material.for_core()):
+        rule = (
+            f"does not go with material.{part.material}, which flows or breaks: neighbours stay "
+            "neighbours there"
+        )
+        yield rule, updated
+    if material.volume_averaging:
+        yield "does not go with volume_averaging of its material", f"{updated}, or leave that out"
+    moves = part.velocity or part.angular_velocity
+    if case.run.settle is not None and moves:
+        rule = "does not go with run.settle yet where the body has a velocity at the start"
+        yield rule, updated
+    if any(load.body == name for load in case.load.values()):
+        yield "does not go with loads on its surface yet", updated
+
+
+def _of_case(case: Case, name: str) -> Iterator[tuple[str, str]]:
+    """Yield what the rest of the case has, likewise."""
+    updated = f'give frame = "{UPDATED}"'
+    if case.grid.basis == "linear":
+        yield "needs gradients without jumps", 'give grid.basis = "quadratic_bspline"'
+    if case.contact_enabled:
+        rule = "does not go with contact yet"
+        yield rule, f"give contact.enabled = false where bodies do not meet, or {updated[5:]}"
+    if case.contact.bonded and case.body_count > 1:
+        yield "does not go with bonded bodies yet", updated
+    if case.grid.box is not None and any(w != "free" for w in case.grid.walls):
+        yield "does not go with walls of grid.box yet", f"leave the box out, or {updated}"
+    if case.grid.outflow_box is not None:
+        yield "does not go with grid.outflow_box", f"leave it out, or {updated}"
+    if case.grid.coarsening is not None:
+        yield "does not go with grid.coarsening", f"leave it out, or {updated}"
