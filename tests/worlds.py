@@ -73,6 +73,7 @@ class World:
                 initial=entry.initial if isinstance(entry, Body) else None,  # geostatic ones
                 body_force=self._force(entry.body_force),
                 damping=entry.damping,
+                frame=entry.frame,
             )
         grid = here.grid.model_copy(update={"box": self._box(here)})
         gravity = tuple((q @ np.array([float(g) for g in here.run.gravity or (0.0,) * d])).tolist())

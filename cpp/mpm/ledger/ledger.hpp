@@ -66,6 +66,7 @@ struct Ledger {
   std::array<double, 3> momentum{};  // [kg m/s]
   double motion_work = 0.0;          // the part of external that prescribed motions have done [J]
   std::array<double, 3> motion_impulse{};       // that they have given [N s]
+  double kept_ahead = 0.0;           // see PatchSums; of the last step, a part of kinetic [J]
   double prescribed_kinetic = 0.0;              // of the bodies with prescribed motion [J]
   std::array<double, 3> prescribed_momentum{};  // [kg m/s]
   AngularLedger angular;
@@ -83,6 +84,13 @@ struct Ledger {
   /// given is made as well [J].
   double made() const {
     return -std::min(mapping + time_integration, numerical()) - contact - energy_floor;
+  }
+
+  /// Velocities have been set anew between two steps.
+  void set_kinetic(double now) {
+    time_integration += kept_ahead;
+    kept_ahead = 0.0;
+    kinetic = now;
   }
 
   /// Count the bodies with prescribed motion at the start.
@@ -126,7 +134,9 @@ struct Ledger {
     eroded = by_erosion.kinetic + by_erosion.recoverable;
     left = out_of_region.kinetic + out_of_region.recoverable;
     unbalanced = s.applied > 0.0 ? s.unbalanced / s.applied : 0.0;
-    kinetic = s.kinetic - s.carried;
+    kinetic = s.kinetic - s.carried + s.kept_ahead;
+    time_integration -= s.kept_ahead - kept_ahead;
+    kept_ahead = s.kept_ahead;
     for (std::size_t a = 0; a < D; ++a) momentum[a] = s.momentum[a];
     internal += s.stress.internal + s.returned;
     plastic += s.stress.plastic;

@@ -29,6 +29,9 @@ struct PatchSums {
   double second_order = 0.0;  // half sum of m_p (sum of dv_i N_ip)^2 [J]
   // Of nodes in bodies what second_order has of internal and contact forces [J].
   double kept_second = 0.0;
+  // Of nodes in bodies: by how much more kinetic energy they have at the end of the step than in its
+  // middle, of which their velocities are [J].
+  double kept_ahead = 0.0;
   double transferred = 0.0;   // kinetic energy that the transfer has taken against FLIP; of affine
                               // transfers all that particles lack against the start of the step [J]
   double carried = 0.0;       // kinetic energy that affine parts lose as they are carried along [J]
@@ -65,6 +68,7 @@ struct PatchSums {
                             &kinetic,
                             &second_order,
                             &kept_second,
+                            &kept_ahead,
                             &transferred,
                             &carried,
                             &returned,
@@ -95,7 +99,7 @@ struct PatchSums {
       f(prescribed.impulse[a]);
     }
   }
-  static constexpr std::size_t numbers = 34 + 3 * D;  // of for_each
+  static constexpr std::size_t numbers = 35 + 3 * D;  // of for_each
 };
 
 /// The sums over all patches of all ranks, which depend on no order.

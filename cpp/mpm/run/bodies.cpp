@@ -251,7 +251,7 @@ void set_velocity(Simulation<D>& simulation, int number, std::span<const double>
   find_kept_velocities(domain, meant);
   Ledger& ledger = domain.ledger;
   ledger.external += kinetic_energy(domain) - before;
-  ledger.kinetic = kinetic_energy(domain);
+  ledger.set_kinetic(kinetic_energy(domain));
   ledger.momentum = momentum(domain);
   ledger.angular.start += angular_totals(part_sums(domain)).all - turned;
   simulation.watch.steps.start_from(ledger.made(), ledger.load_work);

@@ -46,7 +46,7 @@ void coarsen_cells(Simulation<D>& simulation) {
   if (domain.has_contact())
     connect_tiles(domain.contact, grid, domain.bodies, domain.contact_settings.response);
   // The affine part of velocities stays; its energy goes with the square of the cells.
-  domain.ledger.kinetic = kinetic_energy(domain);
+  domain.ledger.set_kinetic(kinetic_energy(domain));
   domain.ledger.transferred += before - domain.ledger.kinetic;
   probe_speeds(domain);
   update_time_step(simulation);

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Bodies on nodes of their own: what they keep, and what they do not go with."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from test_relations import check_worlds
+
+from mpm3dpp import Case, Simulation
+from outcomes import different, outcome
+
+CELL, DENSITY, E = 1e-3, 1000.0, 1e7
+SPEED = 100.0  # of waves along a bar of E, without contraction
+
+
+def frame_case(
+    dimension: int,
+    body: dict[str, Any],
+    end_time: float,
+    nu: float = 0.3,
+    run: dict[str, Any] | None = None,
+    **more: Any,
+) -> Case:
+    material = {"density": DENSITY, "strength": {"elastic": {"E": E, "nu": nu}}}
+    return Case.model_validate(
+        {
+            "grid": {"dimension": dimension, "cell_size": CELL},
+            "run": {"end_time": end_time, **(run or {})},
+            "material": {"m": material},
+            "body": {"a": {"material": "m", "frame": "material", **body}},
+            **more,
+        }
+    )
+
+
+def run_to_end(simulation: Simulation, every: int, look: Any = None) -> tuple[dict, np.ndarray]:
+    """Return the columns of all steps; times, and what `look` sees every so many steps."""
+    core, end = simulation.core, simulation.case.run.end_time
+    rows, seen = [core.history()], []
+    while simulation.time < end:
+        simulation.advance(every, end)
+        rows.append(core.history())
+        if look is not None:
+            seen.append((simulation.time, look(simulation)))
+    columns = dict(zip(core.history_columns, np.concatenate(rows).T, strict=True))
+    return columns, np.array(seen).T
+
+
+def energies(columns: dict[str, np.ndarray]) -> np.ndarray:
+    """Kinetic and internal energy over that at the start, of every step."""
+    total = columns["kinetic"] + columns["internal"]
+    return np.asarray(total / total[0])
+
+
+def period(times: np.ndarray, values: np.ndarray) -> float:
+    """Twice the mean time between two changes of sign."""
+    k = np.flatnonzero(np.diff(np.sign(values)))
+    at = times[k] - values[k] * (times[k + 1] - times[k]) / (values[k + 1] - values[k])
+    return float(2.0 * (at[-1] - at[0]) / (len(at) - 1))
+
+
+@pytest.mark.parametrize(
+    ("cells", "mode", "near", "swing"),
+    [(24, 1, 0.005, 0.002), (24, 3, 0.03, 0.01), (6, 1, 0.05, 0.02)],
+)
+def test_a_bar_vibrates_for_ever(cells: int, mode: int, near: float, swing: float) -> None:
+    """Free at both ends: f = k c / 2 L. Its nodes reach half a cell beyond it: a low mode is slow.
+
+    Waves of 4 cells a half wave, as of mode 6, keep .40 to .94 of their energy over the same time
+    in the updated frame.
+    """
+    length = cells * CELL
+    exact = 2.0 * length / (mode * SPEED)
+    shape = {"box": {"lower": [0, 0], "upper": [length, 4 * CELL]}}
+    wave = {"expression": f"cos({mode * np.pi / length} * x)"}
+    simulation = Simulation(
+        frame_case(2, {"shape": shape, "velocity": [wave, 0.0]}, 20.0 * exact, nu=0.0), threads=1
+    )
+    form = np.cos(mode * np.pi / length * simulation.column("a", "position")[:, 0])
+
+    def amplitude(simulation: Simulation) -> float:
+        return float(2.0 * (form * simulation.column("a", "velocity")[:, 0]).mean())
+
+    columns, (times, values) = run_to_end(simulation, 3, amplitude)
+    assert period(times, values) == pytest.approx(exact, rel=near)
+    assert np.abs(energies(columns) - 1.0).max() < swing
+    assert np.abs(values[-60:]).max() == pytest.approx(np.abs(values[:60]).max(), rel=0.02)
+    assert np.abs(columns["residual"]).max() < 1e-12 * columns["kinetic"][0]
+
+
+def test_a_rod_twists_to_and_fro() -> None:
+    """A round bar of 4 cells a radius, free at both ends: f = (1 / 2 L) sqrt(G / rho)."""
+    length, k = 16 * CELL, np.pi / (16 * CELL)
+    exact = 2.0 * length / np.sqrt(E / 2.6 / DENSITY)
+    shape = {
+        "cylinder": {
+            "centre": [length / 2, 0, 0],
+            "axis": "x",
+            "height": length,
+            "radius": 4 * CELL,
+        }
+    }
+    twist = [0.0, *({"expression": f"{v} * cos({k} * x)"} for v in ("-100 * z", "100 * y"))]
+    case = frame_case(3, {"shape": shape, "velocity": twist}, 5.0 * exact)
+    simulation = Simulation(case)
+    x, y, z = simulation.column("a", "position").T
+
+    def amplitude(simulation: Simulation) -> float:
+        _, v, w = simulation.column("a", "velocity").T
+        return float((np.cos(k * x) * (y * w - z * v)).mean())
+
+    columns, (times, values) = run_to_end(simulation, 3, amplitude)
+    assert period(times, values) == pytest.approx(exact, rel=0.03)
+    assert np.abs(energies(columns) - 1.0).max() < 0.01
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_grain_spins_on(dimension: int) -> None:
+    """Of four cells a radius, 3.2 turns: the updated frame makes 1e-3 of its energy."""
+    shape = {("disc", "sphere")[dimension - 2]: {"centre": [0.0] * dimension, "radius": 4 * CELL}}
+    spin = 500.0 if dimension == 2 else [0.0, 0.0, 500.0]
+    case = frame_case(dimension, {"shape": shape, "angular_velocity": spin}, 3.2 * 2 * np.pi / 500)
+    simulation = Simulation(case)
+    start = simulation.core.part_sums()[0]
+    columns, _ = run_to_end(simulation, 100)
+    end = simulation.core.part_sums()[0]
+    names = simulation.core.part_columns
+    turning = [k for k, name in enumerate(names) if "angular_momentum" in name]
+    size = max(abs(start[k]) for k in turning)
+    for k in turning:
+        assert end[k] == pytest.approx(start[k], abs=1e-10 * size)
+    assert np.abs(energies(columns) - 1.0).max() < 1e-3
+
+
+@pytest.mark.slow
+def test_a_block_without_torque_flips() -> None:
+    """About the axis between: Euler's equations, with the inertia of the nodes."""
+    sides, turns = np.array([3.0, 6.0, 9.0]) * CELL, 8.0
+    speed = 0.03 * np.sqrt(E * 0.7 / (1.3 * 0.4) / DENSITY) / (0.5 * sides[2])
+    spin = speed * np.array([1e-3, 1.0, 1e-3])
+    end = turns * 2.0 * np.pi / speed
+    shape = {"box": {"lower": (-sides / 2).tolist(), "upper": (sides / 2).tolist()}}
+    case = frame_case(3, {"shape": shape, "angular_velocity": spin.tolist()}, end)
+    simulation = Simulation(case)
+    X, m = simulation.column("a", "position"), simulation.column("a", "mass")[:, 0]
+    square = (m[:, None] * X**2).sum(axis=0)
+    inertia = square.sum() - square + 0.5 * m.sum() * CELL**2
+
+    def along(simulation: Simulation) -> float:
+        """How much of the body's middle axis points where it did."""
+        u, _, v = np.linalg.svd((simulation.column("a", "position") * m[:, None]).T @ X)
+        return float((u @ v)[1, 1])
+
+    columns, (times, values) = run_to_end(simulation, 40, along)
+    flips = times[np.flatnonzero(np.diff(np.sign(values)))]
+    steps = 200_000
+    w, exact, dt = spin.copy(), [], end / steps
+
+    def turn(w: np.ndarray) -> np.ndarray:
+        return (
+            np.roll(w, -1)
+            * np.roll(w, -2)
+            * (np.roll(inertia, -1) - np.roll(inertia, -2))
+            / inertia
+        )
+
+    for k in range(steps):
+        middle = w + 0.5 * dt * turn(w)
+        after = w + dt * turn(middle)
+        if after[1] * w[1] < 0.0:
+            exact.append(k * dt)
+        w = after
+    assert len(flips) == len(exact) >= 2
+    assert flips == pytest.approx(exact, rel=0.02)
+    assert np.abs(energies(columns) - 1.0).max() < 2e-3
+
+
+def test_a_body_falls_and_is_slowed_down() -> None:
+    """Without a strain: v = v0 - g t; with damping in proportion to the mass v0 exp(-alpha t)."""
+    body = {"shape": {"box": {"lower": [0, 0], "upper": [0.006, 0.004]}}, "velocity": [3.0, 1.0]}
+    falling = Simulation(frame_case(2, body, 1e-3, run={"gravity": [0.0, -9.81e3]}))
+    columns, _ = run_to_end(falling, 50)
+    velocity = falling.column("a", "velocity")
+    assert np.abs(velocity - [3.0, 1.0 - 9.81]).max() < 1e-10
+    assert columns["internal"][-1] < 1e-20
+    slowed = Simulation(frame_case(2, {**body, "damping": {"mass": 1000.0}}, 1e-3))
+    run_to_end(slowed, 50)
+    assert slowed.column("a", "velocity")[:, 0] == pytest.approx(3.0 * np.exp(-1.0), rel=1e-3)
+
+
+def test_a_body_force_and_probes() -> None:
+    """A formula of the place at the start accelerates; a probe sees velocities of the nodes."""
+    body = {
+        "shape": {"box": {"lower": [0, 0], "upper": [0.006, 0.004]}},
+        "body_force": [{"expression": "1e4"}, 0.0],
+    }
+    case = frame_case(2, body, 1e-4)
+    simulation = Simulation(case)
+    run_to_end(simulation, 50)
+    assert simulation.column("a", "velocity")[:, 0] == pytest.approx(1.0, rel=1e-9)
+
+
+IN_BODY = """
+[grid]
+dimension = DIMENSION
+cell_size = "2 mm"
+[run]
+end_time = "1 s"
+gravity = GRAVITY
+viscosity = {}
+[contact]
+enabled = false
+[material.soft]
+density = "1000 kg/m^3"
+strength = { j2 = { E = "1 MPa", nu = 0.3, Y0 = "20 kPa", H = "50 kPa" } }
+damping = { stiffness = "10 us" }
+[body.one]
+material = "soft"
+frame = "material"
+shape = { SHAPE = { centre = CENTRE, radius = "9 mm" } }
+velocity = VELOCITY
+damping = { mass = 5, local = 0.1 }
+[body.two]
+material = "soft"
+shape = { SHAPE = { centre = OTHER, radius = "7 mm" } }
+velocity = VELOCITY
+[body.three]
+material = "soft"
+frame = "material"
+shape = { SHAPE = { centre = OTHER, radius = "7 mm" } }
+velocity = VELOCITY
+"""
+
+
+def several(dimension: int) -> str:
+    """Return a case with bodies of both frames, which deform plastically."""
+    text = IN_BODY.replace("DIMENSION", str(dimension))
+    v = [
+        f'{{ expression = "{a}" }}' for a in ("20 * sin(300 * y)", "-15 * x / 0.01", "5 * x / 0.01")
+    ]
+    for word, value in {
+        "GRAVITY": [0.0, -9.81, 1.0][:dimension],
+        "CENTRE": [0.001, 0.002, 0.0005][:dimension],
+        "OTHER": [0.03, 0.012, 0.0005][:dimension],
+    }.items():
+        text = text.replace(word, str(value))
+    text = text.replace("SHAPE", ("disc", "sphere")[dimension - 2])
+    return text.replace("VELOCITY", f"[{', '.join(v[:dimension])}]")
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_another_world_is_the_same(dimension: int) -> None:
+    check_worlds(Case.from_text(several(dimension)), 300 if dimension == 2 else 60, "", meet=False)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_same_bits(dimension: int, tmp_path: Any) -> None:
+    """With any number of threads, stages fused or not, and after a restart."""
+    case, steps = Case.from_text(several(dimension)), 60
+    one = outcome(case, threads=1, steps=steps)
+    assert different(one, outcome(case, threads=3, steps=steps)) == []
+    plain = Simulation(case, threads=1, fused=False)
+    assert different(one, outcome(case, steps=steps, simulation=plain)) == []
+    first = Simulation(case, threads=2)
+    first.advance(steps // 2)
+    first.save(tmp_path / "state.zip")
+    again = Simulation(case, threads=1)
+    again.restore(tmp_path / "state.zip")
+    assert different(one, outcome(case, steps=steps - steps // 2, simulation=again)) == []
