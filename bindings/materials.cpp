@@ -123,9 +123,10 @@ void add_materials(nb::module_& m) {
         const Material material = make_material(choice_of(
             density, strength, parameters, eos, failures, viscosity, damping, volume_averaging));
         const TransferId id = choice_named<TransferId>("transfer", transfer);
-        return dimension == 2
-                   ? names_of_columns<2>(material, may_leave, forced, of_start, id, springs, in_body)
-                   : names_of_columns<3>(material, may_leave, forced, of_start, id, springs, in_body);
+        return dimension == 2 ? names_of_columns<2>(material, may_leave, forced, of_start, id,
+                                                    springs, in_body)
+                              : names_of_columns<3>(material, may_leave, forced, of_start, id,
+                                                    springs, in_body);
       },
       nb::arg("dimension"), nb::arg("may_leave"), nb::arg("forced"), nb::arg("of_start"),
       nb::arg("transfer"), nb::arg("springs"), nb::arg("density"), nb::arg("strength"),

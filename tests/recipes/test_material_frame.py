@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_relations import check_worlds
 
-from mpm3dpp import Case, Simulation
-from outcomes import different, outcome
+from mpm3dpp import Case, Simulation, _core
+from worlds import check_worlds
 
 CELL, DENSITY, E = 1e-3, 1000.0, 1e7
 SPEED = 100.0  # of waves along a bar of E, without contraction
@@ -92,9 +91,12 @@ def test_a_bar_vibrates_for_ever(cells: int, mode: int, near: float, swing: floa
 
 
 def test_a_rod_twists_to_and_fro() -> None:
-    """A round bar of 4 cells a radius, free at both ends: f = (1 / 2 L) sqrt(G / rho)."""
+    """A round bar of 4 cells a radius R, free at both ends: f = (1 / 2 L) sqrt(G / rho).
+
+    The nodes have more inertia than the particles, m h^2 / 2 beside m R^2 / 2: 3 % in the period.
+    """
     length, k = 16 * CELL, np.pi / (16 * CELL)
-    exact = 2.0 * length / np.sqrt(E / 2.6 / DENSITY)
+    exact = 2.0 * length / np.sqrt(E / 2.6 / DENSITY) * np.sqrt(1.0 + 1.0 / 16.0)
     shape = {
         "cylinder": {
             "centre": [length / 2, 0, 0],
@@ -113,7 +115,7 @@ def test_a_rod_twists_to_and_fro() -> None:
         return float((np.cos(k * x) * (y * w - z * v)).mean())
 
     columns, (times, values) = run_to_end(simulation, 3, amplitude)
-    assert period(times, values) == pytest.approx(exact, rel=0.03)
+    assert period(times, values) == pytest.approx(exact, rel=0.01)
     assert np.abs(energies(columns) - 1.0).max() < 0.01
 
 
@@ -124,14 +126,11 @@ def test_a_grain_spins_on(dimension: int) -> None:
     spin = 500.0 if dimension == 2 else [0.0, 0.0, 500.0]
     case = frame_case(dimension, {"shape": shape, "angular_velocity": spin}, 3.2 * 2 * np.pi / 500)
     simulation = Simulation(case)
-    start = simulation.core.part_sums()[0]
+    turning = [k for k, name in enumerate(_core.part_columns) if "angular_momentum" in name]
+    start = np.array(simulation.core.part_sums()[1][0])[turning]
     columns, _ = run_to_end(simulation, 100)
-    end = simulation.core.part_sums()[0]
-    names = simulation.core.part_columns
-    turning = [k for k, name in enumerate(names) if "angular_momentum" in name]
-    size = max(abs(start[k]) for k in turning)
-    for k in turning:
-        assert end[k] == pytest.approx(start[k], abs=1e-10 * size)
+    end = np.array(simulation.core.part_sums()[1][0])[turning]
+    assert np.abs(end - start).max() < 1e-10 * np.abs(start).max() > 0.0
     assert np.abs(energies(columns) - 1.0).max() < 1e-3
 
 
@@ -230,7 +229,7 @@ velocity = VELOCITY
 [body.three]
 material = "soft"
 frame = "material"
-shape = { SHAPE = { centre = OTHER, radius = "7 mm" } }
+shape = { SHAPE = { centre = THIRD, radius = "7 mm" } }
 velocity = VELOCITY
 """
 
@@ -238,17 +237,22 @@ velocity = VELOCITY
 def several(dimension: int) -> str:
     """Return a case with bodies of both frames, which deform plastically."""
     text = IN_BODY.replace("DIMENSION", str(dimension))
-    v = [
-        f'{{ expression = "{a}" }}' for a in ("20 * sin(300 * y)", "-15 * x / 0.01", "5 * x / 0.01")
-    ]
+    v = ["4", "-3", "2"][:dimension]
+    f = [
+        f'{{ expression = "{a}" }}'
+        for a in ("3e4 * sin(300 * y)", "-2e6 * X", "1e4 * cos(9e3 * t)")
+    ][:dimension]
     for word, value in {
         "GRAVITY": [0.0, -9.81, 1.0][:dimension],
         "CENTRE": [0.001, 0.002, 0.0005][:dimension],
         "OTHER": [0.03, 0.012, 0.0005][:dimension],
+        "THIRD": [0.03, -0.012, 0.0005][:dimension],
     }.items():
         text = text.replace(word, str(value))
     text = text.replace("SHAPE", ("disc", "sphere")[dimension - 2])
-    return text.replace("VELOCITY", f"[{', '.join(v[:dimension])}]")
+    text = text.replace("VELOCITY", f"[{', '.join(v)}]\nangular_velocity = SPIN")
+    text = text.replace("SPIN", "300" if dimension == 2 else "[100, -50, 300]")
+    return text.replace("damping = { mass", f"body_force = [{', '.join(f)}]\ndamping = {{ mass")
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -259,14 +263,24 @@ def test_another_world_is_the_same(dimension: int) -> None:
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_the_same_bits(dimension: int, tmp_path: Any) -> None:
     """With any number of threads, stages fused or not, and after a restart."""
-    case, steps = Case.from_text(several(dimension)), 60
-    one = outcome(case, threads=1, steps=steps)
-    assert different(one, outcome(case, threads=3, steps=steps)) == []
-    plain = Simulation(case, threads=1, fused=False)
-    assert different(one, outcome(case, steps=steps, simulation=plain)) == []
+    case = Case.from_text(several(dimension))
+    one = state(Simulation(case, threads=1))
+    assert one == state(Simulation(case, threads=3))
+    assert one == state(Simulation(case, threads=1, fused=False))
     first = Simulation(case, threads=2)
-    first.advance(steps // 2)
+    first.advance(30)
     first.save(tmp_path / "state.zip")
     again = Simulation(case, threads=1)
     again.restore(tmp_path / "state.zip")
-    assert different(one, outcome(case, steps=steps - steps // 2, simulation=again)) == []
+    assert state(first) == one
+    assert one == state(again)
+
+
+def state(simulation: Simulation) -> list[bytes]:
+    """Return the bytes of all columns and of the last row of the history, after 60 steps."""
+    simulation.advance(60 - simulation.step)
+    core = simulation.core
+    columns = [
+        core.column(b, column.name) for b in range(core.body_count) for column in core.columns(b)
+    ]
+    return [c.tobytes() for c in (*columns, core.history()[-1], np.array(core.part_sums()[1]))]

@@ -16,9 +16,7 @@ import pytest
 
 from mpm3dpp import Case, Simulation
 from mpm3dpp.case.loads import Load
-from worlds import World, largest_differences
-
-TOLERANCE = 1e-10
+from worlds import COMPOSED, GENERATING, World, check_worlds
 
 RINGS = """
 [grid]
@@ -85,24 +83,6 @@ velocity = ["300 m/s", "200 m/s", "-300 m/s"]
 material = "copper"
 shape = { box = { lower = ["-10 mm", "-10 mm", "-2 mm"], upper = ["10 mm", "10 mm", "0 mm"] } }
 """
-
-X, Y, Z = 0, 1, 2
-# Those that it and all others are made of, by doing one after another.
-GENERATING = {
-    2: [
-        World(((X, -1), (Y, 1)), shuffled=True),
-        World(((Y, -1), (X, 1)), reversed_bodies=True),
-    ],
-    3: [
-        World(((X, -1), (Y, 1), (Z, 1)), shuffled=True),
-        World(((Y, 1), (Z, 1), (X, 1)), reversed_bodies=True),
-    ],
-}
-# Mirrored, turned and numbered anew at once.
-COMPOSED = {
-    2: [World(((Y, 1), (X, 1)), reversed_bodies=True, shuffled=True)],
-    3: [World(((Y, 1), (Z, -1), (X, 1)), reversed_bodies=True, shuffled=True)],
-}
 
 
 def slow(*values: Any) -> Any:
@@ -254,23 +234,3 @@ def test_forces_at_points_are_the_same_in_another_world(dimension: int) -> None:
     }
     case = case.model_copy(update={"load": loads})
     check_worlds(case, 900 if dimension == 2 else 150, "")
-
-
-def check_worlds(
-    case: Case,
-    steps: int,
-    text: str,
-    meet: bool = True,
-    worlds: dict[int, list[World]] = COMPOSED,
-) -> None:
-    """Run a case, and the same in other worlds, and compare."""
-    filled, here = Simulation(case), Simulation(case)
-    here.advance(steps)
-    assert here.step == steps
-    assert (here.core.contact_summary()["overlapped_nodes"] > 50) == meet
-    assert "erode" not in text or here.eroded()["count"] > 0
-    for world in worlds[case.grid.dimension]:
-        there = Simulation(world.case(case, filled))
-        there.advance(steps)
-        apart = largest_differences(here, there, world)
-        assert max(apart.values()) <= TOLERANCE, (world, apart)

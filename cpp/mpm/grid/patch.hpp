@@ -65,7 +65,7 @@ struct Patch {
                           // primary; none of a secondary one
   SharedNodes<D> shared;  // of a primary; of others it means nothing
   bool at_wall = false;   // its block has nodes on a wall, or next to one that touches
-  bool keeps = false;       // its nodes keep their displacements and velocities
+  bool keeps = false;     // its nodes keep their displacements and velocities
   bool left_cell = false;   // a particle has left its cell since the lists were made
   bool in_contact = false;  // its block may have nodes where bodies meet
   bool foreign = false;     // of another rank (partition.hpp): it has nodes here, but no particles

@@ -65,9 +65,9 @@ struct Ledger {
   double largest = 0.0;           // largest energy brought in so far [J]
   std::array<double, 3> momentum{};  // [kg m/s]
   double motion_work = 0.0;          // the part of external that prescribed motions have done [J]
-  std::array<double, 3> motion_impulse{};       // that they have given [N s]
-  double kept_ahead = 0.0;           // see PatchSums; of the last step, a part of kinetic [J]
-  double prescribed_kinetic = 0.0;              // of the bodies with prescribed motion [J]
+  std::array<double, 3> motion_impulse{};  // that they have given [N s]
+  double kept_ahead = 0.0;                 // see PatchSums; of the last step, a part of kinetic [J]
+  double prescribed_kinetic = 0.0;         // of the bodies with prescribed motion [J]
   std::array<double, 3> prescribed_momentum{};  // [kg m/s]
   AngularLedger angular;
 
@@ -154,8 +154,7 @@ struct Ledger {
     damped += s.stress.damped - (s.damping_first + s.damping_second);
     const double second = s.second_order - s.gravity_second - s.load_second - s.dashpot_second -
                           s.wall_push.second - s.wall_friction.second - s.damping_second;
-    // Bodies on nodes of their own strain with velocities at the end of the step, whatever others do.
-    const double at_end = 2.0 * (forces_follow ? s.kept_second : second);
+    const double at_end = (forces_follow ? 0.0 : 2.0 * second) + s.kept_shift;
     mapping -= s.force_work - contacts.force_work + s.stress.force_power + at_end;
     averaging -= s.stress.averaging;
     transferred += s.transferred + s.carried + s.unseen - s.returned;

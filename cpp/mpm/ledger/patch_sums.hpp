@@ -27,17 +27,18 @@ struct PatchSums {
   StressSums stress;
   double kinetic = 0.0;       // of the particles after the step [J]
   double second_order = 0.0;  // half sum of m_p (sum of dv_i N_ip)^2 [J]
-  // Of nodes in bodies what second_order has of internal and contact forces [J].
-  double kept_second = 0.0;
-  // Of nodes in bodies: by how much more kinetic energy they have at the end of the step than in its
-  // middle, of which their velocities are [J].
+  // Of nodes in bodies: what stress has lost of kinetic energy less what it has strained by, as the
+  // ones take forces about the start of the step and the other their work along it [J].
+  double kept_shift = 0.0;
+  // Of nodes in bodies: by how much more kinetic energy they have at the end of the step than in
+  // its middle, of which their velocities are [J].
   double kept_ahead = 0.0;
-  double transferred = 0.0;   // kinetic energy that the transfer has taken against FLIP; of affine
-                              // transfers all that particles lack against the start of the step [J]
-  double carried = 0.0;       // kinetic energy that affine parts lose as they are carried along [J]
-  double returned = 0.0;      // of what the transfer took, what a gas has got back as heat [J]
-  double unseen = 0.0;        // of gases, what the nodes' increments hold beyond second_order [J]
-  double momentum[D] = {};    // of the particles after the step [kg m/s]
+  double transferred = 0.0;  // kinetic energy that the transfer has taken against FLIP; of affine
+                             // transfers all that particles lack against the start of the step [J]
+  double carried = 0.0;      // kinetic energy that affine parts lose as they are carried along [J]
+  double returned = 0.0;     // of what the transfer took, what a gas has got back as heat [J]
+  double unseen = 0.0;       // of gases, what the nodes' increments hold beyond second_order [J]
+  double momentum[D] = {};   // of the particles after the step [kg m/s]
   double force_work =
       0.0;  // time step x sum over nodes of internal and contact force . velocity [J]
   double made_rigid =
@@ -67,7 +68,7 @@ struct PatchSums {
                             &stress.averaging,
                             &kinetic,
                             &second_order,
-                            &kept_second,
+                            &kept_shift,
                             &kept_ahead,
                             &transferred,
                             &carried,

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "mpm/schedule/cell_loop.hpp"
+#include "mpm/step/kept_nodes.hpp"
 #include "mpm/step/patch_loops.hpp"
 #include "mpm/step/stage_functions.hpp"
 
@@ -79,7 +80,7 @@ Vector3 angular_impulse(const Domain<D>& domain, const Patch<D>& patch, const Pa
     if (domain.settles()) applied += norm(force);
     moment += cross(in_space<D>(pool.position_of(row)), in_space<D>(force));
   }
-  return domain.time_step * moment;
+  return time_of_forces(domain, patch) * moment;
 }
 
 }  // namespace

@@ -60,7 +60,9 @@ struct StressSettings {
   BulkViscosity viscosity;
   bool
       forces_follow;  // USF: this step's forces use the new stress; else they have used the old one
-  bool in_space = true;  // the nodes: the time step heeds how fast particles pass them
+  // By how much each row is squeezed, if its nodes lie in the body: waves pass these the sooner.
+  // Null: in space, where the time step heeds how fast particles pass them.
+  const Storage* squeezed = nullptr;
 };
 
 /// What the ledger and the time step need from a block; energies in J.

@@ -63,7 +63,9 @@ class StressWriter {
     if (columns_.damping_stress[0])
       speed = speed_with_damping(material_, speed, volume_change.after / volume_change.mass,
                                  settings_.cell_size);
-    if (settings_.in_space) {
+    if (settings_.squeezed) {
+      speed = speed * group.read(settings_.squeezed);
+    } else {
       Vec<T, D> v;
       for (int a = 0; a < D; ++a) v[a] = group.read(columns_.velocity[a]);
       speed += sqrt(dot(v, v));

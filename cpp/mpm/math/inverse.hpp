@@ -23,10 +23,8 @@ MPM_HD Mat<T, 3> inverse_of(const Mat<T, 3>& a) {
   Mat<T, 3> r;
   // Of rows and columns one after another in the cycle 0, 1, 2, cofactors have their signs.
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      r[j][i] = minor((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
-  const T scale =
-      T(1.0) / fma(a[0][0], r[0][0], fma(a[0][1], r[1][0], a[0][2] * r[2][0]));
+    for (int j = 0; j < 3; ++j) r[j][i] = minor((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
+  const T scale = T(1.0) / fma(a[0][0], r[0][0], fma(a[0][1], r[1][0], a[0][2] * r[2][0]));
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) r[i][j] = scale * r[i][j];
   return r;

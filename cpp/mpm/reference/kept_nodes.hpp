@@ -8,8 +8,8 @@ namespace mpm::reference {
 
 template <int D>
 struct KeptNodes {
-  const Step<D>& step;  // shape functions, gravity, time step
-  Body<D> body{};       // its nodes have masses and velocities
+  const Step<D>& step;                     // shape functions, gravity, time step
+  Body<D> body{};                          // its nodes have masses and velocities
   std::map<Index<D>, Vec<double, D>> u{};  // [m]
   std::vector<Mat<double, D>> F{};         // of each particle
 
@@ -44,10 +44,10 @@ struct KeptNodes {
     }
   }
 
-  /// v_i += dt f_i / m_i, u_i += dt v_i, (M3).
+  /// v_i += dt' f_i / m_i, u_i += dt v_i, (M3).
   void advance_nodes() {
     for (auto& [i, node] : body.nodes) {
-      node.dv = (step.dt / node.m) * node.f;
+      node.dv = (0.5 * (step.dt + step.dt_before) / node.m) * node.f;
       node.v += node.dv;
       u[i] += step.dt * node.v;
     }

@@ -116,11 +116,10 @@ void check_rest(const Simulation<D>& simulation, const StateStream& stream) {
     slow =
         slow && (v == 0.0 || std::abs(v) * simulation.next_time_step < farthest * grid.cell_size);
   };
-  const bool affine = is_affine(domain.transfer);
   domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
     for (int a = 0; a < D; ++a) check_speed(of.v(a)[row]);
     // What it gives to a node a cell away.
-    for (int k = 0; affine && k < D * D; ++k) check_speed(of.affine_part(k)[row] * grid.cell_size);
+    for (int k = 0; of.affine >= 0 && k < D * D; ++k) check_speed(of.affine_part(k)[row] * grid.cell_size);
   });
   stream.check_all(slow, "its particles are damaged");
   for (const RigidMotion& motion : domain.rigid) check(finite(motion), "its motions are damaged");

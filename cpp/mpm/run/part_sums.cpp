@@ -66,11 +66,10 @@ std::vector<std::array<double, count>> sum_groups(Domain<D>& domain, const Group
 
 template <int D>
 std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping, SumsOf of) {
-  const auto linear =
-      sum_groups<8>(domain, grouping, of, [](const Moving& each, std::size_t) {
-        const Vector3 x = each.mass * each.place, p = each.mass * each.velocity;
-        return std::array{each.mass, x[0], x[1], x[2], p[0], p[1], p[2], each.kinetic};
-      });
+  const auto linear = sum_groups<8>(domain, grouping, of, [](const Moving& each, std::size_t) {
+    const Vector3 x = each.mass * each.place, p = each.mass * each.velocity;
+    return std::array{each.mass, x[0], x[1], x[2], p[0], p[1], p[2], each.kinetic};
+  });
   std::vector<PartSums> parts(linear.size());
   for (std::size_t g = 0; g < parts.size(); ++g) {
     const auto& s = linear[g];

@@ -104,7 +104,7 @@ void exchange(Simulation<D>& simulation, StateStream& stream) {
   exchange_kept_nodes(domain, stream);
   if (domain.has_contact())
     exchange_contact(domain.contact, stream, domain.bodies.size(), domain.grid.partition);
-  stream(domain.time, domain.time_step, domain.step, domain.gravity);
+  stream(domain.time, domain.time_step, domain.step_before, domain.step, domain.gravity);
   exchange_removed(stream, domain.eroded);
   exchange_removed(stream, domain.outflow);
   for (PartEnergies& part : domain.part_energies) exchange_sums(stream, part.sums);

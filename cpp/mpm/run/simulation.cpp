@@ -85,8 +85,7 @@ void set_grid(TileGrid<D>& grid, const GridSettings& given) {
 }  // namespace
 
 template <int D>
-Simulation<D>::Simulation(const Settings& given, Comm* comm)
-    : settings(checked(given)) {
+Simulation<D>::Simulation(const Settings& given, Comm* comm) : settings(checked(given)) {
   set_grid(domain.grid, given.grid);
   if (comm != nullptr) domain.grid.partition.comm = comm;
   domain.grid.bonded = given.contact.bonded;

@@ -16,10 +16,10 @@
 namespace mpm {
 namespace {
 
-// What is left of the particles' velocities after a pass is given to the nodes in the next. Within a
-// body the first pass is as good as the last; at its surface, where nodes have particles on one side
-// only, each takes away a part of the error: of a shear .2 % of the largest velocity are left at a
-// corner. Passes end at this change, over the largest of a pass.
+// What is left of the particles' velocities after a pass is given to the nodes in the next. Within
+// a body the first pass is as good as the last; at its surface, where nodes have particles on one
+// side only, each takes away a part of the error: of a shear .2 % of the largest velocity are left
+// at a corner. Passes end at this change, over the largest of a pass.
 constexpr int passes = 50;
 constexpr double least_change = 1e-6;
 constexpr int lanes_of_start = 4;
@@ -53,7 +53,8 @@ void for_each_velocity(Domain<D>& domain, const Patch<D>& patch, F&& f) {
   });
 }
 
-/// Take from the particles' velocities what the nodes give them by those at a number of the records.
+/// Take from the particles' velocities what the nodes give them by those at a number of the
+/// records.
 template <int at, int D>
 void take_from_particles(Domain<D>& domain, const std::vector<bool>& bodies) {
   for_each_meant(domain, bodies, [&](std::size_t p) {
@@ -174,8 +175,7 @@ void start_in_body(Domain<D>& domain) {
   give_to_nodes(domain, {});
   for_each_meant(domain, {}, [&](std::size_t p) {
     const NodeBlock<D> block = domain.grid.block(p);
-    for (int n = 0; n < block.count; ++n)
-      block.records[n][mass_at] = block.records[n][given_mass];
+    for (int n = 0; n < block.count; ++n) block.records[n][mass_at] = block.records[n][given_mass];
   });
   find_kept_velocities(domain);
 }
@@ -193,6 +193,11 @@ void find_kept_velocities(Domain<D>& domain, const std::vector<bool>& bodies) {
     if (!(given > least_change * largest)) break;
     take_from_particles<given_velocity>(domain, bodies);
   }
+  for_each_meant(domain, bodies, [&](std::size_t p) {
+    const NodeBlock<D> block = domain.grid.block(p);
+    for (int n = 0; n < block.count; ++n)
+      std::fill_n(block.records[n] + half_record, half_record, 0.0);  // no increments
+  });
   give_kept_velocities(domain);
 }
 
@@ -200,8 +205,7 @@ template <int D>
 void stop_kept_nodes(Domain<D>& domain) {
   for_each_meant(domain, {}, [&](std::size_t p) {
     const NodeBlock<D> block = domain.grid.block(p);
-    for (int n = 0; n < block.count; ++n)
-      std::fill_n(block.records[n] + velocity_at, D, 0.0);
+    for (int n = 0; n < block.count; ++n) std::fill_n(block.records[n] + velocity_at, D, 0.0);
   });
 }
 
@@ -211,8 +215,16 @@ void give_kept_velocities(Domain<D>& domain) {
   for_each_meant(domain, {}, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     ParticlePool<D>& pool = domain.pool_of(patch);
+    // From the middle of the last step to its end as it has gone on from the one before.
+    const double acts = time_of_forces(domain, patch);
+    const double further = acts > 0.0 ? 0.5 * domain.time_step / acts : 0.0;
     for_each_velocity<velocity_at>(domain, patch, [&](const auto& rows, const auto& v) {
       for (int a = 0; a < D; ++a) store(pool.v(a), rows, v[a]);
+    });
+    for_each_velocity<increment_at>(domain, patch, [&](const auto& rows, const auto& dv) {
+      using T = std::remove_cvref_t<decltype(dv[0])>;
+      for (int a = 0; a < D; ++a)
+        store(pool.v(a), rows, fma(T(further), dv[a], load(pool.v(a), rows)));
     });
   });
 }

@@ -7,8 +7,8 @@
 
 namespace mpm {
 
-/// Throw std::invalid_argument, in one sentence, for matter that does not hold together, and for what
-/// such bodies do not go with yet.
+/// Throw std::invalid_argument, in one sentence, for matter that does not hold together, and for
+/// what such bodies do not go with yet.
 void check_in_body(const Material& material);
 template <int D>
 void check_in_body(const Simulation<D>& simulation);
@@ -19,8 +19,8 @@ template <int D>
 void start_in_body(Domain<D>& domain);
 
 /// The velocities of the nodes from those of the particles, of bodies that are meant; of all if
-/// none are named. Rigid motions are met exactly, and momentum is kept; then the particles have what
-/// the nodes give them.
+/// none are named. Rigid motions are met exactly, and momentum is kept; then the particles have
+/// what the nodes give them.
 template <int D>
 void find_kept_velocities(Domain<D>& domain, const std::vector<bool>& bodies = {});
 
@@ -28,7 +28,7 @@ void find_kept_velocities(Domain<D>& domain, const std::vector<bool>& bodies = {
 template <int D>
 void stop_kept_nodes(Domain<D>& domain);
 
-/// v_p = sum N_ip v_i of the particles, for those who read it between steps.
+/// v_p = sum N_ip v_i of the particles at the end of the last step, for those who read it there.
 template <int D>
 void give_kept_velocities(Domain<D>& domain);
 

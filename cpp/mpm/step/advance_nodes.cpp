@@ -88,7 +88,7 @@ DampedWork advance_damped_block(const Domain<D>& domain, const Patch<D>& patch,
                                 const NodeBlock<D>& block, const double* own,
                                 const StepDamping& damping) {
   DampedWork sums;
-  const double dt = domain.time_step;
+  const double dt = domain.time_step, acts = time_of_forces(domain, patch);
   for (int n = 0; n < block.count; ++n) {
     double* const numbers = block.records[n];
     const double m = numbers[mass_at];
@@ -97,7 +97,7 @@ DampedWork advance_damped_block(const Domain<D>& domain, const Patch<D>& patch,
       double& v = numbers[velocity_at + a];
       const double f = numbers[force_at + a], weight = m * domain.gravity[a];
       DampedNode node{0.0, 0.0};  // at rest without mass
-      if (m > 0.0) node = advance_damped(damping, m, v, f + weight, dt);
+      if (m > 0.0) node = advance_damped(damping, m, v, f + weight, acts);
       force[a] = own[n] * node.damping;
       all[a] = f + weight;
       sums.done.work += own[n] * f * v;
@@ -132,8 +132,8 @@ void add_impulses_of_holding(const Domain<D>& domain, const Patch<D>& patch,
 /// their increments.
 template <int D>
 void add_impulses(Domain<D>& domain, std::size_t p, const NodeBlock<D>& block, const double* own) {
-  const double dt = domain.time_step;
   const Patch<D>& patch = domain.grid.patches[p];
+  const double dt = time_of_forces(domain, patch);
   const auto& grid = domain.grid;
   const bool has_gravity = dot(domain.gravity, domain.gravity) > 0.0;
   Vector3 mass_moment = Vector3::zero();
@@ -163,11 +163,12 @@ template <int D>
 NodeWork advance(const Domain<D>& domain, const Patch<D>& patch, const NodeBlock<D>& block,
                  const double* own, PatchSums<D>& sums) {
   const StepDamping damping = domain.damping_of(patch);
-  if (!damping.acts()) return advance_block(block, own, domain.gravity, domain.time_step);
+  const double acts = time_of_forces(domain, patch);
+  if (!damping.acts()) return advance_block(block, own, domain.gravity, acts);
   const DampedWork damped = advance_damped_block(domain, patch, block, own, damping);
   sums.damping_first = damped.damping.first;
   sums.damping_second = damped.damping.second;
-  sums.angular.damping += domain.time_step * damped.moment;
+  sums.angular.damping += acts * damped.moment;
   if (domain.settles()) {
     sums.unbalanced = damped.unbalanced;
     sums.applied += damped.weight;  // to that of loads
@@ -220,6 +221,10 @@ void advance_nodes(Domain<D>& domain) {
     // are both turned do the same work as those of the image, which has the force.
     if (loaded) loads = work_of_loads(domain, p);
     if (domain.has_body_forces()) loads += work_of_body_force(domain, p);
+    // Velocities of nodes in bodies are those of the whole step, of others half of it has the old.
+    const double half = patch.keeps ? 1.0 : 0.5;
+    loads.second *= 2.0 * half;
+    sums.damping_second *= 2.0 * half;
     add_impulses(domain, p, block, own);
     // What is left is work of internal and contact forces; loads, walls and gravity have terms
     // of their own in the ledger, with the velocity in the middle of the step.
@@ -232,15 +237,8 @@ void advance_nodes(Domain<D>& domain) {
     sums.wall_push = push;
     sums.wall_friction = friction;
     sums.gravity_first = dt * (done.gravity_first - weight_first);
-    sums.gravity_second = 0.5 * dt * (done.gravity_second - weight_second);
-    if (!patch.keeps) return;
-    move_kept_nodes(domain, block, own, sums);
-    sums.kept_second =
-        sums.second_order - sums.gravity_second - sums.load_second - sums.damping_second;
-    // Half of what these do in a step at its last velocity; stress: update_in_body().
-    sums.kept_ahead =
-        0.5 * (sums.gravity_first + sums.load_first + sums.damping_first) +
-        (sums.gravity_second + sums.load_second + sums.damping_second);
+    sums.gravity_second = half * dt * (done.gravity_second - weight_second);
+    if (patch.keeps) count_kept_nodes(domain, move_kept_nodes(domain, block, own, sums), sums);
   });
 }
 

@@ -5,10 +5,13 @@
 // mapped there and back. With N_ip = N_i(X_p) for ever a step is
 //   F_p = 1 + sum_i u_i (x) grad_X N_ip,   x_p = X_p + sum_i u_i N_ip                    (M1)
 //   f_i = - sum_p V_p sigma_p F_p^-T grad_X N_ip,   as V_p sigma_p F_p^-T = V0_p P_p     (M2)
-//   v_i += dt (f_i / m_i + g),   u_i += dt v_i                                          (M3)
+//   v_i += dt' (f_i / m_i + g),   u_i += dt v_i                                         (M3)
 //   L dt = (F_p - F_p before) (F_p before)^-1, for the material                         (M4)
-// v_i is that of the middle of a step. The work of (M2) over a step is that of the stress at its
-// start, so that kinetic energy changes by exactly the work of all forces with the mean velocity.
+// v_i is that of the middle of a step, so that forces act from the middle of the step before to
+// that of this one, dt' = (dt + dt before) / 2 (central differences), for half a step at the start.
+// For the ledger kinetic energy is told at the end of the step, which is as much further. External
+// forces work along what the nodes go in the step; the rest of what energy changes by is that of
+// time stepping.
 #include "mpm/domain.hpp"
 #include "mpm/step/transfer/transfer.hpp"
 #include "mpm/walls/mirror.hpp"
@@ -46,12 +49,18 @@ void for_each_kept_node(TileGrid<D>& grid, const Patch<D>& patch, F&& f) {
       f(m, place_of_kept(grid, patch, block, n), in_space<D>(block.vector(n, velocity_at)));
 }
 
-/// (M3): the nodes of a block move with the velocities that they have by now; kinetic energy and
-/// momentum after the step.
+/// For how long the forces of a step act on the nodes of a patch [s].
 template <int D>
-void move_kept_nodes(const Domain<D>& domain, const NodeBlock<D>& block, const double* own,
-                     PatchSums<D>& sums) {
-  double second = 0.0, kinetic = 0.0, gained = 0.0;
+double time_of_forces(const Domain<D>& domain, const Patch<D>& patch) {
+  return patch.keeps ? 0.5 * (domain.time_step + domain.step_before) : domain.time_step;
+}
+
+/// The nodes of a block go with the velocities that they have by now, (M3); kinetic energy and
+/// momentum in the middle of the step. Returns by how much the first is more than it was [J].
+template <int D>
+double move_kept_nodes(const Domain<D>& domain, const NodeBlock<D>& block, const double* own,
+                       PatchSums<D>& sums) {
+  double kinetic = 0.0, gained = 0.0;
   for (int n = 0; n < block.count; ++n) {
     const double* const numbers = block.records[n];
     const double m = own[n] * numbers[mass_at];
@@ -59,13 +68,24 @@ void move_kept_nodes(const Domain<D>& domain, const NodeBlock<D>& block, const d
       const double v = numbers[velocity_at + a], dv = numbers[increment_at + a];
       block.displacements[n][a] += domain.time_step * v;
       kinetic += 0.5 * m * v * v;
-      second += 0.5 * m * dv * dv;
       gained += m * dv * (v - 0.5 * dv);
       sums.momentum[a] += m * v;
     }
   }
   sums.kinetic = kinetic;
-  sums.second_order = second;
+  return gained;
+}
+
+/// What the ledger has of a patch whose nodes have moved, of which loads, gravity and damping have
+/// their sums: no second order is left, as these have all their work with the velocities of the
+/// step. That of stress comes with update_in_body().
+template <int D>
+void count_kept_nodes(const Domain<D>& domain, double gained, PatchSums<D>& sums) {
+  const double first = sums.gravity_first + sums.load_first + sums.damping_first;
+  sums.second_order = sums.gravity_second + sums.load_second + sums.damping_second;
+  const double external = first + sums.second_order;
+  sums.force_work = gained - external;
+  sums.kept_ahead = 0.5 * external;
   // Affine transfers count all that kinetic energy loses, and what forces have given against it.
   if (is_affine(domain.transfer)) sums.transferred = -gained;
 }

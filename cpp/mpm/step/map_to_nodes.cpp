@@ -14,12 +14,11 @@ void map_kept_patch(Domain<D>& domain, std::size_t p) {
   const NodeRecords nodes = domain.grid.block(p).records;
   for (int n = 0; n < patch.shape.node_count; ++n)
     Batch<half_record>(0.0).store(nodes[n] + force_at);
-  with_basis_and_lanes(domain.grid, domain.body_of(patch), patch,
-                       [&]<BasisModel B>(const B& basis, auto lanes) {
-                         if constexpr (B::nodes > 2)
-                           scatter_in_body<lanes>(basis, domain.grid, domain.pool_of(patch), patch,
-                                                  nodes);
-                       });
+  with_basis_and_lanes(
+      domain.grid, domain.body_of(patch), patch, [&]<BasisModel B>(const B& basis, auto lanes) {
+        if constexpr (B::nodes > 2)
+          scatter_in_body<lanes>(basis, domain.grid, domain.pool_of(patch), patch, nodes);
+      });
 }
 
 /// What a patch's particles give to its nodes.

@@ -144,7 +144,7 @@ struct Stages : Data {
   static constexpr Row update_in_body{
       "update in the body", mpm::update_in_body<D>,
       lists | position | mass | volume | stress | deformation | kept_nodes | patch_sums,
-      position | volume | stress | deformation | patch_sums, true};
+      position | velocity | volume | stress | deformation | patch_sums, true};
   // With the velocities that strain, before particles are released from what contact has corrected.
   static constexpr Row heat_gases{"heat gases",
                                   mpm::heat_gases<D>,

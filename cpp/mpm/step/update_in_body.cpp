@@ -17,9 +17,10 @@ template <int W, int D, BasisModel B>
   const Patch<D>& patch = grid.patches[p];
   ParticlePool<D>& pool = domain.pool_of(patch);
   const Material& material = domain.material_of(patch);
-  // The stress follows the forces, as the velocities that strain are those of the step.
-  const StressSettings settings{domain.time_step,   domain.time_after, grid.cell_size,
-                                material.viscosity, false,             false};
+  // The stress follows the forces, as the velocities that strain are those of the step. How much
+  // particles are squeezed stands where their velocity does when somebody asks for it.
+  const StressSettings settings{
+      domain.time_step, domain.time_after, grid.cell_size, material.viscosity, false, pool.v(0)};
   const Nodes<half_record> displacements = grid.block(p).displacements;
   const NodeStrides<D> stride(patch.shape);
   const LocalPosition<D> local_position(grid, pool);
@@ -30,15 +31,14 @@ template <int W, int D, BasisModel B>
     update_block<Batch<native_lanes>>(material, pool.columns, pool.at, block, settings, sums);
     block.count = 0;
   };
-  T squeezed(0.0);
   for_each_cell(grid, pool, patch, [&](const CellRange<D>& cell) {
     const NodalField<D, B::nodes, half_record> nodes(
         displacements.from(cell.first_node + stride.to_first(B::before)), stride);
     for_each_group<W>(cell, [&](const auto& rows) {
       if (block.count + W > static_cast<std::size_t>(block.capacity)) flush();
       Vec<T, D> u;
-      const auto gradients = nodes.template value_and_gradients<0>(
-          weights_at(basis, local_position(cell, rows)), u);
+      const auto gradients =
+          nodes.template value_and_gradients<0>(weights_at(basis, local_position(cell, rows)), u);
       Mat<T, D> before, F, change;
       unrolled<D * D>([&](auto k) {
         constexpr int i = k / D, j = k % D;
@@ -53,7 +53,7 @@ template <int W, int D, BasisModel B>
         L[i][j].store(block.gradient[i][j] + block.count);
       });
       unrolled<D>([&](auto a) { store(pool.x(a), rows, load(pool.listed(a), rows) + u[a]); });
-      squeezed = max(squeezed, of_valid(rows, largest_stretch_squared(inverse_of(F))));
+      store(pool.v(0), rows, sqrt(largest_stretch_squared(inverse_of(F))));
       unrolled<W>([&](auto k) { block.row[block.count + k] = rows[k]; });
       block.count += static_cast<std::size_t>(rows.count);
     });
@@ -63,8 +63,7 @@ template <int W, int D, BasisModel B>
   // stress and of that at the start there are the sums.
   const double mean = sums.internal + sums.plastic + sums.viscous + sums.damped + sums.bounded;
   domain.sums[p].kept_ahead -= mean - 0.5 * sums.force_power;
-  // A wave passes from node to node the sooner, the nearer these are to each other.
-  sums.fastest *= std::sqrt(largest(squeezed));
+  domain.sums[p].kept_shift = -(domain.sums[p].force_work + sums.force_power);
 }
 
 }  // namespace

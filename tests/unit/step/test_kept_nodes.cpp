@@ -23,7 +23,8 @@ double scatter_of(const Index<D>& i, int a) {
   std::uint64_t seed = 77 + static_cast<std::uint64_t>(a);
   for (const std::int32_t k : i)
     seed = seed * 1000003u + static_cast<std::uint64_t>(static_cast<std::int64_t>(k) + 1000);
-  return std::uniform_real_distribution<double>(-1.0, 1.0)(*std::make_unique<std::mt19937_64>(seed));
+  return std::uniform_real_distribution<double>(-1.0,
+                                                1.0)(*std::make_unique<std::mt19937_64>(seed));
 }
 template <int D>
 Vec<double, D> velocity_at_node(const Index<D>& i) {
@@ -92,8 +93,8 @@ struct Pair {
       for (double& s : p.sigma.c) stress.push_back(s = 1e6 * any());
       other.body.particles.push_back(p);
     }
-    const int body = add_body<D>(*simulation, "body", material, x,
-                                 std::vector<double>(D, 0.0), std::array{std::pow(0.5 * cell, D)});
+    const int body = add_body<D>(*simulation, "body", material, x, std::vector<double>(D, 0.0),
+                                 std::array{std::pow(0.5 * cell, D)});
     set_state<D>(*simulation, body, "stress", stress);
   }
   template <class F>
@@ -147,13 +148,16 @@ void check_stages(Report& report, BasisId basis, Scheme scheme) {
   Domain<D>& domain = pair.simulation->domain;
   domain.gravity[1] = -2e4;
   for (int k = 0; k < 4; ++k) {
-    domain.time_step = dt;
-    domain.time_after = domain.time + dt;
+    // Steps of different lengths, of which the first has none before it.
+    domain.step_before = pair.step.dt_before = k == 0 ? 0.0 : domain.time_step;
+    domain.time_step = pair.step.dt = dt * (1.0 + 0.3 * (k % 2));
+    domain.time_after = domain.time + domain.time_step;
     for (const Stage<D>& stage : pair.simulation->stages) {
       stage.run(domain);
       if (stage.name == "exchange forces" || stage.name == "exchange momentum and forces") {
         pair.other.map_forces();
-        pair.check_nodes(report, force_at, &reference::Node<D>::f, 1e-9 * E * std::pow(cell, D - 1));
+        pair.check_nodes(report, force_at, &reference::Node<D>::f,
+                         1e-9 * E * std::pow(cell, D - 1));
       }
       if (stage.name == "advance nodes") {
         pair.other.advance_nodes();
@@ -169,8 +173,9 @@ void check_stages(Report& report, BasisId basis, Scheme scheme) {
     double kinetic = 0.0;
     for (const auto& [i, node] : pair.other.body.nodes)
       kinetic += 0.5 * node.m * dot(node.v, node.v);
-    CHECK_CLOSE(domain.ledger.kinetic / kinetic, 1.0, 1e-9);
-    CHECK_CLOSE(domain.ledger.residual() / kinetic, 0.0, 1e-11);
+    const Ledger& ledger = domain.ledger;
+    CHECK_CLOSE((ledger.kinetic - ledger.kept_ahead) / kinetic, 1.0, 1e-9);
+    CHECK_CLOSE(ledger.residual() / kinetic, 0.0, 1e-11);
   }
   // Far from where it was: what is tested is no small strain.
   double largest = 0.0;
