@@ -107,8 +107,6 @@ struct Domain {
   bool settles() const { return time < 0.0; }
   bool has_rigid() const { return !rigid_bodies.empty(); }
   bool has_prescribed() const { return !prescribed.empty(); }
-  /// Are there bodies on nodes of their own (step/kept_nodes.hpp)?
-  bool has_kept_nodes() const { return std::ranges::any_of(bodies, &Body<D>::keeps_nodes); }
   bool has_loads() const { return !loads.empty(); }
   bool has_body_forces() const { return !body_forces.empty(); }
   bool has_contact() const {
@@ -124,6 +122,12 @@ struct Domain {
     }
   }
 };
+
+/// Are there bodies on nodes of their own (step/kept_nodes.hpp)?
+template <int D>
+bool has_kept_nodes(const Domain<D>& domain) {
+  return std::ranges::any_of(domain.bodies, &Body<D>::keeps_nodes);
+}
 
 /// The body that the sums with a number are of.
 template <int D>

@@ -36,7 +36,7 @@ template <int D>
 void add_patches(TileGrid<D>& grid, int body, bool keeps, const ParticlePool<D>& pool,
                  const std::vector<Key>& keys, std::vector<std::uint32_t>& order) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    const auto [tile, cell] = grid.tile_and_cell(pool.listed_of(keys[i].row));
+    const auto [tile, cell] = grid.tile_and_cell(listed_place(pool, keys[i].row));
     if (i == 0 || grid.patches.back().tile != tile) {
       Patch<D>& made = grid.patches.emplace_back();
       made.body = body;
@@ -91,7 +91,7 @@ void place_anchor(TileGrid<D>& grid, const std::vector<Body<D>>& bodies,
     for (const Patch<D>& patch : grid.patches) {
       const Body<D>& body = bodies[static_cast<std::size_t>(patch.body)];
       const ParticlePool<D>& pool = pools[static_cast<std::size_t>(body.material)];
-      for (const std::uint32_t row : pool.rows(patch)) f(body, pool.listed_of(row));
+      for (const std::uint32_t row : pool.rows(patch)) f(body, listed_place(pool, row));
     }
   });
 }
@@ -117,7 +117,7 @@ void build_cell_lists(TileGrid<D>& grid, std::vector<Body<D>>& bodies,
     const auto m = static_cast<std::size_t>(bodies[b].material);
     std::vector<Key> keys;
     for_each_active_row(before, pools[m], static_cast<int>(b), [&](std::uint32_t row) {
-      const auto [tile, cell] = grid.tile_and_cell(pools[m].listed_of(row));
+      const auto [tile, cell] = grid.tile_and_cell(listed_place(pools[m], row));
       keys.push_back({key_of<D>(tile, cell), pools[m].id[row], row});
     });
     // By number within a cell: sums over its particles have one order wherever rows lie (decision

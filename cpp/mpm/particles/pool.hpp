@@ -78,11 +78,6 @@ struct ParticlePool {
   const double* listed(int a) const {
     return columns.component((reference < 0 ? position : reference) + a);
   }
-  Vec<double, D> listed_of(std::size_t row) const {
-    Vec<double, D> place;
-    for (int a = 0; a < D; ++a) place[a] = listed(a)[row];
-    return place;
-  }
   /// Component F_ij of the deformation gradient, k = D i + j.
   double* deformation_part(int k) { return columns.component(deformation + k); }
   const double* deformation_part(int k) const { return columns.component(deformation + k); }
@@ -97,6 +92,14 @@ struct ParticlePool {
            removed.capacity() * sizeof(RemovedRow) + free_rows.capacity() * sizeof(std::uint32_t);
   }
 };
+
+/// The place by which a particle has its cell.
+template <int D>
+Vec<double, D> listed_place(const ParticlePool<D>& pool, std::size_t row) {
+  Vec<double, D> place;
+  for (int a = 0; a < D; ++a) place[a] = pool.listed(a)[row];
+  return place;
+}
 
 /// So many rows more, that few comings allocate.
 constexpr std::size_t spare_rows(std::size_t rows) { return rows / 64 + 64; }

@@ -119,7 +119,8 @@ void check_rest(const Simulation<D>& simulation, const StateStream& stream) {
   domain.for_each_particle([&](const ParticlePool<D>& of, std::uint32_t row) {
     for (int a = 0; a < D; ++a) check_speed(of.v(a)[row]);
     // What it gives to a node a cell away.
-    for (int k = 0; of.affine >= 0 && k < D * D; ++k) check_speed(of.affine_part(k)[row] * grid.cell_size);
+    for (int k = 0; of.affine >= 0 && k < D * D; ++k)
+      check_speed(of.affine_part(k)[row] * grid.cell_size);
   });
   stream.check_all(slow, "its particles are damaged");
   for (const RigidMotion& motion : domain.rigid) check(finite(motion), "its motions are damaged");

@@ -108,7 +108,7 @@ template <int D>
 void choose_stages(Simulation<D>& simulation) {
   const Settings& s = simulation.settings;
   simulation.stages = stages_of<D>(s.run.scheme, s.execution.fused, extra_stages(s),
-                                   simulation.domain.has_kept_nodes());
+                                   has_kept_nodes(simulation.domain));
   for (std::size_t k = 0; k < simulation.stages.size(); ++k)
     simulation.timers.name(k, simulation.stages[k].name);
 }

@@ -145,7 +145,7 @@ void check_in_body(const Material& material) {
 template <int D>
 void check_in_body(const Simulation<D>& simulation) {
   const Domain<D>& domain = simulation.domain;
-  if (!domain.has_kept_nodes()) return;
+  if (!has_kept_nodes(domain)) return;
   const Settings& s = simulation.settings;
   check_setting(s.grid.basis != basis_id<Linear>,
                 "grid.basis = \"linear\", whose gradients jump: give \"quadratic_bspline\"");
@@ -170,7 +170,7 @@ void check_in_body(const Simulation<D>& simulation) {
 
 template <int D>
 void start_in_body(Domain<D>& domain) {
-  if (!domain.has_kept_nodes()) return;
+  if (!has_kept_nodes(domain)) return;
   std::fill_n(domain.grid.kept.numbers.data(), domain.grid.kept.needed, 0.0);
   give_to_nodes(domain, {});
   for_each_meant(domain, {}, [&](std::size_t p) {
@@ -182,7 +182,7 @@ void start_in_body(Domain<D>& domain) {
 
 template <int D>
 void find_kept_velocities(Domain<D>& domain, const std::vector<bool>& bodies) {
-  if (!domain.has_kept_nodes()) return;
+  if (!has_kept_nodes(domain)) return;
   begin_with_rigid_motions(domain, bodies);
   take_from_particles<velocity_at>(domain, bodies);
   double largest = 0.0;
@@ -211,7 +211,7 @@ void stop_kept_nodes(Domain<D>& domain) {
 
 template <int D>
 void give_kept_velocities(Domain<D>& domain) {
-  if (!domain.has_kept_nodes()) return;
+  if (!has_kept_nodes(domain)) return;
   for_each_meant(domain, {}, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     ParticlePool<D>& pool = domain.pool_of(patch);

@@ -31,8 +31,7 @@ template <int lanes, int D, BasisModel B>
       unrolled<D>([&](auto a) {
         unrolled<D>([&](auto b) {
           T sum = stress(a, 0) * inverse[b][0];
-          unrolled<D - 1>(
-              [&](auto j) { sum = fma(stress(a, j + 1), inverse[b][j + 1], sum); });
+          unrolled<D - 1>([&](auto j) { sum = fma(stress(a, j + 1), inverse[b][j + 1], sum); });
           tractions[a][b] = scale * sum;
         });
       });

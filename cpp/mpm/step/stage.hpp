@@ -14,42 +14,42 @@ namespace mpm {
 /// all particles' columns are two. Of the nodes the halves of their records.
 struct Data {
   enum Bits : std::uint64_t {
-    position = std::uint64_t{1} << 0,
-    velocity = std::uint64_t{1} << 1,
-    mass = std::uint64_t{1} << 2,
-    volume = std::uint64_t{1} << 3,
-    stress = std::uint64_t{1} << 4,          // and all state of the material
-    rigid_position = std::uint64_t{1} << 5,  // of the particles and of the centre
-    rigid_velocity = std::uint64_t{1} << 6,
-    lists = std::uint64_t{1} << 7,  // of particles by cell; the patches and their blocks
-    load_pieces = std::uint64_t{1} << 8,
-    node_mass = std::uint64_t{1} << 9,
-    node_momentum = std::uint64_t{1} << 10,
-    node_velocity = std::uint64_t{1} << 11,
-    ghost_weights = std::uint64_t{1} << 12,
-    node_force = std::uint64_t{1} << 13,
-    node_increments = std::uint64_t{1} << 14,
-    node_remapped = std::uint64_t{1} << 15,
-    node_dashpots = std::uint64_t{1} << 16,
-    contacts = std::uint64_t{1} << 17,
-    patch_sums = std::uint64_t{1} << 18,
-    records = std::uint64_t{1} << 19,
-    energies = std::uint64_t{1} << 20,
-    left_cells = std::uint64_t{1} << 21,  // whether particles have left the cells of their lists
-    body_force = std::uint64_t{1} << 22,  // of particles, and their places at the start
-    unseen = std::uint64_t{1} << 23,      // what is filtered out of their velocities
+    position = 1ull << 0,
+    velocity = 1ull << 1,
+    mass = 1ull << 2,
+    volume = 1ull << 3,
+    stress = 1ull << 4,          // and all state of the material
+    rigid_position = 1ull << 5,  // of the particles and of the centre
+    rigid_velocity = 1ull << 6,
+    lists = 1ull << 7,  // of particles by cell; the patches and their blocks
+    load_pieces = 1ull << 8,
+    node_mass = 1ull << 9,
+    node_momentum = 1ull << 10,
+    node_velocity = 1ull << 11,
+    ghost_weights = 1ull << 12,
+    node_force = 1ull << 13,
+    node_increments = 1ull << 14,
+    node_remapped = 1ull << 15,
+    node_dashpots = 1ull << 16,
+    contacts = 1ull << 17,
+    patch_sums = 1ull << 18,
+    records = 1ull << 19,
+    energies = 1ull << 20,
+    left_cells = 1ull << 21,  // whether particles have left the cells of their lists
+    body_force = 1ull << 22,  // of particles, and their places at the start
+    unseen = 1ull << 23,      // what is filtered out of their velocities
     // Of the patches' sums the angular impulses: of forces; of walls on mapped velocities.
-    impulses = std::uint64_t{1} << 24,
-    mapped_impulses = std::uint64_t{1} << 25,
-    force_pressure = std::uint64_t{1} << 26,  // of particles with averaged volumes, for one mapping of forces
-    node_springs = std::uint64_t{1} << 27,    // of walls that touch, then what they push with
-    affine = std::uint64_t{1} << 28,          // affine part of particles' velocities
-    carried_sums = std::uint64_t{1} << 29,    // of the patches' sums what these lose as they are carried along
-    node_volumes = std::uint64_t{1} << 30,    // of matter that flows
+    impulses = 1ull << 24,
+    mapped_impulses = 1ull << 25,
+    force_pressure = 1ull << 26,  // of particles with averaged volumes, for one mapping of forces
+    node_springs = 1ull << 27,    // of walls that touch, then what they push with
+    affine = 1ull << 28,          // affine part of particles' velocities
+    carried_sums = 1ull << 29,    // of the patches' sums what these lose as they are carried along
+    node_volumes = 1ull << 30,    // of matter that flows
     // Of matter that flows limits of volumes; of a gas also its energies and the heat it is owed.
-    flowing = std::uint64_t{1} << 31,
-    kept_nodes = std::uint64_t{1} << 32,  // what nodes that lie in bodies keep: their motion
-    deformation = std::uint64_t{1} << 33,  // of the particles of these bodies
+    flowing = 1ull << 31,
+    kept_nodes = 1ull << 32,   // what nodes that lie in bodies keep: their motion
+    deformation = 1ull << 33,  // of the particles of these bodies
   };
 };
 /// Their names, in the order of the bits.
