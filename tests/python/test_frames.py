@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
+import numpy as np
 import pytest
 
-from mpm3dpp import Case, CaseError
+from mpm3dpp import Case, CaseError, Simulation
 
 CASE = """
 [grid]
@@ -78,3 +80,63 @@ def test_what_they_do_not_go_with(before: str, after: str, said: str) -> None:
 def test_a_word_that_is_none() -> None:
     with pytest.raises(CaseError, match=r'body\.a\.frame = "materiel" .* did you mean "material"'):
         Case.from_text(CASE.replace(A, 'frame = "materiel"\n'))
+
+
+def simulation_of(before: str = "", after: str = "", **options: Any) -> Simulation:
+    return Simulation(Case.from_text(CASE.replace(before, after, 1)), **options)
+
+
+def test_a_velocity_that_it_has_may_be_set() -> None:
+    """Given at the end of a step, kept in its middle: a body goes on falling as it did."""
+    simulation = simulation_of(RUN, 'end_time = "10 ms"\n')
+    for _ in range(20):
+        simulation.advance(5)
+        simulation.set_velocity("a", simulation.column("a", "velocity"))
+    fallen = simulation.column("a", "velocity")[:, 1]
+    assert fallen == pytest.approx(-9.81 * simulation.time, rel=1e-10)
+    assert simulation.column("b", "velocity")[:, 1] == pytest.approx(fallen, rel=1e-10)
+
+
+def test_another_one_keeps_its_velocity_where_one_is_set() -> None:
+    two = CASE.replace('[body.b]\nmaterial = "m"\n', f'[body.b]\nmaterial = "m"\n{A}')
+    simulation = Simulation(Case.from_text(two))
+    simulation.advance(20)
+    before = simulation.column("b", "velocity")
+    simulation.set_velocity("a", simulation.column("a", "velocity") + np.array([3.0, 0.0]))
+    assert (simulation.column("b", "velocity") == before).all()
+    assert simulation.column("a", "velocity")[:, 0] == pytest.approx(3.0)
+
+
+def test_it_settles_from_rest() -> None:
+    """Nothing holds it, so that it falls, damped; it is at rest at t = 0 and falls from there."""
+    simulation = simulation_of(RUN, f'{RUN}settle = {{ longest = "0.1 ms" }}\n')
+    while simulation.time < 0.0:
+        simulation.advance(1)
+    assert np.abs(simulation.column("a", "velocity")).max() == 0.0
+    simulation.advance(10)
+    fallen = simulation.column("a", "velocity")[:, 1]
+    assert fallen == pytest.approx(-9.81 * simulation.time, rel=1e-9)
+
+
+def test_a_load_on_another_body_is_none_of_its_own() -> None:
+    load = LOAD.replace('"a"', '"b"').replace("x_min", "outer")
+    simulation = simulation_of("[contact]", f"{load}[contact]")
+    assert simulation.advance(3) == 3
+
+
+def test_grains_of_such_bodies() -> None:
+    lattice = "lattice = { lower = [1, 1], count = [2, 2], radius = 3e-3, spacing = 7e-3 }\n"
+    grains = f'[grains.g]\nmaterial = "m"\n{A}{lattice}angular_velocity = 100\n'
+    simulation = Simulation(Case.from_text(CASE + grains))
+    simulation.advance(50)
+    moving = simulation.column("g_0003", "velocity")
+    moving -= moving.mean(axis=0)
+    arm = simulation.column("g_0003", "position")
+    arm -= arm.mean(axis=0)
+    turned = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+    assert np.abs(moving - 100.0 * turned).max() < 0.02 * 0.3
+
+
+def test_ranks_are_refused_in_a_sentence() -> None:
+    with pytest.raises(CaseError, match=r'frame = "material" does not go with several ranks yet'):
+        simulation_of(ranks=2)

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from mpm3dpp import Case, Simulation, _core
+from mpm3dpp import Case, Simulation, _core, open_results, run_case
 from worlds import check_worlds
 
 CELL, DENSITY, E = 1e-3, 1000.0, 1e7
@@ -189,16 +190,30 @@ def test_a_body_falls_and_is_slowed_down() -> None:
     assert slowed.column("a", "velocity")[:, 0] == pytest.approx(3.0 * np.exp(-1.0), rel=1e-3)
 
 
-def test_a_body_force_and_probes() -> None:
-    """A formula of the place at the start accelerates; a probe sees velocities of the nodes."""
+def test_a_body_force_accelerates() -> None:
     body = {
         "shape": {"box": {"lower": [0, 0], "upper": [0.006, 0.004]}},
         "body_force": [{"expression": "1e4"}, 0.0],
     }
-    case = frame_case(2, body, 1e-4)
-    simulation = Simulation(case)
-    run_to_end(simulation, 50)
+    simulation = Simulation(frame_case(2, body, 1e-4))
+    columns, _ = run_to_end(simulation, 50)
     assert simulation.column("a", "velocity")[:, 0] == pytest.approx(1.0, rel=1e-9)
+    assert columns["kinetic"][-1] == pytest.approx(columns["external"][-1], rel=1e-3)
+
+
+def test_a_probe_sees_where_it_has_flown(tmp_path: Path) -> None:
+    """Its nodes' tiles are those of the start, 40 cells away by then."""
+    box = {"box": {"lower": [0, 0], "upper": [0.006, 0.004]}}
+    places = {"there": {"region": {"lower": [0.035, -0.01], "upper": [0.05, 0.01]}}}
+    places["point"] = {"point": [0.043, 0.002]}
+    probe = {name: {**place, "fields": ["velocity"]} for name, place in places.items()}
+    case = frame_case(2, {"shape": box, "velocity": [40.0, 0.0]}, 1e-3, probe=probe)
+    run_case(case, tmp_path / "out", pictures=False)
+    for name in probe:
+        seen = open_results(tmp_path / "out").probe(name)
+        velocity, count = (np.asarray(seen[key]) for key in ("velocity_x", "particles"))
+        assert velocity[-1] == pytest.approx(40.0)
+        assert count[0] == 0 < count[-1]
 
 
 IN_BODY = """

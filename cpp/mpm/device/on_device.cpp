@@ -76,6 +76,7 @@ std::string not_on_device(const Domain<D>& domain, Scheme scheme) {
   if (scheme == Scheme::usl) return "run.scheme = \"usl\"";
   if (filters(domain.transfer)) return "run.transfer = \"xpic\"";
   if (domain.grid.bonded) return "bonded bodies";
+  if (has_kept_nodes(domain)) return "bodies with frame = \"material\"";
   if (domain.averages_volume()) return "volume averaging";
   if (std::ranges::any_of(domain.pools,
                           [](const ParticlePool<D>& pool) { return pool.at.growth_limit >= 0; }))

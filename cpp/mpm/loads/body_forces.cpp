@@ -44,7 +44,9 @@ void evaluate_force(const Domain<D>& domain, const BodyForce<D>& force, const Pa
   constexpr std::size_t lanes = Expression::lanes, start = 4, time = 7;  // of expression_variables
   static_assert(expression_variables[start] == "X" && expression_variables[time] == "t");
   Expression::Variables variables{};
-  variables[time].fill(load_time(domain.time + 0.5 * domain.time_step));
+  // The middle of the time in which it acts (time_of_forces).
+  const double middle = patch.keeps ? 0.0 : 0.5 * domain.time_step;
+  variables[time].fill(load_time(domain.time + middle));
   Expression::Lanes result;
   const auto rows = pool.rows(patch);
   for (std::size_t first = 0; first < rows.size(); first += lanes) {

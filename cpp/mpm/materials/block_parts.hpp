@@ -115,9 +115,9 @@ MPM_HD T damped_speed(T c, T Q) {
 /// The same with damping in proportion to the stiffness, a viscosity of beta times the modulus rho
 /// c^2 of the start; `c` may have others in it already. By the specific volume [m^3/kg].
 template <class T>
-MPM_HD T speed_with_damping(const MaterialView& material, T c, T specific, double cell_size) {
+MPM_HD T speed_with_damping(const MaterialView& material, T c, T specific, T cell_size) {
   const StiffnessDamping& damping = material.damping;
-  const T Q = T(damping.beta * damping.pressure / cell_size) * specific;
+  const T Q = T(damping.beta * damping.pressure) / cell_size * specific;
   // Q' + sqrt(Q'^2 + c^2) grows by 2 per Q' at most: beside another viscosity a bound.
   if (material.viscosity.active() || material.damps) return c + T(2.0) * Q;
   return damped_speed(c, Q);

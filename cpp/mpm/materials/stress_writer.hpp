@@ -60,12 +60,12 @@ class StressWriter {
     force_power_ += select(valid, used, T(0.0));
 
     T speed = after.speed;
+    const T squeezed = settings_.squeezed ? group.read(settings_.squeezed) : T(1.0);
     if (columns_.damping_stress[0])
       speed = speed_with_damping(material_, speed, volume_change.after / volume_change.mass,
-                                 settings_.cell_size);
-    if (settings_.squeezed) {
-      speed = speed * group.read(settings_.squeezed);
-    } else {
+                                 T(settings_.cell_size) / squeezed);
+    speed = speed * squeezed;
+    if (!settings_.squeezed) {
       Vec<T, D> v;
       for (int a = 0; a < D; ++a) v[a] = group.read(columns_.velocity[a]);
       speed += sqrt(dot(v, v));

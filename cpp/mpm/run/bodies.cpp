@@ -162,6 +162,8 @@ void set_motion(Simulation<D>& simulation, int number, const std::array<TimeFunc
   Domain<D>& domain = simulation.domain;
   require(simulation, Phase::building, "motions must be set before prepare()");
   Body<D>& b = domain.body_at(number);
+  if (domain.pool_of(b).reference >= 0)
+    throw std::invalid_argument(b.name + ": frame = \"material\" is for bodies that deform");
   for (const SurfaceLoad<D>& load : domain.loads)
     if (load.body == number)
       throw std::invalid_argument(b.name + ": it has a load, which acts on bodies that deform");

@@ -33,12 +33,21 @@ bool finite(const RigidMotion& m) {
   return all;
 }
 
+/// Has a particle of a body on nodes of its own a deformation that does not turn it inside out?
+template <int D>
+bool is_deformed(const ParticlePool<D>& pool, std::uint32_t row) {
+  if (pool.reference < 0) return true;
+  Mat<double, D> F;
+  for (int k = 0; k < D * D; ++k) F[k / D][k % D] = pool.deformation_part(k)[row];
+  return determinant(F) > 0.0 && std::isfinite(determinant(F));
+}
+
 /// Can a particle be stepped?
 template <int D>
 bool is_fine(const TileGrid<D>& grid, const ParticlePool<D>& pool, std::uint32_t row) {
-  const Vec<double, D> x = pool.position_of(row);
-  bool fine = pool.mass()[row] > 0.0 && pool.volume()[row] > 0.0 &&
-              finite(pool.mass()[row], pool.volume()[row]);
+  const Vec<double, D> x = listed_place(pool, row);
+  bool fine = finite(pool.position_of(row)) && is_deformed(pool, row) && pool.mass()[row] > 0.0 &&
+              pool.volume()[row] > 0.0 && finite(pool.mass()[row], pool.volume()[row]);
   for (int a = 0; a < D; ++a)
     fine = fine && std::isfinite(double{pool.v(a)[row]}) &&
            std::abs(grid.in_cells(x[a], a)) < farthest &&
@@ -106,8 +115,8 @@ void check_rest(const Simulation<D>& simulation, const StateStream& stream) {
   const auto& settle = simulation.settings.run.settle;
   const double earliest = settle ? -settle->longest : 0.0;
   check(domain.step >= 0 && domain.step < std::int64_t{1} << 62 && finite(domain.time) &&
-            domain.time >= earliest && finite(domain.time_step) &&
-            simulation.next_time_step > 0.0 && finite(domain.gravity),
+            domain.time >= earliest && finite(domain.time_step, domain.step_before) &&
+            domain.step_before >= 0.0 && simulation.next_time_step > 0.0 && finite(domain.gravity),
         "its time is damaged");
   for (const ParticlePool<D>& pool : domain.pools)
     check(finite(pool.fastest) && pool.fastest >= 0.0, "its time is damaged");

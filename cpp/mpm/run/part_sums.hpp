@@ -68,7 +68,8 @@ struct Grouping {
 };
 
 /// Who has mass and motion of a body on nodes of its own: those, or the particles that are moved by
-/// them. Both have the same mass, centre and momentum.
+/// them, at the end of the last step; nodes have velocities of its middle. Both have the same mass
+/// and centre.
 enum class SumsOf : std::uint8_t { kept_nodes, particles };
 
 /// Zeros where there are no particles. They depend on no order of patches or threads.

@@ -73,11 +73,11 @@ void prepare(Simulation<D>& simulation) {
   require(simulation, Phase::building, "prepare() has been called already");
   check_setting(!domain.bodies.empty(), "there is no body");
   check_bodies(domain);
-  check_in_body(simulation);
   simulation.phase = Phase::broken;  // until all is done
   domain.grid.partition.shares_tiles = domain.has_contact();
   add_contact_columns(domain);
   find_held_bodies(simulation);
+  check_in_body(simulation);
   place_anchor(domain.grid, domain.bodies);
   std::optional<Owners<D>> owners = give_to_owners(domain.grid, domain.bodies);
   fill_pools(domain.pools, domain.materials, domain.bodies, domain.grid.patches);

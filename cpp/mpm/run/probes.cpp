@@ -77,9 +77,11 @@ double weight_of(const Probe& probe, const ParticlePool<D>& pool, std::uint32_t 
   return weight;
 }
 
-/// Can a probe see particles of a patch, which lie in its tile?
+/// Can a probe see particles of a patch, which lie in its tile? Where nodes lie in the body the
+/// tile says where particles were.
 template <int D>
 bool reaches(const Domain<D>& domain, const Probe& probe, const Patch<D>& patch) {
+  if (patch.keeps) return true;
   if (probe.kind != ProbeKind::point && probe.kind != ProbeKind::region) return true;
   const auto& grid = domain.grid;
   const double wide = probe.kind == ProbeKind::point ? grid.cell_size : 0.0;

@@ -106,6 +106,14 @@ double add_given(Domain<D>& domain, const std::vector<bool>& bodies) {
   return *std::ranges::max_element(largest);
 }
 
+/// The part of the last increments by which velocities go on from the middle of a step to its end,
+/// as they have from the one before.
+template <int D>
+double to_end_of_step(const Domain<D>& domain, const Patch<D>& patch) {
+  const double acts = time_of_forces(domain, patch);
+  return acts > 0.0 ? 0.5 * domain.time_step / acts : 0.0;
+}
+
 /// The nodes' velocities by the rigid motion that each body has by its particles.
 template <int D>
 void begin_with_rigid_motions(Domain<D>& domain, const std::vector<bool>& bodies) {
@@ -150,7 +158,7 @@ void check_in_body(const Simulation<D>& simulation) {
   check_setting(s.grid.basis != basis_id<Linear>,
                 "grid.basis = \"linear\", whose gradients jump: give \"quadratic_bspline\"");
   check_setting(domain.bodies.size() == 1 || !s.contact.enabled,
-                "contact yet: give contact = false, or frame = \"updated\"");
+                "contact yet: give contact.enabled = false, or frame = \"updated\"");
   check_setting(domain.bodies.size() == 1 || !s.contact.bonded,
                 "bonded bodies yet: give frame = \"updated\"");
   const bool held = std::ranges::any_of(s.grid.walls, [](Wall w) { return w != Wall::free; });
@@ -158,14 +166,13 @@ void check_in_body(const Simulation<D>& simulation) {
                 "walls of the box yet: give free faces, or frame = \"updated\"");
   check_setting(!s.grid.outflow, "a region that particles leave: give frame = \"updated\"");
   check_setting(!s.grid.coarsening, "grid.coarsening: give frame = \"updated\"");
-  check_setting(domain.loads.empty(), "loads on surfaces yet: give frame = \"updated\"");
+  for (const SurfaceLoad<D>& load : domain.loads)
+    check_setting(!domain.body_at(load.body).keeps_nodes(),
+                  "loads on its surface yet: give frame = \"updated\"");
   check_setting(domain.grid.partition.comm->size() == 1, "several ranks yet: run it on one");
   for (const HeldBody& held_body : simulation.held)
     check_setting(!domain.body_at(held_body.body).keeps_nodes(),
                   "a velocity at the start and run.settle yet: leave one of them away");
-  for (const Body<D>& body : domain.bodies)
-    check_setting(!body.is_prescribed() || domain.pool_of(body).reference < 0,
-                  "a prescribed motion, as such a body does not deform");
 }
 
 template <int D>
@@ -175,7 +182,10 @@ void start_in_body(Domain<D>& domain) {
   give_to_nodes(domain, {});
   for_each_meant(domain, {}, [&](std::size_t p) {
     const NodeBlock<D> block = domain.grid.block(p);
-    for (int n = 0; n < block.count; ++n) block.records[n][mass_at] = block.records[n][given_mass];
+    for (int n = 0; n < block.count; ++n) {
+      block.records[n][mass_at] = block.records[n][given_mass];
+      std::fill_n(block.records[n] + half_record, half_record, 0.0);  // no increments
+    }
   });
   find_kept_velocities(domain);
 }
@@ -183,6 +193,9 @@ void start_in_body(Domain<D>& domain) {
 template <int D>
 void find_kept_velocities(Domain<D>& domain, const std::vector<bool>& bodies) {
   if (!has_kept_nodes(domain)) return;
+  // Velocities are given at the end of the last step, and nodes keep that of its middle.
+  const double* const kept = domain.grid.kept.numbers.data();
+  const std::vector<double> increments(kept, kept + domain.grid.kept.needed);
   begin_with_rigid_motions(domain, bodies);
   take_from_particles<velocity_at>(domain, bodies);
   double largest = 0.0;
@@ -193,10 +206,19 @@ void find_kept_velocities(Domain<D>& domain, const std::vector<bool>& bodies) {
     if (!(given > least_change * largest)) break;
     take_from_particles<given_velocity>(domain, bodies);
   }
+  for_each_meant(domain, {}, [&](std::size_t p) {
+    const NodeBlock<D> block = domain.grid.block(p);
+    const double* const before = increments.data() + domain.grid.patches[p].memory;
+    for (int n = 0; n < block.count; ++n)
+      std::copy_n(before + std::ptrdiff_t{n} * record + half_record, half_record,
+                  block.records[n] + half_record);
+  });
   for_each_meant(domain, bodies, [&](std::size_t p) {
     const NodeBlock<D> block = domain.grid.block(p);
+    const double further = to_end_of_step(domain, domain.grid.patches[p]);
     for (int n = 0; n < block.count; ++n)
-      std::fill_n(block.records[n] + half_record, half_record, 0.0);  // no increments
+      for (int a = 0; a < D; ++a)
+        block.records[n][velocity_at + a] -= further * block.records[n][increment_at + a];
   });
   give_kept_velocities(domain);
 }
@@ -205,7 +227,10 @@ template <int D>
 void stop_kept_nodes(Domain<D>& domain) {
   for_each_meant(domain, {}, [&](std::size_t p) {
     const NodeBlock<D> block = domain.grid.block(p);
-    for (int n = 0; n < block.count; ++n) std::fill_n(block.records[n] + velocity_at, D, 0.0);
+    for (int n = 0; n < block.count; ++n) {
+      std::fill_n(block.records[n] + velocity_at, D, 0.0);
+      std::fill_n(block.records[n] + half_record, half_record, 0.0);
+    }
   });
 }
 
@@ -215,9 +240,7 @@ void give_kept_velocities(Domain<D>& domain) {
   for_each_meant(domain, {}, [&](std::size_t p) {
     const Patch<D>& patch = domain.grid.patches[p];
     ParticlePool<D>& pool = domain.pool_of(patch);
-    // From the middle of the last step to its end as it has gone on from the one before.
-    const double acts = time_of_forces(domain, patch);
-    const double further = acts > 0.0 ? 0.5 * domain.time_step / acts : 0.0;
+    const double further = to_end_of_step(domain, patch);
     for_each_velocity<velocity_at>(domain, patch, [&](const auto& rows, const auto& v) {
       for (int a = 0; a < D; ++a) store(pool.v(a), rows, v[a]);
     });

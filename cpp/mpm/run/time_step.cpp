@@ -36,8 +36,9 @@ template <int D>
 double wave_speed(const Domain<D>& domain, const Patch<D>& patch, std::size_t row) {
   if (!domain.body_of(patch).deforms()) return 0.0;
   const ParticlePool<D>& pool = domain.pool_of(patch);
-  return squeezed(pool, row) * sound_speed<D>(domain.material_of(patch), pool.columns, pool.at, row,
-                                              domain.grid.cell_size);
+  const double by = squeezed(pool, row);
+  return by * sound_speed<D>(domain.material_of(patch), pool.columns, pool.at, row,
+                             domain.grid.cell_size / by);
 }
 
 }  // namespace

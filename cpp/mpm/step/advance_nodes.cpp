@@ -221,10 +221,11 @@ void advance_nodes(Domain<D>& domain) {
     // are both turned do the same work as those of the image, which has the force.
     if (loaded) loads = work_of_loads(domain, p);
     if (domain.has_body_forces()) loads += work_of_body_force(domain, p);
-    // Velocities of nodes in bodies are those of the whole step, of others half of it has the old.
-    const double half = patch.keeps ? 1.0 : 0.5;
-    loads.second *= 2.0 * half;
-    sums.damping_second *= 2.0 * half;
+    // Nodes in bodies go with the new velocities all the step, others with the mean of both: what
+    // is a half of the increments' work for these is all of it.
+    const double all = patch.keeps ? 2.0 : 1.0;
+    loads.second *= all;
+    sums.damping_second *= all;
     add_impulses(domain, p, block, own);
     // What is left is work of internal and contact forces; loads, walls and gravity have terms
     // of their own in the ledger, with the velocity in the middle of the step.
@@ -237,7 +238,7 @@ void advance_nodes(Domain<D>& domain) {
     sums.wall_push = push;
     sums.wall_friction = friction;
     sums.gravity_first = dt * (done.gravity_first - weight_first);
-    sums.gravity_second = half * dt * (done.gravity_second - weight_second);
+    sums.gravity_second = 0.5 * all * dt * (done.gravity_second - weight_second);
     if (patch.keeps) count_kept_nodes(domain, move_kept_nodes(domain, block, own, sums), sums);
   });
 }

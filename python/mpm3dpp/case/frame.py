@@ -49,7 +49,7 @@ def _of_body(case: Case, name: str) -> Iterator[tuple[str, str]]:
         yield rule, updated
     if material.volume_averaging:
         yield "does not go with volume_averaging of its material", f"{updated}, or leave that out"
-    moves = part.velocity or part.angular_velocity
+    moves = any(part.velocity) or any(part.angular_velocity)
     if case.run.settle is not None and moves:
         rule = "does not go with run.settle yet where the body has a velocity at the start"
         yield rule, updated

@@ -97,6 +97,9 @@ def prepare_core(
 
 def _refusal(case: Case, sentence: str) -> CaseError:
     """Return the mistake for what the core says of bodies that are all there."""
+    if sentence.startswith("frame = "):
+        rule, _, remedy = sentence.partition(": ")
+        return CaseError(rule, remedy)
     key, step = "run.time_step", case.run.time_step
     if not sentence.startswith(key):
         return CaseError(sentence, "bring the bodies together, or give larger cells")
