@@ -91,6 +91,33 @@ void add_drive(nb::module_& m) {
       nb::arg("time_step"), nb::arg("cell_size"), nb::arg("state"), nb::arg("lanes"));
 }
 
+/// What matter a material is.
+void add_matter(nb::module_& m) {
+  m.def(
+      "breaks_up",
+      [](double density, const std::string& strength, const Parameters& parameters,
+         const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
+         bool volume_averaging) {
+        return make_material(choice_of(density, strength, parameters, eos, failures, {}, 0.0,
+                                       volume_averaging))
+            .breaks_up();
+      },
+      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
+      nb::arg("failures"), nb::arg("volume_averaging"),
+      "Whether particles of a material may part: it flows, is loose, can fail or spall");
+
+  m.def(
+      "matter",
+      [](double density, const std::string& strength, const Parameters& parameters,
+         const std::optional<Named>& eos) {
+        const Material material =
+            make_material(choice_of(density, strength, parameters, eos, {}, {}, 0.0, false));
+        return matter_names[static_cast<std::size_t>(material.matter())];
+      },
+      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
+      "What bodies of a material are to others that touch them: \"solid\", \"liquid\" or \"gas\"");
+}
+
 }  // namespace
 
 void add_materials(nb::module_& m) {
@@ -135,29 +162,7 @@ void add_materials(nb::module_& m) {
       "The names of the columns that particles of a material have; `may_leave`: there is an "
       "outflow box, `forced`: a body force, which is a formula `of_start`, of places at the start; "
       "`springs`: of contact; `in_body`: of a body on nodes of its own");
-  m.def(
-      "breaks_up",
-      [](double density, const std::string& strength, const Parameters& parameters,
-         const std::optional<Named>& eos, const std::vector<NamedFailure>& failures,
-         bool volume_averaging) {
-        return make_material(choice_of(density, strength, parameters, eos, failures, {}, 0.0,
-                                       volume_averaging))
-            .breaks_up();
-      },
-      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
-      nb::arg("failures"), nb::arg("volume_averaging"),
-      "Whether particles of a material may part: it flows, is loose, can fail or spall");
-
-  m.def(
-      "matter",
-      [](double density, const std::string& strength, const Parameters& parameters,
-         const std::optional<Named>& eos) {
-        const Material material =
-            make_material(choice_of(density, strength, parameters, eos, {}, {}, 0.0, false));
-        return matter_names[static_cast<std::size_t>(material.matter())];
-      },
-      nb::arg("density"), nb::arg("strength"), nb::arg("parameters"), nb::arg("eos").none(),
-      "What bodies of a material are to others that touch them: \"solid\", \"liquid\" or \"gas\"");
+  add_matter(m);
   add_drive(m);
 }
 

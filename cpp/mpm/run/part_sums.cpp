@@ -7,7 +7,7 @@ namespace mpm {
 namespace {
 
 /// A mass with its motion: of a particle, with what its affine part adds, or of a node.
-struct Moving {
+struct MovingMass {
   double mass, kinetic;  // [kg]; [J]
   Vector3 place, velocity;
   Vector3 own_momentum = Vector3::zero();  // angular, about its place [N m s]
@@ -16,10 +16,10 @@ struct Moving {
 
 /// f(moving) for what a patch has.
 template <int D, class F>
-void for_each_moving(Domain<D>& domain, const Patch<D>& patch, SumsOf of, F&& f) {
+void for_each_mass(Domain<D>& domain, const Patch<D>& patch, SumsOf of, F&& f) {
   if (patch.keeps && of == SumsOf::kept_nodes) {
     for_each_kept_node(domain.grid, patch, [&](double m, const Vector3& x, const Vector3& v) {
-      f(Moving{m, 0.5 * m * dot(v, v), x, v});
+      f(MovingMass{m, 0.5 * m * dot(v, v), x, v});
     });
     return;
   }
@@ -30,9 +30,9 @@ void for_each_moving(Domain<D>& domain, const Patch<D>& patch, SumsOf of, F&& f)
   const bool affine = pool.affine >= 0 && domain.body_of(patch).deforms();
   for (const std::uint32_t row : pool.rows(patch)) {
     const double m = pool.mass()[row];
-    f(Moving{m, kinetic_energy(pool, row, moment), in_space<D>(pool.position_of(row)),
-             velocity_in_space(pool, row), (m * moment) * turning(pool, row),
-             affine ? 2.0 * m * moment : 0.0});
+    f(MovingMass{m, kinetic_energy(pool, row, moment), in_space<D>(pool.position_of(row)),
+                 velocity_in_space(pool, row), (m * moment) * turning(pool, row),
+                 affine ? 2.0 * m * moment : 0.0});
   }
 }
 
@@ -47,7 +47,7 @@ std::vector<std::array<double, count>> sum_groups(Domain<D>& domain, const Group
   std::vector<std::array<double, count>> parts(domain.grid.patches.size());
   domain.threads.for_each(parts.size(), [&](std::size_t p) {
     parts[p].fill(0.0);
-    for_each_moving(domain, domain.grid.patches[p], of, [&](const Moving& moving) {
+    for_each_mass(domain, domain.grid.patches[p], of, [&](const MovingMass& moving) {
       const std::array<double, count> each = numbers_of(moving, group_of(p));
       for (std::size_t k = 0; k < count; ++k) parts[p][k] += each[k];
     });
@@ -66,7 +66,7 @@ std::vector<std::array<double, count>> sum_groups(Domain<D>& domain, const Group
 
 template <int D>
 std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping, SumsOf of) {
-  const auto linear = sum_groups<8>(domain, grouping, of, [](const Moving& each, std::size_t) {
+  const auto linear = sum_groups<8>(domain, grouping, of, [](const MovingMass& each, std::size_t) {
     const Vector3 x = each.mass * each.place, p = each.mass * each.velocity;
     return std::array{each.mass, x[0], x[1], x[2], p[0], p[1], p[2], each.kinetic};
   });
@@ -79,7 +79,7 @@ std::vector<PartSums> part_sums(Domain<D>& domain, const Grouping& grouping, Sum
     parts[g].kinetic = s[7];
   }
   const auto turning =
-      sum_groups<9>(domain, grouping, of, [&](const Moving& each, std::size_t group) {
+      sum_groups<9>(domain, grouping, of, [&](const MovingMass& each, std::size_t group) {
         const Vector3 arm = each.place - parts[group].centre;
         const Vector3 L = each.mass * cross(arm, each.velocity) + each.own_momentum;
         RigidSums sums;

@@ -135,7 +135,7 @@ void begin_with_rigid_motions(Domain<D>& domain, const std::vector<bool>& bodies
   });
 }
 
-void check_setting(bool holds, const char* sentence) {
+void check_frame(bool holds, const char* sentence) {
   if (!holds)
     throw std::invalid_argument(std::string("frame = \"material\" does not go with ") + sentence);
 }
@@ -143,11 +143,11 @@ void check_setting(bool holds, const char* sentence) {
 }  // namespace
 
 void check_in_body(const Material& material) {
-  check_setting(!material.moves_as_one(), "a rigid body, which does not deform");
-  check_setting(!material.breaks_up(),
-                "a material that flows or breaks: fluids, gases, explosives, loose soils, failure "
-                "models and spall strengths need frame = \"updated\"");
-  check_setting(!material.averages_volume, "volume_averaging: leave one of them away");
+  check_frame(!material.moves_as_one(), "a rigid body, which does not deform");
+  check_frame(!material.breaks_up(),
+              "a material that flows or breaks: fluids, gases, explosives, loose soils, failure "
+              "models and spall strengths need frame = \"updated\"");
+  check_frame(!material.averages_volume, "volume_averaging: leave one of them away");
 }
 
 template <int D>
@@ -155,24 +155,24 @@ void check_in_body(const Simulation<D>& simulation) {
   const Domain<D>& domain = simulation.domain;
   if (!has_kept_nodes(domain)) return;
   const Settings& s = simulation.settings;
-  check_setting(s.grid.basis != basis_id<Linear>,
-                "grid.basis = \"linear\", whose gradients jump: give \"quadratic_bspline\"");
-  check_setting(domain.bodies.size() == 1 || !s.contact.enabled,
-                "contact yet: give contact.enabled = false, or frame = \"updated\"");
-  check_setting(domain.bodies.size() == 1 || !s.contact.bonded,
-                "bonded bodies yet: give frame = \"updated\"");
+  check_frame(s.grid.basis != basis_id<Linear>,
+              "grid.basis = \"linear\", whose gradients jump: give \"quadratic_bspline\"");
+  check_frame(domain.bodies.size() == 1 || !s.contact.enabled,
+              "contact yet: give contact.enabled = false, or frame = \"updated\"");
+  check_frame(domain.bodies.size() == 1 || !s.contact.bonded,
+              "bonded bodies yet: give frame = \"updated\"");
   const bool held = std::ranges::any_of(s.grid.walls, [](Wall w) { return w != Wall::free; });
-  check_setting(s.grid.box_cells[0] == 0 || !held,
-                "walls of the box yet: give free faces, or frame = \"updated\"");
-  check_setting(!s.grid.outflow, "a region that particles leave: give frame = \"updated\"");
-  check_setting(!s.grid.coarsening, "grid.coarsening: give frame = \"updated\"");
+  check_frame(s.grid.box_cells[0] == 0 || !held,
+              "walls of the box yet: give free faces, or frame = \"updated\"");
+  check_frame(!s.grid.outflow, "a region that particles leave: give frame = \"updated\"");
+  check_frame(!s.grid.coarsening, "grid.coarsening: give frame = \"updated\"");
   for (const SurfaceLoad<D>& load : domain.loads)
-    check_setting(!domain.body_at(load.body).keeps_nodes(),
-                  "loads on its surface yet: give frame = \"updated\"");
-  check_setting(domain.grid.partition.comm->size() == 1, "several ranks yet: run it on one");
+    check_frame(!domain.body_at(load.body).keeps_nodes(),
+                "loads on its surface yet: give frame = \"updated\"");
+  check_frame(domain.grid.partition.comm->size() == 1, "several ranks yet: run it on one");
   for (const HeldBody& held_body : simulation.held)
-    check_setting(!domain.body_at(held_body.body).keeps_nodes(),
-                  "a velocity at the start and run.settle yet: leave one of them away");
+    check_frame(!domain.body_at(held_body.body).keeps_nodes(),
+                "a velocity at the start and run.settle yet: leave one of them away");
 }
 
 template <int D>
