@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from mpm3dpp import Case, CaseError, Simulation
+from mpm3dpp.fill.build import build
+from mpm3dpp.run.summary import echo
 
 CASE = """
 [grid]
@@ -140,3 +142,10 @@ def test_grains_of_such_bodies() -> None:
 def test_ranks_are_refused_in_a_sentence() -> None:
     with pytest.raises(CaseError, match=r'frame = "material" does not go with several ranks yet'):
         simulation_of(ranks=2)
+
+
+def test_check_says_whose_nodes_lie_in_it() -> None:
+    case = Case.from_text(CASE)
+    about = {line.split(":")[0]: line for line in echo(case, build(case)).splitlines()}
+    assert about["body a"].endswith(", on nodes of its own")
+    assert "nodes" not in about["body b"]

@@ -10,6 +10,7 @@ import numpy as np
 
 from mpm3dpp import _core
 from mpm3dpp.case.case import Case
+from mpm3dpp.case.frame import in_body
 from mpm3dpp.case.load_pieces import pieces
 from mpm3dpp.case.matter import liquids_that_meet, parts_by_matter
 from mpm3dpp.fill.advisories import fastest, notes
@@ -215,12 +216,14 @@ def _grains_line(grains: FilledPart, per_metre: str) -> str:
 def _body_lines(case: Case, bodies: Filled, per_metre: str) -> list[str]:
     """Return the lines about bodies, grains and loads."""
     lines = []
+    own = in_body(case)
     for name, part in bodies.parts.items():
-        lines.append(
+        line = (
             _grains_line(part, per_metre)
             if name in case.grains
             else _body_line(case, part, per_metre)
         )
+        lines.append(line + (", on nodes of its own" if name in own else ""))
     for name, load in case.load.items():
         body = bodies.parts[load.body].body(0)
         found = pieces(case, name, body.positions, body.spacing)
