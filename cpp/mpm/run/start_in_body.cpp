@@ -18,8 +18,8 @@ namespace {
 
 // What is left of the particles' velocities after a pass is given to the nodes in the next. Within
 // a body the first pass is as good as the last; at its surface, where nodes have particles on one
-// side only, each takes away a part of the error: of a shear .2 % of the largest velocity are left
-// at a corner. Passes end at this change, over the largest of a pass.
+// side only, each takes away a part of the error: of a shear less than .2 % of the largest velocity
+// are left at a corner. Passes end at this change, over the largest of a pass.
 constexpr int passes = 50;
 constexpr double least_change = 1e-6;
 constexpr int lanes_of_start = 4;

@@ -223,9 +223,9 @@ void advance_nodes(Domain<D>& domain) {
     if (domain.has_body_forces()) loads += work_of_body_force(domain, p);
     // Nodes in bodies go with the new velocities all the step, others with the mean of both: what
     // is a half of the increments' work for these is all of it.
-    const double all = patch.keeps ? 2.0 : 1.0;
-    loads.second *= all;
-    sums.damping_second *= all;
+    const double halves = patch.keeps ? 2.0 : 1.0;
+    loads.second *= halves;
+    sums.damping_second *= halves;
     add_impulses(domain, p, block, own);
     // What is left is work of internal and contact forces; loads, walls and gravity have terms
     // of their own in the ledger, with the velocity in the middle of the step.
@@ -238,7 +238,7 @@ void advance_nodes(Domain<D>& domain) {
     sums.wall_push = push;
     sums.wall_friction = friction;
     sums.gravity_first = dt * (done.gravity_first - weight_first);
-    sums.gravity_second = 0.5 * all * dt * (done.gravity_second - weight_second);
+    sums.gravity_second = 0.5 * halves * dt * (done.gravity_second - weight_second);
     if (patch.keeps) count_kept_nodes(domain, move_kept_nodes(domain, block, own, sums), sums);
   });
 }
